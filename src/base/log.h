@@ -1,0 +1,28 @@
+// Warnings, collected and counted: equal messages are one entry.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace troffer {
+
+struct Warning {
+  std::string text;
+  size_t count = 1;
+};
+
+// Not for use from parallel loops. Keeps at most `max_entries` different texts, so that a
+// hostile file cannot fill memory with them; the rest are counted in one last entry.
+class WarningLog {
+ public:
+  void add(std::string text, size_t count = 1);
+  const std::vector<Warning>& entries() const { return entries_; }
+  size_t total() const;
+
+ private:
+  static constexpr size_t max_entries = 200;
+  std::vector<Warning> entries_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,47 @@
+#include "base/random.h"
+
+namespace troffer {
+
+namespace {
+
+// Primitive polynomials and initial direction numbers of dimensions 1 … 4 [2, new-joe-kuo-6].
+struct Polynomial {
+  unsigned degree, coefficients;
+  std::array<uint32_t, 3> initial;
+};
+constexpr std::array<Polynomial, 4> polynomials{{
+    {1, 0, {1, 0, 0}},
+    {2, 1, {1, 3, 0}},
+    {3, 1, {1, 3, 1}},
+    {3, 2, {1, 1, 1}},
+}};
+
+constexpr std::array<std::array<uint32_t, 32>, sobol_dimensions> make_matrices() {
+  std::array<std::array<uint32_t, 32>, sobol_dimensions> reversed{};
+  for (unsigned k = 0; k < 32; ++k) reversed[0][k] = 1u << k;
+  for (size_t d = 0; d < polynomials.size(); ++d) {
+    const Polynomial& p = polynomials[d];
+    std::array<uint32_t, 32> v{};
+    for (unsigned k = 0; k < 32; ++k) {
+      if (k < p.degree) {
+        v[k] = p.initial[k] << (31 - k);
+        continue;
+      }
+      v[k] = v[k - p.degree] ^ (v[k - p.degree] >> p.degree);
+      for (unsigned j = 1; j < p.degree; ++j)
+        if ((p.coefficients >> (p.degree - 1 - j)) & 1u) v[k] ^= v[k - j];
+    }
+    for (unsigned k = 0; k < 32; ++k) reversed[d + 1][k] = reverse_bits(v[k]);
+  }
+  return reversed;
+}
+
+constexpr auto matrices = make_matrices();
+
+}  // namespace
+
+const std::array<std::array<uint32_t, 32>, sobol_dimensions>& sobol_matrices_reversed() {
+  return matrices;
+}
+
+}  // namespace troffer

@@ -1,0 +1,117 @@
+// Hashes and Owen-scrambled Sobol points. Streams derive from (pixel, sample, purpose) and never
+// from threads.
+// References: [1] Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
+//   [2] Joe & Kuo, "Constructing Sobol Sequences with Better Two-Dimensional Projections", 2008.
+//   [3] O'Neill, "PCG", 2014 (output permutation used as a hash).
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "base/units.h"
+#include "base/vec.h"
+
+namespace troffer {
+
+// Bijective 64-bit finaliser (splitmix64).
+constexpr uint64_t mix64(uint64_t x) {
+  x ^= x >> 30;
+  x *= 0xbf58476d1ce4e5b9ull;
+  x ^= x >> 27;
+  x *= 0x94d049bb133111ebull;
+  return x ^ (x >> 31);
+}
+constexpr uint64_t hash_combine(uint64_t seed, uint64_t v) {
+  return mix64(seed + 0x9e3779b97f4a7c15ull + mix64(v + 0x632be59bd9b4e019ull));
+}
+template <class... Rest>
+constexpr uint64_t hash_of(uint64_t first, Rest... rest) {
+  uint64_t h = mix64(first + 0x9e3779b97f4a7c15ull);
+  ((h = hash_combine(h, uint64_t(rest))), ...);
+  return h;
+}
+
+// Uniform in [0,1) from the top 24 bits of a 32-bit word.
+constexpr float unit_float(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
+
+// A plain stream of independent numbers, for tests and for what needs no stratification.
+class Random {
+ public:
+  explicit Random(uint64_t seed) : state_(mix64(seed + 0x853c49e6748fea9bull)) {}
+  uint32_t next_u32() { return uint32_t(next_u64() >> 32); }
+  uint64_t next_u64() {
+    state_ += 0x9e3779b97f4a7c15ull;
+    return mix64(state_);
+  }
+  float next_float() { return unit_float(next_u32()); }
+  double next_double() { return double(next_u64() >> 11) * 0x1p-53; }
+  Vec2 next_vec2() {
+    const float x = next_float();
+    return {x, next_float()};
+  }
+
+ private:
+  uint64_t state_;
+};
+
+constexpr uint32_t reverse_bits(uint32_t x) {
+  x = (x << 16) | (x >> 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
+  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
+  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+// Owen scrambling acts from the most to the least significant bit; on the reversed word that is
+// a hash in which a bit only depends on lower ones [1, section 3; constants by N. Vegdahl].
+constexpr uint32_t owen_hash_reversed(uint32_t x, uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+constexpr uint32_t nested_uniform_scramble(uint32_t x, uint32_t seed) {
+  return reverse_bits(owen_hash_reversed(reverse_bits(x), seed));
+}
+
+constexpr int sobol_dimensions = 5;
+
+// Sobol direction numbers bit-reversed, so that a point comes out ready for owen_hash_reversed.
+const std::array<std::array<uint32_t, 32>, sobol_dimensions>& sobol_matrices_reversed();
+
+// Bit-reversed coordinate `dimension` (0 … 4) of Sobol point `index`.
+inline uint32_t sobol_reversed(uint32_t index, int dimension) {
+  if (dimension == 0) return index;  // van der Corput: the reversal undoes itself
+  const auto& matrix = sobol_matrices_reversed()[size_t(dimension)];
+  uint32_t x = 0;
+  for (; index != 0; index &= index - 1) x ^= matrix[size_t(std::countr_zero(index))];
+  return x;
+}
+
+// Owen-scrambled Sobol set, padded: dimensions come in groups (a group is one purpose, such as
+// "bounce 2, light"), each with its own scramble and its own shuffling of the index [1, section 4].
+// Each group alone is a (0,m,2)-net in its first two dimensions and well stratified in all five.
+class SobolGroup {
+ public:
+  // `stream` names the pixel and the seed, `purpose` the group, `index` the sample.
+  SobolGroup(uint64_t stream, uint32_t purpose, uint32_t index)
+      : seed_(hash_combine(stream, purpose)),
+        index_(nested_uniform_scramble(index, uint32_t(seed_))) {}
+  float get(int dimension) const {
+    const auto scramble = uint32_t(hash_combine(seed_, uint64_t(dimension)));
+    return unit_float(
+        reverse_bits(owen_hash_reversed(sobol_reversed(index_, dimension), scramble)));
+  }
+  Vec2 get2(int first_dimension = 0) const {
+    return {get(first_dimension), get(first_dimension + 1)};
+  }
+
+ private:
+  uint64_t seed_;
+  uint32_t index_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,24 @@
+// Makes sources of emissive meshes, by one rule for all formats.
+#pragma once
+
+#include <string>
+
+#include "scene/scene.h"
+
+namespace troffer {
+
+// What a format says about the emission of one shape.
+struct EmissionSpec {
+  std::string name;             // shared by all sources that come of the shape
+  Rgb radiance;
+  int32_t texture = no_texture; // factor on radiance
+  bool is_two_sided = false;
+};
+
+// Makes `scene.meshes[mesh]` emit: each connected component whose triangles form one planar convex
+// polygon becomes a polygon source (untextured emission only); all other triangles together become
+// one mesh source. Fills Mesh::emitters and appends to scene.emitters. A mesh without area, or a
+// black emission, adds no source (and the former a warning).
+void add_mesh_emitters(Scene& scene, uint32_t mesh, const EmissionSpec& spec);
+
+}  // namespace troffer

@@ -1,0 +1,73 @@
+// Materials as data: what importers fill in and bsdf/ turns into reflection functions at a hit.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/rgb.h"
+#include "scene/texture.h"
+
+namespace troffer {
+
+constexpr int32_t no_texture = -1;
+
+// value × texture
+struct ColorInput {
+  Rgb value{1};
+  int32_t texture = no_texture;
+};
+// value × one channel of a texture (0 r, 1 g, 2 b, 3 alpha)
+struct FloatInput {
+  float value = 1;
+  int32_t texture = no_texture;
+  int32_t channel = 0;
+};
+
+enum class MaterialKind : uint8_t {
+  diffuse,             // Lambertian reflection base_color
+  coated_diffuse,      // dielectric coat of index ior and `roughness` over Lambertian base_color
+  conductor,           // complex index eta + i k per channel; or base_color where is_reflectance
+  dielectric,          // glass of index ior; solid, or a thin sheet where is_thin
+  metallic_roughness,  // glTF: mix by `metallic` of a base_color metal and a coated diffuse;
+                       // `transmission` of the diffuse part passes as through glass instead
+};
+
+// How `roughness` becomes the GGX width alpha.
+enum class RoughnessMeaning : uint8_t {
+  alpha,            // alpha = roughness
+  alpha_is_sqrt,    // alpha = sqrt(roughness): pbrt's remaproughness
+  alpha_is_square,  // alpha = roughness²: glTF
+};
+
+struct Material {
+  std::string name;
+  MaterialKind kind = MaterialKind::diffuse;
+  ColorInput base_color{Rgb{0.5f}, no_texture};
+  FloatInput roughness{0, no_texture, 0};
+  RoughnessMeaning roughness_meaning = RoughnessMeaning::alpha;
+  FloatInput metallic{0, no_texture, 2};
+  float ior = 1.5f;                                // real index of refraction, inside / outside
+  FloatInput specular{1, no_texture, 3};           // KHR_materials_specular: specularFactor
+  ColorInput specular_color{Rgb{1}, no_texture};   // … specularColorFactor
+  FloatInput transmission{0, no_texture, 0};       // KHR_materials_transmission
+  bool is_thin = false;                            // dielectric, transmission: no refraction
+  bool is_reflectance = false;                     // conductor: normal reflectance is base_color
+  Rgb eta{0.2f}, k{3.9f};                          // conductor
+  int32_t normal_texture = no_texture;             // tangent space, linear
+  float normal_scale = 1;
+  bool is_alpha_masked = false;                    // hits with alpha < cutoff are not there
+  FloatInput alpha{1, no_texture, 3};
+  float alpha_cutoff = 0.5f;
+};
+
+inline Rgb evaluate(const std::vector<Texture>& textures, const ColorInput& in, const Vec2& uv) {
+  return in.texture < 0 ? in.value : in.value * evaluate(textures, uint32_t(in.texture), uv).rgb;
+}
+inline float evaluate(const std::vector<Texture>& textures, const FloatInput& in, const Vec2& uv) {
+  if (in.texture < 0) return in.value;
+  const TextureValue v = evaluate(textures, uint32_t(in.texture), uv);
+  return in.value * (in.channel == 3 ? v.alpha : v.rgb[size_t(in.channel)]);
+}
+
+}  // namespace troffer

@@ -1,0 +1,58 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace troffer {
+
+size_t triangle_count(const Scene& scene) {
+  size_t n = 0;
+  for (const Mesh& m : scene.meshes) n += m.triangles.size();
+  return n;
+}
+
+Box bounds(const Scene& scene) {
+  Box box;
+  for (const Mesh& m : scene.meshes)
+    for (const Triangle& t : m.triangles)
+      for (const uint32_t v : t) box.grow(m.positions[v]);
+  for (const Sphere& s : scene.spheres) {
+    box.grow(s.centre - Vec3{s.radius});
+    box.grow(s.centre + Vec3{s.radius});
+  }
+  for (const Disk& d : scene.disks) {
+    // Half extent of a disk along axis a: r sqrt(1 - n_a²).
+    Vec3 half;
+    for (size_t a = 0; a < 3; ++a)
+      half[a] = d.radius * std::sqrt(std::max(0.0f, 1 - d.normal[a] * d.normal[a]));
+    box.grow(d.centre - half);
+    box.grow(d.centre + half);
+  }
+  return box;
+}
+
+Scene with_only_emitters(Scene scene, const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (std::none_of(scene.emitters.begin(), scene.emitters.end(),
+                     [&](const Emitter& e) { return e.name == name; }))
+      throw UsageError("no light is named '" + name + "' (troffer info lists them)");
+
+  std::vector<int32_t> renumbered(scene.emitters.size(), no_emitter);
+  std::vector<Emitter> kept;
+  for (size_t i = 0; i < scene.emitters.size(); ++i) {
+    if (std::find(names.begin(), names.end(), scene.emitters[i].name) == names.end()) continue;
+    renumbered[i] = int32_t(kept.size());
+    kept.push_back(std::move(scene.emitters[i]));
+  }
+  scene.emitters = std::move(kept);
+  const auto renumber = [&](int32_t& e) {
+    if (e >= 0) e = renumbered[size_t(e)];
+  };
+  for (Mesh& m : scene.meshes) std::for_each(m.emitters.begin(), m.emitters.end(), renumber);
+  for (Sphere& s : scene.spheres) renumber(s.emitter);
+  for (Disk& d : scene.disks) renumber(d.emitter);
+  return scene;
+}
+
+}  // namespace troffer
