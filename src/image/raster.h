@@ -1,0 +1,31 @@
+// Encoded picture files held in memory -> arrays of texels, whatever the format.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace troffer {
+
+// Decoded texels, row 0 on top, channels interleaved: element (y * width + x) * channels + c.
+// Exactly one of `texels8` and `texels_float` is filled. Channels: 1 grey, 2 grey + alpha, 3 rgb,
+// 4 rgb + alpha (alpha is straight, never sRGB encoded).
+struct Raster {
+  int width = 0, height = 0, channels = 0;
+  std::vector<uint8_t> texels8;     // 8-bit files
+  std::vector<float> texels_float;  // 16-bit PNG scaled to [0,1]; HDR, PFM and EXR as they are
+  bool is_srgb = false;             // colour channels are sRGB encoded (PNG and JPEG)
+};
+
+// The most pixels that readers decode unless told otherwise.
+constexpr size_t default_max_pixels = size_t(64) << 20;
+
+// Decodes PNG, JPEG, Radiance HDR, PFM or EXR, told apart by content. A file that is broken,
+// truncated, of another format or of more than `max_pixels` pixels throws
+// InputError{name_for_errors, 0, 0, what}; the size is checked before memory is taken.
+Raster decode_raster(std::span<const uint8_t> bytes, const std::string& name_for_errors,
+                     size_t max_pixels = default_max_pixels);
+
+}  // namespace troffer
