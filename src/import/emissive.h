@@ -9,9 +9,9 @@ namespace troffer {
 
 // What a format says about the emission of one shape.
 struct EmissionSpec {
-  std::string name;             // shared by all sources that come of the shape
+  std::string name;  // shared by all sources that come of the shape
   Rgb radiance;
-  int32_t texture = no_texture; // factor on radiance
+  int32_t texture = no_texture;  // factor on radiance
   bool is_two_sided = false;
 };
 

@@ -1,0 +1,97 @@
+#include "import/file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "base/error.h"
+
+namespace troffer {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Size of a regular file, or the InputError that says why it has none.
+uint64_t checked_size(const std::string& path, uint64_t max_bytes) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw InputError(path, 0, 0, "no such file");
+  if (error) throw InputError(path, 0, 0, "cannot be read: " + error.message());
+  if (status.type() == fs::file_type::directory)
+    throw InputError(path, 0, 0, "is a folder, not a file");
+  if (status.type() != fs::file_type::regular)
+    throw InputError(path, 0, 0, "is not a regular file");
+  const uint64_t size = fs::file_size(path, error);
+  if (error) throw InputError(path, 0, 0, "cannot be read: " + error.message());
+  if (size > max_bytes)
+    throw InputError(path, 0, 0,
+                     "has " + std::to_string(size) + " bytes; at most " +
+                         std::to_string(max_bytes) + " are read");
+  return size;
+}
+
+template <class Bytes>
+Bytes read_whole(const std::string& path, uint64_t max_bytes) {
+  const uint64_t size = checked_size(path, max_bytes);
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path, 0, 0, std::string("cannot be opened: ") + std::strerror(errno));
+  Bytes bytes(size_t(size), {});
+  in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
+  // A file that shrank since is cut short here and found out by its parser.
+  if (in.bad()) throw InputError(path, 0, 0, "cannot be read");
+  bytes.resize(size_t(in.gcount()));
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes) {
+  return read_whole<std::vector<uint8_t>>(path, max_bytes);
+}
+
+std::string read_text_file(const std::string& path, uint64_t max_bytes) {
+  return read_whole<std::string>(path, max_bytes);
+}
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+std::string lower_case_ending(const std::string& path) {
+  const std::string name = fs::path(path).filename().string();
+  const size_t dot = name.rfind('.');
+  if (dot == std::string::npos) return "";
+  std::string ending = name.substr(dot + 1);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return ending;
+}
+
+ConfinedPath confined_path(const std::string& folder, std::string_view relative) {
+  if (relative.empty()) return {"", "it is empty"};
+  if (relative.find('\0') != std::string_view::npos) return {"", "it has a NUL character"};
+  const fs::path name{std::string(relative)};
+  if (name.is_absolute()) return {"", "absolute paths are not allowed"};
+  const char* const leaves = "it leads out of the scene's folder";
+  // By the letters first, so that "x/../../y" is refused whether or not x exists.
+  const fs::path plain = name.lexically_normal();
+  if (plain.empty() || *plain.begin() == "..") return {"", leaves};
+
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder, error);
+  if (error) return {"", "the scene's folder cannot be resolved: " + error.message()};
+  const fs::path target = fs::weakly_canonical(root / name, error);
+  if (error) return {"", "it cannot be resolved: " + error.message()};
+  const auto [in_root, in_target] =
+      std::mismatch(root.begin(), root.end(), target.begin(), target.end());
+  if (in_root != root.end()) return {"", leaves};
+  return {(fs::path(folder) / name).string(), ""};
+}
+
+}  // namespace troffer

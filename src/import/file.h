@@ -1,0 +1,37 @@
+// Files that scenes are made of: whole files in memory, and paths that stay inside a folder.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace troffer {
+
+constexpr uint64_t default_max_file_bytes = uint64_t(4) << 30;
+
+// Contents of a regular file. InputError (line and column 0) where it is missing, unreadable, not a
+// regular file (a folder, a pipe, a device) or larger than max_bytes.
+std::vector<uint8_t> read_file(const std::string& path,
+                               uint64_t max_bytes = default_max_file_bytes);
+std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
+
+// The folder a path's file lies in, "." for a bare file name.
+std::string folder_of(const std::string& path);
+
+// The part after the last dot of the last path component, in lower case; "" where there is none.
+std::string lower_case_ending(const std::string& path);
+
+// `path`, or the reason why it may not be used, in words that finish "cannot use 'NAME': …".
+struct ConfinedPath {
+  std::string path;
+  std::string problem;  // empty = fine
+  bool is_fine() const { return problem.empty(); }
+};
+
+// The path of file `relative` (already percent-decoded, '/' between components) inside `folder`.
+// Refused: an empty name, NUL characters, absolute paths, and whatever ends outside `folder` by
+// ".." or by symbolic links. Whether the file exists is not looked at.
+ConfinedPath confined_path(const std::string& folder, std::string_view relative);
+
+}  // namespace troffer
