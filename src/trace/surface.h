@@ -1,0 +1,37 @@
+// The surface at a hit.
+// References: [1] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., §6.8 (rounding
+// error of intersections).
+#pragma once
+
+#include <cstdint>
+
+#include "base/frame.h"
+#include "scene/scene.h"
+#include "trace/ray.h"
+
+namespace troffer {
+
+struct Surface {
+  Vec3 position;             // from barycentrics, accurate to a few ulps
+  Vec3 geometric_normal;     // unit, on the front
+  Vec3 shading_normal;       // unit, on the front; interpolated and normal-mapped
+  Vec2 uv;
+  float offset = 0;          // metres: farther from the surface than rounding can err
+  uint32_t geometry = 0, primitive = 0;  // as in Hit
+  uint32_t material = 0;
+  int32_t emitter = no_emitter;
+};
+
+Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
+
+// Where a new ray in the direction of `towards` starts, clear of the surface it leaves.
+inline Vec3 offset_origin(const Surface& s, const Vec3& towards) {
+  const float side = dot(s.geometric_normal, towards) < 0 ? -s.offset : s.offset;
+  return s.position + s.geometric_normal * side;
+}
+
+// How far rays must start from a surface whose coordinates reach `magnitude` metres: some 32 ulps,
+// which covers the rounding of hit points and of Embree's intersections [1].
+constexpr float ray_offset(float magnitude) { return 4e-6f * magnitude; }
+
+}  // namespace troffer
