@@ -33,12 +33,16 @@ InputError::InputError(std::string file, int line, int column, std::string what)
       line_(line),
       column_(column) {}
 
-void set_check_command(std::string command) { check_command() = std::move(command); }
+void set_check_command(std::string command) {
+  check_command() = std::move(command);
+}
 
 CheckContext::CheckContext(int pixel_x, int pixel_y, int sample) {
   work_item = {pixel_x, pixel_y, sample};
 }
-CheckContext::~CheckContext() { work_item = {}; }
+CheckContext::~CheckContext() {
+  work_item = {};
+}
 
 void check_failed(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "bug: %s:%d: CHECK(%s) failed\n", file, line, condition);

@@ -11,8 +11,7 @@ int thread_count(int threads) {
   return threads > 0 ? threads : tbb::info::default_concurrency();
 }
 
-void parallel_for_slots(size_t n, int threads,
-                        const std::function<void(size_t, size_t)>& body) {
+void parallel_for_slots(size_t n, int threads, const std::function<void(size_t, size_t)>& body) {
   const int count = thread_count(threads);
   if (count == 1) {
     for (size_t i = 0; i < n; ++i) body(i, 0);

@@ -33,7 +33,9 @@ constexpr uint64_t hash_of(uint64_t first, Rest... rest) {
 }
 
 // Uniform in [0,1) from the top 24 bits of a 32-bit word.
-constexpr float unit_float(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
+constexpr float unit_float(uint32_t bits) {
+  return float(bits >> 8) * 0x1p-24f;
+}
 
 // A plain stream of independent numbers, for tests and for what needs no stratification.
 class Random {

@@ -26,12 +26,20 @@ struct Rgb {
   constexpr bool operator==(const Rgb&) const = default;
   constexpr bool is_black() const { return r == 0 && g == 0 && b == 0; }
 };
-constexpr Rgb operator*(float s, Rgb c) { return c * s; }
+constexpr Rgb operator*(float s, Rgb c) {
+  return c * s;
+}
 
 // Relative luminance Y of linear Rec. 709 colour.
-constexpr float luminance(Rgb c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
-constexpr float max_component(Rgb c) { return std::max(c.r, std::max(c.g, c.b)); }
-constexpr float average(Rgb c) { return (c.r + c.g + c.b) * (1.0f / 3.0f); }
+constexpr float luminance(Rgb c) {
+  return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
+}
+constexpr float max_component(Rgb c) {
+  return std::max(c.r, std::max(c.g, c.b));
+}
+constexpr float average(Rgb c) {
+  return (c.r + c.g + c.b) * (1.0f / 3.0f);
+}
 inline bool is_finite(Rgb c) {
   return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }

@@ -12,8 +12,12 @@ constexpr float one_minus_epsilon = 0x1.fffffep-1f;  // largest float below 1
 // photometric (the convention of Radiance and of others).
 constexpr double luminous_efficacy = 179.0;
 
-constexpr double rad_from_deg(double deg) { return deg * (pi / 180.0); }
-constexpr double deg_from_rad(double rad) { return rad * (180.0 / pi); }
+constexpr double rad_from_deg(double deg) {
+  return deg * (pi / 180.0);
+}
+constexpr double deg_from_rad(double rad) {
+  return rad * (180.0 / pi);
+}
 template <class T>
 constexpr T sqr(T x) {
   return x * x;

@@ -54,7 +54,9 @@ inline Vec3 cosine_hemisphere_from_square(const Vec2& u) {
 inline float pdf_cosine_hemisphere(float cos_theta) {
   return cos_theta > 0 ? cos_theta * inv_pi_f : 0;
 }
-inline Vec2 square_from_cosine_hemisphere(const Vec3& w) { return square_from_disk(Vec2{w.x, w.y}); }
+inline Vec2 square_from_cosine_hemisphere(const Vec3& w) {
+  return square_from_disk(Vec2{w.x, w.y});
+}
 
 // Uniform direction on the sphere, density 1/(4 pi) per unit solid angle.
 inline Vec3 sphere_from_square(const Vec2& u) {

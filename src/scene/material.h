@@ -47,16 +47,16 @@ struct Material {
   FloatInput roughness{0, no_texture, 0};
   RoughnessMeaning roughness_meaning = RoughnessMeaning::alpha;
   FloatInput metallic{0, no_texture, 2};
-  float ior = 1.5f;                                // real index of refraction, inside / outside
-  FloatInput specular{1, no_texture, 3};           // KHR_materials_specular: specularFactor
-  ColorInput specular_color{Rgb{1}, no_texture};   // … specularColorFactor
-  FloatInput transmission{0, no_texture, 0};       // KHR_materials_transmission
-  bool is_thin = false;                            // dielectric, transmission: no refraction
-  bool is_reflectance = false;                     // conductor: normal reflectance is base_color
-  Rgb eta{0.2f}, k{3.9f};                          // conductor
-  int32_t normal_texture = no_texture;             // tangent space, linear
+  float ior = 1.5f;                               // real index of refraction, inside / outside
+  FloatInput specular{1, no_texture, 3};          // KHR_materials_specular: specularFactor
+  ColorInput specular_color{Rgb{1}, no_texture};  // … specularColorFactor
+  FloatInput transmission{0, no_texture, 0};      // KHR_materials_transmission
+  bool is_thin = false;                           // dielectric, transmission: no refraction
+  bool is_reflectance = false;                    // conductor: normal reflectance is base_color
+  Rgb eta{0.2f}, k{3.9f};                         // conductor
+  int32_t normal_texture = no_texture;            // tangent space, linear
   float normal_scale = 1;
-  bool is_alpha_masked = false;                    // hits with alpha < cutoff are not there
+  bool is_alpha_masked = false;  // hits with alpha < cutoff are not there
   FloatInput alpha{1, no_texture, 3};
   float alpha_cutoff = 0.5f;
 };

@@ -24,11 +24,11 @@ using Triangle = std::array<uint32_t, 3>;
 // counterclockwise; importers order vertices so that this is the front by their format's rules.
 struct Mesh {
   std::string name;
-  std::vector<Vec3> positions;           // metres
-  std::vector<Vec3> normals;             // empty, or per vertex: unit shading normals
-  std::vector<Vec2> uvs;                 // empty, or per vertex
+  std::vector<Vec3> positions;  // metres
+  std::vector<Vec3> normals;    // empty, or per vertex: unit shading normals
+  std::vector<Vec2> uvs;        // empty, or per vertex
   std::vector<Triangle> triangles;
-  std::vector<int32_t> emitters;         // empty (nothing emits), or per triangle
+  std::vector<int32_t> emitters;  // empty (nothing emits), or per triangle
   uint32_t material = 0;
 };
 
@@ -54,14 +54,14 @@ enum class EmitterShape : uint8_t { polygon, disk, sphere, mesh };
 
 // A diffuse area light source. Emits from the front, or from both sides where is_two_sided.
 struct Emitter {
-  std::string name;                  // glTF node, else emitter0, emitter1 …; may repeat
+  std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
   EmitterShape shape = EmitterShape::polygon;
-  Rgb radiance;                      // W/(m² sr), or cd/m² where Scene::is_photometric
-  int32_t texture = no_texture;      // factor on radiance over the mesh's (u,v); mesh only
+  Rgb radiance;                  // W/(m² sr), or cd/m² where Scene::is_photometric
+  int32_t texture = no_texture;  // factor on radiance over the mesh's (u,v); mesh only
   bool is_two_sided = false;
-  uint32_t geometry = 0;             // index into meshes, disks or spheres
-  std::vector<uint32_t> triangles;   // polygon, mesh: the triangles of that mesh, ascending
-  std::vector<Vec3> polygon;         // polygon: convex outline, counterclockwise seen from front
+  uint32_t geometry = 0;            // index into meshes, disks or spheres
+  std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
+  std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
 };
 
 enum class CameraKind : uint8_t { perspective, orthographic };
@@ -73,26 +73,26 @@ struct Camera {
   std::string name;
   CameraKind kind = CameraKind::perspective;
   Vec3 position, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
-  float half_extent = 0.5f;      // tan(fov/2); orthographic: half the height in metres
+  float half_extent = 0.5f;  // tan(fov/2); orthographic: half the height in metres
   bool fov_is_vertical = true;
   bool has_screen_window = false;
   std::array<float, 4> screen_window{-1, 1, -1, 1};  // pbrt: xmin xmax ymin ymax × half_extent
-  float lens_radius = 0;         // metres; 0 = pinhole
-  float focal_distance = 1e6f;   // metres along forward
-  int width = 0, height = 0;     // image size the file asks for; 0 = it does not say
-  float aspect = 0;              // width / height the file asks for; 0 = it does not say
+  float lens_radius = 0;                             // metres; 0 = pinhole
+  float focal_distance = 1e6f;                       // metres along forward
+  int width = 0, height = 0;  // image size the file asks for; 0 = it does not say
+  float aspect = 0;           // width / height the file asks for; 0 = it does not say
 };
 
 struct Scene {
-  std::string file;                  // as given on the command line
+  std::string file;  // as given on the command line
   std::vector<Mesh> meshes;
   std::vector<Sphere> spheres;
   std::vector<Disk> disks;
-  std::vector<Material> materials;   // at least one if there is any geometry
+  std::vector<Material> materials;  // at least one if there is any geometry
   std::vector<Texture> textures;
   std::vector<Emitter> emitters;
   std::vector<Camera> cameras;
-  bool is_photometric = false;       // emission in cd/m² (glTF); else W/(m² sr)
+  bool is_photometric = false;  // emission in cd/m² (glTF); else W/(m² sr)
   WarningLog warnings;
 };
 

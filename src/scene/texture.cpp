@@ -74,8 +74,8 @@ TextureValue image_value(const Texture& t, const Vec2& uv_in) {
     const TextureValue a = texel(t, i, j), b = texel(t, i + 1, j);
     const TextureValue c = texel(t, i, j + 1), d = texel(t, i + 1, j + 1);
     v.rgb = (a.rgb * (1 - fx) + b.rgb * fx) * (1 - fy) + (c.rgb * (1 - fx) + d.rgb * fx) * fy;
-    v.alpha = (a.alpha * (1 - fx) + b.alpha * fx) * (1 - fy) +
-              (c.alpha * (1 - fx) + d.alpha * fx) * fy;
+    v.alpha =
+        (a.alpha * (1 - fx) + b.alpha * fx) * (1 - fy) + (c.alpha * (1 - fx) + d.alpha * fx) * fy;
   }
   if (t.is_inverted) v.rgb = clamp01(Rgb{1} - v.rgb);
   v.rgb *= t.value;

@@ -18,17 +18,17 @@ enum class TextureKind : uint8_t { constant, image, product };
 struct Texture {
   std::string name;
   TextureKind kind = TextureKind::constant;
-  Rgb value{1};                      // constant: the value; image: factor on every texel
+  Rgb value{1};                         // constant: the value; image: factor on every texel
   uint32_t factor_a = 0, factor_b = 0;  // product: two textures of lower index
 
   // image
   int width = 0, height = 0;
-  int channels = 0;                  // 1 grey, 2 grey+alpha, 3 rgb, 4 rgb+alpha
-  std::vector<uint8_t> texels8;      // row-major, top row first; either this …
-  std::vector<float> texels_float;   // … or this, linear
-  bool is_srgb = true;               // texels8 carry the sRGB transfer function (not in alpha)
-  bool is_inverted = false;          // pbrt: 1 - value
-  bool is_filtered = true;           // bilinear, else nearest
+  int channels = 0;                 // 1 grey, 2 grey+alpha, 3 rgb, 4 rgb+alpha
+  std::vector<uint8_t> texels8;     // row-major, top row first; either this …
+  std::vector<float> texels_float;  // … or this, linear
+  bool is_srgb = true;              // texels8 carry the sRGB transfer function (not in alpha)
+  bool is_inverted = false;         // pbrt: 1 - value
+  bool is_filtered = true;          // bilinear, else nearest
   WrapMode wrap_u = WrapMode::repeat, wrap_v = WrapMode::repeat;
   Vec2 uv_scale{1, 1}, uv_offset{0, 0};  // lookup at uv * scale + offset
   float uv_rotation_rad = 0;             // KHR_texture_transform: rotation before the scale

@@ -56,14 +56,13 @@ Surface triangle_surface(const Scene& scene, const Hit& hit) {
   s.primitive = hit.primitive;
   s.position = p[0] * w + p[1] * hit.u + p[2] * hit.v;
   s.geometric_normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
-  s.offset = ray_offset(std::max(
-      {largest_coordinate(p[0]), largest_coordinate(p[1]), largest_coordinate(p[2])}));
+  s.offset = ray_offset(
+      std::max({largest_coordinate(p[0]), largest_coordinate(p[1]), largest_coordinate(p[2])}));
   s.material = mesh.material;
   s.emitter = mesh.emitters.empty() ? no_emitter : mesh.emitters[hit.primitive];
   s.shading_normal = s.geometric_normal;
   if (!mesh.normals.empty()) {
-    const Vec3 n =
-        mesh.normals[t[0]] * w + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v;
+    const Vec3 n = mesh.normals[t[0]] * w + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v;
     const float l = length(n);
     if (l > 1e-6f) s.shading_normal = n / (dot(n, s.geometric_normal) < 0 ? -l : l);
   }

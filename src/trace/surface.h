@@ -12,11 +12,11 @@
 namespace troffer {
 
 struct Surface {
-  Vec3 position;             // from barycentrics, accurate to a few ulps
-  Vec3 geometric_normal;     // unit, on the front
-  Vec3 shading_normal;       // unit, on the front; interpolated and normal-mapped
+  Vec3 position;          // from barycentrics, accurate to a few ulps
+  Vec3 geometric_normal;  // unit, on the front
+  Vec3 shading_normal;    // unit, on the front; interpolated and normal-mapped
   Vec2 uv;
-  float offset = 0;          // metres: farther from the surface than rounding can err
+  float offset = 0;                      // metres: farther from the surface than rounding can err
   uint32_t geometry = 0, primitive = 0;  // as in Hit
   uint32_t material = 0;
   int32_t emitter = no_emitter;
@@ -32,6 +32,8 @@ inline Vec3 offset_origin(const Surface& s, const Vec3& towards) {
 
 // How far rays must start from a surface whose coordinates reach `magnitude` metres: some 32 ulps,
 // which covers the rounding of hit points and of Embree's intersections [1].
-constexpr float ray_offset(float magnitude) { return 4e-6f * magnitude; }
+constexpr float ray_offset(float magnitude) {
+  return 4e-6f * magnitude;
+}
 
 }  // namespace troffer

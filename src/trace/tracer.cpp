@@ -72,9 +72,9 @@ struct Tracer::Embree {
 
   void throw_if_failed() const {
     if (status.code == RTC_ERROR_NONE) return;
-    throw EnvironmentError("cannot build the ray tracing structure: " +
-                           (status.code == RTC_ERROR_OUT_OF_MEMORY ? std::string("out of memory")
-                                                                   : status.text));
+    throw EnvironmentError(
+        "cannot build the ray tracing structure: " +
+        (status.code == RTC_ERROR_OUT_OF_MEMORY ? std::string("out of memory") : status.text));
   }
 
   template <class T>
@@ -215,8 +215,7 @@ void closest_packets(RTCScene scene, RTCIntersectContext& context, std::span<con
     std::fill(std::begin(p.hit.geomID), std::end(p.hit.geomID), RTC_INVALID_GEOMETRY_ID);
     rtcIntersect16(valid.data(), scene, &context, &p);
     for (size_t i = 0; i < n; ++i)
-      hits[first + i] = {p.ray.tfar[i], p.hit.u[i], p.hit.v[i], p.hit.geomID[i],
-                         p.hit.primID[i]};
+      hits[first + i] = {p.ray.tfar[i], p.hit.u[i], p.hit.v[i], p.hit.geomID[i], p.hit.primID[i]};
   }
 }
 
