@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "scene/scene.h"
 
@@ -31,14 +33,16 @@ class TextureLoader {
   int32_t missing(const std::string& key, const std::string& problem, const Texture& look);
 
  private:
-  // Index of the first texture made for (image, look), and of any texture that holds the image.
-  std::map<std::string, int32_t> by_request_, by_image_;
-  uint64_t texel_bytes_ = 0;
-  Scene& scene_;
+  using Bytes = std::function<std::span<const uint8_t>()>;
 
-  int32_t find(const std::string& key, const Texture& look);
-  int32_t decode(std::span<const uint8_t> bytes, const std::string& key, const Texture& look);
-  int32_t remember(const std::string& key, Texture texture);
+  int32_t add(const std::string& key, const Texture& look, const Bytes& bytes);
+  const Texture* decoded(const std::string& key, const Texture& look) const;
+  int32_t remember(const std::string& key, const Texture& look, Texture texture);
+
+  Scene& scene_;
+  std::map<std::string, int32_t> by_request_;                 // image and look -> texture
+  std::map<std::pair<std::string, bool>, int32_t> by_image_;  // image, read as sRGB -> texture
+  uint64_t texel_bytes_ = 0;
 };
 
 }  // namespace troffer

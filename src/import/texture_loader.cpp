@@ -1,0 +1,127 @@
+#include "import/texture_loader.h"
+
+#include <array>
+#include <bit>
+
+#include "base/error.h"
+#include "image/raster.h"
+#include "import/file.h"
+
+namespace troffer {
+
+namespace {
+
+// All texels of a scene together; what comes beyond is missing.
+constexpr uint64_t max_texel_bytes = uint64_t(4) << 30;
+constexpr uint64_t max_image_file_bytes = uint64_t(1) << 30;
+const char* const too_much_memory = "the images of this scene need too much memory";
+
+// Equal for requests that give equal textures. Exact bits of the numbers, so that nothing that
+// differs is taken for equal.
+std::string request_key(const std::string& image, const Texture& look) {
+  std::string key = image;
+  key += '\0';
+  key += look.name;
+  key += '\0';
+  const std::array<float, 8> numbers{look.value.r,     look.value.g,        look.value.b,
+                                     look.uv_scale.x,  look.uv_scale.y,     look.uv_offset.x,
+                                     look.uv_offset.y, look.uv_rotation_rad};
+  for (const float f : numbers) key += std::to_string(std::bit_cast<uint32_t>(f)) + ' ';
+  for (const int flag : {int(look.is_srgb), int(look.is_inverted), int(look.is_filtered),
+                         int(look.wrap_u), int(look.wrap_v)})
+    key += std::to_string(flag);
+  return key;
+}
+
+// 16-bit files come as floats that still carry the sRGB transfer function.
+void linearize(Texture& t) {
+  const auto n = size_t(t.channels);
+  const bool has_alpha = n == 2 || n == 4;
+  for (size_t i = 0; i < t.texels_float.size(); ++i)
+    if (!has_alpha || i % n != n - 1) t.texels_float[i] = linear_from_srgb(t.texels_float[i]);
+}
+
+uint64_t texel_bytes(const Texture& t) {
+  return t.texels8.size() + t.texels_float.size() * sizeof(float);
+}
+
+}  // namespace
+
+int32_t TextureLoader::remember(const std::string& key, const Texture& look, Texture texture) {
+  const auto index = int32_t(scene_.textures.size());
+  scene_.textures.push_back(std::move(texture));
+  by_request_[request_key(key, look)] = index;
+  return index;
+}
+
+int32_t TextureLoader::missing(const std::string& key, const std::string& problem,
+                               const Texture& look) {
+  scene_.warnings.add(key + ": " + problem + "; a white texture stands for it");
+  Texture white;
+  white.name = look.name.empty() ? key : look.name;
+  return remember(key, look, std::move(white));
+}
+
+// Any texture already made of the image whose texels are those that `look` asks for. 8-bit texels
+// stay encoded and serve both readings; float texels were linearised or not.
+const Texture* TextureLoader::decoded(const std::string& key, const Texture& look) const {
+  for (const bool is_srgb : {look.is_srgb, !look.is_srgb}) {
+    const auto it = by_image_.find({key, is_srgb});
+    if (it == by_image_.end()) continue;
+    const Texture& texture = scene_.textures[size_t(it->second)];
+    if (is_srgb == look.is_srgb || !texture.texels8.empty()) return &texture;
+  }
+  return nullptr;
+}
+
+int32_t TextureLoader::add(const std::string& key, const Texture& look, const Bytes& bytes) {
+  const auto same = by_request_.find(request_key(key, look));
+  if (same != by_request_.end()) return same->second;
+
+  Texture texture = look;
+  if (texture.name.empty()) texture.name = key;
+  texture.kind = TextureKind::image;
+  try {
+    if (const Texture* other = decoded(key, look)) {
+      if (texel_bytes_ + texel_bytes(*other) > max_texel_bytes)
+        return missing(key, too_much_memory, look);
+      texture.width = other->width;
+      texture.height = other->height;
+      texture.channels = other->channels;
+      texture.texels8 = other->texels8;
+      texture.texels_float = other->texels_float;
+    } else {
+      Raster raster = decode_raster(bytes(), key);
+      texture.width = raster.width;
+      texture.height = raster.height;
+      texture.channels = raster.channels;
+      texture.texels8 = std::move(raster.texels8);
+      texture.texels_float = std::move(raster.texels_float);
+      if (!raster.is_srgb) texture.is_srgb = false;
+      if (texture.is_srgb && !texture.texels_float.empty()) linearize(texture);
+    }
+  } catch (const InputError& e) {
+    return missing(key, e.reason(), look);
+  }
+  if (texel_bytes_ + texel_bytes(texture) > max_texel_bytes)
+    return missing(key, too_much_memory, look);
+  texel_bytes_ += texel_bytes(texture);
+  const int32_t index = remember(key, look, std::move(texture));
+  by_image_.emplace(std::pair{key, look.is_srgb}, index);
+  return index;
+}
+
+int32_t TextureLoader::from_file(const std::string& path, const Texture& look) {
+  std::vector<uint8_t> contents;
+  return add(path, look, [&]() -> std::span<const uint8_t> {
+    contents = read_file(path, max_image_file_bytes);
+    return contents;
+  });
+}
+
+int32_t TextureLoader::from_memory(std::span<const uint8_t> bytes, const std::string& key,
+                                   const Texture& look) {
+  return add(key, look, [&] { return bytes; });
+}
+
+}  // namespace troffer
