@@ -1,0 +1,294 @@
+#include "bsdf/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bsdf/fresnel.h"
+#include "bsdf/ggx.h"
+
+namespace troffer {
+
+namespace {
+
+// What a microfacet reflects and transmits at a cosine of incidence on it.
+struct Split {
+  Rgb reflected, transmitted;
+  // Probability of following the reflection.
+  float reflection_share() const {
+    const float r = average(reflected), t = average(transmitted);
+    return t > 0 ? r / (r + t) : 1.0f;
+  }
+};
+
+Split split_at(const Bsdf& b, float c) {
+  switch (b.fresnel) {
+    case Bsdf::Fresnel::none:
+      break;
+    case Bsdf::Fresnel::conductor:
+      return {fresnel_conductor(c, b.f0, b.f90), Rgb{0}};
+    case Bsdf::Fresnel::schlick:
+      return {fresnel_schlick(c, b.f0, b.f90), Rgb{0}};
+    case Bsdf::Fresnel::coat:
+      return {Rgb{fresnel_dielectric(c, b.eta)}, Rgb{0}};
+    case Bsdf::Fresnel::glass: {
+      const Rgb opaque = fresnel_schlick(c, b.f0, b.f90);
+      float r = fresnel_dielectric(c, b.eta);
+      if (r >= 1) return {opaque + Rgb{b.glass_weight}, Rgb{0}};
+      if (b.is_thin) r = plate_reflectance(r);
+      return {opaque + b.glass_reflect * r, b.glass_transmit * (1 - b.glass_scale * r)};
+    }
+  }
+  return {};
+}
+
+// The g of each separable lobe at a direction on the viewer's side (far_glass: on the other).
+struct Gains {
+  float diffuse = 1, metal = 0, glass = 0;
+};
+
+float missing(const AlbedoRow& row, const CosineCoordinate& at) {
+  return row.values == nullptr ? 0.0f : std::max(0.0f, 1 - row.at(at));
+}
+
+Gains gains_at(const Bsdf& b, float cosine) {
+  Gains g;
+  const CosineCoordinate at(cosine);
+  switch (b.coat) {
+    case Bsdf::Coat::none:
+      break;
+    case Bsdf::Coat::smooth_dielectric:
+      g.diffuse = 1 - fresnel_dielectric(cosine, b.eta);
+      break;
+    case Bsdf::Coat::smooth_schlick:
+      g.diffuse = 1 - (b.coat_f0 + (b.coat_f90 - b.coat_f0) * pow5(1 - cosine));
+      break;
+    case Bsdf::Coat::dielectric:
+      g.diffuse = missing(b.coat_row, at);
+      break;
+    case Bsdf::Coat::schlick: {
+      const float one = b.one.at(at), grazing = b.grazing.at(at);
+      g.diffuse = std::max(0.0f, 1 - (b.coat_f0 * (one - grazing) + b.coat_f90 * grazing));
+      break;
+    }
+  }
+  if (!b.metal_again.is_black()) g.metal = missing(b.one, at);
+  if (b.glass_weight > 0) g.glass = missing(b.near, at);
+  return g;
+}
+
+// Energy from a direction of cosine c that leaves through the glossy lobe.
+Rgb glossy_albedo(const Bsdf& b, float c) {
+  if (b.fresnel == Bsdf::Fresnel::none) return Rgb{0};
+  const Split s = split_at(b, c);
+  if (b.is_smooth) return s.reflected + s.transmitted;
+  const CosineCoordinate at(c);
+  const auto schlick = [&] {
+    const float grazing = b.grazing.at(at);
+    return b.f0 * (b.one.at(at) - grazing) + b.f90 * grazing;
+  };
+  switch (b.fresnel) {
+    case Bsdf::Fresnel::schlick:
+      return schlick();
+    case Bsdf::Fresnel::coat:
+      return Rgb{b.coat_row.at(at)};
+    case Bsdf::Fresnel::glass: {
+      const Rgb opaque = fresnel_schlick(c, b.f0, b.f90);
+      return schlick() + (s.reflected - opaque + s.transmitted) * b.near.at(at);
+    }
+    default:
+      return s.reflected * b.one.at(at);
+  }
+}
+
+struct Energies {
+  Rgb glossy, reflected, transmitted;  // glossy lobe, separable lobes on either side
+};
+Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
+  Energies e;
+  e.glossy = glossy_albedo(b, cos_o);
+  if (!b.has_separable) return e;
+  e.reflected = b.diffuse * (g.diffuse * b.diffuse_mean) +
+                b.metal_again * (g.metal * b.metal_mean) + b.glass_again * (g.glass * b.near_mean);
+  e.transmitted = b.glass_through * (g.glass * b.far_mean);
+  return e;
+}
+
+// Probabilities of the lobes, in proportion to their energies.
+struct Choice {
+  float glossy = 0, reflected = 0, transmitted = 0;
+};
+Choice choice_at(const Bsdf& b, const Gains& g, float cos_o) {
+  if (b.fresnel == Bsdf::Fresnel::none) return {0, 1, 0};
+  if (!b.has_separable) return {1, 0, 0};
+  const Energies e = energies_at(b, g, cos_o);
+  Choice c{average(e.glossy), average(e.reflected), average(e.transmitted)};
+  const float sum = c.glossy + c.reflected + c.transmitted;
+  if (!(sum > 0)) return {};
+  return {c.glossy / sum, c.reflected / sum, c.transmitted / sum};
+}
+
+// Only lobes that reflect alone can leave out the normals that send light below the horizon.
+float bound_of(const Bsdf& b, const Vec3& wo) {
+  return b.has_transmission ? 1.0f : ggx_bound(wo, b.alpha);
+}
+
+// Cosine-shaped lobes at wi; cos_i > 0 on the viewer's side.
+Rgb separable(const Bsdf& b, const Gains& at_o, float cos_i) {
+  if (cos_i > 0) {
+    const Gains at_i = gains_at(b, cos_i);
+    return (b.diffuse * (at_o.diffuse * at_i.diffuse) + b.metal_again * (at_o.metal * at_i.metal) +
+            b.glass_again * (at_o.glass * at_i.glass)) *
+           (cos_i * inv_pi_f);
+  }
+  if (b.glass_through.is_black()) return Rgb{0};
+  const float far = missing(b.far, CosineCoordinate(-cos_i));
+  const float radiance_scale = b.is_thin ? 1.0f : 1 / (b.eta * b.eta);
+  return b.glass_through * (at_o.glass * far * -cos_i * inv_pi_f * radiance_scale);
+}
+
+// Glossy reflection, or transmission through a thin sheet with wi mirrored to the viewer's side.
+BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is_transmission) {
+  const Vec3 h = wo + wi;
+  const float len2 = length_squared(h);
+  if (!(len2 > 1e-20f)) return {};
+  const Vec3 m = h * (1 / std::sqrt(len2));
+  const float c = std::min(dot(wo, m), 1.0f);
+  if (!(c > 0)) return {};
+  const Split s = split_at(b, c);
+  const float share = is_transmission ? 1 - s.reflection_share() : s.reflection_share();
+  const float f = ggx_distribution(m, b.alpha) * ggx_visibility(wo.z, wi.z, b.alpha) * wi.z;
+  return {(is_transmission ? s.transmitted : s.reflected) * f,
+          share * ggx_pdf_reflected(wo, m, b.alpha, bound_of(b, wo))};
+}
+
+// Glossy refraction [3, Eq. 16, 17, 21], wi.z < 0.
+BsdfValue glossy_refracted(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
+  Vec3 h = wo + wi * b.eta;
+  const float len2 = length_squared(h);
+  if (!(len2 > 1e-20f)) return {};
+  h *= std::copysign(1 / std::sqrt(len2), h.z);
+  const float co = std::min(dot(wo, h), 1.0f), ci = dot(wi, h);
+  if (!(co > 0 && ci < 0)) return {};
+  const Split s = split_at(b, co);
+  const float denominator = sqr(ci + co / b.eta);
+  if (!(denominator > 0)) return {};
+  const float jacobian = -ci / denominator;  // normals per solid angle of wi
+  // D G2 co |ci| / (wo.z |wi.z| denominator eta²) |wi.z|, with G2 = 4 wo.z |wi.z| visibility
+  const float f = ggx_distribution(h, b.alpha) * 4 * ggx_visibility(wo.z, -wi.z, b.alpha) * -wi.z *
+                  co * jacobian / (b.eta * b.eta);
+  return {s.transmitted * f,
+          (1 - s.reflection_share()) * ggx_pdf_reflected(wo, h, b.alpha, 1) * 4 * co * jacobian};
+}
+
+BsdfValue glossy(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
+  if (wi.z > 0) return glossy_mirrored(b, wo, wi, false);
+  if (!b.has_transmission) return {};
+  return b.is_thin ? glossy_mirrored(b, wo, {wi.x, wi.y, -wi.z}, true)
+                   : glossy_refracted(b, wo, wi);
+}
+
+BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, const Vec3& wo,
+                          const Vec3& wi) {
+  BsdfValue v;
+  if (b.fresnel != Bsdf::Fresnel::none && !b.is_smooth) {
+    v = glossy(b, wo, wi);
+    v.pdf *= choice.glossy;
+  }
+  if (b.has_separable) {
+    v.f_cos += separable(b, g, wi.z);
+    v.pdf += (wi.z > 0 ? choice.reflected : choice.transmitted) * std::abs(wi.z) * inv_pi_f;
+  }
+  return v;
+}
+
+// Direction of refraction at a normal m that wo sees at cosine c; false on total reflection.
+bool refract(const Vec3& wo, const Vec3& m, float c, float eta, Vec3& wi) {
+  const float cos_t = refracted_cosine(c, eta);
+  if (cos_t < 0) return false;
+  wi = normalize(m * (c / eta - cos_t) - wo * (1 / eta));
+  return true;
+}
+
+bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float u_side,
+                   BsdfSample& out) {
+  const Split s = split_at(b, std::min(wo.z, 1.0f));
+  const float share = s.reflection_share();
+  out.is_delta = true;
+  if (u_side < share) {
+    out.wi = {-wo.x, -wo.y, wo.z};
+    out.weight = s.reflected / (probability * share);
+    return !out.weight.is_black();
+  }
+  out.is_transmission = true;
+  out.weight = s.transmitted / (probability * (1 - share));
+  if (b.is_thin) {
+    out.wi = -wo;
+  } else {
+    if (!refract(wo, {0, 0, 1}, wo.z, b.eta, out.wi)) return false;
+    out.eta = b.eta;
+    out.weight *= 1 / (b.eta * b.eta);
+  }
+  return out.wi.z < 0 && !out.weight.is_black();
+}
+
+// A direction of the rough glossy lobe.
+bool sample_rough(const Bsdf& b, const Vec3& wo, float u_side, const Vec2& u, Vec3& wi) {
+  const Vec3 m = ggx_sample_visible_normal(wo, u, b.alpha, bound_of(b, wo));
+  const float c = std::min(dot(wo, m), 1.0f);
+  if (!(c > 0)) return false;
+  const bool is_reflection = !b.has_transmission || u_side < split_at(b, c).reflection_share();
+  if (is_reflection || b.is_thin) {
+    wi = normalize(m * (2 * c) - wo);
+    if (!(wi.z > 0)) return false;
+    if (!is_reflection) wi.z = -wi.z;
+    return true;
+  }
+  return refract(wo, m, c, b.eta, wi) && wi.z < 0;
+}
+
+}  // namespace
+
+BsdfValue evaluate_general(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool with_pdf) {
+  if (!(wo.z > 0) || wi.z == 0 || !(std::abs(wi.z) <= 2)) return {};
+  if (wi.z < 0 && !b.has_transmission) return {};
+  if (is_purely_delta(b)) return {};
+  const Gains g = b.has_separable ? gains_at(b, wo.z) : Gains{};
+  return evaluate_chosen(b, g, with_pdf ? choice_at(b, g, wo.z) : Choice{}, wo, wi);
+}
+
+bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample& out) {
+  out = {};
+  if (!(wo.z > 0)) return false;
+  const Gains g = b.has_separable ? gains_at(b, wo.z) : Gains{};
+  const Choice choice = choice_at(b, g, wo.z);
+  if (u_lobe < choice.glossy) {
+    const float u_side = std::min(u_lobe / choice.glossy, one_minus_epsilon);
+    if (b.is_smooth) return sample_smooth(b, wo, choice.glossy, u_side, out);
+    if (!sample_rough(b, wo, u_side, u, out.wi)) return false;
+  } else {
+    out.wi = cosine_hemisphere_from_square(u);
+    // Where rounding leaves u_lobe above all shares, the last lobe that exists takes it.
+    const bool is_above = choice.reflected > 0 &&
+                          (u_lobe < choice.glossy + choice.reflected || choice.transmitted <= 0);
+    if (!is_above) out.wi.z = -out.wi.z;
+    if (!is_above && choice.transmitted <= 0) return false;
+  }
+  const BsdfValue v = evaluate_chosen(b, g, choice, wo, out.wi);
+  if (!(v.pdf > 0) || !std::isfinite(v.pdf) || out.wi.z == 0) return false;
+  out.weight = v.f_cos / v.pdf;
+  out.pdf = v.pdf;
+  out.is_transmission = out.wi.z < 0;
+  if (out.is_transmission && !b.is_thin) out.eta = b.eta;
+  return is_finite(out.weight) && !out.weight.is_black();
+}
+
+Rgb albedo(const Bsdf& b, float cos_o) {
+  if (b.is_lambertian) return b.diffuse;
+  if (!(cos_o > 0)) return Rgb{0};
+  const float c = std::min(cos_o, 1.0f);
+  const Gains g = b.has_separable ? gains_at(b, c) : Gains{};
+  const Energies e = energies_at(b, g, c);
+  return e.glossy + e.reflected + e.transmitted;
+}
+
+}  // namespace troffer

@@ -1,0 +1,238 @@
+// From material data to a Bsdf.
+#include <algorithm>
+#include <cmath>
+
+#include "bsdf/bsdf.h"
+#include "bsdf/fresnel.h"
+
+namespace troffer {
+
+namespace {
+
+float safe01(float x) {
+  return x > 0 ? std::min(x, 1.0f) : 0.0f;
+}  // NaN reads as 0
+Rgb safe01(Rgb c) {
+  return {safe01(c.r), safe01(c.g), safe01(c.b)};
+}
+Rgb safe_index(Rgb v) {
+  const auto safe = [](float x) { return x > 0 ? std::min(x, 1e4f) : 0.0f; };
+  return {safe(v.r), safe(v.g), safe(v.b)};
+}
+
+struct Inputs {
+  const BsdfTables& tables;
+  const std::vector<Texture>& textures;
+  const Material& material;
+  const PreparedMaterial& prepared;
+  Vec2 uv;
+  bool is_front;
+
+  float value(const FloatInput& in) const { return safe01(evaluate(textures, in, uv)); }
+  Rgb base() const { return safe01(evaluate(textures, material.base_color, uv)); }
+};
+
+void set_lambertian(Bsdf& b, Rgb rho) {
+  b.is_lambertian = b.has_separable = true;
+  b.diffuse = rho;
+}
+
+void set_roughness(Bsdf& b, const Inputs& in) {
+  const float r = in.value(in.material.roughness);
+  switch (in.material.roughness_meaning) {
+    case RoughnessMeaning::alpha:
+      b.alpha = r;
+      break;
+    case RoughnessMeaning::alpha_is_sqrt:
+      b.alpha = std::sqrt(r);
+      break;
+    case RoughnessMeaning::alpha_is_square:
+      b.alpha = r * r;
+      break;
+  }
+  b.is_smooth = b.alpha < smooth_alpha;
+  if (b.is_smooth) return;
+  b.one = in.tables.ggx().one.row(b.alpha);
+  b.grazing = in.tables.ggx().grazing.row(b.alpha);
+}
+
+// A lobe's missing mean energy under which compensation is left out: rounding outweighs it.
+constexpr float negligible = 1e-5f;
+
+// Multiple scattering between conducting microfacets of mean reflectance f [1]: the geometric
+// series of reflections after the second, f² E / (1 - f (1 - E)). `weight` is the metal's share.
+void add_metal_compensation(Bsdf& b, Rgb f, float weight) {
+  if (b.is_smooth || weight == 0) return;
+  const float escape = b.one.average, stay = 1 - escape;
+  b.metal_mean = stay;
+  if (stay < negligible) return;
+  b.metal_again = f * f * (weight * escape / stay) / (Rgb{1} - f * stay);
+  b.has_separable = true;
+}
+
+// Glass's lost energy leaves on both sides. Shares transmitted from the near and the far side must
+// satisfy t_near M_near = t_far M_far eta² for reciprocity (M: mean missing energy); mean Fresnel
+// transmittances do so where M_near = M_far, so the geometric mean corrects them.
+void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint) {
+  if (b.is_smooth) return;
+  b.near_mean = 1 - b.near.average;
+  b.far_mean = 1 - b.far.average;
+  if (b.near_mean < negligible || b.far_mean < negligible) return;
+  float through = 1 - in.prepared.plate_average;
+  if (!b.is_thin) {
+    const float ior = in.prepared.ior, from_outside = 1 - in.prepared.dielectric_average;
+    const float from_inside = from_outside / (ior * ior);
+    const float ratio = std::sqrt(b.far_mean / b.near_mean);
+    const float near = (in.is_front ? from_outside : from_inside) * ratio;
+    const float far = (in.is_front ? from_inside : from_outside) / ratio;
+    through = near / std::max(1.0f, std::max(near, far));
+  }
+  b.glass_again = Rgb{b.glass_weight * (1 - through) / b.near_mean};
+  b.glass_through = tint * (b.glass_weight * through / b.far_mean);
+  b.has_separable = true;
+}
+
+// A share `weight` of the surface becomes glass that reflects F × scale and transmits tint × the
+// rest.
+void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
+  b.fresnel = Bsdf::Fresnel::glass;
+  b.has_transmission = true;
+  b.glass_weight = weight;
+  b.glass_reflect = scale * weight;
+  b.glass_scale = max_component(scale);
+  b.glass_transmit = tint * weight;
+  const float ior = in.prepared.ior;
+  b.is_thin = in.material.is_thin || std::abs(ior - 1) < index_matched;
+  // A thin sheet has the same on both of its sides and reflects as a plate of its own index.
+  b.eta = in.is_front || b.is_thin ? ior : 1 / ior;
+  if (!b.is_smooth && b.is_thin) b.near = b.far = b.one;
+  if (!b.is_smooth && !b.is_thin) {
+    const GlassTables& glass = in.tables.glass(in.prepared.glass);
+    b.near = (in.is_front ? glass.outside : glass.inside).row(b.alpha);
+    b.far = (in.is_front ? glass.inside : glass.outside).row(b.alpha);
+  }
+  add_glass_compensation(b, in, tint);
+}
+
+void set_conductor(Bsdf& b, const Inputs& in) {
+  set_roughness(b, in);
+  b.fresnel = Bsdf::Fresnel::conductor;
+  Rgb average = in.prepared.conductor_average;
+  if (in.material.is_reflectance) {
+    const Rgb r = in.base();
+    b.f0 = Rgb{1};
+    b.f90 = {k_from_reflectance(r.r), k_from_reflectance(r.g), k_from_reflectance(r.b)};
+    if (!b.is_smooth) average = in.tables.reflectance_average(r);
+  } else {
+    b.f0 = safe_index(in.material.eta);
+    b.f90 = safe_index(in.material.k);
+  }
+  add_metal_compensation(b, average, 1);
+}
+
+void set_dielectric(Bsdf& b, const Inputs& in) {
+  set_roughness(b, in);
+  // Nothing bends or scatters at an interface between equal indices.
+  b.is_smooth |= std::abs(in.prepared.ior - 1) < index_matched;
+  add_glass(b, in, 1, Rgb{1}, in.base());
+}
+
+void set_coated_diffuse(Bsdf& b, const Inputs& in) {
+  set_roughness(b, in);
+  const float ior = in.prepared.ior;
+  b.fresnel = Bsdf::Fresnel::coat;
+  b.eta = ior;
+  float average = in.prepared.dielectric_average;
+  b.coat = Bsdf::Coat::smooth_dielectric;
+  if (!b.is_smooth) {
+    b.coat_row = in.tables.coat(in.prepared.coat).reflected.row(b.alpha);
+    b.coat = Bsdf::Coat::dielectric;
+    average = b.coat_row.average;
+  }
+  b.diffuse_mean = 1 - average;
+  const float from_below = 1 - b.diffuse_mean / (ior * ior);
+  const Rgb rho = in.base();
+  b.diffuse = rho / ((Rgb{1} - rho * from_below) * (ior * ior));
+  b.has_separable = !b.diffuse.is_black();
+}
+
+void set_metallic_roughness(Bsdf& b, const Inputs& in) {
+  const Material& m = in.material;
+  const Rgb base = in.base();
+  const float metallic = in.value(m.metallic), specular = in.value(m.specular);
+  const float transmission = in.value(m.transmission);
+  const float glass = (1 - metallic) * transmission;
+  const float opaque = (1 - metallic) * (1 - transmission);
+  const Rgb tint = evaluate(in.textures, m.specular_color, in.uv);
+  // KHR_materials_ior: 0 stands for an index that reflects everything.
+  const float r0 = m.ior == 0 ? 1.0f : normal_reflectance(in.prepared.ior);
+  const Rgb coat_f0 = safe01(tint * r0) * specular;
+
+  if (metallic == 0 && glass == 0 && specular == 0) return set_lambertian(b, base);
+  set_roughness(b, in);
+  b.fresnel = Bsdf::Fresnel::schlick;
+  b.f0 = base * metallic + coat_f0 * opaque;
+  b.f90 = Rgb{metallic + specular * opaque};
+  add_metal_compensation(b, base + (Rgb{1} - base) * (1.0f / 21), metallic);
+  if (opaque > 0) {
+    b.coat_f0 = max_component(coat_f0);
+    b.coat_f90 = specular;
+    float average = b.coat_f0 + (b.coat_f90 - b.coat_f0) / 21;
+    b.coat = Bsdf::Coat::smooth_schlick;
+    if (!b.is_smooth) {
+      b.coat = Bsdf::Coat::schlick;
+      average = b.coat_f0 * (b.one.average - b.grazing.average) + b.coat_f90 * b.grazing.average;
+    }
+    b.diffuse_mean = 1 - average;
+    if (b.diffuse_mean > negligible) b.diffuse = base * (opaque / b.diffuse_mean);
+    b.has_separable |= !b.diffuse.is_black();
+  }
+  if (glass > 0) add_glass(b, in, glass, safe01(tint * specular), base);
+}
+
+}  // namespace
+
+Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
+               const std::vector<Texture>& textures, uint32_t material, const Vec2& uv,
+               bool is_front) {
+  const Inputs in{tables, textures, materials[material], tables.material(material), uv, is_front};
+  Bsdf b;
+  switch (in.material.kind) {
+    case MaterialKind::diffuse:
+      set_lambertian(b, in.base());
+      break;
+    case MaterialKind::coated_diffuse:
+      set_coated_diffuse(b, in);
+      break;
+    case MaterialKind::conductor:
+      set_conductor(b, in);
+      break;
+    case MaterialKind::dielectric:
+      set_dielectric(b, in);
+      break;
+    case MaterialKind::metallic_roughness:
+      set_metallic_roughness(b, in);
+      break;
+  }
+  return b;
+}
+
+Bsdf make_bsdf(const BsdfTables& tables, const Scene& scene, uint32_t material, const Vec2& uv,
+               bool is_front) {
+  return make_bsdf(tables, scene.materials, scene.textures, material, uv, is_front);
+}
+
+Frame perturbed_frame(const Frame& frame, Rgb texel, float scale) {
+  const Vec3 n{(2 * texel.r - 1) * scale, (2 * texel.g - 1) * scale, 2 * texel.b - 1};
+  const float len2 = length_squared(n);
+  if (!(len2 > 1e-12f && len2 < 1e12f)) return frame;
+  const Vec3 normal = normalize(frame.to_world(n));
+  const Vec3 tangent = frame.tangent - normal * dot(normal, frame.tangent);
+  if (!(length_squared(tangent) > 1e-12f) || !is_finite(normal)) return frame;
+  const Vec3 t = normalize(tangent);
+  const bool is_right_handed = dot(cross(frame.normal, frame.tangent), frame.bitangent) > 0;
+  const Vec3 b = cross(normal, t);
+  return {t, is_right_handed ? b : -b, normal};
+}
+
+}  // namespace troffer

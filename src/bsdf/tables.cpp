@@ -1,0 +1,87 @@
+#include "bsdf/tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bsdf/fresnel.h"
+
+namespace troffer {
+
+namespace {
+
+float safe_ior(float ior) {
+  return std::isfinite(ior) && ior > 0 ? std::clamp(ior, 0.01f, 100.0f) : 1.5f;
+}
+
+// Conductor constants beyond these are mirrors to all digits; NaN reads as 0.
+Rgb safe_index(Rgb v) {
+  const auto safe = [](float x) { return x > 0 ? std::min(x, 1e4f) : 0.0f; };
+  return {safe(v.r), safe(v.g), safe(v.b)};
+}
+
+bool can_be_rough(const Material& m) {
+  return m.roughness.texture >= 0 || m.roughness.value >= 1e-6f;
+}
+
+// Index of the table of this ior, making one while there is room, else of the nearest.
+template <class Table>
+int32_t table_for(std::vector<Table>& tables, float ior, size_t max_tables) {
+  size_t nearest = 0;
+  float distance = std::numeric_limits<float>::infinity();
+  for (size_t i = 0; i < tables.size(); ++i) {
+    const float d = std::abs(std::log(tables[i].ior / ior));
+    if (d < distance) {
+      distance = d;
+      nearest = i;
+    }
+  }
+  if (distance < 1e-4f || tables.size() >= max_tables) return int32_t(nearest);
+  tables.emplace_back();
+  tables.back().ior = ior;
+  return int32_t(tables.size() - 1);
+}
+
+}  // namespace
+
+BsdfTables::BsdfTables(const std::vector<Material>& materials) {
+  bool needs_ggx = false;
+  for (const Material& m : materials) {
+    PreparedMaterial p;
+    p.ior = safe_ior(m.ior);
+    const bool may_transmit =
+        m.kind == MaterialKind::metallic_roughness && m.transmission.value > 0;
+    const bool is_glass = m.kind == MaterialKind::dielectric || may_transmit;
+    needs_ggx |= m.kind != MaterialKind::diffuse && can_be_rough(m);
+    if (m.kind == MaterialKind::coated_diffuse && can_be_rough(m))
+      p.coat = table_for(coats_, p.ior, max_iors);
+    if (is_glass && !m.is_thin && can_be_rough(m) && std::abs(p.ior - 1) >= index_matched)
+      p.glass = table_for(glasses_, p.ior, max_iors);
+    if (is_glass || m.kind == MaterialKind::coated_diffuse) {
+      p.dielectric_average = fresnel_dielectric_average(p.ior);
+      p.plate_average = plate_reflectance_average(p.ior);
+    }
+    if (m.kind == MaterialKind::conductor) {
+      const Rgb eta = safe_index(m.eta), k = safe_index(m.k);
+      for (size_t c = 0; c < 3; ++c)
+        p.conductor_average[c] = fresnel_conductor_average(eta[c], k[c]);
+    }
+    materials_.push_back(p);
+  }
+  if (needs_ggx) build_albedo_tables(ggx_, coats_, glasses_);
+  for (size_t i = 0; i < reflectances; ++i)
+    reflectance_average_[i] =
+        fresnel_conductor_average(1, k_from_reflectance(float(i) / float(reflectances - 1)));
+}
+
+Rgb BsdfTables::reflectance_average(Rgb r) const {
+  Rgb average;
+  for (size_t c = 0; c < 3; ++c) {
+    const float x = std::min(std::max(r[c], 0.0f), 1.0f) * float(reflectances - 1);
+    const size_t i = std::min(size_t(x), reflectances - 2);
+    average[c] = lerp(reflectance_average_[i], reflectance_average_[i + 1], x - float(i));
+  }
+  return average;
+}
+
+}  // namespace troffer

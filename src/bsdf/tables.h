@@ -1,0 +1,54 @@
+// What reflection functions need beyond a material's own numbers: tables of directional albedo for
+// every index of refraction in the scene, and averages of Fresnel terms. Built once per scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/rgb.h"
+#include "bsdf/albedo_table.h"
+#include "scene/scene.h"
+
+namespace troffer {
+
+// GGX widths below this are mirrors: delta lobes (pbrt-v4's threshold).
+constexpr float smooth_alpha = 1e-3f;
+// Relative indices this close to 1 do not bend light.
+constexpr float index_matched = 1e-3f;
+
+// What is known of a material before any hit.
+struct PreparedMaterial {
+  float ior = 1.5f;               // made safe: in [1/100, 100] and finite
+  int32_t coat = -1, glass = -1;  // tables for this ior, where the material can need them
+  float dielectric_average = 0;   // cosine-weighted mean Fresnel reflectance from outside
+  float plate_average = 0;        // … of a thin plate
+  Rgb conductor_average;          // … of the conductor eta, k (not of is_reflectance)
+};
+
+// Immutable once built; Bsdf values point into it, so it must outlive them and stay in place.
+class BsdfTables {
+ public:
+  // Some milliseconds, plus a few per distinct index of refraction among rough dielectrics and
+  // coats. Past `max_iors` distinct indices of a kind the nearest one that has a table serves.
+  explicit BsdfTables(const std::vector<Material>& materials);
+  explicit BsdfTables(const Scene& scene) : BsdfTables(scene.materials) {}
+
+  const PreparedMaterial& material(uint32_t i) const { return materials_[i]; }
+  const GgxTables& ggx() const { return ggx_; }
+  const CoatTable& coat(int32_t i) const { return coats_[size_t(i)]; }
+  const GlassTables& glass(int32_t i) const { return glasses_[size_t(i)]; }
+  // Mean Fresnel reflectance of the conductor with eta = 1 and normal reflectance r.
+  Rgb reflectance_average(Rgb r) const;
+
+ private:
+  static constexpr size_t max_iors = 32, reflectances = 65;
+
+  std::vector<PreparedMaterial> materials_;
+  GgxTables ggx_;
+  std::vector<CoatTable> coats_;
+  std::vector<GlassTables> glasses_;
+  std::array<float, reflectances> reflectance_average_{};
+};
+
+}  // namespace troffer

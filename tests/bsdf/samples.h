@@ -1,0 +1,93 @@
+// Materials to test, and integrals over their scattering by sampling.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/random.h"
+#include "base/units.h"
+#include "bsdf/bsdf.h"
+
+namespace troffer::test {
+
+// One material with its tables; the address must stay (no copies).
+struct Specimen {
+  std::string name;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  BsdfTables tables;
+
+  Specimen(std::string name_, Material m)
+      : name(std::move(name_)), materials{std::move(m)}, tables(materials) {}
+  Bsdf at(bool is_front = true) const {
+    return make_bsdf(tables, materials, textures, 0, {0.5f, 0.5f}, is_front);
+  }
+};
+
+inline Material material_of(MaterialKind kind, float alpha, Rgb base = Rgb{1}) {
+  Material m;
+  m.kind = kind;
+  m.roughness.value = alpha;
+  m.base_color.value = base;
+  return m;
+}
+inline Material mirror_metal(float alpha, Rgb base = Rgb{1}) {
+  Material m = material_of(MaterialKind::conductor, alpha, base);
+  m.is_reflectance = true;
+  return m;
+}
+inline Material copper(float alpha) {
+  Material m = material_of(MaterialKind::conductor, alpha);
+  m.eta = {0.20f, 0.92f, 1.10f};
+  m.k = {3.91f, 2.45f, 2.14f};
+  return m;
+}
+inline Material coated(float alpha, Rgb base = Rgb{1}, float ior = 1.5f) {
+  Material m = material_of(MaterialKind::coated_diffuse, alpha, base);
+  m.ior = ior;
+  return m;
+}
+inline Material glass(float alpha, float ior = 1.5f, bool is_thin = false) {
+  Material m = material_of(MaterialKind::dielectric, alpha);
+  m.ior = ior;
+  m.is_thin = is_thin;
+  return m;
+}
+inline Material gltf(float alpha, float metallic, Rgb base = Rgb{1}, float transmission = 0,
+                     bool is_thin = false) {
+  Material m = material_of(MaterialKind::metallic_roughness, alpha, base);
+  m.metallic.value = metallic;
+  m.transmission.value = transmission;
+  m.is_thin = is_thin;
+  return m;
+}
+
+inline Vec3 direction(float cosine, float phi = 0.7f) {
+  const float s = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+  return {s * std::cos(phi), s * std::sin(phi), cosine};
+}
+
+struct Scattered {
+  double reflected = 0, transmitted = 0;  // green channel, the n² of radiance taken out
+  double total() const { return reflected + transmitted; }
+};
+
+// Energy scattered from wo, by n quasi-random samples.
+inline Scattered scattered(const Bsdf& b, const Vec3& wo, uint32_t n = 1u << 14) {
+  Scattered e;
+  for (uint32_t i = 0; i < n; ++i) {
+    const SobolGroup u(11, 3, i);
+    BsdfSample s;
+    if (!sample(b, wo, u.get(2), u.get2(0), s)) continue;
+    if (s.is_transmission)
+      e.transmitted += double(s.weight.g) * double(s.eta) * double(s.eta);
+    else
+      e.reflected += double(s.weight.g);
+  }
+  e.reflected /= n;
+  e.transmitted /= n;
+  return e;
+}
+
+}  // namespace troffer::test

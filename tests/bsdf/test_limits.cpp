@@ -1,0 +1,167 @@
+// Smooth limits, material inputs, tables against brute force, normal maps.
+#include <doctest/doctest.h>
+
+#include "bsdf/fresnel.h"
+#include "bsdf/ggx.h"
+#include "bsdf/samples.h"
+#include "support/quadrature.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+TEST_CASE("Fresnel reflectances have their known values") {
+  CHECK(fresnel_dielectric(1, 1.5f) == doctest::Approx(0.04).epsilon(1e-5));
+  CHECK(fresnel_dielectric(1, 1 / 1.5f) == doctest::Approx(0.04).epsilon(1e-5));
+  CHECK(fresnel_dielectric(0, 1.5f) == doctest::Approx(1));
+  CHECK(fresnel_dielectric(0.5f, 1 / 1.5f) == 1);  // beyond the critical angle
+  // Brewster's angle: half of the perpendicular reflectance remains
+  const double eta = 1.5, brewster = std::cos(std::atan(eta));
+  const double perpendicular = std::pow((eta * eta - 1) / (eta * eta + 1), 2);
+  CHECK(fresnel_dielectric(float(brewster), 1.5f) ==
+        doctest::Approx(perpendicular / 2).epsilon(1e-4));
+  // a conductor that does not absorb is a dielectric
+  for (const float c : {0.05f, 0.3f, 0.8f, 1.0f})
+    CHECK(fresnel_conductor(c, 1.5f, 0) ==
+          doctest::Approx(double(fresnel_dielectric(c, 1.5f))).epsilon(1e-4));
+  for (const float r : {0.0f, 0.2f, 0.9f, 0.99f})
+    CHECK(fresnel_conductor(1, 1, k_from_reflectance(r)) ==
+          doctest::Approx(double(r)).epsilon(1e-4));
+  // means over the hemisphere: from outside and inside they are bound by n²
+  const double outside = 1 - double(fresnel_dielectric_average(1.5f));
+  const double inside = 1 - double(fresnel_dielectric_average(1 / 1.5f));
+  CHECK(outside == doctest::Approx(inside * 2.25).epsilon(1e-3));
+  CHECK(1 - outside == doctest::Approx(0.0918).epsilon(2e-3));
+}
+
+TEST_CASE("tables agree with direct integration") {
+  GgxTables ggx;
+  std::vector<CoatTable> coats(1);
+  std::vector<GlassTables> glasses;
+  coats[0].ior = 1.5f;
+  build_albedo_tables(ggx, coats, glasses);
+  for (const float alpha : {0.03f, 0.17f, 0.45f, 0.93f})
+    for (const float c : {0.03f, 0.11f, 0.4f, 0.83f, 1.0f}) {
+      const Vec3 wo = direction(c);
+      double one = 0, coat = 0;
+      constexpr uint32_t n = 1u << 17;
+      for (uint32_t i = 0; i < n; ++i) {
+        const Vec2 u = SobolGroup(1, 2, i).get2();
+        const Vec3 m = ggx_sample_visible_normal(wo, u, alpha, 1);
+        const float z = 2 * dot(wo, m) * m.z - wo.z;
+        if (z <= 0) continue;
+        const double w = (1.0 + double(ggx_lambda(c, alpha))) /
+                         (1.0 + double(ggx_lambda(c, alpha) + ggx_lambda(z, alpha)));
+        one += w / n;
+        coat += w / n * double(fresnel_dielectric(std::min(dot(wo, m), 1.0f), 1.5f));
+      }
+      INFO("alpha ", alpha, " cosine ", c);
+      const CosineCoordinate at(c);
+      CHECK(std::abs(double(ggx.one.row(alpha).at(at)) - one) < 8e-4);
+      CHECK(std::abs(double(coats[0].reflected.row(alpha).at(at)) - coat) < 8e-4);
+    }
+  // the stored mean is that of the interpolant
+  const AlbedoRow row = ggx.one.row(0.6f);
+  const double mean = integrate(
+      [&](double c) { return 2 * c * double(row.at(CosineCoordinate(float(c)))); }, 0.0, 1.0, 200);
+  CHECK(double(row.average) == doctest::Approx(mean).epsilon(1e-5));
+}
+
+TEST_CASE("GGX projects to unit area and its visible normals to the view") {
+  for (const float alpha : {0.05f, 0.3f, 1.0f}) {
+    const double area = integrate_adaptive(
+        [&](double z) {
+          const float s = float(std::sqrt(1 - z * z));
+          return 2 * pi * z * double(ggx_distribution({s, 0, float(z)}, alpha));
+        },
+        0.0, 1.0, 1e-7);
+    CHECK(area == doctest::Approx(1).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("albedo runs into the mirror's as alpha goes to 0") {
+  for (const float c : {0.1f, 0.5f, 0.9f}) {
+    const Vec3 wo = direction(c);
+    const Specimen rough_glass("glass", glass(1.1e-3f)), smooth_glass("glass", glass(0));
+    const Specimen rough_copper("copper", copper(1.1e-3f)), smooth_copper("copper", copper(0));
+    CHECK(smooth_glass.at().is_smooth);
+    CHECK(is_purely_delta(smooth_glass.at()));
+    CHECK_FALSE(is_purely_delta(rough_glass.at()));
+    CHECK(scattered(smooth_glass.at(), wo).reflected ==
+          doctest::Approx(double(fresnel_dielectric(c, 1.5f))).epsilon(1e-3));
+    CHECK(scattered(rough_glass.at(), wo).reflected ==
+          doctest::Approx(double(fresnel_dielectric(c, 1.5f))).epsilon(5e-3));
+    CHECK(scattered(smooth_copper.at(), wo).reflected ==
+          doctest::Approx(double(fresnel_conductor(c, 0.92f, 2.45f))).epsilon(1e-4));
+    CHECK(scattered(rough_copper.at(), wo).reflected ==
+          doctest::Approx(double(fresnel_conductor(c, 0.92f, 2.45f))).epsilon(2e-3));
+  }
+  // through and out again: refractions of smooth glass bring radiance back to itself
+  const Specimen s("glass", glass(0));
+  BsdfSample in, out;
+  REQUIRE(sample(s.at(true), direction(0.6f), 0.99f, {0.5f, 0.5f}, in));
+  REQUIRE(in.is_transmission);
+  const Vec3 down{-in.wi.x, -in.wi.y, -in.wi.z};
+  REQUIRE(sample(s.at(false), down, 0.99f, {0.5f, 0.5f}, out));
+  REQUIRE(out.is_transmission);
+  CHECK(in.eta * out.eta == doctest::Approx(1));
+  CHECK(in.weight.g * out.weight.g == doctest::Approx(1).epsilon(1e-5));
+  CHECK(std::abs(out.wi.z) == doctest::Approx(0.6));
+  CHECK(out.wi.x == doctest::Approx(double(direction(0.6f).x)));
+}
+
+TEST_CASE("inputs out of range are brought back") {
+  Material m = gltf(0.3f, 0, {2, std::nanf(""), -1});
+  m.ior = std::nanf("");
+  m.metallic.value = 7;
+  const Specimen s("odd", m);
+  const Bsdf b = s.at();
+  const Rgb f = evaluate(b, direction(0.5f), direction(0.5f));
+  CHECK(is_finite(f));
+  CHECK(f.r > 0);
+  CHECK(scattered(b, direction(0.5f)).total() <= 1);
+}
+
+TEST_CASE("roughness means what the format says, and textures drive it") {
+  Material m = copper(0.25f);
+  CHECK(glossy_alpha(Specimen("a", m).at()) == 0.25f);
+  m.roughness_meaning = RoughnessMeaning::alpha_is_sqrt;
+  CHECK(glossy_alpha(Specimen("a", m).at()) == 0.5f);
+  m.roughness_meaning = RoughnessMeaning::alpha_is_square;
+  CHECK(glossy_alpha(Specimen("a", m).at()) == 0.0625f);
+  Texture t;
+  t.value = {0.1f, 0.5f, 0.9f};
+  m.roughness_meaning = RoughnessMeaning::alpha;
+  m.roughness = {0.5f, 0, 1};
+  const std::vector<Material> materials{m};
+  const BsdfTables tables(materials);
+  CHECK(glossy_alpha(make_bsdf(tables, materials, {t}, 0, {0, 0}, true)) == 0.25f);
+}
+
+TEST_CASE("many indices of refraction share a bounded number of tables") {
+  std::vector<Material> materials;
+  for (int i = 0; i < 200; ++i) materials.push_back(coated(0.3f, Rgb{1}, 1.1f + 0.01f * float(i)));
+  const BsdfTables tables(materials);
+  for (const uint32_t i : {0u, 5u, 199u}) {
+    const Bsdf b = make_bsdf(tables, materials, {}, i, {0, 0}, true);
+    const double e = scattered(b, direction(0.7f)).total();
+    CHECK(std::abs(e - 1) < 0.25);
+  }
+  CHECK(tables.material(31).coat == 31);
+  CHECK(tables.material(199).coat == 31);
+}
+
+TEST_CASE("normal maps tilt frames") {
+  const Frame frame(normalize(Vec3{0.3f, -0.5f, 0.8f}));
+  const Frame same = perturbed_frame(frame, {0.5f, 0.5f, 1}, 1);
+  CHECK(length(same.normal - frame.normal) < 1e-6f);
+  CHECK(length(same.tangent - frame.tangent) < 1e-6f);
+  CHECK(length(same.bitangent - frame.bitangent) < 1e-6f);
+  const Frame tilted = perturbed_frame(frame, {1, 0.5f, 1}, 1);  // 45 degrees along the tangent
+  CHECK(dot(tilted.normal, frame.tangent) == doctest::Approx(std::sqrt(0.5)));
+  CHECK(std::abs(dot(tilted.normal, tilted.tangent)) < 1e-6f);
+  CHECK(dot(perturbed_frame(frame, {1, 0.5f, 1}, 0).normal, frame.normal) == doctest::Approx(1));
+  const Frame mirrored(frame.tangent, -frame.bitangent, frame.normal);
+  const Frame m = perturbed_frame(mirrored, {0.7f, 0.6f, 0.9f}, 1);
+  CHECK(dot(cross(m.normal, m.tangent), m.bitangent) == doctest::Approx(-1));
+  CHECK(perturbed_frame(frame, {0.5f, 0.5f, 0.5f}, 1).normal == frame.normal);
+}

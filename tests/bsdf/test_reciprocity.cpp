@@ -1,0 +1,68 @@
+// f(wo,wi) n(wi's side)² is the same both ways.
+#include <doctest/doctest.h>
+
+#include "bsdf/samples.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+Vec3 random_direction(Random& random, bool is_above) {
+  Vec3 w = sphere_from_square(random.next_vec2());
+  w.z = std::max(std::abs(w.z), 0.01f);
+  w = normalize(w);
+  if (!is_above) w.z = -w.z;
+  return w;
+}
+
+// The frame of a viewer on the other side: z turned round.
+Vec3 turned(const Vec3& w) {
+  return {w.x, w.y, -w.z};
+}
+
+}  // namespace
+
+TEST_CASE("scattering is reciprocal") {
+  Material mixed = gltf(0.3f, 0.3f, {0.2f, 0.5f, 0.9f}, 0.4f);
+  mixed.specular_color.value = {1.5f, 1, 0.3f};
+  mixed.specular.value = 0.8f;
+  Material thin = mixed;
+  thin.is_thin = true;
+  const Specimen specimens[] = {
+      {"diffuse", material_of(MaterialKind::diffuse, 0, {0.2f, 0.4f, 0.6f})},
+      {"copper", copper(0.2f)},
+      {"rough copper", copper(0.9f)},
+      {"metal", mirror_metal(0.5f, {0.3f, 0.7f, 0.9f})},
+      {"coated", coated(0.3f, {0.3f, 0.7f, 0.9f})},
+      {"smooth coated", coated(0, {0.3f, 0.7f, 0.9f}, 1.8f)},
+      {"glass", glass(0.3f)},
+      {"rough glass", glass(0.9f, 2.0f)},
+      {"thin glass", glass(0.3f, 1.5f, true)},
+      {"glTF", gltf(0.4f, 0.4f, {0.3f, 0.7f, 0.9f})},
+      {"glTF mixed", mixed},
+      {"glTF thin", thin},
+  };
+  Random random(1);
+  int compared = 0;
+  for (const Specimen& s : specimens) {
+    const bool has_transmission = s.at().has_transmission;
+    for (int i = 0; i < 2000; ++i) {
+      const bool is_front = random.next_float() < 0.5f;
+      const bool crosses = has_transmission && random.next_float() < 0.5f;
+      const Vec3 wo = random_direction(random, true);
+      Vec3 wi = random_direction(random, !crosses);
+      const Bsdf here = s.at(is_front), there = s.at(is_front != crosses);
+      const Vec3 back_wo = crosses ? turned(wi) : wi, back_wi = crosses ? turned(wo) : wo;
+      const bool bends = crosses && !here.is_thin;
+      const float n2 = bends ? here.eta * here.eta : 1.0f;
+      const Rgb a = evaluate(here, wo, wi) * (n2 / std::abs(wi.z));
+      const Rgb b = evaluate(there, back_wo, back_wi) * (1 / std::abs(back_wi.z));
+      INFO(s.name, " front ", is_front, " crosses ", crosses, " wo.z ", wo.z, " wi.z ", wi.z);
+      for (size_t c = 0; c < 3; ++c)
+        CHECK(a[c] == doctest::Approx(double(b[c])).epsilon(2e-3).scale(1e-3));
+      compared += a.g > 0;
+    }
+  }
+  CHECK(compared > 20000);
+}

@@ -1,0 +1,177 @@
+// Sampling follows its density, the density integrates to what it should, weights are f |cos| /
+// pdf.
+#include <doctest/doctest.h>
+
+#include "bsdf/samples.h"
+#include "support/chi_square.h"
+#include "support/quadrature.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+constexpr int rows = 24, columns = 32;  // bins over cos theta in [-1,1] and phi
+
+// Expected fraction per bin: the density integrated over (cos theta, phi).
+std::vector<double> integrated_pdf(const Bsdf& b, const Vec3& wo, double tolerance) {
+  std::vector<double> mass(size_t(rows * columns));
+  for (int r = 0; r < rows; ++r) {
+    const double z0 = -1 + 2.0 * r / rows, z1 = -1 + 2.0 * (r + 1) / rows;
+    if (z1 <= 0 && !b.has_transmission) continue;
+    for (int c = 0; c < columns; ++c) {
+      const double p0 = 2 * pi * c / columns - pi, p1 = 2 * pi * (c + 1) / columns - pi;
+      mass[size_t(r * columns + c)] = integrate_adaptive_2d(
+          [&](double z, double phi) {
+            const double s = std::sqrt(std::max(0.0, 1 - z * z));
+            const Vec3 wi(Vec3d{s * std::cos(phi), s * std::sin(phi), z});
+            return double(pdf(b, wo, wi));
+          },
+          z0, z1, p0, p1, tolerance, 6, 9);
+    }
+  }
+  return mass;
+}
+
+int bin_of(const Vec3& w) {
+  const int r = std::clamp(int((double(w.z) + 1) / 2 * rows), 0, rows - 1);
+  const double phi = std::atan2(double(w.y), double(w.x));
+  const int c = std::clamp(int((phi + pi) / (2 * pi) * columns), 0, columns - 1);
+  return r * columns + c;
+}
+
+void check_sampling(const Specimen& s, bool is_front, float cosine, int tests) {
+  const Bsdf b = s.at(is_front);
+  const Vec3 wo = direction(cosine, 0.7f);
+  constexpr int n = 100000;
+  std::vector<double> observed(size_t(rows * columns) + 1);
+  Random random(hash_of(uint64_t(1000 * cosine), uint64_t(is_front), s.name.size()));
+  int bad_weights = 0, deltas = 0;
+  for (int i = 0; i < n; ++i) {
+    BsdfSample x;
+    const float u_lobe = random.next_float();
+    if (!sample(b, wo, u_lobe, random.next_vec2(), x)) {
+      observed.back() += 1;
+      continue;
+    }
+    if (x.is_delta) {
+      ++deltas;
+      observed.back() += 1;
+      CHECK(x.pdf == 0);
+      continue;
+    }
+    observed[size_t(bin_of(x.wi))] += 1;
+    const BsdfValue v = evaluate_with_pdf(b, wo, x.wi);
+    const double relative = std::abs(double(v.pdf) / double(x.pdf) - 1);
+    const double weight = std::abs(double(v.f_cos.g / v.pdf) - double(x.weight.g));
+    const bool is_unit = std::abs(length(x.wi) - 1) < 1e-5f;
+    const bool is_side_right = x.is_transmission == (x.wi.z < 0);
+    if (relative > 1e-3 || weight > 1e-3 * double(x.weight.g) || !is_unit || !is_side_right)
+      ++bad_weights;
+  }
+  INFO(s.name, " front ", is_front, " cosine ", cosine);
+  CHECK(bad_weights == 0);
+  if (is_purely_delta(b)) {
+    CHECK(deltas + int(observed.back()) >= n);
+    return;
+  }
+  std::vector<double> expected = integrated_pdf(b, wo, 2e-7);
+  double mass = 0;
+  for (double& e : expected) {
+    mass += e;
+    e *= n;
+  }
+  // What is left of probability: delta lobes and samples that fail.
+  CHECK(mass <= 1 + 1e-4);
+  CHECK(std::abs(observed.back() / n - (1 - mass)) < 5 * std::sqrt(0.25 / n));
+  expected.push_back(std::max(0.0, n * (1 - mass)));
+  if (expected.back() < 1e-4 * n && observed.back() == 0) {
+    observed.pop_back();
+    expected.pop_back();
+  }
+  const auto r = chi_square_test(observed, expected, 1, sidak(1e-3, tests));
+  CHECK_MESSAGE(r.is_accepted, r.text());
+}
+
+}  // namespace
+
+TEST_CASE("samples follow the density") {
+  Material mixed = gltf(0.35f, 0.3f, {0.2f, 0.5f, 0.9f}, 0.5f);
+  Material mixed_thin = mixed;
+  mixed_thin.is_thin = true;
+  const Specimen specimens[] = {
+      {"diffuse", material_of(MaterialKind::diffuse, 0, {0.2f, 0.4f, 0.6f})},
+      {"copper .1", copper(0.1f)},
+      {"copper .4", copper(0.4f)},
+      {"metal 1", mirror_metal(1)},
+      {"smooth metal", mirror_metal(0)},
+      {"coated 0", coated(0, {0.3f, 0.7f, 0.9f})},
+      {"coated .2", coated(0.2f, {0.3f, 0.7f, 0.9f})},
+      {"coated .8", coated(0.8f, {0.3f, 0.7f, 0.9f}, 2)},
+      {"glass 0", glass(0)},
+      {"glass .2", glass(0.2f)},
+      {"glass .6", glass(0.6f, 2)},
+      {"glass 1", glass(1, 1.2f)},
+      {"thin glass .3", glass(0.3f, 1.5f, true)},
+      {"glTF .15", gltf(0.15f, 0.5f, {0.3f, 0.7f, 0.9f})},
+      {"glTF .7", gltf(0.7f, 0, {0.3f, 0.7f, 0.9f})},
+      {"glTF mixed", mixed},
+      {"glTF mixed thin", mixed_thin},
+  };
+  const float cosines[] = {0.05f, 0.4f, 0.95f};
+  int tests = 0;
+  for (const Specimen& s : specimens) tests += 3 * (s.at().has_transmission ? 2 : 1);
+  for (const Specimen& s : specimens)
+    for (const bool is_front : {true, false}) {
+      if (!is_front && !s.at().has_transmission) continue;
+      for (const float c : cosines) check_sampling(s, is_front, c, tests);
+    }
+}
+
+TEST_CASE("grazing and degenerate directions stay finite") {
+  const Specimen specimens[] = {
+      {"diffuse", material_of(MaterialKind::diffuse, 0)},
+      {"copper", copper(1e-3f)},
+      {"metal", mirror_metal(1)},
+      {"coated", coated(0.01f)},
+      {"glass", glass(1e-3f)},
+      {"glass", glass(1)},
+      {"matched glass", glass(0.3f, 1.0005f)},
+      {"nearly matched glass", glass(0.3f, 1.002f)},
+      {"thin", glass(0.2f, 1.5f, true)},
+      {"glTF", gltf(0.002f, 0.4f, {0.3f, 0.7f, 0.9f}, 0.5f)},
+      {"infinite index",
+       [] {
+         Material m = gltf(0.2f, 0);
+         m.ior = 0;
+         return m;
+       }()},
+  };
+  const float zs[] = {0, 1e-30f, 1e-10f, 1e-6f, 1e-3f, 0.5f, 1};
+  Random random(3);
+  for (const Specimen& s : specimens)
+    for (const bool is_front : {true, false}) {
+      const Bsdf b = s.at(is_front);
+      for (const float zo : zs)
+        for (int i = 0; i < 400; ++i) {
+          const Vec3 wo = direction(zo, 6 * random.next_float());
+          Vec3 wi = direction(zs[random.next_u32() % 7], 6 * random.next_float());
+          if (i % 4 == 0) wi = {-wo.x, -wo.y, wo.z};
+          if (i % 2) wi.z = -wi.z;
+          const BsdfValue v = evaluate_with_pdf(b, wo, wi);
+          bool is_good = is_finite(v.f_cos) && std::isfinite(v.pdf) && v.pdf >= 0 &&
+                         v.f_cos.r >= 0 && v.f_cos.g >= 0 && v.f_cos.b >= 0;
+          if (zo == 0 || wi.z == 0) is_good &= v.f_cos.is_black();
+          BsdfSample x;
+          const float edge[] = {0, one_minus_epsilon, random.next_float()};
+          const Vec2 u{edge[random.next_u32() % 3], edge[random.next_u32() % 3]};
+          if (sample(b, wo, edge[random.next_u32() % 3], u, x))
+            is_good &= is_finite(x.weight) && is_finite(x.wi) && x.pdf >= 0 && zo > 0 &&
+                       max_component(x.weight) < 1000;
+          const Rgb a = albedo(b, zo);
+          is_good &= is_finite(a) && max_component(a) < 1.1f;
+          INFO(s.name, " zo ", zo, " wi.z ", wi.z, " weight ", x.weight.g, " pdf ", x.pdf);
+          CHECK(is_good);
+        }
+    }
+}
