@@ -1,0 +1,37 @@
+// The decoders behind decode_raster(), one per format. Each takes a whole file, checks its size
+// against max_pixels before it takes memory, and throws InputError for whatever is wrong.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "base/error.h"
+#include "image/raster.h"
+
+namespace troffer {
+
+// What every decoder gets.
+struct EncodedImage {
+  std::span<const uint8_t> bytes;
+  const std::string& name;  // for errors
+  size_t max_pixels;
+
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(name, 0, 0, what); }
+  // Throws unless 1 <= width * height <= max_pixels and both fit an int.
+  void check_size(uint64_t width, uint64_t height) const;
+};
+
+bool is_png(std::span<const uint8_t> bytes);
+bool is_jpeg(std::span<const uint8_t> bytes);
+bool is_hdr(std::span<const uint8_t> bytes);
+bool is_pfm(std::span<const uint8_t> bytes);
+bool is_exr(std::span<const uint8_t> bytes);
+
+Raster decode_png(const EncodedImage& encoded);
+Raster decode_jpeg(const EncodedImage& encoded);
+Raster decode_hdr(const EncodedImage& encoded);
+Raster decode_pfm(const EncodedImage& encoded);
+Raster decode_exr(const EncodedImage& encoded);
+
+}  // namespace troffer

@@ -1,0 +1,149 @@
+#include <Iex.h>
+#include <ImfArray.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfRgbaFile.h>
+
+#include <array>
+#include <cstring>
+
+#include "image/decode.h"
+#include "image/exr_header.h"
+
+namespace troffer {
+
+namespace {
+
+class MemoryIStream : public Imf::IStream {
+ public:
+  explicit MemoryIStream(const EncodedImage& encoded)
+      : Imf::IStream(encoded.name.c_str()), bytes_(encoded.bytes) {}
+  bool read(char out[], int n) override {
+    if (n < 0 || at_ > bytes_.size() || size_t(n) > bytes_.size() - at_)
+      throw IEX_NAMESPACE::InputExc("truncated file");
+    if (n > 0) std::memcpy(out, bytes_.data() + at_, size_t(n));
+    at_ += uint64_t(n);
+    return at_ < bytes_.size();
+  }
+  uint64_t tellg() override { return at_; }
+  void seekg(uint64_t at) override { at_ = at; }
+
+ private:
+  std::span<const uint8_t> bytes_;
+  uint64_t at_ = 0;
+};
+
+// The channels that a picture is made of: one or three colours, and perhaps alpha.
+struct Selection {
+  std::vector<std::string> names;
+  bool is_luminance_chroma = false;
+};
+
+// The colours of the layer with this prefix ("" or "name."), if it has any.
+bool select_rgb(const Imf::ChannelList& channels, const std::string& prefix, Selection& out) {
+  bool has_any = false;
+  for (const char* c : {"R", "G", "B"}) has_any |= channels.findChannel(prefix + c) != nullptr;
+  if (!has_any) return false;
+  out.names = {prefix + "R", prefix + "G", prefix + "B"};
+  if (channels.findChannel(prefix + "A") != nullptr) out.names.push_back(prefix + "A");
+  return true;
+}
+
+Selection select_channels(const Imf::ChannelList& channels) {
+  Selection out;
+  if (select_rgb(channels, "", out)) return out;
+  if (channels.findChannel("Y") != nullptr) {
+    out.names = {"Y"};
+    if (channels.findChannel("A") != nullptr) out.names.push_back("A");
+    out.is_luminance_chroma =
+        channels.findChannel("RY") != nullptr && channels.findChannel("BY") != nullptr;
+    return out;
+  }
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    const std::string name = it.name();
+    const size_t dot = name.rfind('.');
+    if (dot != name.npos && select_rgb(channels, name.substr(0, dot + 1), out)) return out;
+  }
+  if (channels.begin() != channels.end()) out.names = {channels.begin().name()};
+  return out;
+}
+
+// Half precision: the conversion from luminance and subsampled chroma is OpenEXR's.
+void read_luminance_chroma(const EncodedImage& encoded, Raster& raster) {
+  MemoryIStream stream(encoded);
+  Imf::RgbaInputFile file(stream, 0);
+  const Imath::Box2i window = file.dataWindow();
+  const auto width = size_t(raster.width), height = size_t(raster.height);
+  std::vector<Imf::Rgba> row(width);
+  raster.channels = 3;
+  raster.texels_float.resize(width * height * 3);
+  // OpenEXR asks for the address of pixel (0, 0), which may lie outside of the row: no arithmetic
+  // on pointers then. Line stride 0 puts every line into `row`.
+  const auto first = reinterpret_cast<intptr_t>(row.data());
+  auto* base =
+      reinterpret_cast<Imf::Rgba*>(first - int64_t(window.min.x) * int64_t(sizeof(Imf::Rgba)));
+  for (size_t y = 0; y < height; ++y) {
+    const int line = window.min.y + int(y);
+    file.setFrameBuffer(base, 1, 0);
+    file.readPixels(line);
+    float* out = raster.texels_float.data() + y * width * 3;
+    for (const Imf::Rgba& p : row)
+      for (const float v : {float(p.r), float(p.g), float(p.b)}) *out++ = v;
+  }
+}
+
+void read_channels(Imf::InputFile& file, const Selection& selection, const EncodedImage& encoded,
+                   Raster& raster) {
+  const Imf::ChannelList& channels = file.header().channels();
+  const Imath::Box2i window = file.header().dataWindow();
+  const size_t n = selection.names.size();
+  raster.channels = int(n);
+  raster.texels_float.resize(size_t(raster.width) * size_t(raster.height) * n);
+  Imf::FrameBuffer frame;
+  for (size_t c = 0; c < n; ++c) {
+    const Imf::Channel* channel = channels.findChannel(selection.names[c]);
+    if (channel != nullptr && (channel->xSampling != 1 || channel->ySampling != 1))
+      encoded.fail("EXR with subsampled channel " + selection.names[c] + " is not supported");
+    frame.insert(selection.names[c],
+                 Imf::Slice::Make(Imf::FLOAT, raster.texels_float.data() + c, window,
+                                  n * sizeof(float), n * sizeof(float) * size_t(raster.width)));
+  }
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+}
+
+}  // namespace
+
+bool is_exr(std::span<const uint8_t> bytes) {
+  constexpr std::array<uint8_t, 4> magic{0x76, 0x2f, 0x31, 0x01};
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), magic.data(), 4) == 0;
+}
+
+Raster decode_exr(const EncodedImage& encoded) {
+  check_exr_header(encoded);
+  try {
+    MemoryIStream stream(encoded);
+    Imf::InputFile file(stream, 0);  // no threads of its own
+    const Imath::Box2i window = file.header().dataWindow();
+    Raster raster;
+    raster.width = window.max.x - window.min.x + 1;
+    raster.height = window.max.y - window.min.y + 1;
+    const Selection selection = select_channels(file.header().channels());
+    if (selection.names.empty()) encoded.fail("EXR without channels");
+    if (selection.is_luminance_chroma)
+      read_luminance_chroma(encoded, raster);
+    else
+      read_channels(file, selection, encoded, raster);
+    return raster;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    encoded.fail(std::string("broken EXR: ") + e.what());
+  }
+}
+
+}  // namespace troffer

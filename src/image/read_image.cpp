@@ -1,0 +1,45 @@
+#include "image/read_image.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#include "base/error.h"
+
+namespace troffer {
+
+std::vector<uint8_t> read_file_bytes(const std::string& path, size_t max_bytes) {
+  const auto fail = [&](const std::string& what) { throw InputError(path, 0, 0, what); };
+  const auto close = [](std::FILE* f) { std::fclose(f); };
+  const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
+  if (!file) fail("cannot open: " + std::generic_category().message(errno));
+  std::vector<uint8_t> bytes;
+  constexpr size_t block = size_t(1) << 18;
+  for (;;) {
+    const size_t at = bytes.size();
+    if (at > max_bytes) fail("longer than the limit of " + std::to_string(max_bytes) + " bytes");
+    bytes.resize(at + block);
+    const size_t n = std::fread(bytes.data() + at, 1, block, file.get());
+    bytes.resize(at + n);
+    if (n == block) continue;
+    if (std::ferror(file.get()) != 0)
+      fail("cannot read: " + std::generic_category().message(errno));
+    return bytes;
+  }
+}
+
+Image read_image(const std::string& path, size_t max_pixels) {
+  const Raster raster = linear_raster(decode_raster(read_file_bytes(path), path, max_pixels));
+  Image image(raster.width, raster.height);
+  const auto channels = size_t(raster.channels);
+  const float* texel = raster.texels_float.data();
+  for (Rgb& pixel : image.pixels) {
+    pixel = channels >= 3 ? Rgb{texel[0], texel[1], texel[2]} : Rgb{texel[0]};
+    texel += channels;
+  }
+  return image;
+}
+
+}  // namespace troffer
