@@ -110,6 +110,9 @@ JsonNode JsonNode::below(const Json& value, std::string_view token) const {
   return JsonNode(*document_, value, std::move(pointer));
 }
 
+const std::string& JsonNode::file() const {
+  return document_->file();
+}
 bool JsonNode::is_object() const {
   return value_->is_object();
 }

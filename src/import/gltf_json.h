@@ -21,6 +21,8 @@ class JsonNode {
   bool is_array() const;
   // "/accessors/3/count"
   const std::string& pointer() const { return pointer_; }
+  // The file that the document was read from.
+  const std::string& file() const;
 
   // Members of an object; each fails where this is no object.
   std::optional<JsonNode> find(std::string_view key) const;

@@ -1,0 +1,140 @@
+#include "import/gltf.h"
+
+#include <optional>
+#include <vector>
+
+#include "import/emissive.h"
+#include "import/gltf_accessor.h"
+#include "import/gltf_camera.h"
+#include "import/gltf_file.h"
+#include "import/gltf_json.h"
+#include "import/gltf_material.h"
+#include "import/gltf_mesh.h"
+#include "import/gltf_nodes.h"
+#include "import/gltf_schema.h"
+
+namespace troffer {
+
+namespace {
+
+// Over all instances: about 3 GB of vertices and triangles.
+constexpr uint64_t max_triangles = 60'000'000;
+
+class Importer {
+ public:
+  Importer(const JsonNode& root, GltfFile& file, Scene& scene)
+      : root_(root), scene_(scene), buffers_(root, file), materials_(root_, buffers_, scene) {}
+
+  void run() {
+    read_primitives();
+    const std::vector<GltfNode> nodes = gltf_nodes(root_, scene_.warnings);
+    check_triangle_count(nodes);
+    for (const GltfNode& node : nodes) add_node(node);
+    if (scene_.meshes.empty()) scene_.warnings.add("the scene shows no triangles");
+    if (const auto animations = root_.find("animations"))
+      if (animations->size() > 0) scene_.warnings.add("animations are ignored");
+  }
+
+ private:
+  JsonNode node_json(const GltfNode& node) const {
+    return root_.member("nodes").element(node.index);
+  }
+  std::optional<uint32_t> mesh_of(const JsonNode& node) const {
+    const auto mesh = node.find("mesh");
+    if (!mesh) return std::nullopt;
+    return mesh->as_index(primitives_.size(), "meshes");
+  }
+
+  void read_primitives() {
+    const auto meshes = root_.find("meshes");
+    for (size_t i = 0; meshes && i < meshes->size(); ++i) {
+      const JsonNode list = meshes->element(i).member("primitives");
+      auto& of_mesh = primitives_.emplace_back();
+      for (size_t k = 0; k < list.size(); ++k)
+        if (auto p = read_gltf_primitive(list.element(k), buffers_, scene_.warnings))
+          of_mesh.push_back(std::move(*p));
+    }
+  }
+
+  // Before anything of that size is made.
+  void check_triangle_count(const std::vector<GltfNode>& nodes) const {
+    uint64_t count = 0;
+    for (const GltfNode& node : nodes) {
+      const JsonNode json = node_json(node);
+      const auto mesh = mesh_of(json);
+      if (!mesh) continue;
+      for (const GltfPrimitive& p : primitives_[*mesh]) count += p.triangle_count();
+      if (count > max_triangles)
+        json.fail("the scene has more than " + std::to_string(max_triangles) + " triangles");
+    }
+  }
+
+  void add_node(const GltfNode& node) {
+    const JsonNode json = node_json(node);
+    if (const auto camera = json.find("camera")) add_camera(json, *camera, node.world_from_node);
+    const auto mesh = mesh_of(json);
+    if (!mesh) return;
+    if (json.find("skin")) scene_.warnings.add("skinning is ignored: meshes stand as modelled");
+    const std::string node_name = json.string_or("name", "");
+    const std::string name =
+        node_name.empty() ? root_.member("meshes").element(*mesh).string_or("name", "") : node_name;
+    for (const GltfPrimitive& p : primitives_[*mesh])
+      add_mesh(p, node.world_from_node, name, node_name);
+  }
+
+  void add_mesh(const GltfPrimitive& p, const Affine& world_from_node, const std::string& name,
+                const std::string& node_name) {
+    const GltfMaterial& material = materials_.get(p.material);
+    Mesh mesh = make_gltf_mesh(p, world_from_node, material.uv_set, scene_.warnings);
+    mesh.name = name;
+    mesh.material = material.material;
+    const bool is_empty = mesh.triangles.empty();
+    if (material.is_textured && mesh.uvs.empty() && !is_empty)
+      scene_.warnings.add("textured meshes without TEXCOORD_" + std::to_string(material.uv_set) +
+                          " show one texel only");
+    const bool is_emissive = !material.emission.is_black();
+    // Counted whether it ends up with a source or not, so that a name depends on the file alone.
+    const std::string emitter_name =
+        node_name.empty() ? "emitter" + std::to_string(emissive_count_) : node_name;
+    if (is_emissive) ++emissive_count_;
+    if (is_empty) return;
+    scene_.meshes.push_back(std::move(mesh));
+    if (is_emissive)
+      add_mesh_emitters(
+          scene_, uint32_t(scene_.meshes.size() - 1),
+          {emitter_name, material.emission, material.emission_texture, material.is_two_sided});
+  }
+
+  void add_camera(const JsonNode& node, const JsonNode& reference, const Affine& world_from_node) {
+    const JsonNode cameras = root_.member("cameras");
+    const JsonNode camera = cameras.element(reference.as_index(cameras.size(), "cameras"));
+    std::string name = node.string_or("name", "");
+    if (name.empty()) name = camera.string_or("name", "");
+    if (name.empty()) name = "camera" + std::to_string(scene_.cameras.size());
+    if (auto made = gltf_camera(camera, world_from_node, name, scene_.warnings))
+      scene_.cameras.push_back(std::move(*made));
+  }
+
+  const JsonNode root_;
+  Scene& scene_;
+  GltfBuffers buffers_;
+  GltfMaterials materials_;
+  std::vector<std::vector<GltfPrimitive>> primitives_;  // by mesh
+  size_t emissive_count_ = 0;
+};
+
+}  // namespace
+
+Scene import_gltf(const std::string& path) {
+  GltfFile file = read_gltf_file(path);
+  const JsonDocument document(path, std::move(file.json_text));
+  Scene scene;
+  scene.file = path;
+  scene.is_photometric = true;
+  check_gltf_document(document.root(), scene.warnings);
+  check_gltf_extensions(document.root(), scene.warnings);
+  Importer(document.root(), file, scene).run();
+  return scene;
+}
+
+}  // namespace troffer

@@ -1,0 +1,96 @@
+#include "import/gltf_texture.h"
+
+#include "import/file.h"
+#include "import/gltf_uri.h"
+#include "import/uri.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr uint64_t max_uv_set = 1000;
+
+WrapMode wrap_mode(const JsonNode& sampler, const char* key) {
+  const auto node = sampler.find(key);
+  const uint64_t value = node ? node->as_integer(~uint64_t(0)) : 10497;
+  switch (value) {
+    case 10497:
+      return WrapMode::repeat;
+    case 33071:
+      return WrapMode::clamp;
+    case 33648:
+      return WrapMode::mirror;
+    default:
+      node->fail(std::to_string(value) + " is no wrapping mode");
+  }
+}
+
+void read_sampler(const JsonNode& sampler, Texture& look) {
+  look.wrap_u = wrap_mode(sampler, "wrapS");
+  look.wrap_v = wrap_mode(sampler, "wrapT");
+  constexpr uint64_t nearest = 9728, linear = 9729;
+  if (const auto filter = sampler.find("magFilter")) {
+    const uint64_t value = filter->as_integer(~uint64_t(0));
+    if (value != nearest && value != linear)
+      filter->fail(std::to_string(value) + " is no magnification filter");
+    look.is_filtered = value == linear;
+  }
+}
+
+void read_transform(const JsonNode& transform, Texture& look, int& uv_set) {
+  const auto offset = transform.numbers_or("offset", {0, 0});
+  const auto scale = transform.numbers_or("scale", {1, 1});
+  look.uv_offset = {float(offset[0]), float(offset[1])};
+  look.uv_scale = {float(scale[0]), float(scale[1])};
+  look.uv_rotation_rad = float(transform.number_or("rotation", 0));
+  uv_set = int(transform.integer_or("texCoord", uint64_t(uv_set), max_uv_set));
+}
+
+int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers& buffers,
+                   TextureLoader& loader) {
+  const std::string key = image.file() + "#" + image.pointer();
+  if (const auto view = image.find("bufferView"))
+    return loader.from_memory(buffers.buffer_view(view->as_index(~uint32_t(0), "bufferViews")), key,
+                              look);
+  const auto uri = image.find("uri");
+  if (!uri) return loader.missing(key, "has neither a uri nor a buffer view", look);
+  if (!is_data_uri(uri->as_string()))
+    return loader.from_file(path_of_uri(*uri, folder_of(image.file())), look);
+  // Decoding base64 again for a second use is cheaper than keeping it.
+  const auto data = parse_data_uri(uri->as_string());
+  if (!data) uri->fail("is a malformed data URI");
+  return loader.from_memory(data->bytes, key, look);
+}
+
+}  // namespace
+
+GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_srgb,
+                            const GltfBuffers& buffers, TextureLoader& loader, Scene& scene) {
+  GltfTextureUse use;
+  use.uv_set = int(info.integer_or("texCoord", 0, max_uv_set));
+  Texture look;
+  look.is_srgb = is_srgb;
+  if (const auto transform = info.extension("KHR_texture_transform"))
+    read_transform(*transform, look, use.uv_set);
+  const JsonNode textures = root.member("textures");
+  const JsonNode texture =
+      textures.element(info.member("index").as_index(textures.size(), "textures"));
+  if (const auto sampler = texture.find("sampler")) {
+    const JsonNode samplers = root.member("samplers");
+    read_sampler(samplers.element(sampler->as_index(samplers.size(), "samplers")), look);
+  }
+  const auto source = texture.find("source");
+  if (!source) {
+    // An extension may hold one, in an image format that is not read.
+    scene.warnings.add(printable(texture.pointer()) + ": has no PNG or JPEG image; left out");
+    return use;
+  }
+  const JsonNode images = root.member("images");
+  const JsonNode image = images.element(source->as_index(images.size(), "images"));
+  const int32_t loaded = load_image(image, look, buffers, loader);
+  // A missing image stands as a white constant, which as a factor is no texture at all.
+  if (scene.textures[size_t(loaded)].kind == TextureKind::image) use.texture = loaded;
+  return use;
+}
+
+}  // namespace troffer

@@ -1,0 +1,25 @@
+// One glTF texture reference -> a texture of the scene.
+// References: [1] Khronos, glTF 2.0 Specification, §3.8 (Texture Data);
+//   [2] Khronos extension KHR_texture_transform.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "import/gltf_accessor.h"
+#include "import/gltf_json.h"
+#include "import/texture_loader.h"
+
+namespace troffer {
+
+struct GltfTextureUse {
+  int32_t texture = no_texture;  // none also where the image cannot be had (with a warning)
+  int uv_set = 0;
+};
+
+// The texture that `info` (a textureInfo [1] §5.30) names, with its sampler and transform [2].
+// `is_srgb`: colour as against data. A URI that leads out of the scene's folder fails.
+GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_srgb,
+                            const GltfBuffers& buffers, TextureLoader& loader, Scene& scene);
+
+}  // namespace troffer

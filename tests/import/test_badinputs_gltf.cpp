@@ -1,0 +1,86 @@
+// Every glTF file of ../shared/badinputs is imported in-process: it loads or throws InputError, as
+// its label says, quickly, and nothing else ever escapes.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/error.h"
+#include "import/file.h"
+#include "import/import.h"
+
+using namespace troffer;
+
+namespace {
+
+// Where we disagree with the label, and why.
+const std::map<std::string, std::string> exceptions{
+    {"gltf-validator/base/data/image/invalid_image_data.gltf",
+     "nothing shows the broken image, and one that is shown would be a warning"},
+    {"gltf-validator/base/data/image/png_eos.gltf", "likewise"},
+    {"magnum/GltfImporter/image-basis.glb", "requires an extension that is not supported"},
+    {"magnum/GltfImporter/image-basis.gltf", "likewise"},
+    {"magnum/GltfImporter/mesh-sparse.gltf",
+     "its sparse indices do not ascend, as they must (glTF 2.0, 3.6.2.3)"},
+    {"magnum/GltfImporter/scene.gltf", "requires KHR_lights_punctual, which is not supported"},
+    {"magnum/TinyGltfImporter/light.gltf", "likewise"},
+    {"magnum/GltfImporter/version-legacy.gltf",
+     "glTF 1.0 is another format (and an error in asset/1_0_version.gltf)"},
+    {"assimp/glTF2/MorphStressTest/glTF/MorphStressTest.gltf",
+     "its geometry is in a .bin that the collection does not have"},
+};
+
+enum class Outcome { loads, error, other };
+
+Outcome outcome_of(const std::string& path, std::string& what) {
+  try {
+    const Scene scene = import_scene(path);
+    for (const Mesh& mesh : scene.meshes) {
+      CHECK(mesh.material < scene.materials.size());
+      for (const Triangle& t : mesh.triangles)
+        for (const uint32_t v : t) REQUIRE(v < mesh.positions.size());
+      for (const Vec3& p : mesh.positions) REQUIRE(is_finite(p));
+    }
+    return Outcome::loads;
+  } catch (const InputError& e) {
+    what = e.what();
+    return Outcome::error;
+  } catch (const std::exception& e) {
+    what = e.what();
+    return Outcome::other;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("glTF files that others wrote load or fail as they should") {
+  const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/../shared/badinputs";
+  if (!std::filesystem::exists(folder + "/manifest.json")) {
+    MESSAGE("skipped: ../shared/badinputs is not here");
+    return;
+  }
+  const auto manifest = nlohmann::json::parse(read_text_file(folder + "/manifest.json"));
+  size_t count = 0;
+  for (const auto& entry : manifest) {
+    const std::string format = entry["format"];
+    if (format != "gltf" && format != "glb") continue;
+    ++count;
+    const std::string file = entry["file"], expected = entry["expected"];
+    std::string what;
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome = outcome_of(folder + "/" + file, what);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    CAPTURE(file);
+    CAPTURE(what);
+    CHECK(seconds.count() < 10);
+    CHECK(outcome != Outcome::other);
+    CHECK(what.find('\n') == std::string::npos);
+    if (exceptions.count(file) > 0) continue;
+    if (expected == "error") CHECK(outcome == Outcome::error);
+    if (expected == "loads") CHECK(outcome == Outcome::loads);
+  }
+  CHECK(count > 100);
+}
