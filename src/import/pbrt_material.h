@@ -1,0 +1,49 @@
+// pbrt materials -> scene materials, made when a shape first wears them.
+//
+// References: [1] pbrt-v4 Input File Format, section "Materials", pbrt.org/fileformat-v4.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "import/pbrt_texture.h"
+
+namespace troffer {
+
+// What a Material or MakeNamedMaterial directive says; several shapes share one.
+struct PbrtMaterial {
+  std::string name, type;
+  PbrtParams params;
+  int32_t index = -1;                      // in Scene::materials, once made
+  std::map<int32_t, uint32_t> with_alpha;  // copies with an alpha texture
+
+  // An interface between media: not there for light.
+  bool is_interface() const { return type.empty() || type == "none" || type == "interface"; }
+};
+
+class PbrtMaterials {
+ public:
+  PbrtMaterials(Scene& scene, std::string folder)
+      : textures(scene, std::move(folder)), scene_(scene) {}
+
+  PbrtTextures textures;
+
+  // Index in Scene::materials. InputError: parameters of wrong type, unknown textures.
+  uint32_t index_of(PbrtMaterial& material);
+  // The same material with hits left out where `alpha` < 0.5.
+  uint32_t index_with_alpha(PbrtMaterial& material, const FloatInput& alpha);
+
+ private:
+  Scene& scene_;
+
+  Material make(const PbrtMaterial& material);
+  void read_roughness(const PbrtParams& params, Material& m);
+  void read_conductor(const PbrtParams& params, Material& m);
+  float read_ior(const PbrtParams& params);
+};
+
+// Whether anything in that material depends on (u,v).
+bool is_textured(const Material& material);
+
+}  // namespace troffer

@@ -1,0 +1,228 @@
+#include "import/pbrt_place.h"
+
+#include <cmath>
+
+#include "import/emissive.h"
+#include "import/mesh_clean.h"
+#include "import/tessellate.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t smallest_cost = 20;  // of a shape, in triangles
+constexpr double similarity_tolerance = 1e-5;
+
+// Lengths equal and directions orthogonal, so that a circle in that plane stays one.
+bool is_similar(const Vec3d& a, const Vec3d& b) {
+  const double la = length(a), lb = length(b);
+  return la > 0 && lb > 0 && std::abs(la - lb) <= similarity_tolerance * la &&
+         std::abs(dot(a, b)) <= similarity_tolerance * la * lb;
+}
+bool is_similarity(const Affine& t) {
+  const auto& c = t.columns;
+  return is_similar(c[0], c[1]) && is_similar(c[1], c[2]) && is_similar(c[2], c[0]);
+}
+
+// Inverse transpose up to a positive factor: keeps the side that a normal points to.
+Vec3d covector(const Affine& t, const Vec3d& n) {
+  return t.swaps_handedness() ? -t.normal(n) : t.normal(n);
+}
+
+// The front of each triangle: the side of its normals where there are some, else of its winding,
+// turned where `is_flipped`.
+void orient(Mesh& mesh, bool is_flipped) {
+  for (Triangle& t : mesh.triangles) {
+    double side = 0;
+    if (!mesh.normals.empty()) {
+      const Vec3d n =
+          Vec3d(mesh.normals[t[0]]) + Vec3d(mesh.normals[t[1]]) + Vec3d(mesh.normals[t[2]]);
+      side = dot(area_vector(mesh, t), n);
+    }
+    if (side < 0 || (!(side > 0) && is_flipped)) std::swap(t[1], t[2]);
+  }
+}
+
+// Mean luminance of an image, which pbrt divides a given power by.
+double mean_luminance(const Scene& scene, int32_t texture) {
+  const Texture& t = scene.textures[size_t(texture)];
+  if (t.kind != TextureKind::image) return luminance(t.value);
+  double sum = 0;
+  for (int y = 0; y < t.height; ++y)
+    for (int x = 0; x < t.width; ++x)
+      sum += double(luminance(
+          evaluate(scene.textures, uint32_t(texture),
+                   {(float(x) + 0.5f) / float(t.width), (float(y) + 0.5f) / float(t.height)})
+              .rgb));
+  return sum / (double(t.width) * double(t.height));
+}
+
+}  // namespace
+
+void PbrtPlacer::spend(size_t triangles, const PbrtPlace& place) {
+  cost_ += std::max(triangles, smallest_cost);
+  if (cost_ > max_scene_triangles)
+    fail_at(place, "the scene has too much geometry (over " +
+                       std::to_string(max_scene_triangles / 1'000'000) + " million triangles)");
+}
+
+void PbrtPlacer::place(const PbrtShape& shape, const PbrtPlace& at) {
+  const bool is_flipped = shape.is_reversed != shape.world_from_object.swaps_handedness();
+  place({shape, shape.world_from_object, is_flipped, shape.light != nullptr, at});
+}
+
+void PbrtPlacer::place_instance(const PbrtShape& shape, const Affine& world_from_instance,
+                                const PbrtPlace& at) {
+  const bool is_flipped = shape.is_reversed != shape.world_from_object.swaps_handedness();
+  place({shape, world_from_instance * shape.world_from_object, is_flipped, false, at});
+}
+
+void PbrtPlacer::place(const Placing& placing) {
+  if (placing.shape.material->is_interface()) {
+    scene_.warnings.add("shape with the interface material is left out");
+    if (placing.is_emitting) skip_emitter();
+    return;
+  }
+  const PbrtShape& shape = placing.shape;
+  const auto& columns = placing.world_from_object.columns;
+  if (shape.kind == PbrtShapeKind::mesh) {
+    place_mesh(placing, *shape.mesh, shape.is_quadric);
+  } else if (shape.kind == PbrtShapeKind::sphere) {
+    if (is_similarity(placing.world_from_object))
+      place_sphere(placing);
+    else
+      place_mesh(placing, tessellate_sphere(shape.radius, -shape.radius, shape.radius, 2 * pi),
+                 true);
+  } else if (is_similar(columns[0], columns[1])) {
+    place_disk(placing);
+  } else {
+    place_mesh(placing, tessellate_disk(shape.height, shape.radius, 0, 2 * pi), true);
+  }
+}
+
+uint32_t PbrtPlacer::material_of(const Placing& placing) {
+  PbrtMaterial& material = *placing.shape.material;
+  return placing.shape.alpha ? materials_.index_with_alpha(material, *placing.shape.alpha)
+                             : materials_.index_of(material);
+}
+
+Emitter PbrtPlacer::next_emitter(const PbrtAreaLight& light, double area) {
+  Emitter e;
+  e.name = "emitter" + std::to_string(emitters_++);
+  e.is_two_sided = light.is_two_sided;
+  e.radiance = light.radiance;
+  if (light.power > 0 && area > 0) {
+    // A diffuse source of radiance L sends out pi L per area and side.
+    e.radiance *= float(light.power / (pi * area * (light.is_two_sided ? 2 : 1)));
+  }
+  return e;
+}
+
+void PbrtPlacer::place_sphere(const Placing& placing) {
+  spend(1, placing.place);
+  Sphere sphere;
+  sphere.centre = Vec3(placing.world_from_object.translation);
+  const double r = placing.shape.radius * length(placing.world_from_object.columns[0]);
+  sphere.radius = float(r);
+  sphere.is_inside_out = placing.is_flipped_quadric;
+  if (!is_finite(sphere.centre) || !(sphere.radius > 0) || !std::isfinite(sphere.radius)) {
+    scene_.warnings.add("sphere that is not finite or has no area is left out");
+    if (placing.is_emitting) skip_emitter();
+    return;
+  }
+  sphere.material = material_of(placing);
+  if (is_textured(scene_.materials[sphere.material]))
+    scene_.warnings.add("sphere with a texture: shown with its value at (0,0)");
+  const auto geometry = uint32_t(scene_.spheres.size());
+  if (placing.is_emitting) {
+    if (!placing.shape.light->image.empty())
+      scene_.warnings.add("image of the emission of a sphere is not supported: ignored");
+    Emitter e = next_emitter(*placing.shape.light, 4 * pi * r * r);
+    e.shape = EmitterShape::sphere;
+    e.geometry = geometry;
+    if (!e.radiance.is_black()) {
+      sphere.emitter = int32_t(scene_.emitters.size());
+      scene_.emitters.push_back(std::move(e));
+    }
+  }
+  scene_.spheres.push_back(sphere);
+}
+
+void PbrtPlacer::place_disk(const Placing& placing) {
+  spend(1, placing.place);
+  const Affine& t = placing.world_from_object;
+  Disk disk;
+  disk.centre = Vec3(t.point({0, 0, placing.shape.height}));
+  const double r = placing.shape.radius * length(t.columns[0]);
+  disk.radius = float(r);
+  // The axes of its plane are not parallel, so their cross product has a length.
+  const Vec3d axis = normalize(cross(t.columns[0], t.columns[1]));
+  const bool is_turned = placing.is_flipped_quadric != t.swaps_handedness();
+  disk.normal = Vec3(is_turned ? -axis : axis);
+  if (!is_finite(disk.centre) || !is_finite(disk.normal) || !(disk.radius > 0) ||
+      !std::isfinite(disk.radius)) {
+    scene_.warnings.add("disk that is not finite or has no area is left out");
+    if (placing.is_emitting) skip_emitter();
+    return;
+  }
+  disk.material = material_of(placing);
+  if (is_textured(scene_.materials[disk.material]))
+    scene_.warnings.add("disk with a texture: shown with its value at (0,0)");
+  const auto geometry = uint32_t(scene_.disks.size());
+  if (placing.is_emitting) {
+    if (!placing.shape.light->image.empty())
+      scene_.warnings.add("image of the emission of a disk is not supported: ignored");
+    Emitter e = next_emitter(*placing.shape.light, pi * r * r);
+    e.shape = EmitterShape::disk;
+    e.geometry = geometry;
+    if (!e.radiance.is_black()) {
+      disk.emitter = int32_t(scene_.emitters.size());
+      scene_.emitters.push_back(std::move(e));
+    }
+  }
+  scene_.disks.push_back(disk);
+}
+
+void PbrtPlacer::place_mesh(const Placing& placing, const Mesh& local, bool is_quadric) {
+  // Vertices without triangles cost memory too.
+  spend(std::max(local.triangles.size(), local.positions.size() / 3), placing.place);
+  const Affine& t = placing.world_from_object;
+  const PbrtShape& shape = placing.shape;
+  Mesh mesh = local;
+  for (Vec3& p : mesh.positions) p = Vec3(t.point(Vec3d(p)));
+  // A mesh's own normals turn with ReverseOrientation; computed ones, of quadrics, also with a
+  // transform that mirrors.
+  const bool is_turned = is_quadric ? placing.is_flipped_quadric : shape.is_reversed;
+  for (Vec3& n : mesh.normals) {
+    const Vec3d world = covector(t, Vec3d(n));
+    // Normalised here, so that small scales do not underflow in float.
+    const double size = length(world);
+    n = size > 0 && std::isfinite(size) ? Vec3(world * ((is_turned ? -1 : 1) / size)) : Vec3{};
+  }
+  orient(mesh, shape.is_reversed != t.swaps_handedness());
+  clean_mesh(mesh, "shape \"" + shape.type + "\"", scene_.warnings);
+  if (mesh.triangles.empty()) {
+    if (placing.is_emitting) {
+      scene_.warnings.add("area light without area is left out");
+      skip_emitter();
+    }
+    return;
+  }
+  mesh.material = material_of(placing);
+  const bool has_image = placing.is_emitting && !shape.light->image.empty();
+  if (has_image || is_textured(scene_.materials[mesh.material])) add_default_uvs(mesh);
+  const auto index = uint32_t(scene_.meshes.size());
+  scene_.meshes.push_back(std::move(mesh));
+  if (!placing.is_emitting) return;
+
+  Emitter e = next_emitter(*shape.light, area_of(scene_.meshes[index]));
+  EmissionSpec spec{e.name, e.radiance, no_texture, e.is_two_sided};
+  if (has_image) {
+    spec.texture = materials_.textures.image(shape.light->image, true, WrapMode::clamp);
+    const double mean = shape.light->power > 0 ? mean_luminance(scene_, spec.texture) : 1;
+    if (mean > 0) spec.radiance *= float(1 / mean);
+  }
+  add_mesh_emitters(scene_, index, spec);
+}
+
+}  // namespace troffer

@@ -1,0 +1,45 @@
+// Shapes of a pbrt file -> geometry and emitters of the scene, in world space.
+#pragma once
+
+#include "import/pbrt_shape.h"
+
+namespace troffer {
+
+class PbrtPlacer {
+ public:
+  PbrtPlacer(Scene& scene, PbrtMaterials& materials) : scene_(scene), materials_(materials) {}
+
+  // Adds the shape, emission included.
+  void place(const PbrtShape& shape, const PbrtPlace& place);
+  // Adds one more copy, transformed, without emission.
+  void place_instance(const PbrtShape& shape, const Affine& world_from_instance,
+                      const PbrtPlace& place);
+  // Another shape with an area light has appeared that will not be placed: it keeps its number.
+  void skip_emitter() { ++emitters_; }
+
+ private:
+  // A shape on its way into the scene.
+  struct Placing {
+    const PbrtShape& shape;
+    Affine world_from_object;
+    bool is_flipped_quadric = false;  // normals of quadrics point the other way
+    bool is_emitting = false;
+    PbrtPlace place;
+  };
+
+  Scene& scene_;
+  PbrtMaterials& materials_;
+  size_t emitters_ = 0;
+  size_t cost_ = 0;  // triangles so far; small shapes count as a few
+
+  void place(const Placing& placing);
+  void place_sphere(const Placing& placing);
+  void place_disk(const Placing& placing);
+  void place_mesh(const Placing& placing, const Mesh& local, bool is_quadric);
+  uint32_t material_of(const Placing& placing);
+  // Emission of the next emitter, whose area (m²) turns power into radiance.
+  Emitter next_emitter(const PbrtAreaLight& light, double area);
+  void spend(size_t triangles, const PbrtPlace& place);
+};
+
+}  // namespace troffer

@@ -1,0 +1,230 @@
+#include "import/pbrt_shape.h"
+
+#include <cmath>
+
+#include "import/file.h"
+#include "import/ply.h"
+#include "import/tessellate.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr int curved_patch_cells = 16;
+
+std::vector<Vec3> vectors_of(const std::vector<double>& numbers) {
+  std::vector<Vec3> out;
+  out.reserve(numbers.size() / 3);
+  for (size_t i = 0; i + 2 < numbers.size(); i += 3)
+    out.emplace_back(float(numbers[i]), float(numbers[i + 1]), float(numbers[i + 2]));
+  return out;
+}
+
+// "point2 uv", or with a warning the "float uv" of older files.
+std::vector<Vec2> read_uvs(const PbrtParams& params, WarningLog& warnings) {
+  const PbrtParam* param = params.find("uv");
+  if (!param) return {};
+  if (param->type == PbrtType::real && param->numbers.size() % 2 == 0)
+    warnings.add(at_place(param->place, "\"float uv\" is pbrt-v3 syntax; pbrt-v4 says \"point2\""));
+  else
+    params.numbers("uv", PbrtType::point2);  // checks the type
+  std::vector<Vec2> out;
+  out.reserve(param->numbers.size() / 2);
+  for (size_t i = 0; i + 1 < param->numbers.size(); i += 2)
+    out.emplace_back(float(param->numbers[i]), float(param->numbers[i + 1]));
+  return out;
+}
+
+// Per-vertex data of another length than the positions is left out, as pbrt does.
+template <class T>
+void check_length(std::vector<T>& values, size_t vertices, const char* name,
+                  const PbrtParams& params, WarningLog& warnings) {
+  if (values.empty() || values.size() == vertices) return;
+  warnings.add(params.owner + ": \"" + name + "\" does not have one value per vertex; ignored");
+  values.clear();
+}
+
+struct VertexData {
+  std::vector<Vec3> positions, normals;
+  std::vector<Vec2> uvs;
+  std::vector<uint32_t> indices;
+};
+
+// P, N, uv and indices of a mesh whose faces have `corners` vertices.
+VertexData read_vertices(const PbrtParams& params, size_t corners, WarningLog& warnings) {
+  VertexData data;
+  data.positions = vectors_of(params.numbers("P", PbrtType::point3));
+  const size_t n = data.positions.size();
+  if (n == 0) fail_at(params.place, params.owner + " needs \"point3 P\"");
+  data.normals = vectors_of(params.numbers("N", PbrtType::normal));
+  data.uvs = read_uvs(params, warnings);
+  check_length(data.normals, n, "N", params, warnings);
+  check_length(data.uvs, n, "uv", params, warnings);
+  params.ignore({"S", "faceIndices"});
+  const PbrtParam* indices = params.find("indices");
+  if (!indices) {
+    if (n != corners) fail_at(params.place, params.owner + " needs \"integer indices\"");
+    for (size_t i = 0; i < n; ++i) data.indices.push_back(uint32_t(i));
+    return data;
+  }
+  params.numbers("indices", PbrtType::integer);  // checks the type
+  if (indices->numbers.size() % corners != 0)
+    fail_at(indices->place,
+            "the number of indices is not a multiple of " + std::to_string(corners));
+  data.indices.reserve(indices->numbers.size());
+  for (const double i : indices->numbers) {
+    if (i < 0 || i >= double(n))
+      fail_at(indices->place, "vertex index " + std::to_string(int64_t(i)) + " out of range (" +
+                                  std::to_string(n) + " vertices)");
+    data.indices.push_back(uint32_t(i));
+  }
+  return data;
+}
+
+Mesh read_triangle_mesh(const PbrtParams& params, WarningLog& warnings) {
+  VertexData data = read_vertices(params, 3, warnings);
+  Mesh mesh;
+  mesh.positions = std::move(data.positions);
+  mesh.normals = std::move(data.normals);
+  mesh.uvs = std::move(data.uvs);
+  mesh.triangles.reserve(data.indices.size() / 3);
+  for (size_t i = 0; i < data.indices.size(); i += 3)
+    mesh.triangles.push_back({data.indices[i], data.indices[i + 1], data.indices[i + 2]});
+  return mesh;
+}
+
+// Planar patches become two triangles each, which share the vertices of the file; where one is
+// curved, every patch is cut into cells, so that neighbours meet.
+Mesh read_bilinear_mesh(const PbrtParams& params, WarningLog& warnings) {
+  const VertexData data = read_vertices(params, 4, warnings);
+  std::vector<BilinearPatch> patches;
+  bool is_flat = true;
+  for (size_t i = 0; i < data.indices.size(); i += 4) {
+    BilinearPatch patch;
+    patch.is_smooth = !data.normals.empty();
+    for (size_t k = 0; k < 4; ++k) {
+      const uint32_t v = data.indices[i + k];
+      patch.corners[k] = data.positions[v];
+      if (!data.normals.empty()) patch.normals[k] = data.normals[v];
+      if (!data.uvs.empty()) patch.uvs[k] = data.uvs[v];
+    }
+    is_flat = is_flat && is_planar(patch);
+    patches.push_back(patch);
+  }
+  Mesh mesh;
+  const bool shares_vertices = is_flat && (!data.uvs.empty() || patches.size() == 1);
+  if (!shares_vertices) {
+    const size_t cells = is_flat ? 1 : curved_patch_cells;
+    if (patches.size() > max_scene_triangles / (2 * cells * cells))
+      fail_at(params.place, "too many triangles");
+    for (const BilinearPatch& patch : patches) append_patch(mesh, patch, int(cells));
+    return mesh;
+  }
+  mesh.positions = data.positions;
+  mesh.normals = data.normals;
+  mesh.uvs = data.uvs;
+  if (data.uvs.empty()) {
+    mesh.uvs.resize(data.positions.size());
+    for (size_t k = 0; k < 4; ++k) mesh.uvs[data.indices[k]] = BilinearPatch().uvs[k];
+  }
+  for (size_t i = 0; i < data.indices.size(); i += 4) {
+    const uint32_t* q = &data.indices[i];  // 00, 10, 01, 11
+    mesh.triangles.push_back({q[0], q[1], q[3]});
+    mesh.triangles.push_back({q[0], q[3], q[2]});
+  }
+  return mesh;
+}
+
+Mesh read_ply_mesh(const PbrtParams& params, const std::string& folder, WarningLog& warnings) {
+  const PbrtParam* file = params.find("filename");
+  if (!file) fail_at(params.place, params.owner + " needs a \"string filename\"");
+  const std::string name = params.get_string("filename", "");
+  if (params.has("displacement"))
+    warnings.add(params.owner + ": displacement is not supported; ignored");
+  params.ignore({"edgelength"});
+  if (lower_case_ending(name) == "gz")
+    fail_at(file->place, "compressed PLY files are not supported: " + name);
+  const ConfinedPath path = confined_path(folder, name);
+  if (!path.is_fine()) fail_at(file->place, "cannot use '" + name + "': " + path.problem);
+  return read_ply(path.path, warnings, max_scene_triangles);
+}
+
+bool read_sphere(const PbrtParams& params, PbrtShape& shape) {
+  const double r = params.get_float("radius", 1);
+  const double z0 = params.get_float("zmin", -r), z1 = params.get_float("zmax", r);
+  const double phi_deg = params.get_float("phimax", 360);
+  const double z_min = std::clamp(std::min(z0, z1), -std::abs(r), std::abs(r));
+  const double z_max = std::clamp(std::max(z0, z1), -std::abs(r), std::abs(r));
+  if (!(r > 0) || !(z_max > z_min) || !(phi_deg > 0)) return false;
+  if (z_min <= -r && z_max >= r && phi_deg >= 360) {
+    shape.kind = PbrtShapeKind::sphere;
+    shape.radius = r;
+  } else {
+    shape.is_quadric = true;
+    shape.mesh = std::make_shared<const Mesh>(
+        tessellate_sphere(r, z_min, z_max, rad_from_deg(std::min(phi_deg, 360.0))));
+  }
+  return true;
+}
+
+bool read_disk(const PbrtParams& params, PbrtShape& shape) {
+  const double r = params.get_float("radius", 1), height = params.get_float("height", 0);
+  const double inner = params.get_float("innerradius", 0);
+  const double phi_deg = params.get_float("phimax", 360);
+  if (!(r > 0) || !(inner < r) || !(phi_deg > 0)) return false;
+  if (inner <= 0 && phi_deg >= 360) {
+    shape.kind = PbrtShapeKind::disk;
+    shape.radius = r;
+    shape.height = height;
+  } else {
+    shape.is_quadric = true;
+    shape.mesh = std::make_shared<const Mesh>(
+        tessellate_disk(height, r, std::max(inner, 0.0), rad_from_deg(std::min(phi_deg, 360.0))));
+  }
+  return true;
+}
+
+// False: the shape is cut away everywhere.
+bool read_alpha(const PbrtParams& params, PbrtTextures& textures, WarningLog& warnings,
+                PbrtShape& shape) {
+  if (!params.has("alpha")) return true;
+  const FloatInput alpha = textures.real(params, "alpha", 1);
+  if (alpha.texture >= 0) {
+    shape.alpha = alpha;
+    warnings.add("alpha texture of a shape: holes where alpha < 0.5, opaque elsewhere");
+    return true;
+  }
+  if (alpha.value < 1)
+    warnings.add(alpha.value < 0.5f ? "shape with constant alpha below 0.5 is left out"
+                                    : "shape with constant alpha below 1 is shown opaque");
+  return alpha.value >= 0.5f;
+}
+
+}  // namespace
+
+bool read_pbrt_shape(const std::string& type, const PbrtParams& params, PbrtTextures& textures,
+                     WarningLog& warnings, PbrtShape& shape) {
+  shape.type = type;
+  bool has_area = true;
+  if (type == "trianglemesh") {
+    shape.mesh = std::make_shared<const Mesh>(read_triangle_mesh(params, warnings));
+  } else if (type == "plymesh") {
+    shape.mesh = std::make_shared<const Mesh>(read_ply_mesh(params, textures.folder(), warnings));
+  } else if (type == "bilinearmesh") {
+    params.ignore({"emissionfilename"});
+    shape.mesh = std::make_shared<const Mesh>(read_bilinear_mesh(params, warnings));
+  } else if (type == "sphere") {
+    has_area = read_sphere(params, shape);
+  } else if (type == "disk") {
+    has_area = read_disk(params, shape);
+  } else {
+    warnings.add("shape \"" + type + "\" is not supported: left out");
+    return false;
+  }
+  if (!has_area) warnings.add(params.owner + " without area is left out");
+  const bool is_visible = read_alpha(params, textures, warnings, shape);
+  params.warn_unread(warnings);
+  return has_area && is_visible;
+}
+
+}  // namespace troffer

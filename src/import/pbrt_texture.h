@@ -1,0 +1,62 @@
+// Named textures of pbrt files, made when a material first shows them.
+//
+// References: [1] pbrt-v4 Input File Format, section "Textures", pbrt.org/fileformat-v4.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "import/pbrt_params.h"
+#include "import/pbrt_spectrum.h"
+#include "import/texture_loader.h"
+#include "scene/scene.h"
+
+namespace troffer {
+
+class PbrtTextures {
+ public:
+  // Files are looked up in `folder`, and never outside. The scene must outlive this.
+  PbrtTextures(Scene& scene, std::string folder)
+      : scene_(scene), folder_(std::move(folder)), loader_(scene) {}
+
+  // A Texture directive. A name that exists already is replaced, with a warning.
+  void define(const std::string& name, bool is_float, const std::string& kind, PbrtParams params);
+
+  // The value of a material's parameter: a constant, a named texture, or `fallback`.
+  // InputError: wrong types, unknown textures, textures that contain themselves.
+  ColorInput color(const PbrtParams& params, std::string_view name, Rgb fallback);
+  FloatInput real(const PbrtParams& params, std::string_view name, float fallback);
+
+  // An image in pbrt's (u,v): (0,0) is the lower left corner.
+  int32_t image(const std::string& file, bool is_srgb, WrapMode wrap = WrapMode::repeat);
+
+  PbrtSpectrumContext spectrum_context() { return {folder_, scene_.warnings}; }
+  const std::string& folder() const { return folder_; }
+
+ private:
+  struct Named {
+    std::string kind;
+    bool is_float = false;
+    PbrtParams params;
+    bool is_being_made = false, is_made = false;
+    ColorInput value{Rgb{1}, no_texture};
+    size_t images = 0;  // images that one look-up reads
+  };
+
+  Scene& scene_;
+  std::string folder_;
+  TextureLoader loader_;
+  std::map<std::string, Named> floats_, colors_;
+  int depth_ = 0;
+
+  Named& find(const std::string& name, bool is_float, const PbrtParam& asked_by);
+  void make(Named& texture, const std::string& name);
+  void make_image(Named& texture, const std::string& name);
+  void make_scale(Named& texture, const std::string& name);
+  void make_mean(Named& texture);
+  ColorInput argument(const PbrtParams& params, std::string_view name, bool is_float, Rgb fallback,
+                      size_t& images);
+  int32_t load(const std::string& file, const Texture& look);
+};
+
+}  // namespace troffer

@@ -1,0 +1,63 @@
+// The words of a pbrt file: directives, quoted strings, numbers and brackets, each with its place.
+//
+// References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace troffer {
+
+// A place in a file; line and column count from 1.
+struct PbrtPlace {
+  std::shared_ptr<const std::string> file;
+  int line = 0, column = 0;
+};
+
+// Throws InputError.
+[[noreturn]] void fail_at(const PbrtPlace& place, const std::string& what);
+// "FILE:LINE:COLUMN: what", for warnings that should be found again.
+std::string at_place(const PbrtPlace& place, const std::string& what);
+
+enum class PbrtTokenKind { end, word, string, number, open_bracket, close_bracket };
+
+struct PbrtToken {
+  PbrtTokenKind kind = PbrtTokenKind::end;
+  std::string_view text;  // as it stands in the file; of a string the part between the quotes
+  double number = 0;      // number: may be infinite or NaN where the file says so
+  int line = 0, column = 0;
+};
+
+class PbrtTokenizer {
+ public:
+  // `text` must outlive the tokenizer and its tokens.
+  PbrtTokenizer(std::string file, std::string_view text);
+
+  // The next token; after the last one, `end` again and again. InputError: an unterminated string,
+  // a malformed number.
+  PbrtToken next();
+  // The next token without taking it.
+  const PbrtToken& peek();
+
+  PbrtPlace place(const PbrtToken& token) const { return {file_, token.line, token.column}; }
+
+ private:
+  std::shared_ptr<const std::string> file_;
+  std::string_view text_;
+  size_t at_ = 0;
+  size_t line_start_ = 0;
+  int line_ = 1;
+  bool has_peeked_ = false;
+  PbrtToken peeked_;
+
+  void skip_blanks();
+  PbrtToken scan();
+  PbrtToken scan_string(PbrtToken token);
+  PbrtToken scan_word(PbrtToken token);
+};
+
+// The value of a quoted string: backslash escapes replaced.
+std::string unescaped(std::string_view quoted);
+
+}  // namespace troffer

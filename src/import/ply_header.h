@@ -1,0 +1,42 @@
+// The header of a PLY file: which elements and properties follow, and how they are encoded.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace troffer {
+
+enum class PlyFormat { ascii, little_endian, big_endian };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+size_t size_of(PlyType type);
+inline bool is_integer(PlyType type) {
+  return type < PlyType::float32;
+}
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool is_list = false;
+  PlyType count_type = PlyType::uint8;
+};
+
+struct PlyElement {
+  std::string name;
+  uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;
+  size_t body = 0;    // offset of the first byte after the header
+  int body_line = 1;  // and its line
+};
+
+// InputError: not a PLY file, unknown formats and types, no end_header.
+PlyHeader parse_ply_header(std::string_view text, const std::string& file);
+
+}  // namespace troffer

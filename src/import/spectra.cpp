@@ -1,0 +1,163 @@
+#include "import/spectra.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/vec.h"
+
+namespace troffer {
+
+namespace {
+
+// One lobe of [1], Eq. 4: a Gaussian with different widths left and right of its mean.
+double lobe(double x, double mean, double left, double right) {
+  const double t = (x - mean) * (x < mean ? left : right);
+  return std::exp(-0.5 * t * t);
+}
+
+// The multi-lobe fit to the CIE 1931 2-degree observer [1, Table 1]; the factors are inverse
+// widths.
+Vec3d color_matching(double nm) {
+  return {0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
+              0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
+          0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
+          1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725)};
+}
+
+// XYZ -> linear sRGB (IEC 61966-2-1).
+Rgb rgb_from_xyz(const Vec3d& c) {
+  return {float(3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z),
+          float(-0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z),
+          float(0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z)};
+}
+
+Rgb not_negative(Rgb c) {
+  return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)};
+}
+
+// Integral of spectrum times matching functions, 1 nm steps over the visible range.
+template <class Spectrum>
+Vec3d xyz_integral(const Spectrum& spectrum) {
+  Vec3d sum;
+  for (int nm = 360; nm <= 830; ++nm) sum += color_matching(nm) * spectrum(double(nm));
+  return sum;
+}
+
+Rgb with_unit_luminance(const Vec3d& xyz) {
+  return xyz.y > 0 ? not_negative(rgb_from_xyz(xyz / xyz.y)) : Rgb{0};
+}
+
+Rgb from_chromaticity(double x, double y) {
+  return with_unit_luminance({x / y, 1, (1 - x - y) / y});
+}
+
+struct Illuminant {
+  std::string_view name;
+  double x, y;
+};
+// Chromaticities [2].
+constexpr std::array illuminants{
+    Illuminant{"stdillum-A", 0.44757, 0.40745},   Illuminant{"stdillum-D50", 0.34567, 0.35850},
+    Illuminant{"stdillum-D65", 0.31272, 0.32903}, Illuminant{"illum-acesD60", 0.32168, 0.33767},
+    Illuminant{"stdillum-F1", 0.31310, 0.33727},  Illuminant{"stdillum-F2", 0.37208, 0.37529},
+    Illuminant{"stdillum-F3", 0.40910, 0.39430},  Illuminant{"stdillum-F4", 0.44018, 0.40329},
+    Illuminant{"stdillum-F5", 0.31379, 0.34531},  Illuminant{"stdillum-F6", 0.37790, 0.38835},
+    Illuminant{"stdillum-F7", 0.31292, 0.32933},  Illuminant{"stdillum-F8", 0.34588, 0.35875},
+    Illuminant{"stdillum-F9", 0.37417, 0.37281},  Illuminant{"stdillum-F10", 0.34609, 0.35986},
+    Illuminant{"stdillum-F11", 0.38052, 0.37713}, Illuminant{"stdillum-F12", 0.43695, 0.40441},
+};
+
+struct Metal {
+  std::string_view name;
+  Rgb eta, k;
+};
+// Measured indices at about 630, 532 and 465 nm, as commonly tabulated per channel.
+constexpr std::array metals{
+    Metal{"Ag", {0.155265f, 0.116723f, 0.138381f}, {4.828343f, 3.122246f, 2.147050f}},
+    Metal{"Al", {1.657460f, 0.880369f, 0.521229f}, {9.223869f, 6.269523f, 4.837001f}},
+    Metal{"Au", {0.143119f, 0.374957f, 1.442479f}, {3.983160f, 2.385721f, 1.603215f}},
+    Metal{"Cu", {0.200438f, 0.924033f, 1.102212f}, {3.912949f, 2.452848f, 2.142188f}},
+    Metal{"CuZn", {0.444f, 0.527f, 1.094f}, {3.695f, 2.765f, 1.829f}},
+    Metal{"MgO", {1.735f, 1.740f, 1.746f}, {0, 0, 0}},
+    Metal{"TiO2", {2.585f, 2.669f, 2.777f}, {0, 0, 0}},
+};
+
+struct Glass {
+  std::string_view name;
+  float eta;
+};
+constexpr std::array glasses{
+    Glass{"glass-BK7", 1.5168f},   Glass{"glass-BAF10", 1.6700f}, Glass{"glass-FK51A", 1.4866f},
+    Glass{"glass-LASF9", 1.8503f}, Glass{"glass-F5", 1.6727f},    Glass{"glass-SF5", 1.6727f},
+    Glass{"glass-F10", 1.7283f},   Glass{"glass-SF10", 1.7283f},  Glass{"glass-F11", 1.7847f},
+    Glass{"glass-SF11", 1.7847f},
+};
+
+}  // namespace
+
+double value_at(const SampledSpectrum& spectrum, double wavelength_nm) {
+  const std::vector<double>& x = spectrum.wavelengths_nm;
+  if (x.empty() || !(wavelength_nm >= x.front() && wavelength_nm <= x.back())) return 0;
+  const auto above = std::upper_bound(x.begin(), x.end(), wavelength_nm);
+  if (above == x.end()) return spectrum.values.back();
+  const auto i = size_t(above - x.begin());  // x[i - 1] <= wavelength < x[i]
+  const double t = (wavelength_nm - x[i - 1]) / (x[i] - x[i - 1]);
+  return lerp(spectrum.values[i - 1], spectrum.values[i], t);
+}
+
+Rgb reflectance_from_spectrum(const SampledSpectrum& spectrum) {
+  const auto value = [&](double nm) { return value_at(spectrum, nm); };
+  // Per channel relative to the perfect diffuser: takes equal-energy white to sRGB's white.
+  const Rgb white = rgb_from_xyz(xyz_integral([](double) { return 1.0; }));
+  return not_negative(rgb_from_xyz(xyz_integral(value)) / white);
+}
+
+Rgb emission_from_spectrum(const SampledSpectrum& spectrum) {
+  return with_unit_luminance(xyz_integral([&](double nm) { return value_at(spectrum, nm); }));
+}
+
+Rgb blackbody_emission(double kelvin) {
+  // Planck's law up to a constant factor, relative to 560 nm so that low temperatures do not
+  // underflow: (560/x)^5 (e^(c/560) - 1) / (e^(c/x) - 1) with c = hc/(k T) in nm.
+  const double c = 1.438776877e7 / std::max(kelvin, 100.0);
+  return with_unit_luminance(xyz_integral([&](double nm) {
+    return std::pow(560 / nm, 5) * std::exp(c / 560 - c / nm) * -std::expm1(-c / 560) /
+           -std::expm1(-c / nm);
+  }));
+}
+
+std::optional<Rgb> named_illuminant(std::string_view name) {
+  for (const Illuminant& row : illuminants)
+    if (row.name == name) return from_chromaticity(row.x, row.y);
+  return std::nullopt;
+}
+
+std::optional<Rgb> named_metal(std::string_view name) {
+  if (!name.starts_with("metal-")) return std::nullopt;
+  name.remove_prefix(6);
+  for (const Metal& row : metals) {
+    if (!name.starts_with(row.name)) continue;
+    const std::string_view rest = name.substr(row.name.size());
+    if (rest == "-eta") return row.eta;
+    if (rest == "-k") return row.k;
+  }
+  return std::nullopt;
+}
+
+std::optional<float> named_glass(std::string_view name) {
+  for (const Glass& row : glasses)
+    if (row.name == name) return row.eta;
+  return std::nullopt;
+}
+
+Rgb conductor_from_spectrum(const SampledSpectrum& spectrum) {
+  const auto at = [&](double nm) {
+    if (spectrum.wavelengths_nm.empty()) return 0.0f;
+    return float(value_at(
+        spectrum, std::clamp(nm, spectrum.wavelengths_nm.front(), spectrum.wavelengths_nm.back())));
+  };
+  return {at(630), at(532), at(465)};
+}
+
+}  // namespace troffer
