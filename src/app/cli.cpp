@@ -1,0 +1,229 @@
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <map>
+#include <new>
+
+#include "app/commands.h"
+#include "base/error.h"
+
+namespace troffer {
+
+namespace {
+
+const std::map<std::string, Aov> aov_names{
+    {"albedo", Aov::albedo},           {"normal", Aov::normal}, {"depth", Aov::depth},
+    {"position", Aov::position},       {"direct", Aov::direct}, {"indirect", Aov::indirect},
+    {"shadow_rays", Aov::shadow_rays}, {"error", Aov::error}};
+
+// Values as typed; turned into options after parsing, where errors become UsageError.
+struct RawOptions {
+  std::string size, crop, indirect = "auto";
+  std::vector<std::string> aovs;
+  // Belong to methods that this version does not have; accepted and checked all the same.
+  double variance = 0.01, error = 0.01;
+  std::string coherence = "on";
+};
+
+std::vector<int> integers(const std::string& text, char separator, size_t count,
+                          const std::string& option) {
+  std::vector<int> values;
+  const char* p = text.data();
+  const char* end = p + text.size();
+  while (values.size() < count) {
+    int v = 0;
+    const auto [next, error] = std::from_chars(p, end, v);
+    if (error != std::errc()) break;
+    values.push_back(v);
+    p = next;
+    if (p == end) break;
+    if (*p++ != separator) break;
+  }
+  if (values.size() != count || p != end) throw UsageError(option + ": cannot read '" + text + "'");
+  return values;
+}
+
+Indirect parse_indirect(const std::string& name) {
+  if (name == "auto") return Indirect::automatic;
+  if (name == "none") return Indirect::none;
+  throw UsageError("--indirect radiosity is not available in this version");
+}
+
+void apply(const RawOptions& raw, RenderOptions& o) {
+  if (!raw.size.empty()) {
+    const auto v = integers(raw.size, 'x', 2, "--size");
+    constexpr int largest = 65536;
+    if (v[0] < 1 || v[1] < 1 || v[0] > largest || v[1] > largest)
+      throw UsageError("--size: each side must lie between 1 and 65536");
+    if (int64_t(v[0]) * v[1] > (int64_t(1) << 28))
+      throw UsageError("--size: more than 268 million pixels");
+    o.width = v[0];
+    o.height = v[1];
+  }
+  if (!raw.crop.empty()) {
+    const auto v = integers(raw.crop, ',', 4, "--crop");
+    o.has_crop = true;
+    std::copy(v.begin(), v.end(), o.crop.begin());
+  }
+  o.indirect = parse_indirect(raw.indirect);
+  for (const std::string& name : raw.aovs) {
+    const auto it = aov_names.find(name);
+    if (it == aov_names.end()) throw UsageError("--aov: there is no layer '" + name + "'");
+    if (std::find(o.aovs.begin(), o.aovs.end(), it->second) == o.aovs.end())
+      o.aovs.push_back(it->second);
+  }
+}
+
+void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
+  CLI::App* r = app.add_subcommand("render", "Render an image of a scene");
+  r->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  r->add_option("--method", c.method, "How light is computed: path, fixed")->capture_default_str();
+  r->add_option("--spp", c.options.spp, "Viewing rays per pixel")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  r->add_option("--shadow-rays", c.options.shadow_rays,
+                "fixed: shadow rays per source and viewing ray")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  r->add_option("--variance", raw.variance, "kj92: allowed standard error")
+      ->check(CLI::NonNegativeNumber);
+  r->add_option("--error", raw.error, "certified: allowed standard error")
+      ->check(CLI::PositiveNumber);
+  r->add_option("--coherence", raw.coherence, "kj92: reuse of sampling patterns, on or off")
+      ->check(CLI::IsMember({"on", "off"}));
+  r->add_option("--indirect", raw.indirect,
+                "auto, or none: only light that reaches surfaces straight from sources")
+      ->check(CLI::IsMember({"auto", "radiosity", "none"}))
+      ->capture_default_str();
+  r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
+      ->check(CLI::Range(0, 1 << 20));
+  r->add_option("--size", raw.size, "Image size WxH in pixels [by the scene]");
+  r->add_option("--crop", raw.crop, "Window X0,Y0,X1,Y1 of the image, in pixels");
+  r->add_option("--camera", c.camera, "Camera by name [the first]");
+  r->add_option("--eye", c.eye, "Camera position x,y,z, in place of the scene's camera");
+  r->add_option("--target", c.target, "Point x,y,z that --eye looks at");
+  r->add_option("--up", c.up, "Upward direction x,y,z [0,1,0; pbrt and z-up scenes: 0,0,1]");
+  r->add_option("--fov", c.fov_deg, "Field of view of --eye over the shorter side, degrees")
+      ->check(CLI::Range(0.1, 179.0))
+      ->capture_default_str();
+  r->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
+      ->delimiter(',');
+  r->add_option("--threads", c.options.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
+  r->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
+  r->add_option("--aov", raw.aovs,
+                "Further layers for .exr: albedo,normal,depth,position,direct,indirect,"
+                "shadow_rays,error")
+      ->delimiter(',');
+  r->add_option("--exposure", c.exposure, "Stops, for .png")
+      ->check(CLI::Range(-60.0, 60.0))
+      ->capture_default_str();
+  r->add_option("--tone-map", c.tone_map, "filmic or none, for .png")
+      ->check(CLI::IsMember({"filmic", "none"}))
+      ->capture_default_str();
+  r->add_option("--stats", c.stats, "Write counts and times to this JSON file");
+  r->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
+}
+
+void add_compare(CLI::App& app, CompareCommand& c) {
+  CLI::App* s = app.add_subcommand("compare", "Compare an image with a reference");
+  s->add_option("image", c.image, "Image: .exr .hdr .pfm .png .jpg")->required();
+  s->add_option("reference", c.reference, "Reference of the same size")->required();
+  s->add_option("--map", c.map, "Write the FLIP error map to this image file");
+  s->add_option("--difference", c.difference, "Write the absolute difference to this image file");
+  s->add_flag("--json", c.is_json, "Print JSON");
+}
+
+void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
+  CLI::App* s = app.add_subcommand("measure", "Measure irradiance and illuminance at points");
+  s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  s->add_option("--points", c.points, "CSV file with header x,y,z,nx,ny,nz")->required();
+  s->add_option("-o,--output", c.output, "CSV file [standard output]");
+  s->add_option("--method", c.method, "How light is computed: path, fixed")->capture_default_str();
+  s->add_option("--spp", c.spp, "Samples per point [4096]")->check(CLI::Range(2, 1 << 26));
+  s->add_option("--error", raw.error, "certified: allowed standard error")
+      ->check(CLI::PositiveNumber);
+  s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")
+      ->check(CLI::Range(0, 1 << 20));
+  s->add_option("--indirect", raw.indirect, "auto, or none: direct light only")
+      ->check(CLI::IsMember({"auto", "radiosity", "none"}))
+      ->capture_default_str();
+  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
+      ->delimiter(',');
+  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
+  s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
+  s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
+}
+
+void add_info(CLI::App& app, InfoCommand& c) {
+  CLI::App* s = app.add_subcommand("info", "Tell what a scene file holds");
+  s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  s->add_flag("--json", c.is_json, "Print JSON");
+}
+
+int parse_and_run(int argc, const char* const* argv) {
+  CLI::App app{"troffer lights rooms: images and lighting figures of interiors."};
+  app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
+  app.require_subcommand(1);
+  RenderCommand render;
+  CompareCommand compare;
+  MeasureCommand measure;
+  InfoCommand info;
+  RawOptions render_raw, measure_raw;
+  add_render(app, render, render_raw);
+  add_compare(app, compare);
+  add_measure(app, measure, measure_raw);
+  add_info(app, info);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) {  // --help, --version
+      app.exit(e);
+      return exit_done;
+    }
+    throw UsageError(e.what());
+  }
+  if (app.got_subcommand("render")) {
+    apply(render_raw, render.options);
+    return run_render(std::move(render));
+  }
+  if (app.got_subcommand("compare")) return run_compare(compare);
+  if (app.got_subcommand("measure")) {
+    measure.indirect = parse_indirect(measure_raw.indirect);
+    return run_measure(measure);
+  }
+  return run_info(info);
+}
+
+int report(const char* text, int status) {
+  std::string line = text;
+  for (char& ch : line)  // one line, whatever a hostile file put into a name
+    if (static_cast<unsigned char>(ch) < 0x20) ch = ' ';
+  std::fprintf(stderr, "error: %s\n", line.c_str());
+  return status;
+}
+
+}  // namespace
+
+int run(int argc, const char* const* argv) {
+  std::string command;
+  for (int i = 0; i < argc; ++i) command += (i > 0 ? " " : "") + std::string(argv[i]);
+  set_check_command(command);
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const UsageError& e) {
+    return report(e.what(), exit_usage);
+  } catch (const InputError& e) {
+    return report(e.what(), exit_bad_input);
+  } catch (const EnvironmentError& e) {
+    return report(e.what(), exit_bad_input);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory", exit_bad_input);
+  }
+}
+
+}  // namespace troffer

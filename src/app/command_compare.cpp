@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "compare/compare.h"
+#include "compare/maps.h"
+#include "image/read_image.h"
+#include "image/write_image.h"
+
+namespace troffer {
+
+int run_compare(const CompareCommand& command) {
+  for (const std::string& path : {command.map, command.difference})
+    if (!path.empty()) image_format(path);
+  const Image image = read_image(command.image), reference = read_image(command.reference);
+  const Comparison c = compare_images(image, reference, command.image);
+  WriteOptions plain;  // maps are colours, not light: no tone map
+  plain.display.tone_map = ToneMap::none;
+  if (!command.map.empty()) write_image(command.map, flip_map(image, reference), plain);
+  if (!command.difference.empty())
+    write_image(command.difference, absolute_difference_map(image, reference), plain);
+
+  const std::pair<const char*, double> rows[] = {{"mean_image", c.mean_image},
+                                                 {"mean_reference", c.mean_reference},
+                                                 {"average_difference", c.average_difference},
+                                                 {"rmse", c.rmse},
+                                                 {"relative_rmse", c.relative_rmse},
+                                                 {"flip", c.flip}};
+  if (command.is_json) {
+    nlohmann::ordered_json j;
+    for (const auto& [name, value] : rows) j[name] = value;
+    j["compared_pixels"] = c.compared_pixels;
+    j["non_finite_pixels"] = c.non_finite_pixels;
+    fmt::print("{}\n", j.dump(2));
+    return exit_done;
+  }
+  for (const auto& [name, value] : rows) fmt::print("{:<20}{:.6g}\n", name, value);
+  if (c.non_finite_pixels > 0) fmt::print("{:<20}{}\n", "non_finite_pixels", c.non_finite_pixels);
+  return exit_done;
+}
+
+}  // namespace troffer

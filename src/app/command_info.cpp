@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "base/box.h"
+#include "emitter/light_primitive.h"
+#include "import/import.h"
+
+namespace troffer {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* shape_name(EmitterShape s) {
+  switch (s) {
+    case EmitterShape::polygon:
+      return "polygon";
+    case EmitterShape::disk:
+      return "disk";
+    case EmitterShape::sphere:
+      return "sphere";
+    case EmitterShape::mesh:
+      return "mesh";
+  }
+  return "";
+}
+
+Json info_json(const Scene& scene) {
+  size_t emitter_triangles = 0;
+  for (const Mesh& m : scene.meshes)
+    for (const int32_t e : m.emitters) emitter_triangles += e >= 0;
+
+  const LightPrimitives primitives(scene);
+  std::vector<double> area(scene.emitters.size(), 0.0), power(scene.emitters.size(), 0.0);
+  for (const LightPrimitive& p : primitives.all()) {
+    area[p.emitter] += double(p.area);
+    power[p.emitter] += double(p.power);
+  }
+
+  Json j;
+  j["triangles"] = triangle_count(scene);
+  j["meshes"] = scene.meshes.size();
+  j["materials"] = scene.materials.size();
+  j["textures"] = scene.textures.size();
+  j["emitters"] = scene.emitters.size();
+  j["emitter_triangles"] = emitter_triangles;
+  j["lights"] = Json::array();
+  for (const Emitter& e : scene.emitters) j["lights"].push_back(e.name);
+  j["cameras"] = Json::array();
+  for (const Camera& c : scene.cameras) j["cameras"].push_back(c.name);
+  const Box box = bounds(scene);
+  if (box.is_empty())
+    j["bounds"] = nullptr;
+  else
+    j["bounds"] = {{box.lower.x, box.lower.y, box.lower.z},
+                   {box.upper.x, box.upper.y, box.upper.z}};
+  j["warnings"] = Json::array();
+  for (const Warning& w : scene.warnings.entries())
+    j["warnings"].push_back({{"text", w.text}, {"count", w.count}});
+  j["spheres"] = scene.spheres.size();
+  j["disks"] = scene.disks.size();
+  j["is_photometric"] = scene.is_photometric;
+  j["sources"] = Json::array();
+  for (size_t i = 0; i < scene.emitters.size(); ++i) {
+    const Emitter& e = scene.emitters[i];
+    j["sources"].push_back({{"name", e.name},
+                            {"shape", shape_name(e.shape)},
+                            {"area", area[i]},
+                            {"radiance", {e.radiance.r, e.radiance.g, e.radiance.b}},
+                            {"power", power[i]},
+                            {"is_two_sided", e.is_two_sided}});
+  }
+  return j;
+}
+
+void print_text(const Scene& scene, const Json& j) {
+  fmt::print("scene      {}\n", scene.file);
+  for (const char* key : {"triangles", "meshes", "materials", "textures", "spheres", "disks"})
+    fmt::print("{:<10} {}\n", key, j[key].get<size_t>());
+  const Box box = bounds(scene);
+  if (!box.is_empty())
+    fmt::print("bounds     {:g} {:g} {:g}  to  {:g} {:g} {:g}\n", box.lower.x, box.lower.y,
+               box.lower.z, box.upper.x, box.upper.y, box.upper.z);
+  fmt::print("cameras    {}\n", scene.cameras.size());
+  for (const Camera& c : scene.cameras) {
+    fmt::print("  {}", c.name);
+    if (c.width > 0) fmt::print("  {}x{}", c.width, c.height);
+    fmt::print("\n");
+  }
+  fmt::print("emitters   {} of {} triangles\n", scene.emitters.size(),
+             j["emitter_triangles"].get<size_t>());
+  for (const Json& s : j["sources"])
+    fmt::print("  {:<16} {:<8} {:10.4g} m2  {:10.4g} {}{}\n", s["name"].get<std::string>(),
+               s["shape"].get<std::string>(), s["area"].get<double>(), s["power"].get<double>(),
+               scene.is_photometric ? "lm" : "W",
+               s["is_two_sided"].get<bool>() ? "  two-sided" : "");
+  if (scene.warnings.total() > 0) fmt::print("warnings   {}\n", scene.warnings.total());
+  for (const Warning& w : scene.warnings.entries()) {
+    fmt::print("  {}", w.text);
+    if (w.count > 1) fmt::print(" ({} times)", w.count);
+    fmt::print("\n");
+  }
+}
+
+}  // namespace
+
+int run_info(const InfoCommand& command) {
+  const Scene scene = import_scene(command.scene);
+  const Json j = info_json(scene);
+  if (command.is_json)
+    // A file may hold any bytes in its names; what is not UTF-8 is replaced.
+    fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
+  else
+    print_text(scene, j);
+  return exit_done;
+}
+
+}  // namespace troffer

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "app/commands.h"
+#include "app/points_csv.h"
+#include "app/progress.h"
+#include "app/signals.h"
+#include "image/atomic_file.h"
+
+namespace troffer {
+
+int run_measure(const MeasureCommand& c) {
+  MeasureOptions options;
+  options.method = parse_method(c.method);
+  if (c.spp > 0) options.spp = c.spp;
+  options.depth = c.depth;
+  options.indirect = c.indirect;
+  options.threads = c.threads;
+  options.seed = c.seed;
+  if (!c.output.empty()) check_can_write(c.output);
+  const std::vector<MeasuringPoint> points = read_points(c.points);
+  const PreparedScene scene(load_scene(c.scene, c.lights, c.is_quiet));
+
+  const StopFlag& stop = install_stop_handlers();
+  MeasureResult result;
+  {
+    ProgressBar bar("measure", c.is_quiet);
+    result = measure(
+        scene, points, options, [&](double f) { bar.update(f); }, stop);
+  }
+  const std::string csv = measurements_csv(points, result);
+  if (c.output.empty())
+    std::fputs(csv.c_str(), stdout);
+  else
+    write_file(c.output, csv);
+  if (!result.is_complete) {
+    fmt::print(stderr, "interrupted: wrote the points that were finished\n");
+    return exit_interrupted;
+  }
+  return exit_done;
+}
+
+}  // namespace troffer

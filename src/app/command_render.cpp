@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/progress.h"
+#include "app/signals.h"
+#include "base/error.h"
+#include "image/atomic_file.h"
+#include "image/write_image.h"
+#include "render/camera.h"
+
+namespace troffer {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
+
+double peak_memory_mb() {
+  struct rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+}
+
+Vec3 parse_vector(const std::string& text, const char* option) {
+  Vec3 v;
+  const char* p = text.c_str();
+  for (size_t a = 0; a < 3; ++a) {
+    char* end = nullptr;
+    v[a] = std::strtof(p, &end);
+    const bool is_last = a == 2;
+    if (end == p || *end != (is_last ? '\0' : ',') || !std::isfinite(v[a]))
+      throw UsageError(fmt::format("{}: cannot read '{}' as x,y,z", option, text));
+    p = end + 1;
+  }
+  return v;
+}
+
+// The axis a scene stands on: y for glTF; for formats that do not say, the one of y and z along
+// which it extends less.
+Vec3 guess_up(const Scene& scene) {
+  const Box box = bounds(scene);
+  if (scene.is_photometric || box.is_empty()) return {0, 1, 0};
+  const Vec3 e = box.extent();
+  return e.z < e.y ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+}
+
+Camera choose_camera(const Scene& scene, const RenderCommand& c) {
+  const Vec3 up = c.up.empty() ? guess_up(scene) : parse_vector(c.up, "--up");
+  if (!c.eye.empty() || !c.target.empty()) {
+    if (c.eye.empty() || c.target.empty()) throw UsageError("--eye and --target go together");
+    if (!c.camera.empty()) throw UsageError("--camera and --eye exclude each other");
+    return look_at(parse_vector(c.eye, "--eye"), parse_vector(c.target, "--target"), up, c.fov_deg);
+  }
+  if (!c.camera.empty()) {
+    for (const Camera& camera : scene.cameras)
+      if (camera.name == c.camera) return camera;
+    throw UsageError("no camera is named '" + c.camera + "' (troffer info lists them)");
+  }
+  if (!scene.cameras.empty()) return scene.cameras.front();
+  if (!c.is_quiet)
+    fmt::print(stderr,
+               "warning: the scene has no camera; one is placed inside its bounds "
+               "(--eye, --target and --up choose another)\n");
+  return default_camera(scene, up);
+}
+
+struct Seconds {
+  double import = 0, build = 0, render = 0, write = 0;
+};
+
+std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, const Seconds& t,
+                            double total, bool is_complete) {
+  const Counters& n = s.counters;
+  nlohmann::ordered_json j;
+  j["version"] = TROFFER_VERSION;
+  j["method"] = c.method;
+  j["width"] = s.width;
+  j["height"] = s.height;
+  j["threads"] = thread_count(c.options.threads);
+  j["viewing_rays"] = n.viewing_rays;
+  j["shadow_rays"] = n.shadow_rays;
+  j["shadow_rays_per_viewing_ray"] =
+      n.viewing_rays > 0 ? double(n.shadow_rays) / double(n.viewing_rays) : 0.0;
+  j["lit_certified"] = n.lit_certified;
+  j["dark_certified"] = n.dark_certified;
+  j["masked"] = n.masked;
+  j["mixed"] = n.mixed;
+  j["nan_samples"] = n.nan_samples;
+  j["seconds"] = {{"import", t.import}, {"build", t.build}, {"preprocess", 0.0},
+                  {"render", t.render}, {"write", t.write}, {"total", total}};
+  j["peak_memory_mb"] = peak_memory_mb();
+  j["extension_rays"] = n.extension_rays;
+  j["spp"] = c.options.spp;
+  j["seed"] = c.options.seed;
+  j["is_complete"] = is_complete;
+  return j.dump(2) + "\n";
+}
+
+}  // namespace
+
+int run_render(RenderCommand c) {
+  const Clock::time_point start = Clock::now();
+  c.options.method = parse_method(c.method);
+  for (const std::string& path : c.outputs) {
+    image_format(path);  // a wrong ending is a usage error before any work is done
+    check_can_write(path);
+  }
+  if (!c.stats.empty()) check_can_write(c.stats);
+
+  Seconds seconds;
+  Scene imported = load_scene(c.scene, c.lights, c.is_quiet);
+  const Camera camera = choose_camera(imported, c);
+  seconds.import = seconds_since(start);
+  Clock::time_point mark = Clock::now();
+  const PreparedScene scene(std::move(imported));
+  seconds.build = seconds_since(mark);
+
+  const StopFlag& stop = install_stop_handlers();
+  RenderResult result;
+  {
+    ProgressBar bar("render", c.is_quiet);
+    result = render(
+        scene, camera, c.options, [&](double f) { bar.update(f); }, stop);
+  }
+  seconds.render = result.statistics.render_seconds;
+
+  mark = Clock::now();
+  WriteOptions write;
+  write.display = {double(c.exposure), c.tone_map == "none" ? ToneMap::none : ToneMap::filmic};
+  write.threads = c.options.threads;
+  for (const std::string& path : c.outputs) write_image(path, result.layers, write);
+  seconds.write = seconds_since(mark);
+  if (!c.stats.empty())
+    write_file(c.stats, statistics_json(c, result.statistics, seconds, seconds_since(start),
+                                        result.is_complete));
+  if (!c.is_quiet && result.statistics.counters.nan_samples > 0)
+    fmt::print(stderr, "warning: {} samples were not finite and count as black\n",
+               result.statistics.counters.nan_samples);
+  if (!result.is_complete) {
+    fmt::print(stderr, "interrupted: wrote what was finished\n");
+    return exit_interrupted;
+  }
+  return exit_done;
+}
+
+}  // namespace troffer

@@ -1,0 +1,72 @@
+// The commands of the program, one function each. They return the exit status; failures throw
+// (base/error.h) and are reported by run().
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/render.h"
+
+namespace troffer {
+
+constexpr int exit_done = 0;
+constexpr int exit_bad_input = 1;
+constexpr int exit_usage = 2;
+constexpr int exit_interrupted = 130;
+
+struct RenderCommand {
+  std::string scene;
+  std::vector<std::string> outputs;
+  RenderOptions options;
+  std::string method = "path";
+  std::string camera;
+  std::vector<std::string> lights;
+  std::string stats;
+  float exposure = 0;  // stops
+  std::string tone_map = "filmic";
+  std::string eye, target, up;  // "x,y,z"; override the camera
+  float fov_deg = 60;
+  bool is_quiet = false;
+};
+int run_render(RenderCommand command);
+
+struct CompareCommand {
+  std::string image, reference;
+  std::string map;         // FLIP error map to write, or empty
+  std::string difference;  // absolute difference to write, or empty
+  bool is_json = false;
+};
+int run_compare(const CompareCommand& command);
+
+struct MeasureCommand {
+  std::string scene, points, output;
+  std::string method = "path";
+  std::vector<std::string> lights;
+  int spp = 0;  // 0 = default
+  int depth = -1;
+  Indirect indirect = Indirect::automatic;
+  int threads = 0;
+  uint64_t seed = 0;
+  bool is_quiet = false;
+};
+int run_measure(const MeasureCommand& command);
+
+struct InfoCommand {
+  std::string scene;
+  bool is_json = false;
+};
+int run_info(const InfoCommand& command);
+
+// The scene of a command: imported, only `lights` emitting (all if empty), warnings printed to
+// standard error unless is_quiet.
+Scene load_scene(const std::string& path, const std::vector<std::string>& lights, bool is_quiet);
+
+// "path" and "fixed"; UsageError for methods that do not exist (yet).
+Method parse_method(const std::string& name);
+
+// Parses the command line and runs it: the whole program but main.
+int run(int argc, const char* const* argv);
+
+}  // namespace troffer

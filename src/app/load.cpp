@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "app/commands.h"
+#include "base/error.h"
+#include "import/import.h"
+
+namespace troffer {
+
+Scene load_scene(const std::string& path, const std::vector<std::string>& lights, bool is_quiet) {
+  Scene scene = import_scene(path);
+  if (!lights.empty()) scene = with_only_emitters(std::move(scene), lights);
+  if (is_quiet) return scene;
+  constexpr size_t most_lines = 20;
+  const auto& entries = scene.warnings.entries();
+  for (size_t i = 0; i < entries.size() && i < most_lines; ++i) {
+    fmt::print(stderr, "warning: {}", entries[i].text);
+    if (entries[i].count > 1) fmt::print(stderr, " ({} times)", entries[i].count);
+    fmt::print(stderr, "\n");
+  }
+  if (entries.size() > most_lines)
+    fmt::print(stderr, "warning: {} more kinds (troffer info lists them)\n",
+               entries.size() - most_lines);
+  return scene;
+}
+
+Method parse_method(const std::string& name) {
+  if (name == "path") return Method::path;
+  if (name == "fixed") return Method::fixed;
+  if (name == "certified" || name == "kj92")
+    throw UsageError("--method " + name + " is not available in this version; use path or fixed");
+  throw UsageError("--method: there is no method '" + name + "'");
+}
+
+}  // namespace troffer

@@ -1,0 +1,80 @@
+// The plain arrays that flow through the renderer: viewing rays of a tile in, radiance out.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/vec.h"
+#include "trace/ray.h"
+
+namespace troffer {
+
+// n viewing rays, those of a pixel side by side.
+struct ViewingRays {
+  std::vector<Ray> rays;
+  std::vector<uint64_t> streams;  // names the random numbers of the ray's pixel
+  std::vector<uint32_t> samples;  // which sample of that pixel
+
+  size_t size() const { return rays.size(); }
+  void clear() {
+    rays.clear();
+    streams.clear();
+    samples.clear();
+  }
+};
+
+// Points whose irradiance is asked for, as plain arrays of one length.
+struct SensorBatch {
+  std::vector<Vec3> positions;  // off the surfaces they lie on
+  std::vector<Vec3> normals;    // unit
+  std::vector<uint64_t> streams;
+  std::vector<uint32_t> samples;
+  size_t size() const { return positions.size(); }
+};
+
+// What n viewing rays bring back. direct + indirect is the radiance that arrives along the ray;
+// direct is the part that reaches the first surface, as seen by way of mirrors and clear glass,
+// straight from sources, and the sources themselves.
+struct RadianceBatch {
+  std::vector<Rgb> direct, indirect;
+  std::vector<uint32_t> shadow_rays;
+  // The first surface hit; zero where nothing is.
+  std::vector<Rgb> albedo;
+  std::vector<Vec3> normal, position;
+  std::vector<uint8_t> is_hit;
+
+  void reset(size_t n) {
+    direct.assign(n, Rgb{0});
+    indirect.assign(n, Rgb{0});
+    shadow_rays.assign(n, 0);
+    albedo.assign(n, Rgb{0});
+    normal.assign(n, Vec3{});
+    position.assign(n, Vec3{});
+    is_hit.assign(n, 0);
+  }
+};
+
+// Counts of work done; those of all batches are added up.
+struct Counters {
+  uint64_t viewing_rays = 0;
+  uint64_t extension_rays = 0;  // closest-hit rays after the viewing ray
+  uint64_t shadow_rays = 0;
+  uint64_t nan_samples = 0;
+  // (hit, source) pairs by how they were answered
+  uint64_t lit_certified = 0, dark_certified = 0, masked = 0, mixed = 0;
+
+  Counters& operator+=(const Counters& o) {
+    viewing_rays += o.viewing_rays;
+    extension_rays += o.extension_rays;
+    shadow_rays += o.shadow_rays;
+    nan_samples += o.nan_samples;
+    lit_certified += o.lit_certified;
+    dark_certified += o.dark_certified;
+    masked += o.masked;
+    mixed += o.mixed;
+    return *this;
+  }
+};
+
+}  // namespace troffer

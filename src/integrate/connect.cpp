@@ -1,0 +1,60 @@
+#include "integrate/connect.h"
+
+#include <algorithm>
+
+namespace troffer {
+
+namespace {
+
+Ray shadow_ray_to(const Surface& s, const EmitterSample& light) {
+  Ray ray;
+  ray.origin = offset_origin(s, light.wi);
+  // The target moves off the emitter, towards this side of it, by twice what a ray that starts
+  // there would: the emitter itself must not count.
+  const float magnitude =
+      std::max({std::abs(light.point.x), std::abs(light.point.y), std::abs(light.point.z),
+                std::abs(s.position.x), std::abs(s.position.y), std::abs(s.position.z)});
+  const Vec3 target = light.point + light.normal * (2 * ray_offset(magnitude));
+  ray.direction = target - ray.origin;
+  ray.t_max = 1;
+  return ray;
+}
+
+}  // namespace
+
+bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
+             const LightPrimitive& light, const Vec2& u, LightConnection& out) {
+  EmitterSample s;
+  if (!sample(light, v.surface.position, u, s)) return false;
+  const Vec3 wi = v.frame.to_local(s.wi);
+  if (!v.is_consistent(s.wi, wi)) return false;
+  const BsdfValue value = evaluate_with_pdf(bsdf, v.wo, wi);
+  if (value.f_cos.is_black()) return false;
+  out.value = value.f_cos * emitted_radiance(scene.scene, scene.scene.emitters[light.emitter],
+                                             s.is_front, s.texture_uv);
+  if (out.value.is_black()) return false;
+  out.pdf_light = s.pdf_solid_angle;
+  out.pdf_bsdf = value.pdf;
+  out.shadow_ray = shadow_ray_to(v.surface, s);
+  return true;
+}
+
+float pdf_of_hit(const LightPrimitive& light, const Vec3& from, const Vec3& direction,
+                 const Vertex& v) {
+  return pdf_solid_angle(light, from, direction, length(v.surface.position - from));
+}
+
+int32_t primitive_at(const PreparedScene& scene, const Surface& s) {
+  const size_t meshes = scene.scene.meshes.size();
+  if (s.geometry < meshes) return scene.lights.of_triangle(s.geometry, s.primitive);
+  return s.geometry == meshes ? scene.lights.of_sphere(s.primitive)
+                              : scene.lights.of_disk(s.primitive);
+}
+
+Rgb emission_at(const PreparedScene& scene, const Vertex& v) {
+  const Surface& s = v.surface;
+  if (s.emitter < 0) return Rgb{0};
+  return emitted_radiance(scene.scene, scene.scene.emitters[size_t(s.emitter)], v.is_front, s.uv);
+}
+
+}  // namespace troffer

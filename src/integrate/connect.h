@@ -1,0 +1,41 @@
+// Connecting a vertex with a point on a light: what every method that samples sources shares.
+#pragma once
+
+#include "emitter/emitter_sample.h"
+#include "integrate/prepared_scene.h"
+#include "integrate/vertex.h"
+
+namespace troffer {
+
+// An unoccluded connection and the ray that tells whether it is one.
+struct LightConnection {
+  Ray shadow_ray;       // t_max = 1; ends just before the light
+  Rgb value;            // f |cos| × emitted radiance
+  float pdf_light = 0;  // of the light's point, per solid angle, the light being given
+  float pdf_bsdf = 0;   // with which the BSDF's sampling chooses this direction
+};
+
+// Connects v with the point of `light` that u picks. False where nothing can arrive.
+bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
+             const LightPrimitive& light, const Vec2& u, LightConnection& out);
+
+// The density per solid angle, given that `light` is sampled, with which connect() picks the point
+// that a ray from `from` meets at vertex v.
+float pdf_of_hit(const LightPrimitive& light, const Vec3& from, const Vec3& direction,
+                 const Vertex& v);
+
+// The light primitive at a vertex, or no_primitive.
+int32_t primitive_at(const PreparedScene& scene, const Surface& surface);
+
+// Radiance that the surface at v itself emits towards the viewer.
+Rgb emission_at(const PreparedScene& scene, const Vertex& v);
+
+// The power heuristic with exponent 2 for one sample of each technique; multiply densities by
+// sample counts for more. (Veach 1997, Eq. 9.13)
+inline float power_heuristic(float pdf, float other) {
+  if (pdf == 0) return 0;
+  const float ratio = other / pdf;  // a quotient cannot overflow into inf / inf
+  return 1 / (1 + ratio * ratio);
+}
+
+}  // namespace troffer

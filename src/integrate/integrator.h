@@ -1,0 +1,32 @@
+// What every method of computing light offers to render/.
+#pragma once
+
+#include <memory>
+
+#include "integrate/batch.h"
+#include "integrate/prepared_scene.h"
+
+namespace troffer {
+
+// Memory that one thread reuses from batch to batch.
+struct IntegratorScratch {
+  virtual ~IntegratorScratch() = default;
+};
+
+// One virtual call per batch, never per ray. Immutable: any number of threads may call radiance,
+// each with a scratch of its own. The result depends on the rays, streams and samples alone, not
+// on how they are cut into batches.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  virtual std::unique_ptr<IntegratorScratch> make_scratch() const = 0;
+  // Adds to `out`, which has been reset to rays.size().
+  virtual void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
+                        Counters& counters) const = 0;
+  // Adds one estimate of the irradiance at each point, W/m² per channel, to out.direct and
+  // out.indirect; `out` has been reset to sensors.size().
+  virtual void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
+                          RadianceBatch& out, Counters& counters) const = 0;
+};
+
+}  // namespace troffer

@@ -1,0 +1,45 @@
+// Unidirectional path tracing: the reference for every other method.
+// Next-event estimation with one light chosen by a light tree and sampled by solid angle, combined
+// with BSDF sampling by the power heuristic; Russian roulette. Unbiased but for the depth limit.
+//
+// References: [1] Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, ch. 9.
+#pragma once
+
+#include <memory>
+
+#include "integrate/integrator.h"
+#include "integrate/walk.h"
+
+namespace troffer {
+
+struct PathOptions {
+  int depth = -1;               // most scatterings (0 emission, 1 direct light); -1 = no limit
+  bool is_direct_only = false;  // only light that is scattered once, not counting mirrors and glass
+};
+
+class PathIntegrator final : public Integrator {
+ public:
+  PathIntegrator(const PreparedScene& scene, const PathOptions& options)
+      : scene_(scene), options_(options) {}
+
+  std::unique_ptr<IntegratorScratch> make_scratch() const override;
+  void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
+                Counters& counters) const override;
+  void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch, RadianceBatch& out,
+                  Counters& counters) const override;
+
+ private:
+  struct Scratch;
+
+  void follow(Scratch& scratch, Coherence first, RadianceBatch& out, Counters& counters) const;
+  void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;
+  void sample_light(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf,
+                    Scratch& scratch) const;
+  bool shade(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, Scratch& scratch) const;
+  bool is_last(const Walk& walk) const;
+
+  const PreparedScene& scene_;
+  PathOptions options_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,26 @@
+// A scene with all that is built from it before the first ray.
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "emitter/light_primitive.h"
+#include "scene/scene.h"
+#include "select/light_tree.h"
+#include "trace/tracer.h"
+
+namespace troffer {
+
+// Immutable; members refer to each other, so it stays where it was made.
+struct PreparedScene {
+  explicit PreparedScene(Scene s)
+      : scene(std::move(s)), tracer(scene), bsdf_tables(scene), lights(scene), light_tree(lights) {}
+  PreparedScene(const PreparedScene&) = delete;
+  PreparedScene& operator=(const PreparedScene&) = delete;
+
+  const Scene scene;
+  const Tracer tracer;
+  const BsdfTables bsdf_tables;
+  const LightPrimitives lights;
+  const LightTree light_tree;
+};
+
+}  // namespace troffer

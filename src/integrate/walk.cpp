@@ -1,0 +1,96 @@
+#include "integrate/walk.h"
+
+#include "base/random.h"
+#include "integrate/purposes.h"
+
+namespace troffer {
+
+void start_walks(const ViewingRays& rays, std::vector<Walk>& walks) {
+  walks.assign(rays.size(), Walk{});
+  for (uint32_t i = 0; i < rays.size(); ++i) {
+    Walk& w = walks[i];
+    w.ray = rays.rays[i];
+    w.index = i;
+    w.sample = rays.samples[i];
+    w.stream = rays.streams[i];
+  }
+}
+
+Walk sensor_walk(const SensorBatch& sensors, uint32_t i) {
+  Walk w;
+  w.index = i;
+  w.sample = sensors.samples[i];
+  w.stream = sensors.streams[i];
+  return w;
+}
+
+void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence coherence,
+                 WalkScratch& scratch, Counters& counters) {
+  const size_t n = walks.size();
+  scratch.rays.resize(n);
+  scratch.hits.resize(n);
+  for (size_t i = 0; i < n; ++i) scratch.rays[i] = walks[i].ray;
+  tracer.closest(scratch.rays, scratch.hits, coherence);
+  if (n > 0 && walks[0].vertex > 0) counters.extension_rays += n;
+}
+
+bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
+  const SobolGroup random(walk.stream, purpose_scatter(walk.vertex), walk.sample);
+  BsdfSample sampled;
+  if (!sample(bsdf, v.wo, random.get(2), random.get2(), sampled)) return false;
+  const Vec3 wi = v.frame.to_world(sampled.wi);
+  if (!v.is_consistent(wi, sampled.wi)) return false;
+  walk.throughput *= sampled.weight;
+  if (walk.throughput.is_black()) return false;
+  if (sampled.is_transmission) walk.eta_squared *= sampled.eta * sampled.eta;
+  walk.ray = {};
+  walk.ray.origin = offset_origin(v.surface, wi);
+  walk.ray.direction = wi;
+  walk.pdf = sampled.is_delta ? 0 : sampled.pdf;
+  walk.last_position = v.surface.position;
+  walk.last_normal = v.geometric_normal;
+  walk.last_both_sides = bsdf.has_transmission;
+  ++walk.vertex;
+  if (!sampled.is_delta) ++walk.scatterings;
+  return true;
+}
+
+void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, RadianceBatch& out) {
+  out.albedo[walk.index] = albedo(bsdf, v.wo.z);
+  out.normal[walk.index] = v.frame.normal;
+  out.position[walk.index] = v.surface.position;
+  out.is_hit[walk.index] = 1;
+}
+
+float emission_weight(const PreparedScene& scene, const LightTree& tree, const Walk& walk,
+                      const Vertex& v, uint32_t primitive, float samples) {
+  const float pmf = tree.pmf(walk.last_position, walk.last_normal, walk.last_both_sides, primitive);
+  const float pdf_light =
+      pmf * pdf_of_hit(scene.lights[primitive], walk.last_position, walk.ray.direction, v);
+  return power_heuristic(walk.pdf, samples * pdf_light);
+}
+
+void ShadowBatch::add(const Ray& ray, Rgb contribution, uint32_t index, bool direct) {
+  rays.push_back(ray);
+  contributions.push_back(contribution);
+  indices.push_back(index);
+  is_direct.push_back(direct ? 1 : 0);
+}
+
+void ShadowBatch::resolve(const Tracer& tracer, Coherence coherence, RadianceBatch& out,
+                          Counters& counters) {
+  is_occluded.resize(rays.size());
+  tracer.occluded(rays, is_occluded, coherence);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    ++out.shadow_rays[indices[i]];
+    if (is_occluded[i] != 0) continue;
+    (is_direct[i] != 0 ? out.direct : out.indirect)[indices[i]] += contributions[i];
+  }
+  counters.shadow_rays += rays.size();
+  rays.clear();
+  contributions.clear();
+  indices.clear();
+  is_direct.clear();
+}
+
+}  // namespace troffer

@@ -1,0 +1,69 @@
+// Walks from surface to surface, many at a time: what all methods that follow rays share.
+#pragma once
+
+#include <vector>
+
+#include "integrate/batch.h"
+#include "integrate/connect.h"
+
+namespace troffer {
+
+// A ray under way from one vertex to the next, and what is needed when it arrives.
+struct Walk {
+  Ray ray;
+  Rgb throughput{1};
+  // Density per solid angle with which the ray's direction was chosen; 0: by the camera or by a
+  // delta lobe, in competition with no sampling of lights.
+  float pdf = 0;
+  // Where it comes from, for the density with which a light could have been sampled from there.
+  Vec3 last_position, last_normal;
+  bool last_both_sides = false;
+  uint32_t vertex = 0;       // how many vertices it has left behind
+  uint32_t scatterings = 0;  // … by lobes that are not deltas
+  float eta_squared = 1;     // by which refraction has scaled radiance so far, inverted
+  uint32_t index = 0;        // of the viewing ray in its batch
+  uint32_t sample = 0;       // of the pixel
+  uint64_t stream = 0;
+};
+
+// One walk per viewing ray.
+void start_walks(const ViewingRays& rays, std::vector<Walk>& walks);
+
+// One walk of a sensor, at its vertex 0; its ray is still to be chosen.
+Walk sensor_walk(const SensorBatch& sensors, uint32_t i);
+
+// Memory for trace_walks.
+struct WalkScratch {
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+};
+
+// Finds where each walk arrives: scratch.hits[i] for walks[i].
+void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence coherence,
+                 WalkScratch& scratch, Counters& counters);
+
+// Chooses a direction by the BSDF and sets out in it; false where the walk ends.
+bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf);
+
+// Fills in what AOVs want to know of the first surface.
+void record_first_hit(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, RadianceBatch& out);
+
+// The weight of emission that the walk has run into at v, against `samples` samples of lights drawn
+// at the vertex before by `tree` (the power heuristic).
+float emission_weight(const PreparedScene& scene, const LightTree& tree, const Walk& walk,
+                      const Vertex& v, uint32_t primitive, float samples);
+
+// Shadow rays with what they carry, gathered over many vertices.
+struct ShadowBatch {
+  std::vector<Ray> rays;
+  std::vector<Rgb> contributions;
+  std::vector<uint32_t> indices;
+  std::vector<uint8_t> is_direct;
+  std::vector<uint8_t> is_occluded;
+
+  void add(const Ray& ray, Rgb contribution, uint32_t index, bool direct);
+  // Traces all, adds what arrives to `out`, and empties the batch.
+  void resolve(const Tracer& tracer, Coherence coherence, RadianceBatch& out, Counters& counters);
+};
+
+}  // namespace troffer

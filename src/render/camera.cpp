@@ -1,0 +1,90 @@
+#include "render/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/frame.h"
+#include "base/warp.h"
+
+namespace troffer {
+
+ViewingCamera::ViewingCamera(const Camera& camera, int width, int height) : camera_(camera) {
+  const float aspect = float(width) / float(height);
+  float x0, x1, y0, y1;  // image plane: x to the right, y up
+  if (camera.has_screen_window) {
+    x0 = camera.screen_window[0];
+    x1 = camera.screen_window[1];
+    y0 = camera.screen_window[2];
+    y1 = camera.screen_window[3];
+  } else if (camera.fov_is_vertical || aspect >= 1) {
+    x0 = -aspect;
+    x1 = aspect;
+    y0 = -1;
+    y1 = 1;
+  } else {
+    x0 = -1;
+    x1 = 1;
+    y0 = -1 / aspect;
+    y1 = 1 / aspect;
+  }
+  corner_ = Vec2{x0, y1} * camera.half_extent;
+  step_ = Vec2{(x1 - x0) / float(width), (y0 - y1) / float(height)} * camera.half_extent;
+}
+
+Ray ViewingCamera::ray(const Vec2& raster, const Vec2& lens) const {
+  const float x = corner_.x + raster.x * step_.x, y = corner_.y + raster.y * step_.y;
+  const Vec3 across = camera_.right * x + camera_.up * y;
+  const bool is_perspective = camera_.kind == CameraKind::perspective;
+  Vec3 origin = is_perspective ? camera_.position : camera_.position + across;
+  Vec3 direction = is_perspective ? camera_.forward + across : camera_.forward;
+  if (camera_.lens_radius > 0) {
+    const Vec3 focus = origin + direction * camera_.focal_distance;
+    const Vec2 d = disk_from_square(lens) * camera_.lens_radius;
+    origin = origin + camera_.right * d.x + camera_.up * d.y;
+    direction = focus - origin;
+  }
+  Ray r;
+  r.origin = origin;
+  r.direction = normalize(direction);
+  return r;
+}
+
+ImageSize image_size(const Camera& camera, int asked_width, int asked_height) {
+  if (asked_width > 0 && asked_height > 0) return {asked_width, asked_height};
+  if (camera.width > 0 && camera.height > 0) return {camera.width, camera.height};
+  constexpr int lines = 768;
+  const float aspect = camera.aspect > 0 ? std::clamp(camera.aspect, 0.1f, 10.0f) : 4.0f / 3.0f;
+  return {std::max(1, int(std::lround(float(lines) * aspect))), lines};
+}
+
+Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov_deg) {
+  const Vec3 along = target - eye;
+  if (!(length(along) > 0)) throw UsageError("the camera's eye and target are the same point");
+  Camera c;
+  c.position = eye;
+  c.forward = normalize(along);
+  const Vec3 side = cross(c.forward, up);
+  // Looking along `up`: any side will do.
+  c.right = length(side) > 1e-6f * length(up) ? normalize(side) : Frame(c.forward).tangent;
+  c.up = cross(c.right, c.forward);
+  c.half_extent = float(std::tan(rad_from_deg(double(fov_deg)) / 2));
+  c.fov_is_vertical = false;
+  return c;
+}
+
+Camera default_camera(const Scene& scene, const Vec3& up) {
+  const Box box = bounds(scene);
+  if (box.is_empty()) return look_at({0, 0, 0}, {0, 0, -1}, up, 60);
+  // Rooms are what this program is for: stand near a corner at eye height, look across. The eye is
+  // inside the bounds, which also shows an object from close by.
+  const Vec3 e = box.extent();
+  const Vec3 floor_eye = box.lower + e * 0.04f;
+  const Vec3 flat = Vec3{1} - up;
+  const Vec3 eye = floor_eye * flat + (box.lower + e * 0.55f) * up;
+  const Vec3 target = (box.lower + e * 0.6f) * flat + (box.lower + e * 0.35f) * up;
+  Camera c = look_at(eye, target, up, 70);
+  return c;
+}
+
+}  // namespace troffer

@@ -1,0 +1,42 @@
+// Viewing rays from a camera.
+#pragma once
+
+#include "base/vec.h"
+#include "scene/scene.h"
+#include "trace/ray.h"
+
+namespace troffer {
+
+// A camera fitted to an image size.
+class ViewingCamera {
+ public:
+  // width, height: the whole image in pixels, also where only a crop of it is rendered.
+  ViewingCamera(const Camera& camera, int width, int height);
+
+  // The ray through raster position (x, y), in pixels from the top left corner, whose direction is
+  // unit. lens in [0,1]² picks the point on the lens.
+  Ray ray(const Vec2& raster, const Vec2& lens) const;
+  // Distance of a point along the viewing axis, metres.
+  float depth(const Vec3& p) const { return dot(p - camera_.position, camera_.forward); }
+
+ private:
+  Camera camera_;
+  // Image plane coordinates (at distance 1 for perspective) of raster (0,0), and per pixel.
+  Vec2 corner_, step_;
+};
+
+// Image size for a camera: what was asked for; else what the file says; else 768 lines at the
+// file's aspect ratio (4:3 without one). 0 = not asked for.
+struct ImageSize {
+  int width, height;
+};
+ImageSize image_size(const Camera& camera, int asked_width, int asked_height);
+
+// A camera for a scene whose file has none: inside the bounds near a corner at eye height, looking
+// across, as one would photograph a room. `up` (0 or 1 per axis) is the axis the scene stands on.
+Camera default_camera(const Scene& scene, const Vec3& up);
+
+// Looks from eye to target; fov in degrees over the shorter image axis.
+Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov_deg);
+
+}  // namespace troffer

@@ -1,0 +1,132 @@
+#include "render/film.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace troffer {
+
+namespace {
+
+Vec3d as_vec(Rgb c) {
+  return {double(c.r), double(c.g), double(c.b)};
+}
+Rgb as_rgb(const Vec3d& v) {
+  return {float(v.x), float(v.y), float(v.z)};
+}
+
+bool needs_first_hit(Aov a) {
+  return a == Aov::albedo || a == Aov::normal || a == Aov::depth || a == Aov::position ||
+         a == Aov::shadow_rays;
+}
+
+}  // namespace
+
+Film::Film(const PixelRect& window, const std::vector<Aov>& aovs)
+    : window_(window), aovs_(aovs), pixels_(size_t(window.width()) * size_t(window.height())) {
+  if (std::any_of(aovs.begin(), aovs.end(), needs_first_hit)) first_hits_.resize(pixels_.size());
+}
+
+bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
+  const size_t at = size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
+  Pixel& p = pixels_[at];
+  ++p.samples;
+  if (!first_hits_.empty()) {
+    FirstHit& f = first_hits_[at];
+    f.shadow_rays += batch.shadow_rays[i];
+    if (batch.is_hit[i] != 0) {
+      f.albedo += as_vec(batch.albedo[i]);
+      f.normal += Vec3d(batch.normal[i]);
+      f.position += Vec3d(batch.position[i]);
+      f.depth += double(depth);
+      ++f.hits;
+    }
+  }
+  const Rgb direct = batch.direct[i], indirect = batch.indirect[i];
+  if (!is_finite(direct) || !is_finite(indirect)) return false;
+  p.direct += as_vec(direct);
+  p.indirect += as_vec(indirect);
+  const double y_sample = double(luminance(direct + indirect));
+  p.sum_luminance_squared += y_sample * y_sample;
+  return true;
+}
+
+Layer Film::make_layer(Aov aov) const {
+  Layer layer;
+  layer.image = Image(window_.width(), window_.height());
+  const std::vector<std::string> xyz{"X", "Y", "Z"}, value{"V"};
+  const auto per_sample = [&](auto&& sum) {
+    for (size_t i = 0; i < pixels_.size(); ++i)
+      if (pixels_[i].samples > 0)
+        layer.image.pixels[i] = as_rgb(sum(pixels_[i]) * (1.0 / pixels_[i].samples));
+  };
+  const auto per_hit = [&](auto&& sum) {
+    for (size_t i = 0; i < pixels_.size(); ++i)
+      if (first_hits_[i].hits > 0)
+        layer.image.pixels[i] = as_rgb(sum(first_hits_[i]) * (1.0 / first_hits_[i].hits));
+  };
+  switch (aov) {
+    case Aov::direct:
+      layer.name = "direct";
+      per_sample([](const Pixel& p) { return p.direct; });
+      break;
+    case Aov::indirect:
+      layer.name = "indirect";
+      per_sample([](const Pixel& p) { return p.indirect; });
+      break;
+    case Aov::albedo:
+      layer.name = "albedo";
+      per_hit([](const FirstHit& f) { return f.albedo; });
+      break;
+    case Aov::normal:
+      layer.name = "normal";
+      layer.channels = xyz;
+      per_hit([](const FirstHit& f) {
+        const double l = length(f.normal);
+        return l > 0 ? f.normal * (f.hits / l) : f.normal;
+      });
+      break;
+    case Aov::position:
+      layer.name = "position";
+      layer.channels = xyz;
+      per_hit([](const FirstHit& f) { return f.position; });
+      break;
+    case Aov::depth:
+      layer.name = "depth";
+      layer.channels = {"Z"};
+      per_hit([](const FirstHit& f) { return Vec3d{f.depth}; });
+      break;
+    case Aov::shadow_rays:
+      layer.name = "shadow_rays";
+      layer.channels = value;
+      for (size_t i = 0; i < pixels_.size(); ++i)
+        if (pixels_[i].samples > 0)
+          layer.image.pixels[i] = Rgb{float(first_hits_[i].shadow_rays / pixels_[i].samples)};
+      break;
+    case Aov::error:
+      layer.name = "error";
+      layer.channels = value;
+      for (size_t i = 0; i < pixels_.size(); ++i) {
+        const Pixel& p = pixels_[i];
+        if (p.samples < 2) continue;
+        const double n = p.samples, mean = double(luminance(as_rgb(p.direct + p.indirect))) / n;
+        const double variance = std::max(0.0, p.sum_luminance_squared / n - mean * mean) / (n - 1);
+        layer.image.pixels[i] = Rgb{float(std::sqrt(variance))};
+      }
+      break;
+  }
+  return layer;
+}
+
+std::vector<Layer> Film::layers() const {
+  std::vector<Layer> layers(1);
+  layers[0].image = Image(window_.width(), window_.height());
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& p = pixels_[i];
+    if (p.samples > 0)
+      layers[0].image.pixels[i] = as_rgb((p.direct + p.indirect) * (1.0 / p.samples));
+  }
+  for (const Aov a : aovs_) layers.push_back(make_layer(a));
+  return layers;
+}
+
+}  // namespace troffer

@@ -1,0 +1,52 @@
+// Sums of samples per pixel, from which every layer is made.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+#include "image/image.h"
+#include "render/render.h"
+
+namespace troffer {
+
+// A rectangle of pixels, x1 and y1 exclusive.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+};
+
+class Film {
+ public:
+  // `window`: the pixels kept, in coordinates of the whole image.
+  Film(const PixelRect& window, const std::vector<Aov>& aovs);
+
+  // Adds sample i of a batch to pixel (x, y). Different pixels may be added to concurrently; one
+  // pixel's samples must come in a fixed order for the sums to be reproducible. Samples that are
+  // not finite count as black; returns whether it was finite.
+  bool add(int x, int y, const RadianceBatch& batch, size_t i, float depth);
+
+  // The picture, then the AOVs in the order given.
+  std::vector<Layer> layers() const;
+
+ private:
+  struct Pixel {
+    Vec3d direct, indirect;
+    double sum_luminance_squared = 0;
+    uint32_t samples = 0;
+  };
+  struct FirstHit {  // sums over samples that hit something
+    Vec3d albedo, normal, position;
+    double depth = 0, shadow_rays = 0;
+    uint32_t hits = 0;
+  };
+  Layer make_layer(Aov aov) const;
+
+  PixelRect window_;
+  std::vector<Aov> aovs_;
+  std::vector<Pixel> pixels_;
+  std::vector<FirstHit> first_hits_;  // empty if no AOV needs it
+};
+
+}  // namespace troffer

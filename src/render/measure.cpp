@@ -1,0 +1,145 @@
+#include "render/measure.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/units.h"
+#include "integrate/fixed.h"
+#include "integrate/path.h"
+
+namespace troffer {
+
+namespace {
+
+// The samples of a point are dealt to so many independently scrambled sets; the spread of their
+// means tells the error truly, which the spread of stratified samples would not.
+constexpr int most_replicates = 32;
+constexpr int samples_per_batch = 4096;
+
+// Two-sided 95 % quantile of Student's t with n degrees of freedom, within 0.3 % for n >= 1
+// (Cornish-Fisher expansion about the normal quantile; exact values for the first few).
+double t_quantile_95(int n) {
+  constexpr std::array<double, 5> exact{12.7062, 4.3027, 3.1824, 2.7764, 2.5706};
+  if (n <= 5) return exact[size_t(n - 1)];
+  const double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  const double v = n;
+  return z + (z3 + z) / (4 * v) + (5 * z5 + 16 * z3 + 3 * z) / (96 * v * v) +
+         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * v * v * v);
+}
+
+struct Sums {
+  Vec3d irradiance;
+  double luminance = 0;
+};
+
+struct Worker {
+  SensorBatch sensors;
+  RadianceBatch out;
+  std::unique_ptr<IntegratorScratch> scratch;
+};
+
+// Sum of `samples` estimates of one replicate at one point.
+Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point, uint64_t stream,
+                      int samples, Worker& w, Counters& counters) {
+  const float magnitude = std::max(
+      {std::abs(point.position.x), std::abs(point.position.y), std::abs(point.position.z)});
+  const Vec3 n = normalize(point.normal);
+  // Points are often given on the very surface they measure, rounded to a few digits.
+  const Vec3 x = point.position + n * (2e-5f * magnitude);
+  Sums sums;
+  for (int first = 0; first < samples; first += samples_per_batch) {
+    const auto count = size_t(std::min(samples_per_batch, samples - first));
+    w.sensors.positions.assign(count, x);
+    w.sensors.normals.assign(count, n);
+    w.sensors.streams.assign(count, stream);
+    w.sensors.samples.resize(count);
+    for (size_t i = 0; i < count; ++i) w.sensors.samples[i] = uint32_t(first) + uint32_t(i);
+    w.out.reset(count);
+    integrator.irradiance(w.sensors, *w.scratch, w.out, counters);
+    for (size_t i = 0; i < count; ++i) {
+      const Rgb e = w.out.direct[i] + w.out.indirect[i];
+      if (!is_finite(e)) {
+        ++counters.nan_samples;
+        continue;
+      }
+      sums.irradiance += Vec3d{double(e.r), double(e.g), double(e.b)};
+      sums.luminance += double(luminance(e));
+    }
+  }
+  return sums;
+}
+
+Measurement measure_point(const Integrator& integrator, const MeasuringPoint& point,
+                          uint64_t stream, int spp, int samples_per_estimate, bool is_photometric,
+                          Worker& w, Counters& counters) {
+  const int replicates = std::min(most_replicates, spp);
+  const int samples = (spp + replicates - 1) / replicates;
+  Vec3d irradiance;
+  double mean = 0, sum_squares = 0;
+  for (int r = 0; r < replicates; ++r) {
+    const Sums s = sum_of_replicate(integrator, point, hash_combine(stream, uint64_t(r)),
+                                    std::max(1, samples / samples_per_estimate), w, counters);
+    const double weight = 1.0 / std::max(1, samples / samples_per_estimate);
+    irradiance += s.irradiance * (weight / replicates);
+    const double value = s.luminance * weight, before = value - mean;
+    mean += before / (r + 1);
+    sum_squares += before * (value - mean);
+  }
+  const double lx_per_unit = is_photometric ? 1.0 : luminous_efficacy;
+  Measurement m;
+  m.irradiance = {float(irradiance.x), float(irradiance.y), float(irradiance.z)};
+  m.illuminance_lx = mean * lx_per_unit;
+  if (replicates > 1) {
+    const double variance_of_mean = sum_squares / (replicates - 1) / replicates;
+    m.standard_error =
+        std::sqrt(variance_of_mean) * lx_per_unit * (t_quantile_95(replicates - 1) / 1.959964);
+  }
+  return m;
+}
+
+}  // namespace
+
+MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
+                      const MeasureOptions& options, const ProgressCallback& progress,
+                      const StopFlag& stop) {
+  std::unique_ptr<Integrator> integrator;
+  // fixed: an estimate is a set of shadow rays to every source.
+  constexpr int fixed_set = 16;
+  const bool is_fixed = options.method == Method::fixed;
+  if (is_fixed)
+    integrator = std::make_unique<FixedIntegrator>(scene, FixedOptions{fixed_set});
+  else
+    integrator = std::make_unique<PathIntegrator>(
+        scene, PathOptions{options.depth, options.indirect == Indirect::none});
+
+  MeasureResult result;
+  result.values.resize(points.size());
+  std::vector<uint8_t> is_measured(points.size(), 0);
+  std::vector<Counters> counters(points.size());
+  std::vector<Worker> workers(size_t(thread_count(options.threads)));
+  std::mutex progress_mutex;
+  size_t done = 0;
+  parallel_for_slots(points.size(), options.threads, [&](size_t i, size_t slot) {
+    if (stop.load(std::memory_order_relaxed)) return;
+    Worker& w = workers[slot];
+    if (!w.scratch) w.scratch = integrator->make_scratch();
+    result.values[i] =
+        measure_point(*integrator, points[i], hash_of(options.seed, i), options.spp,
+                      is_fixed ? fixed_set : 1, scene.scene.is_photometric, w, counters[i]);
+    is_measured[i] = 1;
+    const std::lock_guard lock(progress_mutex);
+    ++done;
+    if (progress) progress(double(done) / double(points.size()));
+  });
+  for (const Counters& c : counters) result.counters += c;
+  result.is_measured.assign(is_measured.begin(), is_measured.end());
+  result.is_complete = done == points.size();
+  return result;
+}
+
+}  // namespace troffer

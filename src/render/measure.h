@@ -1,0 +1,46 @@
+// Irradiance and illuminance at points.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/rgb.h"
+#include "base/vec.h"
+#include "render/render.h"
+
+namespace troffer {
+
+struct MeasuringPoint {
+  Vec3 position;  // scene units, world space
+  Vec3 normal;    // the side that is lit; any length but zero
+};
+
+struct Measurement {
+  Rgb irradiance;  // W/m², or lx per channel where the scene is photometric
+  double illuminance_lx = 0;
+  double standard_error = 0;  // of illuminance_lx, such that 95 % of the intervals
+                              // illuminance ± 1.96 standard errors hold the true value
+};
+
+struct MeasureOptions {
+  Method method = Method::path;
+  int spp = 4096;  // samples per point: paths, or (fixed) shadow rays per source
+  int depth = -1;
+  Indirect indirect = Indirect::automatic;
+  int threads = 0;
+  uint64_t seed = 0;
+};
+
+struct MeasureResult {
+  std::vector<Measurement> values;  // one per point
+  std::vector<bool> is_measured;    // false where a stop was requested before
+  Counters counters;
+  bool is_complete = true;
+};
+
+MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
+                      const MeasureOptions& options, const ProgressCallback& progress,
+                      const StopFlag& stop);
+
+}  // namespace troffer

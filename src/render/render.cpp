@@ -1,0 +1,134 @@
+#include "render/render.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "integrate/fixed.h"
+#include "integrate/integrator.h"
+#include "integrate/path.h"
+#include "integrate/purposes.h"
+#include "render/camera.h"
+#include "render/film.h"
+
+namespace troffer {
+
+namespace {
+
+// Pixels of a tile's side and samples of a pixel per batch: a batch of a few thousand paths is
+// long enough for packets and short enough for the second-level cache.
+constexpr int tile_side = 16;
+constexpr int samples_per_batch = 16;
+
+struct TileWork {
+  ViewingRays rays;
+  RadianceBatch radiance;
+  std::vector<std::pair<int, int>> pixels;  // of each ray
+  std::unique_ptr<IntegratorScratch> scratch;
+};
+
+std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const RenderOptions& o) {
+  if (o.method == Method::fixed)
+    return std::make_unique<FixedIntegrator>(scene, FixedOptions{o.shadow_rays});
+  PathOptions path;
+  path.depth = o.depth;
+  path.is_direct_only = o.indirect == Indirect::none;
+  return std::make_unique<PathIntegrator>(scene, path);
+}
+
+std::vector<PixelRect> tiles_of(const PixelRect& window) {
+  std::vector<PixelRect> tiles;
+  for (int y = window.y0; y < window.y1; y += tile_side)
+    for (int x = window.x0; x < window.x1; x += tile_side)
+      tiles.push_back(
+          {x, y, std::min(x + tile_side, window.x1), std::min(y + tile_side, window.y1)});
+  return tiles;
+}
+
+void viewing_rays(const ViewingCamera& camera, const PixelRect& tile, int first_sample, int samples,
+                  uint64_t seed, TileWork& work) {
+  work.rays.clear();
+  work.pixels.clear();
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const uint64_t stream = hash_of(seed, uint64_t(x), uint64_t(y));
+      for (int s = first_sample; s < first_sample + samples; ++s) {
+        const SobolGroup random(stream, purpose_camera, uint32_t(s));
+        const Vec2 raster = Vec2{float(x), float(y)} + random.get2(0);  // box filter
+        work.rays.rays.push_back(camera.ray(raster, random.get2(2)));
+        work.rays.streams.push_back(stream);
+        work.rays.samples.push_back(uint32_t(s));
+        work.pixels.emplace_back(x, y);
+      }
+    }
+}
+
+PixelRect window_of(const RenderOptions& o, int width, int height) {
+  if (!o.has_crop) return {0, 0, width, height};
+  const PixelRect w{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
+  if (w.x0 < 0 || w.y0 < 0 || w.x1 > width || w.y1 > height || w.x0 >= w.x1 || w.y0 >= w.y1)
+    throw UsageError("--crop is empty or reaches outside the image of " + std::to_string(width) +
+                     "x" + std::to_string(height) + " pixels");
+  return w;
+}
+
+}  // namespace
+
+RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
+                    const ProgressCallback& progress, const StopFlag& stop) {
+  const auto start = std::chrono::steady_clock::now();
+  const ImageSize size = image_size(camera, options.width, options.height);
+  const PixelRect window = window_of(options, size.width, size.height);
+  const ViewingCamera viewing_camera(camera, size.width, size.height);
+  const std::unique_ptr<Integrator> integrator = make_integrator(scene, options);
+  const std::vector<PixelRect> tiles = tiles_of(window);
+  Film film(window, options.aovs);
+
+  const int passes = (options.spp + samples_per_batch - 1) / samples_per_batch;
+  std::vector<TileWork> work(size_t(thread_count(options.threads)));
+  std::vector<Counters> counters(tiles.size());
+  std::mutex progress_mutex;
+  size_t tiles_done = 0;
+  std::atomic<bool> was_stopped = false;
+
+  for (int pass = 0; pass < passes && !was_stopped; ++pass) {
+    const int first = pass * samples_per_batch;
+    const int samples = std::min(samples_per_batch, options.spp - first);
+    parallel_for_slots(tiles.size(), options.threads, [&](size_t t, size_t slot) {
+      if (stop.load(std::memory_order_relaxed)) {
+        was_stopped = true;
+        return;
+      }
+      TileWork& w = work[slot];
+      if (!w.scratch) w.scratch = integrator->make_scratch();
+      const CheckContext context(tiles[t].x0, tiles[t].y0, first);
+      viewing_rays(viewing_camera, tiles[t], first, samples, options.seed, w);
+      w.radiance.reset(w.rays.size());
+      integrator->radiance(w.rays, *w.scratch, w.radiance, counters[t]);
+      for (size_t i = 0; i < w.rays.size(); ++i) {
+        const auto [x, y] = w.pixels[i];
+        const float depth = viewing_camera.depth(w.radiance.position[i]);
+        if (!film.add(x, y, w.radiance, i, depth)) ++counters[t].nan_samples;
+      }
+      const std::lock_guard lock(progress_mutex);
+      ++tiles_done;
+      if (progress) progress(double(tiles_done) / (double(tiles.size()) * passes));
+    });
+  }
+
+  RenderResult result;
+  result.is_complete = !was_stopped;
+  result.layers = film.layers();
+  result.statistics.width = window.width();
+  result.statistics.height = window.height();
+  for (const Counters& c : counters) result.statistics.counters += c;
+  result.statistics.render_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace troffer

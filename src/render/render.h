@@ -1,0 +1,59 @@
+// The whole image: tiles, passes, statistics, progress. The façade of the library.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "image/image.h"
+#include "integrate/batch.h"
+#include "integrate/prepared_scene.h"
+
+namespace troffer {
+
+enum class Method { fixed, path };
+enum class Indirect { automatic, none };
+
+// AOVs that an image can carry besides the picture.
+enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays, error };
+
+struct RenderOptions {
+  Method method = Method::path;
+  int spp = 4;           // viewing rays per pixel
+  int shadow_rays = 64;  // fixed: rays per source per viewing ray
+  Indirect indirect = Indirect::automatic;
+  int depth = -1;             // path: most bounces; -1 = unlimited
+  int width = 0, height = 0;  // 0 = by the camera
+  bool has_crop = false;
+  std::array<int, 4> crop{};  // x0, y0, x1, y1 in pixels of the whole image; x1, y1 exclusive
+  int threads = 0;            // 0 = all cores
+  uint64_t seed = 0;
+  std::vector<Aov> aovs;
+};
+
+struct RenderStatistics {
+  int width = 0, height = 0;
+  Counters counters;
+  double render_seconds = 0;
+};
+
+// layers[0] is the picture; then the AOVs in the order asked for. Where a stop was requested,
+// is_complete is false and every pixel is the mean of the samples it has (black without any).
+struct RenderResult {
+  std::vector<Layer> layers;
+  RenderStatistics statistics;
+  bool is_complete = true;
+};
+
+// Called from one thread at a time, with the fraction done in [0,1].
+using ProgressCallback = std::function<void(double fraction)>;
+
+// Renders what `camera` sees. The result is the same, bit for bit, for any number of threads.
+// Throws UsageError for options that contradict each other or the scene.
+RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
+                    const ProgressCallback& progress, const StopFlag& stop);
+
+}  // namespace troffer
