@@ -12,6 +12,7 @@ namespace {
 // Deflate cannot shrink data by more than this factor (1032 and some slack), so that a short file
 // cannot claim a large picture.
 constexpr uint64_t max_deflate_ratio = 1100;
+constexpr png_alloc_size_t max_chunk_bytes = 1 << 20;  // does not concern pixel data
 
 // State shared with libpng's callbacks; it outlives the frames that an error jumps over.
 struct PngReader {
@@ -91,9 +92,10 @@ bool read(PngHandles& handles, PngReader& reader) {
   png_infop info = handles.info;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader, on_read);
-  // Colour profiles and texts mean nothing here and are a way to hide inflation bombs.
-  static const png_byte skipped[] = "iCCP\0tEXt\0zTXt\0iTXt\0eXIf";
-  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, skipped, 5);
+  // Everything but pixels and transparency (-1: profiles, texts, calibrations) means nothing here
+  // and is a way to hide inflation bombs.
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+  png_set_chunk_malloc_max(png, max_chunk_bytes);
   png_read_info(png, info);
 
   const uint64_t width = png_get_image_width(png, info);

@@ -19,10 +19,11 @@ std::vector<uint8_t> read_file_bytes(const std::string& path, size_t max_bytes) 
   constexpr size_t block = size_t(1) << 18;
   for (;;) {
     const size_t at = bytes.size();
-    if (at > max_bytes) fail("longer than the limit of " + std::to_string(max_bytes) + " bytes");
     bytes.resize(at + block);
     const size_t n = std::fread(bytes.data() + at, 1, block, file.get());
     bytes.resize(at + n);
+    if (bytes.size() > max_bytes)
+      fail("longer than the limit of " + std::to_string(max_bytes) + " bytes");
     if (n == block) continue;
     if (std::ferror(file.get()) != 0)
       fail("cannot read: " + std::generic_category().message(errno));
