@@ -8,55 +8,82 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t azimuths = 12, heights = 20;
+constexpr size_t azimuths = 24, heights = 32, facet_count = azimuths * heights;
 
-// A microfacet seen from wo. Nodes carry equal shares of the visible normals.
-struct Facet {
-  float cos_o;     // wo·m
-  float normal_z;  // m.z
-  float reflect;   // G2 / G1 of the mirror direction, 0 where it runs below the horizon
+// Microfacets seen from a direction in the plane y = 0, for integrals over visible normals: one
+// array per field, as these loops are what building the tables costs.
+struct Facets {
+  float alpha = 0, view_z = 0, lambda = 0;         // of the viewing direction
+  std::array<float, facet_count> cos_o, normal_z;  // wo·m, m.z
+  std::array<float, facet_count> weight;           // share of the visible area; sum 1
+  std::array<float, facet_count> reflect;          // weight G2 / G1 of the mirror direction
+
+  // G2 / G1(o) = (1 + Lambda(o)) / (1 + Lambda(o) + Lambda(i)), multiplied through with the cosine
+  // of i so that it is 0 from the horizon downwards.
+  float masking(float cos_i) const {
+    const float z = std::max(cos_i, 0.0f), a2 = alpha * alpha;
+    return (1 + lambda) * z / ((0.5f + lambda) * z + 0.5f * std::sqrt(a2 + (1 - a2) * z * z));
+  }
+  // Σ f(i); in lanes, which a compiler may run side by side.
+  template <class F>
+  float sum(const F& f) const {
+    std::array<float, 8> lanes{};
+    for (size_t i = 0; i < facet_count; i += 8)
+      for (size_t l = 0; l < 8; ++l) lanes[l] += f(i + l);
+    float total = 0;
+    for (const float x : lanes) total += x;
+    return total;
+  }
 };
-using Facets = std::array<Facet, azimuths * heights>;
 
-// G2 / G1(o) = (1 + Lambda(o)) / (1 + Lambda(o) + Lambda(i)).
-float masking(float lambda_o, float cos_i, float alpha) {
-  return (1 + lambda_o) / (1 + lambda_o + ggx_lambda(cos_i, alpha));
-}
-
-// Midpoint rule over the unit square of ggx_sample_visible_normal; by symmetry half the azimuths
-// suffice, and their periodicity makes few of them exact enough.
-Facets visible_facets(const Vec3& wo, float lambda_o, float alpha) {
-  Facets facets;
-  for (size_t j = 0; j < heights; ++j)
+// Midpoint rule over the square of ggx_sample_visible_normal with bound 1, whose steps this
+// repeats. By symmetry half the azimuths suffice; u.y = 1 - (1 - v)² crowds nodes at the tail of
+// the distribution, where reflections run into the horizon.
+void set_visible_facets(Facets& f, float cosine, float alpha) {
+  f.alpha = alpha;
+  f.view_z = cosine;
+  f.lambda = ggx_lambda(cosine, alpha);
+  const float view_x = std::sqrt(1 - cosine * cosine);
+  const Vec3 w = normalize(Vec3{alpha * view_x, 0, cosine});
+  std::array<float, azimuths> cos_phi, sin_phi;
+  for (size_t i = 0; i < azimuths; ++i) {
+    const float phi = pi_f * (float(i) + 0.5f) / float(azimuths);
+    cos_phi[i] = std::cos(phi);
+    sin_phi[i] = std::sin(phi);
+  }
+  for (size_t j = 0; j < heights; ++j) {
+    const float rest = 1 - (float(j) + 0.5f) / float(heights);
+    const float weight = 2 * rest / float(facet_count);
+    const float z = rest * rest * (1 + w.z) - w.z, r = std::sqrt(std::max(0.0f, 1 - z * z));
     for (size_t i = 0; i < azimuths; ++i) {
-      const Vec2 u{(float(i) + 0.5f) / (2 * float(azimuths)), (float(j) + 0.5f) / float(heights)};
-      const Vec3 m = ggx_sample_visible_normal(wo, u, alpha, 1);
-      const float c = std::min(std::max(dot(wo, m), 0.0f), 1.0f);
-      const float z = 2 * c * m.z - wo.z;
-      facets[j * azimuths + i] = {c, m.z, z > 0 ? masking(lambda_o, z, alpha) : 0.0f};
+      const size_t at = j * azimuths + i;
+      const float x = alpha * (r * cos_phi[i] + w.x), y = alpha * r * sin_phi[i], n = z + w.z;
+      const float scale = 1 / std::sqrt(x * x + y * y + n * n);
+      const float c = (view_x * x + cosine * n) * scale;
+      f.normal_z[at] = n * scale;
+      f.cos_o[at] = std::min(std::max(c, 0.0f), 1.0f);
+      f.weight[at] = weight;
+      f.reflect[at] = weight * f.masking(2 * c * n * scale - cosine);
     }
-  return facets;
+  }
 }
 
 // Reflection and refraction of glass with relative index eta.
-float glass_albedo(const Facets& facets, const Vec3& wo, float lambda_o, float alpha, float eta) {
-  float sum = 0;
-  for (const Facet& f : facets) {
-    const float r = fresnel_dielectric(f.cos_o, eta);
-    sum += r * f.reflect;
-    if (r >= 1) continue;
-    const float z = (f.cos_o / eta - refracted_cosine(f.cos_o, eta)) * f.normal_z - wo.z / eta;
-    if (z < 0) sum += (1 - r) * masking(lambda_o, -z, alpha);
-  }
-  return sum / float(facets.size());
+float glass_albedo(const Facets& f, float eta) {
+  return f.sum([&f, eta](size_t i) {
+    const float c = f.cos_o[i], r = fresnel_dielectric(c, eta);
+    const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (eta * eta)));
+    const float z = (cos_t - c / eta) * f.normal_z[i] + f.view_z / eta;  // below the surface
+    return r * f.reflect[i] + (1 - r) * f.weight[i] * f.masking(z);
+  });
 }
 
 float schlick_weight(float c) {
   return pow5(1 - c);
 }
 
-// Averages of the piecewise linear interpolant in t = sqrt(c): 2 ∫ E c dc = 4 ∫ E t³ dt.
-// Three-point Gauss quadrature is exact on each interval (degree 4).
+// Averages of the piecewise linear interpolant in the fourth root t of c: 2 ∫ E c dc = 8 ∫ E t⁷ dt.
+// Three-point Gauss quadrature errs by less than rounding on such short intervals.
 void finish(AlbedoTable& table) {
   constexpr std::array<double, 3> node{0.11270166537925831, 0.5, 0.88729833462074169};
   constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -67,7 +94,8 @@ void finish(AlbedoTable& table) {
     for (size_t k = 0; k + 1 < table_cosines; ++k)
       for (size_t q = 0; q < 3; ++q) {
         const double t = (double(k) + node[q]) * h;
-        sum += 4 * h * weight[q] * t * t * t * lerp(double(row[k]), double(row[k + 1]), node[q]);
+        sum +=
+            8 * h * weight[q] * std::pow(t, 7) * lerp(double(row[k]), double(row[k + 1]), node[q]);
       }
     table.averages[a] = float(std::min(sum, 1.0));
   }
@@ -89,36 +117,23 @@ float hemisphere_average(const F& f) {
 
 void build_albedo_tables(GgxTables& ggx, std::vector<CoatTable>& coats,
                          std::vector<GlassTables>& glasses) {
+  const auto fourth_power = [](float x) { return sqr(sqr(x)); };
+  Facets f;
   for (size_t at = 0; at < table_cosines * table_alphas; ++at) {
     const float s = float(at / table_cosines) / float(table_alphas - 1);
     const float t = float(at % table_cosines) / float(table_cosines - 1);
-    const float alpha = s * s, c = std::max(t * t, 1e-5f);
-    if (at < table_cosines) {  // alpha = 0: a mirror
-      ggx.one.values[at] = 1;
-      ggx.grazing.values[at] = schlick_weight(t * t);
-      for (CoatTable& x : coats) x.reflected.values[at] = fresnel_dielectric(t * t, x.ior);
-      for (GlassTables& x : glasses) x.outside.values[at] = x.inside.values[at] = 1;
-      continue;
-    }
-    const Vec3 wo{std::sqrt(1 - c * c), 0, c};
-    const float lambda_o = ggx_lambda(c, alpha);
-    const Facets facets = visible_facets(wo, lambda_o, alpha);
-    const float share = 1.0f / float(facets.size());
-    float one = 0, grazing = 0;
-    for (const Facet& f : facets) {
-      one += f.reflect;
-      grazing += f.reflect * schlick_weight(f.cos_o);
-    }
-    ggx.one.values[at] = one * share;
-    ggx.grazing.values[at] = grazing * share;
-    for (CoatTable& x : coats) {
-      float sum = 0;
-      for (const Facet& f : facets) sum += f.reflect * fresnel_dielectric(f.cos_o, x.ior);
-      x.reflected.values[at] = sum * share;
-    }
+    const float alpha = fourth_power(lerp(AlphaCoordinate::first, 1.0f, s));
+    set_visible_facets(f, std::max(fourth_power(t), 1e-6f), alpha);
+    ggx.one.values[at] = f.sum([&f](size_t i) { return f.reflect[i]; });
+    ggx.grazing.values[at] =
+        f.sum([&f](size_t i) { return f.reflect[i] * schlick_weight(f.cos_o[i]); });
+    for (CoatTable& x : coats)
+      x.reflected.values[at] = f.sum([&f, ior = x.ior](size_t i) {
+        return f.reflect[i] * fresnel_dielectric(f.cos_o[i], ior);
+      });
     for (GlassTables& x : glasses) {
-      x.outside.values[at] = glass_albedo(facets, wo, lambda_o, alpha, x.ior);
-      x.inside.values[at] = glass_albedo(facets, wo, lambda_o, alpha, 1 / x.ior);
+      x.outside.values[at] = glass_albedo(f, x.ior);
+      x.inside.values[at] = glass_albedo(f, 1 / x.ior);
     }
   }
   finish(ggx.one);

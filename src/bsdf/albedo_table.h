@@ -1,7 +1,7 @@
 // Directional albedos of rough surfaces, tabulated over the cosine and the GGX width alpha.
-// Grids are uniform in sqrt(cosine) and sqrt(alpha), which resolves the corner where both are
-// small. The stored averages are those of the interpolant itself, so that energy identities
-// built from a table hold exactly for the table.
+// Grids are uniform in the fourth roots of cosine and alpha, which resolves the corner where both
+// are small, and begin at cosine 0 and alpha = smooth_alpha. The stored averages are those of the
+// interpolant itself, so that energy identities built from a table hold exactly for the table.
 // References: [1] Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH
 //   2017 course. [2] Karis, "Real Shading in Unreal Engine 4", SIGGRAPH 2013 course (the split of
 //   Schlick's term).
@@ -16,26 +16,30 @@
 
 namespace troffer {
 
-constexpr size_t table_cosines = 48, table_alphas = 32;
+// GGX widths below this are mirrors: delta lobes (pbrt-v4's threshold).
+constexpr float smooth_alpha = 1e-3f;
 
-// Where a cosine falls in a row of a table.
-struct CosineCoordinate {
+constexpr size_t table_cosines = 80, table_alphas = 56;
+
+// Where a value falls on an axis of a table: between `index` and index + 1.
+struct TableCoordinate {
   size_t index = 0;
   float fraction = 0;
-  explicit CosineCoordinate(float cosine) {
-    const float x = std::sqrt(std::min(std::max(cosine, 0.0f), 1.0f)) * float(table_cosines - 1);
-    index = std::min(size_t(x), table_cosines - 2);
-    fraction = x - float(index);
+  TableCoordinate(float x, size_t count) {
+    const float at = std::min(std::max(x, 0.0f), 1.0f) * float(count - 1);
+    index = std::min(size_t(at), count - 2);
+    fraction = at - float(index);
   }
 };
-struct AlphaCoordinate {
-  size_t index = 0;
-  float fraction = 0;
-  explicit AlphaCoordinate(float alpha) {
-    const float x = std::sqrt(std::min(std::max(alpha, 0.0f), 1.0f)) * float(table_alphas - 1);
-    index = std::min(size_t(x), table_alphas - 2);
-    fraction = x - float(index);
-  }
+struct CosineCoordinate : TableCoordinate {
+  explicit CosineCoordinate(float cosine)
+      : TableCoordinate(std::sqrt(std::sqrt(std::max(cosine, 0.0f))), table_cosines) {}
+};
+struct AlphaCoordinate : TableCoordinate {
+  static constexpr float first = 0.177827941f;  // fourth root of smooth_alpha
+  explicit AlphaCoordinate(float alpha)
+      : TableCoordinate((std::sqrt(std::sqrt(std::max(alpha, 0.0f))) - first) / (1 - first),
+                        table_alphas) {}
 };
 
 // A table at one alpha: what a Bsdf keeps. Points into the table.

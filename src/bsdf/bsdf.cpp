@@ -79,52 +79,79 @@ Gains gains_at(const Bsdf& b, float cosine) {
 // Energy from a direction of cosine c that leaves through the glossy lobe.
 Rgb glossy_albedo(const Bsdf& b, float c) {
   if (b.fresnel == Bsdf::Fresnel::none) return Rgb{0};
-  const Split s = split_at(b, c);
-  if (b.is_smooth) return s.reflected + s.transmitted;
-  const CosineCoordinate at(c);
-  const auto schlick = [&] {
-    const float grazing = b.grazing.at(at);
-    return b.f0 * (b.one.at(at) - grazing) + b.f90 * grazing;
-  };
-  switch (b.fresnel) {
-    case Bsdf::Fresnel::schlick:
-      return schlick();
-    case Bsdf::Fresnel::coat:
-      return Rgb{b.coat_row.at(at)};
-    case Bsdf::Fresnel::glass: {
-      const Rgb opaque = fresnel_schlick(c, b.f0, b.f90);
-      return schlick() + (s.reflected - opaque + s.transmitted) * b.near.at(at);
-    }
-    default:
-      return s.reflected * b.one.at(at);
+  if (b.is_smooth) {
+    const Split s = split_at(b, c);
+    return s.reflected + s.transmitted;
   }
+  const CosineCoordinate at(c);
+  if (b.fresnel == Bsdf::Fresnel::coat) return Rgb{b.coat_row.at(at)};
+  const float grazing = b.grazing.at(at), steep = b.one.at(at) - grazing;
+  // A conductor is taken as Schlick's of the same reflectance at normal incidence.
+  if (b.fresnel == Bsdf::Fresnel::conductor)
+    return fresnel_conductor(1, b.f0, b.f90) * steep + Rgb{grazing};
+  const Rgb opaque = b.f0 * steep + b.f90 * grazing;
+  if (b.fresnel == Bsdf::Fresnel::schlick) return opaque;
+  // Glass loses its share as a whole; how the rest divides is taken from the mirror's.
+  const Split s = split_at(b, c);
+  return opaque + (s.reflected - fresnel_schlick(c, b.f0, b.f90) + s.transmitted) * b.near.at(at);
 }
 
+// Energies of the lobes: glossy, diffuse, and lost energy that returns on either side.
 struct Energies {
-  Rgb glossy, reflected, transmitted;  // glossy lobe, separable lobes on either side
+  Rgb glossy, diffuse, again, through;
 };
 Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
   Energies e;
   e.glossy = glossy_albedo(b, cos_o);
   if (!b.has_separable) return e;
-  e.reflected = b.diffuse * (g.diffuse * b.diffuse_mean) +
-                b.metal_again * (g.metal * b.metal_mean) + b.glass_again * (g.glass * b.near_mean);
-  e.transmitted = b.glass_through * (g.glass * b.far_mean);
+  e.diffuse = b.diffuse * (g.diffuse * b.diffuse_mean);
+  e.again = b.metal_again * (g.metal * b.metal_mean) + b.glass_again * (g.glass * b.near_mean);
+  e.through = b.glass_through * (g.glass * b.far_mean);
   return e;
 }
 
-// Probabilities of the lobes, in proportion to their energies.
+// Probabilities of the ways to sample, in proportion to the energies: the glossy lobe, and
+// directions with cosine or uniform density on either side. What returns of lost energy is
+// uniform-like: the smoother the surface, the closer to grazing it keeps.
 struct Choice {
-  float glossy = 0, reflected = 0, transmitted = 0;
+  float glossy = 0, cosine = 0, uniform = 0, cosine_through = 0, uniform_through = 0;
 };
 Choice choice_at(const Bsdf& b, const Gains& g, float cos_o) {
-  if (b.fresnel == Bsdf::Fresnel::none) return {0, 1, 0};
-  if (!b.has_separable) return {1, 0, 0};
+  if (b.fresnel == Bsdf::Fresnel::none) return {0, 1, 0, 0, 0};
+  if (!b.has_separable) return {1, 0, 0, 0, 0};
   const Energies e = energies_at(b, g, cos_o);
-  Choice c{average(e.glossy), average(e.reflected), average(e.transmitted)};
-  const float sum = c.glossy + c.reflected + c.transmitted;
+  const float glossy = average(e.glossy), diffuse = average(e.diffuse);
+  const float again = average(e.again), through = average(e.through);
+  const float sum = glossy + diffuse + again + through;
   if (!(sum > 0)) return {};
-  return {c.glossy / sum, c.reflected / sum, c.transmitted / sum};
+  const float s = 1 / sum, uniform = 1 - b.alpha;
+  return {glossy * s, (diffuse + again * b.alpha) * s, again * uniform * s, through * b.alpha * s,
+          through * uniform * s};
+}
+
+// Density of all ways but the glossy one.
+float separable_pdf(const Choice& c, float cos_i) {
+  constexpr float uniform = 0.5f * inv_pi_f;
+  return cos_i > 0 ? c.cosine * cos_i * inv_pi_f + c.uniform * uniform
+                   : c.cosine_through * -cos_i * inv_pi_f + c.uniform_through * uniform;
+}
+
+// u_lobe in [0,1) chooses among all ways but the glossy one.
+Vec3 sample_separable(const Choice& c, float u_lobe, const Vec2& u) {
+  const float sum = c.cosine + c.uniform + c.cosine_through + c.uniform_through;
+  float x = u_lobe * sum;
+  const bool is_through = (x -= c.cosine + c.uniform) >= 0 && c.cosine_through > 0;
+  const float cosine = is_through ? c.cosine_through : c.cosine;
+  if (!is_through) x += c.cosine + c.uniform;
+  Vec3 w;
+  if (x < cosine) {
+    w = cosine_hemisphere_from_square(u);
+  } else {
+    w = sphere_from_square(u);
+    w.z = std::abs(w.z);
+  }
+  if (is_through) w.z = -w.z;
+  return w;
 }
 
 // Only lobes that reflect alone can leave out the normals that send light below the horizon.
@@ -196,7 +223,7 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
   }
   if (b.has_separable) {
     v.f_cos += separable(b, g, wi.z);
-    v.pdf += (wi.z > 0 ? choice.reflected : choice.transmitted) * std::abs(wi.z) * inv_pi_f;
+    v.pdf += separable_pdf(choice, wi.z);
   }
   return v;
 }
@@ -266,12 +293,8 @@ bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, 
     if (b.is_smooth) return sample_smooth(b, wo, choice.glossy, u_side, out);
     if (!sample_rough(b, wo, u_side, u, out.wi)) return false;
   } else {
-    out.wi = cosine_hemisphere_from_square(u);
-    // Where rounding leaves u_lobe above all shares, the last lobe that exists takes it.
-    const bool is_above = choice.reflected > 0 &&
-                          (u_lobe < choice.glossy + choice.reflected || choice.transmitted <= 0);
-    if (!is_above) out.wi.z = -out.wi.z;
-    if (!is_above && choice.transmitted <= 0) return false;
+    const float rest = (u_lobe - choice.glossy) / (1 - choice.glossy);
+    out.wi = sample_separable(choice, std::min(rest, one_minus_epsilon), u);
   }
   const BsdfValue v = evaluate_chosen(b, g, choice, wo, out.wi);
   if (!(v.pdf > 0) || !std::isfinite(v.pdf) || out.wi.z == 0) return false;
@@ -288,7 +311,7 @@ Rgb albedo(const Bsdf& b, float cos_o) {
   const float c = std::min(cos_o, 1.0f);
   const Gains g = b.has_separable ? gains_at(b, c) : Gains{};
   const Energies e = energies_at(b, g, c);
-  return e.glossy + e.reflected + e.transmitted;
+  return e.glossy + e.diffuse + e.again + e.through;
 }
 
 }  // namespace troffer

@@ -138,8 +138,9 @@ inline bool sample(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u
 }
 
 // Share of the energy from a direction of cosine cos_o that scatters on, delta lobes and
-// transmission included (without the n² of radiance). An estimate: exact for Lambertian, coated and
-// glTF's opaque surfaces up to their tables, within some percent for conductors.
+// transmission included (without the n² of radiance). Exact up to the tables for Lambertian,
+// coated and glTF's opaque surfaces, smooth lobes and clear glass; an estimate for rough conductors
+// (some percent) and rough tinted glass (the tint may be off by the share that reflects).
 Rgb albedo(const Bsdf& bsdf, float cos_o);
 
 // Nothing for next-event estimation to do.

@@ -20,12 +20,13 @@ inline float refracted_cosine(float cos_i, float eta) {
   return cos2_t > 0 ? std::sqrt(cos2_t) : -1.0f;
 }
 
-// Reflectance between two dielectrics [1]; 1 on total internal reflection.
+// Reflectance between two dielectrics [1]; 1 on total internal reflection. Free of branches: total
+// reflection is what the formula gives for a refracted cosine of 0.
 inline float fresnel_dielectric(float cos_i, float eta) {
-  const float cos_t = refracted_cosine(cos_i, eta);
-  if (cos_t < 0) return 1;
-  const float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-  const float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  const float c = std::max(cos_i, 1e-9f);
+  const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (eta * eta)));
+  const float parallel = (eta * c - cos_t) / (eta * c + cos_t);
+  const float perpendicular = (c - eta * cos_t) / (c + eta * cos_t);
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 

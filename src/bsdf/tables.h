@@ -12,8 +12,6 @@
 
 namespace troffer {
 
-// GGX widths below this are mirrors: delta lobes (pbrt-v4's threshold).
-constexpr float smooth_alpha = 1e-3f;
 // Relative indices this close to 1 do not bend light.
 constexpr float index_matched = 1e-3f;
 
@@ -29,8 +27,9 @@ struct PreparedMaterial {
 // Immutable once built; Bsdf values point into it, so it must outlive them and stay in place.
 class BsdfTables {
  public:
-  // Some milliseconds, plus a few per distinct index of refraction among rough dielectrics and
-  // coats. Past `max_iors` distinct indices of a kind the nearest one that has a table serves.
+  // Some ten milliseconds, plus about as much per distinct index of refraction among rough
+  // dielectrics and coats. Past `max_iors` distinct indices of a kind the nearest one that has a
+  // table serves.
   explicit BsdfTables(const std::vector<Material>& materials);
   explicit BsdfTables(const Scene& scene) : BsdfTables(scene.materials) {}
 

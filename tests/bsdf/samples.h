@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/random.h"
@@ -11,17 +13,32 @@
 
 namespace troffer::test {
 
-// One material with its tables; the address must stay (no copies).
-struct Specimen {
-  std::string name;
+// Materials with their tables; Bsdfs point into it, so it must outlive them.
+struct Specimens {
+  std::vector<std::string> names;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   BsdfTables tables;
 
-  Specimen(std::string name_, Material m)
-      : name(std::move(name_)), materials{std::move(m)}, tables(materials) {}
-  Bsdf at(bool is_front = true) const {
-    return make_bsdf(tables, materials, textures, 0, {0.5f, 0.5f}, is_front);
+  explicit Specimens(const std::vector<Material>& m) : materials(m), tables(materials) {}
+  Specimens(std::initializer_list<std::pair<std::string, Material>> list)
+      : names(names_of(list)), materials(materials_of(list)), tables(materials) {}
+  Bsdf at(size_t i, bool is_front = true) const {
+    return make_bsdf(tables, materials, textures, uint32_t(i), {0.5f, 0.5f}, is_front);
+  }
+  size_t size() const { return materials.size(); }
+
+ private:
+  using List = std::initializer_list<std::pair<std::string, Material>>;
+  static std::vector<std::string> names_of(const List& list) {
+    std::vector<std::string> v;
+    for (const auto& [name, m] : list) v.push_back(name);
+    return v;
+  }
+  static std::vector<Material> materials_of(const List& list) {
+    std::vector<Material> v;
+    for (const auto& [name, m] : list) v.push_back(m);
+    return v;
   }
 };
 

@@ -11,7 +11,7 @@ using namespace troffer::test;
 
 namespace {
 
-constexpr int rows = 24, columns = 32;  // bins over cos theta in [-1,1] and phi
+constexpr int rows = 16, columns = 24;  // bins over cos theta in [-1,1] and phi
 
 // Expected fraction per bin: the density integrated over (cos theta, phi).
 std::vector<double> integrated_pdf(const Bsdf& b, const Vec3& wo, double tolerance) {
@@ -27,7 +27,7 @@ std::vector<double> integrated_pdf(const Bsdf& b, const Vec3& wo, double toleran
             const Vec3 wi(Vec3d{s * std::cos(phi), s * std::sin(phi), z});
             return double(pdf(b, wo, wi));
           },
-          z0, z1, p0, p1, tolerance, 6, 9);
+          z0, z1, p0, p1, tolerance, 5, 8);
     }
   }
   return mass;
@@ -40,12 +40,11 @@ int bin_of(const Vec3& w) {
   return r * columns + c;
 }
 
-void check_sampling(const Specimen& s, bool is_front, float cosine, int tests) {
-  const Bsdf b = s.at(is_front);
+void check_sampling(const std::string& name, const Bsdf& b, float cosine, int tests) {
   const Vec3 wo = direction(cosine, 0.7f);
-  constexpr int n = 100000;
+  constexpr int n = 60000;
   std::vector<double> observed(size_t(rows * columns) + 1);
-  Random random(hash_of(uint64_t(1000 * cosine), uint64_t(is_front), s.name.size()));
+  Random random(hash_of(uint64_t(1000 * cosine), uint64_t(b.eta * 100)));
   int bad_weights = 0, deltas = 0;
   for (int i = 0; i < n; ++i) {
     BsdfSample x;
@@ -69,13 +68,13 @@ void check_sampling(const Specimen& s, bool is_front, float cosine, int tests) {
     if (relative > 1e-3 || weight > 1e-3 * double(x.weight.g) || !is_unit || !is_side_right)
       ++bad_weights;
   }
-  INFO(s.name, " front ", is_front, " cosine ", cosine);
+  INFO(name, " eta ", b.eta, " cosine ", cosine);
   CHECK(bad_weights == 0);
   if (is_purely_delta(b)) {
     CHECK(deltas + int(observed.back()) >= n);
     return;
   }
-  std::vector<double> expected = integrated_pdf(b, wo, 2e-7);
+  std::vector<double> expected = integrated_pdf(b, wo, 1e-6);
   double mass = 0;
   for (double& e : expected) {
     mass += e;
@@ -99,7 +98,7 @@ TEST_CASE("samples follow the density") {
   Material mixed = gltf(0.35f, 0.3f, {0.2f, 0.5f, 0.9f}, 0.5f);
   Material mixed_thin = mixed;
   mixed_thin.is_thin = true;
-  const Specimen specimens[] = {
+  const Specimens s{
       {"diffuse", material_of(MaterialKind::diffuse, 0, {0.2f, 0.4f, 0.6f})},
       {"copper .1", copper(0.1f)},
       {"copper .4", copper(0.4f)},
@@ -120,16 +119,19 @@ TEST_CASE("samples follow the density") {
   };
   const float cosines[] = {0.05f, 0.4f, 0.95f};
   int tests = 0;
-  for (const Specimen& s : specimens) tests += 3 * (s.at().has_transmission ? 2 : 1);
-  for (const Specimen& s : specimens)
+  for (size_t i = 0; i < s.size(); ++i) tests += s.at(i).has_transmission ? 6 : 3;
+  for (size_t i = 0; i < s.size(); ++i)
     for (const bool is_front : {true, false}) {
-      if (!is_front && !s.at().has_transmission) continue;
-      for (const float c : cosines) check_sampling(s, is_front, c, tests);
+      const Bsdf b = s.at(i, is_front);
+      if (!is_front && !b.has_transmission) continue;
+      for (const float c : cosines) check_sampling(s.names[i], b, c, tests);
     }
 }
 
 TEST_CASE("grazing and degenerate directions stay finite") {
-  const Specimen specimens[] = {
+  Material infinite = gltf(0.2f, 0);
+  infinite.ior = 0;
+  const Specimens s{
       {"diffuse", material_of(MaterialKind::diffuse, 0)},
       {"copper", copper(1e-3f)},
       {"metal", mirror_metal(1)},
@@ -149,9 +151,9 @@ TEST_CASE("grazing and degenerate directions stay finite") {
   };
   const float zs[] = {0, 1e-30f, 1e-10f, 1e-6f, 1e-3f, 0.5f, 1};
   Random random(3);
-  for (const Specimen& s : specimens)
+  for (size_t k = 0; k < s.size(); ++k)
     for (const bool is_front : {true, false}) {
-      const Bsdf b = s.at(is_front);
+      const Bsdf b = s.at(k, is_front);
       for (const float zo : zs)
         for (int i = 0; i < 400; ++i) {
           const Vec3 wo = direction(zo, 6 * random.next_float());
@@ -170,7 +172,7 @@ TEST_CASE("grazing and degenerate directions stay finite") {
                        max_component(x.weight) < 1000;
           const Rgb a = albedo(b, zo);
           is_good &= is_finite(a) && max_component(a) < 1.1f;
-          INFO(s.name, " zo ", zo, " wi.z ", wi.z, " weight ", x.weight.g, " pdf ", x.pdf);
+          INFO(s.names[k], " zo ", zo, " wi.z ", wi.z, " weight ", x.weight.g, " pdf ", x.pdf);
           CHECK(is_good);
         }
     }
