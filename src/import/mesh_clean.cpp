@@ -1,25 +1,17 @@
 #include "import/mesh_clean.h"
 
+#include "import/triangle_check.h"
+
 namespace troffer {
 
 namespace {
 
-void drop_triangles(Mesh& mesh, const std::string& what, WarningLog& warnings) {
-  size_t not_finite = 0, flat = 0, kept = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const bool is_usable = is_finite(mesh.positions[t[0]]) && is_finite(mesh.positions[t[1]]) &&
-                           is_finite(mesh.positions[t[2]]);
-    if (!is_usable)
-      ++not_finite;
-    else if (!(length_squared(area_vector(mesh, t)) > 0))
-      ++flat;
-    else
-      mesh.triangles[kept++] = t;
-  }
-  mesh.triangles.resize(kept);
-  if (not_finite > 0)
-    warnings.add(what + ": triangle with a vertex that is not finite, left out", not_finite);
-  if (flat > 0) warnings.add(what + ": triangle without area, left out", flat);
+void drop_triangles(Mesh& mesh, WarningLog& warnings) {
+  TriangleCheck check;
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return !check.is_good(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
+  });
+  check.report(warnings);
 }
 
 void drop_vertices(Mesh& mesh) {
@@ -67,8 +59,8 @@ void repair_normals(Mesh& mesh) {
 
 }  // namespace
 
-void clean_mesh(Mesh& mesh, const std::string& what, WarningLog& warnings) {
-  drop_triangles(mesh, what, warnings);
+void clean_mesh(Mesh& mesh, WarningLog& warnings) {
+  drop_triangles(mesh, warnings);
   drop_vertices(mesh);
   repair_normals(mesh);
   for (Vec2& uv : mesh.uvs)

@@ -1,22 +1,19 @@
 // Meshes made fit for a scene: nothing in them that is not finite, and no triangle without area.
 #pragma once
 
-#include <string>
-
 #include "base/log.h"
 #include "scene/scene.h"
 
 namespace troffer {
 
 // In place, for a mesh whose winding is final:
-// - triangles with a vertex that is not finite, and triangles without area, are left out and
-//   counted in a warning that begins with `what`;
+// - triangles that TriangleCheck refuses are left out, with a counted warning;
 // - vertices that are not finite are removed;
 // - normals become unit vectors; one that cannot (zero, not finite) becomes the area-weighted mean
 //   of the triangles around it;
 // - (u,v) that are not finite become (0,0).
 // Triangle indices must be in range.
-void clean_mesh(Mesh& mesh, const std::string& what, WarningLog& warnings);
+void clean_mesh(Mesh& mesh, WarningLog& warnings);
 
 // Twice the area times the unit normal of the front.
 inline Vec3d area_vector(const Mesh& mesh, const Triangle& t) {

@@ -200,7 +200,7 @@ void PbrtPlacer::place_mesh(const Placing& placing, const Mesh& local, bool is_q
     n = size > 0 && std::isfinite(size) ? Vec3(world * ((is_turned ? -1 : 1) / size)) : Vec3{};
   }
   orient(mesh, shape.is_reversed != t.swaps_handedness());
-  clean_mesh(mesh, "shape \"" + shape.type + "\"", scene_.warnings);
+  clean_mesh(mesh, scene_.warnings);
   if (mesh.triangles.empty()) {
     if (placing.is_emitting) {
       scene_.warnings.add("area light without area is left out");

@@ -1,0 +1,66 @@
+// MTL material libraries, and what their Phong-era terms become here.
+//
+// The format names colours, not how they combine, so this is a choice [1]:
+// - Pr or Pm (the physically based extension): metallic_roughness with base colour Kd.
+// - illum 3, 5, 8 (mirror): metallic_roughness with base colour Kd + Ks, metallic by the share of
+// Ks.
+// - d < 1 (or Tr > 0): with illum 6, 7, solid glass of index Ni; else a thin sheet that lets the
+//   share 1 - d through. map_d cuts holes where it is below 0.5.
+// - illum 2, or none given, with Ks: coated diffuse of base colour Kd, whose 4 % reflection is
+//   scaled by max(Ks) (1 = all of it), alpha = sqrt(2 / (Ns + 2)).
+// - else diffuse Kd.
+// Where map_Kd is given and Kd is black or absent, the image alone counts.
+//
+// References: [1] Wavefront Technologies, "MTL material format", 1995, and the physically based
+//   extension by Exocortex.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/log.h"
+#include "import/texture_loader.h"
+#include "scene/scene.h"
+
+namespace troffer {
+
+// One image with its options.
+struct MtlMap {
+  std::string file;  // relative to the scene's folder; "" = none
+  Vec2 scale{1, 1}, offset{0, 0};
+  bool is_clamped = false;
+};
+
+struct MtlMaterial {
+  std::string name;
+  std::optional<Rgb> diffuse;                // Kd
+  Rgb specular{0};                           // Ks
+  Rgb emission{0};                           // Ke
+  float exponent = 0;                        // Ns
+  float opacity = 1;                         // d, 1 - Tr
+  float ior = 1.5f;                          // Ni
+  int illumination = -1;                     // illum; -1 = not given
+  std::optional<float> roughness, metallic;  // Pr, Pm
+  MtlMap map_diffuse, map_emission, map_opacity, map_roughness, map_metallic, map_normal;
+};
+
+using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;
+
+// Reads a library into `library`; of two materials with one name the later counts. `subfolder` is
+// the library's folder relative to the scene's ("" or ending in '/'), for its images.
+// InputError: malformed numbers.
+void read_mtl(const std::string& path, const std::string& subfolder, MtlLibrary& library,
+              WarningLog& warnings);
+
+// A material of the scene, and what it emits.
+struct MtlConverted {
+  Material material;
+  Rgb emission;
+  int32_t emission_texture = no_texture;
+};
+MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
+                         WarningLog& warnings);
+
+}  // namespace troffer

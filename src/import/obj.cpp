@@ -1,0 +1,331 @@
+#include "import/obj.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "import/emissive.h"
+#include "import/file.h"
+#include "import/mesh_clean.h"
+#include "import/mtl.h"
+#include "import/polygon.h"
+#include "import/text_lines.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t max_triangles = 60'000'000;
+constexpr uint32_t nothing = 0xffffffffu;
+
+// Indices of one corner of a face, from 0; `nothing` where not given.
+struct Corner {
+  uint32_t position = nothing, uv = nothing, normal = nothing;
+};
+
+// A mesh being built, of one object, group and material.
+struct Part {
+  std::string material;
+  Mesh mesh;
+  bool has_uvs = false, has_normals = false;
+  // Per vertex: the other two indices it was made of, and the next vertex at the same position.
+  struct Made {
+    uint32_t uv, normal, next;
+  };
+  std::vector<Made> made;
+};
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& path, Scene& scene)
+      : path_(path),
+        folder_(folder_of(path)),
+        scene_(scene),
+        text_(read_text_file(path)),
+        lines_(path_, text_),
+        loader_(scene) {}
+  void read();
+
+ private:
+  std::string path_, folder_;
+  Scene& scene_;
+  std::string text_;
+  TextLines lines_;
+  TextureLoader loader_;
+
+  std::vector<Vec3> positions_, normals_;
+  std::vector<Vec2> uvs_;
+  std::string object_, group_, material_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::unordered_map<std::string, Part*> part_by_key_;
+  Part* part_ = nullptr;  // where faces go; null after a change of object, group or material
+  // First vertex of the current part at each position, valid where the stamp is the part's.
+  struct First {
+    uint32_t stamp = 0, vertex = nothing;
+  };
+  std::vector<First> firsts_;
+  uint32_t stamp_ = 0;
+  size_t triangles_ = 0, emitters_ = 0;
+  size_t colored_vertices_ = 0, points_and_lines_ = 0, short_faces_ = 0;
+  std::vector<Corner> corners_;
+  std::vector<Vec3> points_;
+  std::vector<Triangle> polygon_;
+
+  MtlLibrary library_;
+  std::unordered_map<std::string, MtlConverted> converted_;
+  std::unordered_map<std::string, uint32_t> material_index_;
+
+  void read_statement(std::string_view keyword);
+  void read_vertex();
+  void read_face();
+  uint32_t read_index(size_t count, const char* what);
+  bool read_corner();
+  void select_part();
+  uint32_t vertex_of(const Corner& corner);
+  void read_libraries(std::string names);
+  bool read_library(const std::string& name);
+  const MtlConverted& material_named(const std::string& name);
+  void finish();
+  void finish_part(Part& part);
+};
+
+void ObjReader::read() {
+  while (lines_.next_line()) {
+    const std::string_view keyword = lines_.word();
+    if (!keyword.empty()) read_statement(keyword);
+  }
+  finish();
+}
+
+void ObjReader::read_statement(std::string_view keyword) {
+  if (keyword == "v") {
+    read_vertex();
+  } else if (keyword == "f" || keyword == "fo") {
+    read_face();
+  } else if (keyword == "vn") {
+    const float x = lines_.number(), y = lines_.number();
+    normals_.emplace_back(x, y, lines_.number());
+    if (lines_.has_word()) lines_.fail("a normal has three numbers");
+  } else if (keyword == "vt") {
+    const float u = lines_.number();
+    uvs_.emplace_back(u, lines_.has_word() ? lines_.number() : 0.0f);
+    if (lines_.has_word()) lines_.number();
+    if (lines_.has_word()) lines_.fail("texture coordinates have at most three numbers");
+  } else if (keyword == "o") {
+    object_ = lines_.rest();
+    group_.clear();
+    part_ = nullptr;
+  } else if (keyword == "g") {
+    group_ = lines_.rest();
+    part_ = nullptr;
+  } else if (keyword == "usemtl") {
+    material_ = lines_.rest();
+    part_ = nullptr;
+  } else if (keyword == "mtllib") {
+    read_libraries(std::string(lines_.rest()));
+  } else if (keyword == "p" || keyword == "l") {
+    ++points_and_lines_;
+  } else if (keyword != "s") {
+    for (const char c : keyword)
+      if (static_cast<unsigned char>(c) < 32) lines_.fail("this is not a text file");
+    scene_.warnings.add("OBJ: '" + std::string(keyword.substr(0, 40)) +
+                        "' is not supported: left out");
+  }
+}
+
+// x y z, then nothing, a weight, a colour or both; the latter are left out.
+void ObjReader::read_vertex() {
+  const float x = lines_.number(), y = lines_.number();
+  positions_.emplace_back(x, y, lines_.number());
+  size_t more = 0;
+  for (; lines_.has_word(); ++more) lines_.number();
+  if (more == 2 || more > 4) lines_.fail("a vertex has 3, 4, 6 or 7 numbers");
+  if (more >= 3) ++colored_vertices_;
+}
+
+// An index counts from 1, or backwards from -1; the result from 0.
+uint32_t ObjReader::read_index(size_t count, const char* what) {
+  int index = 0;
+  if (!lines_.integer(index)) lines_.fail(std::string("expected the index of a ") + what);
+  const int64_t i = index < 0 ? int64_t(count) + index : int64_t(index) - 1;
+  if (index == 0 || i < 0 || i >= int64_t(count))
+    lines_.fail(std::string("index ") + std::to_string(index) + " of a " + what +
+                " is out of range (" + std::to_string(count) + " so far)");
+  return uint32_t(i);
+}
+
+// v, v/vt, v//vn or v/vt/vn; false at the end of the line.
+bool ObjReader::read_corner() {
+  if (!lines_.has_word()) return false;
+  Corner corner;
+  corner.position = read_index(positions_.size(), "vertex");
+  if (lines_.peek() == '/') {
+    lines_.take();
+    if (lines_.peek() != '/') corner.uv = read_index(uvs_.size(), "texture coordinate");
+    if (lines_.peek() == '/') {
+      lines_.take();
+      corner.normal = read_index(normals_.size(), "normal");
+    }
+  }
+  const char c = lines_.peek();
+  if (c != '\0' && c != ' ' && c != '\t' && c != '#') lines_.fail("malformed corner of a face");
+  corners_.push_back(corner);
+  return true;
+}
+
+void ObjReader::select_part() {
+  std::string key = object_;
+  key.append(1, '\0').append(group_).append(1, '\0').append(material_);
+  Part*& part = part_by_key_[key];
+  if (!part) {
+    parts_.push_back(std::make_unique<Part>());
+    part = parts_.back().get();
+    part->material = material_;
+    part->mesh.name = group_.empty() ? object_ : group_;
+  }
+  part_ = part;
+  ++stamp_;
+}
+
+uint32_t ObjReader::vertex_of(const Corner& corner) {
+  Part& part = *part_;
+  First& first = firsts_[corner.position];
+  if (first.stamp != stamp_) first = {stamp_, nothing};
+  for (uint32_t v = first.vertex; v != nothing; v = part.made[v].next)
+    if (part.made[v].uv == corner.uv && part.made[v].normal == corner.normal) return v;
+  const auto vertex = uint32_t(part.made.size());
+  part.made.push_back({corner.uv, corner.normal, first.vertex});
+  first.vertex = vertex;
+  part.mesh.positions.push_back(positions_[corner.position]);
+  part.mesh.uvs.push_back(corner.uv != nothing ? uvs_[corner.uv] : Vec2{});
+  part.mesh.normals.push_back(corner.normal != nothing ? normals_[corner.normal] : Vec3{});
+  part.has_uvs = part.has_uvs || corner.uv != nothing;
+  part.has_normals = part.has_normals || corner.normal != nothing;
+  return vertex;
+}
+
+void ObjReader::read_face() {
+  corners_.clear();
+  while (read_corner()) {
+  }
+  if (corners_.size() < 3) {
+    if (corners_.empty()) lines_.fail("a face without vertices");
+    ++short_faces_;
+    return;
+  }
+  triangles_ += corners_.size() - 2;
+  if (triangles_ > max_triangles)
+    lines_.fail("more than " + std::to_string(max_triangles / 1'000'000) + " million triangles");
+  if (!part_) select_part();
+  firsts_.resize(positions_.size());
+  if (corners_.size() == 3) {
+    const uint32_t a = vertex_of(corners_[0]), b = vertex_of(corners_[1]);
+    part_->mesh.triangles.push_back({a, b, vertex_of(corners_[2])});
+    return;
+  }
+  points_.clear();
+  polygon_.clear();
+  for (const Corner& c : corners_) points_.push_back(positions_[c.position]);
+  triangulate(points_, polygon_);
+  for (Triangle t : polygon_) {
+    for (uint32_t& v : t) v = vertex_of(corners_[v]);
+    part_->mesh.triangles.push_back(t);
+  }
+}
+
+// Names of libraries may contain blanks, and several may follow each other: first the whole line
+// is tried, then pieces up to each ".mtl".
+void ObjReader::read_libraries(std::string names) {
+  std::replace(names.begin(), names.end(), '\\', '/');
+  if (names.empty() || read_library(names)) return;
+  std::string name;
+  for (size_t at = 0; at < names.size();) {
+    const size_t end = std::min(names.find_first_of(" \t", at), names.size());
+    if (!name.empty()) name += ' ';
+    name += names.substr(at, end - at);
+    at = std::min(names.find_first_not_of(" \t", end), names.size());
+    if (lower_case_ending(name) != "mtl" && at < names.size()) continue;
+    if (name == names || !read_library(name))
+      scene_.warnings.add("material library '" + name.substr(0, 200) + "' is missing");
+    name.clear();
+  }
+}
+
+// False: there is no such file, or it must not be read.
+bool ObjReader::read_library(const std::string& name) {
+  const ConfinedPath path = confined_path(folder_, name);
+  if (!path.is_fine()) return false;
+  const size_t slash = name.rfind('/');
+  const std::string subfolder = slash == std::string::npos ? "" : name.substr(0, slash + 1);
+  try {
+    read_mtl(path.path, subfolder, library_, scene_.warnings);
+  } catch (const InputError& error) {
+    if (error.line() > 0) throw;  // malformed, not missing
+    return false;
+  }
+  return true;
+}
+
+const MtlConverted& ObjReader::material_named(const std::string& name) {
+  const auto known = converted_.find(name);
+  if (known != converted_.end()) return known->second;
+  MtlConverted made;
+  const auto found = library_.find(name);
+  if (found != library_.end()) {
+    made = convert_mtl(found->second, folder_, loader_, scene_.warnings);
+  } else {
+    made.material.name = name.empty() ? "default" : name;
+    if (!name.empty())
+      scene_.warnings.add("material '" + name.substr(0, 200) + "' is missing: shown grey");
+  }
+  material_index_[name] = uint32_t(scene_.materials.size());
+  scene_.materials.push_back(made.material);
+  return converted_[name] = std::move(made);
+}
+
+void ObjReader::finish_part(Part& part) {
+  Mesh& mesh = part.mesh;
+  if (!part.has_uvs) mesh.uvs.clear();
+  if (!part.has_normals) mesh.normals.clear();
+  part.made = {};
+  clean_mesh(mesh, scene_.warnings);
+  const MtlConverted& material = material_named(part.material);
+  mesh.material = material_index_[part.material];
+  const auto index = uint32_t(scene_.meshes.size());
+  const bool is_empty = mesh.triangles.empty();
+  if (!is_empty) scene_.meshes.push_back(std::move(mesh));
+  if (material.emission.is_black()) return;
+  // A source without area keeps its number, so that names do not depend on what else is wrong.
+  const std::string name = "emitter" + std::to_string(emitters_++);
+  if (is_empty)
+    scene_.warnings.add("area light without area is left out");
+  else
+    add_mesh_emitters(scene_, index, {name, material.emission, material.emission_texture, false});
+}
+
+void ObjReader::finish() {
+  if (colored_vertices_ > 0)
+    scene_.warnings.add("OBJ: vertex colours are left out", colored_vertices_);
+  if (points_and_lines_ > 0)
+    scene_.warnings.add("OBJ: points and lines are left out", points_and_lines_);
+  if (short_faces_ > 0)
+    scene_.warnings.add("OBJ: faces of fewer than three vertices are left out", short_faces_);
+  positions_ = {};
+  normals_ = {};
+  uvs_ = {};
+  text_ = {};
+  for (const auto& part : parts_) finish_part(*part);
+}
+
+}  // namespace
+
+Scene import_obj(const std::string& path) {
+  Scene scene;
+  scene.file = path;
+  ObjReader(path, scene).read();
+  return scene;
+}
+
+}  // namespace troffer

@@ -1,0 +1,52 @@
+// Text files of one statement per line, word by word: what OBJ and MTL share.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace troffer {
+
+// Takes lines apart. A backslash at the end of a line joins it with the next one; lines end with
+// "\n", "\r\n" or "\r".
+class TextLines {
+ public:
+  // Both must outlive this.
+  TextLines(const std::string& file, std::string_view text);
+
+  // Goes to the next line; false at the end.
+  bool next_line();
+
+  // The next word of the line, "" at its end. '#' begins a comment.
+  std::string_view word();
+  // All that is left of the line, without blanks around it; '#' counts as text within it.
+  std::string_view rest();
+  // Whether a word follows.
+  bool has_word();
+
+  // A number: InputError where there is none. May be NaN or infinite.
+  float number();
+  // An integer, read up to the first other character; false where there is none or it does not
+  // fit 32 bits.
+  bool integer(int& value);
+  // The next character, 0 at the end of the line; take() goes past it.
+  char peek() const { return at_ < end_ ? *at_ : '\0'; }
+  void take() { ++at_; }
+
+  // Line and column, from 1, of the word read last.
+  int line() const { return line_; }
+  int column() const { return int(word_ - begin_) + 1; }
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  const std::string& file_;
+  std::string_view text_;
+  size_t next_ = 0;  // offset of the next line
+  int line_ = 0, next_line_number_ = 1;
+  std::string joined_;
+  const char *begin_ = nullptr, *at_ = nullptr, *end_ = nullptr, *word_ = nullptr;
+
+  std::string_view take_physical_line();
+  void skip_blanks();
+};
+
+}  // namespace troffer
