@@ -1,0 +1,191 @@
+#include "emitter/light_primitive.h"
+
+#include <cmath>
+#include <span>
+
+#include "base/frame.h"
+#include "base/units.h"
+#include "emitter/polygon.h"
+
+namespace troffer {
+
+namespace {
+
+// Fills in all that follows from a planar polygon's vertices. False without area.
+bool set_polygon(LightPrimitive& p, std::span<const Vec3> vertices) {
+  if (vertices.size() < 3) return false;
+  const Vec3d vector = area_vector(vertices);
+  const double area = length(vector);
+  p.area = float(area);
+  if (!(p.area > 0) || !std::isfinite(p.area)) return false;
+  p.normal = vector / area;
+  p.vertex_count = uint32_t(vertices.size());
+  if (vertices.size() <= 4) std::copy(vertices.begin(), vertices.end(), p.vertices);
+  p.centroid = Vec3(centroid(vertices, p.normal));
+  for (const Vec3& v : vertices) {
+    p.bounds.grow(v);
+    p.radius = std::max(p.radius, length(v - p.centroid));
+  }
+  p.cone_axis = Vec3(p.normal);
+  p.cos_cone = 1;
+  if (vertices.size() == 3) {
+    p.shape = PrimitiveShape::triangle;
+  } else if (is_rectangle(vertices)) {
+    p.shape = PrimitiveShape::rectangle;
+    const Vec3d u = Vec3d(vertices[1]) - Vec3d(vertices[0]);
+    const Vec3d v = Vec3d(vertices[3]) - Vec3d(vertices[0]);
+    p.size_x = float(length(u));
+    p.size_y = float(length(v));
+    p.axis_x = Vec3(normalize(u));
+    p.axis_y = Vec3(normalize(v));
+  } else {
+    p.shape = PrimitiveShape::polygon;
+  }
+  return true;
+}
+
+// Mean of a texture over a triangle: one lookup at the centre of each of n² equal parts, about one
+// part per texel up to n = 16.
+Rgb mean_over_triangle(const Scene& scene, uint32_t texture, const Vec2 (&uv)[3]) {
+  const Texture& t = scene.textures[texture];
+  const Vec2 e = uv[1] - uv[0], f = uv[2] - uv[0];
+  const float texels = 0.5f * std::abs(e.x * f.y - e.y * f.x) * float(t.width) * float(t.height);
+  int n = t.kind == TextureKind::constant ? 1 : 4;
+  if (t.kind == TextureKind::product) n = 16;
+  if (std::isfinite(texels)) n = std::clamp(int(std::sqrt(std::min(texels, 1e4f))) + 1, n, 16);
+  Rgb sum;
+  int count = 0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; i + j < n; ++j) {
+      // upright part, and the part upside down beside it
+      for (int half = 0; half < (i + j + 1 < n ? 2 : 1); ++half) {
+        const float offset = half == 0 ? 1.0f / 3 : 2.0f / 3;
+        const float b1 = (float(i) + offset) / float(n), b2 = (float(j) + offset) / float(n);
+        sum += evaluate(scene.textures, texture, uv[0] + e * b1 + f * b2).rgb;
+        ++count;
+      }
+    }
+  }
+  return sum / float(count);
+}
+
+}  // namespace
+
+LightPrimitives::LightPrimitives(const Scene& scene)
+    : disk_table_(scene.disks.size(), no_primitive),
+      sphere_table_(scene.spheres.size(), no_primitive) {
+  triangle_table_.resize(scene.meshes.size());
+  ranges_.reserve(scene.emitters.size());
+  for (uint32_t i = 0; i < scene.emitters.size(); ++i) {
+    const auto first = uint32_t(primitives_.size());
+    if (!scene.emitters[i].radiance.is_black()) {
+      switch (scene.emitters[i].shape) {
+        case EmitterShape::polygon:
+          add_polygon(scene, i);
+          break;
+        case EmitterShape::mesh:
+          add_mesh(scene, i);
+          break;
+        case EmitterShape::disk:
+          add_disk(scene, i);
+          break;
+        case EmitterShape::sphere:
+          add_sphere(scene, i);
+          break;
+      }
+    }
+    ranges_.push_back({first, uint32_t(primitives_.size())});
+  }
+}
+
+int32_t LightPrimitives::append(LightPrimitive p, const Emitter& e) {
+  p.is_two_sided = e.is_two_sided;
+  p.power = float(pi) * p.area * luminance(p.mean_radiance) * (p.is_two_sided ? 2.0f : 1.0f);
+  primitives_.push_back(p);
+  return int32_t(primitives_.size()) - 1;
+}
+
+void LightPrimitives::add_polygon(const Scene& scene, uint32_t emitter) {
+  const Emitter& e = scene.emitters[emitter];
+  LightPrimitive p;
+  p.emitter = emitter;
+  p.mean_radiance = e.radiance;
+  if (!set_polygon(p, e.polygon)) return;
+  if (e.polygon.size() > 4) {
+    vertices_.push_back(e.polygon);
+    p.more_vertices = vertices_.back().data();  // stays where it is when vertices_ grows
+  }
+  const int32_t index = append(p, e);
+  std::vector<int32_t>& table = triangle_table_[e.geometry];
+  table.resize(scene.meshes[e.geometry].triangles.size(), no_primitive);
+  for (const uint32_t t : e.triangles) table[t] = index;
+}
+
+void LightPrimitives::add_mesh(const Scene& scene, uint32_t emitter) {
+  const Emitter& e = scene.emitters[emitter];
+  const Mesh& mesh = scene.meshes[e.geometry];
+  std::vector<int32_t>& table = triangle_table_[e.geometry];
+  table.resize(mesh.triangles.size(), no_primitive);
+  for (const uint32_t t : e.triangles) {
+    const Triangle& corners = mesh.triangles[t];
+    LightPrimitive p;
+    p.emitter = emitter;
+    p.triangle = int32_t(t);
+    p.mean_radiance = e.radiance;
+    Vec3 positions[3];
+    for (size_t i = 0; i < 3; ++i) {
+      positions[i] = mesh.positions[corners[i]];
+      if (!mesh.uvs.empty()) p.uvs[i] = mesh.uvs[corners[i]];
+    }
+    if (!set_polygon(p, positions)) continue;
+    if (e.texture >= 0) {
+      p.is_textured = true;
+      p.mean_radiance *= mean_over_triangle(scene, uint32_t(e.texture), p.uvs);
+    }
+    table[t] = append(p, e);
+  }
+}
+
+void LightPrimitives::add_disk(const Scene& scene, uint32_t emitter) {
+  const Emitter& e = scene.emitters[emitter];
+  const Disk& disk = scene.disks[e.geometry];
+  LightPrimitive p;
+  p.shape = PrimitiveShape::disk;
+  p.emitter = emitter;
+  p.mean_radiance = e.radiance;
+  p.radius = disk.radius;
+  p.area = pi_f * disk.radius * disk.radius;
+  if (!(p.area > 0) || !std::isfinite(p.area)) return;
+  p.centroid = disk.centre;
+  p.normal = normalize(Vec3d(disk.normal));
+  const Framed frame(p.normal);
+  p.axis_x = Vec3(frame.tangent);
+  p.axis_y = Vec3(frame.bitangent);
+  Vec3 half;
+  for (size_t a = 0; a < 3; ++a)
+    half[a] = disk.radius * float(std::sqrt(std::max(0.0, 1 - sqr(p.normal[a]))));
+  p.bounds.grow(disk.centre - half);
+  p.bounds.grow(disk.centre + half);
+  p.cone_axis = Vec3(p.normal);
+  p.cos_cone = 1;
+  disk_table_[e.geometry] = append(p, e);
+}
+
+void LightPrimitives::add_sphere(const Scene& scene, uint32_t emitter) {
+  const Emitter& e = scene.emitters[emitter];
+  const Sphere& sphere = scene.spheres[e.geometry];
+  LightPrimitive p;
+  p.shape = PrimitiveShape::sphere;
+  p.emitter = emitter;
+  p.mean_radiance = e.radiance;
+  p.radius = sphere.radius;
+  p.area = 4 * pi_f * sphere.radius * sphere.radius;
+  if (!(p.area > 0) || !std::isfinite(p.area)) return;
+  p.is_inside_out = sphere.is_inside_out;
+  p.centroid = sphere.centre;
+  p.bounds.grow(sphere.centre - Vec3{sphere.radius});
+  p.bounds.grow(sphere.centre + Vec3{sphere.radius});
+  sphere_table_[e.geometry] = append(p, e);
+}
+
+}  // namespace troffer

@@ -1,0 +1,107 @@
+// How a receiver stands to a piece of an emitter: what sampling, density and inverse share.
+#pragma once
+
+#include <cmath>
+
+#include "base/units.h"
+#include "base/vec.h"
+#include "emitter/light_primitive.h"
+#include "emitter/spherical_disk.h"
+#include "emitter/spherical_rectangle.h"
+#include "emitter/spherical_triangle.h"
+
+namespace troffer {
+
+// See emitter_sample.h.
+constexpr float far_in_radii = 32;
+// Below this the single-precision rectangle would place points with an error over 1e-4 of its size.
+constexpr float least_single_precision_sr = 2e-3f;
+// Below this even double precision does not place points on a rectangle seen edge-on.
+constexpr float least_rectangle_sr = 1e-8f;
+
+// The receiver against a planar piece.
+struct PlanarView {
+  double height;  // of the receiver over the plane, on the side it is on
+  bool is_front;
+  bool is_visible;  // that side emits
+  bool is_far;
+
+  PlanarView(const LightPrimitive& p, const Vec3& x) {
+    // From float coordinates this difference is exact in double precision.
+    const double signed_height =
+        dot(p.normal, Vec3d(x) - Vec3d(p.vertex_count > 0 ? p.vertex(0) : p.centroid));
+    is_front = signed_height > 0;
+    height = std::abs(signed_height);
+    is_visible = is_front || (p.is_two_sided && signed_height < 0);
+    is_far = length_squared(x - p.centroid) > sqr(far_in_radii) * sqr(p.radius);
+  }
+  float pdf_from_area(const LightPrimitive& p, float distance) const {
+    // distance² / (cos area), cos = height / distance
+    return float(double(distance) * double(distance) * double(distance) /
+                 (height * double(p.area)));
+  }
+};
+
+template <class T>
+SphericalRectangle<T> rectangle_from(const LightPrimitive& p, const Vec3& x, double height) {
+  const T scale = 1 / T(p.radius);
+  const Vec3T<T> corner = (Vec3T<T>(p.vertices[0]) - Vec3T<T>(x)) * scale;
+  const T x0 = dot(corner, Vec3T<T>(p.axis_x)), y0 = dot(corner, Vec3T<T>(p.axis_y));
+  return {x0, x0 + T(p.size_x) * scale, y0, y0 + T(p.size_y) * scale, T(height) * scale};
+}
+
+// Triangle (vertex 0, i+1, i+2) of the fan; vertex 0 is the B of SphericalTriangle.
+template <class T>
+SphericalTriangle<T> fan_triangle(const LightPrimitive& p, const Vec3& x, double height,
+                                  uint32_t i) {
+  const Vec3T<T> origin(x);
+  const Vec3T<T> b = Vec3T<T>(p.vertex(0)), a = Vec3T<T>(p.vertex(i + 1)),
+                 c = Vec3T<T>(p.vertex(i + 2));
+  const T twice_area =
+      p.vertex_count == 3 ? 2 * T(p.area) : dot(cross(a - b, c - b), Vec3T<T>(p.normal));
+  return {a - origin, b - origin, c - origin, twice_area * T(height)};
+}
+
+inline float fan_area(const LightPrimitive& p, uint32_t i) {
+  if (p.vertex_count == 3) return p.area;
+  const Vec3 b = p.vertex(0);
+  return 0.5f *
+         std::max(0.0f, dot(cross(p.vertex(i + 1) - b, p.vertex(i + 2) - b), Vec3(p.normal)));
+}
+
+// So close to the plane that float vertices relative to the receiver would blur the height.
+inline bool wants_double(const LightPrimitive& p, const PlanarView& view) {
+  return view.height < 0.01 * double(p.radius);
+}
+
+// The disk in coordinates of SphericalDisk: a towards the receiver's foot, b across.
+struct DiskView {
+  Vec3d a, b, up;
+  SphericalDisk disk;
+
+  DiskView(const LightPrimitive& p, const PlanarView& view, const Vec3& x)
+      : a(p.axis_x), up(view.is_front ? p.normal : -p.normal), disk(0, 1) {
+    const Vec3d from_centre = Vec3d(x) - Vec3d(p.centroid);
+    const Vec3d foot = from_centre - up * view.height;
+    const double rho = length(foot);
+    if (rho > 1e-9 * double(p.radius)) a = foot / rho;
+    b = cross(up, a);
+    disk = SphericalDisk(rho / double(p.radius), view.height / double(p.radius));
+  }
+};
+
+// Lengths in radii of the sphere.
+struct SphereView {
+  Vec3d to_centre;  // in radii
+  double distance;
+  bool is_inside, is_front, is_visible;
+
+  SphereView(const LightPrimitive& p, const Vec3& x)
+      : to_centre((Vec3d(p.centroid) - Vec3d(x)) / double(p.radius)), distance(length(to_centre)) {
+    is_inside = distance <= 1;
+    is_front = is_inside == p.is_inside_out;
+    is_visible = is_front || p.is_two_sided;
+  }
+};
+
+}  // namespace troffer

@@ -1,0 +1,85 @@
+// Uniform sampling of the solid angle of a rectangle, with its inverse.
+// The map is that of [1]; here its trigonometry is done on sines and cosines (one atan2 and one
+// sine and cosine per sample), and the solid angle comes from [2], which stays accurate where the
+// sum of the corner angles cancels.
+// References: [1] Ureña, Fajardo & King, "An Area-Preserving Parametrization for Spherical
+//   Rectangles", EGSR 2013.
+//   [2] Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE TBME 30(2), 1983.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/vec.h"
+
+namespace troffer {
+
+// The rectangle [x0,x1] × [y0,y1] in the plane at height z > 0 over the receiver, which is the
+// origin. Any unit of length; near 1 keeps single precision from overflow.
+template <class T>
+struct SphericalRectangle {
+  T x0, x1, y0, y1, z;
+  T r00, r10, r11, r01;  // distances of the corners
+  T solid_angle;         // sr
+
+  SphericalRectangle(T x0_, T x1_, T y0_, T y1_, T z_) : x0(x0_), x1(x1_), y0(y0_), y1(y1_), z(z_) {
+    r00 = std::sqrt(x0 * x0 + y0 * y0 + z * z);
+    r10 = std::sqrt(x1 * x1 + y0 * y0 + z * z);
+    r11 = std::sqrt(x1 * x1 + y1 * y1 + z * z);
+    r01 = std::sqrt(x0 * x0 + y1 * y1 + z * z);
+    solid_angle = part(x1, r10, r11);
+  }
+
+  // Solid angle of [x0,x] × [y0,y1]; rx0, rx1 are the distances of (x,y0) and (x,y1). Two
+  // triangles, whose tangents of half the solid angle add like the arguments of complex numbers
+  // [2].
+  T part(T x, T rx0, T rx1) const {
+    const T yy0 = y0 * y0 + z * z, yy1 = y1 * y1 + z * z, yy01 = y0 * y1 + z * z;
+    const T det = (x - x0) * (y1 - y0) * z;
+    const T diagonal = x0 * x + yy01;  // (x0,y0)·(x,y1)
+    const T re1 = r00 * rx0 * rx1 + (x0 * x + yy0) * rx1 + (x * x + yy01) * r00 + diagonal * rx0;
+    const T re2 = r00 * rx1 * r01 + diagonal * r01 + (x0 * x + yy1) * r00 + (x0 * x0 + yy01) * rx1;
+    T half = std::atan2(det * (re1 + re2), re1 * re2 - det * det);
+    if (half < 0) half += T(2 * 3.14159265358979323846);
+    return 2 * half;
+  }
+
+  // u in [0,1)² -> (x, y) on the rectangle, density 1 / solid_angle per unit solid angle.
+  Vec2T<T> sample(const Vec2T<T>& u) const {
+    // k = 2 pi minus the corner angles at x0 [1, Eq. 3], as (cos k, sin k)
+    const T h0 = std::sqrt(y0 * y0 + z * z), h1 = std::sqrt(y1 * y1 + z * z);
+    const T k_scale = 1 / ((x0 * x0 + z * z) * h0 * h1);
+    const T cos_k = -(x0 * x0 * y0 * y1 + z * z * r00 * r01) * k_scale;
+    const T sin_k = -z * x0 * (y1 * r00 - y0 * r01) * k_scale;
+    const T part_angle = u.x * solid_angle;
+    const T s = std::sin(part_angle), c = std::cos(part_angle);
+    const T cos_au = c * cos_k - s * sin_k, sin_au = s * cos_k + c * sin_k;
+    // x from f_u = (cos(au) b0 - b1) / sin(au) [1, Eq. 4], x = z / sqrt(f_u² + b0² - 1), where
+    // b0² - 1 = -z² / h0². The rectangle's two long edges may change places: the longer of h0, h1
+    // loses less.
+    const T b0 = -y0 / h0, b1 = y1 / h1;
+    const bool first = h0 >= h1;
+    const T h = first ? h0 : h1;
+    const T d = h * (first ? cos_au * b0 - b1 : cos_au * b1 - b0);
+    const T root =
+        std::sqrt(std::max(d * d - z * z * sin_au * sin_au, std::numeric_limits<T>::min()));
+    const T x = std::clamp(z * sin_au * h * std::copysign(T(1), d) / root, x0, x1);
+    // y: its sine of elevation over the plane (x, z) is uniform [1, Eq. 8]
+    const T dd = x * x + z * z;
+    const T s0 = y0 / std::sqrt(dd + y0 * y0), s1 = y1 / std::sqrt(dd + y1 * y1);
+    const T sv = s0 + u.y * (s1 - s0);
+    const T y = sv * std::sqrt(dd / std::max(1 - sv * sv, std::numeric_limits<T>::min()));
+    return {x, std::clamp(y, y0, y1)};
+  }
+
+  // Inverse of sample. Use it in double precision.
+  Vec2T<T> square_from_point(const Vec2T<T>& p) const {
+    const T dd = p.x * p.x + z * z;
+    const T rx0 = std::sqrt(dd + y0 * y0), rx1 = std::sqrt(dd + y1 * y1);
+    const T s0 = y0 / rx0, s1 = y1 / rx1, sv = p.y / std::sqrt(dd + p.y * p.y);
+    return {part(p.x, rx0, rx1) / solid_angle, (sv - s0) / (s1 - s0)};
+  }
+};
+
+}  // namespace troffer

@@ -1,0 +1,89 @@
+// Uniform sampling of the solid angle of a triangle, with its inverse.
+// The map is Arvo's [1] (first the area swept from edge AB, then the arc from B), but it is solved
+// through tan(solid angle / 2) [2] instead of the angles at the vertices, and carried to
+// barycentric coordinates without intersecting a ray with the plane. No difference of nearly equal
+// angles is formed, so that single precision does for tiny and for edge-on triangles too.
+// References: [1] Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995.
+//   [2] Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE TBME 30(2), 1983.
+#pragma once
+
+#include <cmath>
+
+#include "base/vec.h"
+
+namespace troffer {
+
+// Weights of vertices A, B and C; they are >= 0 and sum to one.
+template <class T>
+struct Barycentric {
+  T a = 0, b = 0, c = 0;
+};
+
+template <class T>
+struct SphericalTriangle {
+  Vec3T<T> a, b, c;                            // unit directions to the vertices
+  Vec3T<T> edge;                               // from A to C, metres
+  T length_a = 0, length_b = 0, length_c = 0;  // distances of the vertices, metres
+  T det = 0;                                   // a · (b × c), taken positive
+  T solid_angle = 0;                           // sr; 0 where degenerate
+
+  SphericalTriangle() = default;
+
+  // Vertices relative to the receiver. `six_volumes` is |A · (B × C)| = twice the triangle's area
+  // times the receiver's height over its plane; the caller knows it better than the vertices do.
+  SphericalTriangle(const Vec3T<T>& va, const Vec3T<T>& vb, const Vec3T<T>& vc, T six_volumes)
+      : edge(vc - va), length_a(length(va)), length_b(length(vb)), length_c(length(vc)) {
+    if (!(six_volumes > 0 && length_a > 0 && length_b > 0 && length_c > 0)) return;
+    a = va / length_a;
+    b = vb / length_b;
+    c = vc / length_c;
+    det = six_volumes / (length_a * length_b * length_c);
+    solid_angle = 2 * std::atan2(det, 1 + dot(a, b) + dot(b, c) + dot(c, a));  // [2] Eq. 8
+  }
+
+  // u in [0,1)² -> point on the triangle, density 1 / solid_angle per unit solid angle.
+  Barycentric<T> sample(const Vec2T<T>& u) const {
+    // C' on the arc AC at angle theta from A, such that ABC' has the part u.x of the area. With
+    // C' = cos(theta) a + sin(theta) p, [2] reads
+    //   tan(part / 2) = sin(theta) d / ((1 + a·b)(1 + cos(theta)) + sin(theta) b·p),
+    // which is linear in tan(theta / 2).
+    const T half = u.x * solid_angle / 2;
+    const T sin_half = std::sin(half), cos_half = std::cos(half);
+    const Vec3T<T> across = edge - a * dot(a, edge);
+    const T across_length = length(across);
+    const T sin_ac = across_length / length_c, cos_ac = dot(a, c);
+    const T numerator = sin_half * length_squared(a + b) / 2;  // 1 + a·b = |a + b|² / 2
+    const T denominator = cos_half * det / sin_ac - sin_half * dot(b, across) / across_length;
+    const T norm = numerator * numerator + denominator * denominator;
+    T sin_theta = 0, cos_theta = 1;
+    if (norm > 0) {
+      sin_theta = 2 * numerator * denominator / norm;
+      cos_theta = (denominator - numerator) * (denominator + numerator) / norm;
+    }
+    const T weight_c = std::max(sin_theta / sin_ac, T(0));
+    const T weight_a = std::max(cos_theta - cos_ac * weight_c, T(0));
+    // On the arc from B to C', 1 - cos of the angle from B is uniform.
+    const T gap = length_squared(b - (a * weight_a + c * weight_c)) / 2;  // 1 - b·C'
+    const T along = std::sqrt(u.y * (2 - u.y * gap) / (2 - gap));
+    const T weight_b = std::max(1 - u.y * gap - along * (1 - gap), T(0));
+    Barycentric<T> w{along * weight_a / length_a, weight_b / length_b, along * weight_c / length_c};
+    const T scale = 1 / (w.a + w.b + w.c);
+    return {w.a * scale, w.b * scale, w.c * scale};
+  }
+
+  // Inverse of sample. Use it in double precision.
+  Vec2T<T> square_from_point(const Barycentric<T>& point) const {
+    const T wa = point.a * length_a, wb = point.b * length_b, wc = point.c * length_c;
+    const Vec3T<T> foot = a * wa + c * wc;
+    const T foot_length = length(foot);
+    if (!(foot_length > 0)) return {0, 0};  // the point is B
+    const Vec3T<T> foot_unit = foot / foot_length;
+    const T part = 2 * std::atan2(det * wc / foot_length,
+                                  1 + dot(a, b) + dot(b, foot_unit) + dot(a, foot_unit));
+    const T gap = length_squared(b - foot_unit);
+    const T gap_point = length_squared(b - normalize(foot + b * wb));
+    return {part / solid_angle, gap > 0 ? gap_point / gap : T(0)};
+  }
+};
+
+}  // namespace troffer
