@@ -46,6 +46,8 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(resol
     if (descriptor_ < 0) fail(errno);
   } else {
     open_temporary();
+    // A file that was private stays private. Where this is not allowed the default will do.
+    if (exists && fchmod(descriptor_, info.st_mode & 0777) != 0) errno = 0;
   }
 }
 

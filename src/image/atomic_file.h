@@ -10,7 +10,8 @@ namespace troffer {
 
 // Writes to a temporary file beside the target; commit() renames it. Without commit() the
 // temporary goes and the target stays as it was. A target that exists and is no regular file (a
-// pipe, /dev/stdout) is written directly; a link keeps pointing to its file, which is replaced.
+// pipe, /dev/stdout) is written directly; a link keeps pointing to its file, which is replaced; a
+// replaced file keeps its permissions.
 // Every failure throws EnvironmentError{"cannot write PATH: reason"}.
 class AtomicFile {
  public:

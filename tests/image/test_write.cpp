@@ -162,6 +162,11 @@ TEST_CASE("AtomicFile replaces whole files only") {
   write_file(folder.path("link.csv"), "through");
   CHECK(std::filesystem::is_symlink(folder.path("link.csv")));
   CHECK(text() == "through");
+  std::filesystem::permissions(
+      path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  write_file(path, "private");
+  CHECK((std::filesystem::status(path).permissions() & std::filesystem::perms::others_read) ==
+        std::filesystem::perms::none);
   CHECK_NOTHROW(write_file("/dev/null", "x"));
   CHECK(std::filesystem::is_character_file("/dev/null"));
   CHECK_NOTHROW(check_can_write(folder.path("new.csv")));
