@@ -38,7 +38,21 @@ constexpr std::array<std::array<uint32_t, 32>, sobol_dimensions> make_matrices()
 
 constexpr auto matrices = make_matrices();
 
+constexpr SobolBytes make_bytes() {
+  SobolBytes bytes{};
+  for (size_t d = 0; d < bytes.size(); ++d)
+    for (size_t b = 0; b < 4; ++b)
+      for (size_t v = 1; v < 256; ++v) {
+        // v without its lowest bit is done already
+        const size_t bit = size_t(std::countr_zero(v));
+        bytes[d][b][v] = bytes[d][b][v & (v - 1)] ^ matrices[d + 2][8 * b + bit];
+      }
+  return bytes;
+}
+
 }  // namespace
+
+constexpr SobolBytes sobol_bytes = make_bytes();
 
 const std::array<std::array<uint32_t, 32>, sobol_dimensions>& sobol_matrices_reversed() {
   return matrices;

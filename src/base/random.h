@@ -84,13 +84,27 @@ constexpr int sobol_dimensions = 5;
 // Sobol direction numbers bit-reversed, so that a point comes out ready for owen_hash_reversed.
 const std::array<std::array<uint32_t, 32>, sobol_dimensions>& sobol_matrices_reversed();
 
+// XOR of the direction numbers of dimensions 2 … 4 over every value of each byte of the index:
+// 12 KiB, which takes the loop over the bits of a scrambled index out of the renderer.
+using SobolBytes = std::array<std::array<std::array<uint32_t, 256>, 4>, sobol_dimensions - 2>;
+extern const SobolBytes sobol_bytes;
+
 // Bit-reversed coordinate `dimension` (0 … 4) of Sobol point `index`.
 inline uint32_t sobol_reversed(uint32_t index, int dimension) {
   if (dimension == 0) return index;  // van der Corput: the reversal undoes itself
-  const auto& matrix = sobol_matrices_reversed()[size_t(dimension)];
-  uint32_t x = 0;
-  for (; index != 0; index &= index - 1) x ^= matrix[size_t(std::countr_zero(index))];
-  return x;
+  if (dimension == 1) {
+    // Direction number k is row k of Pascal's triangle mod 2, so bit j of the result is the parity
+    // of the index bits whose position contains j as a subset: one step per bit of a position.
+    uint32_t x = index;
+    x ^= (x & 0xaaaaaaaau) >> 1;
+    x ^= (x & 0xccccccccu) >> 2;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xff00ff00u) >> 8;
+    return x ^ (x >> 16);
+  }
+  const auto& bytes = sobol_bytes[size_t(dimension - 2)];
+  return bytes[0][index & 255] ^ bytes[1][(index >> 8) & 255] ^ bytes[2][(index >> 16) & 255] ^
+         bytes[3][index >> 24];
 }
 
 // Owen-scrambled Sobol set, padded: dimensions come in groups (a group is one purpose, such as
@@ -103,7 +117,7 @@ class SobolGroup {
       : seed_(hash_combine(stream, purpose)),
         index_(nested_uniform_scramble(index, uint32_t(seed_))) {}
   float get(int dimension) const {
-    const auto scramble = uint32_t(hash_combine(seed_, uint64_t(dimension)));
+    const auto scramble = uint32_t(mix64(seed_ + uint64_t(dimension + 1) * 0x9e3779b97f4a7c15ull));
     return unit_float(
         reverse_bits(owen_hash_reversed(sobol_reversed(index_, dimension), scramble)));
   }
