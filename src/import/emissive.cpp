@@ -7,6 +7,8 @@
 #include <optional>
 #include <tuple>
 
+#include "base/units.h"
+
 namespace troffer {
 
 namespace {
@@ -180,6 +182,20 @@ std::optional<Plane> plane_of(const Mesh& mesh, const Triangles& triangles) {
   return plane;
 }
 
+// Whether every corner turns left and the turns add up to one full circle: then the loop is convex
+// and does not cross itself.
+bool goes_round_once(const std::vector<Vec3d>& loop, const Vec3d& normal) {
+  const size_t n = loop.size();
+  double angle = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const Vec3d in = loop[(i + 1) % n] - loop[i], out = loop[(i + 2) % n] - loop[(i + 1) % n];
+    const double sine = dot(cross(in, out), normal);
+    if (!(sine > 0)) return false;
+    angle += std::atan2(sine, dot(in, out));
+  }
+  return n >= 3 && angle < 3 * pi;
+}
+
 // The corners without those on a straight line between their neighbours; nothing where one turns
 // inwards. One pass with a look back, so that a run of corners on a line goes at once.
 std::optional<std::vector<Vec3d>> convex_outline(const std::vector<Vec3d>& loop,
@@ -205,11 +221,7 @@ std::optional<std::vector<Vec3d>> convex_outline(const std::vector<Vec3d>& loop,
     kept.push_back(next);
   }
   kept.pop_back();  // the start again
-  if (kept.size() < 3) return std::nullopt;
-  for (size_t i = 0; i < kept.size(); ++i)
-    if (turn(kept[i], kept[(i + 1) % kept.size()], kept[(i + 2) % kept.size()]) <= 0)
-      return std::nullopt;
-  return kept;
+  return goes_round_once(kept, plane.normal) ? std::optional(kept) : std::nullopt;
 }
 
 double polygon_area(const std::vector<Vec3d>& corners, const Vec3d& normal) {
@@ -220,8 +232,7 @@ double polygon_area(const std::vector<Vec3d>& corners, const Vec3d& normal) {
 }
 
 // The outline of a component that is one planar convex polygon, counterclockwise seen from the
-// front. The outline's area against the triangles' finds what convex turns alone do not: loops
-// that go round twice, and triangles that overlap.
+// front. The outline's area against the triangles' finds triangles that overlap.
 std::vector<Vec3> polygon_of(const Mesh& mesh, const Component& component) {
   const auto plane = plane_of(mesh, component.triangles);
   if (!plane) return {};

@@ -15,28 +15,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Size of a regular file, or the InputError that says why it has none.
-uint64_t checked_size(const std::string& path, uint64_t max_bytes) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw InputError(path, 0, 0, "no such file");
-  if (error) throw InputError(path, 0, 0, "cannot be read: " + error.message());
-  if (status.type() == fs::file_type::directory)
-    throw InputError(path, 0, 0, "is a folder, not a file");
-  if (status.type() != fs::file_type::regular)
-    throw InputError(path, 0, 0, "is not a regular file");
-  const uint64_t size = fs::file_size(path, error);
-  if (error) throw InputError(path, 0, 0, "cannot be read: " + error.message());
+template <class Bytes>
+Bytes read_whole(const std::string& path, uint64_t max_bytes) {
+  const uint64_t size = size_of_file(path);
   if (size > max_bytes)
     throw InputError(path, 0, 0,
                      "has " + std::to_string(size) + " bytes; at most " +
                          std::to_string(max_bytes) + " are read");
-  return size;
-}
-
-template <class Bytes>
-Bytes read_whole(const std::string& path, uint64_t max_bytes) {
-  const uint64_t size = checked_size(path, max_bytes);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path, 0, 0, std::string("cannot be opened: ") + std::strerror(errno));
@@ -49,6 +34,20 @@ Bytes read_whole(const std::string& path, uint64_t max_bytes) {
 }
 
 }  // namespace
+
+uint64_t size_of_file(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw InputError(path, 0, 0, "no such file");
+  if (error) throw InputError(path, 0, 0, "cannot be read: " + error.message());
+  if (status.type() == fs::file_type::directory)
+    throw InputError(path, 0, 0, "is a folder, not a file");
+  if (status.type() != fs::file_type::regular)
+    throw InputError(path, 0, 0, "is not a regular file");
+  const uint64_t size = fs::file_size(path, error);
+  if (error) throw InputError(path, 0, 0, "cannot be read: " + error.message());
+  return size;
+}
 
 std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes) {
   return read_whole<std::vector<uint8_t>>(path, max_bytes);

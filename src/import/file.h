@@ -10,8 +10,11 @@ namespace troffer {
 
 constexpr uint64_t default_max_file_bytes = uint64_t(4) << 30;
 
-// Contents of a regular file. InputError (line and column 0) where it is missing, unreadable, not a
-// regular file (a folder, a pipe, a device) or larger than max_bytes.
+// Bytes of a regular file. InputError (line and column 0) where it is missing, unreadable or not a
+// regular file (a folder, a pipe, a device).
+uint64_t size_of_file(const std::string& path);
+
+// Contents of a regular file. InputError as above, and where it is larger than max_bytes.
 std::vector<uint8_t> read_file(const std::string& path,
                                uint64_t max_bytes = default_max_file_bytes);
 std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);

@@ -212,7 +212,7 @@ Mesh make_gltf_mesh(const GltfPrimitive& p, const Affine& world, int uv_set, War
   if (p.normals) read_normals(p, world, used, mesh);
   const auto uvs = p.uvs.find(uv_set);
   if (uvs != p.uvs.end()) read_uvs(uvs->second, used, mesh);
-  clean_mesh(mesh, "mesh", warnings);  // replaces normals and (u,v) that are not finite
+  clean_mesh(mesh, warnings);  // replaces normals and (u,v) that are not finite
   return mesh;
 }
 

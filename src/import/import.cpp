@@ -1,0 +1,21 @@
+#include "import/import.h"
+
+#include "base/error.h"
+#include "import/file.h"
+#include "import/gltf.h"
+#include "import/obj.h"
+#include "import/pbrt.h"
+
+namespace troffer {
+
+Scene import_scene(const std::string& path) {
+  const std::string ending = lower_case_ending(path);
+  const bool is_gltf = ending == "gltf" || ending == "glb";
+  if (!is_gltf && ending != "pbrt" && ending != "obj")
+    throw InputError(path, 0, 0, "is no scene: its name should end in .gltf, .glb, .pbrt or .obj");
+  if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
+  if (is_gltf) return import_gltf(path);
+  return ending == "pbrt" ? import_pbrt(path) : import_obj(path);
+}
+
+}  // namespace troffer

@@ -1,0 +1,253 @@
+// Which emissive meshes become polygons.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "base/random.h"
+#include "base/transform.h"
+#include "import/emissive.h"
+
+using namespace troffer;
+
+namespace {
+
+Mesh mesh_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+  Mesh mesh;
+  mesh.positions = positions;
+  mesh.triangles = triangles;
+  return mesh;
+}
+
+Scene emitting(const Mesh& mesh, Rgb radiance = Rgb{1}) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.meshes.push_back(mesh);
+  EmissionSpec spec;
+  spec.name = "lamp";
+  spec.radiance = radiance;
+  add_mesh_emitters(scene, 0, spec);
+  return scene;
+}
+
+Vec3d newell(const std::vector<Vec3>& p) {
+  Vec3d sum;
+  for (size_t i = 2; i < p.size(); ++i)
+    sum += cross(Vec3d(p[i - 1]) - Vec3d(p[0]), Vec3d(p[i]) - Vec3d(p[0])) * 0.5;
+  return sum;
+}
+
+double area(const Mesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    sum += length(newell({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]}));
+  return sum;
+}
+
+// The regular n-gon of radius r as a fan about its centre, which is vertex 0.
+Mesh disk(uint32_t n, float r = 1) {
+  Mesh mesh;
+  mesh.positions.push_back({0, 0, 0});
+  for (uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * pi * i / n;
+    mesh.positions.push_back({r * float(std::cos(a)), r * float(std::sin(a)), 0});
+    mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+  }
+  return mesh;
+}
+
+const Mesh square = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
+
+}  // namespace
+
+TEST_CASE("a square of two triangles is one polygon, counterclockwise from the front") {
+  const Scene scene = emitting(square, Rgb{2});
+  REQUIRE(scene.emitters.size() == 1);
+  const Emitter& e = scene.emitters[0];
+  CHECK(e.shape == EmitterShape::polygon);
+  CHECK(e.name == "lamp");
+  CHECK(e.radiance == Rgb{2});
+  CHECK(e.polygon.size() == 4);
+  CHECK(newell(e.polygon).z == doctest::Approx(1));
+  CHECK(scene.meshes[0].emitters == std::vector<int32_t>{0, 0});
+}
+
+TEST_CASE("vertices of their own for every triangle make no difference") {
+  const Mesh split =
+      mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, -0.0f, -0.0f}, {1, 1, 0}, {0, 1, 0}},
+              {{0, 1, 2}, {3, 4, 5}});
+  const Scene scene = emitting(split);
+  REQUIRE(scene.emitters.size() == 1);
+  CHECK(scene.emitters[0].polygon.size() == 4);
+}
+
+TEST_CASE("polygons of any number of corners, and a grid with collinear ones") {
+  for (const uint32_t n : {3u, 5u, 8u, 33u, 64u}) {
+    const Scene scene = emitting(disk(n));
+    REQUIRE(scene.emitters.size() == 1);
+    CHECK(scene.emitters[0].polygon.size() == n);
+    CHECK(scene.emitters[0].triangles.size() == n);
+  }
+  Mesh grid;
+  const uint32_t n = 20;
+  for (uint32_t j = 0; j <= n; ++j)
+    for (uint32_t i = 0; i <= n; ++i)
+      grid.positions.push_back({0.1f * float(i), 0.3f * float(j), 7});
+  for (uint32_t j = 0; j < n; ++j)
+    for (uint32_t i = 0; i < n; ++i) {
+      const uint32_t a = j * (n + 1) + i, b = a + n + 1;
+      grid.triangles.push_back({a, a + 1, b + 1});
+      grid.triangles.push_back({a, b + 1, b});
+    }
+  const Scene scene = emitting(grid);
+  REQUIRE(scene.emitters.size() == 1);
+  CHECK(scene.emitters[0].polygon.size() == 4);
+  CHECK(newell(scene.emitters[0].polygon).z == doctest::Approx(2.0 * 6.0));
+}
+
+TEST_CASE("property: transformed polygons keep their corners, front and area") {
+  Random random(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    const uint32_t n = 3 + random.next_u32() % 20;
+    Mesh mesh = disk(n, 0.05f + random.next_float());
+    const Affine move =
+        Affine::translate({10 * random.next_double(), -5 * random.next_double(), 3}) *
+        Affine::rotate(6 * random.next_double(),
+                       {random.next_double() - 0.5, random.next_double() - 0.5, 0.3});
+    for (Vec3& p : mesh.positions) p = Vec3(move.point(Vec3d(p)));
+    const bool is_flipped = trial % 2 == 1;
+    if (is_flipped)
+      for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    const Scene scene = emitting(mesh);
+    REQUIRE(scene.emitters.size() == 1);
+    const Emitter& e = scene.emitters[0];
+    REQUIRE(e.shape == EmitterShape::polygon);
+    CHECK(e.polygon.size() == n);
+    const Vec3d normal = newell(e.polygon);
+    CHECK(length(normal) == doctest::Approx(area(mesh)).epsilon(1e-4));
+    CHECK(dot(normal, move.vector({0, 0, is_flipped ? -1.0 : 1.0})) > 0.99 * length(normal));
+  }
+}
+
+TEST_CASE("what is no planar convex polygon stays a mesh") {
+  const auto is_mesh = [](const Mesh& mesh) {
+    const Scene scene = emitting(mesh);
+    return scene.emitters.size() == 1 && scene.emitters[0].shape == EmitterShape::mesh &&
+           scene.emitters[0].triangles.size() == mesh.triangles.size() &&
+           scene.emitters[0].polygon.empty();
+  };
+  Mesh bent = square;
+  bent.positions[2].z = 0.01f;
+  CHECK(is_mesh(bent));
+  Mesh dart = square;  // a reflex corner
+  dart.positions[2] = {0.2f, 0.2f, 0};
+  dart.triangles = {{0, 1, 2}, {0, 2, 3}};
+  CHECK(is_mesh(dart));
+  Mesh back_to_back = square;
+  back_to_back.triangles = {{0, 1, 2}, {0, 2, 1}};
+  CHECK(is_mesh(back_to_back));
+  Mesh inconsistent = square;
+  inconsistent.triangles = {{0, 1, 2}, {0, 3, 2}};
+  CHECK(is_mesh(inconsistent));
+  Mesh twice = square;
+  twice.triangles.push_back({0, 1, 2});
+  CHECK(is_mesh(twice));
+  CHECK(is_mesh(disk(65)));  // more corners than a polygon may have
+  // A fan that goes round twice: convex turns, but overlapping triangles.
+  Mesh winding = disk(5);
+  winding.triangles.clear();
+  for (uint32_t i = 0; i < 5; ++i) winding.triangles.push_back({0, 1 + i, 1 + (i + 2) % 5});
+  CHECK(is_mesh(winding));
+  // A square ring: two boundary loops.
+  Mesh ring;
+  for (const float r : {2.0f, 1.0f})
+    for (const Vec3 p : {Vec3{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}})
+      ring.positions.push_back(p * r);
+  for (uint32_t i = 0; i < 4; ++i) {
+    const uint32_t j = (i + 1) % 4;
+    ring.triangles.push_back({i, j, 4 + j});
+    ring.triangles.push_back({i, 4 + j, 4 + i});
+  }
+  CHECK(is_mesh(ring));
+}
+
+TEST_CASE("separate components become separate sources, the rest one mesh source") {
+  Mesh mesh = square;
+  for (const Vec3& p : square.positions) mesh.positions.push_back(p + Vec3{0, 0, 5});
+  mesh.triangles.push_back({4, 5, 6});
+  mesh.triangles.push_back({4, 6, 7});
+  // A corner bent off the plane.
+  for (const Vec3& p : square.positions) mesh.positions.push_back(p + Vec3{9, 0, 0});
+  mesh.positions.back().z = 1;
+  mesh.triangles.push_back({8, 9, 10});
+  mesh.triangles.push_back({8, 10, 11});
+  // Touches the first square at one corner only.
+  mesh.positions.insert(mesh.positions.end(), {{1, 1, 0}, {2, 1, 0}, {2, 2, 0}});
+  mesh.triangles.push_back({12, 13, 14});
+  const Scene scene = emitting(mesh);
+  REQUIRE(scene.emitters.size() == 4);
+  CHECK(scene.emitters[0].polygon.size() == 4);
+  CHECK(scene.emitters[1].polygon.size() == 4);
+  CHECK(scene.emitters[2].polygon.size() == 3);
+  CHECK(scene.emitters[3].shape == EmitterShape::mesh);
+  CHECK(scene.meshes[0].emitters == std::vector<int32_t>{0, 0, 1, 1, 3, 3, 2});
+}
+
+TEST_CASE("no area, no emission, constant textures") {
+  Mesh flat = square;
+  for (Vec3& p : flat.positions) p.y = 0;
+  Scene scene = emitting(flat);
+  CHECK(scene.emitters.empty());
+  CHECK(scene.meshes[0].emitters.empty());
+  CHECK(scene.warnings.total() == 1);
+  CHECK(emitting(square, Rgb{0}).emitters.empty());
+  CHECK(emitting(Mesh{}).emitters.empty());
+
+  scene = Scene{};
+  scene.meshes.push_back(square);
+  Texture half;
+  half.value = Rgb{0.5f};
+  scene.textures.push_back(half);
+  add_mesh_emitters(scene, 0, {"x", Rgb{4}, 0, true});
+  REQUIRE(scene.emitters.size() == 1);
+  CHECK(scene.emitters[0].shape == EmitterShape::polygon);
+  CHECK(scene.emitters[0].radiance == Rgb{2});
+  CHECK(scene.emitters[0].texture == no_texture);
+  CHECK(scene.emitters[0].is_two_sided);
+}
+
+TEST_CASE("large emissive meshes take near-linear time, and polygons are limited") {
+  Mesh many;
+  for (uint32_t i = 0; i < 3000; ++i) {
+    const Vec3 at{float(i % 60) * 2, float(i / 60) * 2, 0};
+    const auto first = uint32_t(many.positions.size());
+    for (const Vec3& p : square.positions) many.positions.push_back(p + at);
+    many.triangles.push_back({first, first + 1, first + 2});
+    many.triangles.push_back({first, first + 2, first + 3});
+  }
+  const Scene limited = emitting(many);
+  CHECK(limited.emitters.size() == 1001);
+  CHECK(limited.emitters.back().shape == EmitterShape::mesh);
+  CHECK(limited.emitters.back().triangles.size() == 4000);
+
+  // A flat disk of many triangles with a ragged rim, and a bumpy grid.
+  Mesh grid;
+  const uint32_t n = 250;
+  Random random(3);
+  for (uint32_t j = 0; j <= n; ++j)
+    for (uint32_t i = 0; i <= n; ++i)
+      grid.positions.push_back({float(i), float(j), random.next_float()});
+  for (uint32_t j = 0; j < n; ++j)
+    for (uint32_t i = 0; i < n; ++i) {
+      const uint32_t a = j * (n + 1) + i, b = a + n + 1;
+      grid.triangles.push_back({a, a + 1, b + 1});
+      grid.triangles.push_back({a, b + 1, b});
+    }
+  const auto start = std::chrono::steady_clock::now();
+  const Scene bumpy = emitting(grid);
+  const Scene fan = emitting(disk(100'000));
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  CHECK(bumpy.emitters.size() == 1);
+  CHECK(fan.emitters.size() == 1);
+  CHECK(seconds.count() < 5);
+}

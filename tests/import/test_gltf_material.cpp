@@ -1,0 +1,180 @@
+// glTF materials and textures.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "import/gltf_builder.h"
+
+using namespace troffer;
+
+namespace {
+
+Scene with_material(const std::string& material, const std::string& more = "") {
+  return import_text(square_scene("[{'mesh':0}]", "'materials':[" + material + "]" + more));
+}
+const Material& only_material(const Scene& scene) {
+  REQUIRE(scene.materials.size() == 1);
+  return scene.materials[0];
+}
+
+}  // namespace
+
+TEST_CASE("the default material is a rough white metal, as glTF says") {
+  const Scene scene = with_material("{}");
+  const Material& m = only_material(scene);
+  CHECK(m.kind == MaterialKind::metallic_roughness);
+  CHECK(m.roughness_meaning == RoughnessMeaning::alpha_is_square);
+  CHECK(m.base_color.value == Rgb{1});
+  CHECK(m.metallic.value == 1);
+  CHECK(m.roughness.value == 1);
+  CHECK(m.ior == 1.5f);
+}
+
+TEST_CASE("factors of metallic-roughness, specular, ior, transmission and volume") {
+  const Scene scene = with_material(
+      "{'name':'m','pbrMetallicRoughness':{'baseColorFactor':[0.1,0.2,0.3,0.4],"
+      "'metallicFactor':0.25,'roughnessFactor':0.75},'extensions':{"
+      "'KHR_materials_specular':{'specularFactor':0.5,'specularColorFactor':[1,2,3]},"
+      "'KHR_materials_ior':{'ior':1.3},'KHR_materials_transmission':{'transmissionFactor':0.9},"
+      "'KHR_materials_volume':{'thicknessFactor':0.1}}}");
+  const Material& m = only_material(scene);
+  CHECK(m.name == "m");
+  CHECK(m.base_color.value == Rgb{0.1f, 0.2f, 0.3f});
+  CHECK_FALSE(m.is_alpha_masked);
+  CHECK(m.metallic.value == 0.25f);
+  CHECK(m.roughness.value == 0.75f);
+  CHECK(m.specular.value == 0.5f);
+  CHECK(m.specular_color.value == Rgb{1, 2, 3});
+  CHECK(m.ior == 1.3f);
+  CHECK(m.transmission.value == 0.9f);
+  CHECK_FALSE(m.is_thin);
+  const Scene thin =
+      with_material("{'extensions':{'KHR_materials_transmission':{'transmissionFactor':1}}}");
+  CHECK(only_material(thin).is_thin);
+}
+
+TEST_CASE("without metal, specular and transmission a material is diffuse") {
+  const std::string no_metal = "'pbrMetallicRoughness':{'metallicFactor':0}";
+  const std::string no_specular = "'KHR_materials_specular':{'specularFactor':0}";
+  CHECK(
+      only_material(with_material("{" + no_metal + ",'extensions':{" + no_specular + "}}")).kind ==
+      MaterialKind::diffuse);
+  CHECK(only_material(with_material("{" + no_metal + "}")).kind ==
+        MaterialKind::metallic_roughness);
+  CHECK(only_material(with_material("{'extensions':{" + no_specular + "}}")).kind ==
+        MaterialKind::metallic_roughness);
+  CHECK(only_material(with_material("{" + no_metal + ",'extensions':{" + no_specular +
+                                    ",'KHR_materials_transmission':{'transmissionFactor':0.5}}}"))
+            .kind == MaterialKind::metallic_roughness);
+}
+
+TEST_CASE("alpha modes") {
+  const Scene mask = with_material("{'alphaMode':'MASK','alphaCutoff':0.25}");
+  CHECK(only_material(mask).is_alpha_masked);
+  CHECK(only_material(mask).alpha_cutoff == 0.25f);
+  const Scene blend =
+      with_material("{'alphaMode':'BLEND','pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.3]}}");
+  CHECK(only_material(blend).is_alpha_masked);
+  CHECK(only_material(blend).alpha_cutoff == 0.5f);
+  CHECK(only_material(blend).alpha.value == 0.3f);
+  CHECK(has_warning(blend, "BLEND"));
+  const Scene opaque_blend = with_material("{'alphaMode':'BLEND'}");
+  CHECK_FALSE(only_material(opaque_blend).is_alpha_masked);
+  error_of(square_scene("[{'mesh':0}]", "'materials':[{'alphaMode':'GLASS'}]"));
+}
+
+TEST_CASE("negative and odd emission") {
+  error_of(square_scene("[{'mesh':0}]", "'materials':[{'emissiveFactor':[1,-1,1]}]"));
+  error_of(square_scene("[{'mesh':0}]",
+                        "'materials':[{'emissiveFactor':[1,1,1],'extensions':{"
+                        "'KHR_materials_emissive_strength':{'emissiveStrength':1e300}}}]"));
+  CHECK(with_material("{'emissiveFactor':[0,0,0]}").emitters.empty());
+}
+
+TEST_CASE("textures: sampler, transform, colour or data, and one decoding for all") {
+  const TempFolder folder;
+  // A PGM-like format would not do: the smallest image that is read and easy to write is PFM.
+  folder.write("a.pfm", "PF\n2 1\n-1.0\n" + bytes_of<float>({1, 0, 0, 0, 0, 1}));
+  const std::string path = folder.write(
+      "scene.gltf",
+      square_scene(
+          "[{'mesh':0}]",
+          "'images':[{'uri':'a.pfm'}],'samplers':[{'wrapS':33071,'wrapT':33648,"
+          "'magFilter':9728}],'textures':[{'source':0,'sampler':0},{'source':0}],'materials':["
+          "{'pbrMetallicRoughness':{'baseColorTexture':{'index':0,'extensions':{"
+          "'KHR_texture_transform':{'offset':[0.5,0.25],'scale':[2,3],'rotation':1}}},"
+          "'metallicRoughnessTexture':{'index':1}},'normalTexture':{'index':1,'scale':0.5}}]"));
+  const Scene scene = import_gltf(path);
+  const Material& m = only_material(scene);
+  REQUIRE(scene.textures.size() == 2);  // the base colour's, and one for both kinds of data
+  REQUIRE(m.base_color.texture >= 0);
+  const Texture& t = scene.textures[size_t(m.base_color.texture)];
+  CHECK(t.kind == TextureKind::image);
+  CHECK(t.width == 2);
+  CHECK(t.height == 1);
+  CHECK(t.wrap_u == WrapMode::clamp);
+  CHECK(t.wrap_v == WrapMode::mirror);
+  CHECK_FALSE(t.is_filtered);
+  CHECK(t.uv_offset == Vec2{0.5f, 0.25f});
+  CHECK(t.uv_scale == Vec2{2, 3});
+  CHECK(t.uv_rotation_rad == 1);
+  CHECK(m.roughness.texture == m.metallic.texture);
+  CHECK(m.roughness.channel == 1);
+  CHECK(m.metallic.channel == 2);
+  CHECK(m.normal_texture == m.roughness.texture);
+  CHECK(m.normal_scale == 0.5f);
+  const Texture& data = scene.textures[size_t(m.normal_texture)];
+  CHECK_FALSE(data.is_srgb);
+  CHECK(data.is_filtered);
+  CHECK(data.wrap_u == WrapMode::repeat);
+}
+
+TEST_CASE("missing and broken images are warnings; the factor alone stands") {
+  for (const std::string image : {"{'uri':'nothing.png'}", "{'uri':'data:image/png;base64,AAAA'}",
+                                  "{'bufferView':1}", "{}"}) {
+    CAPTURE(image);
+    const Scene scene = with_material(
+        "{'pbrMetallicRoughness':{'baseColorTexture':{'index':0}},"
+        "'normalTexture':{'index':0}}",
+        ",'images':[" + image + "],'textures':[{'source':0}]");
+    CHECK(only_material(scene).base_color.texture == no_texture);
+    CHECK(only_material(scene).normal_texture == no_texture);
+    CHECK(has_warning(scene, "white texture"));
+  }
+  const Scene none = with_material("{'normalTexture':{'index':0}}", ",'textures':[{}]");
+  CHECK(has_warning(none, "no PNG or JPEG"));
+  error_of(square_scene("[{'mesh':0}]",
+                        "'materials':[{'normalTexture':{'index':0}}],'textures':[{'source':0}],"
+                        "'images':[{'uri':'../a.png'}]"));
+}
+
+TEST_CASE("an emissive texture keeps the mesh a mesh source") {
+  const TempFolder folder;
+  folder.write("a.pfm", "PF\n2 1\n-1.0\n" + bytes_of<float>({1, 0, 0, 0, 0, 1}));
+  const Scene scene = import_gltf(folder.write(
+      "scene.gltf", square_scene("[{'mesh':0}]",
+                                 "'images':[{'uri':'a.pfm'}],'textures':[{'source':0}],"
+                                 "'materials':[{'emissiveFactor':[1,1,1],'emissiveTexture':"
+                                 "{'index':0}}]")));
+  REQUIRE(scene.emitters.size() == 1);
+  CHECK(scene.emitters[0].shape == EmitterShape::mesh);
+  CHECK(scene.emitters[0].texture == 0);
+  CHECK(scene.meshes[0].uvs.size() == 4);
+}
+
+TEST_CASE("the set of texture coordinates is the base colour's") {
+  const TempFolder folder;
+  folder.write("a.pfm", "PF\n2 1\n-1.0\n" + bytes_of<float>({1, 0, 0, 0, 0, 1}));
+  std::string text =
+      square_scene("[{'mesh':0}]",
+                   "'images':[{'uri':'a.pfm'}],'textures':[{'source':0}],'materials':[{"
+                   "'pbrMetallicRoughness':{'baseColorTexture':{'index':0,'texCoord':1}},"
+                   "'normalTexture':{'index':0}}]");
+  Scene scene = import_gltf(folder.write("scene.gltf", text));
+  CHECK(has_warning(scene, "different sets"));
+  CHECK(has_warning(scene, "TEXCOORD_1"));
+  CHECK(scene.meshes[0].uvs.empty());
+  text.replace(text.find("TEXCOORD_0"), 10, "TEXCOORD_1");
+  scene = import_gltf(folder.write("scene.gltf", text));
+  CHECK(scene.meshes[0].uvs.size() == 4);
+}
