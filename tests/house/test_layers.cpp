@@ -1,0 +1,110 @@
+// layers.txt against the real #includes: a room may include only the rooms its row names, and only
+// rooms of rows above; external libraries come in through one door each.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path root = TROFFER_SOURCE_DIR;
+
+struct Layers {
+  std::vector<std::string> order;
+  std::map<std::string, std::set<std::string>> uses;
+};
+
+Layers read_layers() {
+  Layers layers;
+  std::ifstream in(root / "layers.txt");
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const size_t colon = line.find(':');
+    REQUIRE(colon != std::string::npos);
+    const std::string room = line.substr(0, colon);
+    layers.order.push_back(room);
+    std::istringstream rest(line.substr(colon + 1));
+    layers.uses[room];
+    for (std::string use; rest >> use;) layers.uses[room].insert(use);
+  }
+  return layers;
+}
+
+// Included names of a file: {"base/vec.h", …}, quoted and angled alike.
+std::vector<std::string> includes_of(const fs::path& file) {
+  std::vector<std::string> names;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("#include", 0) != 0) continue;
+    const size_t open = line.find_first_of("\"<");
+    const size_t close = line.find_first_of("\">", open + 1);
+    if (open != std::string::npos && close != std::string::npos)
+      names.push_back(line.substr(open + 1, close - open - 1));
+  }
+  return names;
+}
+
+std::vector<fs::path> files_of(const std::string& room) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(root / "src" / room))
+    if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
+      files.push_back(entry.path());
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("every room of src/ has a row and every row a room") {
+  const Layers layers = read_layers();
+  std::set<std::string> rooms;
+  for (const auto& entry : fs::directory_iterator(root / "src"))
+    if (entry.is_directory()) rooms.insert(entry.path().filename().string());
+  CHECK(rooms == std::set<std::string>(layers.order.begin(), layers.order.end()));
+}
+
+TEST_CASE("stairs go one way") {
+  const Layers layers = read_layers();
+  std::set<std::string> below;
+  for (const std::string& room : layers.order) {
+    for (const std::string& use : layers.uses.at(room))
+      CHECK_MESSAGE(below.count(use) == 1, room, " uses ", use, ", which does not stand below it");
+    below.insert(room);
+  }
+}
+
+TEST_CASE("rooms include only what their rows name") {
+  const Layers layers = read_layers();
+  size_t checked = 0;
+  for (const std::string& room : layers.order)
+    for (const fs::path& file : files_of(room))
+      for (const std::string& name : includes_of(file)) {
+        const std::string other = name.substr(0, name.find('/'));
+        if (layers.uses.count(other) == 0 || name.find('/') == std::string::npos) continue;
+        ++checked;
+        const bool is_allowed = other == room || layers.uses.at(room).count(other) == 1;
+        CHECK_MESSAGE(is_allowed, file.string(), " includes ", name);
+      }
+  CHECK(checked > 100);
+}
+
+TEST_CASE("one door per dependency") {
+  const std::map<std::string, std::set<std::string>> doors{
+      {"embree3/", {"trace"}}, {"tbb/", {"base"}},       {"OpenEXR/", {"image"}},
+      {"Imf", {"image"}},      {"png.h", {"image"}},     {"jpeglib.h", {"image"}},
+      {"CLI/", {"app"}},       {"nlohmann/", {"import", "app"}}};
+  const Layers layers = read_layers();
+  for (const std::string& room : layers.order)
+    for (const fs::path& file : files_of(room))
+      for (const std::string& name : includes_of(file))
+        for (const auto& [prefix, rooms] : doors)
+          if (name.rfind(prefix, 0) == 0)
+            CHECK_MESSAGE(rooms.count(room) == 1, file.string(), " includes ", name);
+}

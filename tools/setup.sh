@@ -1,0 +1,34 @@
+# Sourced by ./demo and ./check: makes sure that the Debian packages troffer is built from are
+# installed. As root, or with sudo that asks for no password, it installs what is missing; else it
+# names the command and ends.
+
+troffer_packages="
+  g++ cmake ninja-build
+  libembree-dev libtbb-dev libopenexr-dev libpng-dev libjpeg-dev zlib1g-dev
+  libfmt-dev libcli11-dev nlohmann-json3-dev
+  doctest-dev libbenchmark-dev
+"
+
+is_installed() {
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
+setup() {
+  missing=""
+  for package in $troffer_packages; do
+    is_installed "$package" || missing="$missing $package"
+  done
+  [ -z "$missing" ] && return 0
+  if [ "$(id -u)" = 0 ]; then
+    as_root=""
+  elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
+    as_root="sudo"
+  else
+    echo "These Debian packages are missing:$missing" >&2
+    echo "Install them with:  apt-get install$missing" >&2
+    return 1
+  fi
+  echo "Installing:$missing"
+  $as_root apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -qq --no-install-recommends $missing >/dev/null
+}
