@@ -27,6 +27,11 @@
 // - Thin sheets: R = 2r / (1 + r), the rest goes straight on. Rough thin sheets transmit GGX's
 //   reflection lobe mirrored to the other side, as glTF's viewers do, with R's roughness.
 //
+// How well energy is kept, measured at cosines of 0.02 and more and all alpha (the white furnace
+// tests): white opaque surfaces reflect 0.9985 to 1.001 of the light; lossless glass sends on 0.998
+// to 1.001 seen from the thinner side, 0.995 to 1.006 from the denser, where the kink of total
+// reflection limits the tables.
+//
 // References: [1] Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH
 //   2017 course. [2] Wolff, "Diffuse-Reflectance Model for Smooth Dielectric Surfaces", JOSA A
 //   11(11), 1994 (the geometric series below an interface). [3] Walter et al., "Microfacet Models
