@@ -68,7 +68,7 @@ class ObjReader {
   std::vector<First> firsts_;
   uint32_t stamp_ = 0;
   size_t triangles_ = 0, emitters_ = 0;
-  size_t colored_vertices_ = 0, points_and_lines_ = 0, short_faces_ = 0;
+  size_t colored_vertices_ = 0, points_and_lines_ = 0, short_faces_ = 0, dangling_ = 0;
   std::vector<Corner> corners_;
   std::vector<Vec3> points_;
   std::vector<Triangle> polygon_;
@@ -80,7 +80,7 @@ class ObjReader {
   void read_statement(std::string_view keyword);
   void read_vertex();
   void read_face();
-  uint32_t read_index(size_t count, const char* what);
+  uint32_t read_index(size_t count, const char* what, bool is_needed);
   bool read_corner();
   void select_part();
   uint32_t vertex_of(const Corner& corner);
@@ -146,9 +146,14 @@ void ObjReader::read_vertex() {
 }
 
 // An index counts from 1, or backwards from -1; the result from 0.
-uint32_t ObjReader::read_index(size_t count, const char* what) {
+uint32_t ObjReader::read_index(size_t count, const char* what, bool is_needed) {
   int index = 0;
   if (!lines_.integer(index)) lines_.fail(std::string("expected the index of a ") + what);
+  // Some files name normals or texture coordinates of which they hold none.
+  if (count == 0 && !is_needed) {
+    ++dangling_;
+    return nothing;
+  }
   const int64_t i = index < 0 ? int64_t(count) + index : int64_t(index) - 1;
   if (index == 0 || i < 0 || i >= int64_t(count))
     lines_.fail(std::string("index ") + std::to_string(index) + " of a " + what +
@@ -160,17 +165,17 @@ uint32_t ObjReader::read_index(size_t count, const char* what) {
 bool ObjReader::read_corner() {
   if (!lines_.has_word()) return false;
   Corner corner;
-  corner.position = read_index(positions_.size(), "vertex");
+  corner.position = read_index(positions_.size(), "vertex", true);
   if (lines_.peek() == '/') {
     lines_.take();
-    if (lines_.peek() != '/') corner.uv = read_index(uvs_.size(), "texture coordinate");
+    if (lines_.peek() != '/') corner.uv = read_index(uvs_.size(), "texture coordinate", false);
     if (lines_.peek() == '/') {
       lines_.take();
-      corner.normal = read_index(normals_.size(), "normal");
+      corner.normal = read_index(normals_.size(), "normal", false);
     }
   }
   const char c = lines_.peek();
-  if (c != '\0' && c != ' ' && c != '\t' && c != '#') lines_.fail("malformed corner of a face");
+  if (c != '\0' && c != ' ' && c != '\t') lines_.fail("malformed corner of a face");
   corners_.push_back(corner);
   return true;
 }
@@ -312,6 +317,9 @@ void ObjReader::finish() {
     scene_.warnings.add("OBJ: points and lines are left out", points_and_lines_);
   if (short_faces_ > 0)
     scene_.warnings.add("OBJ: faces of fewer than three vertices are left out", short_faces_);
+  if (dangling_ > 0)
+    scene_.warnings.add("OBJ: faces name normals or texture coordinates, but there are none",
+                        dangling_);
   positions_ = {};
   normals_ = {};
   uvs_ = {};

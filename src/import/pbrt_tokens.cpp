@@ -35,7 +35,11 @@ bool parse_number(std::string_view text, double& value) {
 }  // namespace
 
 void fail_at(const PbrtPlace& place, const std::string& what) {
-  throw InputError(place.file ? *place.file : std::string(), place.line, place.column, what);
+  // Names in a file may contain anything, a message is one line.
+  std::string line = what;
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 32) c = '?';
+  throw InputError(place.file ? *place.file : std::string(), place.line, place.column, line);
 }
 
 std::string at_place(const PbrtPlace& place, const std::string& what) {

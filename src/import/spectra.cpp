@@ -45,7 +45,10 @@ Vec3d xyz_integral(const Spectrum& spectrum) {
 }
 
 Rgb with_unit_luminance(const Vec3d& xyz) {
-  return xyz.y > 0 ? not_negative(rgb_from_xyz(xyz / xyz.y)) : Rgb{0};
+  if (!(xyz.y > 0)) return Rgb{0};
+  // Saturated colours lie outside sRGB; what is cut off there must not change the luminance.
+  const Rgb color = not_negative(rgb_from_xyz(xyz / xyz.y));
+  return color / luminance(color);
 }
 
 Rgb from_chromaticity(double x, double y) {

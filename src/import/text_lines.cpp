@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "base/error.h"
 
@@ -87,9 +88,12 @@ float TextLines::number() {
   if (begin < end_ && *begin == '+' && begin + 1 < end_ && begin[1] != '-') ++begin;
   float value = 0;
   const auto result = std::from_chars(begin, end_, value);
-  const bool is_whole = result.ptr == end_ || is_blank(*result.ptr) || *result.ptr == '#';
+  const bool is_whole = result.ptr == end_ || is_blank(*result.ptr);
   if (result.ec == std::errc::invalid_argument || !is_whole) {
     const std::string_view found = word();
+    // What some C libraries print for NaN and infinity: 1.#IND, -1.#INF.
+    if (found.substr(0, 4).find("1.#") != std::string_view::npos)
+      return std::numeric_limits<float>::quiet_NaN();
     fail(found.empty() ? "a number is missing"
                        : "'" + std::string(found.substr(0, 40)) + "' is not a number");
   }

@@ -16,7 +16,7 @@ class TextLines {
   // Goes to the next line; false at the end.
   bool next_line();
 
-  // The next word of the line, "" at its end. '#' begins a comment.
+  // The next word of the line, "" at its end. A word that begins with '#' begins a comment.
   std::string_view word();
   // All that is left of the line, without blanks around it; '#' counts as text within it.
   std::string_view rest();
