@@ -16,7 +16,7 @@ bool finish(const LightPrimitive& p, const PlanarView& view, const Vec3& to_poin
             EmitterSample& out) {
   out.distance = length(to_point);
   if (!(out.distance > 0)) return false;
-  out.wi = to_point / out.distance;
+  out.wi = to_point * (1 / out.distance);
   out.normal = Vec3(view.is_front ? p.normal : -p.normal);
   out.is_front = view.is_front;
   return out.pdf_solid_angle > 0 && std::isfinite(out.pdf_solid_angle);
@@ -116,6 +116,17 @@ bool sample_fan_solid_angle(const LightPrimitive& p, const PlanarView& view, con
     t = fan_triangle<T>(p, x, view.height, 0);
     if (!(t.solid_angle > 0)) return false;
     out.pdf_solid_angle = 1 / float(t.solid_angle);
+  } else if (p.vertex_count == 4) {
+    t = fan_triangle<T>(p, x, view.height, 0);
+    const SphericalTriangle<T> second = fan_triangle<T>(p, x, view.height, 1);
+    const float total = float(t.solid_angle) + float(second.solid_angle);
+    if (!(total > 0)) return false;
+    out.pdf_solid_angle = 1 / total;
+    const float target = u.x * total;
+    i = target < float(t.solid_angle) || !(second.solid_angle > 0) ? 0 : 1;
+    if (i == 1) t = second;
+    u.x = (i == 0 ? target : target - (total - float(t.solid_angle))) / float(t.solid_angle);
+    u.x = std::min(std::max(u.x, 0.0f), one_minus_epsilon);
   } else {
     const auto weight = [&](uint32_t k) {
       return float(fan_triangle<T>(p, x, view.height, k).solid_angle);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "emitter/arctangent.h"
 
 namespace troffer {
 
@@ -15,7 +16,7 @@ double edge_share(const Vec3d& v, const Vec3d& w, const Vec3d& n) {
   const Vec3d c = cross(v, w - v);
   const double sine = length(c);
   if (!(sine > 0)) return 0;
-  return dot(n, c) / sine * std::atan2(sine, dot(v, w));
+  return dot(n, c) / sine * upper_angle(sine, dot(v, w));
 }
 
 // Lambert's sum over vertex(0) … vertex(count - 1), relative to the receiver, clipped to the

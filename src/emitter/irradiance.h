@@ -45,7 +45,7 @@ double irradiance(const LightPrimitives& primitives, uint32_t emitter, const Vec
                   const Vec3d& n);
 
 // The part `cell` of a parallelogram source, for the leaves of a bintree: made to be called often.
-// Relative error under 2e-6, except where the horizon leaves a sliver.
+// Relative error under 3e-6, except where the horizon leaves a sliver.
 float cell_irradiance(const Parallelogram& source, const SourceCell& cell, const Vec3& x,
                       const Vec3& n, Sides sides = Sides::front);
 

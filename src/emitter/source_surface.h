@@ -54,7 +54,7 @@ class SourceSurface {
 
   SourcePoint point_at(const Vec2& uv) const;
   // Inverse: (u,v) of a point on the source. A mesh needs the triangle it lies in (index into the
-  // mesh's triangles); -1 searches for the nearest in the plane sense, which costs time.
+  // mesh's triangles); -1 searches for the piece that holds the point best, which costs time.
   Vec2 uv_at(const Vec3& point, int32_t triangle = -1) const;
 
   bool is_parallelogram() const { return is_parallelogram_; }

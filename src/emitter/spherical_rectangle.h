@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "base/vec.h"
+#include "emitter/arctangent.h"
 
 namespace troffer {
 
@@ -40,9 +41,7 @@ struct SphericalRectangle {
     const T diagonal = x0 * x + yy01;  // (x0,y0)·(x,y1)
     const T re1 = r00 * rx0 * rx1 + (x0 * x + yy0) * rx1 + (x * x + yy01) * r00 + diagonal * rx0;
     const T re2 = r00 * rx1 * r01 + diagonal * r01 + (x0 * x + yy1) * r00 + (x0 * x0 + yy01) * rx1;
-    T half = std::atan2(det * (re1 + re2), re1 * re2 - det * det);
-    if (half < 0) half += T(2 * 3.14159265358979323846);
-    return 2 * half;
+    return 2 * upper_angle(std::max(det * (re1 + re2), T(0)), re1 * re2 - det * det);
   }
 
   // u in [0,1)² -> (x, y) on the rectangle, density 1 / solid_angle per unit solid angle.
@@ -59,18 +58,18 @@ struct SphericalRectangle {
     // b0² - 1 = -z² / h0². The rectangle's two long edges may change places: the longer of h0, h1
     // loses less.
     const T b0 = -y0 / h0, b1 = y1 / h1;
-    const bool first = h0 >= h1;
-    const T h = first ? h0 : h1;
-    const T d = h * (first ? cos_au * b0 - b1 : cos_au * b1 - b0);
+    const T first = T(h0 >= h1);  // 0 or 1
+    const T h = std::max(h0, h1);
+    const T d = h * (first * (cos_au * b0 - b1) + (1 - first) * (cos_au * b1 - b0));
     const T root =
         std::sqrt(std::max(d * d - z * z * sin_au * sin_au, std::numeric_limits<T>::min()));
-    const T x = std::clamp(z * sin_au * h * std::copysign(T(1), d) / root, x0, x1);
+    const T x = std::min(std::max(z * sin_au * h * std::copysign(T(1), d) / root, x0), x1);
     // y: its sine of elevation over the plane (x, z) is uniform [1, Eq. 8]
     const T dd = x * x + z * z;
     const T s0 = y0 / std::sqrt(dd + y0 * y0), s1 = y1 / std::sqrt(dd + y1 * y1);
     const T sv = s0 + u.y * (s1 - s0);
     const T y = sv * std::sqrt(dd / std::max(1 - sv * sv, std::numeric_limits<T>::min()));
-    return {x, std::clamp(y, y0, y1)};
+    return {x, std::min(std::max(y, y0), y1)};
   }
 
   // Inverse of sample. Use it in double precision.

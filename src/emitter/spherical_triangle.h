@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "base/vec.h"
+#include "emitter/arctangent.h"
 
 namespace troffer {
 
@@ -34,11 +35,12 @@ struct SphericalTriangle {
   SphericalTriangle(const Vec3T<T>& va, const Vec3T<T>& vb, const Vec3T<T>& vc, T six_volumes)
       : edge(vc - va), length_a(length(va)), length_b(length(vb)), length_c(length(vc)) {
     if (!(six_volumes > 0 && length_a > 0 && length_b > 0 && length_c > 0)) return;
-    a = va / length_a;
-    b = vb / length_b;
-    c = vc / length_c;
-    det = six_volumes / (length_a * length_b * length_c);
-    solid_angle = 2 * std::atan2(det, 1 + dot(a, b) + dot(b, c) + dot(c, a));  // [2] Eq. 8
+    const T scale_a = 1 / length_a, scale_b = 1 / length_b, scale_c = 1 / length_c;
+    a = va * scale_a;
+    b = vb * scale_b;
+    c = vc * scale_c;
+    det = six_volumes * scale_a * scale_b * scale_c;
+    solid_angle = 2 * upper_angle(det, 1 + dot(a, b) + dot(b, c) + dot(c, a));  // [2] Eq. 8
   }
 
   // u in [0,1)² -> point on the triangle, density 1 / solid_angle per unit solid angle.
@@ -51,22 +53,25 @@ struct SphericalTriangle {
     const T sin_half = std::sin(half), cos_half = std::cos(half);
     const Vec3T<T> across = edge - a * dot(a, edge);
     const T across_length = length(across);
-    const T sin_ac = across_length / length_c, cos_ac = dot(a, c);
-    const T numerator = sin_half * length_squared(a + b) / 2;  // 1 + a·b = |a + b|² / 2
-    const T denominator = cos_half * det / sin_ac - sin_half * dot(b, across) / across_length;
+    // both times the length of `across`; 1 + a·b = |a + b|² / 2
+    const T numerator = sin_half * across_length * length_squared(a + b) / 2;
+    const T denominator = cos_half * det * length_c - sin_half * dot(b, across);
     const T norm = numerator * numerator + denominator * denominator;
     T sin_theta = 0, cos_theta = 1;
     if (norm > 0) {
-      sin_theta = 2 * numerator * denominator / norm;
-      cos_theta = (denominator - numerator) * (denominator + numerator) / norm;
+      const T scale = 1 / norm;
+      sin_theta = 2 * numerator * denominator * scale;
+      cos_theta = (denominator - numerator) * (denominator + numerator) * scale;
     }
-    const T weight_c = std::max(sin_theta / sin_ac, T(0));
-    const T weight_a = std::max(cos_theta - cos_ac * weight_c, T(0));
+    const T weight_c = std::max(sin_theta * length_c / across_length, T(0));
+    const T weight_a = std::max(cos_theta - dot(a, c) * weight_c, T(0));
     // On the arc from B to C', 1 - cos of the angle from B is uniform.
     const T gap = length_squared(b - (a * weight_a + c * weight_c)) / 2;  // 1 - b·C'
     const T along = std::sqrt(u.y * (2 - u.y * gap) / (2 - gap));
     const T weight_b = std::max(1 - u.y * gap - along * (1 - gap), T(0));
-    Barycentric<T> w{along * weight_a / length_a, weight_b / length_b, along * weight_c / length_c};
+    // times all three lengths, for want of divisions
+    const Barycentric<T> w{along * weight_a * length_b * length_c, weight_b * length_a * length_c,
+                           along * weight_c * length_a * length_b};
     const T scale = 1 / (w.a + w.b + w.c);
     return {w.a * scale, w.b * scale, w.c * scale};
   }

@@ -295,3 +295,36 @@ TEST_CASE("the mean of cos / pdf is the closed-form irradiance") {
     }
   }
 }
+
+TEST_CASE("random receivers, on edges and vertices too: finite samples or none") {
+  const Pose pose;
+  Random random(21);
+  std::vector<NamedScene> scenes;
+  for (NamedScene& s : flat_scenes(true)) scenes.push_back(std::move(s));
+  scenes.push_back({"sphere", sphere_scene(0.2, false, true)});
+  scenes.push_back({"needle", mesh_scene({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-5, 0}}, {{0, 1, 2}})});
+  for (const NamedScene& s : scenes) {
+    const LightPrimitives primitives(s.scene);
+    REQUIRE(primitives.size() == 1);
+    const LightPrimitive& p = primitives[0];
+    const auto number = [&] { return 2 * random.next_double() - 1; };
+    for (int i = 0; i < 20000; ++i) {
+      const double scale = std::pow(10.0, 4 * number());
+      Vec3d local = Vec3d{number(), number(), number()} * scale;
+      if (i % 3 == 0) local.z *= 1e-6;
+      Vec3 x = pose.world(local);
+      if (i % 5 == 0 && p.vertex_count > 0)  // on an edge or its continuation, up to rounding
+        x = p.vertex(0) + (p.vertex(1) - p.vertex(0)) * float(2 * number());
+      EmitterSample e;
+      if (!sample(p, x, random.next_vec2(), e)) continue;
+      const bool is_fine = is_finite(e.point) && is_finite(e.wi) && is_finite(e.normal) &&
+                           std::isfinite(e.distance) && std::isfinite(e.pdf_solid_angle) &&
+                           e.pdf_solid_angle > 0 && std::abs(length(e.wi) - 1) < 1e-5f;
+      CHECK_MESSAGE(is_fine, s.name << " from " << local.x << " " << local.y << " " << local.z);
+      const float pdf = pdf_solid_angle(p, x, e.wi, e.distance);
+      CHECK(std::isfinite(pdf));
+      const double received = irradiance(p, Vec3d(x), Vec3d(e.wi));
+      CHECK((received >= 0 && received <= pi));
+    }
+  }
+}
