@@ -31,6 +31,11 @@ void parallel_for_slots(size_t n, int threads, const std::function<void(size_t, 
   });
 }
 
+void run_on_one_thread(const std::function<void()>& body) {
+  tbb::task_arena arena(1);
+  arena.execute(body);
+}
+
 void parallel_for(size_t n, int threads, const std::function<void(size_t)>& body) {
   parallel_for_slots(n, threads, [&](size_t i, size_t) { body(i); });
 }

@@ -17,6 +17,9 @@ void parallel_for(size_t n, int threads, const std::function<void(size_t)>& body
 void parallel_for_slots(size_t n, int threads,
                         const std::function<void(size_t i, size_t slot)>& body);
 
+// Runs body() such that TBB loops inside it, a library's own included, stay on this thread.
+void run_on_one_thread(const std::function<void()>& body);
+
 // `threads`, or the number of cores for 0.
 int thread_count(int threads);
 

@@ -26,10 +26,11 @@ struct ViewingRays {
 
 // Points whose irradiance is asked for, as plain arrays of one length.
 struct SensorBatch {
-  std::vector<Vec3> positions;  // off the surfaces they lie on
-  std::vector<Vec3> normals;    // unit
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;  // unit
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
+  float offset = 0;  // metres off the points, along their normals, at which rays start
   size_t size() const { return positions.size(); }
 };
 

@@ -62,8 +62,8 @@ void FixedIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& 
   auto& s = static_cast<Scratch&>(scratch);
   for (uint32_t i = 0; i < sensors.size(); ++i)
     sample_sources(sensor_walk(sensors, i),
-                   make_sensor_vertex(sensors.positions[i], sensors.normals[i]), sensor_bsdf(), s,
-                   out, counters);
+                   make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset),
+                   sensor_bsdf(), s, out, counters);
   s.shadows.resolve(scene_.tracer, Coherence::coherent, out, counters);
 }
 

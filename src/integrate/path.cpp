@@ -52,7 +52,7 @@ void PathIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
   if (options_.depth == 0) return;
   for (uint32_t i = 0; i < sensors.size(); ++i) {
     Walk walk = sensor_walk(sensors, i);
-    const Vertex v = make_sensor_vertex(sensors.positions[i], sensors.normals[i]);
+    const Vertex v = make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset);
     if (shade(walk, v, sensor_bsdf(), s)) s.walks.push_back(walk);
   }
   s.shadows.resolve(scene_.tracer, Coherence::none, out, counters);

@@ -38,9 +38,10 @@ inline Vertex make_vertex(const Surface& surface, const Vec3& ray_direction) {
 }
 
 // A point whose irradiance is asked for, as a vertex seen from straight above …
-inline Vertex make_sensor_vertex(const Vec3& position, const Vec3& normal) {
+inline Vertex make_sensor_vertex(const Vec3& position, const Vec3& normal, float offset) {
   Vertex v;
   v.surface.position = position;
+  v.surface.offset = offset;
   v.surface.geometric_normal = v.surface.shading_normal = v.geometric_normal = normal;
   v.frame = Frame(normal);
   v.wo = {0, 0, 1};
@@ -49,7 +50,7 @@ inline Vertex make_sensor_vertex(const Vec3& position, const Vec3& normal) {
 // … and its surface: Lambertian of reflectance pi, so that what it sends on is the irradiance.
 inline Bsdf sensor_bsdf() {
   Bsdf b;
-  b.is_lambertian = true;
+  b.is_lambertian = b.has_separable = true;
   b.diffuse = Rgb{pi_f};
   return b;
 }

@@ -46,15 +46,11 @@ struct Worker {
 // Sum of `samples` estimates of one replicate at one point.
 Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point, uint64_t stream,
                       int samples, Worker& w, Counters& counters) {
-  const float magnitude = std::max(
-      {std::abs(point.position.x), std::abs(point.position.y), std::abs(point.position.z)});
   const Vec3 n = normalize(point.normal);
-  // Points are often given on the very surface they measure, rounded to a few digits.
-  const Vec3 x = point.position + n * (2e-5f * magnitude);
   Sums sums;
   for (int first = 0; first < samples; first += samples_per_batch) {
     const auto count = size_t(std::min(samples_per_batch, samples - first));
-    w.sensors.positions.assign(count, x);
+    w.sensors.positions.assign(count, point.position);
     w.sensors.normals.assign(count, n);
     w.sensors.streams.assign(count, stream);
     w.sensors.samples.resize(count);
@@ -117,6 +113,12 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     integrator = std::make_unique<PathIntegrator>(
         scene, PathOptions{options.depth, options.indirect == Indirect::none});
 
+  // Points are often given on the very surface they measure, rounded to a few digits: rays start
+  // some rounding errors of the scene's largest coordinate off it.
+  const Box box = bounds(scene.scene);
+  const float offset =
+      box.is_empty() ? 0.0f : 1e-5f * std::max(length(box.lower), length(box.upper));
+
   MeasureResult result;
   result.values.resize(points.size());
   std::vector<uint8_t> is_measured(points.size(), 0);
@@ -128,6 +130,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     if (stop.load(std::memory_order_relaxed)) return;
     Worker& w = workers[slot];
     if (!w.scratch) w.scratch = integrator->make_scratch();
+    w.sensors.offset = offset;
     result.values[i] =
         measure_point(*integrator, points[i], hash_of(options.seed, i), options.spp,
                       is_fixed ? fixed_set : 1, scene.scene.is_photometric, w, counters[i]);

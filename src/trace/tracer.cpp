@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace troffer {
 
@@ -146,11 +147,7 @@ struct Tracer::Embree {
 
 Tracer::Tracer(const Scene& scene) : embree_(std::make_unique<Embree>()) {
   Embree& e = *embree_;
-  // Coincident surfaces are told apart by the order of primitives in the tree's leaves. Embree
-  // orders them alike for any number of threads only when it builds on one; large scenes, where
-  // that would take long, are built by all cores whatever --threads says.
-  const bool is_large = triangle_count(scene) > 400'000;
-  e.device = rtcNewDevice(is_large ? nullptr : "threads=1");
+  e.device = rtcNewDevice(nullptr);
   if (e.device == nullptr) throw EnvironmentError("cannot start Embree");
   rtcSetDeviceErrorFunction(e.device, on_error, &e.status);
   e.scene = rtcNewScene(e.device);
@@ -160,7 +157,14 @@ Tracer::Tracer(const Scene& scene) : embree_(std::make_unique<Embree>()) {
   for (uint32_t i = 0; i < scene.meshes.size(); ++i) e.add_mesh(scene, i);
   e.add_spheres(scene);
   e.add_disks(scene);
-  rtcCommitScene(e.scene);
+  // Coincident surfaces are told apart by the order of primitives in the tree's leaves, which is
+  // the same for any number of threads only when the tree is built on one. Large scenes, where
+  // that would take long, are built on all cores.
+  constexpr size_t large = 400'000;
+  if (triangle_count(scene) > large)
+    rtcCommitScene(e.scene);
+  else
+    run_on_one_thread([&] { rtcJoinCommitScene(e.scene); });
   e.throw_if_failed();
 }
 
