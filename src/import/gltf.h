@@ -8,9 +8,17 @@
 
 namespace troffer {
 
-// Imports the default scene. Instances are flattened: one mesh per node and mesh primitive, in
-// world space. Emission is in cd/m². Fails with InputError at the line and column of the JSON
-// value that is wrong; see docs/formats.md for what is supported, shown otherwise or left out.
+// Imports the default scene (without one, all root nodes). Instances are flattened: one mesh per
+// node and mesh primitive, in world space, 60 million triangles at most. Emission is in cd/m².
+// Fails with InputError at the line and column of the JSON value that is wrong; of a GLB these
+// count within its JSON chunk.
+//
+// Besides the core format: KHR_materials_emissive_strength, _specular, _ior, _transmission,
+// _volume, KHR_texture_transform, KHR_mesh_quantization. Another extension is an error if the file
+// requires it and else a warning. Also with a warning each: alphaMode BLEND is shown as MASK at
+// 0.5, a missing or broken image as white, textures of one material with different sets of
+// coordinates with the first one's set; left out are points, lines, vertex colours, skinning, morph
+// targets, animations, attenuation inside volumes, and triangles that cannot be drawn.
 Scene import_gltf(const std::string& path);
 
 }  // namespace troffer

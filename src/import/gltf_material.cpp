@@ -32,7 +32,7 @@ class GltfMaterials::Reader {
   }
 
  private:
-  void warn(const std::string& what) { all_.scene_.warnings.add("materials: " + what); }
+  void warn(const std::string& what) { all_.scene_.warnings.add(node_.pointer() + ": " + what); }
 
   // A factor that [1] wants in [0,1].
   float unit_number(const JsonNode& node) {
