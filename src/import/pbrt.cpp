@@ -1,6 +1,8 @@
 // The world: shapes, materials, lights and objects; and the table of all directives.
 #include "import/pbrt.h"
 
+#include <cmath>
+
 #include "import/pbrt_interpreter.h"
 
 namespace troffer {
@@ -96,6 +98,7 @@ void PbrtInterpreter::on_shape(const PbrtToken& word, PbrtTokenizer& tokens) {
     return;
   }
   if (shape.light) scene_.warnings.add("area light within an object: instances do not emit");
+  placer_.count_waiting(shape, params.place);
   open_object_->push_back(std::move(shape));
 }
 
@@ -117,7 +120,8 @@ void PbrtInterpreter::on_area_light(const PbrtToken& word, PbrtTokenizer& tokens
   light.radiance =
       radiance ? emission_value(*radiance, materials_.textures.spectrum_context()) : Rgb{1};
   const auto scale = float(params.get_float("scale", 1));
-  if (scale < 0) fail_at(params.find("scale")->place, "scale must not be negative");
+  if (!(scale >= 0 && std::isfinite(scale)))
+    fail_at(params.find("scale")->place, "scale must be a number, not negative");
   light.radiance *= scale;
   light.power = params.get_float("power", 0);
   light.is_two_sided = params.get_bool("twosided", false);

@@ -43,6 +43,11 @@ void orient(Mesh& mesh, bool is_flipped) {
   }
 }
 
+// In triangles; vertices without triangles cost memory too.
+size_t cost_of(const Mesh& mesh) {
+  return std::max(mesh.triangles.size(), mesh.positions.size() / 3);
+}
+
 // Mean luminance of an image, which pbrt divides a given power by.
 double mean_luminance(const Scene& scene, int32_t texture) {
   const Texture& t = scene.textures[size_t(texture)];
@@ -64,6 +69,10 @@ void PbrtPlacer::spend(size_t triangles, const PbrtPlace& place) {
   if (cost_ > max_scene_triangles)
     fail_at(place, "the scene has too much geometry (over " +
                        std::to_string(max_scene_triangles / 1'000'000) + " million triangles)");
+}
+
+void PbrtPlacer::count_waiting(const PbrtShape& shape, const PbrtPlace& at) {
+  spend(shape.mesh ? cost_of(*shape.mesh) : 1, at);
 }
 
 void PbrtPlacer::place(const PbrtShape& shape, const PbrtPlace& at) {
@@ -114,6 +123,10 @@ Emitter PbrtPlacer::next_emitter(const PbrtAreaLight& light, double area) {
   if (light.power > 0 && area > 0) {
     // A diffuse source of radiance L sends out pi L per area and side.
     e.radiance *= float(light.power / (pi * area * (light.is_two_sided ? 2 : 1)));
+  }
+  if (!is_finite(e.radiance)) {
+    scene_.warnings.add("area light whose radiance is too large for a number: does not emit");
+    e.radiance = Rgb{0};
   }
   return e;
 }
@@ -184,8 +197,7 @@ void PbrtPlacer::place_disk(const Placing& placing) {
 }
 
 void PbrtPlacer::place_mesh(const Placing& placing, const Mesh& local, bool is_quadric) {
-  // Vertices without triangles cost memory too.
-  spend(std::max(local.triangles.size(), local.positions.size() / 3), placing.place);
+  spend(cost_of(local), placing.place);
   const Affine& t = placing.world_from_object;
   const PbrtShape& shape = placing.shape;
   Mesh mesh = local;
@@ -220,7 +232,7 @@ void PbrtPlacer::place_mesh(const Placing& placing, const Mesh& local, bool is_q
   if (has_image) {
     spec.texture = materials_.textures.image(shape.light->image, true, WrapMode::clamp);
     const double mean = shape.light->power > 0 ? mean_luminance(scene_, spec.texture) : 1;
-    if (mean > 0) spec.radiance *= float(1 / mean);
+    if (mean > 1e-9) spec.radiance *= float(1 / mean);  // else black or nearly so
   }
   add_mesh_emitters(scene_, index, spec);
 }

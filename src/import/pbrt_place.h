@@ -14,6 +14,8 @@ class PbrtPlacer {
   // Adds one more copy, transformed, without emission.
   void place_instance(const PbrtShape& shape, const Affine& world_from_instance,
                       const PbrtPlace& place);
+  // Counts a shape that waits in an object, so that the limit holds for what is never placed too.
+  void count_waiting(const PbrtShape& shape, const PbrtPlace& place);
   // Another shape with an area light has appeared that will not be placed: it keeps its number.
   void skip_emitter() { ++emitters_; }
 

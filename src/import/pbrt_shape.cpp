@@ -211,7 +211,6 @@ bool read_pbrt_shape(const std::string& type, const PbrtParams& params, PbrtText
   } else if (type == "plymesh") {
     shape.mesh = std::make_shared<const Mesh>(read_ply_mesh(params, textures.folder(), warnings));
   } else if (type == "bilinearmesh") {
-    params.ignore({"emissionfilename"});
     shape.mesh = std::make_shared<const Mesh>(read_bilinear_mesh(params, warnings));
   } else if (type == "sphere") {
     has_area = read_sphere(params, shape);

@@ -271,6 +271,11 @@ TEST_CASE("emission of area lights") {
   CHECK(black.emitters.empty());
   CHECK_THROWS_AS(radiance("\"rgb L\" [1 1 1] \"string filename\" \"a.png\""), InputError);
   CHECK_THROWS_AS(radiance("\"float scale\" -1"), InputError);
+  CHECK_THROWS_AS(radiance("\"rgb L\" [1e39 1 1]"), InputError);
+  const Scene blinding = import_world(
+      "AreaLightSource \"diffuse\" \"rgb L\" [1e38 1 1] \"float scale\" 1e3 " + triangle);
+  CHECK(blinding.emitters.empty());
+  CHECK(blinding.warnings.total() == 1);
 }
 
 TEST_CASE("shapes that emit are numbered in order, whatever becomes of them") {
@@ -306,8 +311,9 @@ TEST_CASE("an avalanche of instances is refused before memory runs out") {
   std::string world = "ObjectBegin \"o\"\n";
   for (int i = 0; i < 2000; ++i) world += "Shape \"sphere\"\n";
   world += "ObjectEnd\n";
-  for (int i = 0; i < 2000; ++i) world += "ObjectInstance \"o\"\n";
-  CHECK_THROWS_AS(import_world(world), InputError);
+  std::string instances;
+  for (int i = 0; i < 2000; ++i) instances += "ObjectInstance \"o\"\n";
+  CHECK_THROWS_AS(import_world(world + instances), InputError);
 }
 
 TEST_CASE("odd geometry is left out with counted warnings") {
