@@ -5,8 +5,8 @@
 
 #include "app/commands.h"
 #include "base/box.h"
-#include "emitter/light_primitive.h"
 #include "import/import.h"
+#include "render/source_info.h"
 
 namespace troffer {
 
@@ -33,12 +33,7 @@ Json info_json(const Scene& scene) {
   for (const Mesh& m : scene.meshes)
     for (const int32_t e : m.emitters) emitter_triangles += e >= 0;
 
-  const LightPrimitives primitives(scene);
-  std::vector<double> area(scene.emitters.size(), 0.0), power(scene.emitters.size(), 0.0);
-  for (const LightPrimitive& p : primitives.all()) {
-    area[p.emitter] += double(p.area);
-    power[p.emitter] += double(p.power);
-  }
+  const std::vector<SourceInfo> infos = source_infos(scene);
 
   Json j;
   j["triangles"] = triangle_count(scene);
@@ -68,9 +63,9 @@ Json info_json(const Scene& scene) {
     const Emitter& e = scene.emitters[i];
     j["sources"].push_back({{"name", e.name},
                             {"shape", shape_name(e.shape)},
-                            {"area", area[i]},
+                            {"area", infos[i].area},
                             {"radiance", {e.radiance.r, e.radiance.g, e.radiance.b}},
-                            {"power", power[i]},
+                            {"power", infos[i].power},
                             {"is_two_sided", e.is_two_sided}});
   }
   return j;

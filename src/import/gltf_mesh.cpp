@@ -163,6 +163,20 @@ void read_uvs(const AccessorView& uvs, const std::vector<uint32_t>& used, Mesh& 
   }
 }
 
+// Exporters that mirror sometimes leave the winding behind. Where every normal of a mesh lies on the
+// back of its triangles, the normals are believed: the side that is shaded is the side that emits.
+void wind_by_normals(Mesh& mesh, WarningLog& warnings) {
+  if (mesh.normals.empty() || mesh.triangles.empty()) return;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 p = mesh.positions[t[0]];
+    const Vec3 n = cross(mesh.positions[t[1]] - p, mesh.positions[t[2]] - p);
+    for (const uint32_t v : t)
+      if (!(dot(n, mesh.normals[v]) < 0)) return;
+  }
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  warnings.add("a mesh is wound against its normals: the normals say which side is the front");
+}
+
 }  // namespace
 
 uint64_t GltfPrimitive::triangle_count() const {
@@ -213,6 +227,7 @@ Mesh make_gltf_mesh(const GltfPrimitive& p, const Affine& world, int uv_set, War
   const auto uvs = p.uvs.find(uv_set);
   if (uvs != p.uvs.end()) read_uvs(uvs->second, used, mesh);
   clean_mesh(mesh, warnings);  // replaces normals and (u,v) that are not finite
+  wind_by_normals(mesh, warnings);
   return mesh;
 }
 
