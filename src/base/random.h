@@ -112,20 +112,30 @@ inline uint32_t sobol_reversed(uint32_t index, int dimension) {
 // Each group alone is a (0,m,2)-net in its first two dimensions and well stratified in all five.
 class SobolGroup {
  public:
-  // `stream` names the pixel and the seed, `purpose` the group, `index` the sample.
+  // `stream` names the pixel and the seed and is a hash already; `purpose` names the group, `index`
+  // the sample.
   SobolGroup(uint64_t stream, uint32_t purpose, uint32_t index)
-      : seed_(hash_combine(stream, purpose)),
+      : seed_(mix64(stream + (uint64_t(purpose) + 1) * golden)),
         index_(nested_uniform_scramble(index, uint32_t(seed_))) {}
   float get(int dimension) const {
-    const auto scramble = uint32_t(mix64(seed_ + uint64_t(dimension + 1) * 0x9e3779b97f4a7c15ull));
-    return unit_float(
-        reverse_bits(owen_hash_reversed(sobol_reversed(index_, dimension), scramble)));
+    const uint64_t scrambles = scrambles_of(dimension / 2);
+    return value(dimension, uint32_t(dimension % 2 == 0 ? scrambles : scrambles >> 32));
   }
-  Vec2 get2(int first_dimension = 0) const {
-    return {get(first_dimension), get(first_dimension + 1)};
+  // Dimensions `first` (even) and first + 1.
+  Vec2 get2(int first = 0) const {
+    const uint64_t scrambles = scrambles_of(first / 2);
+    return {value(first, uint32_t(scrambles)), value(first + 1, uint32_t(scrambles >> 32))};
   }
 
  private:
+  static constexpr uint64_t golden = 0x9e3779b97f4a7c15ull;
+  // Two 32-bit scrambles for a pair of dimensions.
+  uint64_t scrambles_of(int pair) const { return mix64(seed_ + uint64_t(pair + 1) * golden); }
+  float value(int dimension, uint32_t scramble) const {
+    return unit_float(
+        reverse_bits(owen_hash_reversed(sobol_reversed(index_, dimension), scramble)));
+  }
+
   uint64_t seed_;
   uint32_t index_;
 };

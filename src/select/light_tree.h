@@ -4,6 +4,7 @@
 //   §12.6.3 (cones of directions around the bounds).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,8 +20,9 @@ struct LightChoice {
   float u = 0;    // what is left of the random number, uniform in [0,1) again
 };
 
-// A binary tree over light primitives, each node with its bounds, its power and a cone that holds
-// the normals of its primitives [1]. Never gives probability 0 to a primitive that can light the
+// A tree over light primitives, each node with the bounds, the power and a cone that holds the
+// normals of its primitives [1]; built binary, then collapsed to four children per node, whose
+// importances are computed at a stroke. Never gives probability 0 to a primitive that can light the
 // point, so estimates by it are unbiased.
 class LightTree {
  public:
@@ -36,23 +38,32 @@ class LightTree {
   float pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const;
 
  private:
-  struct Node {
-    Vec3 centre, axis;
-    Vec3 half_extent;
-    float radius_squared = 0;  // of the sphere around the bounds
-    float power = 0;
-    float cos_spread = 1;  // of the cone around the axis that holds all normals
-    bool is_two_sided = false;
-    uint32_t second_child = 0;  // 0: a leaf; the first child is the next node
-    uint32_t primitive = 0;     // leaf
+  static constexpr uint32_t width = 4;
+  using Lanes = std::array<float, width>;
+  // Four children side by side; unused ones have no power.
+  struct alignas(16) Node {
+    Lanes centre_x{}, centre_y{}, centre_z{};
+    Lanes radius_squared{};              // of the sphere around the bounds
+    Lanes axis_x{}, axis_y{}, axis_z{};  // of the cone that holds all normals …
+    Lanes cos_spread{}, sin_spread{};    // … and its half angle
+    Lanes power{};
+    Lanes two_sided{};                    // 1 where any primitive emits from both sides, else 0
+    std::array<uint32_t, width> child{};  // node, or primitive where is_leaf
+    std::array<bool, width> is_leaf{};
+    uint32_t parent = 0, slot = 0;  // slot of this node in its parent; the root has neither
   };
-  struct Item;
-  uint32_t build(std::vector<Item>& items, size_t first, size_t last, uint64_t trail, int depth);
-  static float importance(const Node& node, const Vec3& x, const Vec3& n, bool both_sides);
+  struct Place {
+    uint32_t node = no_node, slot = 0;
+  };
+  static constexpr uint32_t no_node = 0xffffffffu;
+
+  friend class LightTreeBuilder;
+  static void importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
+                          Lanes& out);
 
   std::vector<Node> nodes_;
-  uint32_t first_ = 0;            // primitive of the first trail
-  std::vector<uint64_t> trails_;  // per primitive: bit d = took the second child at depth d
+  uint32_t first_ = 0;         // primitive of the first place
+  std::vector<Place> places_;  // of each primitive
 };
 
 }  // namespace troffer
