@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "emitter/irradiance.h"
-#include "light_scenes.h"
 #include "support/chi_square.h"
+#include "support/light_scenes.h"
 
 using namespace troffer;
 using namespace troffer::test;

@@ -1,0 +1,266 @@
+// Light straight from sources against closed forms and quadrature, for both methods.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emitter/irradiance.h"
+#include "emitter/source_surface.h"
+#include "probe.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+struct NamedSource {
+  std::string name;
+  std::function<void(Scene&)> add;
+};
+
+// Sources of every kind above the floor z = 0, 1 to 3 m away.
+std::vector<NamedSource> sources() {
+  return {
+      {"square", [](Scene& s) { add_ceiling_light(s, 1, 2, Rgb{5}); }},
+      {"two-sided square seen from its back",
+       [](Scene& s) {
+         make_emitter(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}),
+                      Rgb{3}, true);
+       }},
+      {"wall that the floor's plane cuts",
+       [](Scene& s) {
+         make_emitter(s, add_quad(s, 0, {Vec3{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}),
+                      Rgb{2});
+       }},
+      {"sphere",
+       [](Scene& s) {
+         add_sphere_emitter(s, 0, {0.5f, 0, 1.5f}, 0.4f, Rgb{4});
+       }},
+      {"sphere cut by the floor's plane",
+       [](Scene& s) {
+         add_sphere_emitter(s, 0, {1.5f, 0, 0.1f}, 0.5f, Rgb{4});
+       }},
+      {"disk",
+       [](Scene& s) {
+         add_disk_emitter(s, 0, {-1, 0.5f, 2}, normalize(Vec3{0.4f, -0.3f, -1}), 0.6f, Rgb{4});
+       }},
+      {"folded mesh",
+       [](Scene& s) {
+         add_mesh_emitter(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1.5f}},
+                          {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
+       }},
+      {"many small ones",
+       [](Scene& s) {
+         for (int i = 0; i < 30; ++i) {
+           const float x = float(i % 6) - 2.5f, y = float(i / 6) - 2;
+           add_disk_emitter(s, 0, {x, y, 1.5f + 0.01f * float(i)}, {0, 0, -1}, 0.1f,
+                            Rgb{float(1 + i * i)});
+         }
+       }},
+  };
+}
+
+std::unique_ptr<Integrator> direct_path(const PreparedScene& scene) {
+  PathOptions o;
+  o.is_direct_only = true;
+  return std::make_unique<PathIntegrator>(scene, o);
+}
+std::unique_ptr<Integrator> fixed(const PreparedScene& scene, int shadow_rays) {
+  return std::make_unique<FixedIntegrator>(scene, FixedOptions{shadow_rays});
+}
+
+void add_floor(Scene& s, uint32_t material) {
+  add_quad(s, material, {Vec3{-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0}});
+}
+
+const Vec3 eye{-1.5f, 1, 1.2f};  // no source stands between it and the points
+const std::vector<Vec3> targets{{0, -0.5f, 0}, {0.2f, -2, 0}, {-2, 2, 0}};
+
+// Radiance that leaves x towards the eye, by quadrature over every source's (u,v).
+double by_quadrature(const PreparedScene& scene, const Vec3& x, uint32_t material, int cells) {
+  const Ray ray = ray_towards(eye, x);
+  Surface surface;
+  surface.position = x;
+  surface.geometric_normal = surface.shading_normal = {0, 0, 1};
+  surface.material = material;
+  const Vertex v = make_vertex(surface, ray.direction);
+  const Bsdf bsdf = make_bsdf(scene.bsdf_tables, scene.scene, material, {}, true);
+  double sum = 0;
+  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e) {
+    const Emitter& emitter = scene.scene.emitters[e];
+    const SourceSurface source(scene.scene, e);
+    double part = 0;
+    for (int i = 0; i < cells; ++i)
+      for (int j = 0; j < cells; ++j) {
+        const SourcePoint p =
+            source.point_at({(float(i) + 0.5f) / float(cells), (float(j) + 0.5f) / float(cells)});
+        const Vec3 to = p.point - x;
+        const Vec3 wi = normalize(to);
+        const float cos_source = -dot(wi, p.normal);
+        if (wi.z <= 0 || (cos_source <= 0 && !emitter.is_two_sided)) continue;
+        const Rgb radiance = emitted_radiance(scene.scene, emitter, cos_source > 0, p.texture_uv);
+        const Rgb f_cos = evaluate(bsdf, v.wo, v.frame.to_local(wi));
+        part += double(f_cos.g) * double(radiance.g) * double(std::abs(cos_source)) /
+                double(length_squared(to));
+      }
+    sum += part * source.area() / (double(cells) * cells);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a matte floor shows reflectance × exact irradiance / pi") {
+  const auto all = sources();
+  const double significance = sidak(1e-3, int(all.size() * targets.size() * 3));
+  for (const NamedSource& source : all) {
+    Scene s;
+    const uint32_t grey = add_diffuse(s, Rgb{0.7f, 0.6f, 0.5f});
+    source.add(s);
+    add_floor(s, grey);
+    const PreparedScene scene(std::move(s));
+    const auto path = direct_path(scene), one = fixed(scene, 1), many = fixed(scene, 16);
+    for (const Vec3& x : targets) {
+      double expected = 0;
+      for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
+        expected += irradiance(scene.lights, e, Vec3d(x), {0, 0, 1}) *
+                    double(scene.scene.emitters[e].radiance.g) * double(0.6f) / pi;
+      CAPTURE(source.name);
+      CAPTURE(x.x);
+      REQUIRE(expected > 1e-3);
+      for (const Integrator* i : {path.get(), one.get(), many.get()}) {
+        const bool is_many = i == many.get();
+        const Probed p = probe(*i, ray_towards(eye, x), is_many ? 16 : 128, 24);
+        CAPTURE(source.name);
+        CAPTURE(x.x);
+        CAPTURE(expected);
+        CAPTURE(p.total.mean());
+        CAPTURE(p.total.standard_error());
+        CHECK(p_of_mean(p.total, expected, 2e-5 * expected) > significance);
+        CHECK(p.indirect.mean() == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("glossy floors: the weights of both samplings add up to one") {
+  const auto all = sources();
+  const std::vector<float> roughnesses{0.1f, 0.4f};
+  const double significance = sidak(1e-3, int(all.size() * targets.size() * 3 * 2));
+  for (const NamedSource& source : all)
+    for (const float roughness : roughnesses) {
+      Scene s;
+      Material m;
+      m.kind = roughness < 0.2f ? MaterialKind::coated_diffuse : MaterialKind::conductor;
+      m.base_color.value = Rgb{0.6f};
+      m.is_reflectance = true;
+      m.roughness.value = roughness;
+      const uint32_t glossy = add_material(s, m);
+      source.add(s);
+      add_floor(s, glossy);
+      const PreparedScene scene(std::move(s));
+      const auto path = direct_path(scene), one = fixed(scene, 1), many = fixed(scene, 8);
+      for (const Vec3& x : targets) {
+        const double expected = by_quadrature(scene, x, glossy, 400);
+        for (const Integrator* i : {path.get(), one.get(), many.get()}) {
+          const Probed p = probe(*i, ray_towards(eye, x), i == many.get() ? 32 : 128, 32);
+          CAPTURE(source.name);
+          CAPTURE(roughness);
+          CAPTURE(x.x);
+          CAPTURE(expected);
+          CAPTURE(p.total.mean());
+          CAPTURE(p.total.standard_error());
+          CHECK(p_of_mean(p.total, expected, 1e-3 * expected) > significance);
+        }
+      }
+    }
+}
+
+TEST_CASE("a textured mesh source over a glossy floor") {
+  Scene s;
+  Material m;
+  m.kind = MaterialKind::coated_diffuse;
+  m.base_color.value = Rgb{0.5f};
+  m.roughness.value = 0.2f;
+  const uint32_t glossy = add_material(s, m);
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = t.height = 2;
+  t.channels = 1;
+  t.texels_float = {0, 1, 2, 5};
+  t.is_filtered = false;
+  t.wrap_u = t.wrap_v = WrapMode::clamp;
+  s.textures.push_back(t);
+  add_mesh_emitter(s, glossy, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}},
+                   {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
+  s.meshes.back().uvs = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+  s.emitters.back().texture = 0;
+  add_floor(s, glossy);
+  const PreparedScene scene(std::move(s));
+  const auto path = direct_path(scene), many = fixed(scene, 8);
+  for (const Vec3& x : targets) {
+    const double expected = by_quadrature(scene, x, glossy, 400);
+    for (const Integrator* i : {path.get(), many.get()}) {
+      const Probed p = probe(*i, ray_towards(eye, x), i == many.get() ? 32 : 256, 32);
+      CAPTURE(x.x);
+      CAPTURE(expected);
+      CAPTURE(p.total.mean());
+      CHECK(p_of_mean(p.total, expected, 2e-3 * expected) > sidak(1e-3, 6));
+    }
+  }
+}
+
+TEST_CASE("an alpha-masked sheet lets through what its mask does not cover") {
+  // The left half of the sheet is a hole: a small source straight above lights x > 0 not at all
+  // and x < 0 fully.
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = 2;
+  t.height = 1;
+  t.channels = 4;
+  t.texels8 = {255, 255, 255, 0, 255, 255, 255, 255};
+  t.is_filtered = false;
+  s.textures.push_back(t);
+  Material masked;
+  masked.is_alpha_masked = true;
+  masked.alpha.texture = 0;
+  const uint32_t mask = add_material(s, masked);
+  add_quad(s, mask, {Vec3{-3, -3, 1}, {3, -3, 1}, {3, 3, 1}, {-3, 3, 1}});
+  s.meshes.back().uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  add_ceiling_light(s, 0.1f, 2, Rgb{100});
+  add_floor(s, grey);
+  const PreparedScene scene(std::move(s));
+  const auto path = direct_path(scene), many = fixed(scene, 4);
+  for (const float x : {-1.0f, 1.0f}) {
+    const Vec3 at{x, 0.5f, 0};
+    const double e = 100 * irradiance(scene.lights, 0, Vec3d(at), {0, 0, 1});
+    for (const Integrator* i : {path.get(), many.get()}) {
+      const Probed p = probe(*i, ray_towards({x, 0.4f, 0.5f}, at), 64, 16);
+      const double expected = x < 0 ? double(0.6f) * e / pi : 0;
+      CHECK(p_of_mean(p.total, expected, 1e-4 * expected) > 1e-4);
+    }
+  }
+}
+
+TEST_CASE("fixed sends the shadow rays it is told to send") {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
+  add_ceiling_light(s, 1, 2, Rgb{5});
+  add_disk_emitter(s, 0, {1, 0, 2}, {0, 0, -1}, 0.2f, Rgb{1});
+  add_floor(s, grey);
+  const PreparedScene scene(std::move(s));
+  const auto i = fixed(scene, 7);
+  RadianceBatch out;
+  Counters counters;
+  const ViewingRays rays = repeated(ray_towards(eye, {0, 0, 0}), 1, 10);
+  out.reset(rays.size());
+  i->radiance(rays, *i->make_scratch(), out, counters);
+  CHECK(counters.viewing_rays == 10);
+  CHECK(counters.shadow_rays == 10 * 2 * 7);
+  for (const uint32_t n : out.shadow_rays) CHECK(n == 14);
+}
