@@ -46,6 +46,7 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   p.direct += as_vec(direct);
   p.indirect += as_vec(indirect);
   const double y_sample = double(luminance(direct + indirect));
+  p.sum_luminance += y_sample;
   p.sum_luminance_squared += y_sample * y_sample;
   return true;
 }
@@ -108,7 +109,7 @@ Layer Film::make_layer(Aov aov) const {
       for (size_t i = 0; i < pixels_.size(); ++i) {
         const Pixel& p = pixels_[i];
         if (p.samples < 2) continue;
-        const double n = p.samples, mean = double(luminance(as_rgb(p.direct + p.indirect))) / n;
+        const double n = p.samples, mean = p.sum_luminance / n;
         const double variance = std::max(0.0, p.sum_luminance_squared / n - mean * mean) / (n - 1);
         layer.image.pixels[i] = Rgb{float(std::sqrt(variance))};
       }

@@ -33,7 +33,7 @@ class Film {
  private:
   struct Pixel {
     Vec3d direct, indirect;
-    double sum_luminance_squared = 0;
+    double sum_luminance = 0, sum_luminance_squared = 0;
     uint32_t samples = 0;
   };
   struct FirstHit {  // sums over samples that hit something
