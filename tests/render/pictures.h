@@ -1,0 +1,108 @@
+// Whole pictures, many times over with other random numbers, and what their pixels have in common.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/render.h"
+#include "support/chi_square.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+
+namespace troffer::test {
+
+inline const StopFlag never_stopped = false;
+
+inline RenderResult render_now(const PreparedScene& scene, const Camera& camera,
+                               const RenderOptions& options) {
+  return render(scene, camera, options, {}, never_stopped);
+}
+
+// The same bits in every layer.
+inline bool is_identical(const std::vector<Layer>& a, const std::vector<Layer>& b) {
+  if (a.size() != b.size()) return false;
+  for (size_t l = 0; l < a.size(); ++l) {
+    const auto &p = a[l].image.pixels, &q = b[l].image.pixels;
+    if (a[l].name != b[l].name || a[l].image.width != b[l].image.width || p.size() != q.size() ||
+        std::memcmp(p.data(), q.data(), p.size() * sizeof(Rgb)) != 0)
+      return false;
+  }
+  return true;
+}
+
+inline double mean_green(const Image& image) {
+  double sum = 0;
+  for (const Rgb& p : image.pixels) sum += double(p.g);
+  return sum / double(image.pixels.size());
+}
+inline double mean(const Image& image) {
+  double sum = 0;
+  for (const Rgb& p : image.pixels) sum += double(p.r) + double(p.g) + double(p.b);
+  return sum / double(3 * image.pixels.size());
+}
+inline bool is_finite(const Image& image) {
+  for (const Rgb& p : image.pixels)
+    if (!troffer::is_finite(p)) return false;
+  return true;
+}
+
+// Green channels of `sets` pictures of seeds options.seed, +1, …: per pixel, and of the means.
+struct Ensemble {
+  std::vector<Moments> pixels;
+  Moments mean;
+};
+inline Ensemble render_ensemble(const PreparedScene& scene, const Camera& camera,
+                                RenderOptions options, int sets) {
+  Ensemble e;
+  for (int s = 0; s < sets; ++s) {
+    const Image image = render_now(scene, camera, options).layers[0].image;
+    e.pixels.resize(image.pixels.size());
+    for (size_t i = 0; i < image.pixels.size(); ++i) e.pixels[i].add(double(image.pixels[i].g));
+    e.mean.add(mean_green(image));
+    ++options.seed;
+  }
+  return e;
+}
+
+// How many of the pixels differ from `expected` more than chance allows, all pixels together being
+// allowed to fail once in a thousand runs.
+inline size_t pixels_off(const Ensemble& e, const std::function<double(size_t)>& expected,
+                         double rounding) {
+  const double significance = sidak(1e-3, int(e.pixels.size()));
+  size_t off = 0;
+  for (size_t i = 0; i < e.pixels.size(); ++i)
+    off += p_of_mean(e.pixels[i], expected(i), rounding * std::abs(expected(i))) < significance;
+  return off;
+}
+
+// A grey room with a ceiling light, a glass block, a mirror ball and a glossy floor.
+inline Scene mixed_room() {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f, 0.5f, 0.4f});
+  const auto quads = add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
+  Material floor;
+  floor.kind = MaterialKind::coated_diffuse;
+  floor.base_color.value = Rgb{0.4f, 0.5f, 0.6f};
+  floor.roughness.value = 0.15f;
+  s.meshes[quads[0]].material = add_material(s, floor);
+  Material mirror;
+  mirror.kind = MaterialKind::conductor;
+  mirror.is_reflectance = true;
+  mirror.base_color.value = Rgb{0.9f};
+  s.spheres.push_back({{0.8f, 0.5f, 0.5f}, 0.5f, false, add_material(s, mirror), no_emitter});
+  Material glass;
+  glass.kind = MaterialKind::dielectric;
+  glass.base_color.value = Rgb{1};
+  s.spheres.push_back({{-0.6f, 0.9f, 0.4f}, 0.4f, false, add_material(s, glass), no_emitter});
+  add_ceiling_light(s, 1, 2.4f, Rgb{8, 7, 6});
+  return s;
+}
+inline Camera mixed_room_camera() {
+  return look_at({-1.2f, -1.8f, 1.4f}, {0.3f, 0.8f, 0.6f}, {0, 0, 1}, 60);
+}
+
+}  // namespace troffer::test

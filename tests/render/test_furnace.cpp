@@ -1,0 +1,166 @@
+// Pictures whose every pixel is known.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "emitter/irradiance.h"
+#include "pictures.h"
+#include "support/light_scenes.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+constexpr float L0 = 3;
+
+// Surfaces of many reflectances, each shining with (1 - rho) L0: radiance is L0 everywhere.
+Scene uneven_furnace() {
+  Scene s;
+  const auto grey = [&](float rho) { return add_diffuse(s, Rgb{rho}); };
+  const auto glow = [](float rho) { return Rgb{(1 - rho) * L0}; };
+  const auto walls = add_box_inside(s, grey(0), {-2, -2, 0}, {2, 2, 2.5f});
+  const float reflectances[] = {0.2f, 0.9f, 0.5f, 0.0f, 0.7f, 0.35f};
+  for (size_t i = 0; i < 6; ++i) {
+    s.meshes[walls[i]].material = grey(reflectances[i]);
+    make_emitter(s, walls[i], glow(reflectances[i]));
+  }
+  // Things that stand in one another's light: a block that reflects all, a ball, a disk, a screen.
+  const auto block = add_box_inside(s, grey(1), {0.3f, 0.2f, 0.1f}, {1, 1, 1.2f});
+  for (const uint32_t q : block)
+    for (Triangle& t : s.meshes[q].triangles) std::swap(t[1], t[2]);
+  add_sphere_emitter(s, grey(0.6f), {-0.7f, 0.6f, 0.8f}, 0.5f, glow(0.6f));
+  add_disk_emitter(s, grey(0.8f), {-0.5f, -0.4f, 1.6f}, normalize(Vec3{1, 1, 3}), 0.6f, glow(0.8f),
+                   true);
+  make_emitter(
+      s,
+      add_quad(s, grey(0.4f),
+               {Vec3{0.2f, -1, 0.2f}, {1.2f, -0.8f, 0.2f}, {1.2f, -0.8f, 1}, {0.2f, -1, 1}}),
+      glow(0.4f), true);
+  add_mesh_emitter(s, grey(0.3f), {{-1.5f, 1, 0.3f}, {-1, 1.5f, 0.3f}, {-1.2f, 1.2f, 1.5f}},
+                   {{0, 1, 2}}, glow(0.3f), true);
+  return s;
+}
+
+Camera furnace_camera() {
+  return look_at({-1.5f, -1.8f, 1.3f}, {0.2f, 0.6f, 0.8f}, {0, 0, 1}, 75);
+}
+
+}  // namespace
+
+TEST_CASE("in a furnace every pixel is as bright as every other") {
+  const PreparedScene scene(uneven_furnace());
+  RenderOptions o;
+  o.width = 32;
+  o.height = 24;
+  o.spp = 16;
+  const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
+  CHECK(pixels_off(
+            e, [](size_t) { return double(L0); }, 1e-5) == 0);
+  CAPTURE(e.mean.mean());
+  CAPTURE(e.mean.standard_error());
+  CHECK(p_of_mean(e.mean, double(L0), 1e-5 * double(L0)) > 1e-4);
+  CHECK(e.mean.standard_error() < 2e-3 * double(L0));  // or the test would say little
+}
+
+TEST_CASE("a furnace with glass, mirrors and gloss in it") {
+  Scene s = uneven_furnace();
+  Material glass;
+  glass.kind = MaterialKind::dielectric;
+  glass.base_color.value = Rgb{1};
+  s.spheres.push_back({{0.1f, -0.2f, 0.7f}, 0.4f, false, add_material(s, glass), no_emitter});
+  Material thin = glass;
+  thin.is_thin = true;
+  add_quad(s, add_material(s, thin),
+           {Vec3{-1, -0.9f, 0.5f}, {-0.5f, -1.1f, 0.5f}, {-0.5f, -1.1f, 1.5f}, {-1, -0.9f, 1.5f}});
+  Material metal;
+  metal.kind = MaterialKind::conductor;
+  metal.is_reflectance = true;
+  metal.base_color.value = Rgb{1};
+  metal.roughness.value = 0.3f;
+  s.spheres.push_back({{1.4f, -0.2f, 0.5f}, 0.4f, false, add_material(s, metal), no_emitter});
+  Material coated;
+  coated.kind = MaterialKind::coated_diffuse;
+  coated.base_color.value = Rgb{1};
+  s.spheres.push_back({{-1.4f, 0, 0.3f}, 0.3f, false, add_material(s, coated), no_emitter});
+  const PreparedScene scene(std::move(s));
+  RenderOptions o;
+  o.width = 32;
+  o.height = 24;
+  o.spp = 16;
+  const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
+  // Rough metal keeps its energy within 0.15 % (bsdf/bsdf.h).
+  CHECK(pixels_off(
+            e, [](size_t) { return double(L0); }, 2e-3) == 0);
+  CHECK(p_of_mean(e.mean, double(L0), 5e-4 * double(L0)) > 1e-4);
+}
+
+TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
+  Scene s;
+  const float rho = 0.6f;
+  const uint32_t grey = add_diffuse(s, Rgb{rho});
+  add_quad(s, grey, {Vec3{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});
+  add_ceiling_light(s, 1, 2, Rgb{10});
+  add_sphere_emitter(s, 0, {2, 1, 1.2f}, 0.3f, Rgb{20});
+  add_disk_emitter(s, 0, {-2, 1, 1.5f}, normalize(Vec3{1, 0, -1}), 0.4f, Rgb{15});
+  const PreparedScene scene(std::move(s));
+  // Straight down from below the sources, so that no pixel shows them or their shadows.
+  Camera camera = look_at({0, 0, 0.7f}, {0, 0, 0}, {0, 1, 0}, 100);
+  RenderOptions o;
+  o.width = o.height = 16;
+  o.indirect = Indirect::none;
+  o.aovs = {Aov::position};
+  // A pixel's mean over its area, by 3 × 3 Gauss points of its own square on the floor.
+  const ViewingCamera view(camera, o.width, o.height);
+  const auto expected = [&](size_t i) {
+    const double nodes[] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
+    const double weights[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    double sum = 0;
+    for (size_t a = 0; a < 3; ++a)
+      for (size_t b = 0; b < 3; ++b) {
+        const Vec2 raster{float(double(i % 16) + nodes[a]), float(double(i / 16) + nodes[b])};
+        const Ray r = view.ray(raster, {0.5f, 0.5f});
+        const Vec3 x = r.origin + r.direction * (-r.origin.z / r.direction.z);
+        for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
+          sum += weights[a] * weights[b] * double(scene.scene.emitters[e].radiance.g) *
+                 irradiance(scene.lights, e, {double(x.x), double(x.y), 0}, {0, 0, 1});
+      }
+    return sum * double(rho) / pi;
+  };
+  for (const Method method : {Method::path, Method::fixed}) {
+    o.method = method;
+    o.spp = method == Method::path ? 64 : 4;
+    o.shadow_rays = 16;
+    const Ensemble e = render_ensemble(scene, camera, o, 24);
+    CAPTURE(int(method));
+    CHECK(pixels_off(e, expected, 1e-4) == 0);
+    double all = 0;
+    for (size_t i = 0; i < e.pixels.size(); ++i) all += expected(i) / double(e.pixels.size());
+    CAPTURE(e.mean.mean());
+    CAPTURE(all);
+    CHECK(p_of_mean(e.mean, all, 1e-5 * all) > 1e-4);
+  }
+}
+
+TEST_CASE("fixed and path agree on direct light with gloss, mirrors, glass and shadows") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions o;
+  o.width = 24;
+  o.height = 18;
+  o.indirect = Indirect::none;
+  o.spp = 32;
+  const Ensemble path = render_ensemble(scene, mixed_room_camera(), o, 24);
+  o.method = Method::fixed;
+  o.spp = 16;
+  o.shadow_rays = 4;
+  o.seed = 1000;
+  const Ensemble fixed = render_ensemble(scene, mixed_room_camera(), o, 24);
+  CAPTURE(path.mean.mean());
+  CAPTURE(fixed.mean.mean());
+  CHECK(p_of_difference(path.mean, fixed.mean) > 1e-4);
+  const double significance = sidak(1e-3, int(path.pixels.size()));
+  size_t off = 0;
+  for (size_t i = 0; i < path.pixels.size(); ++i)
+    off += p_of_difference(path.pixels[i], fixed.pixels[i], 1e-5) < significance;
+  CHECK(off == 0);
+}

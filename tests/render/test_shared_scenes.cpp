@@ -1,0 +1,81 @@
+// Rooms that other renderers agree on.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "import/import.h"
+#include "pictures.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/../shared/scenes/";
+
+bool is_present(const std::string& path) {
+  if (std::filesystem::exists(folder + path)) return true;
+  MESSAGE("skipped: no ", folder + path);
+  return false;
+}
+
+// Mean over pixels and channels. It does not depend on the resolution, pixels being boxes.
+Moments mean_of(const PreparedScene& scene, const Camera& camera, RenderOptions o, int sets) {
+  Moments m;
+  for (int s = 0; s < sets; ++s) {
+    m.add(mean(render_now(scene, camera, o).layers[0].image));
+    ++o.seed;
+  }
+  return m;
+}
+
+// Within `tolerance` (relative) of the value, and noise small enough to tell.
+void check_mean(const Moments& m, double expected, double tolerance) {
+  CAPTURE(m.mean());
+  CAPTURE(m.standard_error());
+  CHECK(3 * m.standard_error() < tolerance * expected);
+  CHECK(std::abs(m.mean() - expected) < tolerance * expected);
+}
+
+constexpr double direct_mean = 0.1761, full_mean = 0.3704;  // scenes/README.md
+
+}  // namespace
+
+TEST_CASE("kj92room: direct and full light, from pbrt and glTF") {
+  if (!is_present("kj92room/kj92room_direct.pbrt")) return;
+  const PreparedScene pbrt(import_scene(folder + "kj92room/kj92room_direct.pbrt"));
+  const PreparedScene gltf(import_scene(folder + "kj92room/kj92room.gltf"));
+  const PreparedScene obj(import_scene(folder + "kj92room/kj92room.obj"));
+  REQUIRE(pbrt.scene.cameras.size() == 1);
+  REQUIRE(gltf.scene.cameras.size() == 1);
+  const Camera camera = pbrt.scene.cameras[0];
+  RenderOptions o;
+  o.width = o.height = 64;
+  for (const bool is_direct : {true, false}) {
+    o.indirect = is_direct ? Indirect::none : Indirect::automatic;
+    o.spp = is_direct ? 16 : 32;
+    const Moments a = mean_of(pbrt, camera, o, 8);
+    const Moments b = mean_of(gltf, gltf.scene.cameras[0], o, 8);
+    check_mean(a, is_direct ? direct_mean : full_mean, 3e-3);
+    check_mean(b, is_direct ? direct_mean : full_mean, 3e-3);
+    CHECK(std::abs(a.mean() - b.mean()) < 2e-3 * a.mean());
+  }
+  o.indirect = Indirect::none;
+  o.method = Method::fixed;
+  o.shadow_rays = 4;
+  o.spp = 4;
+  check_mean(mean_of(pbrt, camera, o, 4), direct_mean, 3e-3);
+  check_mean(mean_of(obj, camera, o, 4), direct_mean, 3e-3);
+}
+
+TEST_CASE("modern-hall-diffuse: as bright as its reference") {
+  if (!is_present("modern-hall/modern-hall-diffuse.pbrt")) return;
+  const PreparedScene scene(import_scene(folder + "modern-hall/modern-hall-diffuse.pbrt"));
+  RenderOptions o;
+  o.width = 160;
+  o.height = 120;
+  o.spp = 8;
+  // Rendered with spectra, which accounts for 0.4 % of the reference's mean.
+  check_mean(mean_of(scene, scene.scene.cameras.at(0), o, 4), 0.47233, 6.5e-3);
+}
