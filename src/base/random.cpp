@@ -1,5 +1,7 @@
 #include "base/random.h"
 
+#include "base/simd.h"
+
 namespace troffer {
 
 namespace {
@@ -53,6 +55,25 @@ constexpr SobolBytes make_bytes() {
 }  // namespace
 
 constexpr SobolBytes sobol_bytes = make_bytes();
+
+TROFFER_MULTIVERSION
+void sobol_groups(const uint64_t* streams, const uint32_t* samples, size_t n, uint32_t purpose,
+                  int dimensions, float* out) {
+  for (size_t i = 0; i < n; ++i) {
+    const Vec2 v = SobolGroup(streams[i], purpose, samples[i]).get2(0);
+    out[i] = v.x;
+    out[n + i] = v.y;
+  }
+  if (dimensions == 3)
+    for (size_t i = 0; i < n; ++i)
+      out[2 * n + i] = SobolGroup(streams[i], purpose, samples[i]).get(2);
+  if (dimensions == 4)
+    for (size_t i = 0; i < n; ++i) {
+      const Vec2 v = SobolGroup(streams[i], purpose, samples[i]).get2(2);
+      out[2 * n + i] = v.x;
+      out[3 * n + i] = v.y;
+    }
+}
 
 const std::array<std::array<uint32_t, 32>, sobol_dimensions>& sobol_matrices_reversed() {
   return matrices;

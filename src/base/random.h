@@ -7,6 +7,7 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "base/units.h"
@@ -139,5 +140,10 @@ class SobolGroup {
   uint64_t seed_;
   uint32_t index_;
 };
+
+// The first `dimensions` (2 … 4) values of SobolGroup(streams[i], purpose, samples[i]) for all i of
+// n, at a stroke: out[d * n + i] is dimension d of group i.
+void sobol_groups(const uint64_t* streams, const uint32_t* samples, size_t n, uint32_t purpose,
+                  int dimensions, float* out);
 
 }  // namespace troffer

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/frame.h"
+#include "base/simd.h"
 #include "base/units.h"
 #include "base/warp.h"
 #include "emitter/receiver_view.h"
@@ -24,9 +25,19 @@ bool finish(const LightPrimitive& p, const PlanarView& view, const Vec3& to_poin
 
 // ---- rectangle ----
 
+// q: the point in radii of the piece, from the receiver's foot (so that no small height is lost in
+// a large lateral distance) and from vertex 0.
+bool finish_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec2& from_foot,
+                      const Vec2& from_corner, EmitterSample& out) {
+  const Vec2 local = from_corner * p.radius, lateral = from_foot * p.radius;
+  out.point = p.vertices[0] + p.axis_x * local.x + p.axis_y * local.y;
+  const Vec3 normal(view.is_front ? -p.normal : p.normal);
+  return finish(p, view, p.axis_x * lateral.x + p.axis_y * lateral.y + normal * float(view.height),
+                out);
+}
+
 bool sample_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec3& x, const Vec2& u,
                       EmitterSample& out) {
-  Vec2 local;  // metres from vertex 0
   if (!view.is_far) {
     const auto single = rectangle_from<float>(p, x, view.height);
     if (single.solid_angle >= least_rectangle_sr) {
@@ -36,17 +47,10 @@ bool sample_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec
         q = single.sample(u);
       else
         q = Vec2(rectangle_from<double>(p, x, view.height).sample(Vec2d(u)));
-      local = Vec2{q.x - single.x0, q.y - single.y0} * p.radius;
-      out.point = p.vertices[0] + p.axis_x * local.x + p.axis_y * local.y;
-      // From the receiver's foot, so that no small height is lost in a large lateral distance.
-      const Vec3 normal(view.is_front ? -p.normal : p.normal);
-      return finish(
-          p, view,
-          p.axis_x * (q.x * p.radius) + p.axis_y * (q.y * p.radius) + normal * float(view.height),
-          out);
+      return finish_rectangle(p, view, q, {q.x - single.x0, q.y - single.y0}, out);
     }
   }
-  local = {u.x * p.size_x, u.y * p.size_y};
+  const Vec2 local{u.x * p.size_x, u.y * p.size_y};
   const Vec3 offset = p.axis_x * local.x + p.axis_y * local.y;
   out.point = p.vertices[0] + offset;
   const Vec3 to_point = (p.vertices[0] - x) + offset;
@@ -241,6 +245,76 @@ bool sample(const LightPrimitive& p, const Vec3& x, const Vec2& u, EmitterSample
                                            : sample_rectangle(p, view, x, u, out);
   }
   return sample_fan(p, view, x, u, out);
+}
+
+namespace {
+
+// The rectangles of a batch: one iteration each, several per vector register. (Only as parameters
+// are restricted pointers believed.)
+TROFFER_MULTIVERSION
+void sample_rectangles(size_t n, const float* __restrict corner_x, const float* __restrict corner_y,
+                       const float* __restrict size_x, const float* __restrict size_y,
+                       const float* __restrict height, const float* __restrict u,
+                       const float* __restrict v, float* __restrict x, float* __restrict y,
+                       float* __restrict solid_angle) {
+  for (size_t i = 0; i < n; ++i) {
+    const SphericalRectangle<float> r(corner_x[i], corner_x[i] + size_x[i], corner_y[i],
+                                      corner_y[i] + size_y[i], height[i]);
+    const Vec2 q = r.sample(Vec2(u[i], v[i]));
+    x[i] = q.x;
+    y[i] = q.y;
+    solid_angle[i] = r.solid_angle;
+  }
+}
+
+}  // namespace
+
+void sample_many(const LightPrimitives& lights, size_t n, const uint32_t* primitives,
+                 const Vec3* receivers, const float* u, const float* v, EmitterSample* out,
+                 uint8_t* is_valid, EmitterSampleScratch& s) {
+  for (auto* a : {&s.corner_x, &s.corner_y, &s.size_x, &s.size_y, &s.height, &s.u, &s.v, &s.x, &s.y,
+                  &s.solid_angle})
+    a->resize(n);
+  s.index.resize(n);
+  size_t near = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const LightPrimitive& p = lights[primitives[i]];
+    if (p.shape == PrimitiveShape::rectangle) {
+      const PlanarView view(p, receivers[i]);
+      is_valid[i] = view.is_visible;
+      if (!view.is_visible) continue;
+      if (!view.is_far) {
+        const float scale = 1 / p.radius;
+        const Vec3 corner = p.vertices[0] - receivers[i];
+        s.index[near] = uint32_t(i);
+        s.corner_x[near] = dot(corner, p.axis_x) * scale;
+        s.corner_y[near] = dot(corner, p.axis_y) * scale;
+        s.size_x[near] = p.size_x * scale;
+        s.size_y[near] = p.size_y * scale;
+        s.height[near] = float(view.height) * scale;
+        s.u[near] = u[i];
+        s.v[near] = v[i];
+        ++near;
+        continue;
+      }
+    }
+    is_valid[i] = sample(p, receivers[i], {u[i], v[i]}, out[i]);
+  }
+  sample_rectangles(near, s.corner_x.data(), s.corner_y.data(), s.size_x.data(), s.size_y.data(),
+                    s.height.data(), s.u.data(), s.v.data(), s.x.data(), s.y.data(),
+                    s.solid_angle.data());
+  for (size_t k = 0; k < near; ++k) {
+    const size_t i = s.index[k];
+    const LightPrimitive& p = lights[primitives[i]];
+    if (!(s.solid_angle[k] >= least_single_precision_sr)) {
+      is_valid[i] = sample(p, receivers[i], {u[i], v[i]}, out[i]);
+      continue;
+    }
+    out[i].texture_uv = {};
+    out[i].pdf_solid_angle = 1 / s.solid_angle[k];
+    is_valid[i] = finish_rectangle(p, PlanarView(p, receivers[i]), {s.x[k], s.y[k]},
+                                   {s.x[k] - s.corner_x[k], s.y[k] - s.corner_y[k]}, out[i]);
+  }
 }
 
 float pdf_solid_angle(const LightPrimitive& p, const Vec3& x, const Vec3& wi, float distance) {

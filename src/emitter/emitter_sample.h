@@ -15,6 +15,10 @@
 //   [2] Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 #include "emitter/light_primitive.h"
 
 namespace troffer {
@@ -32,6 +36,20 @@ struct EmitterSample {
 // Chooses a point of `p` that faces receiver x, from u in [0,1)². False where nothing of it does
 // (the back of a one-sided emitter, its own plane) or the solid angle vanishes.
 bool sample(const LightPrimitive& p, const Vec3& x, const Vec2& u, EmitterSample& out);
+
+// Memory for sample_many.
+struct EmitterSampleScratch {
+  std::vector<uint32_t> index;
+  std::vector<float> corner_x, corner_y, size_x, size_y, height, u, v;  // in radii of the piece
+  std::vector<float> x, y, solid_angle;
+};
+
+// sample(lights[primitives[i]], receivers[i], (u[i], v[i]), out[i]) for all i of n; is_valid[i] is
+// what it returns. Near rectangles go together, several to a vector register: their points may
+// differ from sample()'s in the last bits, and do not depend on what else is in the batch.
+void sample_many(const LightPrimitives& lights, size_t n, const uint32_t* primitives,
+                 const Vec3* receivers, const float* u, const float* v, EmitterSample* out,
+                 uint8_t* is_valid, EmitterSampleScratch& scratch);
 
 // Density per steradian with which `sample` for receiver x chooses the direction wi, where a ray
 // from x along wi hits p at `distance`. 0 where sample never does.

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/simd.h"
 #include "base/vec.h"
 #include "emitter/arctangent.h"
 
@@ -24,7 +25,8 @@ struct SphericalRectangle {
   T r00, r10, r11, r01;  // distances of the corners
   T solid_angle;         // sr
 
-  SphericalRectangle(T x0_, T x1_, T y0_, T y1_, T z_) : x0(x0_), x1(x1_), y0(y0_), y1(y1_), z(z_) {
+  TROFFER_ALWAYS_INLINE SphericalRectangle(T x0_, T x1_, T y0_, T y1_, T z_)
+      : x0(x0_), x1(x1_), y0(y0_), y1(y1_), z(z_) {
     r00 = std::sqrt(x0 * x0 + y0 * y0 + z * z);
     r10 = std::sqrt(x1 * x1 + y0 * y0 + z * z);
     r11 = std::sqrt(x1 * x1 + y1 * y1 + z * z);
@@ -35,7 +37,7 @@ struct SphericalRectangle {
   // Solid angle of [x0,x] × [y0,y1]; rx0, rx1 are the distances of (x,y0) and (x,y1). Two
   // triangles, whose tangents of half the solid angle add like the arguments of complex numbers
   // [2].
-  T part(T x, T rx0, T rx1) const {
+  TROFFER_ALWAYS_INLINE T part(T x, T rx0, T rx1) const {
     const T yy0 = y0 * y0 + z * z, yy1 = y1 * y1 + z * z, yy01 = y0 * y1 + z * z;
     const T det = (x - x0) * (y1 - y0) * z;
     const T diagonal = x0 * x + yy01;  // (x0,y0)·(x,y1)
@@ -45,14 +47,15 @@ struct SphericalRectangle {
   }
 
   // u in [0,1)² -> (x, y) on the rectangle, density 1 / solid_angle per unit solid angle.
-  Vec2T<T> sample(const Vec2T<T>& u) const {
+  TROFFER_ALWAYS_INLINE Vec2T<T> sample(const Vec2T<T>& u) const {
     // k = 2 pi minus the corner angles at x0 [1, Eq. 3], as (cos k, sin k)
     const T h0 = std::sqrt(y0 * y0 + z * z), h1 = std::sqrt(y1 * y1 + z * z);
     const T k_scale = 1 / ((x0 * x0 + z * z) * h0 * h1);
     const T cos_k = -(x0 * x0 * y0 * y1 + z * z * r00 * r01) * k_scale;
     const T sin_k = -z * x0 * (y1 * r00 - y0 * r01) * k_scale;
     const T part_angle = u.x * solid_angle;
-    const T s = std::sin(part_angle), c = std::cos(part_angle);
+    T s, c;
+    sine_cosine(part_angle, s, c);
     const T cos_au = c * cos_k - s * sin_k, sin_au = s * cos_k + c * sin_k;
     // x from f_u = (cos(au) b0 - b1) / sin(au) [1, Eq. 4], x = z / sqrt(f_u² + b0² - 1), where
     // b0² - 1 = -z² / h0². The rectangle's two long edges may change places: the longer of h0, h1

@@ -25,7 +25,11 @@ Ray shadow_ray_to(const Surface& s, const EmitterSample& light) {
 bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
              const LightPrimitive& light, const Vec2& u, LightConnection& out) {
   EmitterSample s;
-  if (!sample(light, v.surface.position, u, s)) return false;
+  return sample(light, v.surface.position, u, s) && connect(scene, v, bsdf, light, s, out);
+}
+
+bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
+             const LightPrimitive& light, const EmitterSample& s, LightConnection& out) {
   const Vec3 wi = v.frame.to_local(s.wi);
   if (!v.is_consistent(s.wi, wi)) return false;
   const BsdfValue value = evaluate_with_pdf(bsdf, v.wo, wi);

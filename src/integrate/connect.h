@@ -19,6 +19,10 @@ struct LightConnection {
 bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
              const LightPrimitive& light, const Vec2& u, LightConnection& out);
 
+// The same for a point of `light` that has been chosen already.
+bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
+             const LightPrimitive& light, const EmitterSample& point, LightConnection& out);
+
 // The density per solid angle, given that `light` is sampled, with which connect() picks the point
 // that a ray from `from` meets at vertex v.
 float pdf_of_hit(const LightPrimitive& light, const Vec3& from, const Vec3& direction,

@@ -42,7 +42,8 @@ void FixedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scrat
       const Hit& hit = s.trace.hits[i];
       if (!hit.is_valid()) continue;
       Walk& walk = s.walks[i];
-      const Vertex v = make_vertex(surface_at(scene_.scene, walk.ray, hit), walk.ray.direction);
+      Vertex v;
+      make_vertex(scene_.scene, walk.ray, hit, v);
       if (v.surface.emitter >= 0) add_emission(walk, v, out);
       if (walk.scatterings > 0) continue;  // it left a glossy surface only to look for emission
       const Bsdf bsdf =
@@ -50,7 +51,7 @@ void FixedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scrat
       if (walk.vertex == 0) record_first_hit(walk, v, bsdf, out);
       if (!is_purely_delta(bsdf)) sample_sources(walk, v, bsdf, s, out, counters);
       if (is_lambertian(bsdf, nullptr) || walk.vertex >= longest_chain) continue;
-      if (step(walk, v, bsdf)) s.walks[alive++] = walk;
+      if (step(walk, v, bsdf, step_numbers(walk))) s.walks[alive++] = walk;
     }
     s.walks.resize(alive);
     s.shadows.resolve(scene_.tracer, Coherence::coherent, out, counters);

@@ -19,25 +19,51 @@ constexpr uint32_t long_path = 32;
 constexpr float long_path_survival = 0.95f;
 
 // Ends paths that carry little, and strengthens those that survive; false where it ends.
-bool survives_roulette(Walk& walk) {
+bool survives_roulette(Walk& walk, float u) {
   if (walk.vertex < roulette_first_vertex) return true;
   // The factor 1/eta² of radiance inside glass comes back when the path leaves it.
   const float carried = max_component(walk.throughput) * walk.eta_squared;
-  const float most = walk.vertex < long_path ? 1 : long_path_survival;
-  const float survival = std::min(carried / roulette_threshold, most);
-  if (survival >= 1) return true;
-  const SobolGroup random(walk.stream, purpose_scatter(walk.vertex - 1), walk.sample);
-  if (random.get(3) >= survival) return false;
+  if (carried >= roulette_threshold) return true;
+  const float survival = carried / roulette_threshold;
+  if (u >= survival) return false;
   walk.throughput *= 1 / survival;
   return true;
 }
 
 }  // namespace
 
+// One wave of a batch: walks[i] stands at vertices[i], all with the same number of vertices behind
+// them. Stages pass it from array to array.
 struct PathIntegrator::Scratch final : IntegratorScratch {
   std::vector<Walk> walks;
+  std::vector<Vertex> vertices;
+  std::vector<Bsdf> bsdfs;
   WalkScratch trace;
   ShadowBatch shadows;
+
+  std::vector<uint64_t> streams;
+  std::vector<uint32_t> samples;
+  std::vector<float> numbers;
+  // Next-event estimation: the walks that take part, and the point each is to be connected with.
+  std::vector<uint32_t> lit, primitives;
+  std::vector<Vec3> receivers;
+  std::vector<float> light_u, light_v, light_pmf;
+  std::vector<EmitterSample> points;
+  std::vector<uint8_t> is_valid;
+  EmitterSampleScratch emitters;
+
+  // Draws `dimensions` numbers per walk: number d of walk i is numbers[d * walks.size() + i].
+  void draw(uint32_t purpose, int dimensions) {
+    const size_t n = walks.size();
+    streams.resize(n);
+    samples.resize(n);
+    numbers.resize(n * size_t(dimensions));
+    for (size_t i = 0; i < n; ++i) {
+      streams[i] = walks[i].stream;
+      samples[i] = walks[i].sample;
+    }
+    sobol_groups(streams.data(), samples.data(), n, purpose, dimensions, numbers.data());
+  }
 };
 
 std::unique_ptr<IntegratorScratch> PathIntegrator::make_scratch() const {
@@ -56,13 +82,16 @@ void PathIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
                                 RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   s.walks.clear();
+  s.vertices.clear();
+  s.bsdfs.clear();
   if (options_.depth == 0) return;
   for (uint32_t i = 0; i < sensors.size(); ++i) {
-    Walk walk = sensor_walk(sensors, i);
-    const Vertex v = make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset);
-    if (shade(walk, v, sensor_bsdf(), s)) s.walks.push_back(walk);
+    s.walks.push_back(sensor_walk(sensors, i));
+    s.vertices.push_back(
+        make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset));
+    s.bsdfs.push_back(sensor_bsdf());
   }
-  s.shadows.resolve(scene_.tracer, Coherence::none, out, counters);
+  shade(s, out, counters);
   follow(s, Coherence::none, out, counters);
 }
 
@@ -76,23 +105,45 @@ void PathIntegrator::follow(Scratch& s, Coherence first, RadianceBatch& out,
                             Counters& counters) const {
   for (Coherence coherence = first; !s.walks.empty(); coherence = Coherence::none) {
     trace_walks(scene_.tracer, s.walks, coherence, s.trace, counters);
-    size_t alive = 0;
-    for (size_t i = 0; i < s.walks.size(); ++i) {
-      const Hit& hit = s.trace.hits[i];
-      if (!hit.is_valid()) continue;
-      Walk& walk = s.walks[i];
-      const Vertex v = make_vertex(surface_at(scene_.scene, walk.ray, hit), walk.ray.direction);
-      if (v.surface.emitter >= 0) add_emission(walk, v, out);
-      const bool goes_on = !is_last(walk);
-      if (!goes_on && walk.vertex > 0) continue;
-      const Bsdf bsdf =
-          make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
-      if (walk.vertex == 0) record_first_hit(walk, v, bsdf, out);
-      if (goes_on && shade(walk, v, bsdf, s)) s.walks[alive++] = walk;
-    }
-    s.walks.resize(alive);
+    arrive(s, out);
+    shade(s, out, counters);
+  }
+}
+
+// From hits to vertices; keeps the walks that go on from theirs.
+void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
+  const size_t n = s.walks.size();
+  s.vertices.resize(n);
+  s.bsdfs.resize(n);
+  size_t alive = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const Hit& hit = s.trace.hits[i];
+    if (!hit.is_valid()) continue;
+    const Walk& walk = s.walks[i];
+    Vertex& v = s.vertices[alive];
+    make_vertex(scene_.scene, walk.ray, hit, v);
+    if (v.surface.emitter >= 0) add_emission(walk, v, out);
+    const bool goes_on = !is_last(walk);
+    if (!goes_on && walk.vertex > 0) continue;
+    Bsdf& bsdf = s.bsdfs[alive];
+    bsdf =
+        make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+    if (walk.vertex == 0) record_first_hit(walk, v, bsdf, out);
+    if (goes_on) s.walks[alive++] = walk;
+  }
+  s.walks.resize(alive);
+  s.vertices.resize(alive);
+  s.bsdfs.resize(alive);
+}
+
+// Next-event estimation at all vertices, then a step from each.
+void PathIntegrator::shade(Scratch& s, RadianceBatch& out, Counters& counters) const {
+  if (s.walks.empty()) return;
+  if (!scene_.light_tree.is_empty()) {
+    sample_lights(s);
     s.shadows.resolve(scene_.tracer, Coherence::none, out, counters);
   }
+  step_on(s);
 }
 
 // Emission that the path runs into, weighted against next-event estimation from the vertex before.
@@ -107,24 +158,60 @@ void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBat
       walk.throughput * radiance * weight;
 }
 
-void PathIntegrator::sample_light(const Walk& walk, const Vertex& v, const Bsdf& bsdf,
-                                  Scratch& s) const {
-  const SobolGroup random(walk.stream, purpose_light(walk.vertex), walk.sample);
-  const LightChoice choice = scene_.light_tree.choose(v.surface.position, v.geometric_normal,
-                                                      bsdf.has_transmission, random.get(2));
-  if (choice.pmf == 0) return;
-  LightConnection c;
-  if (!connect(scene_, v, bsdf, scene_.lights[choice.primitive], random.get2(), c)) return;
-  const float pdf_light = c.pdf_light * choice.pmf;
-  const float weight = power_heuristic(pdf_light, c.pdf_bsdf);
-  s.shadows.add(c.shadow_ray, walk.throughput * c.value * (weight / pdf_light), walk.index,
-                walk.scatterings == 0);
+void PathIntegrator::sample_lights(Scratch& s) const {
+  const size_t n = s.walks.size();
+  s.draw(purpose_light(s.walks[0].vertex), 3);
+  s.lit.clear();
+  s.primitives.clear();
+  s.receivers.clear();
+  s.light_u.clear();
+  s.light_v.clear();
+  s.light_pmf.clear();
+  for (uint32_t i = 0; i < n; ++i) {
+    const Vertex& v = s.vertices[i];
+    if (is_purely_delta(s.bsdfs[i])) continue;
+    const LightChoice choice = scene_.light_tree.choose(
+        v.surface.position, v.geometric_normal, s.bsdfs[i].has_transmission, s.numbers[2 * n + i]);
+    if (choice.pmf == 0) continue;
+    s.lit.push_back(i);
+    s.primitives.push_back(choice.primitive);
+    s.receivers.push_back(v.surface.position);
+    s.light_u.push_back(s.numbers[i]);
+    s.light_v.push_back(s.numbers[n + i]);
+    s.light_pmf.push_back(choice.pmf);
+  }
+  const size_t m = s.lit.size();
+  s.points.resize(m);
+  s.is_valid.resize(m);
+  sample_many(scene_.lights, m, s.primitives.data(), s.receivers.data(), s.light_u.data(),
+              s.light_v.data(), s.points.data(), s.is_valid.data(), s.emitters);
+  for (size_t k = 0; k < m; ++k) {
+    if (s.is_valid[k] == 0) continue;
+    const uint32_t i = s.lit[k];
+    LightConnection c;
+    if (!connect(scene_, s.vertices[i], s.bsdfs[i], scene_.lights[s.primitives[k]], s.points[k], c))
+      continue;
+    const float pdf_light = c.pdf_light * s.light_pmf[k];
+    const float weight = power_heuristic(pdf_light, c.pdf_bsdf);
+    const Walk& walk = s.walks[i];
+    s.shadows.add(c.shadow_ray, walk.throughput * c.value * (weight / pdf_light), walk.index,
+                  walk.scatterings == 0);
+  }
 }
 
-// Next-event estimation at a vertex, then on to the next; false where the path ends.
-bool PathIntegrator::shade(Walk& walk, const Vertex& v, const Bsdf& bsdf, Scratch& s) const {
-  if (!scene_.light_tree.is_empty() && !is_purely_delta(bsdf)) sample_light(walk, v, bsdf, s);
-  return step(walk, v, bsdf) && survives_roulette(walk);
+// Sets out from every vertex; keeps the walks that do not end.
+void PathIntegrator::step_on(Scratch& s) const {
+  const size_t n = s.walks.size();
+  s.draw(purpose_scatter(s.walks[0].vertex), 4);
+  const float* const u = s.numbers.data();
+  size_t alive = 0;
+  for (size_t i = 0; i < n; ++i) {
+    Walk& walk = s.walks[i];
+    const StepNumbers numbers{{u[i], u[n + i]}, u[2 * n + i], u[3 * n + i]};
+    if (step(walk, s.vertices[i], s.bsdfs[i], numbers) && survives_roulette(walk, numbers.roulette))
+      s.walks[alive++] = walk;
+  }
+  s.walks.resize(alive);
 }
 
 }  // namespace troffer

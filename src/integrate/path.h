@@ -32,10 +32,11 @@ class PathIntegrator final : public Integrator {
   struct Scratch;
 
   void follow(Scratch& scratch, Coherence first, RadianceBatch& out, Counters& counters) const;
+  void arrive(Scratch& scratch, RadianceBatch& out) const;
+  void shade(Scratch& scratch, RadianceBatch& out, Counters& counters) const;
   void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;
-  void sample_light(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf,
-                    Scratch& scratch) const;
-  bool shade(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, Scratch& scratch) const;
+  void sample_lights(Scratch& scratch) const;
+  void step_on(Scratch& scratch) const;
   bool is_last(const Walk& walk) const;
 
   const PreparedScene& scene_;

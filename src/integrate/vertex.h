@@ -22,19 +22,30 @@ struct Vertex {
   }
 };
 
-// The vertex where `ray` (unit direction) meets the surface.
-inline Vertex make_vertex(const Surface& surface, const Vec3& ray_direction) {
-  Vertex v;
-  v.surface = surface;
+// Turns everything about v.surface to the side from which a ray of this unit direction comes.
+inline void face_viewer(Vertex& v, const Vec3& ray_direction) {
   const Vec3 towards_viewer = -ray_direction;
-  v.is_front = dot(surface.geometric_normal, towards_viewer) >= 0;
-  v.geometric_normal = v.is_front ? surface.geometric_normal : -surface.geometric_normal;
-  Vec3 n = v.is_front ? surface.shading_normal : -surface.shading_normal;
+  v.is_front = dot(v.surface.geometric_normal, towards_viewer) >= 0;
+  const float side = v.is_front ? 1.0f : -1.0f;
+  v.geometric_normal = v.surface.geometric_normal * side;
+  Vec3 n = v.surface.shading_normal * side;
   // Interpolated normals may face away from a viewer who sees the surface.
   if (dot(n, towards_viewer) <= 1e-4f) n = v.geometric_normal;
   v.frame = Frame(n);
   v.wo = v.frame.to_local(towards_viewer);
+}
+
+// The vertex where a ray of unit direction meets the surface, or hits the scene (in place: vertices
+// are large).
+inline Vertex make_vertex(const Surface& surface, const Vec3& ray_direction) {
+  Vertex v;
+  v.surface = surface;
+  face_viewer(v, ray_direction);
   return v;
+}
+inline void make_vertex(const Scene& scene, const Ray& ray, const Hit& hit, Vertex& v) {
+  surface_at(scene, ray, hit, v.surface);
+  face_viewer(v, ray.direction);
 }
 
 // A point whose irradiance is asked for, as a vertex seen from straight above …

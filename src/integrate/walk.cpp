@@ -34,10 +34,14 @@ void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence
   if (n > 0 && walks[0].vertex > 0) counters.extension_rays += n;
 }
 
-bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
+StepNumbers step_numbers(const Walk& walk) {
   const SobolGroup random(walk.stream, purpose_scatter(walk.vertex), walk.sample);
+  return {random.get2(0), random.get(2), random.get(3)};
+}
+
+bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, const StepNumbers& numbers) {
   BsdfSample sampled;
-  if (!sample(bsdf, v.wo, random.get(2), random.get2(), sampled)) return false;
+  if (!sample(bsdf, v.wo, numbers.lobe, numbers.direction, sampled)) return false;
   const Vec3 wi = v.frame.to_world(sampled.wi);
   if (!v.is_consistent(wi, sampled.wi)) return false;
   walk.throughput *= sampled.weight;

@@ -42,8 +42,15 @@ struct WalkScratch {
 void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence coherence,
                  WalkScratch& scratch, Counters& counters);
 
+// Random numbers of one vertex for choosing where to go on.
+struct StepNumbers {
+  Vec2 direction;
+  float lobe = 0, roulette = 0;
+};
+StepNumbers step_numbers(const Walk& walk);
+
 // Chooses a direction by the BSDF and sets out in it; false where the walk ends.
-bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf);
+bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, const StepNumbers& numbers);
 
 // Fills in what AOVs want to know of the first surface.
 void record_first_hit(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, RadianceBatch& out);

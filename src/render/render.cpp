@@ -19,10 +19,10 @@ namespace troffer {
 
 namespace {
 
-// Pixels of a tile's side and samples of a pixel per batch: a batch of a few thousand paths is
+// Pixels of a tile's side and samples of a pixel per batch: a batch of about a thousand paths is
 // long enough for packets and short enough for the second-level cache.
 constexpr int tile_side = 16;
-constexpr int samples_per_batch = 16;
+constexpr int samples_per_batch = 4;
 
 struct TileWork {
   ViewingRays rays;

@@ -46,12 +46,11 @@ Vec3 mapped_normal(const Scene& scene, const Material& m, const Surface& s,
   return mapped / ml;
 }
 
-Surface triangle_surface(const Scene& scene, const Hit& hit) {
+void triangle_surface(const Scene& scene, const Hit& hit, Surface& s) {
   const Mesh& mesh = scene.meshes[hit.geometry];
   const Triangle& t = mesh.triangles[hit.primitive];
   const std::array<Vec3, 3> p{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
   const float w = 1 - hit.u - hit.v;
-  Surface s;
   s.geometry = hit.geometry;
   s.primitive = hit.primitive;
   s.position = p[0] * w + p[1] * hit.u + p[2] * hit.v;
@@ -66,52 +65,59 @@ Surface triangle_surface(const Scene& scene, const Hit& hit) {
     const float l = length(n);
     if (l > 1e-6f) s.shading_normal = n / (dot(n, s.geometric_normal) < 0 ? -l : l);
   }
+  s.uv = {};
   if (!mesh.uvs.empty()) {
     const std::array<Vec2, 3> uv{mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]};
     s.uv = uv[0] * w + uv[1] * hit.u + uv[2] * hit.v;
     const Material& m = scene.materials[mesh.material];
     if (m.normal_texture >= 0) s.shading_normal = mapped_normal(scene, m, s, p, uv);
   }
-  return s;
 }
 
-Surface sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit) {
+void sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface& s) {
   const Sphere& sphere = scene.spheres[hit.primitive];
   const Vec3 from_centre =
       normalize(ray.origin + ray.direction * hit.t - sphere.centre);  // re-projected: accurate
-  Surface s;
   s.geometry = hit.geometry;
   s.primitive = hit.primitive;
   s.position = sphere.centre + from_centre * sphere.radius;
   s.geometric_normal = sphere.is_inside_out ? -from_centre : from_centre;
   s.shading_normal = s.geometric_normal;
+  s.uv = {};
   // Embree solves a quadratic: its t errs more than a triangle's.
   s.offset = 4 * ray_offset(largest_coordinate(sphere.centre) + sphere.radius);
   s.material = sphere.material;
   s.emitter = sphere.emitter;
-  return s;
 }
 
-Surface disk_surface(const Scene& scene, const Ray& ray, const Hit& hit) {
+void disk_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface& s) {
   const Disk& disk = scene.disks[hit.primitive];
   const Vec3 p = ray.origin + ray.direction * hit.t;
-  Surface s;
   s.geometry = hit.geometry;
   s.primitive = hit.primitive;
   s.position = p - disk.normal * dot(disk.normal, p - disk.centre);
   s.geometric_normal = s.shading_normal = disk.normal;
+  s.uv = {};
   s.offset = ray_offset(largest_coordinate(disk.centre) + disk.radius);
   s.material = disk.material;
   s.emitter = disk.emitter;
-  return s;
 }
 
 }  // namespace
 
+void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out) {
+  if (hit.geometry < scene.meshes.size())
+    triangle_surface(scene, hit, out);
+  else if (hit.geometry == scene.meshes.size())
+    sphere_surface(scene, ray, hit, out);
+  else
+    disk_surface(scene, ray, hit, out);
+}
+
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
-  if (hit.geometry < scene.meshes.size()) return triangle_surface(scene, hit);
-  return hit.geometry == scene.meshes.size() ? sphere_surface(scene, ray, hit)
-                                             : disk_surface(scene, ray, hit);
+  Surface s;
+  surface_at(scene, ray, hit, s);
+  return s;
 }
 
 }  // namespace troffer

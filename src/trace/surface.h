@@ -23,6 +23,8 @@ struct Surface {
 };
 
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
+// The same in place, every member written.
+void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out);
 
 // Where a new ray in the direction of `towards` starts, clear of the surface it leaves.
 inline Vec3 offset_origin(const Surface& s, const Vec3& towards) {
