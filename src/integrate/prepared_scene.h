@@ -17,7 +17,7 @@ struct PreparedScene {
   PreparedScene& operator=(const PreparedScene&) = delete;
 
   const Scene scene;
-  const Tracer tracer;
+  Tracer tracer;
   const BsdfTables bsdf_tables;
   const LightPrimitives lights;
   const LightTree light_tree;

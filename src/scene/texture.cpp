@@ -1,5 +1,6 @@
 #include "scene/texture.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -16,29 +17,58 @@ const std::array<float, 256>& srgb_table() {
   return table;
 }
 
-// Texel index along one axis after wrapping; -1 = outside (black).
-int wrapped(long long i, int n, WrapMode mode) {
+constexpr int outside = -1;
+
+// The two texels along one axis between which a coordinate lies, and how far towards the second.
+struct TexelPair {
+  int first, second;
+  float t;
+};
+
+// Without division of integers: this runs for every textured hit.
+TexelPair texels_at(float coordinate, int n, WrapMode mode, bool is_filtered) {
+  float c = coordinate;
+  if (mode == WrapMode::repeat) {
+    c -= std::floor(c);
+  } else if (mode == WrapMode::mirror) {
+    c -= 2 * std::floor(c * 0.5f);
+    c = c > 1 ? 2 - c : c;
+  } else {
+    c = std::clamp(c, -2.0f, 3.0f);  // far outside is as outside as just outside
+  }
+  const float x = c * float(n) - (is_filtered ? 0.5f : 0.0f);
+  const float low = std::floor(x);
+  int i = int(low), j = i + 1;
   switch (mode) {
     case WrapMode::repeat:
-      return int(((i % n) + n) % n);
-    case WrapMode::mirror: {
-      const long long m = ((i % (2LL * n)) + 2LL * n) % (2LL * n);
-      return int(m < n ? m : 2LL * n - 1 - m);
-    }
+      i = i < 0 ? n - 1 : i >= n ? 0 : i;
+      j = j >= n ? j - n : j;
+      j = j >= n ? 0 : j;
+      break;
+    case WrapMode::mirror:
     case WrapMode::clamp:
-      return int(std::min<long long>(std::max<long long>(i, 0), n - 1));
+      i = std::clamp(i, 0, n - 1);
+      j = std::clamp(j, 0, n - 1);
+      break;
     case WrapMode::black:
-      return i < 0 || i >= n ? -1 : int(i);
+      i = i < 0 || i >= n ? outside : i;
+      j = j < 0 || j >= n ? outside : j;
+      break;
   }
-  return 0;
+  if (!is_filtered) return {i, i, 0};
+  return {i, j, x - low};
 }
 
-TextureValue texel(const Texture& t, long long x, long long y) {
-  const int i = wrapped(x, t.width, t.wrap_u), j = wrapped(y, t.height, t.wrap_v);
+TextureValue texel(const Texture& t, int i, int j) {
   if (i < 0 || j < 0) return {Rgb{0}, 0};
-  const size_t at = (size_t(j) * size_t(t.width) + size_t(i)) * size_t(t.channels);
-  std::array<float, 4> c{0, 0, 0, 1};
   const size_t n = size_t(t.channels);
+  const size_t at = (size_t(j) * size_t(t.width) + size_t(i)) * n;
+  if (!t.texels8.empty() && t.is_srgb && n == 3) {  // most of what there is
+    const std::array<float, 256>& table = srgb_table();
+    const uint8_t* c = t.texels8.data() + at;
+    return {{table[c[0]], table[c[1]], table[c[2]]}, 1};
+  }
+  std::array<float, 4> c{0, 0, 0, 1};
   const size_t alpha_channel = n == 2 ? 1 : n == 4 ? 3 : n;  // n: none
   for (size_t k = 0; k < n; ++k) {
     if (t.texels8.empty())
@@ -53,6 +83,10 @@ TextureValue texel(const Texture& t, long long x, long long y) {
   return {Rgb{c[0], c[1], c[2]}, c[3]};
 }
 
+TextureValue blend(const TextureValue& a, const TextureValue& b, float t) {
+  return {a.rgb * (1 - t) + b.rgb * t, a.alpha * (1 - t) + b.alpha * t};
+}
+
 TextureValue image_value(const Texture& t, const Vec2& uv_in) {
   // KHR_texture_transform: offset + rotation * (scale * uv), counterclockwise with v down.
   Vec2 uv{uv_in.x * t.uv_scale.x, uv_in.y * t.uv_scale.y};
@@ -62,21 +96,12 @@ TextureValue image_value(const Texture& t, const Vec2& uv_in) {
   }
   uv = uv + t.uv_offset;
   if (!(std::abs(uv.x) < 1e9f && std::abs(uv.y) < 1e9f)) uv = {0, 0};
-  const float x = uv.x * float(t.width), y = uv.y * float(t.height);
-  TextureValue v;
-  if (!t.is_filtered) {
-    v = texel(t, static_cast<long long>(std::floor(x)), static_cast<long long>(std::floor(y)));
-  } else {
-    const float xs = x - 0.5f, ys = y - 0.5f;
-    const float x0 = std::floor(xs), y0 = std::floor(ys);
-    const float fx = xs - x0, fy = ys - y0;
-    const auto i = static_cast<long long>(x0), j = static_cast<long long>(y0);
-    const TextureValue a = texel(t, i, j), b = texel(t, i + 1, j);
-    const TextureValue c = texel(t, i, j + 1), d = texel(t, i + 1, j + 1);
-    v.rgb = (a.rgb * (1 - fx) + b.rgb * fx) * (1 - fy) + (c.rgb * (1 - fx) + d.rgb * fx) * fy;
-    v.alpha =
-        (a.alpha * (1 - fx) + b.alpha * fx) * (1 - fy) + (c.alpha * (1 - fx) + d.alpha * fx) * fy;
-  }
+  const TexelPair x = texels_at(uv.x, t.width, t.wrap_u, t.is_filtered);
+  const TexelPair y = texels_at(uv.y, t.height, t.wrap_v, t.is_filtered);
+  TextureValue v = texel(t, x.first, y.first);
+  if (t.is_filtered)
+    v = blend(blend(v, texel(t, x.second, y.first), x.t),
+              blend(texel(t, x.first, y.second), texel(t, x.second, y.second), x.t), y.t);
   if (t.is_inverted) v.rgb = clamp01(Rgb{1} - v.rgb);
   v.rgb *= t.value;
   return v;

@@ -237,7 +237,17 @@ void occluded_packets(RTCScene scene, RTCIntersectContext& context, std::span<co
 
 }  // namespace
 
+namespace {
+
+void append(RayLog& log, std::span<const Ray> rays, Coherence coherence, bool is_occlusion) {
+  log.batches.push_back({log.rays.size(), rays.size(), coherence, is_occlusion});
+  log.rays.insert(log.rays.end(), rays.begin(), rays.end());
+}
+
+}  // namespace
+
 void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) const {
+  if (log_ != nullptr) append(*log_, rays, coherence, false);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   if (coherence == Coherence::coherent) {
@@ -257,6 +267,7 @@ void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence c
 
 void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
                       Coherence coherence) const {
+  if (log_ != nullptr) append(*log_, rays, coherence, true);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   if (coherence == Coherence::coherent) {

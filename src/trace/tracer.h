@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "scene/scene.h"
 #include "trace/ray.h"
@@ -12,6 +13,17 @@ namespace troffer {
 
 // Coherent rays (such as a pixel's viewing rays) are traced in packets.
 enum class Coherence { none, coherent };
+
+// All rays that a tracer is asked about, in order: for benchmarks.
+struct RayLog {
+  struct Batch {
+    size_t first, size;  // in `rays`
+    Coherence coherence;
+    bool is_occlusion;
+  };
+  std::vector<Ray> rays;
+  std::vector<Batch> batches;
+};
 
 // The acceleration structure of a scene, which must outlive it. Immutable and safe to use from
 // many threads; results do not depend on how many.
@@ -30,9 +42,13 @@ class Tracer {
   void occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
                 Coherence coherence = Coherence::none) const;
 
+  // From now on also writes all rays into `log` (null: no more). Not while other threads trace.
+  void set_log(RayLog* log) { log_ = log; }
+
  private:
   struct Embree;
   std::unique_ptr<Embree> embree_;
+  RayLog* log_ = nullptr;
 };
 
 }  // namespace troffer

@@ -168,3 +168,22 @@ TEST_CASE("the plain stream is uniform and hashes are bijections of bits") {
   for (uint32_t i = 0; i < 4096; ++i) images.insert(nested_uniform_scramble(i << 20, 99) >> 20);
   CHECK(images.size() == 4096);
 }
+
+TEST_CASE("groups drawn at a stroke are those drawn one by one, bit for bit") {
+  constexpr size_t n = 1003;  // not a multiple of any vector register
+  std::vector<uint64_t> streams(n);
+  std::vector<uint32_t> samples(n);
+  for (size_t i = 0; i < n; ++i) {
+    streams[i] = hash_of(i / 7, uint64_t(5));
+    samples[i] = uint32_t(i * 31 % 4096);
+  }
+  for (const int dimensions : {2, 3, 4}) {
+    std::vector<float> out(n * size_t(dimensions), -1.0f);
+    sobol_groups(streams.data(), samples.data(), n, 9, dimensions, out.data());
+    size_t different = 0;
+    for (size_t i = 0; i < n; ++i)
+      for (int d = 0; d < dimensions; ++d)
+        different += out[size_t(d) * n + i] != SobolGroup(streams[i], 9, samples[i]).get(d);
+    CHECK(different == 0);
+  }
+}

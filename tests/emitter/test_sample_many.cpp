@@ -1,0 +1,74 @@
+// sample_many against sample: the same points and densities, whatever shares the batch.
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "base/random.h"
+#include "base/warp.h"
+#include "emitter/emitter_sample.h"
+#include "support/scenes.h"
+
+using namespace troffer;
+
+TEST_CASE("many points at a stroke are those chosen one by one") {
+  Scene s;
+  test::add_ceiling_light(s, 1, 2, Rgb{1});
+  test::add_ceiling_light(s, 0.01f, 1, Rgb{1});
+  const uint32_t black = test::add_diffuse(s, Rgb{0});
+  test::make_emitter(
+      s, test::add_quad(s, black, {Vec3{0, 0, 3}, {1, 0.5f, 3}, {1.2f, 1.5f, 3}, {0.2f, 1, 3}}),
+      Rgb{1}, true);
+  s.spheres.push_back({{2, 0, 1}, 0.3f, false, black, int32_t(s.emitters.size())});
+  Emitter sphere;
+  sphere.shape = EmitterShape::sphere;
+  sphere.radiance = Rgb{1};
+  s.emitters.push_back(sphere);
+  const LightPrimitives lights(s);
+  REQUIRE(lights.size() == 4);
+
+  constexpr size_t n = 5000;
+  Random random(17);
+  std::vector<uint32_t> primitives(n);
+  std::vector<Vec3> receivers(n);
+  std::vector<float> u(n), v(n);
+  for (size_t i = 0; i < n; ++i) {
+    primitives[i] = random.next_u32() % 4;
+    // near and far, over and under, close to the plane of the light
+    const float r = 4 * random.next_float() * random.next_float();
+    receivers[i] = sphere_from_square(random.next_vec2()) * r + Vec3{0, 0, 2};
+    u[i] = random.next_float();
+    v[i] = random.next_float();
+  }
+  std::vector<EmitterSample> many(n);
+  std::vector<uint8_t> is_valid(n, 2);
+  EmitterSampleScratch scratch;
+  sample_many(lights, n, primitives.data(), receivers.data(), u.data(), v.data(), many.data(),
+              is_valid.data(), scratch);
+  size_t valid = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const LightPrimitive& p = lights[primitives[i]];
+    EmitterSample one;
+    REQUIRE(sample(p, receivers[i], {u[i], v[i]}, one) == (is_valid[i] != 0));
+    if (is_valid[i] == 0) continue;
+    ++valid;
+    CHECK(length(one.point - many[i].point) <= 1e-4f * p.radius);
+    CHECK(length(one.wi - many[i].wi) <= 1e-4f);
+    CHECK(many[i].pdf_solid_angle == doctest::Approx(one.pdf_solid_angle).epsilon(1e-4));
+    CHECK(many[i].is_front == one.is_front);
+    CHECK(many[i].pdf_solid_angle ==
+          doctest::Approx(pdf_solid_angle(p, receivers[i], many[i].wi, many[i].distance))
+              .epsilon(1e-3));
+  }
+  CHECK(valid > n / 3);
+
+  // alone in a batch: the same bits
+  for (size_t i = 0; i < 300; ++i) {
+    EmitterSample alone;
+    uint8_t ok = 2;
+    sample_many(lights, 1, &primitives[i], &receivers[i], &u[i], &v[i], &alone, &ok, scratch);
+    REQUIRE(ok == is_valid[i]);
+    if (ok == 0) continue;
+    CHECK(alone.point == many[i].point);
+    CHECK(alone.pdf_solid_angle == many[i].pdf_solid_angle);
+  }
+}
