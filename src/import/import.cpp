@@ -14,8 +14,11 @@ Scene import_scene(const std::string& path) {
   if (!is_gltf && ending != "pbrt" && ending != "obj")
     throw InputError(path, 0, 0, "is no scene: its name should end in .gltf, .glb, .pbrt or .obj");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
-  if (is_gltf) return import_gltf(path);
-  return ending == "pbrt" ? import_pbrt(path) : import_obj(path);
+  Scene scene = is_gltf            ? import_gltf(path)
+                : ending == "pbrt" ? import_pbrt(path)
+                                   : import_obj(path);
+  if (scene.emitters.empty()) scene.warnings.add("the scene has no light: nothing will be seen");
+  return scene;
 }
 
 }  // namespace troffer

@@ -1,5 +1,7 @@
 #include "integrate/fixed.h"
 
+#include <numeric>
+
 #include "base/random.h"
 #include "integrate/purposes.h"
 
@@ -18,6 +20,25 @@ struct FixedIntegrator::Scratch final : IntegratorScratch {
   std::vector<Walk> walks;
   WalkScratch trace;
   ShadowBatch shadows;
+  // The samples of one source from one vertex.
+  std::vector<uint64_t> streams;
+  std::vector<uint32_t> samples, primitives;
+  std::vector<float> numbers, pmfs, u, v;
+  std::vector<Vec3> receivers;
+  std::vector<EmitterSample> points;
+  std::vector<uint8_t> is_valid;
+  EmitterSampleScratch emitters;
+
+  void resize(size_t n) {
+    samples.resize(n);
+    primitives.resize(n);
+    numbers.resize(3 * n);
+    pmfs.resize(n);
+    u.resize(n);
+    v.resize(n);
+    points.resize(n);
+    is_valid.resize(n);
+  }
 };
 
 FixedIntegrator::FixedIntegrator(const PreparedScene& scene, const FixedOptions& options)
@@ -81,26 +102,47 @@ void FixedIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBa
 
 void FixedIntegrator::sample_sources(const Walk& walk, const Vertex& v, const Bsdf& bsdf,
                                      Scratch& s, RadianceBatch& out, Counters& counters) const {
-  const auto n = uint32_t(options_.shadow_rays);
-  const bool uses_lobe = !is_lambertian(bsdf, nullptr);  // combined with a sample of the BSDF's own
   for (uint32_t e = 0; e < trees_.size(); ++e) {
     if (trees_[e].is_empty()) continue;
-    const uint64_t stream = hash_combine(walk.stream, e + 1);
-    for (uint32_t j = 0; j < n; ++j) {
-      const SobolGroup random(stream, purpose_light(walk.vertex), walk.sample * n + j);
-      const LightChoice choice = trees_[e].choose(v.surface.position, v.geometric_normal,
-                                                  bsdf.has_transmission, random.get(2));
-      if (choice.pmf == 0) continue;  // of these primitives none can send light here
-      LightConnection c;
-      if (!connect(scene_, v, bsdf, scene_.lights[choice.primitive], random.get2(), c)) continue;
-      const float pdf_light = c.pdf_light * choice.pmf * float(n);
-      const float weight = uses_lobe ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
-      s.shadows.add(c.shadow_ray, walk.throughput * c.value * (weight / pdf_light), walk.index,
-                    true);
-    }
+    sample_source(walk, v, bsdf, e, s);
     // Rays of one vertex to one source stand side by side: packets pay.
     if (s.shadows.rays.size() >= shadow_batch)
       s.shadows.resolve(scene_.tracer, Coherence::coherent, out, counters);
+  }
+}
+
+void FixedIntegrator::sample_source(const Walk& walk, const Vertex& v, const Bsdf& bsdf,
+                                    uint32_t emitter, Scratch& s) const {
+  const auto n = uint32_t(options_.shadow_rays);
+  const LightTree& tree = trees_[emitter];
+  s.resize(n);
+  s.receivers.assign(n, v.surface.position);
+  s.streams.assign(n, hash_combine(walk.stream, emitter + 1));
+  std::iota(s.samples.begin(), s.samples.end(), walk.sample * n);
+  sobol_groups(s.streams.data(), s.samples.data(), n, purpose_light(walk.vertex), 3,
+               s.numbers.data());
+  uint32_t chosen = 0;
+  for (uint32_t j = 0; j < n; ++j) {
+    const LightChoice choice = tree.choose(v.surface.position, v.geometric_normal,
+                                           bsdf.has_transmission, s.numbers[2 * n + j]);
+    if (choice.pmf == 0) continue;  // of these primitives none can send light here
+    s.primitives[chosen] = choice.primitive;
+    s.pmfs[chosen] = choice.pmf;
+    s.u[chosen] = s.numbers[j];
+    s.v[chosen] = s.numbers[n + j];
+    ++chosen;
+  }
+  sample_many(scene_.lights, chosen, s.primitives.data(), s.receivers.data(), s.u.data(),
+              s.v.data(), s.points.data(), s.is_valid.data(), s.emitters);
+  const bool uses_lobe = !is_lambertian(bsdf, nullptr);  // combined with a sample of the BSDF's own
+  for (uint32_t j = 0; j < chosen; ++j) {
+    LightConnection c;
+    if (s.is_valid[j] == 0 ||
+        !connect(scene_, v, bsdf, scene_.lights[s.primitives[j]], s.points[j], c))
+      continue;
+    const float pdf_light = c.pdf_light * s.pmfs[j] * float(n);
+    const float weight = uses_lobe ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
+    s.shadows.add(c.shadow_ray, walk.throughput * c.value * (weight / pdf_light), walk.index, true);
   }
 }
 

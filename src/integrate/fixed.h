@@ -31,6 +31,8 @@ class FixedIntegrator final : public Integrator {
 
   void sample_sources(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, Scratch& scratch,
                       RadianceBatch& out, Counters& counters) const;
+  void sample_source(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, uint32_t emitter,
+                     Scratch& scratch) const;
   void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;
 
   const PreparedScene& scene_;

@@ -23,8 +23,9 @@ bool survives_roulette(Walk& walk, float u) {
   if (walk.vertex < roulette_first_vertex) return true;
   // The factor 1/eta² of radiance inside glass comes back when the path leaves it.
   const float carried = max_component(walk.throughput) * walk.eta_squared;
-  if (carried >= roulette_threshold) return true;
-  const float survival = carried / roulette_threshold;
+  const float most = walk.vertex < long_path ? 1 : long_path_survival;
+  const float survival = std::min(carried / roulette_threshold, most);
+  if (survival >= 1) return true;
   if (u >= survival) return false;
   walk.throughput *= 1 / survival;
   return true;
