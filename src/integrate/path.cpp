@@ -1,5 +1,8 @@
 #include "integrate/path.h"
 
+#include <new>
+#include <type_traits>
+
 #include <algorithm>
 
 #include "base/random.h"
