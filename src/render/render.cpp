@@ -21,14 +21,17 @@ namespace {
 
 // Pixels of a tile's side and samples of a pixel per batch: a batch of about a thousand paths is
 // long enough for packets and short enough for the second-level cache.
-constexpr int tile_side = 16;
+constexpr int widest_tile = 16;
 constexpr int samples_per_batch = 4;
+// Stops are looked for between tiles: those of scenes with many sources are smaller.
+constexpr double most_shadow_rays_per_tile = 1 << 22;
 
 struct TileWork {
   ViewingRays rays;
   RadianceBatch radiance;
   std::vector<std::pair<int, int>> pixels;  // of each ray
   std::unique_ptr<IntegratorScratch> scratch;
+  Counters counters;
 };
 
 std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const RenderOptions& o) {
@@ -40,12 +43,19 @@ std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const Re
   return std::make_unique<PathIntegrator>(scene, path);
 }
 
-std::vector<PixelRect> tiles_of(const PixelRect& window) {
+int tile_side(const RenderOptions& o, size_t emitters) {
+  if (o.method != Method::fixed) return widest_tile;
+  const double per_pixel = double(samples_per_batch) * o.shadow_rays * double(emitters);
+  int side = widest_tile;
+  while (side > 1 && per_pixel * side * side > most_shadow_rays_per_tile) side /= 2;
+  return side;
+}
+
+std::vector<PixelRect> tiles_of(const PixelRect& window, int side) {
   std::vector<PixelRect> tiles;
-  for (int y = window.y0; y < window.y1; y += tile_side)
-    for (int x = window.x0; x < window.x1; x += tile_side)
-      tiles.push_back(
-          {x, y, std::min(x + tile_side, window.x1), std::min(y + tile_side, window.y1)});
+  for (int y = window.y0; y < window.y1; y += side)
+    for (int x = window.x0; x < window.x1; x += side)
+      tiles.push_back({x, y, std::min(x + side, window.x1), std::min(y + side, window.y1)});
   return tiles;
 }
 
@@ -85,12 +95,12 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   const PixelRect window = window_of(options, size.width, size.height);
   const ViewingCamera viewing_camera(camera, size.width, size.height);
   const std::unique_ptr<Integrator> integrator = make_integrator(scene, options);
-  const std::vector<PixelRect> tiles = tiles_of(window);
+  const std::vector<PixelRect> tiles =
+      tiles_of(window, tile_side(options, scene.scene.emitters.size()));
   Film film(window, options.aovs);
 
   const int passes = (options.spp + samples_per_batch - 1) / samples_per_batch;
   std::vector<TileWork> work(size_t(thread_count(options.threads)));
-  std::vector<Counters> counters(tiles.size());
   std::mutex progress_mutex;
   size_t tiles_done = 0;
   std::atomic<bool> was_stopped = false;
@@ -108,11 +118,11 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
       const CheckContext context(tiles[t].x0, tiles[t].y0, first);
       viewing_rays(viewing_camera, tiles[t], first, samples, options.seed, w);
       w.radiance.reset(w.rays.size());
-      integrator->radiance(w.rays, *w.scratch, w.radiance, counters[t]);
+      integrator->radiance(w.rays, *w.scratch, w.radiance, w.counters);
       for (size_t i = 0; i < w.rays.size(); ++i) {
         const auto [x, y] = w.pixels[i];
         const float depth = viewing_camera.depth(w.radiance.position[i]);
-        if (!film.add(x, y, w.radiance, i, depth)) ++counters[t].nan_samples;
+        if (!film.add(x, y, w.radiance, i, depth)) ++w.counters.nan_samples;
       }
       const std::lock_guard lock(progress_mutex);
       ++tiles_done;
@@ -125,7 +135,7 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   result.layers = film.layers();
   result.statistics.width = window.width();
   result.statistics.height = window.height();
-  for (const Counters& c : counters) result.statistics.counters += c;
+  for (const TileWork& w : work) result.statistics.counters += w.counters;
   result.statistics.render_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
