@@ -1,0 +1,135 @@
+#include "program.h"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+
+namespace troffer::test {
+
+const char* const lit_floor_pbrt = R"(LookAt 0 -1.8 1.2  0 0 0.8  0 0 1
+Camera "perspective" "float fov" [70]
+Film "rgb" "integer xresolution" [40] "integer yresolution" [30]
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point3 P" [-2 -2 0  2 -2 0  2 2 0  -2 2 0]
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [5 5 5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point3 P" [-0.5 -0.5 2  -0.5 0.5 2  0.5 0.5 2  0.5 -0.5 2]
+AttributeEnd
+)";
+
+Folder::Folder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "troffer-test-XXXXXX").string();
+  REQUIRE(mkdtemp(pattern.data()) != nullptr);
+  path_ = pattern;
+}
+
+Folder::~Folder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string Folder::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path(name), std::ios::binary) << text;
+  return path(name);
+}
+
+std::vector<std::string> Folder::names() const {
+  std::vector<std::string> all;
+  for (const auto& entry : std::filesystem::directory_iterator(path_))
+    all.push_back(entry.path().filename().string());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::string> Finished::error_lines() const {
+  std::vector<std::string> lines;
+  std::istringstream in(err);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+Running::Running(const Folder&, const std::vector<std::string>& arguments) {
+  static std::atomic<int> count = 0;
+  const std::string base =
+      (std::filesystem::temp_directory_path() /
+       ("troffer-test-" + std::to_string(getpid()) + "-" + std::to_string(count++)))
+          .string();
+  out_ = base + ".out";
+  err_ = base + ".err";
+  std::vector<std::string> words{TROFFER_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  argv.push_back(nullptr);
+  pid_ = fork();
+  REQUIRE(pid_ >= 0);
+  if (pid_ > 0) return;
+  const int out = open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int err = open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  dup2(out, STDOUT_FILENO);
+  dup2(err, STDERR_FILENO);
+  // doctest has handlers of its own, and a shell's background job ignores SIGINT.
+  signal(SIGINT, SIG_DFL);
+  signal(SIGTERM, SIG_DFL);
+  execv(argv[0], argv.data());
+  _exit(127);
+}
+
+Running::~Running() {
+  if (pid_ > 0) {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  unlink(out_.c_str());
+  unlink(err_.c_str());
+}
+
+void Running::send(int signal) const {
+  kill(pid_, signal);
+}
+
+Finished Running::wait(double limit) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  int status = 0;
+  while (waitpid(pid_, &status, WNOHANG) == 0) {
+    if (elapsed() > limit) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, &status, 0);
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  pid_ = -1;
+  Finished f;
+  f.seconds = elapsed();
+  f.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  f.out = read_file(out_);
+  f.err = read_file(err_);
+  return f;
+}
+
+Finished run_program(const Folder& folder, const std::vector<std::string>& arguments) {
+  return Running(folder, arguments).wait();
+}
+
+}  // namespace troffer::test

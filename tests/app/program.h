@@ -1,0 +1,56 @@
+// Runs the program as its users do, in a folder of its own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace troffer::test {
+
+// A new folder under the system's temporary one, removed at the end.
+class Folder {
+ public:
+  Folder();
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string path(const std::string& name = {}) const { return (path_ / name).string(); }
+  // Writes a file and returns its path.
+  std::string write(const std::string& name, const std::string& text) const;
+  std::vector<std::string> names() const;  // of all entries, hidden ones too, sorted
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string read_file(const std::string& path);
+
+struct Finished {
+  int status = -1;  // exit status; 128 + signal where one ended it
+  std::string out, err;
+  double seconds = 0;
+  std::vector<std::string> error_lines() const;  // err by lines
+};
+
+// A program under way; its standard output and error go to files in `folder`.
+class Running {
+ public:
+  Running(const Folder& folder, const std::vector<std::string>& arguments);
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  void send(int signal) const;
+  // Ends the program by force after `limit` seconds (status 128 + 9).
+  Finished wait(double limit = 60);
+
+ private:
+  std::string out_, err_;
+  int pid_ = -1;
+};
+
+Finished run_program(const Folder& folder, const std::vector<std::string>& arguments);
+
+// A floor of 4 × 4 m under a 1 × 1 m source of radiance 5, two metres up, 40 × 30 pixels.
+extern const char* const lit_floor_pbrt;
+
+}  // namespace troffer::test

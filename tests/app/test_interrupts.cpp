@@ -1,0 +1,102 @@
+// Signals, and programs that run side by side.
+#include <doctest/doctest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "image/read_image.h"
+#include "program.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+void wait_seconds(double s) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(s));
+}
+
+}  // namespace
+
+TEST_CASE("SIGINT and SIGTERM stop a long render, which writes what it has") {
+  for (const int which : {SIGINT, SIGTERM})
+    for (const std::string method : {"path", "fixed"}) {
+      const Folder folder;
+      const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+      Running program(folder, {"render", scene, "-o", folder.path("o.exr"), "--spp", "1000000",
+                               "--method", method, "--shadow-rays", "256", "--stats",
+                               folder.path("s.json"), "--threads", "1"});
+      wait_seconds(0.7);
+      program.send(which);
+      const Finished f = program.wait(30);
+      CAPTURE(which);
+      CAPTURE(method);
+      CHECK(f.status == 130);
+      CHECK(f.seconds < 5);
+      CHECK(folder.names() == std::vector<std::string>{"o.exr", "room.pbrt", "s.json"});
+      const Image image = read_image(folder.path("o.exr"));
+      CHECK(image.width == 40);
+      CHECK(read_file(folder.path("s.json")).find("\"is_complete\": false") != std::string::npos);
+    }
+}
+
+TEST_CASE("a signal stops measuring, within one point too") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1,0,0,0,0,1\n");
+  Running program(folder, {"measure", scene, "--points", points, "-o", folder.path("o.csv"),
+                           "--spp", "50000000", "--threads", "1"});
+  wait_seconds(0.7);
+  program.send(SIGINT);
+  const Finished f = program.wait(30);
+  CHECK(f.status == 130);
+  CHECK(f.seconds < 5);
+  CHECK(folder.names() == std::vector<std::string>{"o.csv", "p.csv", "room.pbrt"});
+}
+
+TEST_CASE("many sources and many shadow rays: still stopped within seconds") {
+  const Folder folder;
+  std::string text = lit_floor_pbrt;
+  for (int i = 0; i < 2000; ++i)
+    text += "AttributeBegin\nTranslate " + std::to_string(0.04 * (i % 50) - 1) + " " +
+            std::to_string(0.04 * (i / 50) - 0.8) +
+            " 1.5\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
+            "Shape \"sphere\" \"float radius\" [0.01]\nAttributeEnd\n";
+  const std::string scene = folder.write("many.pbrt", text);
+  Running program(folder, {"render", scene, "-o", folder.path("o.exr"), "--spp", "16", "--method",
+                           "fixed", "--shadow-rays", "64", "--threads", "1"});
+  wait_seconds(1);
+  program.send(SIGINT);
+  const Finished f = program.wait(60);
+  CHECK(f.status == 130);
+  CHECK(f.seconds < 5);
+}
+
+TEST_CASE("programs that write the same file do not clash") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), out = folder.path("o.exr");
+  std::vector<std::unique_ptr<Running>> programs;
+  for (int i = 0; i < 4; ++i)
+    programs.push_back(std::make_unique<Running>(
+        folder, std::vector<std::string>{"render", scene, "-o", out, "--threads", "1"}));
+  for (const auto& p : programs) {
+    const Finished f = p->wait();
+    CHECK(f.status == 0);
+    CHECK(f.err.empty());
+  }
+  CHECK(folder.names() == std::vector<std::string>{"o.exr", "room.pbrt"});
+  CHECK(read_image(out).width == 40);
+}
+
+TEST_CASE("an output that was there is replaced only by a whole one") {
+  const Folder folder;
+  const std::string good = folder.write("good.pbrt", lit_floor_pbrt);
+  const std::string bad = folder.write("bad.pbrt", "WorldBegin\nShape");
+  const std::string out = folder.write("o.pfm", "mine");
+  CHECK(run_program(folder, {"render", bad, "-o", out}).status == 1);
+  CHECK(read_file(out) == "mine");
+  CHECK(run_program(folder, {"render", good, "-o", out}).status == 0);
+  CHECK(read_image(out).width == 40);
+}
