@@ -72,7 +72,7 @@ void FixedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scrat
       if (walk.vertex == 0) record_first_hit(walk, v, bsdf, out);
       if (!is_purely_delta(bsdf)) sample_sources(walk, v, bsdf, s, out, counters);
       if (is_lambertian(bsdf, nullptr) || walk.vertex >= longest_chain) continue;
-      if (step(walk, v, bsdf, step_numbers(walk))) s.walks[alive++] = walk;
+      if (step(walk, v, bsdf, lobe_number(walk), direction_number(walk))) s.walks[alive++] = walk;
     }
     s.walks.resize(alive);
     s.shadows.resolve(scene_.tracer, Coherence::coherent, out, counters);

@@ -22,14 +22,14 @@ constexpr uint32_t long_path = 32;
 constexpr float long_path_survival = 0.95f;
 
 // Ends paths that carry little, and strengthens those that survive; false where it ends.
-bool survives_roulette(Walk& walk, float u) {
+bool survives_roulette(Walk& walk) {
   if (walk.vertex < roulette_first_vertex) return true;
   // The factor 1/eta² of radiance inside glass comes back when the path leaves it.
   const float carried = max_component(walk.throughput) * walk.eta_squared;
   const float most = walk.vertex < long_path ? 1 : long_path_survival;
   const float survival = std::min(carried / roulette_threshold, most);
   if (survival >= 1) return true;
-  if (u >= survival) return false;
+  if (roulette_number(walk) >= survival) return false;
   walk.throughput *= 1 / survival;
   return true;
 }
@@ -206,13 +206,14 @@ void PathIntegrator::sample_lights(Scratch& s) const {
 // Sets out from every vertex; keeps the walks that do not end.
 void PathIntegrator::step_on(Scratch& s) const {
   const size_t n = s.walks.size();
-  s.draw(purpose_scatter(s.walks[0].vertex), 4);
-  const float* const u = s.numbers.data();
+  s.draw(purpose_scatter(s.walks[0].vertex), 2);
   size_t alive = 0;
   for (size_t i = 0; i < n; ++i) {
     Walk& walk = s.walks[i];
-    const StepNumbers numbers{{u[i], u[n + i]}, u[2 * n + i], u[3 * n + i]};
-    if (step(walk, s.vertices[i], s.bsdfs[i], numbers) && survives_roulette(walk, numbers.roulette))
+    // Only surfaces with several lobes ask for the third number.
+    const float lobe = is_lambertian(s.bsdfs[i], nullptr) ? 0 : lobe_number(walk);
+    if (step(walk, s.vertices[i], s.bsdfs[i], lobe, {s.numbers[i], s.numbers[n + i]}) &&
+        survives_roulette(walk))
       s.walks[alive++] = walk;
   }
   s.walks.resize(alive);

@@ -34,14 +34,22 @@ void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence
   if (n > 0 && walks[0].vertex > 0) counters.extension_rays += n;
 }
 
-StepNumbers step_numbers(const Walk& walk) {
-  const SobolGroup random(walk.stream, purpose_scatter(walk.vertex), walk.sample);
-  return {random.get2(0), random.get(2), random.get(3)};
+Vec2 direction_number(const Walk& walk) {
+  return SobolGroup(walk.stream, purpose_scatter(walk.vertex), walk.sample).get2(0);
 }
 
-bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, const StepNumbers& numbers) {
+float lobe_number(const Walk& walk) {
+  return SobolGroup(walk.stream, purpose_scatter(walk.vertex), walk.sample).get(2);
+}
+
+float roulette_number(const Walk& walk) {
+  return unit_float(
+      uint32_t(hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample) >> 32));
+}
+
+bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2& direction) {
   BsdfSample sampled;
-  if (!sample(bsdf, v.wo, numbers.lobe, numbers.direction, sampled)) return false;
+  if (!sample(bsdf, v.wo, lobe, direction, sampled)) return false;
   const Vec3 wi = v.frame.to_world(sampled.wi);
   if (!v.is_consistent(wi, sampled.wi)) return false;
   walk.throughput *= sampled.weight;

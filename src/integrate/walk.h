@@ -42,15 +42,14 @@ struct WalkScratch {
 void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence coherence,
                  WalkScratch& scratch, Counters& counters);
 
-// Random numbers of one vertex for choosing where to go on.
-struct StepNumbers {
-  Vec2 direction;
-  float lobe = 0, roulette = 0;
-};
-StepNumbers step_numbers(const Walk& walk);
+// Random numbers at a walk's vertex: for choosing a direction (with purpose_scatter, dimensions 0
+// and 1), a lobe (dimension 2), and for Russian roulette, which gains nothing by stratification.
+Vec2 direction_number(const Walk& walk);
+float lobe_number(const Walk& walk);
+float roulette_number(const Walk& walk);
 
 // Chooses a direction by the BSDF and sets out in it; false where the walk ends.
-bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, const StepNumbers& numbers);
+bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, float lobe, const Vec2& direction);
 
 // Fills in what AOVs want to know of the first surface.
 void record_first_hit(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, RadianceBatch& out);
