@@ -127,14 +127,20 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
     Vertex& v = s.vertices[alive];
     make_vertex(scene_.scene, walk.ray, hit, v);
     if (v.surface.emitter >= 0) add_emission(walk, v, out);
-    const bool goes_on = !is_last(walk);
-    if (!goes_on && walk.vertex > 0) continue;
-    Bsdf& bsdf = s.bsdfs[alive];
-    bsdf =
-        make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
-    if (walk.vertex == 0) record_first_hit(walk, v, bsdf, out);
-    if (goes_on) s.walks[alive++] = walk;
+    if (is_last(walk) && walk.vertex > 0) continue;
+    const ColorInput& color = scene_.scene.materials[v.surface.material].base_color;
+    if (color.texture >= 0) prefetch(scene_.scene.textures, uint32_t(color.texture), v.surface.uv);
+    s.walks[alive++] = walk;
   }
+  for (size_t i = 0; i < alive; ++i) {
+    const Surface& surface = s.vertices[i].surface;
+    // Made in its place: it is too large to be made and copied.
+    static_assert(std::is_trivially_destructible_v<Bsdf>);
+    new (&s.bsdfs[i]) Bsdf(make_bsdf(scene_.bsdf_tables, scene_.scene, surface.material, surface.uv,
+                                     s.vertices[i].is_front));
+    if (s.walks[i].vertex == 0) record_first_hit(s.walks[i], s.vertices[i], s.bsdfs[i], out);
+  }
+  if (alive > 0 && is_last(s.walks[0])) alive = 0;  // seen, but not followed
   s.walks.resize(alive);
   s.vertices.resize(alive);
   s.bsdfs.resize(alive);

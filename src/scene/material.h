@@ -70,4 +70,9 @@ inline float evaluate(const std::vector<Texture>& textures, const FloatInput& in
   return in.value * (in.channel == 3 ? v.alpha : v.rgb[size_t(in.channel)]);
 }
 
+// Whether an alpha mask makes a hole at uv. Of a material that is_alpha_masked.
+inline bool is_cut_out(const std::vector<Texture>& textures, const Material& m, const Vec2& uv) {
+  return evaluate(textures, m.alpha, uv) < m.alpha_cutoff;
+}
+
 }  // namespace troffer

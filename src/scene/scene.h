@@ -59,6 +59,7 @@ struct Emitter {
   Rgb radiance;                  // W/(m² sr), or cd/m² where Scene::is_photometric
   int32_t texture = no_texture;  // factor on radiance over the mesh's (u,v); mesh only
   bool is_two_sided = false;
+  bool is_alpha_masked = false;  // mesh only: dark where its material's mask makes holes
   uint32_t geometry = 0;            // index into meshes, disks or spheres
   std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
   std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
@@ -105,6 +106,9 @@ Scene with_only_emitters(Scene scene, const std::vector<std::string>& names);
 // Emission of a triangle's, disk's or sphere's emitter towards a viewer on its front (or back).
 inline Rgb emitted_radiance(const Scene& scene, const Emitter& e, bool is_front, const Vec2& uv) {
   if (!is_front && !e.is_two_sided) return Rgb{0};
+  if (e.is_alpha_masked &&
+      is_cut_out(scene.textures, scene.materials[scene.meshes[e.geometry].material], uv))
+    return Rgb{0};
   return e.texture < 0 ? e.radiance
                        : e.radiance * evaluate(scene.textures, uint32_t(e.texture), uv).rgb;
 }

@@ -87,7 +87,12 @@ TextureValue blend(const TextureValue& a, const TextureValue& b, float t) {
   return {a.rgb * (1 - t) + b.rgb * t, a.alpha * (1 - t) + b.alpha * t};
 }
 
-TextureValue image_value(const Texture& t, const Vec2& uv_in) {
+// Texels that a lookup reads, and how it blends them.
+struct Footprint {
+  TexelPair x, y;
+};
+
+Footprint footprint_at(const Texture& t, const Vec2& uv_in) {
   // KHR_texture_transform: offset + rotation * (scale * uv), counterclockwise with v down.
   Vec2 uv{uv_in.x * t.uv_scale.x, uv_in.y * t.uv_scale.y};
   if (t.uv_rotation_rad != 0) {
@@ -96,8 +101,12 @@ TextureValue image_value(const Texture& t, const Vec2& uv_in) {
   }
   uv = uv + t.uv_offset;
   if (!(std::abs(uv.x) < 1e9f && std::abs(uv.y) < 1e9f)) uv = {0, 0};
-  const TexelPair x = texels_at(uv.x, t.width, t.wrap_u, t.is_filtered);
-  const TexelPair y = texels_at(uv.y, t.height, t.wrap_v, t.is_filtered);
+  return {texels_at(uv.x, t.width, t.wrap_u, t.is_filtered),
+          texels_at(uv.y, t.height, t.wrap_v, t.is_filtered)};
+}
+
+TextureValue image_value(const Texture& t, const Vec2& uv) {
+  const auto [x, y] = footprint_at(t, uv);
   TextureValue v = texel(t, x.first, y.first);
   if (t.is_filtered)
     v = blend(blend(v, texel(t, x.second, y.first), x.t),
@@ -124,6 +133,29 @@ TextureValue evaluate(const std::vector<Texture>& textures, uint32_t texture, co
     }
   }
   return {};
+}
+
+void prefetch(const std::vector<Texture>& textures, uint32_t texture, const Vec2& uv) {
+#if defined(__GNUC__)
+  const Texture& t = textures[texture];
+  if (t.kind == TextureKind::product) {
+    prefetch(textures, t.factor_a, uv);
+    prefetch(textures, t.factor_b, uv);
+  }
+  if (t.kind != TextureKind::image) return;
+  const auto [x, y] = footprint_at(t, uv);
+  if (x.first < 0) return;
+  for (const int j : {y.first, y.second}) {
+    if (j < 0) continue;
+    const size_t at = (size_t(j) * size_t(t.width) + size_t(x.first)) * size_t(t.channels);
+    if (t.texels8.empty())
+      __builtin_prefetch(t.texels_float.data() + at);
+    else
+      __builtin_prefetch(t.texels8.data() + at);
+  }
+#else
+  (void)textures, (void)texture, (void)uv;
+#endif
 }
 
 }  // namespace troffer

@@ -42,4 +42,8 @@ struct TextureValue {
 // Value at (u,v). NaN and infinite coordinates read as (0,0).
 TextureValue evaluate(const std::vector<Texture>& textures, uint32_t texture, const Vec2& uv);
 
+// Asks for the memory that evaluate() will read, so that it is there when many others have been
+// asked for meanwhile. Changes nothing else.
+void prefetch(const std::vector<Texture>& textures, uint32_t texture, const Vec2& uv);
+
 }  // namespace troffer
