@@ -38,7 +38,7 @@ Vec3 parse_vector(const std::string& text, const char* option) {
     char* end = nullptr;
     v[a] = std::strtof(p, &end);
     const bool is_last = a == 2;
-    if (end == p || *end != (is_last ? '\0' : ',') || !std::isfinite(v[a]))
+    if (end == p || *end != (is_last ? '\0' : ',') || !(std::abs(v[a]) <= 1e9f))
       throw UsageError(fmt::format("{}: cannot read '{}' as x,y,z", option, text));
     p = end + 1;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -91,6 +92,11 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
                          fmt::format("'{}' is not a number", f.text.substr(0, 40)));
     }
     const MeasuringPoint p{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    constexpr float farthest = 1e9f;  // metres, as for the triangles of a scene
+    const Vec3 reach = abs(p.position);
+    if (std::max(reach.x, std::max(reach.y, reach.z)) > farthest)
+      throw InputError(path, line_number, fields[where[0]].column,
+                       "the point lies more than 1e9 from the origin");
     const float l = length(p.normal);
     if (!(l > 0) || !std::isfinite(l))
       throw InputError(path, line_number, fields[where[3]].column, "the normal has no direction");

@@ -86,6 +86,21 @@ PixelRect window_of(const RenderOptions& o, int width, int height) {
   return w;
 }
 
+// InputError where the camera's numbers overflow: a place or a lens beyond measure.
+void check_camera(const ViewingCamera& camera, const PixelRect& window, const PreparedScene& scene,
+                  const std::string& name) {
+  for (const int x : {window.x0, window.x1})
+    for (const int y : {window.y0, window.y1})
+      for (const float lens : {0.0f, 0.5f, 1.0f}) {
+        const Ray r = camera.ray({float(x), float(y)}, {lens, 0.5f});
+        if (!(length(abs(r.origin)) < 1e15f) || !is_finite(r.direction))
+          throw InputError(scene.scene.file, 0, 0,
+                           "camera '" + name +
+                               "' cannot be used: it is too far away, or its field "
+                               "of view or lens is beyond measure");
+      }
+}
+
 }  // namespace
 
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
@@ -94,6 +109,7 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   const ImageSize size = image_size(camera, options.width, options.height);
   const PixelRect window = window_of(options, size.width, size.height);
   const ViewingCamera viewing_camera(camera, size.width, size.height);
+  check_camera(viewing_camera, window, scene, camera.name);
   const std::unique_ptr<Integrator> integrator = make_integrator(scene, options);
   const std::vector<PixelRect> tiles =
       tiles_of(window, tile_side(options, scene.scene.emitters.size()));

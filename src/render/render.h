@@ -52,7 +52,8 @@ struct RenderResult {
 using ProgressCallback = std::function<void(double fraction)>;
 
 // Renders what `camera` sees. The result is the same, bit for bit, for any number of threads.
-// Throws UsageError for options that contradict each other or the scene.
+// Throws UsageError for options that contradict each other or the scene, InputError for a camera
+// whose numbers overflow.
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
                     const ProgressCallback& progress, const StopFlag& stop);
 

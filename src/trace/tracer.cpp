@@ -189,11 +189,19 @@ void fill(RTCRay& r, const Ray& ray) {
   r.flags = 0;
 }
 
-// Lanes beyond n stay inactive through `valid`, but are given finite values.
+// Embree asserts that rays are finite and within some 1.8e18; false for NaN.
+bool is_traceable(const Ray& ray) {
+  const Vec3 reach = abs(ray.origin) + abs(ray.direction);
+  return reach.x + reach.y + reach.z < 1e18f;
+}
+
+// Lanes beyond n and untraceable ones stay inactive through `valid`, but are given finite values.
 void fill(RTCRay16& p, std::span<const Ray> rays, std::array<int, packet_size>& valid) {
+  static constexpr Ray harmless{{0, 0, 0}, 0, {0, 0, 1}, 0};
   for (size_t i = 0; i < packet_size; ++i) {
-    const Ray& ray = rays[std::min(i, rays.size() - 1)];
-    valid[i] = i < rays.size() ? -1 : 0;
+    const bool is_used = i < rays.size() && is_traceable(rays[i]);
+    const Ray& ray = is_used ? rays[i] : harmless;
+    valid[i] = is_used ? -1 : 0;
     p.org_x[i] = ray.origin.x;
     p.org_y[i] = ray.origin.y;
     p.org_z[i] = ray.origin.z;
@@ -231,7 +239,7 @@ void occluded_packets(RTCScene scene, RTCIntersectContext& context, std::span<co
     RTCRay16 p;
     fill(p, rays.subspan(first, n), valid);
     rtcOccluded16(valid.data(), scene, &context, &p);
-    for (size_t i = 0; i < n; ++i) is_occluded[first + i] = p.tfar[i] < 0 ? 1 : 0;
+    for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
   }
 }
 
@@ -256,6 +264,8 @@ void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence c
     return;
   }
   for (size_t i = 0; i < rays.size(); ++i) {
+    hits[i] = {};
+    if (!is_traceable(rays[i])) continue;
     RTCRayHit r;
     fill(r.ray, rays[i]);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -276,6 +286,8 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
     return;
   }
   for (size_t i = 0; i < rays.size(); ++i) {
+    is_occluded[i] = 1;
+    if (!is_traceable(rays[i])) continue;
     RTCRay r;
     fill(r, rays[i]);
     rtcOccluded1(embree_->scene, &context, &r);

@@ -26,7 +26,8 @@ struct RayLog {
 };
 
 // The acceleration structure of a scene, which must outlive it. Immutable and safe to use from
-// many threads; results do not depend on how many.
+// many threads; results do not depend on how many. Rays that are not finite or reach beyond 1e18
+// hit nothing and count as occluded.
 class Tracer {
  public:
   // Throws EnvironmentError if memory runs out.
