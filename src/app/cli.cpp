@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <new>
 
 #include "app/commands.h"
+#include "app/signals.h"
 #include "base/error.h"
 
 namespace troffer {
@@ -112,13 +114,15 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->check(CLI::Range(0.1, 179.0))
       ->capture_default_str();
   r->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   r->add_option("--threads", c.options.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
   r->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
   r->add_option("--aov", raw.aovs,
                 "Further layers for .exr: albedo,normal,depth,position,direct,indirect,"
                 "shadow_rays,error")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   r->add_option("--exposure", c.exposure, "Stops, for .png")
       ->check(CLI::Range(-60.0, 60.0))
       ->capture_default_str();
@@ -153,7 +157,8 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
       ->check(CLI::IsMember({"auto", "radiosity", "none"}))
       ->capture_default_str();
   s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
   s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
@@ -188,6 +193,9 @@ int parse_and_run(int argc, const char* const* argv) {
     throw UsageError(e.what());
   }
   if (app.got_subcommand("render")) {
+    // CLI::Range lets NaN pass.
+    if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
+    if (!std::isfinite(render.exposure)) throw UsageError("--exposure: not a number");
     apply(render_raw, render.options);
     return run_render(std::move(render));
   }
@@ -213,8 +221,13 @@ int run(int argc, const char* const* argv) {
   std::string command;
   for (int i = 0; i < argc; ++i) command += (i > 0 ? " " : "") + std::string(argv[i]);
   set_check_command(command);
+  exit_on_stop_signals();
   try {
-    return parse_and_run(argc, argv);
+    const int status = parse_and_run(argc, argv);
+    // What was printed may still wait in the buffer: a full disk shows here.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      throw EnvironmentError("cannot write to standard output");
+    return status;
   } catch (const UsageError& e) {
     return report(e.what(), exit_usage);
   } catch (const InputError& e) {
