@@ -15,15 +15,26 @@ static_assert(StopFlag::is_always_lock_free);
 extern "C" void on_stop_signal(int) {
   if (stop_requested.exchange(true)) _exit(130);
 }
+extern "C" void on_early_signal(int) {
+  _exit(130);
+}
 
-}  // namespace
-
-const StopFlag& install_stop_handlers() {
+void handle_stop_signals(void (*handler)(int)) {
   struct sigaction action = {};
-  action.sa_handler = on_stop_signal;
+  action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+}
+
+}  // namespace
+
+void exit_on_stop_signals() {
+  handle_stop_signals(on_early_signal);
+}
+
+const StopFlag& install_stop_handlers() {
+  handle_stop_signals(on_stop_signal);
   return stop_requested;
 }
 

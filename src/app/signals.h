@@ -5,6 +5,10 @@
 
 namespace troffer {
 
+// Until install_stop_handlers() there is nothing to keep: a signal ends the program with status
+// 130.
+void exit_on_stop_signals();
+
 // Installs the handlers and returns the flag that they set.
 const StopFlag& install_stop_handlers();
 
