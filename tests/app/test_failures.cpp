@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <regex>
 
@@ -71,9 +72,13 @@ TEST_CASE("files that are not there, and folders in place of files") {
   check_error(run_program(folder, {"info", folder.write("scene.xyz", "?")}), 1);
   std::filesystem::create_directory(folder.path("folder.pbrt"));
   check_error(run_program(folder, {"render", folder.path("folder.pbrt"), "-o", out}), 1);
+  // A pipe would keep the program waiting for ever.
+  REQUIRE(mkfifo(folder.path("pipe.obj").c_str(), 0600) == 0);
+  check_error(run_program(folder, {"render", folder.path("pipe.obj"), "-o", out}), 1);
   check_error(run_program(folder, {"compare", folder.path("a.exr"), folder.path("b.exr")}), 1);
   check_error(run_program(folder, {"measure", scene, "--points", folder.path("no.csv")}), 1);
-  CHECK(folder.names() == std::vector<std::string>{"folder.pbrt", "room.pbrt", "scene.xyz"});
+  CHECK(folder.names() ==
+        std::vector<std::string>{"folder.pbrt", "pipe.obj", "room.pbrt", "scene.xyz"});
 }
 
 TEST_CASE("outputs that cannot be written are told before any work, and leave nothing") {
@@ -161,6 +166,9 @@ TEST_CASE("wrong usage: exit 2") {
       {"render", scene, "-o", out, "--eye", "0,0,1"},
       {"render", scene, "-o", out, "--eye", "0,0,1", "--target", "0,0"},
       {"render", scene, "-o", out, "--eye", "0,0,1", "--target", "0,0,1"},
+      {"render", scene, "-o", out, "--eye", "1e30,0,1", "--target", "0,0,1"},
+      {"render", scene, "-o", out, "--eye", "0,0,1", "--target", "0,1,1", "--fov", "nan"},
+      {"render", scene, "-o", out, "--exposure", "nan"},
       {"render", scene, "-o", out, "--threads", "0"},
       {"render", scene, "-o", out, "--depth", "-1"},
       {"measure", scene},
@@ -201,7 +209,9 @@ TEST_CASE("point lists that cannot be read name line and column") {
                 {"x,y,z,nx,ny,nz\n0,0,0,0,0\n", ":2:10:"},
                 {"x,y,z,nx,ny,nz\n\n0,0,0, 0,0,0\n", ":3:8:"},
                 {"x,y,z,nx,ny,nz\n0,0,nan,0,0,1\n", ":2:5:"},
-                {"x,y,z,nx,ny,nz\n0,0,1e99,0,0,1\n", ":2:5:"}};
+                {"x,y,z,nx,ny,nz\n0,0,1e99,0,0,1\n", ":2:5:"},
+                {"x,y,z,nx,ny,nz\n0,0,1e30,0,0,1\n", ":2:1:"},
+                {"x,y,z,nx,ny,nz\n0,0,0,1e30,0,1\n", ":2:7:"}};
   for (const auto& b : broken) {
     const std::string points = folder.write("points.csv", b.text);
     CAPTURE(b.text);
@@ -211,4 +221,32 @@ TEST_CASE("point lists that cannot be read name line and column") {
     CHECK(f.err.find(b.where) != f.err.npos);
   }
   CHECK(folder.names() == std::vector<std::string>{"points.csv", "room.pbrt"});
+}
+
+TEST_CASE("cameras beyond measure are refused, not rendered") {
+  const Folder folder;
+  const std::string text = lit_floor_pbrt;
+  const std::string body = text.substr(text.find("WorldBegin"));
+  const std::string cameras[] = {
+      "LookAt 1e30 0 0  0 0 0  0 0 1\nCamera \"perspective\"\n",
+      "Camera \"orthographic\" \"float screenwindow\" [-1e30 1e30 -1e30 1e30]\n",
+      "Camera \"perspective\" \"float screenwindow\" [-3e38 3e38 -3e38 3e38]\n",
+      "Camera \"perspective\" \"float lensradius\" [1e30] \"float focaldistance\" [1e-30]\n"};
+  for (const std::string& camera : cameras) {
+    CAPTURE(camera);
+    const std::string scene = folder.write("far.pbrt", camera + body);
+    check_error(run_program(folder, {"render", scene, "-o", folder.path("o.exr"), "--spp", "1"}),
+                1);
+    CHECK(folder.names() == std::vector<std::string>{"far.pbrt"});
+  }
+}
+
+TEST_CASE("printing to a full disk is a failure") {
+  if (access("/dev/full", W_OK) != 0) return;
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  const std::string command =
+      std::string(TROFFER_PROGRAM) + " info " + scene + " > /dev/full 2> " + folder.path("err");
+  CHECK(WEXITSTATUS(std::system(command.c_str())) == 1);
+  CHECK(read_file(folder.path("err")).rfind("error: ", 0) == 0);
 }

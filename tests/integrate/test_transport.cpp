@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "emitter/irradiance.h"
 #include "probe.h"
@@ -144,6 +145,24 @@ TEST_CASE("every bounce adds light, and bounces add up") {
     const double direct = double(L0) * (1 - std::pow(double(rho), std::min(depth, 1) + 1));
     CHECK(p_of_mean(p.direct, direct, 1e-5) > sidak(1e-3, 4));
     if (depth < 2) CHECK(p.indirect.mean() == 0);
+  }
+}
+
+TEST_CASE("rays that are no rays hit nothing, and spare the others of their batch") {
+  const PreparedScene scene(furnace(0.5f));
+  std::vector<Ray> rays(35, ray_towards({0, 0, 0}, {1, 0.3f, -0.2f}));
+  rays[3].direction.x = std::nanf("");
+  rays[17].origin.y = 1e30f;
+  rays[33].origin.z = -std::numeric_limits<float>::infinity();
+  for (const Coherence c : {Coherence::coherent, Coherence::none}) {
+    std::vector<Hit> hits(rays.size());
+    std::vector<uint8_t> is_occluded(rays.size());
+    scene.tracer.closest(rays, hits, c);
+    scene.tracer.occluded(rays, is_occluded, c);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      CHECK(hits[i].is_valid() == (i != 3 && i != 17 && i != 33));
+      CHECK(is_occluded[i] == 1);
+    }
   }
 }
 

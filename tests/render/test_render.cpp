@@ -87,6 +87,17 @@ TEST_CASE("crops that are empty or reach outside are refused") {
   }
 }
 
+TEST_CASE("cameras whose numbers overflow are refused") {
+  const PreparedScene scene(mixed_room());
+  const RenderOptions o = small_options(Method::path);
+  Camera far = mixed_room_camera();
+  far.position = Vec3{1e30f};
+  CHECK_THROWS_AS(render_now(scene, far, o), InputError);
+  Camera undirected = mixed_room_camera();
+  undirected.forward = Vec3{std::nanf("")};
+  CHECK_THROWS_AS(render_now(scene, undirected, o), InputError);
+}
+
 TEST_CASE("the seed changes the noise, not the mean") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = small_options(Method::path);
