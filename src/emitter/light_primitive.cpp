@@ -1,5 +1,6 @@
 #include "emitter/light_primitive.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -44,15 +45,9 @@ bool set_polygon(LightPrimitive& p, std::span<const Vec3> vertices) {
   return true;
 }
 
-// Mean of a texture over a triangle: one lookup at the centre of each of n² equal parts, about one
-// part per texel up to n = 16.
-Rgb mean_over_triangle(const Scene& scene, uint32_t texture, const Vec2 (&uv)[3]) {
-  const Texture& t = scene.textures[texture];
-  const Vec2 e = uv[1] - uv[0], f = uv[2] - uv[0];
-  const float texels = 0.5f * std::abs(e.x * f.y - e.y * f.x) * float(t.width) * float(t.height);
-  int n = t.kind == TextureKind::constant ? 1 : 4;
-  if (t.kind == TextureKind::product) n = 16;
-  if (std::isfinite(texels)) n = std::clamp(int(std::sqrt(std::min(texels, 1e4f))) + 1, n, 16);
+// Mean emission over a triangle: one lookup at the centre of each of n² equal parts.
+Rgb mean_over_triangle(const Scene& scene, const Emitter& e, const Vec2 (&uv)[3], int n) {
+  const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
   Rgb sum;
   int count = 0;
   for (int i = 0; i < n; ++i) {
@@ -61,12 +56,37 @@ Rgb mean_over_triangle(const Scene& scene, uint32_t texture, const Vec2 (&uv)[3]
       for (int half = 0; half < (i + j + 1 < n ? 2 : 1); ++half) {
         const float offset = half == 0 ? 1.0f / 3 : 2.0f / 3;
         const float b1 = (float(i) + offset) / float(n), b2 = (float(j) + offset) / float(n);
-        sum += evaluate(scene.textures, texture, uv[0] + e * b1 + f * b2).rgb;
+        sum += emitted_radiance(scene, e, true, uv[0] + a * b1 + b * b2);
         ++count;
       }
     }
   }
   return sum / float(count);
+}
+
+// About one lookup per texel, up to 16²; where those are all dark, up to 128², because a source
+// without power is never sampled.
+Rgb mean_over_triangle(const Scene& scene, const Emitter& e, const Vec2 (&uv)[3]) {
+  const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
+  const float uv_area = 0.5f * std::abs(a.x * b.y - a.y * b.x);
+  const int32_t mask =
+      e.is_alpha_masked ? scene.materials[scene.meshes[e.geometry].material].alpha.texture : -1;
+  int least = 1, wanted = 1;
+  for (const int32_t texture : {e.texture, mask}) {
+    if (texture < 0) continue;
+    const Texture& t = scene.textures[size_t(texture)];
+    if (t.kind == TextureKind::constant) continue;
+    least = std::max(least, t.kind == TextureKind::product ? 16 : 4);
+    const float texels = uv_area * float(t.width) * float(t.height);
+    if (t.kind == TextureKind::product || !std::isfinite(texels))
+      wanted = 128;
+    else
+      wanted = std::max(wanted, int(std::sqrt(std::min(texels, 2e4f))) + 1);
+  }
+  const int n = std::clamp(wanted, least, 16);
+  const Rgb mean = mean_over_triangle(scene, e, uv, n);
+  if (!mean.is_black() || wanted <= n) return mean;
+  return mean_over_triangle(scene, e, uv, std::min(wanted, 128));
 }
 
 }  // namespace
@@ -138,9 +158,9 @@ void LightPrimitives::add_mesh(const Scene& scene, uint32_t emitter) {
       if (!mesh.uvs.empty()) p.uvs[i] = mesh.uvs[corners[i]];
     }
     if (!set_polygon(p, positions)) continue;
-    if (e.texture >= 0) {
+    if (e.texture >= 0 || e.is_alpha_masked) {
       p.is_textured = true;
-      p.mean_radiance *= mean_over_triangle(scene, uint32_t(e.texture), p.uvs);
+      p.mean_radiance = mean_over_triangle(scene, e, p.uvs);
     }
     table[t] = append(p, e);
   }

@@ -33,12 +33,12 @@ struct LightPrimitive {
   const Vec3* more_vertices = nullptr;  // all of them, where vertex_count > 4; LightPrimitives owns
   Vec2 uvs[3];                          // triangle: texture coordinates of the vertices
 
-  uint32_t emitter = 0;   // index into Scene::emitters
-  int32_t triangle = -1;  // of a mesh source: index into that mesh's triangles
-  bool is_textured = false;
-  Rgb mean_radiance;  // over the surface, W/(m² sr) or cd/m²
-  float power = 0;    // luminance of the flux that leaves: pi area L, twice if two-sided
-  Box bounds;         // world space
+  uint32_t emitter = 0;      // index into Scene::emitters
+  int32_t triangle = -1;     // of a mesh source: index into that mesh's triangles
+  bool is_textured = false;  // radiance varies over it: a texture, or holes of an alpha mask
+  Rgb mean_radiance;         // over the surface, W/(m² sr) or cd/m²
+  float power = 0;           // luminance of the flux that leaves: pi area L, twice if two-sided
+  Box bounds;                // world space
   // Cone of surface normals, for light trees: unit axis and cosine of its half angle (1: all equal;
   // -1: all directions). From each normal, light leaves through the hemisphere around it (both
   // hemispheres where is_two_sided).

@@ -258,6 +258,10 @@ void fold_constant_texture(const Scene& scene, EmissionSpec& spec) {
   spec.texture = no_texture;
 }
 
+bool is_alpha_masked(const Scene& scene, const Mesh& mesh) {
+  return mesh.material < scene.materials.size() && scene.materials[mesh.material].is_alpha_masked;
+}
+
 void add_emitter(Scene& scene, uint32_t mesh, const EmissionSpec& spec, Triangles triangles,
                  std::vector<Vec3> polygon) {
   Emitter e;
@@ -266,6 +270,7 @@ void add_emitter(Scene& scene, uint32_t mesh, const EmissionSpec& spec, Triangle
   e.radiance = spec.radiance;
   e.texture = spec.texture;
   e.is_two_sided = spec.is_two_sided;
+  e.is_alpha_masked = is_alpha_masked(scene, scene.meshes[mesh]);
   e.geometry = mesh;
   for (const uint32_t t : triangles)
     scene.meshes[mesh].emitters[t] = int32_t(scene.emitters.size());
@@ -291,7 +296,7 @@ void add_mesh_emitters(Scene& scene, uint32_t mesh_index, const EmissionSpec& gi
   scene.meshes[mesh_index].emitters.assign(mesh.triangles.size(), no_emitter);
 
   Triangles rest;
-  if (spec.texture == no_texture) {
+  if (spec.texture == no_texture && !is_alpha_masked(scene, mesh)) {
     size_t polygons = 0;
     for (Component& component : components_of(mesh, with_area)) {
       std::vector<Vec3> polygon;

@@ -59,7 +59,7 @@ struct Emitter {
   Rgb radiance;                  // W/(m² sr), or cd/m² where Scene::is_photometric
   int32_t texture = no_texture;  // factor on radiance over the mesh's (u,v); mesh only
   bool is_two_sided = false;
-  bool is_alpha_masked = false;  // mesh only: dark where its material's mask makes holes
+  bool is_alpha_masked = false;     // mesh only: dark where its material's mask makes holes
   uint32_t geometry = 0;            // index into meshes, disks or spheres
   std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
   std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front

@@ -180,3 +180,43 @@ TEST_CASE("a textured triangle's mean radiance is the texture's mean over it") {
   // mean of u over the triangle (0,0) (1,0) (0,1) is 1/3; bilinear wrapping at the edges aside
   CHECK(p[0].mean_radiance.r == doctest::Approx(2.0 / 3).epsilon(0.1));
 }
+
+namespace {
+
+// A triangle source over the texture square's lower left half, and `lit` texels of an image.
+Scene triangle_with_image(int size, const std::vector<std::pair<int, int>>& lit) {
+  Scene s = mesh_scene({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  s.meshes[0].uvs = {{0, 0}, {1, 0}, {0, 1}};
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = t.height = size;
+  t.channels = 1;
+  t.is_srgb = t.is_filtered = false;
+  t.texels_float.assign(size_t(size) * size_t(size), 0);
+  for (const auto& [x, y] : lit) t.texels_float[size_t(y) * size_t(size) + size_t(x)] = 1;
+  s.textures.push_back(t);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("a source lit in one texel only has power") {
+  Scene s = triangle_with_image(100, {{31, 17}});
+  s.emitters[0].texture = 0;
+  const LightPrimitives p(s);
+  REQUIRE(p.size() == 1);
+  CHECK(p[0].power > 0);
+  CHECK(p[0].mean_radiance.r == doctest::Approx(2.0 * 2e-4).epsilon(0.5));
+}
+
+TEST_CASE("holes of an alpha mask take their part of a source's power") {
+  Scene s = triangle_with_image(2, {{0, 0}, {1, 0}});  // holes where v > 1/2: a quarter
+  s.materials.resize(1);
+  s.materials[0].is_alpha_masked = true;
+  s.materials[0].alpha = {1, 0, 0};
+  s.emitters[0].is_alpha_masked = true;
+  const LightPrimitives p(s);
+  REQUIRE(p.size() == 1);
+  CHECK(p[0].is_textured);
+  CHECK(p[0].mean_radiance.r == doctest::Approx(2.0 * 0.75).epsilon(0.1));
+}

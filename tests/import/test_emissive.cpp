@@ -216,6 +216,22 @@ TEST_CASE("no area, no emission, constant textures") {
   CHECK(scene.emitters[0].is_two_sided);
 }
 
+TEST_CASE("a source with an alpha mask stays a mesh that knows of its holes") {
+  Scene scene;
+  Material masked;
+  masked.is_alpha_masked = true;
+  masked.alpha.value = 0.25f;
+  scene.materials.push_back(masked);
+  scene.meshes.push_back(square);
+  add_mesh_emitters(scene, 0, {"x", Rgb{4}, no_texture, false});
+  REQUIRE(scene.emitters.size() == 1);
+  CHECK(scene.emitters[0].shape == EmitterShape::mesh);
+  CHECK(scene.emitters[0].is_alpha_masked);
+  CHECK(emitted_radiance(scene, scene.emitters[0], true, {}) == Rgb{0});
+  scene.materials[0].alpha.value = 0.75f;
+  CHECK(emitted_radiance(scene, scene.emitters[0], true, {}) == Rgb{4});
+}
+
 TEST_CASE("large emissive meshes take near-linear time, and polygons are limited") {
   Mesh many;
   for (uint32_t i = 0; i < 3000; ++i) {

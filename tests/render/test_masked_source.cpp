@@ -1,0 +1,66 @@
+// Sources whose material has an alpha mask: holes send no light, however they are sampled.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "emitter/irradiance.h"
+#include "render/measure.h"
+#include "support/scenes.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// A mesh source [x0,1] × [-1,1] at height 1 that shines down, u = (x + 1) / 2.
+Scene source_from(float x0) {
+  Scene s;
+  add_diffuse(s, Rgb{0});
+  Mesh m;
+  m.positions = {{x0, -1, 1}, {x0, 1, 1}, {1, 1, 1}, {1, -1, 1}};
+  for (const Vec3& p : m.positions) m.uvs.push_back({(p.x + 1) / 2, (p.y + 1) / 2});
+  m.triangles = {{0, 1, 2}, {0, 2, 3}};
+  m.emitters = {0, 0};
+  s.meshes.push_back(m);
+  Emitter e;
+  e.name = "source";
+  e.shape = EmitterShape::mesh;
+  e.radiance = Rgb{3};
+  e.triangles = {0, 1};
+  s.emitters.push_back(e);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("a source with holes lights as much as what is left of it") {
+  Scene s = source_from(-1);
+  Texture mask;
+  mask.kind = TextureKind::image;
+  mask.width = 2;
+  mask.height = mask.channels = 1;
+  mask.is_srgb = mask.is_filtered = false;
+  mask.texels_float = {0, 1};
+  s.textures.push_back(mask);
+  s.materials[0].is_alpha_masked = true;
+  s.materials[0].alpha = {1, 0, 0};
+  s.emitters[0].is_alpha_masked = true;
+  const PreparedScene holed(std::move(s)), half(source_from(0));
+
+  const StopFlag never_stop = false;
+  const std::vector<MeasuringPoint> points{{{0, 0, 0}, {0, 0, 1}}, {{-2, 0.5f, 0}, {1, 0, 1}}};
+  for (const Method method : {Method::path, Method::fixed}) {
+    MeasureOptions o;
+    o.method = method;
+    const MeasureResult result = measure(holed, points, o, {}, never_stop);
+    for (size_t i = 0; i < points.size(); ++i) {
+      const double expected = 3 * irradiance(half.lights, 0, Vec3d(points[i].position),
+                                             Vec3d(normalize(points[i].normal)));
+      REQUIRE(expected > 0.1);
+      const double error = result.values[i].standard_error / luminous_efficacy;
+      CAPTURE(i);
+      CHECK(error < 0.02 * expected);
+      CHECK(std::abs(double(result.values[i].irradiance.g) - expected) < 4.5 * error + 1e-6);
+    }
+  }
+}
