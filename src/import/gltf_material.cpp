@@ -115,10 +115,10 @@ class GltfMaterials::Reader {
   void read_specular() {
     if (const auto ior = node_.extension("KHR_materials_ior")) {
       const double value = ior->number_or("ior", 1.5);
-      if (value >= 1 && value < 100)
+      if (value == 0 || (value >= 1 && value < 100))  // 0: reflects everything, see make_bsdf
         material_.ior = float(value);
       else
-        warn("an ior that is not in [1,100) is read as 1.5");
+        warn("an ior that is neither 0 nor in [1,100) is read as 1.5");
     }
     const auto specular = node_.extension("KHR_materials_specular");
     if (!specular) return;

@@ -16,7 +16,8 @@ uint32_t PbrtMaterials::index_of(PbrtMaterial& material) {
 }
 
 uint32_t PbrtMaterials::index_with_alpha(PbrtMaterial& material, const FloatInput& alpha) {
-  const auto found = material.with_alpha.find(alpha.texture);
+  const std::pair key{alpha.texture, alpha.value};
+  const auto found = material.with_alpha.find(key);
   if (found != material.with_alpha.end()) return found->second;
   Material masked = scene_.materials[index_of(material)];
   masked.is_alpha_masked = true;
@@ -24,7 +25,7 @@ uint32_t PbrtMaterials::index_with_alpha(PbrtMaterial& material, const FloatInpu
   masked.alpha_cutoff = 0.5f;
   const auto index = uint32_t(scene_.materials.size());
   scene_.materials.push_back(std::move(masked));
-  material.with_alpha[alpha.texture] = index;
+  material.with_alpha[key] = index;
   return index;
 }
 

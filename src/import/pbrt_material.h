@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "import/pbrt_texture.h"
 
@@ -15,8 +16,8 @@ namespace troffer {
 struct PbrtMaterial {
   std::string name, type;
   PbrtParams params;
-  int32_t index = -1;                      // in Scene::materials, once made
-  std::map<int32_t, uint32_t> with_alpha;  // copies with an alpha texture
+  int32_t index = -1;                                        // in Scene::materials, once made
+  std::map<std::pair<int32_t, float>, uint32_t> with_alpha;  // copies, by texture × factor
 
   // An interface between media: not there for light.
   bool is_interface() const { return type.empty() || type == "none" || type == "interface"; }

@@ -229,6 +229,19 @@ TEST_CASE("alpha textures cut holes, constant zero leaves the shape out") {
   CHECK_FALSE(scene.materials.at(scene.meshes[1].material).is_alpha_masked);
 }
 
+TEST_CASE("one material under alpha textures of different factors") {
+  const std::string shape = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] ";
+  const Scene scene = import_world(
+      "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"four.pfm\"\n"
+      "Texture \"b\" \"float\" \"scale\" \"texture tex\" \"a\" \"float scale\" 0.25\n" +
+      shape + "\"texture alpha\" \"a\"\n" + shape + "\"texture alpha\" \"b\"\n" + shape +
+      "\"texture alpha\" \"a\"\n");
+  REQUIRE(scene.meshes.size() == 3);
+  CHECK(scene.materials.at(scene.meshes[0].material).alpha.value == 1);
+  CHECK(scene.materials.at(scene.meshes[1].material).alpha.value == 0.25f);
+  CHECK(scene.meshes[0].material == scene.meshes[2].material);
+}
+
 TEST_CASE("images of emission belong to meshes") {
   const Scene scene = import_world(
       "AreaLightSource \"diffuse\" \"string filename\" \"four.pfm\" \"float scale\" 3\n" +
