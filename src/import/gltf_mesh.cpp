@@ -163,8 +163,9 @@ void read_uvs(const AccessorView& uvs, const std::vector<uint32_t>& used, Mesh& 
   }
 }
 
-// Exporters that mirror sometimes leave the winding behind. Where every normal of a mesh lies on the
-// back of its triangles, the normals are believed: the side that is shaded is the side that emits.
+// Exporters that mirror sometimes leave the winding behind. Where every normal of a mesh lies on
+// the back of its triangles, the normals are believed: the side that is shaded is the side that
+// emits.
 void wind_by_normals(Mesh& mesh, WarningLog& warnings) {
   if (mesh.normals.empty() || mesh.triangles.empty()) return;
   for (const Triangle& t : mesh.triangles) {

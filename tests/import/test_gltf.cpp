@@ -249,5 +249,6 @@ TEST_CASE("modern-hall: thirteen sources, three textures, glass") {
   size_t glass = 0;
   for (const Material& m : scene.materials) glass += m.transmission.value == 1 && !m.is_thin;
   CHECK(glass == 1);
-  CHECK(scene.warnings.entries().size() <= 1);  // triangles without area
+  // triangles without area, and six meshes wound against their normals
+  CHECK(scene.warnings.entries().size() <= 2);
 }
