@@ -320,7 +320,7 @@ void sample_many(const LightPrimitives& lights, size_t n, const uint32_t* primit
 float pdf_solid_angle(const LightPrimitive& p, const Vec3& x, const Vec3& wi, float distance) {
   if (p.shape == PrimitiveShape::sphere) {
     const SphereView view(p, x);
-    if (!view.is_visible) return 0;
+    if (!view.is_visible || !view.can_sample(wi, double(distance) / double(p.radius))) return 0;
     return view.is_inside ? inv_pi_f / 4 : float(SphericalCap(view.distance).pdf_solid_angle());
   }
   const PlanarView view(p, x);

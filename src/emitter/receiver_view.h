@@ -1,6 +1,7 @@
 // How a receiver stands to a piece of an emitter: what sampling, density and inverse share.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
@@ -90,7 +91,8 @@ struct DiskView {
   }
 };
 
-// Lengths in radii of the sphere.
+// Lengths in radii of the sphere. Where the inside emits, receivers on the surface itself count as
+// inside even if rounding put them out: the inside lights itself, the outside does not.
 struct SphereView {
   Vec3d to_centre;  // in radii
   double distance;
@@ -98,9 +100,16 @@ struct SphereView {
 
   SphereView(const LightPrimitive& p, const Vec3& x)
       : to_centre((Vec3d(p.centroid) - Vec3d(x)) / double(p.radius)), distance(length(to_centre)) {
-    is_inside = distance <= 1;
+    const Vec3 c = abs(p.centroid);
+    const double rounding =
+        4e-7 * (1 + double(std::max(c.x, std::max(c.y, c.z))) / double(p.radius));
+    is_inside = distance <= (p.is_inside_out || p.is_two_sided ? 1 + rounding : 1);
     is_front = is_inside == p.is_inside_out;
     is_visible = is_front || p.is_two_sided;
+  }
+  // Sampling gives the near end of a chord from outside, the far end from inside.
+  bool can_sample(const Vec3& wi, double hit_distance) const {
+    return (hit_distance >= dot(Vec3d(wi), to_centre)) == is_inside;
   }
 };
 
