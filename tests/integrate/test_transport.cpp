@@ -116,6 +116,29 @@ TEST_CASE("glass in a furnace changes nothing") {
     }
 }
 
+TEST_CASE("a sphere that shines inwards lights itself") {
+  const float rho = 0.5f;
+  for (const bool is_two_sided : {true, false})
+    for (const Vec3 centre : {Vec3{0, 0, 0}, {-8, 3, 1}}) {
+      Scene s;
+      add_sphere_emitter(s, add_diffuse(s, Rgb{rho}), centre, 0.3f, Rgb{(1 - rho) * L0},
+                         is_two_sided, !is_two_sided);
+      const PreparedScene scene(std::move(s));
+      const FixedIntegrator fixed(scene, {4});
+      for (const Vec3 to : {Vec3{1, 0, 0}, {0.3f, 0.5f, -0.6f}}) {
+        const Ray ray = ray_towards(centre + to * 0.1f, centre + to * -1.0f);
+        CAPTURE(is_two_sided);
+        CAPTURE(centre.x);
+        const Probed all = probe(path(scene), ray, 64, 32);
+        CAPTURE(all.total.mean());
+        CHECK(p_of_mean(all.total, double(L0), 1e-4) > sidak(1e-3, 8));
+        const double direct = double(L0) * (1 - double(rho) * double(rho));
+        CHECK(p_of_mean(probe(path(scene, 1), ray, 64, 32).total, direct, 1e-4) > sidak(1e-3, 8));
+        CHECK(p_of_mean(probe(fixed, ray, 16, 32).total, direct, 1e-4) > sidak(1e-3, 8));
+      }
+    }
+}
+
 TEST_CASE("a glass sphere in a furnace changes nothing") {
   Scene s = furnace(0.5f);
   const uint32_t glass = add_glass(s, false);
