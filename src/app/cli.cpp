@@ -236,6 +236,8 @@ int run(int argc, const char* const* argv) {
     return report(e.what(), exit_bad_input);
   } catch (const std::bad_alloc&) {
     return report("out of memory", exit_bad_input);
+  } catch (const std::exception& e) {  // threads, the file system, text formatting
+    return report(e.what(), exit_bad_input);
   }
 }
 

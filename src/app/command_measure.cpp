@@ -18,6 +18,8 @@ int run_measure(const MeasureCommand& c) {
   options.indirect = c.indirect;
   options.threads = c.threads;
   options.seed = c.seed;
+  if (options.method == Method::fixed && options.indirect != Indirect::none && !c.is_quiet)
+    fmt::print(stderr, "warning: --method fixed measures direct light only\n");
   if (!c.output.empty()) check_can_write(c.output);
   const std::vector<MeasuringPoint> points = read_points(c.points);
   const PreparedScene scene(load_scene(c.scene, c.lights, c.is_quiet));
@@ -29,6 +31,9 @@ int run_measure(const MeasureCommand& c) {
     result = measure(
         scene, points, options, [&](double f) { bar.update(f); }, stop);
   }
+  if (!c.is_quiet && result.counters.nan_samples > 0)
+    fmt::print(stderr, "warning: {} samples were not finite and count as 0\n",
+               result.counters.nan_samples);
   const std::string csv = measurements_csv(points, result);
   if (c.output.empty())
     std::fputs(csv.c_str(), stdout);

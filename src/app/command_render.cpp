@@ -138,6 +138,10 @@ int run_render(RenderCommand c) {
   WriteOptions write;
   write.display = {double(c.exposure), c.tone_map == "none" ? ToneMap::none : ToneMap::filmic};
   write.threads = c.options.threads;
+  if (c.options.has_crop) {
+    const ImageSize whole = image_size(camera, c.options.width, c.options.height);
+    write.window = {c.options.crop[0], c.options.crop[1], whole.width, whole.height};
+  }
   for (const std::string& path : c.outputs) write_image(path, result.layers, write);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())

@@ -24,6 +24,7 @@ std::string_view trimmed(std::string_view s) {
   while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
   while (!s.empty() && (s.back() == ' ' || s.back() == '\t' || s.back() == '\r'))
     s.remove_suffix(1);
+  if (s.size() >= 2 && s.front() == '"' && s.back() == '"') s = s.substr(1, s.size() - 2);
   return s;
 }
 
@@ -86,7 +87,8 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
                          fmt::format("column '{}' is missing", names[n]));
       const Field& f = fields[where[n]];
       const char* const last = f.text.data() + f.text.size();
-      const auto [stop, error] = std::from_chars(f.text.data(), last, v[n]);
+      const bool has_plus = f.text.size() > 1 && f.text[0] == '+' && f.text[1] != '-';
+      const auto [stop, error] = std::from_chars(f.text.data() + has_plus, last, v[n]);
       if (error != std::errc() || stop != last || !std::isfinite(v[n]))
         throw InputError(path, line_number, f.column,
                          fmt::format("'{}' is not a number", f.text.substr(0, 40)));

@@ -8,10 +8,11 @@ namespace troffer {
 namespace {
 
 std::string located(const std::string& file, int line, int column, const std::string& what) {
-  std::string s = file;
-  if (line > 0) s += ":" + std::to_string(line) + ":" + std::to_string(column);
-  if (!s.empty()) s += ": ";
-  return s + what;
+  if (file.empty()) return what;
+  // What is wrong with a file as a whole is reported at its beginning: the place is always there.
+  const bool has_place = line > 0;
+  return file + ":" + std::to_string(has_place ? line : 1) + ":" +
+         std::to_string(has_place ? column : 1) + ": " + what;
 }
 
 struct WorkItem {

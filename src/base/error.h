@@ -7,7 +7,8 @@
 namespace troffer {
 
 // A file that cannot be used as it is. Thrown by readers, caught once in app/, printed as
-// "error: FILE:LINE:COLUMN: what". Line and column count from 1; 0 = does not apply.
+// "error: FILE:LINE:COLUMN: what". Line and column count from 1; 0 = the file as a
+// whole, printed as 1:1.
 class InputError : public std::runtime_error {
  public:
   InputError(std::string file, int line, int column, std::string what);

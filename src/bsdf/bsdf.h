@@ -165,10 +165,4 @@ inline float glossy_alpha(const Bsdf& bsdf) {
   return !has_glossy(bsdf) ? 1.0f : bsdf.is_smooth ? 0.0f : bsdf.alpha;
 }
 
-// `frame` (tangent along increasing u, bitangent along increasing v, normal; world space) tilted by
-// the tangent-space normal that a normal map's texel stands for: x and y of 2 texel - 1 times
-// `scale` (glTF's rule). The result is orthonormal, of the handedness of `frame`; a texel without
-// direction leaves `frame` as it is.
-Frame perturbed_frame(const Frame& frame, Rgb texel, float scale);
-
 }  // namespace troffer

@@ -164,8 +164,9 @@ void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBat
   const float weight =
       primitive < 0 ? 1
                     : emission_weight(scene_, scene_.light_tree, walk, v, uint32_t(primitive), 1);
-  (walk.scatterings <= 1 ? out.direct : out.indirect)[walk.index] +=
-      walk.throughput * radiance * weight;
+  // Straight from the source: seen as it is, or scattered once with nothing in between.
+  const bool is_direct = walk.scatterings == 0 || (walk.scatterings == 1 && walk.pdf > 0);
+  (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;
 }
 
 void PathIntegrator::sample_lights(Scratch& s) const {

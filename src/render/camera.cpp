@@ -73,12 +73,15 @@ Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov_de
   return c;
 }
 
-Camera default_camera(const Scene& scene, const Vec3& up) {
+Camera default_camera(const Scene& scene, const Vec3& up_hint) {
   const Box box = bounds(scene);
-  if (box.is_empty()) return look_at({0, 0, 0}, {0, 0, -1}, up, 60);
+  if (box.is_empty()) return look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60);
   // Rooms are what this program is for: stand near a corner at eye height, look across. The eye is
   // inside the bounds, which also shows an object from close by.
-  const Vec3 e = box.extent();
+  const Vec3 e = box.extent(), tall = abs(up_hint);
+  const Vec3 up = tall.x > tall.y && tall.x > tall.z ? Vec3{1, 0, 0}
+                  : tall.y > tall.z                  ? Vec3{0, 1, 0}
+                                                     : Vec3{0, 0, 1};
   const Vec3 floor_eye = box.lower + e * 0.04f;
   const Vec3 flat = Vec3{1} - up;
   const Vec3 eye = floor_eye * flat + (box.lower + e * 0.55f) * up;

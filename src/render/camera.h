@@ -33,8 +33,8 @@ struct ImageSize {
 ImageSize image_size(const Camera& camera, int asked_width, int asked_height);
 
 // A camera for a scene whose file has none: inside the bounds near a corner at eye height, looking
-// across, as one would photograph a room. `up` (0 or 1 per axis) is the axis the scene stands on.
-Camera default_camera(const Scene& scene, const Vec3& up);
+// across, as one would photograph a room. `up_hint` lies nearest to the axis the scene stands on.
+Camera default_camera(const Scene& scene, const Vec3& up_hint);
 
 // Looks from eye to target; fov in degrees over the shorter image axis.
 Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov_deg);

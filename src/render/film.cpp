@@ -21,6 +21,13 @@ bool needs_first_hit(Aov a) {
 
 }  // namespace
 
+double Film::bytes(double pixels, const std::vector<Aov>& aovs) {
+  const bool has_first_hits = std::any_of(aovs.begin(), aovs.end(), needs_first_hit);
+  // The layers of the result stand beside the sums when they are made.
+  return pixels * double(sizeof(Pixel) + (has_first_hits ? sizeof(FirstHit) : 0) +
+                         sizeof(Rgb) * (1 + aovs.size()));
+}
+
 Film::Film(const PixelRect& window, const std::vector<Aov>& aovs)
     : window_(window), aovs_(aovs), pixels_(size_t(window.width()) * size_t(window.height())) {
   if (std::any_of(aovs.begin(), aovs.end(), needs_first_hit)) first_hits_.resize(pixels_.size());

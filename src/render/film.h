@@ -19,6 +19,9 @@ struct PixelRect {
 
 class Film {
  public:
+  // Bytes that a film of this many pixels takes.
+  static double bytes(double pixels, const std::vector<Aov>& aovs);
+
   // `window`: the pixels kept, in coordinates of the whole image.
   Film(const PixelRect& window, const std::vector<Aov>& aovs);
 

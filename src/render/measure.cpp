@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "integrate/fixed.h"
 #include "integrate/path.h"
+#include "trace/surface.h"
 
 namespace troffer {
 
@@ -122,10 +123,10 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 
   // Points are often given on the very surface they measure, rounded to a few digits: rays start
-  // some rounding errors of the scene's largest coordinate off it.
+  // some rounding errors of their coordinates off it, and never less than a hundredth of a
+  // millimetre (or a millionth of a scene smaller than ten metres).
   const Box box = bounds(scene.scene);
-  const float offset =
-      box.is_empty() ? 0.0f : 1e-5f * std::max(length(box.lower), length(box.upper));
+  const float least_offset = std::min(1e-5f, 1e-6f * box.diagonal());
 
   MeasureResult result;
   result.values.resize(points.size());
@@ -138,7 +139,8 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     if (stop.load(std::memory_order_relaxed)) return;
     Worker& w = workers[slot];
     if (!w.scratch) w.scratch = integrator->make_scratch();
-    w.sensors.offset = offset;
+    const Vec3 p = abs(points[i].position);
+    w.sensors.offset = std::max(ray_offset(std::max({p.x, p.y, p.z})), least_offset);
     w.samples_per_batch = samples_per_batch;
     result.values[i] =
         measure_point(*integrator, points[i], hash_of(options.seed, i), options.spp,

@@ -26,6 +26,10 @@ constexpr int samples_per_batch = 4;
 // Stops are looked for between tiles: those of scenes with many sources are smaller.
 constexpr double most_shadow_rays_per_tile = 1 << 22;
 
+// Larger pictures are refused before memory is: machines that promise more than they have would end
+// the program without a word.
+constexpr double most_film_bytes = 8.0 * (1 << 30);
+
 struct TileWork {
   ViewingRays rays;
   RadianceBatch radiance;
@@ -108,6 +112,10 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   const auto start = std::chrono::steady_clock::now();
   const ImageSize size = image_size(camera, options.width, options.height);
   const PixelRect window = window_of(options, size.width, size.height);
+  if (Film::bytes(double(window.width()) * window.height(), options.aovs) > most_film_bytes)
+    throw UsageError("an image of " + std::to_string(window.width()) + "x" +
+                     std::to_string(window.height()) +
+                     " pixels with these layers takes more than 8 GiB: use --size or --crop");
   const ViewingCamera viewing_camera(camera, size.width, size.height);
   check_camera(viewing_camera, window, scene, camera.name);
   const std::unique_ptr<Integrator> integrator = make_integrator(scene, options);

@@ -78,6 +78,6 @@ TEST_CASE("input errors say where") {
   CHECK(with_line.column() == 5);
   CHECK(with_line.file() == "a.pbrt");
   CHECK(with_line.reason() == "unknown directive 'Foo'");
-  CHECK(std::string(InputError("a.glb", 0, 0, "truncated").what()) == "a.glb: truncated");
+  CHECK(std::string(InputError("a.glb", 0, 0, "truncated").what()) == "a.glb:1:1: truncated");
   CHECK(std::string(InputError("", 0, 0, "no scene").what()) == "no scene");
 }

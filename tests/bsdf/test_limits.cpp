@@ -150,19 +150,3 @@ TEST_CASE("many indices of refraction share a bounded number of tables") {
   CHECK(tables.material(31).coat == 31);
   CHECK(tables.material(199).coat == 31);
 }
-
-TEST_CASE("normal maps tilt frames") {
-  const Frame frame(normalize(Vec3{0.3f, -0.5f, 0.8f}));
-  const Frame same = perturbed_frame(frame, {0.5f, 0.5f, 1}, 1);
-  CHECK(length(same.normal - frame.normal) < 1e-6f);
-  CHECK(length(same.tangent - frame.tangent) < 1e-6f);
-  CHECK(length(same.bitangent - frame.bitangent) < 1e-6f);
-  const Frame tilted = perturbed_frame(frame, {1, 0.5f, 1}, 1);  // 45 degrees along the tangent
-  CHECK(dot(tilted.normal, frame.tangent) == doctest::Approx(std::sqrt(0.5)));
-  CHECK(std::abs(dot(tilted.normal, tilted.tangent)) < 1e-6f);
-  CHECK(dot(perturbed_frame(frame, {1, 0.5f, 1}, 0).normal, frame.normal) == doctest::Approx(1));
-  const Frame mirrored(frame.tangent, -frame.bitangent, frame.normal);
-  const Frame m = perturbed_frame(mirrored, {0.7f, 0.6f, 0.9f}, 1);
-  CHECK(dot(cross(m.normal, m.tangent), m.bitangent) == doctest::Approx(-1));
-  CHECK(perturbed_frame(frame, {0.5f, 0.5f, 0.5f}, 1).normal == frame.normal);
-}

@@ -171,6 +171,46 @@ TEST_CASE("alpha masks let rays through") {
   }
 }
 
+TEST_CASE("normal maps tilt shading normals: red along u, green up the image") {
+  Scene s;
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = t.height = 1;
+  t.channels = 3;
+  t.is_srgb = false;
+  t.texels_float = {1.0f, 0.5f, 1.0f};  // 45 degrees towards +u
+  s.textures.push_back(t);
+  t.texels_float = {0.5f, 1.0f, 1.0f};  // 45 degrees up the image, against v
+  s.textures.push_back(t);
+  Mesh quad;
+  quad.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  quad.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};  // u along +x, v along -y: the image stands upright
+  quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (uint32_t i = 0; i < 2; ++i) {
+    Material m;
+    m.normal_texture = int32_t(i);
+    s.materials.push_back(m);
+    quad.material = i;
+    s.meshes.push_back(quad);
+  }
+  Ray ray;
+  ray.direction = {0, 0, -1};
+  const float h = std::sqrt(0.5f);
+  Hit hit;
+  hit.u = hit.v = 0.3f;
+  hit.geometry = 0;
+  CHECK(length(surface_at(s, ray, hit).shading_normal - Vec3{h, 0, h}) < 1e-5f);
+  hit.geometry = 1;
+  CHECK(length(surface_at(s, ray, hit).shading_normal - Vec3{0, h, h}) < 1e-5f);
+  // Mirrored texture coordinates: the image is seen from behind, and so is its relief.
+  for (Vec2& uv : s.meshes[0].uvs) uv.x = 1 - uv.x;
+  hit.geometry = 0;
+  CHECK(length(surface_at(s, ray, hit).shading_normal - Vec3{-h, 0, h}) < 1e-5f);
+  for (Vec2& uv : s.meshes[1].uvs) uv.x = 1 - uv.x;
+  hit.geometry = 1;
+  CHECK(length(surface_at(s, ray, hit).shading_normal - Vec3{0, h, h}) < 1e-5f);
+}
+
 TEST_CASE("an empty scene builds and nothing is hit") {
   const Scene scene;
   const Tracer tracer(scene);
