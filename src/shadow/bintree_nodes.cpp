@@ -34,12 +34,6 @@ float jittered(uint32_t k, int bits, float random) {
   return std::min((float(k) + random) * size, std::nextafter(upper, 0.0f));
 }
 
-// Estimated variance of the one ray of a leaf whose sibling has n rays of this mean. Were all of
-// them alike, E (x - mean)² = σ² (1 + 1/n).
-float leaf_variance(float x, float sibling_mean, uint32_t n) {
-  return sqr(x - sibling_mean) * float(n) / float(n + 1);
-}
-
 }  // namespace
 
 void BintreeNodes::reset(const Vec2& uv) {
@@ -124,20 +118,22 @@ void BintreeNodes::set_result(int32_t leaf, bool is_visible, float kernel) {
   n.samples = 1;
 }
 
-// METHOD §1.3: mean, variance of the mean, flag and count of an inner node. The halves are equally
-// large and sampled independently, so the mean is half the sum and its variance a quarter of the
-// sum. A leaf's variance cannot be had from its one ray; the sibling's mean stands in for its own
-// [2], which estimates too much rather than too little, since it counts the difference between
-// the halves as noise.
+// METHOD §1.3: mean, variance of the mean, flag and count of an inner node. METHOD leaves open how
+// the variance is estimated. As in [1], it is that of all rays of the subtree taken together, each
+// weighted by its area, divided by their number less one, as if they were independent. That ignores
+// what stratification gains, so it overestimates; and that is what makes the rule work: sums over
+// halves of estimated variances [2] vanish as soon as the flags are wrong, and stop far too early
+// (docs/bintree.md). Variances of halves combine as moments do.
 void BintreeNodes::summarise(int32_t i) {
   BintreeNode& n = nodes_[size_t(i)];
   const BintreeNode &a = (*this)[n.first_child], &b = (*this)[n.first_child + 1];
   n.mean = 0.5f * (a.mean + b.mean);
   n.samples = a.samples + b.samples;
   n.flag = a.flag == b.flag ? a.flag : ShadowFlag::penumbra;
-  const float va = a.is_leaf() ? leaf_variance(a.mean, b.mean, b.samples) : a.variance;
-  const float vb = b.is_leaf() ? leaf_variance(b.mean, a.mean, a.samples) : b.variance;
-  n.variance = 0.25f * (va + vb);
+  const float spread_a = a.variance * float(a.samples - 1);
+  const float spread_b = b.variance * float(b.samples - 1);
+  const float spread = 0.5f * (spread_a + spread_b) + 0.25f * sqr(a.mean - b.mean);
+  n.variance = spread / float(n.samples - 1);
 }
 
 void BintreeNodes::propagate_up(int32_t i) {
