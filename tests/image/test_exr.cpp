@@ -92,7 +92,7 @@ TEST_CASE("luminance and subsampled chroma become colour; other subsampling is r
   }
   f.channels = {"B", "G", "R"};
   CHECK_THROWS_WITH_AS(decode_raster(make_exr(f), "file"),
-                       "file: EXR with subsampled channel G is not supported", InputError);
+                       "file:1:1: EXR with subsampled channel G is not supported", InputError);
 }
 
 TEST_CASE("headers that claim too much are refused before OpenEXR sees them") {
