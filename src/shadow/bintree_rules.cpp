@@ -95,14 +95,17 @@ void enforce_level_difference(BintreeNodes& nodes, int32_t node, int difference,
     const int32_t i = stack.back();
     stack.pop_back();
     if (!nodes[i].is_leaf()) continue;  // split meanwhile; its leaves are on the stack
+    const int level = nodes[i].level;
     for (const BintreeSide side : bintree_sides) {
-      const int32_t n = nodes.neighbour(i, side);
-      if (n < 0 || !nodes[n].is_leaf() || nodes[n].level >= nodes[i].level - difference) continue;
-      split_pending(nodes, n, jitter, pending);
-      ++leaves;
-      // i again, for its neighbour may still be too large; the halves, for their own neighbours
-      stack.insert(stack.end(), {i, nodes.first_child(n), nodes.first_child(n) + 1});
-      break;
+      int32_t n = nodes.neighbour(i, side);
+      while (n >= 0 && nodes[n].is_leaf() && nodes[n].level < level - difference &&
+             leaves < most_leaves) {
+        split_pending(nodes, n, jitter, pending);
+        ++leaves;
+        // the halves may now lie too deep beside others
+        stack.insert(stack.end(), {nodes.first_child(n), nodes.first_child(n) + 1});
+        n = nodes.neighbour(i, side);
+      }
     }
   }
 }

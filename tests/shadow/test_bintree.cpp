@@ -137,6 +137,78 @@ TEST_CASE("bintree: full stratified sampling is unbiased, adaptive sampling with
   check("half", query_of([](const Vec2& p) { return p.x >= 0.5f; }), 0.5);
 }
 
+TEST_CASE("bintree: a refinement sequence, round by round") {
+  BintreeOptions o;
+  o.initial_rays = 4;
+  o.level_difference = 1;
+  o.allowed_variance = 0.01f;
+  o.mean_change = 0;
+  Bintree tree(o);
+  std::vector<ShadowRayResult> results;
+  // whether the leaf over (u,v) has this cell
+  const auto has_leaf = [&](float u0, float u1, float v0, float v1) {
+    bool is_found = false;
+    tree.nodes().for_each_leaf([&](int32_t i) {
+      const SourceCell c = tree.nodes().cell(i);
+      is_found |= c.u0 == u0 && c.u1 == u1 && c.v0 == v0 && c.v1 == v1;
+    });
+    return is_found;
+  };
+  const auto answer = [&] {
+    results.resize(tree.pending().size());
+    query_of(is_quarter_dark)(tree.pending(), results);
+    tree.supply(results);
+  };
+  for (uint64_t stream = 0; stream < 20; ++stream) {
+    tree.start(stream);
+    CHECK(tree.pending().size() == 4);
+    answer();
+    // The left half is mixed; in it the dark quarter differs from its neighbour on the right.
+    CHECK(tree.pending().size() == 1);
+    CHECK(has_leaf(0, 0.25f, 0, 0.5f));
+    CHECK(has_leaf(0.25f, 0.5f, 0, 0.5f));
+    answer();
+    // The dark quarter again; both halves differ from something and have one ray: the first. It
+    // comes to level 4, so the quarter above it, of level 2, is split too.
+    CHECK(tree.pending().size() == 2);
+    CHECK(has_leaf(0, 0.25f, 0.25f, 0.5f));
+    CHECK(has_leaf(0, 0.25f, 0.5f, 1));
+    CHECK(tree.leaves() == 7);
+    answer();
+    // Now the second half, with fewer rays; and with it the quarter on its right.
+    CHECK(tree.pending().size() == 2);
+    CHECK(has_leaf(0.25f, 0.5f, 0.25f, 0.5f));
+    CHECK(has_leaf(0.5f, 0.75f, 0, 0.5f));
+    CHECK(has_leaf(0.5f, 1, 0.5f, 1));  // touches no leaf of level 4 but at a corner
+    CHECK(tree.leaves() == 9);
+  }
+}
+
+TEST_CASE("bintree: no ray is lost or cast twice while a tree grows") {
+  const ConvexOccluder edge = half_plane({0.43, 0.5}, 1.2);
+  BintreeOptions o;
+  o.allowed_variance = 0.03f;
+  Bintree tree(o);
+  std::vector<ShadowRayResult> results;
+  std::vector<Vec2> cast;
+  const auto order = [](const Vec2& a, const Vec2& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  };
+  tree.start(11);
+  while (!tree.pending().empty()) {
+    cast.insert(cast.end(), tree.pending().begin(), tree.pending().end());
+    results.resize(tree.pending().size());
+    query_of(edge)(tree.pending(), results);
+    tree.supply(results);
+    std::vector<Vec2> asked = cast, held;
+    asked.insert(asked.end(), tree.pending().begin(), tree.pending().end());
+    tree.nodes().for_each_leaf([&](int32_t i) { held.push_back(tree.nodes()[i].uv); });
+    std::sort(asked.begin(), asked.end(), order);
+    std::sort(held.begin(), held.end(), order);
+    CHECK(asked == held);
+  }
+}
+
 TEST_CASE("bintree: what it believes when it stops, and the cap") {
   Random random(4);
   for (int k = 0; k < 300; ++k) {

@@ -112,11 +112,15 @@ TEST_CASE("coherence: moving shadows, error and rays with and without") {
       o.mean_change = 0;
       o.most_rays = 256;
       const Result without = scan(o, false, kind), with = scan(o, true, kind);
+      o.renews_jitter = false;
+      const Result kept = scan(o, true, kind);
       const char* name = kind == Moving::edge ? "edge" : kind == Moving::leg ? "leg" : "disk";
       MESSAGE(std::string(name) << ", allowed " << double(allowed) << ": rays " << without.rays
                                 << " -> " << with.rays << ", rms error " << without.rms << " -> "
                                 << with.rms << " (" << without.rms / with.rms << " times), bias "
-                                << without.bias << " -> " << with.bias);
+                                << without.bias << " -> " << with.bias
+                                << "; old positions kept: rms error " << kept.rms << ", rays "
+                                << kept.rays);
       CHECK(with.rms < without.rms / 1.25);
       // a thin leg is often missed altogether without coherence, which takes no rays
       if (kind != Moving::leg) CHECK(with.rays < 1.2 * without.rays);
