@@ -1,0 +1,108 @@
+// How large sheets and elements are, and what is joined (meshing.h).
+#include <algorithm>
+#include <cmath>
+
+#include "base/box.h"
+#include "base/units.h"
+#include "radiosity/meshing_parts.h"
+
+namespace troffer {
+
+namespace {
+
+double total_area(const BaseGeometry& g, const std::vector<uint32_t>& same_as) {
+  double sum = 0;
+  for (uint32_t i = 0; i < g.triangles.size(); ++i) {
+    const BaseTriangle& t = g.triangles[i];
+    if (t.is_degenerate || same_as[i] != i) continue;
+    const Vec3d a(g.positions[t.vertices[0]]);
+    sum += 0.5 * length(cross(Vec3d(g.positions[t.vertices[1]]) - a,
+                              Vec3d(g.positions[t.vertices[2]]) - a));
+  }
+  return sum;
+}
+
+double longest_edge(const BaseGeometry& g, const BaseTriangle& t) {
+  double longest = 0;
+  for (size_t k = 0; k < 3; ++k)
+    longest = std::max(
+        longest, double(length(g.positions[t.vertices[(k + 1) % 3]] - g.positions[t.vertices[k]])));
+  return longest;
+}
+
+// Fragments of triangles longer than `size`, which are cut.
+size_t count_cut(const BaseGeometry& g, const std::vector<uint32_t>& same_as,
+                 const std::vector<double>& lengths, double size, size_t limit) {
+  size_t count = 0;
+  for (uint32_t i = 0; i < g.triangles.size() && count < limit; ++i) {
+    const BaseTriangle& t = g.triangles[i];
+    if (t.is_degenerate || same_as[i] != i || lengths[i] <= size) continue;
+    count += count_fragments(g, i, size, limit - count);
+  }
+  return count;
+}
+
+}  // namespace
+
+JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_as,
+                      const MeshingOptions& options) {
+  constexpr double wanted_elements = 4000;
+  constexpr int strict_rounds = 8, rounds = 60;
+  const size_t n = g.triangles.size();
+  const double area = total_area(g, same_as);
+  const double automatic = std::max(1e-6, std::sqrt(2 * area / wanted_elements));
+  double element = options.element_size > 0 ? double(options.element_size) : automatic;
+  double patch = options.patch_size > 0 ? double(options.patch_size) : 4 * element;
+  double angle = double(options.join_angle_deg);
+  std::vector<double> lengths(n, 0);
+  for (size_t i = 0; i < n; ++i)
+    if (!g.triangles[i].is_degenerate) lengths[i] = longest_edge(g, g.triangles[i]);
+  Boxd box;
+  for (const Vec3& p : g.positions)
+    if (is_finite(p)) box.grow(Vec3d(p));
+  const double everything = 4 * box.diagonal();  // as a cell: nothing left to join
+  const Adjacency adjacency(g);
+  const std::vector<uint32_t> no_group(n, 0);
+  const auto small = [&](double size) {
+    std::vector<uint8_t> is_small(n);
+    for (uint32_t i = 0; i < n; ++i)
+      is_small[i] = !g.triangles[i].is_degenerate && same_as[i] == i && lengths[i] <= size;
+    return is_small;
+  };
+  const double first_element = element, first_patch = patch;
+  JoinPlan plan;
+  for (int round = 0;; ++round) {
+    if (round == strict_rounds) {  // sizes were not to blame: back to them, under looser rules
+      element = first_element;
+      patch = first_patch;
+    }
+    patch = std::max(patch, element);
+    const JoinLimits whole{patch, std::cos(rad_from_deg(angle)), round >= strict_rounds};
+    const JoinLimits part{element, whole.cos_angle, whole.is_loose};
+    const size_t max_sheets = options.max_sheets, max_elements = options.max_elements;
+    const size_t cut_sheets = count_cut(g, same_as, lengths, patch, max_sheets + 1);
+    const size_t cut_elements = count_cut(g, same_as, lengths, element, max_elements + 1);
+    const bool is_last = round >= rounds || (round >= strict_rounds && element > everything);
+    bool fits = is_last || (cut_sheets <= max_sheets && cut_elements <= max_elements);
+    if (fits) {
+      plan.sheets = join_triangles(g, adjacency, small(patch), no_group, whole);
+      plan.elements = join_triangles(g, adjacency, small(element), plan.sheets.label, part);
+      const bool sheets_fit = plan.sheets.count + cut_sheets <= max_sheets;
+      const bool elements_fit = plan.elements.count + cut_elements <= max_elements;
+      if (is_last || (sheets_fit && elements_fit)) break;
+      angle = std::min(75.0, angle * 1.6);
+      if (!sheets_fit) patch *= 1.3;
+      if (!elements_fit) element *= 1.3;
+      continue;
+    }
+    if (cut_sheets > max_sheets) patch *= 1.3;
+    if (cut_elements > max_elements) element *= 1.3;
+    if (round < strict_rounds) --round;  // sizes alone: no reason to loosen the rules
+  }
+  plan.element_size = float(element);
+  plan.patch_size = float(patch);
+  plan.join_angle_deg = float(angle);
+  return plan;
+}
+
+}  // namespace troffer

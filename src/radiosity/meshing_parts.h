@@ -1,0 +1,36 @@
+// Steps of mesh_for_radiosity.
+#pragma once
+
+#include "radiosity/cluster.h"
+#include "radiosity/meshing.h"
+
+namespace troffer {
+
+// Which base triangles are joined to sheets and elements (no_cluster: cut instead), at sizes for
+// which the bounds hold.
+struct JoinPlan {
+  float element_size = 0, patch_size = 0, join_angle_deg = 0;
+  Clusters sheets, elements;
+};
+JoinPlan plan_joining(const BaseGeometry& geometry, const std::vector<uint32_t>& same_as,
+                      const MeshingOptions& options);
+
+// Sheet of each element, and the sheets' pieces, joined into one polygon where they are convex
+// together.
+struct Cut {
+  std::vector<uint32_t> element_sheet;
+};
+Cut cut_surfaces(const Scene& scene, const JoinPlan& plan, RadiosityMesh& mesh);
+
+// Sample points and patches of all sides that light can reach.
+void make_points(const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
+                 const MeshingOptions& options, int threads, const Cut& cut, RadiosityMesh& mesh);
+
+// Hemispherical albedo of the diffuse part, and of all else.
+struct Reflectances {
+  Rgb diffuse, other;
+};
+Reflectances reflectances(const BsdfTables& tables, const Scene& scene, uint32_t material,
+                          const Vec2& uv, bool is_front);
+
+}  // namespace troffer

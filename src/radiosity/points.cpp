@@ -1,0 +1,344 @@
+// Sample points, their reflectances, and which sides light can reach (meshing.h).
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/frame.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "bsdf/bsdf.h"
+#include "radiosity/meshing_parts.h"
+#include "trace/surface.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr int reach_rays = 8, reach_rays_of_emitters = 64;
+constexpr uint32_t purpose_reach = 0;
+
+struct ElementInfo {
+  double area = 0;
+  Vec3d centroid;
+  uint32_t first = 0, last = 0;  // in `order`
+  uint32_t fragment = 0;         // the one that holds the sample point
+};
+
+struct Elements {
+  std::vector<ElementInfo> infos;
+  std::vector<uint32_t> order;          // fragments by element
+  std::vector<double> area;             // of fragments; round surfaces' flat ones scaled up
+  std::vector<uint32_t> base_triangle;  // of fragments
+};
+
+void note_base(const RadiosityMesh& mesh, int32_t root, uint32_t triangle,
+               std::vector<uint32_t>& base) {
+  std::vector<int32_t> stack{root};
+  while (!stack.empty()) {
+    const int32_t at = stack.back();
+    stack.pop_back();
+    if (at < 0) {
+      base[size_t(~at)] = triangle;
+    } else {
+      for (const int32_t c : mesh.nodes[size_t(at)].child) stack.push_back(c);
+    }
+  }
+}
+
+double true_area(const Scene& scene, const BaseSurface& s) {
+  if (s.bulge == Bulge::sphere) return 4 * pi * sqr(double(scene.spheres[s.index].radius));
+  return pi * sqr(double(scene.disks[s.index].radius));
+}
+
+Vec3d middle(const RadiosityMesh& mesh, uint32_t fragment) {
+  Vec3d sum;
+  for (const uint32_t v : mesh.fragments[fragment].vertices)
+    sum += Vec3d(mesh.geometry.positions[v]);
+  return sum / 3;
+}
+
+Elements gather_elements(const Scene& scene, const RadiosityMesh& mesh) {
+  Elements e;
+  const auto n = uint32_t(mesh.fragments.size());
+  e.infos.resize(mesh.element_count);
+  e.base_triangle.resize(n);
+  e.area.resize(n);
+  for (uint32_t t = 0; t < mesh.roots.size(); ++t)
+    if (mesh.roots[t] != RadiosityMesh::no_root) note_base(mesh, mesh.roots[t], t, e.base_triangle);
+  std::vector<double> surface_area(mesh.geometry.surfaces.size());
+  const auto surface_of = [&](uint32_t f) {
+    return mesh.geometry.triangles[e.base_triangle[f]].surface;
+  };
+  for (uint32_t f = 0; f < n; ++f) {
+    const auto& v = mesh.fragments[f].vertices;
+    const Vec3d a(mesh.geometry.positions[v[0]]);
+    e.area[f] = 0.5 * length(cross(Vec3d(mesh.geometry.positions[v[1]]) - a,
+                                   Vec3d(mesh.geometry.positions[v[2]]) - a));
+    surface_area[surface_of(f)] += e.area[f];
+    ++e.infos[mesh.fragments[f].element].last;
+  }
+  uint32_t sum = 0;
+  for (ElementInfo& info : e.infos) {
+    info.first = sum;
+    sum += info.last;
+    info.last = info.first;
+  }
+  e.order.resize(n);
+  for (uint32_t f = 0; f < n; ++f) {
+    const BaseSurface& s = mesh.geometry.surfaces[surface_of(f)];
+    if (s.bulge != Bulge::none) e.area[f] *= true_area(scene, s) / surface_area[surface_of(f)];
+    ElementInfo& info = e.infos[mesh.fragments[f].element];
+    e.order[info.last++] = f;
+    info.area += e.area[f];
+    info.centroid += middle(mesh, f) * e.area[f];
+  }
+  for (ElementInfo& info : e.infos) {
+    info.centroid = info.area > 0 ? info.centroid / info.area : middle(mesh, e.order[info.first]);
+    double nearest = INFINITY;
+    for (uint32_t i = info.first; i < info.last; ++i) {
+      const double d = length_squared(middle(mesh, e.order[i]) - info.centroid);
+      if (d < nearest) {
+        nearest = d;
+        info.fragment = e.order[i];
+      }
+    }
+  }
+  return e;
+}
+
+Vec2 uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t triangle, uint32_t fragment,
+           const Vec3& weights) {
+  const BaseTriangle& t = mesh.geometry.triangles[triangle];
+  const BaseSurface& s = mesh.geometry.surfaces[t.surface];
+  if (s.bulge != Bulge::none) return {};
+  const Mesh& m = scene.meshes[s.index];
+  if (m.uvs.empty()) return {};
+  // weights in the fragment -> in its triangle, by areas
+  const auto& v = mesh.fragments[fragment].vertices;
+  const std::vector<Vec3>& p = mesh.geometry.positions;
+  const Vec3d at = Vec3d(p[v[0]]) * double(weights.x) + Vec3d(p[v[1]]) * double(weights.y) +
+                   Vec3d(p[v[2]]) * double(weights.z);
+  const Vec3d a(p[t.vertices[0]]), ab = Vec3d(p[t.vertices[1]]) - a,
+                                   ac = Vec3d(p[t.vertices[2]]) - a, n = cross(ab, ac);
+  const double nn = dot(n, n);
+  const auto w1 = float(dot(cross(at - a, ac), n) / nn), w2 = float(dot(cross(ab, at - a), n) / nn);
+  const Triangle& c = m.triangles[triangle - s.first_triangle];
+  return m.uvs[c[0]] * (1 - w1 - w2) + m.uvs[c[1]] * w1 + m.uvs[c[2]] * w2;
+}
+
+bool has_texture(const Material& m) {
+  return m.base_color.texture >= 0 || m.metallic.texture >= 0 || m.specular.texture >= 0 ||
+         m.specular_color.texture >= 0 || m.transmission.texture >= 0 || m.is_alpha_masked ||
+         m.roughness.texture >= 0;
+}
+
+struct ElementSurface {
+  Reflectances sides[2];
+  float coverage = 1;  // share that is not cut away by an alpha mask
+};
+
+ElementSurface average_surface(const Scene& scene, const BsdfTables& tables,
+                               const RadiosityMesh& mesh, const Elements& e, uint32_t element) {
+  constexpr uint32_t max_fragments = 16;
+  constexpr Vec3 weights[4] = {{1.0f / 3, 1.0f / 3, 1.0f / 3},
+                               {2.0f / 3, 1.0f / 6, 1.0f / 6},
+                               {1.0f / 6, 2.0f / 3, 1.0f / 6},
+                               {1.0f / 6, 1.0f / 6, 2.0f / 3}};
+  const ElementInfo& info = e.infos[element];
+  const uint32_t first_base = e.base_triangle[info.fragment];
+  const uint32_t material =
+      mesh.geometry.surfaces[mesh.geometry.triangles[first_base].surface].material;
+  const Material& m = scene.materials[material];
+  ElementSurface out;
+  if (!has_texture(m)) {
+    for (size_t side = 0; side < 2; ++side)
+      out.sides[side] = reflectances(tables, scene, material, {}, side == 0);
+    return out;
+  }
+  const uint32_t count = info.last - info.first;
+  const uint32_t step = std::max(1u, (count + max_fragments - 1) / max_fragments);
+  double total = 0, solid = 0;
+  Rgb sums[2][2];
+  for (uint32_t i = info.first; i < info.last; i += step) {
+    const uint32_t f = e.order[i];
+    const double share = std::max(e.area[f], 1e-30);
+    for (const Vec3& w : weights) {
+      const Vec2 uv = uv_at(scene, mesh, e.base_triangle[f], f, w);
+      total += share;
+      if (m.is_alpha_masked && evaluate(scene.textures, m.alpha, uv) < m.alpha_cutoff) continue;
+      solid += share;
+      for (size_t side = 0; side < 2; ++side) {
+        const Reflectances r = reflectances(tables, scene, material, uv, side == 0);
+        sums[side][0] += r.diffuse * float(share);
+        sums[side][1] += r.other * float(share);
+      }
+    }
+  }
+  out.coverage = float(solid / total);
+  if (solid > 0)
+    for (size_t side = 0; side < 2; ++side)
+      out.sides[side] = {sums[side][0] / float(solid), sums[side][1] / float(solid)};
+  return out;
+}
+
+ElementPoint point_of(const Scene& scene, const RadiosityMesh& mesh, const Elements& e,
+                      const ElementSurface& surface, uint32_t element, bool is_back) {
+  const ElementInfo& info = e.infos[element];
+  ElementPoint p;
+  const Vec3d at = middle(mesh, info.fragment);
+  p.position = Vec3(at);
+  p.normal = fragment_normal(mesh, info.fragment);
+  const BaseSurface& s =
+      mesh.geometry.surfaces[mesh.geometry.triangles[e.base_triangle[info.fragment]].surface];
+  if (s.bulge == Bulge::sphere) {
+    const Sphere& sphere = scene.spheres[s.index];
+    p.normal = Vec3(normalize(at - Vec3d(sphere.centre)));
+    p.position = sphere.centre + p.normal * sphere.radius;
+    if (sphere.is_inside_out) p.normal = -p.normal;
+  }
+  if (is_back) p.normal = -p.normal;
+  p.area = float(info.area) * surface.coverage;
+  const Vec3 a = abs(p.position) + Vec3{mesh.element_size};
+  p.offset = 4 * ray_offset(std::max({a.x, a.y, a.z}));
+  p.reflectance = surface.sides[is_back ? 1 : 0].diffuse;
+  p.specular_albedo = surface.sides[is_back ? 1 : 0].other;
+  return p;
+}
+
+// Which sides belong together: union-find over 2 element + side.
+class Rooms {
+ public:
+  explicit Rooms(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  uint32_t find(uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(uint32_t a, uint32_t b) {
+    a = find(a);
+    b = find(b);
+    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<uint32_t> parent_;
+};
+
+bool emits(const Scene& scene, int32_t emitter, bool is_back) {
+  if (emitter < 0) return false;
+  const Emitter& e = scene.emitters[size_t(emitter)];
+  return !e.radiance.is_black() && (!is_back || e.is_two_sided);
+}
+
+// Sides that see each other, step by step, down to one that emits: by rays from every side.
+std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& tracer,
+                                              const RadiosityMesh& mesh, const Elements& e,
+                                              const std::vector<ElementPoint>& sides, int threads) {
+  const size_t n = sides.size();
+  std::vector<uint8_t> is_source(n);
+  for (uint32_t f = 0; f < mesh.fragments.size(); ++f)
+    for (uint32_t side = 0; side < 2; ++side)
+      if (emits(scene, mesh.geometry.triangles[e.base_triangle[f]].emitter, side == 1))
+        is_source[2 * mesh.fragments[f].element + side] = 1;
+  std::vector<std::vector<uint32_t>> seen(n);
+  parallel_for((n + 63) / 64, threads, [&](size_t block) {
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    for (size_t i = block * 64; i < std::min(n, block * 64 + 64); ++i) {
+      const ElementPoint& p = sides[i];
+      const Frame frame(p.normal);
+      rays.clear();
+      const int count = is_source[i] ? reach_rays_of_emitters : reach_rays;
+      for (int k = 0; k < count; ++k) {
+        const Vec2 u = SobolGroup(hash_of(i), purpose_reach, uint32_t(k)).get2();
+        Ray r;
+        r.origin = p.position + p.normal * p.offset;
+        r.direction = frame.to_world(cosine_hemisphere_from_square(u));
+        rays.push_back(r);
+      }
+      hits.assign(rays.size(), {});
+      tracer.closest(rays, hits);
+      for (size_t k = 0; k < rays.size(); ++k) {
+        if (!hits[k].is_valid()) continue;
+        Vec3 weights;
+        const uint32_t f =
+            fragment_at(scene, mesh, hits[k].geometry, hits[k].primitive, hits[k].u, hits[k].v,
+                        rays[k].origin + rays[k].direction * hits[k].t, weights);
+        if (f == no_fragment) continue;
+        const bool is_back = dot(fragment_normal(mesh, f), rays[k].direction) > 0;
+        seen[i].push_back(2 * mesh.fragments[f].element + (is_back ? 1 : 0));
+      }
+    }
+  });
+  Rooms rooms(n + 1);
+  const auto lit = uint32_t(n);
+  for (uint32_t i = 0; i < n; ++i) {
+    if (is_source[i]) rooms.join(i, lit);
+    for (const uint32_t j : seen[i]) rooms.join(i, j);
+  }
+  std::vector<uint8_t> reached(n);
+  for (uint32_t i = 0; i < n; ++i) reached[i] = rooms.find(i) == rooms.find(lit);
+  return reached;
+}
+
+}  // namespace
+
+Reflectances reflectances(const BsdfTables& tables, const Scene& scene, uint32_t material,
+                          const Vec2& uv, bool is_front) {
+  const Bsdf b = make_bsdf(tables, scene, material, uv, is_front);
+  Rgb rho;
+  if (is_lambertian(b, &rho)) return {rho, Rgb{0}};
+  // Gauss–Legendre over cos²: the cosine-weighted mean of the directional albedo
+  constexpr float nodes[3] = {0.11270166538f, 0.5f, 0.88729833462f};
+  constexpr float weights[3] = {5.0f / 18, 8.0f / 18, 5.0f / 18};
+  Rgb all;
+  for (size_t i = 0; i < 3; ++i) all += albedo(b, std::sqrt(nodes[i])) * weights[i];
+  // The coat passes diffuse_mean of what comes, and as much of what leaves.
+  const float mean = b.coat == Bsdf::Coat::none ? 1.0f : b.diffuse_mean;
+  const Rgb diffuse = b.diffuse * (mean * mean);
+  const auto above = [](float a, float d) { return std::max(0.0f, a - d); };
+  return {diffuse, {above(all.r, diffuse.r), above(all.g, diffuse.g), above(all.b, diffuse.b)}};
+}
+
+void make_points(const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
+                 const MeshingOptions& options, int threads, const Cut& cut, RadiosityMesh& mesh) {
+  const Elements e = gather_elements(scene, mesh);
+  const size_t n = mesh.element_count;
+  std::vector<ElementPoint> sides(2 * n);
+  parallel_for((n + 63) / 64, threads, [&](size_t block) {
+    for (size_t i = block * 64; i < std::min(n, block * 64 + 64); ++i) {
+      const auto element = uint32_t(i);
+      const ElementSurface s = average_surface(scene, tables, mesh, e, element);
+      for (size_t side = 0; side < 2; ++side)
+        sides[2 * i + side] = point_of(scene, mesh, e, s, element, side == 1);
+    }
+  });
+  std::vector<uint8_t> reached(sides.size(), 1);
+  if (options.prune_hidden_sides)
+    reached = sides_that_light_reaches(scene, tracer, mesh, e, sides, threads);
+
+  std::vector<uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return cut.element_sheet[a] < cut.element_sheet[b];
+  });
+  mesh.element_points.assign(n, {no_point, no_point});
+  for (size_t first = 0, last = 0; first < n; first = last) {
+    const uint32_t sheet = cut.element_sheet[order[first]];
+    while (last < n && cut.element_sheet[order[last]] == sheet) ++last;
+    for (uint32_t side = 0; side < 2; ++side) {
+      Patch patch{sheet, uint32_t(mesh.points.size()), 0, side == 1, 0};
+      for (size_t k = first; k < last; ++k) {
+        const size_t i = 2 * size_t(order[k]) + side;
+        if (!reached[i] || !(sides[i].area > 0)) continue;
+        mesh.element_points[order[k]][side] = uint32_t(mesh.points.size());
+        sides[i].patch = uint32_t(mesh.patches.size());
+        mesh.points.push_back(sides[i]);
+        patch.area += sides[i].area;
+      }
+      patch.last_point = uint32_t(mesh.points.size());
+      if (patch.last_point > patch.first_point) mesh.patches.push_back(patch);
+    }
+  }
+}
+
+}  // namespace troffer
