@@ -1,0 +1,113 @@
+// What the radiosity preprocessing leaves: irradiance at sample points, by source.
+//
+// Stored is irradiance E, not radiosity B = reflectance × E: a texture can then vary within an
+// element when the solution is displayed, and ratios of received to unoccluded are the same.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/meshing.h"
+
+namespace troffer {
+
+constexpr uint32_t no_source = 0xffffffffu;
+
+struct RadiosityOptions {
+  MeshingOptions meshing;
+  uint32_t stored_per_point = 4;  // contributions kept separately; at most max_stored
+  float unshot_fraction = 0.01f;  // stop when less of the emitted power than this is unshot
+  uint32_t max_shots = 20000;
+  int max_rays = 64;         // from a sample point to a shooter
+  float tolerance = 0.003f;  // of one transfer, in units of the scene's mean irradiance
+  uint64_t seed = 0;
+};
+constexpr uint32_t max_stored = 64;
+
+// What one source gives to one sample point, over all of its shots. The source is an emitter of the
+// scene, or, from emitter_count on, a patch.
+struct StoredContribution {
+  uint32_t source = no_source;
+  Rgb received;    // irradiance, W/m² or lx, with the preprocessing's visibility
+  Rgb unoccluded;  // what it would be if nothing were in the way
+};
+
+// Luminance of power (W, or lm). emitted = absorbed + lost_to_specular + unshot + escaped.
+struct EnergyBalance {
+  double emitted = 0;
+  double shot = 0;              // by emitters and patches
+  double absorbed = 0;          // at sample points
+  double lost_to_specular = 0;  // reflected or transmitted there, but not diffusely
+  double unshot = 0;
+  double escaped = 0;  // shot but arrived nowhere: left the scene, or error of form factors
+};
+
+struct RadiositySolution {
+  RadiosityOptions options;
+  RadiosityMesh mesh;
+  uint32_t emitter_count = 0;
+  uint32_t stored_per_point = 0;
+  std::vector<Rgb> general;                // per point: all that is not stored separately
+  std::vector<StoredContribution> stored;  // stored_per_point of them per point; unused: no_source
+  Rgb ambient;                             // irradiance expected everywhere from what is unshot
+  EnergyBalance balance;
+  uint32_t shots = 0;
+  uint64_t rays = 0;
+  bool is_complete = false;  // false: stopped before the unshot power fell so low
+
+  std::span<const StoredContribution> contributions(uint32_t point) const {
+    return {stored.data() + size_t(point) * stored_per_point, stored_per_point};
+  }
+  bool is_emitter(uint32_t source) const { return source < emitter_count; }
+  uint32_t patch_of(uint32_t source) const { return source - emitter_count; }
+  // General value and all stored contributions, in that order; without the ambient estimate.
+  Rgb irradiance(uint32_t point) const {
+    Rgb sum = general[point];
+    for (const StoredContribution& c : contributions(point)) sum += c.received;
+    return sum;
+  }
+  size_t memory_bytes() const;
+};
+
+// Weights of sample points at a place, for any quantity that points carry; they sum to 1. Within a
+// fragment, linear between its corners; at a corner, the mean over the elements around it on the
+// same side whose normals differ by less than 30 degrees, by area. Empty where light cannot get.
+struct PointWeight {
+  uint32_t point = 0;
+  float weight = 0;
+};
+class Interpolation {
+ public:
+  std::span<const PointWeight> weights() const { return weights_; }
+
+ private:
+  friend void interpolate(const Scene&, const RadiosityMesh&, uint32_t, uint32_t, float, float,
+                          const Vec3&, bool, Interpolation&);
+  void add(uint32_t point, float weight);
+  std::vector<PointWeight> weights_;
+};
+// geometry, primitive, u, v as in Hit; `position` is the hit's, is_back whether its back is asked
+// for. Reuses the memory of `out`.
+void interpolate(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometry,
+                 uint32_t primitive, float u, float v, const Vec3& position, bool is_back,
+                 Interpolation& out);
+
+// Irradiance at a place, without the ambient estimate.
+Rgb interpolated_irradiance(const RadiositySolution& solution, const Interpolation& at);
+
+// A number that differs for scenes or options whose solutions differ (but by chance of 2^-64).
+uint64_t solution_key(const Scene& scene, const RadiosityOptions& options);
+
+// A solution as a file: version, key, and what points carry; the mesh is made anew when it is
+// loaded. Little endian.
+std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& solution);
+
+// `file` names the source in errors. Throws InputError where the bytes are no solution, are damaged
+// or cut short, or belong to another scene or other options.
+RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::string& file,
+                                const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
+                                const RadiosityOptions& options, int threads);
+
+}  // namespace troffer

@@ -1,0 +1,201 @@
+#include "radiosity/solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "base/units.h"
+#include "radiosity/form_factors.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t block_size = 128;
+
+// By which contributions are ranked: what arrives, but a strong source that is hidden here counts
+// for a quarter of what it would send, since its shadow's edge may be near.
+float importance(const StoredContribution& c) {
+  return std::max(luminance(c.received), 0.25f * luminance(c.unoccluded));
+}
+
+// Adds to the source's entry, to a free one, or instead of the least important one, which moves to
+// the general value; into the general value if it is the least important itself. A source that
+// shoots again after it was moved counts anew.
+void keep(std::span<StoredContribution> list, Rgb& general, const StoredContribution& c) {
+  StoredContribution* least = nullptr;
+  for (StoredContribution& entry : list) {
+    if (entry.source == c.source) {
+      entry.received += c.received;
+      entry.unoccluded += c.unoccluded;
+      return;
+    }
+    if (entry.source == no_source) {
+      entry = c;
+      return;
+    }
+    if (least == nullptr || importance(entry) < importance(*least)) least = &entry;
+  }
+  if (least == nullptr || importance(c) <= importance(*least)) {
+    general += c.received;
+    return;
+  }
+  general += least->received;
+  *least = c;
+}
+
+class Solver {
+ public:
+  Solver(const Tracer& tracer, const LightPrimitives& lights, RadiositySolution& solution,
+         int threads)
+      : tracer_(tracer),
+        lights_(lights),
+        s_(solution),
+        threads_(threads),
+        scratch_(size_t(thread_count(threads))),
+        transfers_(scratch_.size()) {
+    const size_t points = s_.mesh.points.size(), patches = s_.mesh.patches.size();
+    s_.general.assign(points, Rgb{0});
+    s_.stored.assign(points * s_.stored_per_point, {});
+    unshot_.assign(patches, Rgb{0});
+    received_.assign(points, Rgb{0});
+    rays_.assign((points + block_size - 1) / block_size, 0);
+    for (const LightPrimitive& p : lights.all()) s_.balance.emitted += double(p.power);
+    double reflected = 0;
+    for (const ElementPoint& p : s_.mesh.points) {
+      area_ += double(p.area);
+      reflected += double(p.area) * double(luminance(p.reflectance));
+    }
+    mean_reflectance_ = area_ > 0 ? std::min(reflected / area_, 0.98) : 0.0;
+    budget_.max_rays = std::max(1, s_.options.max_rays);
+    budget_.tolerance = std::max(1e-6f, s_.options.tolerance);
+    budget_.reference = float(s_.balance.emitted / (area_ * (1 - mean_reflectance_)));
+  }
+
+  void solve(const RadiosityCallback& progress, const StopFlag& stop) {
+    if (!(s_.balance.emitted > 0) || !(area_ > 0)) {
+      s_.is_complete = true;
+      return;
+    }
+    double waiting = s_.balance.emitted;  // in emitters that have not shot
+    for (uint32_t e = 0; e < s_.emitter_count && !stop; ++e) {
+      const Shooter shooter = emitter_shooter(lights_, e);
+      if (shooter.pieces.empty()) continue;
+      double power = 0;
+      for (const LightPrimitive& p : shooter.pieces) power += double(p.power);
+      shoot(shooter, e, power);
+      waiting -= power;
+      report(progress, waiting);
+    }
+    while (!stop) {
+      const double limit = double(s_.options.unshot_fraction) * s_.balance.emitted;
+      s_.is_complete = unshot_power() <= limit;
+      if (s_.is_complete || s_.shots >= s_.options.max_shots) break;
+      shoot_brightest();
+      report(progress, 0);
+    }
+    finish();
+  }
+
+ private:
+  double unshot_power() const {
+    double sum = 0;
+    for (const Rgb& u : unshot_) sum += double(luminance(u));
+    return sum;
+  }
+
+  void report(const RadiosityCallback& progress, double waiting) const {
+    if (progress) progress({s_.shots, (unshot_power() + waiting) / s_.balance.emitted});
+  }
+
+  void shoot_brightest() {
+    uint32_t brightest = 0;
+    for (uint32_t i = 1; i < unshot_.size(); ++i)
+      if (luminance(unshot_[i]) > luminance(unshot_[brightest])) brightest = i;
+    const Rgb power = unshot_[brightest];
+    unshot_[brightest] = Rgb{0};
+    Shooter shooter = patch_shooter(s_.mesh, brightest, Rgb{1});
+    if (!(shooter.area() > 0)) return;
+    const Rgb radiance = power / (pi_f * shooter.area());
+    for (LightPrimitive& p : shooter.pieces) p.mean_radiance = radiance;
+    shoot(shooter, s_.emitter_count + brightest, double(luminance(power)));
+  }
+
+  void shoot(const Shooter& shooter, uint32_t source, double power) {
+    const std::vector<ElementPoint>& points = s_.mesh.points;
+    const uint64_t stream = hash_of(s_.options.seed, source, s_.shots);
+    parallel_for_slots(rays_.size(), threads_, [&](size_t block, size_t slot) {
+      const size_t first = block * block_size;
+      const size_t count = std::min(block_size, points.size() - first);
+      std::vector<Transfer>& transfers = transfers_[slot];
+      transfers.resize(count);
+      rays_[block] += transfer(shooter, {points.data() + first, count}, tracer_, budget_, stream,
+                               first, transfers, scratch_[slot]);
+      for (size_t i = 0; i < count; ++i) {
+        const size_t point = first + i;
+        received_[point] = transfers[i].unoccluded * transfers[i].visibility;
+        if (transfers[i].unoccluded.is_black()) continue;
+        keep({s_.stored.data() + point * s_.stored_per_point, s_.stored_per_point},
+             s_.general[point], {source, received_[point], transfers[i].unoccluded});
+      }
+    });
+    ++s_.shots;
+    s_.balance.shot += power;
+    account();
+  }
+
+  // In the order of points, so that sums do not depend on threads.
+  void account() {
+    for (size_t i = 0; i < received_.size(); ++i) {
+      const ElementPoint& p = s_.mesh.points[i];
+      const Rgb power = received_[i] * p.area;
+      if (power.is_black()) continue;
+      const double all = double(luminance(power));
+      const double diffuse = double(luminance(power * p.reflectance));
+      const double other = double(luminance(power * p.specular_albedo));
+      arrived_ += all;
+      s_.balance.lost_to_specular += other;
+      s_.balance.absorbed += all - diffuse - other;
+      unshot_[p.patch] += power * p.reflectance;
+    }
+  }
+
+  void finish() {
+    s_.balance.escaped = s_.balance.shot - arrived_;
+    s_.balance.unshot = unshot_power();
+    Rgb sum;
+    for (const Rgb& u : unshot_) sum += u;
+    // [1] §3: what is unshot spreads over all surfaces, again and again
+    s_.ambient = sum / float(area_ * (1 - mean_reflectance_));
+    for (const uint64_t r : rays_) s_.rays += r;
+  }
+
+  const Tracer& tracer_;
+  const LightPrimitives& lights_;
+  RadiositySolution& s_;
+  int threads_;
+  double area_ = 0, mean_reflectance_ = 0, arrived_ = 0;
+  RayBudget budget_;
+  std::vector<Rgb> unshot_;    // power, per patch
+  std::vector<Rgb> received_;  // irradiance from the current shot, per point
+  std::vector<uint64_t> rays_;
+  std::vector<TransferScratch> scratch_;
+  std::vector<std::vector<Transfer>> transfers_;
+};
+
+}  // namespace
+
+RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
+                                  const BsdfTables& tables, const LightPrimitives& lights,
+                                  const RadiosityOptions& options, int threads,
+                                  const RadiosityCallback& progress, const StopFlag& stop) {
+  RadiositySolution s;
+  s.options = options;
+  s.stored_per_point = std::min(options.stored_per_point, max_stored);
+  s.emitter_count = uint32_t(scene.emitters.size());
+  s.mesh = mesh_for_radiosity(scene, tracer, tables, options.meshing, threads);
+  Solver(tracer, lights, s, threads).solve(progress, stop);
+  return s;
+}
+
+}  // namespace troffer
