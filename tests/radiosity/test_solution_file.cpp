@@ -1,0 +1,88 @@
+// Solutions as files: what comes back, and what is refused.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "radiosity/rooms.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+RadiosityOptions coarse() {
+  RadiosityOptions o;
+  o.meshing = sizes(0.6f, 1.8f);
+  o.unshot_fraction = 0.1f;
+  return o;
+}
+
+RadiositySolution load(const Ready& r, const std::vector<uint8_t>& bytes,
+                       const RadiosityOptions& o) {
+  return load_solution(bytes, "room.radiosity", r.scene, r.tracer, r.tables, o, 2);
+}
+
+std::string refusal(const Ready& r, const std::vector<uint8_t>& bytes, const RadiosityOptions& o) {
+  try {
+    load(r, bytes, o);
+  } catch (const InputError& e) {
+    CHECK(e.file() == "room.radiosity");
+    return e.reason();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a saved solution comes back the same") {
+  const Ready ready(lit_room(0.5f));
+  const RadiositySolution s = ready.solve(coarse());
+  const RadiositySolution t = load(ready, save_solution(ready.scene, s), coarse());
+  REQUIRE(t.general.size() == s.general.size());
+  CHECK(std::memcmp(t.general.data(), s.general.data(), s.general.size() * sizeof(Rgb)) == 0);
+  REQUIRE(t.stored.size() == s.stored.size());
+  CHECK(std::memcmp(t.stored.data(), s.stored.data(),
+                    s.stored.size() * sizeof(StoredContribution)) == 0);
+  CHECK(t.ambient == s.ambient);
+  CHECK(t.balance.absorbed == s.balance.absorbed);
+  CHECK(t.balance.escaped == s.balance.escaped);
+  CHECK(t.shots == s.shots);
+  CHECK(t.rays == s.rays);
+  CHECK(t.is_complete == s.is_complete);
+  CHECK(t.emitter_count == s.emitter_count);
+}
+
+TEST_CASE("another scene or other settings are refused") {
+  const Ready ready(lit_room(0.5f));
+  const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(coarse()));
+  const char* what = "another scene or to other settings";
+  CHECK(refusal(Ready(lit_room(0.51f)), bytes, coarse()).find(what) != std::string::npos);
+  CHECK(refusal(Ready(lit_room(0.5f, 4.1f)), bytes, coarse()).find(what) != std::string::npos);
+  RadiosityOptions o = coarse();
+  o.tolerance *= 2;
+  CHECK(refusal(ready, bytes, o).find(what) != std::string::npos);
+  CHECK(refusal(ready, bytes, coarse()).empty());
+}
+
+TEST_CASE("damaged files are refused") {
+  const Ready ready(lit_room(0.5f));
+  const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(coarse()));
+  for (size_t n : {size_t(0), size_t(5), size_t(8), size_t(60), size_t(127), size_t(128),
+                   bytes.size() / 2, bytes.size() - 1}) {
+    const std::vector<uint8_t> part(bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
+    CHECK_FALSE(refusal(ready, part, coarse()).empty());
+  }
+  std::vector<uint8_t> longer = bytes;
+  longer.push_back(0);
+  CHECK_FALSE(refusal(ready, longer, coarse()).empty());
+  Random r(1);
+  for (size_t i = 0; i < 300; ++i) {  // every byte of the header, and some of the rest
+    std::vector<uint8_t> bad = bytes;
+    const size_t at = i < 128 ? i : r.next_u32() % bytes.size();
+    bad[at] = uint8_t(bad[at] ^ (1u << (r.next_u32() % 8)));
+    CHECK_FALSE(refusal(ready, bad, coarse()).empty());
+  }
+}
