@@ -1,9 +1,8 @@
 #include "integrate/path.h"
 
+#include <algorithm>
 #include <new>
 #include <type_traits>
-
-#include <algorithm>
 
 #include "base/random.h"
 #include "integrate/purposes.h"
