@@ -49,12 +49,25 @@ struct PathIntegrator::Scratch final : IntegratorScratch {
   std::vector<float> numbers;
   // Next-event estimation: the walks that take part, and the point each is to be connected with.
   std::vector<uint32_t> lit, primitives;
-  std::vector<Vec3> receivers;
+  LightReceivers receivers;
+  std::vector<LightChoice> choices;
+  std::vector<float> tree_scratch;
+  std::vector<Vec3> points_lit;
   std::vector<float> light_u, light_v, light_pmf;
   std::vector<EmitterSample> points;
   std::vector<uint8_t> is_valid;
   EmitterSampleScratch emitters;
 
+  void resize_lights(size_t n) {
+    lit.resize(n);
+    primitives.resize(n);
+    receivers.resize(n);
+    choices.resize(n);
+    points_lit.resize(n);
+    for (auto* a : {&light_u, &light_v, &light_pmf}) a->resize(n);
+    points.resize(n);
+    is_valid.resize(n);
+  }
   // Draws `dimensions` numbers per walk: number d of walk i is numbers[d * walks.size() + i].
   void draw(uint32_t purpose, int dimensions) {
     const size_t n = walks.size();
@@ -171,29 +184,32 @@ void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBat
 void PathIntegrator::sample_lights(Scratch& s) const {
   const size_t n = s.walks.size();
   s.draw(purpose_light(s.walks[0].vertex), 3);
-  s.lit.clear();
-  s.primitives.clear();
-  s.receivers.clear();
-  s.light_u.clear();
-  s.light_v.clear();
-  s.light_pmf.clear();
+  s.resize_lights(n);
+  size_t m = 0;
   for (uint32_t i = 0; i < n; ++i) {
-    const Vertex& v = s.vertices[i];
     if (is_purely_delta(s.bsdfs[i])) continue;
-    const LightChoice choice = scene_.light_tree.choose(
-        v.surface.position, v.geometric_normal, s.bsdfs[i].has_transmission, s.numbers[2 * n + i]);
-    if (choice.pmf == 0) continue;
-    s.lit.push_back(i);
-    s.primitives.push_back(choice.primitive);
-    s.receivers.push_back(v.surface.position);
-    s.light_u.push_back(s.numbers[i]);
-    s.light_v.push_back(s.numbers[n + i]);
-    s.light_pmf.push_back(choice.pmf);
+    const Vertex& v = s.vertices[i];
+    s.receivers.set(m, v.surface.position, v.geometric_normal, s.bsdfs[i].has_transmission,
+                    s.numbers[2 * n + i]);
+    s.lit[m++] = i;
   }
-  const size_t m = s.lit.size();
-  s.points.resize(m);
-  s.is_valid.resize(m);
-  sample_many(scene_.lights, m, s.primitives.data(), s.receivers.data(), s.light_u.data(),
+  s.receivers.resize(m);
+  scene_.light_tree.choose_many(s.receivers, s.choices.data(), s.tree_scratch);
+  // Those for whom there is a light close ranks.
+  size_t kept = 0;
+  for (size_t k = 0; k < m; ++k) {
+    if (s.choices[k].pmf == 0) continue;
+    const uint32_t i = s.lit[k];
+    s.lit[kept] = i;
+    s.primitives[kept] = s.choices[k].primitive;
+    s.points_lit[kept] = s.vertices[i].surface.position;
+    s.light_u[kept] = s.numbers[i];
+    s.light_v[kept] = s.numbers[n + i];
+    s.light_pmf[kept] = s.choices[k].pmf;
+    ++kept;
+  }
+  m = kept;
+  sample_many(scene_.lights, m, s.primitives.data(), s.points_lit.data(), s.light_u.data(),
               s.light_v.data(), s.points.data(), s.is_valid.data(), s.emitters);
   for (size_t k = 0; k < m; ++k) {
     if (s.is_valid[k] == 0) continue;

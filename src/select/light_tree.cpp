@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/simd.h"
 #include "base/units.h"
 #include "select/light_tree_builder.h"
 
@@ -17,66 +18,136 @@ LightTree::LightTree(const LightPrimitives& primitives, LightPrimitives::Range r
   LightTreeBuilder(primitives, range, *this);
 }
 
-// Estimate of what each child's primitives send to x, never 0 where they can send anything
-// [1, Eq. 3; 2]: power × cosine at the source × cosine at x / distance², each cosine the largest
-// that bounds and cone allow. Angles are known by sine and cosine only: cos(max(0, a - b)) is 1
-// where cos a > cos b, else cos a cos b + sin a sin b. Without branches, so that all lanes go
-// together.
+namespace {
+
+// One child of a node: a lane of LightTree::Node.
+struct Child {
+  float centre_x, centre_y, centre_z, radius_squared, axis_x, axis_y, axis_z, cos_spread,
+      sin_spread, power, two_sided;
+};
+
+// Estimate of what a child's primitives send to a point, never 0 where they can send anything
+// [1, Eq. 3; 2]: power × cosine at the source × cosine at the point / distance², each cosine the
+// largest that bounds and cone allow. Angles are known by sine and cosine only: cos(max(0, a - b))
+// is 1 where cos a > cos b, else cos a cos b + sin a sin b. Without branches, so that several go
+// together. `sides` is 1 where light from behind (nx, ny, nz) counts as well, else 0.
+TROFFER_ALWAYS_INLINE float importance(const Child& c, float x, float y, float z, float nx,
+                                       float ny, float nz, float sides) {
+  constexpr float tiny = std::numeric_limits<float>::min();
+  const float tx = x - c.centre_x, ty = y - c.centre_y, tz = z - c.centre_z;
+  const float d2 = tx * tx + ty * ty + tz * tz;
+  const float r2 = c.radius_squared;
+  const float clear_d2 = std::max(std::max(d2, r2), tiny);
+  const float scale = 1 / std::sqrt(std::max(d2, tiny));
+  // Angle under which the sphere around the bounds is seen.
+  const float sin2_bounds = std::min(r2 / std::max(d2, tiny), 1.0f);
+  const float cos_bounds = std::sqrt(1 - sin2_bounds), sin_bounds = std::sqrt(sin2_bounds);
+
+  const float axis = (tx * c.axis_x + ty * c.axis_y + tz * c.axis_z) * scale;
+  const float cos_axis = std::max(axis, -axis * c.two_sided - (1 - c.two_sided));
+  const float sin_axis = std::sqrt(std::max(0.0f, 1 - cos_axis * cos_axis));
+  const float cs = c.cos_spread, ss = c.sin_spread;
+  const float cos_past = cos_axis > cs ? 1 : cos_axis * cs + sin_axis * ss;
+  const float sin_past = cos_axis > cs ? 0 : sin_axis * cs - cos_axis * ss;
+  const float cos_source =
+      cos_past > cos_bounds ? 1 : cos_past * cos_bounds + sin_past * sin_bounds;
+
+  const float towards = -(tx * nx + ty * ny + tz * nz) * scale;
+  const float cos_x = std::max(towards, -towards * sides - (1 - sides));
+  const float sin_x = std::sqrt(std::max(0.0f, 1 - cos_x * cos_x));
+  const float cos_receiver = cos_x > cos_bounds ? 1 : cos_x * cos_bounds + sin_x * sin_bounds;
+
+  // Inside the sphere around the bounds nothing is known of directions.
+  const float cosines =
+      d2 <= r2 * 1.0001f ? 1.0f : std::max(0.0f, cos_source) * std::max(0.0f, cos_receiver);
+  return c.power * cosines / clear_d2;
+}
+
+// One child against n points at a stroke.
+TROFFER_MULTIVERSION
+void importances_of_child(const Child& child, size_t n, const float* __restrict x,
+                          const float* __restrict y, const float* __restrict z,
+                          const float* __restrict nx, const float* __restrict ny,
+                          const float* __restrict nz, const float* __restrict sides,
+                          float* __restrict out) {
+  const Child c = child;
+  for (size_t i = 0; i < n; ++i)
+    out[i] = importance(c, x[i], y[i], z[i], nx[i], ny[i], nz[i], sides[i]);
+}
+
+}  // namespace
+
+// All children of a node against one point.
 void LightTree::importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
                             Lanes& out) {
-  constexpr float tiny = std::numeric_limits<float>::min();
-  const float receiver_sides = both_sides ? 1.0f : 0.0f;
-  for (uint32_t k = 0; k < width; ++k) {
-    const float tx = x.x - node.centre_x[k], ty = x.y - node.centre_y[k],
-                tz = x.z - node.centre_z[k];
-    const float d2 = tx * tx + ty * ty + tz * tz;
-    const float r2 = node.radius_squared[k];
-    const float clear_d2 = std::max(std::max(d2, r2), tiny);
-    const float scale = 1 / std::sqrt(std::max(d2, tiny));
-    // Angle under which the sphere around the bounds is seen.
-    const float sin2_bounds = std::min(r2 / std::max(d2, tiny), 1.0f);
-    const float cos_bounds = std::sqrt(1 - sin2_bounds), sin_bounds = std::sqrt(sin2_bounds);
+  const float sides = both_sides ? 1.0f : 0.0f;
+  for (uint32_t k = 0; k < width; ++k)
+    out[k] = importance({node.centre_x[k], node.centre_y[k], node.centre_z[k],
+                         node.radius_squared[k], node.axis_x[k], node.axis_y[k], node.axis_z[k],
+                         node.cos_spread[k], node.sin_spread[k], node.power[k], node.two_sided[k]},
+                        x.x, x.y, x.z, n.x, n.y, n.z, sides);
+}
 
-    const float axis = (tx * node.axis_x[k] + ty * node.axis_y[k] + tz * node.axis_z[k]) * scale;
-    const float cos_axis = std::max(axis, -axis * node.two_sided[k] - (1 - node.two_sided[k]));
-    const float sin_axis = std::sqrt(std::max(0.0f, 1 - cos_axis * cos_axis));
-    const float cs = node.cos_spread[k], ss = node.sin_spread[k];
-    const float cos_past = cos_axis > cs ? 1 : cos_axis * cs + sin_axis * ss;
-    const float sin_past = cos_axis > cs ? 0 : sin_axis * cs - cos_axis * ss;
-    const float cos_source =
-        cos_past > cos_bounds ? 1 : cos_past * cos_bounds + sin_past * sin_bounds;
+// Picks a child in proportion to `weight`, and updates probability and random number; width if none
+// has any.
+uint32_t LightTree::pick(const Lanes& weight, float& pmf, float& u) {
+  const Lanes below{0, weight[0], weight[0] + weight[1], weight[0] + weight[1] + weight[2]};
+  const float total = below[3] + weight[3];
+  if (!(total > 0)) return width;
+  const float target = u * total;
+  // Counted, not searched: which child it is cannot be predicted.
+  uint32_t k =
+      uint32_t(target >= below[1]) + uint32_t(target >= below[2]) + uint32_t(target >= below[3]);
+  while (weight[k] == 0) --k;  // rounding may run past the last one that counts
+  pmf *= weight[k] / total;
+  u = std::clamp((target - below[k]) / weight[k], 0.0f, one_minus_epsilon);
+  return k;
+}
 
-    const float towards = -(tx * n.x + ty * n.y + tz * n.z) * scale;
-    const float cos_x = std::max(towards, -towards * receiver_sides - (1 - receiver_sides));
-    const float sin_x = std::sqrt(std::max(0.0f, 1 - cos_x * cos_x));
-    const float cos_receiver = cos_x > cos_bounds ? 1 : cos_x * cos_bounds + sin_x * sin_bounds;
-
-    // Inside the sphere around the bounds nothing is known of directions.
-    const float cosines =
-        d2 <= r2 * 1.0001f ? 1.0f : std::max(0.0f, cos_source) * std::max(0.0f, cos_receiver);
-    out[k] = node.power[k] * cosines / clear_d2;
+LightChoice LightTree::choose_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides,
+                                    float pmf, float u) const {
+  while (true) {
+    const Node& node = nodes_[at];
+    alignas(16) Lanes weight;
+    importances(node, x, n, both_sides, weight);
+    const uint32_t k = pick(weight, pmf, u);
+    if (k == width) return {};
+    if (node.is_leaf[k]) return {node.child[k], pmf, u};
+    at = node.child[k];
   }
 }
 
 LightChoice LightTree::choose(const Vec3& x, const Vec3& n, bool both_sides, float u) const {
-  if (nodes_.empty()) return {};
-  float pmf = 1;
-  for (uint32_t at = 0;;) {
-    const Node& node = nodes_[at];
-    alignas(16) Lanes weight;
-    importances(node, x, n, both_sides, weight);
-    const Lanes below{0, weight[0], weight[0] + weight[1], weight[0] + weight[1] + weight[2]};
-    const float total = below[3] + weight[3];
-    if (!(total > 0)) return {};
-    const float target = u * total;
-    // Counted, not searched: which child it is cannot be predicted.
-    uint32_t k = uint32_t(target >= below[1]) + uint32_t(target >= below[2]) +
-                 uint32_t(target >= below[3]);
-    while (weight[k] == 0) --k;  // rounding may run past the last one that counts
-    pmf *= weight[k] / total;
-    u = std::clamp((target - below[k]) / weight[k], 0.0f, one_minus_epsilon);
-    if (node.is_leaf[k]) return {node.child[k], pmf, u};
-    at = node.child[k];
+  return nodes_.empty() ? LightChoice{} : choose_below(0, x, n, both_sides, 1, u);
+}
+
+void LightTree::choose_many(const LightReceivers& r, LightChoice* out,
+                            std::vector<float>& scratch) const {
+  const size_t n = r.size();
+  if (nodes_.empty()) {
+    std::fill(out, out + n, LightChoice{});
+    return;
+  }
+  // The root is everybody's: its children are weighed for all points together.
+  const Node& root = nodes_[0];
+  scratch.resize(n * width);
+  for (uint32_t k = 0; k < width; ++k)
+    importances_of_child({root.centre_x[k], root.centre_y[k], root.centre_z[k],
+                          root.radius_squared[k], root.axis_x[k], root.axis_y[k], root.axis_z[k],
+                          root.cos_spread[k], root.sin_spread[k], root.power[k], root.two_sided[k]},
+                         n, r.x.data(), r.y.data(), r.z.data(), r.nx.data(), r.ny.data(),
+                         r.nz.data(), r.sides.data(), scratch.data() + k * n);
+  for (size_t i = 0; i < n; ++i) {
+    const Lanes weight{scratch[i], scratch[n + i], scratch[2 * n + i], scratch[3 * n + i]};
+    float pmf = 1, u = r.u[i];
+    const uint32_t k = pick(weight, pmf, u);
+    if (k == width)
+      out[i] = {};
+    else if (root.is_leaf[k])
+      out[i] = {root.child[k], pmf, u};
+    else
+      out[i] = choose_below(root.child[k], {r.x[i], r.y[i], r.z[i]}, {r.nx[i], r.ny[i], r.nz[i]},
+                            r.sides[i] != 0, pmf, u);
   }
 }
 

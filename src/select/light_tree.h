@@ -20,6 +20,28 @@ struct LightChoice {
   float u = 0;    // what is left of the random number, uniform in [0,1) again
 };
 
+// Many points at once, as plain arrays of one length.
+struct LightReceivers {
+  std::vector<float> x, y, z, nx, ny, nz;  // point and unit normal
+  std::vector<float> sides;                // 1: light from behind the normal counts too; else 0
+  std::vector<float> u;
+
+  size_t size() const { return x.size(); }
+  void resize(size_t n) {
+    for (auto* a : {&x, &y, &z, &nx, &ny, &nz, &sides, &u}) a->resize(n);
+  }
+  void set(size_t i, const Vec3& p, const Vec3& n, bool both_sides, float random) {
+    x[i] = p.x;
+    y[i] = p.y;
+    z[i] = p.z;
+    nx[i] = n.x;
+    ny[i] = n.y;
+    nz[i] = n.z;
+    sides[i] = both_sides ? 1.0f : 0.0f;
+    u[i] = random;
+  }
+};
+
 // A tree over light primitives, each node with the bounds, the power and a cone that holds the
 // normals of its primitives [1]; built binary, then collapsed to four children per node, whose
 // importances are computed at a stroke. Never gives probability 0 to a primitive that can light the
@@ -34,6 +56,9 @@ class LightTree {
 
   // For a point x on a surface of unit normal n; both_sides: light from behind n counts as well.
   LightChoice choose(const Vec3& x, const Vec3& n, bool both_sides, float u) const;
+  // choose() for every receiver, with the same results: out[i] for receiver i.
+  void choose_many(const LightReceivers& receivers, LightChoice* out,
+                   std::vector<float>& scratch) const;
   // The probability with which choose() picks the primitive, which must be one of the tree's.
   float pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const;
 
@@ -60,6 +85,9 @@ class LightTree {
   friend class LightTreeBuilder;
   static void importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
                           Lanes& out);
+  static uint32_t pick(const Lanes& weight, float& pmf, float& u);
+  LightChoice choose_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides, float pmf,
+                           float u) const;
 
   std::vector<Node> nodes_;
   uint32_t first_ = 0;         // primitive of the first place

@@ -1,5 +1,7 @@
 // The light tree: probabilities that add up, are what choose() does, and leave no source out.
+#include "base/warp.h"
 #include "select/light_tree.h"
+#include "support/scenes.h"
 
 #include <doctest/doctest.h>
 
@@ -284,5 +286,38 @@ TEST_CASE("ten thousand primitives: built within a second, all within reach") {
         REQUIRE(is_same(c.pmf, tree.pmf(at.position, at.normal, false, c.primitive)));
     }
     CHECK(nothing < 10);
+  }
+}
+
+TEST_CASE("choosing for many points is choosing for each") {
+  Random random(23);
+  for (const size_t sources : {1u, 3u, 40u}) {
+    Scene s;
+    for (size_t i = 0; i < sources; ++i)
+      test::add_ceiling_light(s, 0.1f + random.next_float(), 1 + 3 * random.next_float(),
+                              Rgb{random.next_float() + 0.1f});
+    const LightPrimitives lights(s);
+    const LightTree tree(lights);
+    constexpr size_t n = 999;
+    LightReceivers receivers;
+    receivers.resize(n);
+    std::vector<Vec3> points(n), normals(n);
+    std::vector<float> u(n);
+    for (size_t i = 0; i < n; ++i) {
+      points[i] = sphere_from_square(random.next_vec2()) * (4 * random.next_float());
+      normals[i] = sphere_from_square(random.next_vec2());
+      u[i] = random.next_float();
+      receivers.set(i, points[i], normals[i], i % 3 == 0, u[i]);
+    }
+    std::vector<LightChoice> many(n);
+    std::vector<float> scratch;
+    tree.choose_many(receivers, many.data(), scratch);
+    size_t different = 0;
+    for (size_t i = 0; i < n; ++i) {
+      const LightChoice one = tree.choose(points[i], normals[i], i % 3 == 0, u[i]);
+      different += one.pmf != many[i].pmf || one.u != many[i].u ||
+                   (one.pmf > 0 && one.primitive != many[i].primitive);
+    }
+    CHECK(different == 0);
   }
 }
