@@ -186,8 +186,8 @@ TEST_CASE("the error layer is the spread of pictures with other seeds") {
   double claimed = 0, true_variance = 0;
   for (uint64_t seed = 0; seed < 8; ++seed) {
     o.seed = seed;
-    for (const Rgb& p : render_now(scene, mixed_room_camera(), o).layers[1].image.pixels)
-      claimed += double(p.r) * double(p.r) / 8;
+    const RenderResult result = render_now(scene, mixed_room_camera(), o);
+    for (const Rgb& p : result.layers[1].image.pixels) claimed += double(p.r) * double(p.r) / 8;
   }
   for (const Moments& m : e.pixels) true_variance += m.variance_of_mean() * 24;
   CHECK(claimed > 0.9 * true_variance);
