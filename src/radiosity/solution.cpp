@@ -9,57 +9,6 @@ size_t RadiositySolution::memory_bytes() const {
          stored.capacity() * sizeof(StoredContribution);
 }
 
-void Interpolation::add(uint32_t point, float weight) {
-  for (PointWeight& w : weights_) {
-    if (w.point != point) continue;
-    w.weight += weight;
-    return;
-  }
-  weights_.push_back({point, weight});
-}
-
-void interpolate(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometry,
-                 uint32_t primitive, float u, float v, const Vec3& position, bool is_back,
-                 Interpolation& out) {
-  constexpr float cos_smooth = 0.8660254f;  // 30 degrees
-  constexpr uint32_t max_around = 64;       // fragments about a corner that are looked at
-  out.weights_.clear();
-  Vec3 corner_weights;
-  const uint32_t at = fragment_at(scene, mesh, geometry, primitive, u, v, position, corner_weights);
-  if (at == no_fragment) return;
-  const uint32_t own = mesh.element_points[mesh.fragments[at].element][is_back ? 1 : 0];
-  if (own == no_point) return;
-  const Vec3 normal = fragment_normal(mesh, at);
-  for (size_t k = 0; k < 3; ++k) {
-    const uint32_t vertex = mesh.fragments[at].vertices[k];
-    const uint32_t first = mesh.vertex_first[vertex];
-    const uint32_t last = std::min(mesh.vertex_first[vertex + 1], first + max_around);
-    float sum = 0;
-    struct Around {
-      uint32_t point;
-      float area;
-    } around[max_around];
-    uint32_t count = 0;
-    for (uint32_t i = first; i < last; ++i) {
-      const uint32_t f = mesh.vertex_fragments[i];
-      const auto& c = mesh.fragments[f].vertices;
-      const Vec3 a = mesh.geometry.positions[c[0]];
-      const Vec3 n = cross(mesh.geometry.positions[c[1]] - a, mesh.geometry.positions[c[2]] - a);
-      const float area = length(n), cosine = dot(n, normal);
-      if (!(std::abs(cosine) >= cos_smooth * area) || !(area > 0)) continue;
-      const bool is_other_side = is_back != (cosine < 0);
-      const uint32_t p = mesh.element_points[mesh.fragments[f].element][is_other_side ? 1 : 0];
-      if (p == no_point) continue;
-      around[count++] = {p, area};
-      sum += area;
-    }
-    const float w = std::clamp(corner_weights[k], 0.0f, 1.0f);
-    if (!(sum > 0)) out.add(own, w);
-    for (uint32_t i = 0; i < count && sum > 0; ++i)
-      out.add(around[i].point, w * around[i].area / sum);
-  }
-}
-
 Rgb interpolated_irradiance(const RadiositySolution& solution, const Interpolation& at) {
   Rgb sum;
   for (const PointWeight& w : at.weights()) sum += solution.irradiance(w.point) * w.weight;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "radiosity/interpolation.h"
 #include "radiosity/meshing.h"
 
 namespace troffer {
@@ -70,29 +71,6 @@ struct RadiositySolution {
   }
   size_t memory_bytes() const;
 };
-
-// Weights of sample points at a place, for any quantity that points carry; they sum to 1. Within a
-// fragment, linear between its corners; at a corner, the mean over the elements around it on the
-// same side whose normals differ by less than 30 degrees, by area. Empty where light cannot get.
-struct PointWeight {
-  uint32_t point = 0;
-  float weight = 0;
-};
-class Interpolation {
- public:
-  std::span<const PointWeight> weights() const { return weights_; }
-
- private:
-  friend void interpolate(const Scene&, const RadiosityMesh&, uint32_t, uint32_t, float, float,
-                          const Vec3&, bool, Interpolation&);
-  void add(uint32_t point, float weight);
-  std::vector<PointWeight> weights_;
-};
-// geometry, primitive, u, v as in Hit; `position` is the hit's, is_back whether its back is asked
-// for. Reuses the memory of `out`.
-void interpolate(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometry,
-                 uint32_t primitive, float u, float v, const Vec3& position, bool is_back,
-                 Interpolation& out);
 
 // Irradiance at a place, without the ambient estimate.
 Rgb interpolated_irradiance(const RadiositySolution& solution, const Interpolation& at);
