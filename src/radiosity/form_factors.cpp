@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/random.h"
 #include "base/units.h"
@@ -138,14 +139,15 @@ Ray ray_to(const Shooter& s, const ElementPoint& r, const RayEnd& end) {
   return ray;
 }
 
+bool is_whole(const RayBudget& budget, float unoccluded) {
+  return budget.whole_rays > 0 && unoccluded > budget.reference * budget.whole_from;
+}
+
 int rays_wanted(const RayBudget& budget, float unoccluded) {
   const float share = unoccluded / (budget.reference * budget.tolerance);
   const float n = std::pow(std::max(0.5f * share, 0.0f), 4.0f / 3);
-  return n < float(budget.max_rays) ? std::max(1, int(std::ceil(n))) : budget.max_rays;
-}
-
-int first_rays(int wanted) {
-  return std::min(wanted, std::max(4, wanted / 4));
+  const int wanted = n < float(budget.max_rays) ? std::max(1, int(std::ceil(n))) : budget.max_rays;
+  return is_whole(budget, unoccluded) ? std::max(wanted, budget.whole_rays) : wanted;
 }
 
 void add_polygon(Shooter& s, const Vec3* corners, uint32_t count, Rgb radiance) {
@@ -171,11 +173,13 @@ void add_polygon(Shooter& s, const Vec3* corners, uint32_t count, Rgb radiance) 
 
 class Gatherer {
  public:
-  Gatherer(const Shooter& shooter, std::span<const ElementPoint> receivers, const Tracer& tracer,
-           const RayBudget& budget, uint64_t stream, size_t first_index,
-           std::span<Transfer> transfers, TransferScratch& scratch)
+  Gatherer(const Shooter& shooter, std::span<const ElementPoint> receivers,
+           std::span<const uint32_t> indices, const Tracer& tracer, const RayBudget& budget,
+           uint64_t stream, size_t first_index, std::span<Transfer> transfers,
+           TransferScratch& scratch)
       : shooter_(shooter),
         receivers_(receivers),
+        indices_(indices),
         tracer_(tracer),
         budget_(budget),
         stream_(stream),
@@ -183,21 +187,23 @@ class Gatherer {
         transfers_(transfers),
         s_(scratch),
         pieces_(shooter.is_exact ? shooter.pieces.size() : 0) {
-    s_.piece_irradiance.assign(receivers.size() * pieces_, 0);
+    s_.piece_irradiance.assign(indices.size() * pieces_, 0);
   }
 
   size_t run() {
     s_.jobs.clear();
-    for (uint32_t i = 0; i < receivers_.size(); ++i) start(i);
+    for (uint32_t i = 0; i < indices_.size(); ++i) start(i);
     size_t rays = 0;
     while (!s_.jobs.empty()) rays += trace_round();
     return rays;
   }
 
  private:
+  const ElementPoint& receiver(uint32_t i) const { return receivers_[indices_[i]]; }
+
   void start(uint32_t i) {
     transfers_[i] = {};
-    const ElementPoint& r = receivers_[i];
+    const ElementPoint& r = receiver(i);
     if (!shooter_.is_exact) {
       start_disc(i, r);
       return;
@@ -215,8 +221,13 @@ class Gatherer {
 
   void begin_job(uint32_t i, double unoccluded) {
     if (!(unoccluded > 0)) return;
-    const int wanted = rays_wanted(budget_, float(unoccluded));
-    s_.jobs.push_back({i, 0, first_rays(wanted), wanted, 0, 0, 0});
+    add_job(i, rays_wanted(budget_, float(unoccluded)), float(unoccluded));
+  }
+
+  void add_job(uint32_t i, int wanted, float unoccluded) {
+    const bool whole = is_whole(budget_, unoccluded);
+    const int first = whole ? wanted : std::min(wanted, std::max(4, wanted / 4));
+    s_.jobs.push_back({i, 0, first, wanted, whole, 0, 0, 0});
   }
 
   // The unoccluded irradiance and the visibility come from the same points, all of them at once.
@@ -234,16 +245,17 @@ class Gatherer {
       if (pass == 1 || wanted <= count) break;
       count = wanted;
     }
-    if (luminance(transfers_[i].unoccluded) > 0)
-      s_.jobs.push_back({i, 0, first_rays(count), count, 0, 0, 0});
+    const float unoccluded = luminance(transfers_[i].unoccluded);
+    if (unoccluded > 0) add_job(i, count, unoccluded);
   }
 
   Vec2 random(uint32_t i, int k) const {
-    return SobolGroup(stream_ + mix64(first_index_ + i), purpose_visibility, uint32_t(k)).get2();
+    return SobolGroup(stream_ + mix64(first_index_ + indices_[i]), purpose_visibility, uint32_t(k))
+        .get2();
   }
 
   bool ray_end(uint32_t i, int k, int wanted, RayEnd& end) const {
-    const ElementPoint& r = receivers_[i];
+    const ElementPoint& r = receiver(i);
     if (shooter_.is_exact)
       return exact_end(shooter_, r, random(i, k),
                        {s_.piece_irradiance.data() + i * pieces_, pieces_}, end);
@@ -260,7 +272,7 @@ class Gatherer {
       for (int k = j.first; k < j.first + j.count; ++k) {
         RayEnd end;
         if (!ray_end(j.receiver, k, j.wanted, end) || !(end.weight > 0)) continue;
-        s_.rays.push_back(ray_to(shooter_, receivers_[j.receiver], end));
+        s_.rays.push_back(ray_to(shooter_, receiver(j.receiver), end));
         s_.weights.push_back(end.weight);
       }
     }
@@ -281,7 +293,7 @@ class Gatherer {
     const float v = j.sum > 0 ? float(std::clamp(j.visible / j.sum, 0.0, 1.0)) : 0.0f;
     transfers_[j.receiver].visibility = v;
     const int done = j.first + j.count;
-    const bool agree = j.sum > 0 && (j.visible == 0 || j.visible == j.sum);
+    const bool agree = !j.is_whole && j.sum > 0 && (j.visible == 0 || j.visible == j.sum);
     if (agree || done >= j.wanted) return;
     j.first = done;
     j.count = j.wanted - done;
@@ -290,6 +302,7 @@ class Gatherer {
 
   const Shooter& shooter_;
   std::span<const ElementPoint> receivers_;
+  std::span<const uint32_t> indices_;
   const Tracer& tracer_;
   const RayBudget& budget_;
   uint64_t stream_;
@@ -341,8 +354,17 @@ Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance) {
 size_t transfer(const Shooter& shooter, std::span<const ElementPoint> receivers,
                 const Tracer& tracer, const RayBudget& budget, uint64_t stream, size_t first_index,
                 std::span<Transfer> transfers, TransferScratch& scratch) {
-  return Gatherer(shooter, receivers, tracer, budget, stream, first_index, transfers, scratch)
+  scratch.indices.resize(receivers.size());
+  std::iota(scratch.indices.begin(), scratch.indices.end(), 0u);
+  return Gatherer(shooter, receivers, scratch.indices, tracer, budget, stream, first_index,
+                  transfers, scratch)
       .run();
+}
+
+size_t transfer_to(const Shooter& shooter, std::span<const ElementPoint> points,
+                   std::span<const uint32_t> indices, const Tracer& tracer, const RayBudget& budget,
+                   uint64_t stream, std::span<Transfer> transfers, TransferScratch& scratch) {
+  return Gatherer(shooter, points, indices, tracer, budget, stream, 0, transfers, scratch).run();
 }
 
 }  // namespace troffer

@@ -46,6 +46,10 @@ struct RayBudget {
   // the rest is not cast.
   float tolerance = 0.003f;
   float reference = 1;  // luminance of a typical irradiance
+  // Where the unoccluded irradiance is above `whole_from` times `reference`, at least `whole_rays`
+  // rays are cast and none is left out when the first agree: thin occluders are seen.
+  int whole_rays = 0;
+  float whole_from = 0;
 };
 
 struct Transfer {
@@ -61,10 +65,13 @@ struct TransferScratch {
   struct Job {
     uint32_t receiver;
     int first, count, wanted;
+    bool is_whole;
     size_t ray;
     double visible, sum;
   };
   std::vector<Job> jobs, next_jobs;
+  std::vector<uint32_t> indices;
+  std::vector<Transfer> transfers;
 };
 
 // transfers[i] for receivers[i]. Random numbers derive from `stream` and first_index + i. Returns
@@ -72,5 +79,11 @@ struct TransferScratch {
 size_t transfer(const Shooter& shooter, std::span<const ElementPoint> receivers,
                 const Tracer& tracer, const RayBudget& budget, uint64_t stream, size_t first_index,
                 std::span<Transfer> transfers, TransferScratch& scratch);
+
+// The same for some of the points: transfers[i] is what the call above, for all points from index
+// 0, gives to points[indices[i]].
+size_t transfer_to(const Shooter& shooter, std::span<const ElementPoint> points,
+                   std::span<const uint32_t> indices, const Tracer& tracer, const RayBudget& budget,
+                   uint64_t stream, std::span<Transfer> transfers, TransferScratch& scratch);
 
 }  // namespace troffer

@@ -5,7 +5,8 @@
 namespace troffer {
 
 size_t RadiositySolution::memory_bytes() const {
-  return mesh.memory_bytes() + general.capacity() * sizeof(Rgb) +
+  return mesh.memory_bytes() +
+         (general.capacity() + general_direct.capacity() + shot_radiance.capacity()) * sizeof(Rgb) +
          stored.capacity() * sizeof(StoredContribution);
 }
 

@@ -23,6 +23,10 @@ struct RadiosityOptions {
   uint32_t max_shots = 20000;
   int max_rays = 64;         // from a sample point to a shooter
   float tolerance = 0.003f;  // of one transfer, in units of the scene's mean irradiance
+  // To emitters that would give more than `emitter_share` of the mean irradiance if nothing were in
+  // the way, at least this many rays are cast, well spread, and all of them; 0: as to patches.
+  int emitter_rays = 64;
+  float emitter_share = 0.003f;
   uint64_t seed = 0;
 };
 constexpr uint32_t max_stored = 64;
@@ -51,8 +55,11 @@ struct RadiositySolution {
   uint32_t emitter_count = 0;
   uint32_t stored_per_point = 0;
   std::vector<Rgb> general;                // per point: all that is not stored separately
+  std::vector<Rgb> general_direct;         // the part of `general` that came straight from emitters
   std::vector<StoredContribution> stored;  // stored_per_point of them per point; unused: no_source
+  std::vector<Rgb> shot_radiance;          // per patch: the radiance it sent, over all its shots
   Rgb ambient;                             // irradiance expected everywhere from what is unshot
+  float mean_irradiance = 0;               // luminance, as expected from power, area, reflectance
   EnergyBalance balance;
   uint32_t shots = 0;
   uint64_t rays = 0;

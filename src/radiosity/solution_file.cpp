@@ -11,7 +11,7 @@ namespace troffer {
 namespace {
 
 constexpr char magic[8] = {'t', 'r', 'o', 'f', 'f', 'R', 'a', 'd'};
-constexpr uint32_t version = 1;
+constexpr uint32_t version = 2;
 static_assert(std::endian::native == std::endian::little, "solutions are little endian");
 
 class Hasher {
@@ -128,12 +128,17 @@ struct Header {
   float ambient[3];
   uint32_t emitters;
   double balance[6];
+  uint32_t patches;
+  float mean_irradiance;
   uint64_t hash;  // of all else: header with 0 here, and body
 };
-static_assert(sizeof(Header) == 128);
+static_assert(sizeof(Header) == 136);
 
 struct FilePoint {
-  float general[3];
+  float general[3], general_direct[3];
+};
+struct FilePatch {
+  float shot_radiance[3];
 };
 struct FileContribution {
   uint32_t source;
@@ -210,6 +215,8 @@ uint64_t solution_key(const Scene& scene, const RadiosityOptions& o) {
   h.add(o.unshot_fraction);
   h.add(uint64_t(o.max_rays));
   h.add(o.tolerance);
+  h.add(uint64_t(o.emitter_rays));
+  h.add(o.emitter_share);
   h.add(o.seed);
   return h.value();
 }
@@ -217,10 +224,12 @@ uint64_t solution_key(const Scene& scene, const RadiosityOptions& o) {
 std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& s) {
   std::vector<uint8_t> body;
   const size_t points = s.general.size();
-  body.reserve(points * (sizeof(FilePoint) + s.stored_per_point * sizeof(FileContribution)));
-  for (const Rgb& g : s.general) {
+  body.reserve(points * (sizeof(FilePoint) + s.stored_per_point * sizeof(FileContribution)) +
+               s.shot_radiance.size() * sizeof(FilePatch));
+  for (size_t i = 0; i < points; ++i) {
     FilePoint p;
-    put(p.general, g);
+    put(p.general, s.general[i]);
+    put(p.general_direct, s.general_direct[i]);
     append(body, p);
   }
   for (const StoredContribution& c : s.stored) {
@@ -229,6 +238,11 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
     put(f.received, c.received);
     put(f.unoccluded, c.unoccluded);
     append(body, f);
+  }
+  for (const Rgb& radiance : s.shot_radiance) {
+    FilePatch p;
+    put(p.shot_radiance, radiance);
+    append(body, p);
   }
   Header h{};
   std::memcpy(h.magic, magic, sizeof(magic));
@@ -242,6 +256,8 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
   h.is_complete = s.is_complete;
   put(h.ambient, s.ambient);
   h.emitters = s.emitter_count;
+  h.patches = uint32_t(s.shot_radiance.size());
+  h.mean_irradiance = s.mean_irradiance;
   const EnergyBalance& b = s.balance;
   const double balance[6] = {b.emitted,          b.shot,   b.absorbed,
                              b.lost_to_specular, b.unshot, b.escaped};
@@ -268,9 +284,10 @@ Header checked_header(std::span<const uint8_t> bytes, const std::string& file, u
            std::to_string(version));
   if (h.stored_per_point > max_stored) refuse("radiosity solution is damaged");
   const size_t per_point = sizeof(FilePoint) + h.stored_per_point * sizeof(FileContribution);
-  const size_t body = bytes.size() - sizeof(Header);
-  if (h.points > body / per_point) refuse("radiosity solution is cut short");
-  if (h.points * per_point != body) refuse("radiosity solution has bytes too many");
+  const size_t body = bytes.size() - sizeof(Header), patches = h.patches * sizeof(FilePatch);
+  if (h.points > body / per_point || h.points * per_point + patches > body)
+    refuse("radiosity solution is cut short");
+  if (h.points * per_point + patches != body) refuse("radiosity solution has bytes too many");
   if (hash_of_file(h, bytes.subspan(sizeof(Header))) != h.hash)
     refuse("radiosity solution is damaged");
   if (h.key != key)
@@ -287,7 +304,8 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
   RadiositySolution s;
   s.options = options;
   s.mesh = mesh_for_radiosity(scene, tracer, tables, options.meshing, threads);
-  if (h.points != s.mesh.points.size() || h.points_key != points_key(s.mesh))
+  if (h.points != s.mesh.points.size() || h.patches != s.mesh.patches.size() ||
+      h.points_key != points_key(s.mesh))
     throw InputError(file, 0, 0, "radiosity solution was computed on another mesh of this scene");
   s.emitter_count = uint32_t(scene.emitters.size());
   s.stored_per_point = h.stored_per_point;
@@ -297,8 +315,11 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
   s.rays = h.rays;
   s.is_complete = h.is_complete != 0;
   size_t at = sizeof(Header);
-  for (size_t i = 0; i < h.points; ++i, at += sizeof(FilePoint))
-    s.general.push_back(get(read<FilePoint>(bytes, at).general));
+  for (size_t i = 0; i < h.points; ++i, at += sizeof(FilePoint)) {
+    const auto p = read<FilePoint>(bytes, at);
+    s.general.push_back(get(p.general));
+    s.general_direct.push_back(get(p.general_direct));
+  }
   const size_t sources = s.emitter_count + s.mesh.patches.size();
   for (size_t i = 0; i < h.points * h.stored_per_point; ++i, at += sizeof(FileContribution)) {
     const auto c = read<FileContribution>(bytes, at);
@@ -306,6 +327,9 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
       throw InputError(file, 0, 0, "radiosity solution is damaged");
     s.stored.push_back({c.source, get(c.received), get(c.unoccluded)});
   }
+  for (size_t i = 0; i < h.patches; ++i, at += sizeof(FilePatch))
+    s.shot_radiance.push_back(get(read<FilePatch>(bytes, at).shot_radiance));
+  s.mean_irradiance = h.mean_irradiance;
   return s;
 }
 

@@ -19,10 +19,21 @@ float importance(const StoredContribution& c) {
   return std::max(luminance(c.received), 0.25f * luminance(c.unoccluded));
 }
 
+// What is not kept at a point.
+struct General {
+  Rgb& all;
+  Rgb& direct;
+  void add(Rgb received, bool is_emitter) const {
+    all += received;
+    if (is_emitter) direct += received;
+  }
+};
+
 // Adds to the source's entry, to a free one, or instead of the least important one, which moves to
 // the general value; into the general value if it is the least important itself. A source that
 // shoots again after it was moved counts anew.
-void keep(std::span<StoredContribution> list, Rgb& general, const StoredContribution& c) {
+void keep(std::span<StoredContribution> list, const General& general, uint32_t emitter_count,
+          const StoredContribution& c) {
   StoredContribution* least = nullptr;
   for (StoredContribution& entry : list) {
     if (entry.source == c.source) {
@@ -37,11 +48,28 @@ void keep(std::span<StoredContribution> list, Rgb& general, const StoredContribu
     if (least == nullptr || importance(entry) < importance(*least)) least = &entry;
   }
   if (least == nullptr || importance(c) <= importance(*least)) {
-    general += c.received;
+    general.add(c.received, c.source < emitter_count);
     return;
   }
-  general += least->received;
+  general.add(least->received, least->source < emitter_count);
   *least = c;
+}
+
+// An emitter shoots once, so that its transfers can be computed again.
+uint64_t emitter_stream(const RadiosityOptions& options, uint32_t emitter) {
+  return hash_of(options.seed, emitter);
+}
+
+RayBudget ray_budget(const RadiositySolution& s, uint32_t source) {
+  RayBudget b;
+  b.max_rays = std::max(1, s.options.max_rays);
+  b.tolerance = std::max(1e-6f, s.options.tolerance);
+  b.reference = s.mean_irradiance;
+  if (s.is_emitter(source)) {
+    b.whole_rays = s.options.emitter_rays;
+    b.whole_from = s.options.emitter_share;
+  }
+  return b;
 }
 
 class Solver {
@@ -56,6 +84,8 @@ class Solver {
         transfers_(scratch_.size()) {
     const size_t points = s_.mesh.points.size(), patches = s_.mesh.patches.size();
     s_.general.assign(points, Rgb{0});
+    s_.general_direct.assign(points, Rgb{0});
+    s_.shot_radiance.assign(patches, Rgb{0});
     s_.stored.assign(points * s_.stored_per_point, {});
     unshot_.assign(patches, Rgb{0});
     received_.assign(points, Rgb{0});
@@ -67,9 +97,8 @@ class Solver {
       reflected += double(p.area) * double(luminance(p.reflectance));
     }
     mean_reflectance_ = area_ > 0 ? std::min(reflected / area_, 0.98) : 0.0;
-    budget_.max_rays = std::max(1, s_.options.max_rays);
-    budget_.tolerance = std::max(1e-6f, s_.options.tolerance);
-    budget_.reference = float(s_.balance.emitted / (area_ * (1 - mean_reflectance_)));
+    if (area_ > 0)
+      s_.mean_irradiance = float(s_.balance.emitted / (area_ * (1 - mean_reflectance_)));
   }
 
   void solve(const RadiosityCallback& progress, const StopFlag& stop) {
@@ -118,25 +147,29 @@ class Solver {
     if (!(shooter.area() > 0)) return;
     const Rgb radiance = power / (pi_f * shooter.area());
     for (LightPrimitive& p : shooter.pieces) p.mean_radiance = radiance;
+    s_.shot_radiance[brightest] += radiance;
     shoot(shooter, s_.emitter_count + brightest, double(luminance(power)));
   }
 
   void shoot(const Shooter& shooter, uint32_t source, double power) {
     const std::vector<ElementPoint>& points = s_.mesh.points;
-    const uint64_t stream = hash_of(s_.options.seed, source, s_.shots);
+    const uint64_t stream = s_.is_emitter(source) ? emitter_stream(s_.options, source)
+                                                  : hash_of(s_.options.seed, source, s_.shots);
+    const RayBudget budget = ray_budget(s_, source);
     parallel_for_slots(rays_.size(), threads_, [&](size_t block, size_t slot) {
       const size_t first = block * block_size;
       const size_t count = std::min(block_size, points.size() - first);
       std::vector<Transfer>& transfers = transfers_[slot];
       transfers.resize(count);
-      rays_[block] += transfer(shooter, {points.data() + first, count}, tracer_, budget_, stream,
+      rays_[block] += transfer(shooter, {points.data() + first, count}, tracer_, budget, stream,
                                first, transfers, scratch_[slot]);
       for (size_t i = 0; i < count; ++i) {
         const size_t point = first + i;
         received_[point] = transfers[i].unoccluded * transfers[i].visibility;
         if (transfers[i].unoccluded.is_black()) continue;
         keep({s_.stored.data() + point * s_.stored_per_point, s_.stored_per_point},
-             s_.general[point], {source, received_[point], transfers[i].unoccluded});
+             {s_.general[point], s_.general_direct[point]}, s_.emitter_count,
+             {source, received_[point], transfers[i].unoccluded});
       }
     });
     ++s_.shots;
@@ -175,7 +208,6 @@ class Solver {
   RadiositySolution& s_;
   int threads_;
   double area_ = 0, mean_reflectance_ = 0, arrived_ = 0;
-  RayBudget budget_;
   std::vector<Rgb> unshot_;    // power, per patch
   std::vector<Rgb> received_;  // irradiance from the current shot, per point
   std::vector<uint64_t> rays_;
@@ -196,6 +228,26 @@ RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
   s.mesh = mesh_for_radiosity(scene, tracer, tables, options.meshing, threads);
   Solver(tracer, lights, s, threads).solve(progress, stop);
   return s;
+}
+
+void source_contributions(const Tracer& tracer, const LightPrimitives& lights,
+                          const RadiositySolution& s, uint32_t source,
+                          std::span<const uint32_t> points, std::span<StoredContribution> out,
+                          TransferScratch& scratch) {
+  const bool is_emitter = s.is_emitter(source);
+  const Shooter shooter =
+      is_emitter ? emitter_shooter(lights, source)
+                 : patch_shooter(s.mesh, s.patch_of(source), s.shot_radiance[s.patch_of(source)]);
+  scratch.transfers.assign(points.size(), {});
+  if (!shooter.pieces.empty())
+    transfer_to(shooter, s.mesh.points, points, tracer, ray_budget(s, source),
+                is_emitter ? emitter_stream(s.options, source)
+                           : hash_of(s.options.seed, source, ~uint64_t(0)),
+                scratch.transfers, scratch);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Transfer& t = scratch.transfers[i];
+    out[i] = {source, t.unoccluded * t.visibility, t.unoccluded};
+  }
 }
 
 }  // namespace troffer

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "emitter/light_primitive.h"
+#include "radiosity/form_factors.h"
 #include "radiosity/solution.h"
 
 namespace troffer {
@@ -30,5 +31,14 @@ RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
                                   const BsdfTables& tables, const LightPrimitives& lights,
                                   const RadiosityOptions& options, int threads,
                                   const RadiosityCallback& progress, const StopFlag& stop);
+
+// What one source gave to any sample points, whether it is in their lists or not. An emitter's
+// values are those of its shot, bit for bit. A patch's are computed anew, in one transfer of all
+// the radiance that it shot: they differ from the sum over its shots by noise. out[i] is for
+// points[i]; points that the source cannot reach get zeros. Each thread needs a scratch of its own.
+void source_contributions(const Tracer& tracer, const LightPrimitives& lights,
+                          const RadiositySolution& solution, uint32_t source,
+                          std::span<const uint32_t> points, std::span<StoredContribution> out,
+                          TransferScratch& scratch);
 
 }  // namespace troffer

@@ -46,6 +46,12 @@ TEST_CASE("a saved solution comes back the same") {
   REQUIRE(t.stored.size() == s.stored.size());
   CHECK(std::memcmp(t.stored.data(), s.stored.data(),
                     s.stored.size() * sizeof(StoredContribution)) == 0);
+  CHECK(std::memcmp(t.general_direct.data(), s.general_direct.data(),
+                    s.general.size() * sizeof(Rgb)) == 0);
+  REQUIRE(t.shot_radiance.size() == s.mesh.patches.size());
+  CHECK(std::memcmp(t.shot_radiance.data(), s.shot_radiance.data(),
+                    s.shot_radiance.size() * sizeof(Rgb)) == 0);
+  CHECK(t.mean_irradiance == s.mean_irradiance);
   CHECK(t.ambient == s.ambient);
   CHECK(t.balance.absorbed == s.balance.absorbed);
   CHECK(t.balance.escaped == s.balance.escaped);
@@ -64,13 +70,16 @@ TEST_CASE("another scene or other settings are refused") {
   RadiosityOptions o = coarse();
   o.tolerance *= 2;
   CHECK(refusal(ready, bytes, o).find(what) != std::string::npos);
+  o = coarse();
+  o.emitter_rays /= 2;
+  CHECK(refusal(ready, bytes, o).find(what) != std::string::npos);
   CHECK(refusal(ready, bytes, coarse()).empty());
 }
 
 TEST_CASE("damaged files are refused") {
   const Ready ready(lit_room(0.5f));
   const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(coarse()));
-  for (size_t n : {size_t(0), size_t(5), size_t(8), size_t(60), size_t(127), size_t(128),
+  for (size_t n : {size_t(0), size_t(5), size_t(8), size_t(60), size_t(135), size_t(136),
                    bytes.size() / 2, bytes.size() - 1}) {
     const std::vector<uint8_t> part(bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
     CHECK_FALSE(refusal(ready, part, coarse()).empty());
@@ -81,7 +90,7 @@ TEST_CASE("damaged files are refused") {
   Random r(1);
   for (size_t i = 0; i < 300; ++i) {  // every byte of the header, and some of the rest
     std::vector<uint8_t> bad = bytes;
-    const size_t at = i < 128 ? i : r.next_u32() % bytes.size();
+    const size_t at = i < 136 ? i : r.next_u32() % bytes.size();
     bad[at] = uint8_t(bad[at] ^ (1u << (r.next_u32() % 8)));
     CHECK_FALSE(refusal(ready, bad, coarse()).empty());
   }
