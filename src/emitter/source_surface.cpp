@@ -20,6 +20,38 @@ void SourceSurface::add_piece(const Vec3& apex, const Vec3& from, const Vec3& to
   pieces_.push_back(p);
 }
 
+void SourceSurface::add_polygon(std::span<const Vec3> v, int32_t index) {
+  for (size_t i = 1; i + 1 < v.size(); ++i) add_piece(v[0], v[i], v[i + 1], index);
+}
+
+void SourceSurface::finish_pieces() {
+  for (Piece& p : pieces_) {
+    p.first_u /= area_;
+    p.last_u /= area_;
+  }
+  if (!pieces_.empty()) pieces_.back().last_u = 1;
+}
+
+void SourceSurface::set_parallelogram(std::span<const Vec3> v) {
+  const Vec3d vector = area_vector(v);
+  area_ = length(vector);
+  is_parallelogram_ = area_ > 0;
+  parallelogram_ = {Vec3d(v[0]), Vec3d(v[1]) - Vec3d(v[0]), Vec3d(v[3]) - Vec3d(v[0]),
+                    area_ > 0 ? vector / area_ : Vec3d{0, 0, 1}};
+}
+
+SourceSurface::SourceSurface(std::span<const std::vector<Vec3>> polygons)
+    : shape_(EmitterShape::mesh) {
+  if (polygons.size() == 1 && troffer::is_parallelogram(polygons[0])) {
+    shape_ = EmitterShape::polygon;
+    first_triangle_ = 0;
+    set_parallelogram(polygons[0]);
+    return;
+  }
+  for (size_t i = 0; i < polygons.size(); ++i) add_polygon(polygons[i], int32_t(i));
+  finish_pieces();
+}
+
 SourceSurface::SourceSurface(const Scene& scene, uint32_t emitter)
     : shape_(scene.emitters[emitter].shape) {
   const Emitter& e = scene.emitters[emitter];
@@ -27,15 +59,10 @@ SourceSurface::SourceSurface(const Scene& scene, uint32_t emitter)
     case EmitterShape::polygon: {
       const std::vector<Vec3>& v = e.polygon;
       if (!e.triangles.empty()) first_triangle_ = int32_t(e.triangles[0]);
-      if (troffer::is_parallelogram(v)) {
-        const Vec3d vector = area_vector(v);
-        area_ = length(vector);
-        is_parallelogram_ = area_ > 0;
-        parallelogram_ = {Vec3d(v[0]), Vec3d(v[1]) - Vec3d(v[0]), Vec3d(v[3]) - Vec3d(v[0]),
-                          area_ > 0 ? vector / area_ : Vec3d{0, 0, 1}};
-      } else {
-        for (size_t i = 1; i + 1 < v.size(); ++i) add_piece(v[0], v[i], v[i + 1], first_triangle_);
-      }
+      if (troffer::is_parallelogram(v))
+        set_parallelogram(v);
+      else
+        add_polygon(v, first_triangle_);
       break;
     }
     case EmitterShape::mesh: {
@@ -66,11 +93,7 @@ SourceSurface::SourceSurface(const Scene& scene, uint32_t emitter)
       break;
     }
   }
-  for (Piece& p : pieces_) {
-    p.first_u /= area_;
-    p.last_u /= area_;
-  }
-  if (!pieces_.empty()) pieces_.back().last_u = 1;
+  finish_pieces();
 }
 
 const SourceSurface::Piece& SourceSurface::piece_at(double u) const {

@@ -5,6 +5,7 @@
 //   other polygon   fan of triangles about vertex 0; u runs round the fan, each triangle having the
 //                   part of [0,1] that is its part of the area; v goes outwards (its root is
 //                   linear)
+//   polygons        one after the other along u, each as it would be alone
 //   mesh            its triangles in order of index, each as in a fan, about its first vertex
 //   disk            concentric map [1]
 //   sphere          z = 1 - 2v, azimuth 2 pi u about world z (Archimedes)
@@ -13,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/box.h"
@@ -38,13 +40,17 @@ struct SourcePoint {
   Vec3 normal;            // unit, on the emitting side
   Vec2 texture_uv;        // mesh sources; else (0,0)
   int32_t triangle = -1;  // polygon, mesh: index into the triangles of the source's mesh; a polygon
-                          // counts as its first one
+                          // counts as its first one; polygons: which of them
 };
 
 class SourceSurface {
  public:
   // The surface of scene.emitters[emitter]. Triangles without area are left out.
   SourceSurface(const Scene& scene, uint32_t emitter);
+
+  // Convex polygons, counterclockwise seen from the front; those without area are left out. Cells
+  // are compact where neighbours follow each other. Only one polygon alone can be a parallelogram.
+  explicit SourceSurface(std::span<const std::vector<Vec3>> polygons);
 
   // m², one side; 0 where there is nothing to sample (then point_at must not be called).
   double area() const { return area_; }
@@ -54,7 +60,8 @@ class SourceSurface {
 
   SourcePoint point_at(const Vec2& uv) const;
   // Inverse: (u,v) of a point on the source. A mesh needs the triangle it lies in (index into the
-  // mesh's triangles); -1 searches for the piece that holds the point best, which costs time.
+  // mesh's triangles), polygons which one; -1 searches for the piece that holds the point best,
+  // which costs time.
   Vec2 uv_at(const Vec3& point, int32_t triangle = -1) const;
 
   bool is_parallelogram() const { return is_parallelogram_; }
@@ -74,6 +81,9 @@ class SourceSurface {
     int32_t triangle = -1;
     Vec2 uvs[3];
   };
+  void add_polygon(std::span<const Vec3> corners, int32_t index);
+  void set_parallelogram(std::span<const Vec3> corners);
+  void finish_pieces();
   void add_piece(const Vec3& apex, const Vec3& from, const Vec3& to, int32_t triangle);
   const Piece& piece_at(double u) const;
   Box round_bounds(const SourceCell& c) const;

@@ -229,6 +229,14 @@ bool emits(const Scene& scene, int32_t emitter, bool is_back) {
   return !e.radiance.is_black() && (!is_back || e.is_two_sided);
 }
 
+// On the front; of a sphere itself, as its fragments are turned away from it.
+Vec3 hit_normal(const Scene& scene, const RadiosityMesh& mesh, const Hit& hit, uint32_t fragment,
+                const Vec3& at) {
+  if (hit.geometry != scene.meshes.size()) return fragment_normal(mesh, fragment);
+  const Sphere& s = scene.spheres[hit.primitive];
+  return s.is_inside_out ? s.centre - at : at - s.centre;
+}
+
 // Sides that see each other, step by step, down to one that emits: by rays from every side.
 std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& tracer,
                                               const RadiosityMesh& mesh, const Elements& e,
@@ -260,11 +268,12 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
       for (size_t k = 0; k < rays.size(); ++k) {
         if (!hits[k].is_valid()) continue;
         Vec3 weights;
-        const uint32_t f =
-            fragment_at(scene, mesh, hits[k].geometry, hits[k].primitive, hits[k].u, hits[k].v,
-                        rays[k].origin + rays[k].direction * hits[k].t, weights);
+        const Vec3 at = rays[k].origin + rays[k].direction * hits[k].t;
+        const uint32_t f = fragment_at(scene, mesh, hits[k].geometry, hits[k].primitive, hits[k].u,
+                                       hits[k].v, at, weights);
         if (f == no_fragment) continue;
-        const bool is_back = dot(fragment_normal(mesh, f), rays[k].direction) > 0;
+        const Vec3 normal = hit_normal(scene, mesh, hits[k], f, at);
+        const bool is_back = dot(normal, rays[k].direction) > 0;
         seen[i].push_back(2 * mesh.fragments[f].element + (is_back ? 1 : 0));
       }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "emitter/emitter_scenes.h"
+#include "emitter/polygon.h"
 #include "emitter/source_surface.h"
 #include "support/chi_square.h"
 
@@ -123,6 +124,42 @@ TEST_CASE("cells: areas add up, bounds hold, parallelogram corners are corners")
       }
     }
   }
+}
+
+TEST_CASE("convex polygons as one source") {
+  const std::vector<Vec3> slanted{{0, 0, 0}, {2, 0, 0}, {3, 1, 1}, {1, 1, 1}};
+  const std::vector<Vec3> pentagon{
+      {5, 0, 0}, {6, 0, 0}, {6.5f, 1, 0}, {5.5f, 1.7f, 0}, {4.6f, 1, 0}};
+  const std::vector<Vec3> thin{{1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
+  const SourceSurface alone(std::vector<std::vector<Vec3>>{slanted});
+  CHECK(alone.is_parallelogram());
+  CHECK(alone.area() == doctest::Approx(2 * std::sqrt(2.0)));
+  CHECK(alone.point_at({0.5f, 0.5f}).point == Vec3{1.5f, 0.5f, 0.5f});
+  CHECK(SourceSurface(std::vector<std::vector<Vec3>>{thin}).area() == 0);
+  const std::vector<std::vector<Vec3>> polygons{slanted, thin, pentagon};
+  const SourceSurface surface(polygons);
+  CHECK_FALSE(surface.is_parallelogram());
+  std::vector<double> observed(3), expected(3);
+  for (size_t i = 0; i < 3; ++i)
+    expected[i] = length(area_vector(polygons[i])) / surface.area() * 20000;
+  CHECK(expected[0] + expected[2] == doctest::Approx(20000));
+  Random random(3);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec2 uv = random.next_vec2();
+    const SourcePoint p = surface.point_at(uv);
+    REQUIRE(p.triangle >= 0);
+    observed[size_t(p.triangle)] += 1;
+    const Vec3d normal = area_vector(polygons[size_t(p.triangle)]);
+    CHECK(dot(normal, Vec3d(p.normal)) == doctest::Approx(length(normal)).epsilon(1e-5));
+    const Vec2 back = surface.uv_at(p.point, p.triangle);
+    CHECK(std::abs(back.x - uv.x) * std::sqrt(uv.y) < 3e-5f);
+    CHECK(std::abs(back.y - uv.y) < 3e-5f);
+  }
+  CHECK(observed[1] == 0);
+  observed.erase(observed.begin() + 1);
+  expected.erase(expected.begin() + 1);
+  const auto result = chi_square_test(observed, expected, 1, 1e-4);
+  CHECK_MESSAGE(result.is_accepted, result.text());
 }
 
 TEST_CASE("pieces: shapes, tables, power, cones") {

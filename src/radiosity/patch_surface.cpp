@@ -1,0 +1,70 @@
+#include "radiosity/patch_surface.h"
+
+#include <algorithm>
+
+#include "base/box.h"
+
+namespace troffer {
+
+namespace {
+
+// Corner 0 is the apex of a fan, which is least slanted opposite the longest edge.
+void begin_opposite_longest_edge(std::vector<Vec3>& triangle) {
+  size_t apex = 0;
+  float longest = -1;
+  for (size_t k = 0; k < 3; ++k) {
+    const float l = length_squared(triangle[(k + 1) % 3] - triangle[k]);
+    if (l > longest) {
+      longest = l;
+      apex = (k + 2) % 3;
+    }
+  }
+  std::rotate(triangle.begin(), triangle.begin() + std::ptrdiff_t(apex), triangle.end());
+}
+
+Vec3 middle(const std::vector<Vec3>& polygon) {
+  Vec3 sum;
+  for (const Vec3& p : polygon) sum += p;
+  return sum / float(polygon.size());
+}
+
+void sort_along_longest_extent(std::vector<std::vector<Vec3>>& polygons) {
+  Box box;
+  for (const auto& polygon : polygons)
+    for (const Vec3& p : polygon) box.grow(p);
+  const Vec3 e = box.extent();
+  const size_t axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+  std::stable_sort(polygons.begin(), polygons.end(),
+                   [&](const auto& a, const auto& b) { return middle(a)[axis] < middle(b)[axis]; });
+}
+
+}  // namespace
+
+SourceSurface patch_surface(const RadiosityMesh& mesh, uint32_t patch) {
+  const Patch& from = mesh.patches[patch];
+  const Sheet& sheet = mesh.sheets[from.sheet];
+  std::vector<std::vector<Vec3>> polygons;
+  for (uint32_t i = sheet.first_piece; i < sheet.last_piece; ++i) {
+    const auto [first, count] = mesh.pieces[i];
+    const auto begin = mesh.piece_corners.begin() + first;
+    std::vector<Vec3> corners(begin, begin + count);
+    if (from.is_back) std::reverse(corners.begin(), corners.end());
+    if (count == 3) begin_opposite_longest_edge(corners);
+    polygons.push_back(std::move(corners));
+  }
+  sort_along_longest_extent(polygons);
+  return SourceSurface(polygons);
+}
+
+Vec3 ray_target(const RadiosityMesh& mesh, uint32_t patch, const SourcePoint& at) {
+  const Sheet& sheet = mesh.sheets[mesh.patches[patch].sheet];
+  Vec3 point = at.point, normal = at.normal;
+  if (sheet.round_radius > 0) {
+    const Vec3 from_centre = normalize(point - sheet.round_centre);
+    normal = dot(from_centre, normal) < 0 ? -from_centre : from_centre;
+    point = sheet.round_centre + from_centre * sheet.round_radius;
+  }
+  return point + normal * sheet.offset;
+}
+
+}  // namespace troffer
