@@ -82,17 +82,18 @@ struct RadiositySolution {
 // Irradiance at a place, without the ambient estimate.
 Rgb interpolated_irradiance(const RadiositySolution& solution, const Interpolation& at);
 
-// A number that differs for scenes or options whose solutions differ (but by chance of 2^-64).
-uint64_t solution_key(const Scene& scene, const RadiosityOptions& options);
+// A number that differs for scenes whose solutions differ (but by chance of 2^-64).
+uint64_t radiosity_scene_key(const Scene& scene);
 
-// A solution as a file: version, key, and what points carry; the mesh is made anew when it is
-// loaded. Little endian.
+// A solution as a file: version, the scene's key, options, and what points and patches carry; the
+// mesh is made anew when it is loaded. Little endian.
 std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& solution);
 
 // `file` names the source in errors. Throws InputError where the bytes are no solution, are damaged
-// or cut short, or belong to another scene or other options.
+// or cut short, belong to another scene, or were computed with other options than `options`
+// (nullptr: the file's own are taken).
 RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::string& file,
                                 const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
-                                const RadiosityOptions& options, int threads);
+                                const RadiosityOptions* options, int threads);
 
 }  // namespace troffer

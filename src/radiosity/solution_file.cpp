@@ -1,9 +1,11 @@
 // Saving and loading of solutions (solution.h).
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstring>
 
 #include "base/error.h"
-#include "base/random.h"
+#include "radiosity/hasher.h"
 #include "radiosity/solution.h"
 
 namespace troffer {
@@ -13,97 +15,6 @@ namespace {
 constexpr char magic[8] = {'t', 'r', 'o', 'f', 'f', 'R', 'a', 'd'};
 constexpr uint32_t version = 2;
 static_assert(std::endian::native == std::endian::little, "solutions are little endian");
-
-class Hasher {
- public:
-  void add(uint64_t v) { h_ = hash_combine(h_, v); }
-  void add(float v) { add(uint64_t(std::bit_cast<uint32_t>(v))); }
-  void add(const Vec3& v) {
-    for (size_t i = 0; i < 3; ++i) add(v[i]);
-  }
-  void add(const Vec2& v) {
-    add(v.x);
-    add(v.y);
-  }
-  void add(Rgb c) {
-    for (size_t i = 0; i < 3; ++i) add(c[i]);
-  }
-  void add(const ColorInput& c) {
-    add(c.value);
-    add(uint64_t(c.texture));
-  }
-  void add(const FloatInput& c) {
-    add(c.value);
-    add(uint64_t(c.texture));
-    add(uint64_t(c.channel));
-  }
-  uint64_t value() const { return h_; }
-
- private:
-  uint64_t h_ = version;
-};
-
-void add_geometry(Hasher& h, const Scene& scene) {
-  h.add(scene.meshes.size());
-  for (const Mesh& m : scene.meshes) {
-    h.add(m.positions.size());
-    for (const Vec3& p : m.positions) h.add(p);
-    h.add(m.uvs.size());
-    for (const Vec2& p : m.uvs) h.add(p);
-    h.add(m.triangles.size());
-    for (const Triangle& t : m.triangles)
-      for (const uint32_t v : t) h.add(uint64_t(v));
-    h.add(m.emitters.size());
-    for (const int32_t e : m.emitters) h.add(uint64_t(e));
-    h.add(uint64_t(m.material));
-  }
-  h.add(scene.spheres.size());
-  for (const Sphere& s : scene.spheres) {
-    h.add(s.centre);
-    h.add(s.radius);
-    h.add(uint64_t(s.is_inside_out));
-    h.add(uint64_t(s.material));
-    h.add(uint64_t(s.emitter));
-  }
-  h.add(scene.disks.size());
-  for (const Disk& d : scene.disks) {
-    h.add(d.centre);
-    h.add(d.normal);
-    h.add(d.radius);
-    h.add(uint64_t(d.material));
-    h.add(uint64_t(d.emitter));
-  }
-}
-
-void add_material(Hasher& h, const Material& m) {
-  h.add(uint64_t(m.kind));
-  h.add(uint64_t(m.roughness_meaning));
-  for (const ColorInput& c : {m.base_color, m.specular_color}) h.add(c);
-  for (const FloatInput& f : {m.roughness, m.metallic, m.specular, m.transmission, m.alpha})
-    h.add(f);
-  h.add(m.ior);
-  h.add(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2);
-  h.add(m.eta);
-  h.add(m.k);
-  h.add(m.alpha_cutoff);
-}
-
-void add_texture(Hasher& h, const Texture& t) {
-  h.add(uint64_t(t.kind));
-  h.add(t.value);
-  h.add(uint64_t(t.factor_a) << 32 | t.factor_b);
-  h.add(uint64_t(t.width) << 32 | uint64_t(t.height));
-  h.add(uint64_t(t.channels));
-  h.add(t.texels8.size());
-  for (const uint8_t v : t.texels8) h.add(uint64_t(v));
-  h.add(t.texels_float.size());
-  for (const float v : t.texels_float) h.add(v);
-  h.add(uint64_t(t.is_srgb) | uint64_t(t.is_inverted) << 1 | uint64_t(t.is_filtered) << 2 |
-        uint64_t(t.wrap_u) << 8 | uint64_t(t.wrap_v) << 16);
-  h.add(t.uv_scale);
-  h.add(t.uv_offset);
-  h.add(t.uv_rotation_rad);
-}
 
 uint64_t points_key(const RadiosityMesh& mesh) {
   Hasher h;
@@ -116,11 +27,27 @@ uint64_t points_key(const RadiosityMesh& mesh) {
 
 // ---- bytes ----
 
+struct FileOptions {
+  float element_size, patch_size, join_angle_deg;
+  uint32_t max_elements, max_sheets, prune_hidden_sides;
+  uint32_t stored_per_point;
+  float unshot_fraction;
+  uint32_t max_shots;
+  int32_t max_rays;
+  float tolerance;
+  int32_t emitter_rays;
+  float emitter_share;
+  uint32_t seed[2];
+  uint32_t unused;
+};
+static_assert(sizeof(FileOptions) == 64);
+
 struct Header {
   char magic[8];
   uint32_t version;
   uint32_t stored_per_point;
-  uint64_t key, points_key;
+  uint64_t scene_key, points_key;
+  FileOptions options;
   uint64_t points;
   uint64_t rays;
   uint32_t shots;
@@ -132,7 +59,7 @@ struct Header {
   float mean_irradiance;
   uint64_t hash;  // of all else: header with 0 here, and body
 };
-static_assert(sizeof(Header) == 136);
+static_assert(sizeof(Header) == 200);
 
 struct FilePoint {
   float general[3], general_direct[3];
@@ -165,6 +92,73 @@ Rgb get(const float (&from)[3]) {
   return {from[0], from[1], from[2]};
 }
 
+FileOptions packed(const RadiosityOptions& o) {
+  FileOptions f{};
+  f.element_size = o.meshing.element_size;
+  f.patch_size = o.meshing.patch_size;
+  f.join_angle_deg = o.meshing.join_angle_deg;
+  f.max_elements = o.meshing.max_elements;
+  f.max_sheets = o.meshing.max_sheets;
+  f.prune_hidden_sides = o.meshing.prune_hidden_sides ? 1 : 0;
+  f.stored_per_point = o.stored_per_point;
+  f.unshot_fraction = o.unshot_fraction;
+  f.max_shots = o.max_shots;
+  f.max_rays = o.max_rays;
+  f.tolerance = o.tolerance;
+  f.emitter_rays = o.emitter_rays;
+  f.emitter_share = o.emitter_share;
+  f.seed[0] = uint32_t(o.seed);
+  f.seed[1] = uint32_t(o.seed >> 32);
+  return f;
+}
+
+RadiosityOptions unpacked(const FileOptions& f) {
+  RadiosityOptions o;
+  o.meshing.element_size = f.element_size;
+  o.meshing.patch_size = f.patch_size;
+  o.meshing.join_angle_deg = f.join_angle_deg;
+  o.meshing.max_elements = f.max_elements;
+  o.meshing.max_sheets = f.max_sheets;
+  o.meshing.prune_hidden_sides = f.prune_hidden_sides != 0;
+  o.stored_per_point = f.stored_per_point;
+  o.unshot_fraction = f.unshot_fraction;
+  o.max_shots = f.max_shots;
+  o.max_rays = f.max_rays;
+  o.tolerance = f.tolerance;
+  o.emitter_rays = f.emitter_rays;
+  o.emitter_share = f.emitter_share;
+  o.seed = f.seed[0] | uint64_t(f.seed[1]) << 32;
+  return o;
+}
+
+// Whether a mesh can be made from them in bounded time and memory: the file may be anybody's.
+bool is_sane(const FileOptions& f) {
+  constexpr uint32_t most = 1u << 22;
+  const auto is_size = [](float x) { return x >= 0 && x < 1e30f; };
+  return is_size(f.element_size) && is_size(f.patch_size) && f.join_angle_deg >= 0 &&
+         f.join_angle_deg <= 180 && f.max_elements <= most && f.max_sheets <= most &&
+         f.prune_hidden_sides <= 1 && f.unused == 0;
+}
+
+// Names the first setting that differs.
+std::string difference(const FileOptions& file, const FileOptions& wanted) {
+  const auto tell = [](const char* name, auto a, auto b) {
+    return fmt::format("its {} is {}, not {}", name, a, b);
+  };
+  if (file.element_size != wanted.element_size)
+    return tell("element size", file.element_size, wanted.element_size);
+  if (file.patch_size != wanted.patch_size)
+    return tell("patch size", file.patch_size, wanted.patch_size);
+  if (file.stored_per_point != wanted.stored_per_point)
+    return tell("number of stored contributions", file.stored_per_point, wanted.stored_per_point);
+  if (file.unshot_fraction != wanted.unshot_fraction)
+    return tell("unshot fraction", file.unshot_fraction, wanted.unshot_fraction);
+  if (file.seed[0] != wanted.seed[0] || file.seed[1] != wanted.seed[1])
+    return tell("seed", file.seed[0] | uint64_t(file.seed[1]) << 32,
+                wanted.seed[0] | uint64_t(wanted.seed[1]) << 32);
+  return "settings of meshing or rays differ";
+}
+
 template <class T>
 void append(std::vector<uint8_t>& out, const T& v) {
   const size_t at = out.size();
@@ -190,36 +184,6 @@ uint64_t hash_of_file(Header h, std::span<const uint8_t> body) {
 }
 
 }  // namespace
-
-uint64_t solution_key(const Scene& scene, const RadiosityOptions& o) {
-  Hasher h;
-  add_geometry(h, scene);
-  h.add(scene.materials.size());
-  for (const Material& m : scene.materials) add_material(h, m);
-  h.add(scene.textures.size());
-  for (const Texture& t : scene.textures) add_texture(h, t);
-  h.add(scene.emitters.size());
-  for (const Emitter& e : scene.emitters) {
-    h.add(uint64_t(e.shape) | uint64_t(e.is_two_sided) << 8);
-    h.add(e.radiance);
-    h.add(uint64_t(e.texture));
-    h.add(uint64_t(e.geometry));
-    for (const Vec3& p : e.polygon) h.add(p);
-  }
-  h.add(o.meshing.element_size);
-  h.add(o.meshing.patch_size);
-  h.add(o.meshing.join_angle_deg);
-  h.add(uint64_t(o.meshing.max_elements) << 32 | o.meshing.max_sheets);
-  h.add(uint64_t(o.meshing.prune_hidden_sides));
-  h.add(uint64_t(o.stored_per_point) << 32 | o.max_shots);
-  h.add(o.unshot_fraction);
-  h.add(uint64_t(o.max_rays));
-  h.add(o.tolerance);
-  h.add(uint64_t(o.emitter_rays));
-  h.add(o.emitter_share);
-  h.add(o.seed);
-  return h.value();
-}
 
 std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& s) {
   std::vector<uint8_t> body;
@@ -248,7 +212,8 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
   std::memcpy(h.magic, magic, sizeof(magic));
   h.version = version;
   h.stored_per_point = s.stored_per_point;
-  h.key = solution_key(scene, s.options);
+  h.scene_key = radiosity_scene_key(scene);
+  h.options = packed(s.options);
   h.points_key = points_key(s.mesh);
   h.points = points;
   h.rays = s.rays;
@@ -273,7 +238,7 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
 namespace {
 
 // All that can be told without the mesh.
-Header checked_header(std::span<const uint8_t> bytes, const std::string& file, uint64_t key) {
+Header checked_header(std::span<const uint8_t> bytes, const std::string& file) {
   const auto refuse = [&](const std::string& what) { throw InputError(file, 0, 0, what); };
   if (bytes.size() < sizeof(magic) || std::memcmp(bytes.data(), magic, sizeof(magic)) != 0)
     refuse("not a radiosity solution");
@@ -290,8 +255,7 @@ Header checked_header(std::span<const uint8_t> bytes, const std::string& file, u
   if (h.points * per_point + patches != body) refuse("radiosity solution has bytes too many");
   if (hash_of_file(h, bytes.subspan(sizeof(Header))) != h.hash)
     refuse("radiosity solution is damaged");
-  if (h.key != key)
-    refuse("radiosity solution belongs to another scene or to other settings: compute it anew");
+  if (!is_sane(h.options)) refuse("radiosity solution is damaged");
   return h;
 }
 
@@ -299,11 +263,20 @@ Header checked_header(std::span<const uint8_t> bytes, const std::string& file, u
 
 RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::string& file,
                                 const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
-                                const RadiosityOptions& options, int threads) {
-  const Header h = checked_header(bytes, file, solution_key(scene, options));
+                                const RadiosityOptions* options, int threads) {
+  const Header h = checked_header(bytes, file);
+  if (h.scene_key != radiosity_scene_key(scene))
+    throw InputError(file, 0, 0, "radiosity solution belongs to another scene: compute it anew");
+  if (options != nullptr) {
+    const FileOptions wanted = packed(*options);
+    if (std::memcmp(&wanted, &h.options, sizeof(wanted)) != 0)
+      throw InputError(
+          file, 0, 0,
+          "radiosity solution was computed with other settings: " + difference(h.options, wanted));
+  }
   RadiositySolution s;
-  s.options = options;
-  s.mesh = mesh_for_radiosity(scene, tracer, tables, options.meshing, threads);
+  s.options = unpacked(h.options);
+  s.mesh = mesh_for_radiosity(scene, tracer, tables, s.options.meshing, threads);
   if (h.points != s.mesh.points.size() || h.patches != s.mesh.patches.size() ||
       h.points_key != points_key(s.mesh))
     throw InputError(file, 0, 0, "radiosity solution was computed on another mesh of this scene");

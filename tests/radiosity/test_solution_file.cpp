@@ -22,7 +22,7 @@ RadiosityOptions coarse() {
 
 RadiositySolution load(const Ready& r, const std::vector<uint8_t>& bytes,
                        const RadiosityOptions& o) {
-  return load_solution(bytes, "room.radiosity", r.scene, r.tracer, r.tables, o, 2);
+  return load_solution(bytes, "room.radiosity", r.scene, r.tracer, r.tables, &o, 2);
 }
 
 std::string refusal(const Ready& r, const std::vector<uint8_t>& bytes, const RadiosityOptions& o) {
@@ -64,22 +64,40 @@ TEST_CASE("a saved solution comes back the same") {
 TEST_CASE("another scene or other settings are refused") {
   const Ready ready(lit_room(0.5f));
   const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(coarse()));
-  const char* what = "another scene or to other settings";
+  const char* what = "another scene";
+  const char* settings = "other settings";
   CHECK(refusal(Ready(lit_room(0.51f)), bytes, coarse()).find(what) != std::string::npos);
   CHECK(refusal(Ready(lit_room(0.5f, 4.1f)), bytes, coarse()).find(what) != std::string::npos);
   RadiosityOptions o = coarse();
   o.tolerance *= 2;
-  CHECK(refusal(ready, bytes, o).find(what) != std::string::npos);
+  CHECK(refusal(ready, bytes, o).find(settings) != std::string::npos);
   o = coarse();
   o.emitter_rays /= 2;
-  CHECK(refusal(ready, bytes, o).find(what) != std::string::npos);
+  CHECK(refusal(ready, bytes, o).find(settings) != std::string::npos);
+  o = coarse();
+  o.meshing.element_size = 0.7f;
+  CHECK(refusal(ready, bytes, o).find("its element size is 0.6, not 0.7") != std::string::npos);
   CHECK(refusal(ready, bytes, coarse()).empty());
+}
+
+TEST_CASE("a solution tells its own settings") {
+  const Ready ready(lit_room(0.5f));
+  RadiosityOptions o = coarse();
+  o.seed = 0x123456789abcull;
+  o.meshing.max_elements = 5000;
+  const RadiositySolution s =
+      load_solution(save_solution(ready.scene, ready.solve(o)), "room.radiosity", ready.scene,
+                    ready.tracer, ready.tables, nullptr, 2);
+  CHECK(s.options.seed == o.seed);
+  CHECK(s.options.meshing.max_elements == 5000);
+  CHECK(s.options.meshing.element_size == o.meshing.element_size);
+  CHECK(s.options.unshot_fraction == o.unshot_fraction);
 }
 
 TEST_CASE("damaged files are refused") {
   const Ready ready(lit_room(0.5f));
   const std::vector<uint8_t> bytes = save_solution(ready.scene, ready.solve(coarse()));
-  for (size_t n : {size_t(0), size_t(5), size_t(8), size_t(60), size_t(135), size_t(136),
+  for (size_t n : {size_t(0), size_t(5), size_t(8), size_t(60), size_t(199), size_t(200),
                    bytes.size() / 2, bytes.size() - 1}) {
     const std::vector<uint8_t> part(bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
     CHECK_FALSE(refusal(ready, part, coarse()).empty());
@@ -88,9 +106,9 @@ TEST_CASE("damaged files are refused") {
   longer.push_back(0);
   CHECK_FALSE(refusal(ready, longer, coarse()).empty());
   Random r(1);
-  for (size_t i = 0; i < 300; ++i) {  // every byte of the header, and some of the rest
+  for (size_t i = 0; i < 400; ++i) {  // every byte of the header, and some of the rest
     std::vector<uint8_t> bad = bytes;
-    const size_t at = i < 136 ? i : r.next_u32() % bytes.size();
+    const size_t at = i < 200 ? i : r.next_u32() % bytes.size();
     bad[at] = uint8_t(bad[at] ^ (1u << (r.next_u32() % 8)));
     CHECK_FALSE(refusal(ready, bad, coarse()).empty());
   }

@@ -1,0 +1,91 @@
+// The key of a scene (solution.h).
+#include "radiosity/hasher.h"
+#include "radiosity/solution.h"
+
+namespace troffer {
+
+namespace {
+
+void add_geometry(Hasher& h, const Scene& scene) {
+  h.add(scene.meshes.size());
+  for (const Mesh& m : scene.meshes) {
+    h.add(m.positions.size());
+    for (const Vec3& p : m.positions) h.add(p);
+    h.add(m.uvs.size());
+    for (const Vec2& p : m.uvs) h.add(p);
+    h.add(m.triangles.size());
+    for (const Triangle& t : m.triangles)
+      for (const uint32_t v : t) h.add(uint64_t(v));
+    h.add(m.emitters.size());
+    for (const int32_t e : m.emitters) h.add(uint64_t(e));
+    h.add(uint64_t(m.material));
+  }
+  h.add(scene.spheres.size());
+  for (const Sphere& s : scene.spheres) {
+    h.add(s.centre);
+    h.add(s.radius);
+    h.add(uint64_t(s.is_inside_out));
+    h.add(uint64_t(s.material));
+    h.add(uint64_t(s.emitter));
+  }
+  h.add(scene.disks.size());
+  for (const Disk& d : scene.disks) {
+    h.add(d.centre);
+    h.add(d.normal);
+    h.add(d.radius);
+    h.add(uint64_t(d.material));
+    h.add(uint64_t(d.emitter));
+  }
+}
+
+void add_material(Hasher& h, const Material& m) {
+  h.add(uint64_t(m.kind));
+  h.add(uint64_t(m.roughness_meaning));
+  for (const ColorInput& c : {m.base_color, m.specular_color}) h.add(c);
+  for (const FloatInput& f : {m.roughness, m.metallic, m.specular, m.transmission, m.alpha})
+    h.add(f);
+  h.add(m.ior);
+  h.add(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2);
+  h.add(m.eta);
+  h.add(m.k);
+  h.add(m.alpha_cutoff);
+}
+
+void add_texture(Hasher& h, const Texture& t) {
+  h.add(uint64_t(t.kind));
+  h.add(t.value);
+  h.add(uint64_t(t.factor_a) << 32 | t.factor_b);
+  h.add(uint64_t(t.width) << 32 | uint64_t(t.height));
+  h.add(uint64_t(t.channels));
+  h.add(t.texels8.size());
+  for (const uint8_t v : t.texels8) h.add(uint64_t(v));
+  h.add(t.texels_float.size());
+  for (const float v : t.texels_float) h.add(v);
+  h.add(uint64_t(t.is_srgb) | uint64_t(t.is_inverted) << 1 | uint64_t(t.is_filtered) << 2 |
+        uint64_t(t.wrap_u) << 8 | uint64_t(t.wrap_v) << 16);
+  h.add(t.uv_scale);
+  h.add(t.uv_offset);
+  h.add(t.uv_rotation_rad);
+}
+
+}  // namespace
+
+uint64_t radiosity_scene_key(const Scene& scene) {
+  Hasher h;
+  add_geometry(h, scene);
+  h.add(scene.materials.size());
+  for (const Material& m : scene.materials) add_material(h, m);
+  h.add(scene.textures.size());
+  for (const Texture& t : scene.textures) add_texture(h, t);
+  h.add(scene.emitters.size());
+  for (const Emitter& e : scene.emitters) {
+    h.add(uint64_t(e.shape) | uint64_t(e.is_two_sided) << 8);
+    h.add(e.radiance);
+    h.add(uint64_t(e.texture));
+    h.add(uint64_t(e.geometry));
+    for (const Vec3& p : e.polygon) h.add(p);
+  }
+  return h.value();
+}
+
+}  // namespace troffer
