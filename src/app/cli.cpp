@@ -177,11 +177,13 @@ int parse_and_run(int argc, const char* const* argv) {
   RenderCommand render;
   CompareCommand compare;
   MeasureCommand measure;
+  RadiosityCommand radiosity;
   InfoCommand info;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
   add_measure(app, measure, measure_raw);
+  add_radiosity(app, radiosity);
   add_info(app, info);
   try {
     app.parse(argc, argv);
@@ -204,6 +206,7 @@ int parse_and_run(int argc, const char* const* argv) {
     measure.indirect = parse_indirect(measure_raw.indirect);
     return run_measure(measure);
   }
+  if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
   return run_info(info);
 }
 

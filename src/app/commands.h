@@ -7,7 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "render/radiosity.h"
 #include "render/render.h"
+
+namespace CLI {
+class App;
+}
 
 namespace troffer {
 
@@ -52,6 +57,18 @@ struct MeasureCommand {
   bool is_quiet = false;
 };
 int run_measure(const MeasureCommand& command);
+
+struct RadiosityCommand {
+  std::string scene;
+  std::vector<std::string> outputs;
+  RadiosityOptions options;
+  std::vector<std::string> lights;
+  std::string stats;
+  int threads = 0;
+  bool is_quiet = false;
+};
+void add_radiosity(CLI::App& app, RadiosityCommand& command);  // its options
+int run_radiosity(const RadiosityCommand& command);
 
 struct InfoCommand {
   std::string scene;

@@ -106,22 +106,23 @@ class Solver {
       s_.is_complete = true;
       return;
     }
-    double waiting = s_.balance.emitted;  // in emitters that have not shot
+    waiting_ = s_.balance.emitted;
     for (uint32_t e = 0; e < s_.emitter_count && !stop; ++e) {
       const Shooter shooter = emitter_shooter(lights_, e);
       if (shooter.pieces.empty()) continue;
       double power = 0;
       for (const LightPrimitive& p : shooter.pieces) power += double(p.power);
       shoot(shooter, e, power);
-      waiting -= power;
-      report(progress, waiting);
+      waiting_ -= power;
+      report(progress);
     }
+    if (s_.shots > 0 && !stop) waiting_ = 0;  // but for rounding
     while (!stop) {
       const double limit = double(s_.options.unshot_fraction) * s_.balance.emitted;
       s_.is_complete = unshot_power() <= limit;
       if (s_.is_complete || s_.shots >= s_.options.max_shots) break;
       shoot_brightest();
-      report(progress, 0);
+      report(progress);
     }
     finish();
   }
@@ -133,8 +134,8 @@ class Solver {
     return sum;
   }
 
-  void report(const RadiosityCallback& progress, double waiting) const {
-    if (progress) progress({s_.shots, (unshot_power() + waiting) / s_.balance.emitted});
+  void report(const RadiosityCallback& progress) const {
+    if (progress) progress({s_.shots, (unshot_power() + waiting_) / s_.balance.emitted});
   }
 
   void shoot_brightest() {
@@ -195,7 +196,7 @@ class Solver {
 
   void finish() {
     s_.balance.escaped = s_.balance.shot - arrived_;
-    s_.balance.unshot = unshot_power();
+    s_.balance.unshot = unshot_power() + std::max(waiting_, 0.0);
     Rgb sum;
     for (const Rgb& u : unshot_) sum += u;
     // [1] §3: what is unshot spreads over all surfaces, again and again
@@ -208,6 +209,7 @@ class Solver {
   RadiositySolution& s_;
   int threads_;
   double area_ = 0, mean_reflectance_ = 0, arrived_ = 0;
+  double waiting_ = 0;  // power of emitters that have not shot
   std::vector<Rgb> unshot_;    // power, per patch
   std::vector<Rgb> received_;  // irradiance from the current shot, per point
   std::vector<uint64_t> rays_;

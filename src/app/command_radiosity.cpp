@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/progress.h"
+#include "app/signals.h"
+#include "base/error.h"
+#include "image/atomic_file.h"
+#include "import/file.h"
+#include "render/radiosity.h"
+#include "render/radiosity_gltf.h"
+
+namespace troffer {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
+
+double peak_memory_mb() {
+  struct rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+}
+
+// All that can be told before any work is done.
+void check_command(const RadiosityCommand& c) {
+  check(c.options);
+  for (size_t i = 0; i < c.outputs.size(); ++i)
+    for (size_t k = 0; k < i; ++k)
+      if (c.outputs[i] == c.outputs[k]) throw UsageError("-o names " + c.outputs[i] + " twice");
+  for (const std::string& path : c.outputs) {
+    const std::string ending = lower_case_ending(path);
+    // a slip, likely: nobody would look for a solution in these
+    for (const char* other : {"exr", "hdr", "pfm", "png", "jpg", "pbrt", "obj", "csv", "json"})
+      if (ending == other)
+        throw UsageError("radiosity writes .gltf, .glb or a solution (.trad), not ." + ending);
+    check_can_write(path);
+  }
+  if (!c.stats.empty()) check_can_write(c.stats);
+}
+
+void write_output(const std::string& path, const PreparedScene& scene,
+                  const RadiositySolution& solution) {
+  const std::string ending = lower_case_ending(path);
+  std::vector<uint8_t> bytes;
+  if (ending == "gltf")
+    bytes = radiosity_gltf(scene.scene, solution, GltfContainer::text);
+  else if (ending == "glb")
+    bytes = radiosity_gltf(scene.scene, solution, GltfContainer::binary);
+  else
+    bytes = save_radiosity(scene, solution);
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+double percent(double part, double whole) {
+  return whole > 0 ? 100 * part / whole : 0.0;
+}
+
+void print_summary(const RadiosityResult& r) {
+  const RadiositySolution& s = r.solution;
+  const EnergyBalance& b = s.balance;
+  fmt::print("{} elements of up to {:.3g} m, {} sample points, {} patches of up to {:.3g} m\n",
+             s.mesh.element_count, s.mesh.element_size, s.mesh.points.size(), s.mesh.patches.size(),
+             s.mesh.patch_size);
+  fmt::print("{} shots, {:.1f} million rays, {:.1f} s\n", s.shots, double(s.rays) * 1e-6,
+             r.seconds);
+  fmt::print(
+      "of the emitted power {:.2f} % is absorbed, {:.2f} % left to specular surfaces, {:.2f} % "
+      "escaped, {:.2f} % not shot\n",
+      percent(b.absorbed, b.emitted), percent(b.lost_to_specular, b.emitted),
+      percent(b.escaped, b.emitted), percent(b.unshot, b.emitted));
+}
+
+struct Seconds {
+  double import = 0, build = 0, write = 0, total = 0;
+};
+
+std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r, const Seconds& t) {
+  const RadiositySolution& s = r.solution;
+  const EnergyBalance& b = s.balance;
+  nlohmann::ordered_json j;
+  j["version"] = TROFFER_VERSION;
+  j["threads"] = thread_count(c.threads);
+  j["elements"] = s.mesh.element_count;
+  j["sample_points"] = s.mesh.points.size();
+  j["patches"] = s.mesh.patches.size();
+  j["element_size"] = double(s.mesh.element_size);
+  j["patch_size"] = double(s.mesh.patch_size);
+  j["stored_per_point"] = s.stored_per_point;
+  j["shots"] = s.shots;
+  j["rays"] = s.rays;
+  j["power"] = {{"emitted", b.emitted},
+                {"absorbed", b.absorbed},
+                {"specular", b.lost_to_specular},
+                {"escaped", b.escaped},
+                {"unshot", b.unshot}};
+  j["seconds"] = {{"import", t.import},
+                  {"build", t.build},
+                  {"preprocess", r.seconds},
+                  {"write", t.write},
+                  {"total", t.total}};
+  j["solution_mb"] = double(s.memory_bytes()) * 1e-6;
+  j["peak_memory_mb"] = peak_memory_mb();
+  j["seed"] = c.options.seed;
+  j["is_complete"] = s.is_complete;
+  return j.dump(2) + "\n";
+}
+
+}  // namespace
+
+void add_radiosity(CLI::App& app, RadiosityCommand& c) {
+  CLI::App* s = app.add_subcommand("radiosity", "Spread light over a scene's surfaces, coarsely");
+  s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  s->add_option("-o,--output", c.outputs,
+                ".gltf, .glb: mesh and light to look at; any other ending (.trad): the solution, "
+                "for render --solution; may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  s->add_option("--element-size", c.options.meshing.element_size,
+                "Longest edge of an element, metres [by the scene]")
+      ->check(CLI::PositiveNumber);
+  s->add_option("--patch-size", c.options.meshing.patch_size,
+                "Longest edge of a patch, metres [by the element size]")
+      ->check(CLI::PositiveNumber);
+  s->add_option("--stored", c.options.stored_per_point,
+                "Sources whose light is kept apart, per sample point")
+      ->check(CLI::Range(0u, max_stored))
+      ->capture_default_str();
+  s->add_option("--unshot", c.options.unshot_fraction,
+                "Stop when less than this fraction of the emitted power is unshot")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
+  s->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
+  s->add_option("--stats", c.stats, "Write counts and times to this JSON file");
+  s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings, no summary");
+}
+
+int run_radiosity(const RadiosityCommand& c) {
+  const Clock::time_point start = Clock::now();
+  check_command(c);
+  Seconds seconds;
+  Scene imported = load_scene(c.scene, c.lights, c.is_quiet);
+  seconds.import = seconds_since(start);
+  Clock::time_point mark = Clock::now();
+  const PreparedScene scene(std::move(imported));
+  seconds.build = seconds_since(mark);
+
+  const StopFlag& stop = install_stop_handlers();
+  RadiosityResult result;
+  {
+    ProgressBar bar("radiosity", c.is_quiet);
+    result = preprocess(
+        scene, c.options, c.threads, [&](double f) { bar.update(f); }, stop);
+  }
+  const RadiositySolution& s = result.solution;
+  mark = Clock::now();
+  for (const std::string& path : c.outputs) write_output(path, scene, s);
+  seconds.write = seconds_since(mark);
+  seconds.total = seconds_since(start);
+  if (!c.stats.empty()) write_file(c.stats, statistics_json(c, result, seconds));
+  if (!c.is_quiet) print_summary(result);
+  if (stop && !s.is_complete) {
+    fmt::print(stderr, "interrupted: wrote the solution after {} shots\n", s.shots);
+    return exit_interrupted;
+  }
+  return exit_done;
+}
+
+}  // namespace troffer

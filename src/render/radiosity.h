@@ -1,0 +1,36 @@
+// The radiosity preprocessing for a prepared scene: compute, save, load. The façade of radiosity/.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "integrate/prepared_scene.h"
+#include "radiosity/solver.h"
+#include "render/render.h"
+
+namespace troffer {
+
+struct RadiosityResult {
+  RadiositySolution solution;  // is_complete is false where a stop was requested
+  double seconds = 0;
+};
+
+// Throws UsageError for options that make no sense.
+void check(const RadiosityOptions& options);
+
+// `progress` gets the logarithm of the unshot power on its way to the end: it falls about
+// evenly. The result does not depend on `threads` (0 = all cores).
+RadiosityResult preprocess(const PreparedScene& scene, const RadiosityOptions& options, int threads,
+                           const ProgressCallback& progress, const StopFlag& stop);
+
+std::vector<uint8_t> save_radiosity(const PreparedScene& scene, const RadiositySolution& solution);
+
+// From a file's bytes. `options`: those that it must have been computed with, or nullptr. Throws
+// InputError, naming `file`, where it is no whole solution of this scene with these options.
+RadiositySolution load_radiosity(const PreparedScene& scene, std::span<const uint8_t> bytes,
+                                 const std::string& file, const RadiosityOptions* options,
+                                 int threads);
+
+}  // namespace troffer

@@ -1,0 +1,144 @@
+// troffer radiosity: its files, its options, its ends.
+#include <doctest/doctest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "base/error.h"
+#include "import/import.h"
+#include "program.h"
+#include "render/radiosity.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+std::vector<uint8_t> bytes_of(const std::string& path) {
+  const std::string text = troffer::test::read_file(path);
+  return {text.begin(), text.end()};
+}
+
+// Why a file is refused for a scene with these options; empty if it is not.
+std::string refusal(const std::string& scene_path, const std::string& solution,
+                    const RadiosityOptions* options) {
+  const PreparedScene scene(import_scene(scene_path));
+  try {
+    load_radiosity(scene, bytes_of(solution), solution, options, 2);
+  } catch (const InputError& e) {
+    return e.reason();
+  }
+  return "";
+}
+
+// lit_floor_pbrt within walls, so that light goes to and fro for long.
+std::string bright_room() {
+  std::string text = lit_floor_pbrt;
+  text += "Material \"diffuse\" \"rgb reflectance\" [0.95 0.95 0.95]\n";
+  for (const char* p : {"-2 -2 0  2 -2 0  2 -2 3  -2 -2 3", "-2 2 0  2 2 0  2 2 3  -2 2 3",
+                        "-2 -2 0  -2 2 0  -2 2 3  -2 -2 3", "2 -2 0  2 2 0  2 2 3  2 -2 3",
+                        "-2 -2 3  2 -2 3  2 2 3  -2 2 3"})
+    text += std::string("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [") +
+            p + "]\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("radiosity writes solution and display, and tells about them") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  const Finished f = run_program(
+      folder, {"radiosity", scene, "-o", folder.path("a.trad"), "-o", folder.path("a.gltf"), "-o",
+               folder.path("a.glb"), "--stats", folder.path("s.json"), "--element-size", "0.5"});
+  CAPTURE(f.err);
+  CHECK(f.status == 0);
+  CHECK(f.out.find("elements") != std::string::npos);
+  CHECK(f.out.find("shots") != std::string::npos);
+  CHECK(f.out.find("absorbed") != std::string::npos);
+  CHECK(folder.names() ==
+        std::vector<std::string>{"a.glb", "a.gltf", "a.trad", "room.pbrt", "s.json"});
+  CHECK(troffer::test::read_file(folder.path("s.json")).find("\"is_complete\": true") !=
+        std::string::npos);
+  const size_t triangles = triangle_count(import_scene(folder.path("a.gltf")));
+  CHECK(triangles > 50);
+  CHECK(triangles == triangle_count(import_scene(folder.path("a.glb"))));
+  CHECK(refusal(scene, folder.path("a.trad"), nullptr).empty());
+
+  const Finished again =
+      run_program(folder, {"radiosity", scene, "-o", folder.path("b.trad"), "--element-size", "0.5",
+                           "--threads", "1", "--quiet"});
+  CHECK(again.status == 0);
+  CHECK(again.out.empty());
+  CHECK(again.err.empty());
+  CHECK(bytes_of(folder.path("a.trad")) == bytes_of(folder.path("b.trad")));
+}
+
+TEST_CASE("a solution of another scene or of other settings is refused") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  std::string text = lit_floor_pbrt;
+  text.replace(text.find("[5 5 5]"), 7, "[5 5 4]");
+  const std::string other = folder.write("other.pbrt", text);
+  const std::string file = folder.path("a.trad");
+  REQUIRE(run_program(folder, {"radiosity", scene, "-o", file, "--unshot", "0.1"}).status == 0);
+  RadiosityOptions options;
+  options.unshot_fraction = 0.1f;
+  CHECK(refusal(scene, file, &options).empty());
+  CHECK(refusal(other, file, &options).find("another scene") != std::string::npos);
+  options.unshot_fraction = 0.2f;
+  CHECK(refusal(scene, file, &options).find("unshot fraction") != std::string::npos);
+  CHECK(refusal(scene, scene, nullptr).find("not a radiosity solution") != std::string::npos);
+}
+
+TEST_CASE("radiosity: wrong options, files that cannot be") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  const std::string out = folder.path("a.trad");
+  const auto status = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"radiosity", scene, "-o", out});
+    const Finished f = run_program(folder, more);
+    CAPTURE(f.err);
+    CHECK(f.error_lines().size() == 1);
+    CHECK(f.err.rfind("error: ", 0) == 0);
+    return f.status;
+  };
+  CHECK(status({"--element-size", "-1"}) == 2);
+  CHECK(status({"--element-size", "nan"}) == 2);
+  CHECK(status({"--patch-size", "0"}) == 2);
+  CHECK(status({"--element-size", "1", "--patch-size", "0.5"}) == 2);
+  CHECK(status({"--stored", "65"}) == 2);
+  CHECK(status({"--stored", "-1"}) == 2);
+  CHECK(status({"--unshot", "0"}) == 2);
+  CHECK(status({"--unshot", "nan"}) == 2);
+  CHECK(status({"--light", "nobody"}) == 2);
+  CHECK(status({"-o", out}) == 2);
+  CHECK(status({"-o", folder.path("a.png")}) == 2);
+  CHECK(status({"-o", folder.path("none/a.trad")}) == 1);
+  CHECK(status({"--stats", folder.path("none/s.json")}) == 1);
+  CHECK(folder.names() == std::vector<std::string>{"room.pbrt"});
+  CHECK(run_program(folder, {"radiosity", folder.path("no.pbrt"), "-o", out}).status == 1);
+  CHECK(run_program(folder, {"radiosity", scene}).status == 2);
+}
+
+TEST_CASE("radiosity stops at a signal, and what it has is written and whole") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", bright_room());
+  Running program(folder, {"radiosity", scene, "-o", folder.path("a.trad"), "-o",
+                           folder.path("a.glb"), "--stats", folder.path("s.json"), "--unshot",
+                           "0.000001", "--element-size", "0.04", "--threads", "1"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  program.send(SIGINT);
+  const Finished f = program.wait(30);
+  CAPTURE(f.err);
+  CHECK(f.status == 130);
+  CHECK(f.seconds < 10);
+  CHECK(f.err.find("interrupted: wrote the solution after") != std::string::npos);
+  CHECK(folder.names() == std::vector<std::string>{"a.glb", "a.trad", "room.pbrt", "s.json"});
+  CHECK(refusal(scene, folder.path("a.trad"), nullptr).empty());
+  CHECK(triangle_count(import_scene(folder.path("a.glb"))) > 1000);
+  CHECK(troffer::test::read_file(folder.path("s.json")).find("\"is_complete\": false") !=
+        std::string::npos);
+}
