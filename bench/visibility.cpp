@@ -1,0 +1,598 @@
+// Visibility of flat sources at the hits of a camera: shadow rays against certified visibility.
+//
+//   bench_visibility [--tiles N] [--reference N] [--only NAME] [SCENE…]
+//
+// Hits of 8 × 8 pixels form tiles, of which N spread over the picture count. Per pair of hit and
+// source that some light could reach: the root mean square error of the visible share of the
+// unoccluded irradiance against N Owen-Sobol rays, nanoseconds on one thread (the faster of two
+// runs), and rays. `fixed` casts N Owen-Sobol rays in packets of 16 and takes the ratio estimate.
+// "clutter" as SCENE is generated: 36 000 triangles of small things on a table under two lights.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "import/import.h"
+#include "render/camera.h"
+#include "render/render.h"
+#include "shadow/certified.h"
+#include "shadow/certified_cluster.h"
+#include "shadow/certified_irradiance.h"
+#include "trace/occluders.h"
+#include "trace/surface.h"
+#include "trace/tracer.h"
+
+using namespace troffer;
+
+namespace {
+
+// This thread's processor time: a busy machine does not spoil it.
+double now() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+// Facets from the hierarchy, rays from the tracer.
+class World final : public ShadowScene {
+ public:
+  World(const Scene& scene, const Occluders& occluders, const Tracer& tracer)
+      : occluders_(occluders), tracer_(tracer) {
+    const Box b = bounds(scene);
+    for (size_t a = 0; a < 3; ++a)
+      magnitude_ =
+          std::max({magnitude_, double(std::abs(b.lower[a])), double(std::abs(b.upper[a]))});
+  }
+  void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
+                  size_t most, ShadowCandidates& out) override {
+    found_.facets.clear();
+    found_.others = 0;
+    found_.is_complete = true;
+    found_.visited_nodes = 0;
+    occluders_.gather(planes, most, found_);
+    out.facets.clear();
+    out.is_complete = found_.is_complete && found_.others == 0;
+    for (const uint32_t id : found_.facets) {
+      const Occluders::Component& c = occluders_.component_of(id);
+      const bool is_front_only =
+          c.is_closed && is_apart(c.bounds, receivers) && is_apart(c.bounds, source);
+      out.facets.push_back({occluders_.facet(id), id, is_front_only});
+    }
+    visited_ += found_.visited_nodes;
+  }
+  void trace(std::span<const ShadowSegment> segments, std::span<uint32_t> ids) override {
+    rays_.resize(segments.size());
+    hits_.resize(segments.size());
+    for (size_t i = 0; i < segments.size(); ++i) {
+      rays_[i].origin = segments[i].from;
+      rays_[i].direction = segments[i].to - segments[i].from;
+      rays_[i].t_min = 0;
+      rays_[i].t_max = 1;
+    }
+    tracer_.closest(rays_, hits_, Coherence::coherent);
+    for (size_t i = 0; i < segments.size(); ++i) {
+      ids[i] = ray_is_free;
+      if (!hits_[i].is_valid()) continue;
+      const uint32_t id = occluders_.facet_of(hits_[i].geometry, hits_[i].primitive);
+      ids[i] = id == no_facet ? ray_is_stopped : id;
+    }
+  }
+  Quad facet(uint32_t id) const override { return occluders_.facet(id); }
+  double magnitude() const override { return magnitude_; }
+  uint64_t visited() const { return visited_; }
+
+ private:
+  static bool is_apart(const Box& a, const Box& b) {
+    for (size_t axis = 0; axis < 3; ++axis)
+      if (a.upper[axis] < b.lower[axis] || b.upper[axis] < a.lower[axis]) return true;
+    return false;
+  }
+  const Occluders& occluders_;
+  const Tracer& tracer_;
+  double magnitude_ = 0;
+  uint64_t visited_ = 0;
+  Occluders::Found found_;
+  std::vector<Ray> rays_;
+  std::vector<Hit> hits_;
+};
+
+std::vector<FlatSource> flat_sources(const LightPrimitives& lights) {
+  std::vector<FlatSource> sources;
+  for (const LightPrimitive& p : lights.all()) {
+    if (p.vertex_count != 3 && p.shape != PrimitiveShape::rectangle) {
+      fmt::print("  (a light that is no rectangle or triangle is left out)\n");
+      continue;
+    }
+    FlatSource s;
+    const Vec3d o(p.vertices[0]);
+    s.plane = {o, Vec3d(p.vertices[1]) - o, Vec3d(p.vertices[p.vertex_count == 3 ? 2 : 3]) - o,
+               p.normal};
+    if (p.vertex_count == 3) s.outline = {{0, 0}, {1, 0}, {0, 1}};
+    sources.push_back(s);
+    if (!p.is_two_sided) continue;
+    s.plane.normal = -s.plane.normal;
+    sources.push_back(s);
+  }
+  return sources;
+}
+
+struct Tile {
+  std::vector<Vec3> positions, normals, origins;
+  std::vector<uint32_t> pixels;
+};
+
+std::vector<Tile> hit_tiles(const Scene& scene, const Tracer& tracer, const Camera& camera,
+                            int width, int height, int count) {
+  const ViewingCamera view(camera, width, height);
+  const int tx = width / 8, ty = height / 8;
+  std::vector<Tile> tiles;
+  Random random(5);
+  for (int c = 0; c < count; ++c) {
+    const int t = int((double(c) + random.next_double()) / count * tx * ty);
+    // tiles are numbered so that successive ones lie far apart
+    const int at = int((int64_t(t) * 7919) % (tx * ty));
+    Tile tile;
+    for (int y = 0; y < 8; ++y) {
+      for (int x = 0; x < 8; ++x) {
+        const int px = at % tx * 8 + x, py = at / tx * 8 + y;
+        const Ray ray = view.ray({float(px) + random.next_float(), float(py) + random.next_float()},
+                                 {0.5f, 0.5f});
+        Hit hit;
+        tracer.closest({&ray, 1}, {&hit, 1});
+        if (!hit.is_valid()) continue;
+        const Surface s = surface_at(scene, ray, hit);
+        const Vec3 n =
+            dot(s.geometric_normal, ray.direction) > 0 ? -s.geometric_normal : s.geometric_normal;
+        tile.positions.push_back(s.position);
+        tile.normals.push_back(n);
+        tile.origins.push_back(offset_origin(s, n));
+        tile.pixels.push_back(uint32_t(py * width + px));
+      }
+    }
+    tiles.push_back(std::move(tile));
+  }
+  return tiles;
+}
+
+Vec3d target_of(const FlatSource& s, const Vec3d& point, const Vec3& origin) {
+  double m = 0;
+  for (size_t a = 0; a < 3; ++a) m = std::max({m, std::abs(point[a]), double(std::abs(origin[a]))});
+  return point + s.plane.normal * (8e-6 * m);
+}
+
+// The visible share by n Owen-Sobol rays, ratio estimate; false where nothing can arrive.
+struct FixedScratch {
+  std::vector<Ray> rays;
+  std::vector<float> weights, numbers;
+  std::vector<uint8_t> hidden;
+  std::vector<uint64_t> streams;
+  std::vector<uint32_t> samples;
+};
+
+bool prepare_fixed(const FlatSource& s, const Vec3& position, const Vec3& normal,
+                   const Vec3& origin, uint64_t stream, uint32_t n, FixedScratch& f) {
+  const Vec3d x(position), nn(normal);
+  if (!(dot(s.plane.normal, x - s.plane.origin) > 0)) return false;
+  f.streams.assign(n, stream);
+  f.samples.resize(n);
+  for (uint32_t i = 0; i < n; ++i) f.samples[i] = i;
+  f.numbers.resize(2 * n);
+  sobol_groups(f.streams.data(), f.samples.data(), n, 0, 2, f.numbers.data());
+  const bool is_triangle = !s.outline.empty();
+  const Vec3 o = Vec3(s.plane.origin - x), u(s.plane.u), v(s.plane.v);
+  const size_t before = f.weights.size();
+  float sum = 0;
+  const Vec3 shift =
+      Vec3(target_of(s, s.plane.origin, origin) - s.plane.origin) + position - origin;
+  for (uint32_t i = 0; i < n; ++i) {
+    float a = f.numbers[i], b = f.numbers[n + i];
+    if (is_triangle && a + b > 1) {  // the lattice's fold
+      a = 1 - a;
+      b = 1 - b;
+    }
+    const Vec3 d = o + u * a + v * b;
+    const float cosine = dot(d, normal), square = dot(d, d);
+    const float w = cosine > 0 ? cosine / (square * square) : 0;
+    f.weights.push_back(w);
+    sum += w;
+    Ray r;
+    r.origin = origin;
+    r.direction = d + shift;
+    r.t_max = w > 0 ? 1.0f : 0.0f;
+    f.rays.push_back(r);
+  }
+  if (sum > 0) return true;
+  f.weights.resize(before);
+  f.rays.resize(before);
+  return false;
+}
+
+struct Pair {
+  uint32_t tile, receiver, source;
+};
+
+struct Bench {
+  const Scene& scene;
+  const Tracer& tracer;
+  const Occluders& occluders;
+  std::vector<FlatSource> sources;
+  std::vector<Tile> tiles;
+  std::vector<float> reference;      // per tile, source, receiver; -1: does not count
+  std::vector<char> is_significant;  // enough light would arrive to count
+  std::vector<size_t> first;         // per tile
+
+  size_t index(size_t tile, size_t source, size_t receiver) const {
+    return first[tile] + source * tiles[tile].positions.size() + receiver;
+  }
+};
+
+uint64_t stream_of(const Tile& t, size_t receiver, size_t source, uint64_t seed) {
+  return hash_of(uint64_t(t.pixels[receiver]), source, seed);
+}
+
+// Pairs count where a source unhidden would give at least a thousandth of its mean irradiance:
+// where only a sliver of it stands above the horizon, few rays would say nothing of how much is
+// visible.
+void find_significant(Bench& b) {
+  std::vector<float> values;
+  b.is_significant.assign(b.reference.size(), 0);
+  for (size_t s = 0; s < b.sources.size(); ++s) {
+    double sum = 0, count = 0;
+    for (const bool is_second : {false, true})
+      for (size_t t = 0; t < b.tiles.size(); ++t) {
+        const Tile& tile = b.tiles[t];
+        values.resize(tile.positions.size());
+        unoccluded_irradiance(b.sources[s].corners(), b.sources[s].plane.normal, values.size(),
+                              tile.positions.data(), tile.normals.data(), values.data());
+        for (size_t r = 0; r < values.size(); ++r) {
+          if (is_second)
+            b.is_significant[b.index(t, s, r)] = double(values[r]) > 1e-3 * sum / count;
+          else if (values[r] > 0) {
+            sum += double(values[r]);
+            ++count;
+          }
+        }
+      }
+  }
+}
+
+double fixed_run(const Bench& b, uint32_t n, uint64_t seed, std::vector<float>& out) {
+  FixedScratch f;
+  out.assign(b.reference.size(), -1);
+  const double start = now();
+  std::vector<size_t> where;
+  const auto flush = [&] {
+    f.hidden.resize(f.rays.size());
+    b.tracer.occluded(f.rays, f.hidden, Coherence::coherent);
+    for (size_t p = 0; p < where.size(); ++p) {
+      float all = 0, seen = 0;
+      for (size_t i = p * n; i < (p + 1) * n; ++i) {
+        all += f.weights[i];
+        seen += f.hidden[i] != 0 ? 0.0f : f.weights[i];
+      }
+      out[where[p]] = seen / all;
+    }
+    f.rays.clear();
+    f.weights.clear();
+    where.clear();
+  };
+  for (size_t t = 0; t < b.tiles.size(); ++t) {
+    const Tile& tile = b.tiles[t];
+    for (size_t s = 0; s < b.sources.size(); ++s)
+      for (size_t r = 0; r < tile.positions.size(); ++r) {
+        if (!prepare_fixed(b.sources[s], tile.positions[r], tile.normals[r], tile.origins[r],
+                           stream_of(tile, r, s, seed), n, f))
+          continue;
+        where.push_back(b.index(t, s, r));
+        if (f.rays.size() >= 8192) flush();
+      }
+  }
+  flush();
+  return now() - start;
+}
+
+struct CertifiedRun {
+  double seconds = 0;
+  uint64_t rays = 0;
+  uint64_t answers[5] = {};
+  double error2[5] = {}, predicted2[5] = {};
+  CertifiedCounters counters;
+  uint64_t visited = 0;
+};
+
+CertifiedRun certified_run(const Bench& b, const CertifiedOptions& options, uint64_t seed,
+                           std::vector<float>& out) {
+  CertifiedRun run;
+  out.assign(b.reference.size(), -1);
+  CertifiedEstimator estimator(options);
+  World world(b.scene, b.occluders, b.tracer);
+  ReceiverClusters clusters;
+  std::vector<ShadowReceiver> receivers;
+  std::vector<SourceVisibility> answers;
+  const double start = now();
+  for (size_t t = 0; t < b.tiles.size(); ++t) {
+    const Tile& tile = b.tiles[t];
+    cluster_receivers(tile.positions, tile.normals, 1.0f, clusters);
+    std::vector<FoundFacets> found(b.sources.size());
+    for (size_t c = 0; c < clusters.size(); ++c) {
+      const auto members = clusters.members(c);
+      receivers.resize(members.size());
+      answers.resize(members.size());
+      for (size_t i = 0; i < members.size(); ++i)
+        receivers[i] = {tile.positions[members[i]], tile.normals[members[i]],
+                        tile.origins[members[i]], 0};
+      for (size_t s = 0; s < b.sources.size(); ++s) {
+        for (size_t i = 0; i < members.size(); ++i)
+          receivers[i].stream = stream_of(tile, members[i], s, seed);
+        estimator.evaluate(b.sources[s], receivers, world, found[s], answers);
+        for (size_t i = 0; i < members.size(); ++i) {
+          const size_t at = b.index(t, s, members[i]);
+          const SourceVisibility& a = answers[i];
+          ++run.answers[size_t(a.answer)];
+          if (a.answer == ShadowAnswer::below) continue;
+          run.rays += a.rays;
+          out[at] = a.visible;
+          if (b.reference[at] >= 0) {
+            const double e = double(a.visible) - double(b.reference[at]);
+            run.error2[size_t(a.answer)] += e * e;
+            run.predicted2[size_t(a.answer)] += double(a.variance);
+          }
+        }
+      }
+    }
+  }
+  run.seconds = now() - start;
+  run.counters = estimator.counters();
+  run.visited = world.visited();
+  return run;
+}
+
+struct Error {
+  double rms = 0, mean = 0, worst = 0;
+  size_t pairs = 0;
+};
+
+Error error_of(const Bench& b, const std::vector<float>& values) {
+  Error e;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (b.reference[i] < 0) continue;
+    const double d = double(std::max(values[i], 0.0f)) - double(b.reference[i]);
+    e.rms += d * d;
+    e.mean += d;
+    e.worst = std::max(e.worst, std::abs(d));
+    ++e.pairs;
+  }
+  e.rms = std::sqrt(e.rms / double(e.pairs));
+  e.mean /= double(e.pairs);
+  return e;
+}
+
+Scene clutter() {
+  Scene s;
+  s.materials.resize(1);
+  Mesh room, things;
+  const auto box = [](Mesh& m, const Vec3& lower, const Vec3& upper, float angle, bool is_inward) {
+    const auto base = uint32_t(m.positions.size());
+    const Vec3 c = (lower + upper) * 0.5f;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 p{(i & 1) != 0 ? upper.x : lower.x, (i & 2) != 0 ? upper.y : lower.y,
+                   (i & 4) != 0 ? upper.z : lower.z};
+      const Vec3 d = p - c;
+      m.positions.push_back({c.x + d.x * std::cos(angle) - d.y * std::sin(angle),
+                             c.y + d.x * std::sin(angle) + d.y * std::cos(angle), p.z});
+    }
+    constexpr uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                      {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (const auto& q : quads) {
+      Triangle a{base + q[0], base + q[1], base + q[2]}, d{base + q[0], base + q[2], base + q[3]};
+      if (is_inward) {
+        std::swap(a[1], a[2]);
+        std::swap(d[1], d[2]);
+      }
+      m.triangles.push_back(a);
+      m.triangles.push_back(d);
+    }
+  };
+  const auto ball = [](Mesh& m, const Vec3& c, float radius) {
+    constexpr uint32_t n = 16, rings = 9;
+    const auto base = uint32_t(m.positions.size());
+    for (uint32_t r = 0; r <= rings; ++r)
+      for (uint32_t i = 0; i < n; ++i) {
+        const float theta = pi_f * float(r) / float(rings), phi = 2 * pi_f * float(i) / float(n);
+        const float ring = r == 0 || r == rings ? 0 : std::sin(theta);
+        m.positions.push_back(
+            c + Vec3{ring * std::cos(phi), ring * std::sin(phi), std::cos(theta)} * radius);
+      }
+    for (uint32_t r = 0; r < rings; ++r)
+      for (uint32_t i = 0; i < n; ++i) {
+        const uint32_t a = base + r * n + i, b = base + r * n + (i + 1) % n;
+        if (r > 0) m.triangles.push_back({a, a + n, b});
+        if (r + 1 < rings) m.triangles.push_back({b, a + n, b + n});
+      }
+  };
+  box(room, {-3, -3, 0}, {3, 3, 3}, 0, true);
+  box(things, {-1, -0.6f, 0.7f}, {1, 0.6f, 0.74f}, 0, false);
+  for (int i = 0; i < 4; ++i) {
+    const float x = (i & 1) != 0 ? 0.9f : -0.9f, y = (i & 2) != 0 ? 0.5f : -0.5f;
+    box(things, {x - 0.03f, y - 0.03f, 0}, {x + 0.03f, y + 0.03f, 0.7f}, 0, false);
+  }
+  Random random(3);
+  for (int i = 0; i < 120; ++i) {
+    const float r = 0.02f + 0.04f * random.next_float();
+    ball(things,
+         {1.9f * random.next_float() - 0.95f, 1.1f * random.next_float() - 0.55f,
+          0.742f + r + 0.2f * random.next_float()},
+         r);
+  }
+  for (int i = 0; i < 120; ++i) {
+    const Vec3 c{1.9f * random.next_float() - 0.95f, 1.1f * random.next_float() - 0.55f, 0.742f};
+    const Vec3 h{0.01f + 0.04f * random.next_float(), 0.01f + 0.04f * random.next_float(), 0};
+    box(things, c - h, c + h + Vec3{0, 0, 0.02f + 0.2f * random.next_float()},
+        3 * random.next_float(), false);
+  }
+  s.meshes = {room, things};
+  const auto light = [&](const Vec3& centre) {
+    Mesh m;
+    m.positions = {centre + Vec3{-0.5f, -0.5f, 0}, centre + Vec3{-0.5f, 0.5f, 0},
+                   centre + Vec3{0.5f, 0.5f, 0}, centre + Vec3{0.5f, -0.5f, 0}};
+    m.triangles = {{0, 1, 2}, {0, 2, 3}};
+    m.emitters = {int32_t(s.emitters.size()), int32_t(s.emitters.size())};
+    Emitter e;
+    e.radiance = Rgb{1};
+    e.geometry = uint32_t(s.meshes.size());
+    e.triangles = {0, 1};
+    e.polygon = m.positions;
+    s.emitters.push_back(e);
+    s.meshes.push_back(m);
+  };
+  light({-1.2f, 0, 2.9f});
+  light({1.2f, 0.5f, 2.9f});
+  s.cameras = {look_at({0.3f, -2.6f, 1.9f}, {0, 0, 0.6f}, {0, 0, 1}, 50)};
+  return s;
+}
+
+void print(const std::string& name, const Error& e, double seconds, double rays) {
+  fmt::print("  {:<28} rms {:.5f}  mean {:+.5f}  worst {:.3f}  {:8.0f} ns  {:7.2f} rays\n", name,
+             e.rms, e.mean, e.worst, seconds / double(e.pairs) * 1e9, rays);
+}
+
+void run(const std::string& file, int tile_count, uint32_t reference_rays,
+         const std::string& only) {
+  const Scene scene = file == "clutter" ? clutter() : import_scene(file);
+  const Tracer tracer(scene);
+  const double start = now();
+  const Occluders occluders(scene);
+  const LightPrimitives lights(scene);
+  fmt::print("{}: {} triangles, {} facets in {:.3f} s\n", file, triangle_count(scene),
+             occluders.facet_count(), now() - start);
+  Bench b{scene, tracer, occluders, flat_sources(lights), {}, {}, {}, {}};
+  b.tiles = hit_tiles(scene, tracer, scene.cameras.at(0), 256, 256, tile_count);
+  size_t total = 0;
+  for (const Tile& t : b.tiles) {
+    b.first.push_back(total);
+    total += t.positions.size() * b.sources.size();
+  }
+  b.reference.assign(total, -1);
+  find_significant(b);
+  // The reference, a tile at a time on all cores.
+  parallel_for(b.tiles.size(), 0, [&](size_t t) {
+    FixedScratch f;
+    const Tile& tile = b.tiles[t];
+    for (size_t s = 0; s < b.sources.size(); ++s)
+      for (size_t r = 0; r < tile.positions.size(); ++r) {
+        if (!b.is_significant[b.index(t, s, r)]) continue;
+        f.rays.clear();
+        f.weights.clear();
+        if (!prepare_fixed(b.sources[s], tile.positions[r], tile.normals[r], tile.origins[r],
+                           stream_of(tile, r, s, 99), reference_rays, f))
+          continue;
+        f.hidden.resize(f.rays.size());
+        tracer.occluded(f.rays, f.hidden, Coherence::coherent);
+        double all = 0, seen = 0;
+        for (size_t i = 0; i < f.rays.size(); ++i) {
+          all += double(f.weights[i]);
+          seen += f.hidden[i] != 0 ? 0 : double(f.weights[i]);
+        }
+        b.reference[b.index(t, s, r)] = float(seen / all);
+      }
+  });
+  size_t penumbra = 0, lit = 0, dark = 0;
+  for (const float v : b.reference) {
+    penumbra += v > 0 && v < 1;
+    lit += v == 1;
+    dark += v == 0;
+  }
+  const double pairs = double(lit + dark + penumbra);
+  fmt::print("  {} sources, {} pairs: {:.1f} % lit, {:.1f} % dark, {:.1f} % penumbra\n",
+             b.sources.size(), lit + dark + penumbra, 100 * double(lit) / pairs,
+             100 * double(dark) / pairs, 100 * double(penumbra) / pairs);
+  std::vector<float> values;
+  for (const uint32_t n : {16u, 64u, 256u}) {
+    if (!only.empty() && only != "fixed") continue;
+    const double once = fixed_run(b, n, 1, values);
+    const Error e = error_of(b, values);
+    const double again = n > 64 ? once : fixed_run(b, n, 2, values);
+    print(fmt::format("fixed {}", n), e, std::min(once, again), n);
+  }
+  struct Setting {
+    const char* name;
+    MaskLattice lattice;
+    size_t longest;
+    float residual;
+    uint32_t most_rays;
+  };
+  const Setting settings[] = {
+      {"coarse, lists of 64", coarse_lattice, 64, 0.05f, 16},
+      {"coarse, lists of 256", coarse_lattice, 256, 0.05f, 16},
+      {"coarse, lists of 1024", coarse_lattice, 1024, 0.05f, 16},
+      {"fine, lists of 256", fine_lattice, 256, 0.02f, 64},
+      {"fine, lists of 1024", fine_lattice, 1024, 0.02f, 64},
+  };
+  for (const Setting& s : settings) {
+    if (std::string(s.name).find(only) == std::string::npos) continue;
+    CertifiedOptions o;
+    o.lattice = s.lattice;
+    o.longest_list = s.longest;
+    o.residual_error = s.residual;
+    o.most_rays = s.most_rays;
+    CertifiedRun first = certified_run(b, o, 1, values);
+    const Error e = error_of(b, values);
+    const CertifiedRun again = certified_run(b, o, 2, values);
+    print(s.name, e, std::min(first.seconds, again.seconds), double(first.rays) / double(e.pairs));
+    const double all = double(e.pairs);
+    const auto rms = [&](int a) {
+      return first.answers[a] > 0 ? std::sqrt(first.error2[a] / double(first.answers[a])) : 0.0;
+    };
+    const auto said = [&](int a) {
+      return first.answers[a] > 0 ? std::sqrt(first.predicted2[a] / double(first.answers[a])) : 0.0;
+    };
+    const CertifiedCounters& c = first.counters;
+    fmt::print(
+        "      lit {:.1f} %  dark {:.1f} %  masked {:.1f} % (rms {:.4f}, said {:.4f})  "
+        "mixed {:.1f} % (rms {:.4f}, said {:.4f}); {:.1f} receivers, {:.0f} candidates, {:.0f} "
+        "nodes a cluster, {:.0f} % too "
+        "long; {:.1f} facets a mask\n",
+        100 * double(first.answers[1]) / all, 100 * double(first.answers[2]) / all,
+        100 * double(first.answers[3]) / all, rms(3), said(3), 100 * double(first.answers[4]) / all,
+        rms(4), said(4), all / double(c.gathers), double(c.candidates) / double(c.gathers),
+        double(first.visited) / double(c.gathers), 100 * double(c.incomplete) / double(c.gathers),
+        double(c.mask_facets) / double(std::max<uint64_t>(c.masks, 1)));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> files;
+  int tiles = 64;
+  uint32_t reference = 4096;
+  std::string only;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--tiles") == 0 && i + 1 < argc)
+      tiles = std::stoi(argv[++i]);
+    else if (std::strcmp(argv[i], "--reference") == 0 && i + 1 < argc)
+      reference = uint32_t(std::stoul(argv[++i]));
+    else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc)
+      only = argv[++i];
+    else
+      files.emplace_back(argv[i]);
+  }
+  if (files.empty())
+    files = {TROFFER_SOURCE_DIR "/scenes/kj92room/kj92room.gltf",
+             TROFFER_SOURCE_DIR "/scenes/modern-hall/modern-hall-diffuse.pbrt", "clutter"};
+  try {
+    for (const std::string& f : files) run(f, tiles, reference, only);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "error: {}\n", e.what());
+    return 1;
+  }
+  return 0;
+}

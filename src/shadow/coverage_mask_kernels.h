@@ -1,0 +1,294 @@
+// The loops of coverage_mask.cpp, written for vectors of `width` numbers and compiled once per
+// instruction set: coverage_mask.cpp includes this file with TROFFER_MASK_WIDTH and
+// TROFFER_MASK_NAMESPACE set, under the pragma that selects the set. No function here may call one
+// from elsewhere, whose code would be the plain one. Results are the same bits for every width.
+#ifndef TROFFER_MASK_WIDTH
+#include "shadow/coverage_mask.h"
+#define TROFFER_MASK_WIDTH 4
+#define TROFFER_MASK_NAMESPACE mask_alone
+#endif
+
+namespace troffer::TROFFER_MASK_NAMESPACE {
+
+constexpr int width = TROFFER_MASK_WIDTH;
+constexpr int lanes = FacetBatch<3>::lanes;
+constexpr float far_away = 1e9f;  // beyond any canvas
+
+using Floats = float __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
+using Ints = int32_t __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
+using Bits = uint32_t __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
+
+// What rasterising a facet needs: crossings m j + q + 1 of its edges, once as lower bounds and once
+// as upper bounds of k, far away where an edge bounds the other way.
+template <int edges>
+struct Crossings {
+  alignas(64) float lower_m[edges][lanes];
+  alignas(64) float lower_q[edges][lanes];
+  alignas(64) float upper_m[edges][lanes];
+  alignas(64) float upper_q[edges][lanes];
+  alignas(64) int32_t is_relevant[lanes];  // not 0 where the facet may hide something
+};
+
+// Sets up facets `from` to from + width.
+template <int edges>
+inline __attribute__((always_inline)) void set_up(const FacetBatch<edges>& f, int from,
+                                                  const MaskPoint& p, Crossings<edges>& c) {
+  Floats nk, nj, nw, distance, skipped;
+  __builtin_memcpy(&nk, f.normal_k + from, sizeof nk);
+  __builtin_memcpy(&nj, f.normal_j + from, sizeof nj);
+  __builtin_memcpy(&nw, f.normal_w + from, sizeof nw);
+  __builtin_memcpy(&distance, f.distance + from, sizeof distance);
+  __builtin_memcpy(&skipped, f.skipped_side + from, sizeof skipped);
+  const Floats zero = {}, one = zero + 1.0f, least = zero + 1e-25f;
+  const Floats height = distance - (nk * p.k + nj * p.j + nw * p.w);
+  const Floats below = height < zero ? -one : zero;
+  const Floats side = height > zero ? one : below;
+  Ints is_relevant = (side != zero) & (side != skipped);
+  Floats k[edges], j[edges], w[edges];
+  for (int e = 0; e < edges; ++e) {
+    __builtin_memcpy(&k[e], f.k[e] + from, sizeof k[e]);
+    __builtin_memcpy(&j[e], f.j[e] + from, sizeof j[e]);
+    __builtin_memcpy(&w[e], f.w[e] + from, sizeof w[e]);
+    k[e] -= p.k;
+    j[e] -= p.j;
+    w[e] -= p.w;
+  }
+  for (int e = 0; e < edges; ++e) {
+    const int g = e + 1 == edges ? 0 : e + 1;
+    // inside where side * (a × b) · y >= 0
+    const Floats ek = side * (j[e] * w[g] - w[e] * j[g]);
+    const Floats ej = side * (w[e] * k[g] - k[e] * w[g]);
+    const Floats ew = side * (k[e] * j[g] - j[e] * k[g]);
+    const Floats base = ew * p.h;
+    Floats most = ek * p.corner_k[0] + ej * p.corner_j[0];
+    for (int corner = 1; corner < 4; ++corner) {
+      const Floats at = ek * p.corner_k[corner] + ej * p.corner_j[corner];
+      most = most > at ? most : at;
+    }
+    is_relevant &= most + base > zero;
+    const Ints is_flat = (ek < least) & (ek > -least);
+    const Floats slope = is_flat ? least : ek;
+    const Floats inverse = one / slope;
+    const Floats m = -ej * inverse;
+    const Floats q = (1.0f - p.first_k) - (ej * p.first_j + base) * inverse;
+    const Ints is_lower = slope > zero;
+    const Floats lower_m = is_lower ? m : zero, upper_m = is_lower ? zero : m;
+    const Floats lower_q = is_lower ? q : zero - far_away;
+    const Floats upper_q = is_lower ? zero + far_away : q;
+    __builtin_memcpy(c.lower_m[e] + from, &lower_m, sizeof lower_m);
+    __builtin_memcpy(c.lower_q[e] + from, &lower_q, sizeof lower_q);
+    __builtin_memcpy(c.upper_m[e] + from, &upper_m, sizeof upper_m);
+    __builtin_memcpy(c.upper_q[e] + from, &upper_q, sizeof upper_q);
+  }
+  __builtin_memcpy(c.is_relevant + from, &is_relevant, sizeof is_relevant);
+}
+
+// Clears the bits of facet i in some rows; `at` numbers the rows.
+template <int edges>
+inline __attribute__((always_inline)) void rasterise(const Crossings<edges>& c, int i,
+                                                     const Floats& at, float canvas_rows,
+                                                     Bits& open) {
+  const Floats zero = {}, limit = zero + canvas_rows;
+  Floats lower = zero, upper = limit;
+  for (int e = 0; e < edges; ++e) {
+    const Floats l = c.lower_m[e][i] * at + c.lower_q[e][i];
+    const Floats u = c.upper_m[e][i] * at + c.upper_q[e][i];
+    lower = l > lower ? l : lower;
+    upper = u < upper ? u : upper;
+  }
+  lower = lower < limit ? lower : limit;
+  upper = upper > zero ? upper : zero;
+  const Bits all = Bits{} + ~0u;
+  const Bits first = __builtin_convertvector(__builtin_convertvector(lower, Ints), Bits);
+  const Bits end = __builtin_convertvector(__builtin_convertvector(upper, Ints), Bits);
+  open &= ~(all << first) | (all << end);
+}
+
+template <int edges, int rows>
+inline __attribute__((always_inline)) bool cover_batches(const FacetBatch<edges>* batches, size_t n,
+                                                         const MaskPoint& p, uint32_t* open_rows) {
+  constexpr int blocks = rows / width;
+  Bits open[blocks];
+  Floats at[blocks];
+  __builtin_memcpy(open, open_rows, sizeof open);
+  for (int block = 0; block < blocks; ++block)
+    for (int i = 0; i < width; ++i) at[block][i] = float(block * width + i);
+  bool is_any_open = true;
+  for (size_t b = 0; b < n && is_any_open; ++b) {
+    Crossings<edges> c;
+    for (int from = 0; from < lanes; from += width) set_up(batches[b], from, p, c);
+    for (int i = 0; i < lanes; ++i) {
+      if (c.is_relevant[i] == 0) continue;
+      for (int block = 0; block < blocks; ++block)
+        rasterise<edges>(c, i, at[block], p.rows, open[block]);
+    }
+    Bits any = open[0];
+    for (int block = 1; block < blocks; ++block) any |= open[block];
+    uint32_t together = 0;
+    for (int i = 0; i < width; ++i) together |= any[i];
+    is_any_open = together != 0;
+  }
+  __builtin_memcpy(open_rows, open, sizeof open);
+  return is_any_open;
+}
+
+// Clears the bits that facets hide in 16 or 32 rows; false when none is left.
+bool cover_rows(const MaskPoint& p, int rows, const FacetBatch<4>* quads, size_t quad_batches,
+                const FacetBatch<3>* triangles, size_t triangle_batches, uint32_t* open) {
+  if (rows <= 16)
+    return cover_batches<4, 16>(quads, quad_batches, p, open) &&
+           cover_batches<3, 16>(triangles, triangle_batches, p, open);
+  return cover_batches<4, 32>(quads, quad_batches, p, open) &&
+         cover_batches<3, 32>(triangles, triangle_batches, p, open);
+}
+
+// Certificates for facets `from` to from + width, see classify() in certificate.h.
+template <int edges>
+inline __attribute__((always_inline)) void classify_lanes(const FacetBatch<edges>& f, int from,
+                                                          const MaskPoint* receivers, int count,
+                                                          float slack, int32_t* flags) {
+  Floats nk, nj, nw, distance, skipped;
+  __builtin_memcpy(&nk, f.normal_k + from, sizeof nk);
+  __builtin_memcpy(&nj, f.normal_j + from, sizeof nj);
+  __builtin_memcpy(&nw, f.normal_w + from, sizeof nw);
+  __builtin_memcpy(&distance, f.distance + from, sizeof distance);
+  __builtin_memcpy(&skipped, f.skipped_side + from, sizeof skipped);
+  const Floats zero = {}, one = zero + 1.0f;
+  const Ints none = {}, all = none - 1;
+  // Are all receivers strictly on one side of the facet's plane, and the source on which?
+  Ints is_before = all, is_behind = all, is_source_before = all, is_source_behind = all;
+  const Floats size = distance > zero ? distance : -distance;
+  for (int r = 0; r < count; ++r) {
+    const MaskPoint& p = receivers[r];
+    const Floats height = distance - (nk * p.k + nj * p.j + nw * p.w);
+    const Floats error = 2e-6f * (size + p.receiver_size) + slack;
+    is_before &= height > error;
+    is_behind &= height < -error;
+    const Floats error_source = error + 2e-6f * p.source_size;
+    for (int corner = 0; corner < 4; ++corner) {
+      const Floats at = height - (nk * p.corner_k[corner] + nj * p.corner_j[corner] + nw * p.h);
+      is_source_before &= at > error_source;
+      is_source_behind &= at < -error_source;
+    }
+  }
+  const Floats side = is_before ? one : (is_behind ? -one : zero);
+  Ints misses = (is_before & is_source_before) | (is_behind & is_source_behind);
+  misses |= (side == skipped) & (side != zero);
+  Ints covers = is_before | is_behind;
+  for (int e = 0; e < edges; ++e) {
+    const int g = e + 1 == edges ? 0 : e + 1;
+    Ints is_all_outside = is_before | is_behind, is_all_inside = all;
+    Floats ak0, aj0, aw0, bk0, bj0, bw0;
+    __builtin_memcpy(&ak0, f.k[e] + from, sizeof ak0);
+    __builtin_memcpy(&aj0, f.j[e] + from, sizeof aj0);
+    __builtin_memcpy(&aw0, f.w[e] + from, sizeof aw0);
+    __builtin_memcpy(&bk0, f.k[g] + from, sizeof bk0);
+    __builtin_memcpy(&bj0, f.j[g] + from, sizeof bj0);
+    __builtin_memcpy(&bw0, f.w[g] + from, sizeof bw0);
+    for (int r = 0; r < count; ++r) {
+      const MaskPoint& p = receivers[r];
+      const Floats ak = ak0 - p.k, aj = aj0 - p.j, aw = aw0 - p.w;
+      const Floats bk = bk0 - p.k, bj = bj0 - p.j, bw = bw0 - p.w;
+      const Floats ek = side * (aj * bw - aw * bj);
+      const Floats ej = side * (aw * bk - ak * bw);
+      const Floats ew = side * (ak * bj - aj * bk);
+      const Floats a = (ak > zero ? ak : -ak) + (aj > zero ? aj : -aj) + (aw > zero ? aw : -aw) +
+                       p.receiver_size;
+      const Floats b = (bk > zero ? bk : -bk) + (bj > zero ? bj : -bj) + (bw > zero ? bw : -bw) +
+                       p.receiver_size;
+      const Floats error = (2e-6f * a * b + 2 * slack * (a + b)) * p.source_size;
+      const Floats base = ew * p.h;
+      for (int corner = 0; corner < 4; ++corner) {
+        const Floats at = ek * p.corner_k[corner] + ej * p.corner_j[corner] + base;
+        is_all_outside &= at < -error;
+        is_all_inside &= at > error;
+      }
+    }
+    misses |= is_all_outside;
+    covers &= is_all_inside;
+  }
+  const Ints result = (misses & 1) | (covers & ~misses & 2);
+  __builtin_memcpy(flags + from, &result, sizeof result);
+}
+
+void classify_quads(const FacetBatch<4>* batches, size_t n, const MaskPoint* receivers, int count,
+                    float slack, int32_t* flags) {
+  for (size_t b = 0; b < n; ++b)
+    for (int from = 0; from < lanes; from += width)
+      classify_lanes(batches[b], from, receivers, count, slack, flags + b * size_t(lanes));
+}
+void classify_triangles(const FacetBatch<3>* batches, size_t n, const MaskPoint* receivers,
+                        int count, float slack, int32_t* flags) {
+  for (size_t b = 0; b < n; ++b)
+    for (int from = 0; from < lanes; from += width)
+      classify_lanes(batches[b], from, receivers, count, slack, flags + b * size_t(lanes));
+}
+
+template <int rows, int columns>
+inline __attribute__((always_inline)) void weigh(const MaskWeights& w, const uint32_t* inside_rows,
+                                                 const uint32_t* open_rows, float* sums,
+                                                 float* row_sums) {
+  constexpr int blocks = rows / width;
+  const Floats zero = {};
+  float all_sum = 0, seen_sum = 0;  // over rows, so that their order does not depend on the width
+  for (int block = 0; block < blocks; ++block) {
+    Bits inside, open;
+    __builtin_memcpy(&inside, inside_rows + block * width, sizeof inside);
+    __builtin_memcpy(&open, open_rows + block * width, sizeof open);
+    Floats row;
+    for (int i = 0; i < width; ++i) row[i] = float(block * width + i);
+    const Floats cosine_0 = w.cosine + w.cosine_j * row;
+    const Floats square_0 = w.square + row * (w.square_j + row * w.square_jj);
+    const Floats slope = w.slope + w.slope_j * row;
+    Floats all = zero, seen = zero;
+    for (int k = 0; k < columns; ++k) {
+      const auto at = float(k);
+      const Floats cosine = cosine_0 + w.cosine_k * at;
+      const Floats square = square_0 + at * (slope + at * w.square_kk);
+      const Floats weight = (cosine > zero ? cosine : zero) / (square * square);
+      const Bits bit = Bits{} + (1u << k);
+      all += (inside & bit) != 0 ? weight : zero;
+      seen += (open & bit) != 0 ? weight : zero;
+    }
+    __builtin_memcpy(row_sums + block * width, &seen, sizeof seen);
+    for (int i = 0; i < width; ++i) {
+      all_sum += all[i];
+      seen_sum += seen[i];
+    }
+  }
+  sums[0] = all_sum;
+  sums[1] = seen_sum;
+}
+
+// Pairs of neighbouring samples inside of which one is open and one is not.
+template <int rows>
+inline __attribute__((always_inline)) int boundary_pairs(const uint32_t* inside,
+                                                         const uint32_t* open) {
+  int pairs = 0;
+  for (int j = 0; j < rows; j += 2) {  // two rows in 64 bits
+    const uint64_t i0 = inside[j], i1 = inside[j + 1], o0 = open[j], o1 = open[j + 1];
+    const uint64_t in = i0 | (i1 << 32), on = o0 | (o1 << 32);
+    const uint64_t i2 = j + 2 < rows ? inside[j + 2] : 0, o2 = j + 2 < rows ? open[j + 2] : 0;
+    const uint64_t in_above = i1 | (i2 << 32), on_above = o1 | (o2 << 32);
+    pairs += __builtin_popcountll((on ^ on_above) & in & in_above);
+    pairs += __builtin_popcountll((on ^ (on >> 1)) & in & (in >> 1) & 0x7fffffff7fffffffull);
+  }
+  return pairs;
+}
+
+// sums: weight of all samples inside, of those open; row_sums: of those open, by row. Returns the
+// number of boundary pairs.
+int weigh_rows(const MaskWeights& w, int rows, const uint32_t* inside, const uint32_t* open,
+               float* sums, float* row_sums) {
+  if (rows <= 16) {
+    weigh<16, 16>(w, inside, open, sums, row_sums);
+    return boundary_pairs<16>(inside, open);
+  }
+  weigh<32, 31>(w, inside, open, sums, row_sums);
+  return boundary_pairs<32>(inside, open);
+}
+
+}  // namespace troffer::TROFFER_MASK_NAMESPACE
+
+#undef TROFFER_MASK_WIDTH
+#undef TROFFER_MASK_NAMESPACE

@@ -1,0 +1,156 @@
+#include "shadow/shaft.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/frame.h"
+
+namespace troffer {
+
+namespace {
+
+double largest_coordinate(const Vec3d& p) {
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+// Direction of the largest spread of the points within the plane of the frame.
+Vec3d main_direction(std::span<const Vec3> points, const Framed& frame, const Vec3d& centre) {
+  double xx = 0, xy = 0, yy = 0;
+  for (const Vec3& p : points) {
+    const Vec3d d = frame.to_local(Vec3d(p) - centre);
+    xx += d.x * d.x;
+    xy += d.x * d.y;
+    yy += d.y * d.y;
+  }
+  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
+  return frame.tangent * std::cos(angle) + frame.bitangent * std::sin(angle);
+}
+
+}  // namespace
+
+ReceiverHull bound_receivers(std::span<const Vec3> origins, std::span<const Vec3> normals) {
+  ReceiverHull hull;
+  Vec3d lower(origins[0]), upper = lower;
+  hull.is_flat = true;
+  hull.normal = Vec3d(normals[0]);
+  for (size_t i = 0; i < origins.size(); ++i) {
+    const Vec3d p(origins[i]);
+    lower = min(lower, p);
+    upper = max(upper, p);
+    hull.magnitude = std::max(hull.magnitude, largest_coordinate(p));
+    hull.is_flat = hull.is_flat && length_squared(Vec3d(normals[i]) - hull.normal) < 1e-12;
+  }
+  hull.centre = (lower + upper) * 0.5;
+  double highest = 0;
+  if (hull.is_flat) {
+    hull.lowest = highest = dot(hull.normal, Vec3d(origins[0]));
+    for (const Vec3& o : origins) {
+      const double h = dot(hull.normal, Vec3d(o));
+      hull.lowest = std::min(hull.lowest, h);
+      highest = std::max(highest, h);
+    }
+    hull.slack = highest - hull.lowest;
+    hull.is_flat = hull.slack <= 1e-6 * hull.magnitude;
+  }
+  if (!hull.is_flat) {
+    hull.slack = 0;
+    hull.count = 8;
+    for (size_t i = 0; i < 8; ++i)
+      hull.corners[i] = {(i & 1) != 0 ? upper.x : lower.x, (i & 2) != 0 ? upper.y : lower.y,
+                         (i & 4) != 0 ? upper.z : lower.z};
+    return hull;
+  }
+  const Framed frame(hull.normal);
+  const Vec3d along = main_direction(origins, frame, hull.centre);
+  const Vec3d across = cross(hull.normal, along);
+  double least_a = 0, most_a = 0, least_b = 0, most_b = 0;
+  for (const Vec3& o : origins) {
+    const Vec3d d = Vec3d(o) - hull.centre;
+    const double a = dot(d, along), b = dot(d, across);
+    least_a = std::min(least_a, a);
+    most_a = std::max(most_a, a);
+    least_b = std::min(least_b, b);
+    most_b = std::max(most_b, b);
+  }
+  const Vec3d base =
+      hull.centre + hull.normal * (0.5 * (hull.lowest + highest) - dot(hull.normal, hull.centre));
+  hull.count = 4;
+  hull.corners[0] = base + along * least_a + across * least_b;
+  hull.corners[1] = base + along * most_a + across * least_b;
+  hull.corners[2] = base + along * most_a + across * most_b;
+  hull.corners[3] = base + along * least_a + across * most_b;
+  return hull;
+}
+
+namespace {
+
+struct Bodies {
+  std::span<const Vec3d> a, b;
+};
+
+// Adds the plane through edge (p, q) and corner c if both bodies lie on one side of it.
+void add_if_supporting(const Bodies& bodies, const Vec3d& p, const Vec3d& q, const Vec3d& c,
+                       double margin, double tolerance, Shaft& shaft) {
+  const Vec3d n = cross(q - p, c - p);
+  const double size = length(n);
+  if (!(size > 1e-12 * length(q - p) * length(c - p)) || !(size > 0)) return;
+  const Vec3d unit = n / size;
+  const double distance = dot(unit, p);
+  double least = 0, most = 0;
+  for (const std::span<const Vec3d> body : {bodies.a, bodies.b})
+    for (const Vec3d& v : body) {
+      const double h = dot(unit, v) - distance;
+      least = std::min(least, h);
+      most = std::max(most, h);
+      if (most > tolerance && least < -tolerance) return;
+    }
+  if (shaft.count >= Shaft::most_planes) return;
+  Plane& plane = shaft.planes[size_t(shaft.count)];
+  if (most <= tolerance)
+    plane = {Vec3(unit), float(distance + most + margin)};
+  else
+    plane = {Vec3(-unit), float(-distance - least + margin)};
+  for (int i = 0; i < shaft.count; ++i)
+    if (dot(shaft.planes[size_t(i)].normal, plane.normal) > 0.99999f) return;
+  ++shaft.count;
+}
+
+constexpr int box_edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
+                                  {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+constexpr int rectangle_edges[4][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+
+}  // namespace
+
+Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
+                 double scene_magnitude) {
+  Shaft shaft;
+  // Planes are tested in single precision against coordinates up to scene_magnitude.
+  const double margin = 5e-7 * std::max(scene_magnitude, hull.magnitude);
+  const std::span<const Vec3d> corners(hull.corners.data(), size_t(hull.count));
+  double lowest = dot(normal, outline[0]);
+  for (const Vec3d& v : outline) lowest = std::min(lowest, dot(normal, v));
+  // Shadow rays end 8e-6 of the largest coordinate before the source: what does not rise a quarter
+  // of that over its plane (the source itself, the ceiling it is set into) hides nothing.
+  double largest = hull.magnitude;
+  for (const Vec3d& v : outline) largest = std::max(largest, largest_coordinate(v));
+  shaft.planes[0] = {Vec3(-normal), float(-lowest - 2e-6 * largest)};
+  shaft.count = 1;
+  if (hull.is_flat)
+    shaft.planes[size_t(shaft.count++)] = {Vec3(-hull.normal), float(-hull.lowest + margin)};
+
+  const Bodies bodies{corners, outline};
+  const double tolerance = 1e-9 * std::max(scene_magnitude, hull.magnitude);
+  const double slack = margin + hull.slack;
+  for (size_t i = 0; i < outline.size(); ++i)
+    for (const Vec3d& c : corners)
+      add_if_supporting(bodies, outline[i], outline[(i + 1) % outline.size()], c, slack, tolerance,
+                        shaft);
+  const auto edges = hull.is_flat ? std::span(rectangle_edges) : std::span<const int[2]>(box_edges);
+  for (const auto& e : edges)
+    for (const Vec3d& v : outline)
+      add_if_supporting(bodies, corners[size_t(e[0])], corners[size_t(e[1])], v, slack, tolerance,
+                        shaft);
+  return shaft;
+}
+
+}  // namespace troffer

@@ -1,0 +1,283 @@
+#include "trace/occluders.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/simd.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t most_planes = 32;
+constexpr uint32_t leaf_size = 4;
+
+// Planes side by side, padded with ones that nothing is outside of.
+struct PlaneSet {
+  alignas(64) float x[most_planes];
+  alignas(64) float y[most_planes];
+  alignas(64) float z[most_planes];
+  alignas(64) float distance[most_planes];
+  int count = 0, padded = 0;
+
+  explicit PlaneSet(std::span<const Plane> planes) {
+    for (const Plane& p : planes.first(std::min(planes.size(), most_planes))) {
+      x[count] = p.normal.x;
+      y[count] = p.normal.y;
+      z[count] = p.normal.z;
+      distance[count++] = p.distance;
+    }
+    padded = (count + 15) / 16 * 16;
+    for (int i = count; i < padded; ++i) {
+      x[i] = y[i] = z[i] = 0;
+      distance[i] = std::numeric_limits<float>::infinity();
+    }
+  }
+};
+
+// outside[i] is not 0 where box i of 8 lies outside one plane.
+TROFFER_MULTIVERSION
+void boxes_outside(const float* __restrict lower, const float* __restrict upper,
+                   const float* __restrict x, const float* __restrict y, const float* __restrict z,
+                   const float* __restrict distance, int planes, uint32_t* __restrict outside) {
+  for (int i = 0; i < 8; ++i) outside[i] = 0;
+  for (int p = 0; p < planes; ++p) {
+    // the corner that lies farthest inwards
+    const float* bx = x[p] > 0 ? lower : upper;
+    const float* by = (y[p] > 0 ? lower : upper) + 8;
+    const float* bz = (z[p] > 0 ? lower : upper) + 16;
+    for (int i = 0; i < 8; ++i)
+      outside[i] |= bx[i] * x[p] + by[i] * y[p] + bz[i] * z[p] > distance[p] ? 1u : 0u;
+  }
+}
+
+TROFFER_MULTIVERSION
+uint32_t facet_outside(const float* __restrict v, const float* __restrict x,
+                       const float* __restrict y, const float* __restrict z,
+                       const float* __restrict distance, int padded_planes) {
+  uint32_t outside = 0;
+  for (int p = 0; p < padded_planes; ++p) {
+    const float a = v[0] * x[p] + v[1] * y[p] + v[2] * z[p];
+    const float b = v[3] * x[p] + v[4] * y[p] + v[5] * z[p];
+    const float c = v[6] * x[p] + v[7] * y[p] + v[8] * z[p];
+    const float d = v[9] * x[p] + v[10] * y[p] + v[11] * z[p];
+    const float ab = a < b ? a : b, cd = c < d ? c : d;
+    outside |= (ab < cd ? ab : cd) > distance[p] ? 1u : 0u;
+  }
+  return outside;
+}
+
+bool is_outside(const Quad& q, const PlaneSet& planes) {
+  return facet_outside(&q[0].x, planes.x, planes.y, planes.z, planes.distance, planes.padded) != 0;
+}
+
+bool is_outside(const Box& b, const PlaneSet& planes) {
+  for (int p = 0; p < planes.count; ++p)
+    if ((planes.x[p] > 0 ? b.lower.x : b.upper.x) * planes.x[p] +
+            (planes.y[p] > 0 ? b.lower.y : b.upper.y) * planes.y[p] +
+            (planes.z[p] > 0 ? b.lower.z : b.upper.z) * planes.z[p] >
+        planes.distance[p])
+      return true;
+  return false;
+}
+
+// The tree as rtcBuildBVH makes it; children of a node lie where its allocator put them.
+struct RawNode {
+  uint32_t child_count = 0;  // 0: a leaf
+  uint32_t item_count = 0;
+  RawNode* child[8] = {};
+  RTCBounds bounds[8] = {};
+  uint32_t items[leaf_size] = {};
+};
+
+RawNode* new_node(RTCThreadLocalAllocator allocator) {
+  return new (rtcThreadLocalAlloc(allocator, sizeof(RawNode), 64)) RawNode;
+}
+
+void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void*) {
+  RawNode* node = new_node(allocator);
+  node->child_count = count;
+  return node;
+}
+
+void set_children(void* node, void** children, unsigned count, void*) {
+  for (unsigned i = 0; i < count; ++i)
+    static_cast<RawNode*>(node)->child[i] = static_cast<RawNode*>(children[i]);
+}
+
+void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
+  for (unsigned i = 0; i < count; ++i) static_cast<RawNode*>(node)->bounds[i] = *bounds[i];
+}
+
+void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives,
+                  size_t count, void*) {
+  RawNode* node = new_node(allocator);
+  node->item_count = uint32_t(count);
+  for (size_t i = 0; i < count; ++i) node->items[i] = primitives[i].primID;
+  // how primitives are dealt to threads must not show
+  std::sort(node->items, node->items + count);
+  return node;
+}
+
+struct Device {
+  RTCDevice device = rtcNewDevice(nullptr);
+  RTCBVH bvh = nullptr;
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  ~Device() {
+    if (bvh != nullptr) rtcReleaseBVH(bvh);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+};
+
+RTCBuildPrimitive build_primitive(const Box& b, uint32_t id) {
+  return {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, id};
+}
+
+Box bounds_of(const Quad& q) {
+  Box b;
+  for (const Vec3& v : q) b.grow(v);
+  return b;
+}
+
+}  // namespace
+
+void Occluders::build_tree() {
+  std::vector<RTCBuildPrimitive> primitives;
+  primitives.reserve(facets_.size() + others_.size());
+  for (const Quad& q : facets_)
+    primitives.push_back(build_primitive(bounds_of(q), uint32_t(primitives.size())));
+  for (const Box& b : others_)
+    primitives.push_back(build_primitive(b, uint32_t(primitives.size())));
+  if (primitives.size() <= leaf_size) {
+    for (uint32_t i = 0; i < primitives.size(); ++i) leaf_items_.push_back(i);
+    root_leaf_count_ = uint32_t(primitives.size());
+    return;
+  }
+
+  Device embree;
+  if (embree.device == nullptr) throw EnvironmentError("cannot start Embree");
+  embree.bvh = rtcNewBVH(embree.device);
+  RTCBuildArguments args = rtcDefaultBuildArguments();
+  args.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+  args.maxBranchingFactor = 8;
+  args.maxDepth = 64;
+  args.minLeafSize = 1;
+  args.maxLeafSize = leaf_size;
+  args.traversalCost = 1;
+  args.intersectionCost = 1;
+  args.bvh = embree.bvh;
+  args.primitives = primitives.data();
+  args.primitiveCount = primitives.size();
+  args.primitiveArrayCapacity = primitives.size();
+  args.createNode = create_node;
+  args.setNodeChildren = set_children;
+  args.setNodeBounds = set_bounds;
+  args.createLeaf = create_leaf;
+  const auto* root = static_cast<const RawNode*>(rtcBuildBVH(&args));
+  if (root == nullptr || rtcGetDeviceError(embree.device) != RTC_ERROR_NONE)
+    throw EnvironmentError("cannot build the hierarchy of occluders: out of memory");
+
+  // Copied depth first: the layout then does not depend on who allocated what.
+  struct Open {
+    const RawNode* raw;
+    uint32_t parent, slot;
+  };
+  const auto add_leaf = [&](const RawNode& leaf) {
+    const auto first = uint32_t(leaf_items_.size());
+    leaf_items_.insert(leaf_items_.end(), leaf.items, leaf.items + leaf.item_count);
+    return first;
+  };
+  if (root->child_count == 0) {
+    add_leaf(*root);
+    root_leaf_count_ = root->item_count;
+    return;
+  }
+  std::vector<Open> open{{root, 0, 8}};
+  while (!open.empty()) {
+    const Open o = open.back();
+    open.pop_back();
+    const auto index = uint32_t(nodes_.size());
+    if (o.slot < 8) nodes_[o.parent].child[o.slot] = index;
+    nodes_.emplace_back();
+    Node& node = nodes_.back();
+    for (uint32_t i = 0; i < 8; ++i) {
+      const bool is_used = i < o.raw->child_count;
+      const RTCBounds& b = o.raw->bounds[i];
+      const float lower[3] = {b.lower_x, b.lower_y, b.lower_z};
+      const float upper[3] = {b.upper_x, b.upper_y, b.upper_z};
+      for (int a = 0; a < 3; ++a) {
+        node.lower[a][i] = is_used ? lower[a] : 0;
+        node.upper[a][i] = is_used ? upper[a] : 0;
+      }
+      node.child[i] = 0;
+      node.count[i] = 255;
+      if (!is_used) continue;
+      const RawNode* child = o.raw->child[i];
+      node.count[i] = uint8_t(child->item_count);
+      if (child->child_count == 0)
+        node.child[i] = add_leaf(*child);
+      else
+        open.push_back({child, index, i});
+    }
+  }
+}
+
+void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found) const {
+  const PlaneSet set(planes);
+  const auto facets = uint32_t(facets_.size());
+  // False when the list has become too long.
+  const auto look_at_leaf = [&](uint32_t first, uint32_t count) {
+    for (uint32_t i = first; i < first + count; ++i) {
+      const uint32_t item = leaf_items_[i];
+      if (item >= facets) {
+        found.others += is_outside(others_[item - facets], set) ? 0 : 1;
+      } else if (!is_outside(facets_[item], set)) {
+        if (found.facets.size() >= most) return false;
+        found.facets.push_back(item);
+      }
+    }
+    return true;
+  };
+  if (nodes_.empty()) {
+    found.is_complete = look_at_leaf(0, root_leaf_count_) && found.is_complete;
+    return;
+  }
+  std::array<uint32_t, 64 * 8> stack;  // depth × children: it cannot overflow
+  size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    ++found.visited_nodes;
+    alignas(32) uint32_t outside[8];
+    boxes_outside(&node.lower[0][0], &node.upper[0][0], set.x, set.y, set.z, set.distance,
+                  set.count, outside);
+    for (uint32_t i = 0; i < 8; ++i) {
+      if (outside[i] != 0 || node.count[i] == 255) continue;
+      if (node.count[i] == 0) {
+        stack[size++] = node.child[i];
+      } else if (!look_at_leaf(node.child[i], node.count[i])) {
+        found.is_complete = false;
+        return;
+      }
+    }
+  }
+}
+
+bool Occluders::may_meet(uint32_t facet, std::span<const Plane> planes) const {
+  return !is_outside(facets_[facet], PlaneSet(planes));
+}
+
+uint32_t Occluders::facet_of(uint32_t geometry, uint32_t primitive) const {
+  if (geometry >= facet_of_.size() || primitive >= facet_of_[geometry].size()) return no_facet;
+  return facet_of_[geometry][primitive];
+}
+
+}  // namespace troffer

@@ -1,0 +1,78 @@
+// Everything in a scene that can hide a light, as flat convex facets in a bounding-volume hierarchy
+// that is asked for what meets a convex region (a shaft).
+//
+// Triangles that share an edge and lie in one plane are joined to convex quadrilaterals where that
+// is exact to rounding, so that a wall is one facet. What is no opaque facet (spheres, disks,
+// meshes with an alpha mask) is reported by its bounds alone: only rays can tell what it hides.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/box.h"
+#include "base/quad.h"
+#include "scene/scene.h"
+
+namespace troffer {
+
+constexpr uint32_t no_facet = 0xffffffffu;
+
+class Occluders {
+ public:
+  // Throws EnvironmentError if memory runs out. The scene is not kept.
+  explicit Occluders(const Scene& scene);
+
+  size_t facet_count() const { return facets_.size(); }
+  const Quad& facet(uint32_t id) const { return facets_[id]; }
+  // The facet that a hit (trace/ray.h) lies on; no_facet for what is none.
+  uint32_t facet_of(uint32_t geometry, uint32_t primitive) const;
+
+  // Facets of one connected piece of surface. Where it is closed (each edge belongs to exactly two
+  // facets that run along it in opposite directions), a segment with both ends outside `bounds`
+  // crosses as many facets from the front as from the back: facets of one side suffice to tell
+  // whether it is hidden.
+  struct Component {
+    Box bounds;
+    bool is_closed = false;
+  };
+  const Component& component_of(uint32_t facet) const { return components_[component_[facet]]; }
+
+  // Appends to `facets` the ids of all facets of which a point may lie inside all planes, until
+  // more than `most` have been found; counts what is no facet in `others`. False if it stopped
+  // early: the list is then incomplete. A facet is left out only if one plane has all of it
+  // outside.
+  struct Found {
+    std::vector<uint32_t> facets;
+    uint32_t others = 0;
+    bool is_complete = true;
+    uint64_t visited_nodes = 0;
+  };
+  void gather(std::span<const Plane> planes, size_t most, Found& found) const;
+
+  // Whether some point of the facet may lie inside all planes, in the sense of gather.
+  bool may_meet(uint32_t facet, std::span<const Plane> planes) const;
+
+ private:
+  // Bounds of eight children side by side; a child is a node, a leaf, or nothing.
+  struct alignas(64) Node {
+    float lower[3][8], upper[3][8];
+    uint32_t child[8];  // node index; leaf: first entry of leaf_items_
+    uint8_t count[8];   // leaf: items; 0: a node; 255: nothing
+  };
+  void join_and_add(const Scene& scene, uint32_t mesh);
+  void add_others(const Scene& scene);
+  void build_tree();
+
+  std::vector<Quad> facets_;
+  std::vector<uint32_t> component_;  // per facet
+  std::vector<Component> components_;
+  std::vector<Box> others_;
+  std::vector<std::vector<uint32_t>> facet_of_;  // per mesh, per triangle
+  std::vector<Node> nodes_;
+  std::vector<uint32_t> leaf_items_;  // facet, or facet_count() + other
+  uint32_t root_leaf_count_ = 0;      // no nodes: everything is one leaf
+};
+
+}  // namespace troffer

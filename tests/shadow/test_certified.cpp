@@ -1,0 +1,199 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "brute_force.h"
+#include "emitter/irradiance.h"
+#include "shadow/certified_cluster.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// Visible share by a fine grid over the source; weights as the irradiance's.
+double reference_share(const BruteForceScene& scene, const FlatSource& s, const ShadowReceiver& x,
+                       int n) {
+  double all = 0, seen = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double u = (i + 0.5) / n, v = (j + 0.5) / n;
+      if (!s.outline.empty() && u + v > 1) continue;
+      const Vec3d y = s.plane.origin + s.plane.u * u + s.plane.v * v;
+      const Vec3d d = y - Vec3d(x.position);
+      const double w = std::max(0.0, dot(d, Vec3d(x.normal))) / std::pow(length_squared(d), 2);
+      all += w;
+      if (w > 0 && scene.is_hidden(Vec3d(x.origin), y, 0) != 1) seen += w;
+    }
+  return all > 0 ? seen / all : 0;
+}
+
+ShadowReceiver receiver(const Vec3& p, const Vec3& n, uint64_t stream) {
+  return {p, n, p + n * 4e-6f, stream};
+}
+
+}  // namespace
+
+TEST_CASE("visible shares against a grid of rays on random scenes") {
+  double error2 = 0, mean = 0;
+  int pairs = 0;
+  for (uint64_t seed = 0; seed < 150; ++seed) {
+    Random r(seed + 31);
+    BruteForceScene scene;
+    const FlatSource source = random_source(r);
+    add_random_facets(r, scene);
+    const std::vector<ShadowReceiver> receivers = random_receivers(r, 4);
+    CertifiedOptions options;
+    options.lattice = fine_lattice;
+    CertifiedEstimator estimator(options);
+    FoundFacets found;
+    std::vector<SourceVisibility> out(receivers.size());
+    estimator.evaluate(source, receivers, scene, found, out);
+    for (size_t i = 0; i < receivers.size(); ++i) {
+      if (out[i].unoccluded < 1e-4f) continue;
+      const double e = double(out[i].visible) - reference_share(scene, source, receivers[i], 60);
+      error2 += e * e;
+      mean += e;
+      ++pairs;
+    }
+  }
+  CHECK(pairs > 300);
+  CHECK(std::sqrt(error2 / pairs) < 0.006);
+  CHECK(std::abs(mean / pairs) < 0.001);
+}
+
+TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
+  const FlatSource source{{{-0.8, -0.7, 2}, {1.5, 0, 0}, {0.2, 1.4, 0}, {0, 0, -1}}, {}};
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({0.1f, -0.4f, 1.1f}, {0.7f, 0.1f, 0.05f}, {-0.1f, 0.6f, 0}),
+                  parallelogram_facet({-0.5f, -0.5f, 0.6f}, {0.02f, 0, 0}, {0.1f, 0.9f, 0.3f}),
+                  parallelogram_facet({-0.2f, 0.1f, 1.9f}, {0.2f, 0, 0.1f}, {0, 0.2f, 0.2f})};
+  const ShadowReceiver x = receiver({0.05f, -0.1f, 0}, normalize(Vec3{0.2f, 0.1f, 1}), 0);
+  const double expected = reference_share(scene, source, x, 1500);
+  REQUIRE(expected > 0.2);
+  REQUIRE(expected < 0.9);
+  for (const bool is_complete : {true, false}) {
+    for (const MaskLattice& lattice : {coarse_lattice, fine_lattice}) {
+      CertifiedOptions options;
+      options.lattice = lattice;
+      options.longest_list = is_complete ? 64 : 1;  // one facet known, two left to rays
+      options.most_rays = 4;
+      CertifiedEstimator estimator(options);
+      double sum = 0, sum2 = 0, bound = 0;
+      constexpr int seeds = 4000;
+      for (int i = 0; i < seeds; ++i) {
+        FoundFacets found;
+        ShadowReceiver here = x;
+        here.stream = hash_of(uint64_t(i), 5u);
+        SourceVisibility out;
+        estimator.evaluate(source, {&here, 1}, scene, found, {&out, 1});
+        CHECK(out.answer == (is_complete ? ShadowAnswer::masked : ShadowAnswer::mixed));
+        sum += double(out.visible);
+        sum2 += double(out.visible) * double(out.visible);
+        bound += double(out.variance);
+      }
+      const double mean = sum / seeds, variance = sum2 / seeds - mean * mean;
+      CHECK(std::abs(mean - expected) < 4 * std::sqrt(variance / seeds) + 2e-4);
+      CHECK(variance <= 1.5 * bound / seeds);
+      MESSAGE(lattice.samples(), " samples, ", is_complete ? "complete" : "with rays", ": ",
+              std::sqrt(variance), " against ", std::sqrt(bound / seeds));
+    }
+  }
+}
+
+TEST_CASE("what nothing hides is exact and costs no ray") {
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({5, 5, 1}, {1, 0, 0}, {0, 1, 0})};
+  Random r(3);
+  for (int i = 0; i < 100; ++i) {
+    const FlatSource source = random_source(r);
+    std::vector<ShadowReceiver> receivers = random_receivers(r, 8);
+    std::vector<SourceVisibility> out(receivers.size());
+    CertifiedEstimator estimator;
+    FoundFacets found;
+    estimator.evaluate(source, receivers, scene, found, out);
+    for (size_t k = 0; k < out.size(); ++k) {
+      const double expected = polygon_irradiance(source.corners(), Vec3d(receivers[k].position),
+                                                 Vec3d(receivers[k].normal), Sides::both);
+      if (out[k].answer == ShadowAnswer::below) continue;
+      CHECK(double(out[k].unoccluded) == doctest::Approx(expected).epsilon(1e-5));
+      CHECK(out[k].visible == 1);
+      CHECK(out[k].rays == 0);
+    }
+  }
+  CHECK(scene.segments == 0);
+}
+
+TEST_CASE("a light set into a ceiling is not hidden by it, nor by itself; a shade hides it") {
+  const FlatSource source{{{-0.5, -0.5, 3}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}};
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({-0.5f, -0.5f, 3}, {1, 0, 0}, {0, 1, 0}),  // the light
+                  parallelogram_facet({-4, -4, 3}, {8, 0, 0}, {0, 8, 0}),        // the ceiling
+                  parallelogram_facet({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}),        // the floor
+                  parallelogram_facet({-4, -4, 0}, {8, 0, 0}, {0, 0, 3})};       // a wall
+  std::vector<ShadowReceiver> receivers;
+  for (int i = 0; i < 64; ++i)
+    receivers.push_back(
+        receiver({float(i % 8) * 0.1f, float(i / 8) * 0.1f, 0}, {0, 0, 1}, uint64_t(i)));
+  std::vector<SourceVisibility> out(receivers.size());
+  CertifiedEstimator estimator;
+  FoundFacets found;
+  estimator.evaluate(source, receivers, scene, found, out);
+  for (const SourceVisibility& v : out) CHECK(v.answer == ShadowAnswer::lit);
+  scene.facets.push_back(parallelogram_facet({-0.6f, -0.6f, 2.99f}, {1.2f, 0, 0}, {0, 1.2f, 0}));
+  estimator.evaluate(source, receivers, scene, found, out);
+  for (const SourceVisibility& v : out) CHECK(v.answer == ShadowAnswer::dark);
+}
+
+TEST_CASE("thin occluders: none missed, mean error within 0.3 % of the unoccluded value") {
+  const FlatSource source{{{-0.5, -0.5, 3}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}};
+  const auto mean_error = [&](BruteForceScene& scene) {
+    std::vector<ShadowReceiver> receivers;
+    for (int i = 0; i < 64; ++i)
+      receivers.push_back(receiver({0.02f + float(i % 8) * 0.03f, float(i / 8) * 0.03f, 0},
+                                   {0, 0, 1}, hash_of(uint64_t(i), 1u)));
+    std::vector<SourceVisibility> out(receivers.size());
+    CertifiedEstimator estimator;
+    FoundFacets found;
+    estimator.evaluate(source, receivers, scene, found, out);
+    double error = 0;
+    for (size_t i = 0; i < out.size(); ++i) {
+      CHECK(out[i].answer == ShadowAnswer::masked);
+      if (i % 16 == 0)
+        error += (double(out[i].visible) - reference_share(scene, source, receivers[i], 400)) / 4;
+    }
+    return std::abs(error);
+  };
+  BruteForceScene wire;
+  wire.facets = {parallelogram_facet({-2, 0.1f, 1.5f}, {4, 0.3f, 0}, {0, 0.001f, 0})};
+  CHECK(mean_error(wire) < 0.003);
+  BruteForceScene comb;
+  for (int i = 0; i < 64; ++i)
+    comb.facets.push_back(
+        parallelogram_facet({-1 + float(i) / 32, -1, 1.2f}, {1.0f / 64, 0, 0}, {0, 2, 0}));
+  CHECK(mean_error(comb) < 0.006);
+  BruteForceScene speck;
+  speck.facets = {parallelogram_facet({0, 0, 1.5f}, {0.01f, 0, 0}, {0, 0.01f, 0})};
+  CHECK(mean_error(speck) < 0.003);
+}
+
+TEST_CASE("clusters: planes stay together, each receiver is in one") {
+  Random r(2);
+  std::vector<Vec3> positions, normals;
+  for (int i = 0; i < 64; ++i) {
+    const bool is_wall = i % 3 == 0;
+    const float a = r.next_float(), b = r.next_float();
+    positions.push_back(is_wall ? Vec3{1, a, b} : Vec3{a, b, 0});
+    normals.push_back(is_wall ? Vec3{-1, 0, 0} : Vec3{0, 0, 1});
+  }
+  ReceiverClusters clusters;
+  cluster_receivers(positions, normals, 1, clusters);
+  REQUIRE(clusters.size() == 2);
+  std::vector<int> seen(positions.size(), 0);
+  for (size_t c = 0; c < clusters.size(); ++c)
+    for (const uint32_t m : clusters.members(c)) {
+      ++seen[m];
+      CHECK(normals[m].x == normals[clusters.members(c)[0]].x);
+    }
+  for (const int s : seen) CHECK(s == 1);
+}
