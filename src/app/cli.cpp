@@ -16,17 +16,18 @@ namespace troffer {
 namespace {
 
 const std::map<std::string, Aov> aov_names{
-    {"albedo", Aov::albedo},           {"normal", Aov::normal}, {"depth", Aov::depth},
-    {"position", Aov::position},       {"direct", Aov::direct}, {"indirect", Aov::indirect},
-    {"shadow_rays", Aov::shadow_rays}, {"error", Aov::error}};
+    {"albedo", Aov::albedo},           {"normal", Aov::normal},   {"depth", Aov::depth},
+    {"position", Aov::position},       {"direct", Aov::direct},   {"indirect", Aov::indirect},
+    {"shadow_rays", Aov::shadow_rays}, {"sources", Aov::sources}, {"error", Aov::error}};
 
 // Values as typed; turned into options after parsing, where errors become UsageError.
 struct RawOptions {
   std::string size, crop, indirect = "auto";
   std::vector<std::string> aovs;
-  // Belong to methods that this version does not have; accepted and checked all the same.
-  double variance = 0.01, error = 0.01;
-  std::string coherence = "on";
+  // Belongs to a method that this version does not have; accepted and checked all the same.
+  double error = 0.01;
+  int shadow_rays = -1;  // -1: by the method
+  std::string coherence = "on", selection = "on";
 };
 
 std::vector<int> integers(const std::string& text, char separator, size_t count,
@@ -49,8 +50,17 @@ std::vector<int> integers(const std::string& text, char separator, size_t count,
 
 Indirect parse_indirect(const std::string& name) {
   if (name == "auto") return Indirect::automatic;
-  if (name == "none") return Indirect::none;
-  throw UsageError("--indirect radiosity is not available in this version");
+  return name == "none" ? Indirect::none : Indirect::radiosity;
+}
+
+// kj92 with 0 initial rays samples no source: the picture is the radiosity solution.
+void apply_shadow_rays(int asked, RenderOptions& o) {
+  if (asked < 0) return;
+  BintreeOptions& tree = o.kj92.sampling.tree;
+  if (asked == 0) o.kj92.selection.is_restricted = true;
+  o.shadow_rays = std::max(asked, 1);
+  tree.initial_rays = std::max(asked, 1);
+  tree.most_rays = std::max(tree.most_rays, tree.initial_rays);
 }
 
 void apply(const RawOptions& raw, RenderOptions& o) {
@@ -70,6 +80,9 @@ void apply(const RawOptions& raw, RenderOptions& o) {
     std::copy(v.begin(), v.end(), o.crop.begin());
   }
   o.indirect = parse_indirect(raw.indirect);
+  apply_shadow_rays(raw.shadow_rays, o);
+  o.kj92.sampling.has_coherence = raw.coherence == "on";
+  o.kj92.selection.is_enabled = raw.selection == "on";
   for (const std::string& name : raw.aovs) {
     const auto it = aov_names.find(name);
     if (it == aov_names.end()) throw UsageError("--aov: there is no layer '" + name + "'");
@@ -78,28 +91,65 @@ void apply(const RawOptions& raw, RenderOptions& o) {
   }
 }
 
+void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
+  TreeSamplingOptions& sampling = c.options.kj92.sampling;
+  BintreeOptions& tree = sampling.tree;
+  const CLI::Range change(0.0f, 1.0f);
+  r->add_option("--variance", tree.allowed_variance,
+                "kj92: allowed standard error, of the unoccluded light; 0: --most-rays everywhere")
+      ->check(CLI::Range(0.0f, 1000.0f))
+      ->capture_default_str();
+  r->add_option("--most-rays", tree.most_rays, "kj92: most shadow rays per source and viewing ray")
+      ->check(CLI::Range(1, 1 << 16))
+      ->capture_default_str();
+  r->add_option("--mean-change", tree.mean_change,
+                "kj92: also stop where the mean changes by less; 0: never")
+      ->check(change)
+      ->capture_default_str();
+  r->add_option("--level-difference", tree.level_difference,
+                "kj92: levels by which neighbouring cells of a source may differ")
+      ->check(CLI::Range(0, 24))
+      ->capture_default_str();
+  r->add_option("--probe-rays", sampling.probe_rays,
+                "kj92: rays to strong sources that seem hidden or open")
+      ->check(CLI::Range(1, 1 << 10))
+      ->capture_default_str();
+  r->add_option("--coherence", raw.coherence, "kj92: reuse of sampling patterns, on or off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  r->add_option("--selection", raw.selection,
+                "kj92: choose sources by the preprocessing, on or off (all emitters, everywhere)")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  r->add_option("--select", c.selected_lights,
+                "kj92: only these sources may be sampled; all others count as indirect light")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  r->add_option("--solution", c.solution, "kj92: a file made by troffer radiosity");
+}
+
 void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   CLI::App* r = app.add_subcommand("render", "Render an image of a scene");
   r->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
   r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
       ->required()
       ->allow_extra_args(false);
-  r->add_option("--method", c.method, "How light is computed: path, fixed")->capture_default_str();
+  r->add_option("--method", c.method, "How light is computed: path, fixed, kj92")
+      ->capture_default_str();
   r->add_option("--spp", c.options.spp, "Viewing rays per pixel")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
-  r->add_option("--shadow-rays", c.options.shadow_rays,
-                "fixed: shadow rays per source and viewing ray")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
-  r->add_option("--variance", raw.variance, "kj92: allowed standard error")
-      ->check(CLI::NonNegativeNumber);
+  r->add_option("--max-spp", c.options.max_spp,
+                "kj92: refine where pixels differ, up to so many viewing rays [as --spp]")
+      ->check(CLI::Range(1, 1 << 20));
+  r->add_option("--shadow-rays", raw.shadow_rays,
+                "fixed: shadow rays per source and viewing ray [64]; kj92: initial ones [8]")
+      ->check(CLI::Range(0, 1 << 20));
+  add_kj92(r, c, raw);
   r->add_option("--error", raw.error, "certified: allowed standard error")
       ->check(CLI::PositiveNumber);
-  r->add_option("--coherence", raw.coherence, "kj92: reuse of sampling patterns, on or off")
-      ->check(CLI::IsMember({"on", "off"}));
   r->add_option("--indirect", raw.indirect,
-                "auto, or none: only light that reaches surfaces straight from sources")
+                "auto; radiosity: interpolated (kj92); none: only light straight from sources")
       ->check(CLI::IsMember({"auto", "radiosity", "none"}))
       ->capture_default_str();
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
@@ -120,7 +170,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
   r->add_option("--aov", raw.aovs,
                 "Further layers for .exr: albedo,normal,depth,position,direct,indirect,"
-                "shadow_rays,error")
+                "shadow_rays,sources,error")
       ->delimiter(',')
       ->allow_extra_args(false);
   r->add_option("--exposure", c.exposure, "Stops, for .png")
@@ -147,7 +197,8 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
   s->add_option("--points", c.points, "CSV file with header x,y,z,nx,ny,nz")->required();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
-  s->add_option("--method", c.method, "How light is computed: path, fixed")->capture_default_str();
+  s->add_option("--method", c.method, "How light is computed: path, fixed, kj92")
+      ->capture_default_str();
   s->add_option("--spp", c.spp, "Samples per point [4096]")->check(CLI::Range(2, 1 << 26));
   s->add_option("--error", raw.error, "certified: allowed standard error")
       ->check(CLI::PositiveNumber);
@@ -199,6 +250,8 @@ int parse_and_run(int argc, const char* const* argv) {
     if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
     if (!std::isfinite(render.exposure)) throw UsageError("--exposure: not a number");
     apply(render_raw, render.options);
+    if (render.method != "kj92" && render_raw.shadow_rays == 0)
+      throw UsageError("--shadow-rays 0 belongs to --method kj92");
     return run_render(std::move(render));
   }
   if (app.got_subcommand("compare")) return run_compare(compare);

@@ -12,8 +12,10 @@
 #include "app/signals.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
+#include "image/read_image.h"
 #include "image/write_image.h"
 #include "render/camera.h"
+#include "render/radiosity.h"
 
 namespace troffer {
 
@@ -96,7 +98,7 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["masked"] = n.masked;
   j["mixed"] = n.mixed;
   j["nan_samples"] = n.nan_samples;
-  j["seconds"] = {{"import", t.import}, {"build", t.build}, {"preprocess", 0.0},
+  j["seconds"] = {{"import", t.import}, {"build", t.build}, {"preprocess", s.preprocess_seconds},
                   {"render", t.render}, {"write", t.write}, {"total", total}};
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
@@ -106,11 +108,37 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   return j.dump(2) + "\n";
 }
 
+// Null for methods that need none, and where it was interrupted.
+std::unique_ptr<Kj92Preparation> prepare(const PreparedScene& scene, RenderCommand& c,
+                                         const StopFlag& stop) {
+  if (c.options.method != Method::kj92) return nullptr;
+  if (!c.selected_lights.empty()) {
+    c.options.kj92.selection.is_restricted = true;
+    c.options.kj92.selection.only = emitters_named(scene.scene, c.selected_lights);
+  }
+  std::optional<RadiositySolution> solution;
+  if (!c.solution.empty())
+    solution =
+        load_radiosity(scene, read_file_bytes(c.solution), c.solution, nullptr, c.options.threads);
+  ProgressBar bar("radiosity", c.is_quiet);
+  return prepare_kj92(
+      scene, c.options.kj92, c.options.indirect == Indirect::none, std::move(solution),
+      c.options.threads, [&](double f) { bar.update(f); }, stop);
+}
+
+void check_method(const RenderCommand& c) {
+  if (c.options.method == Method::kj92) return;
+  if (c.options.indirect == Indirect::radiosity)
+    throw UsageError("--indirect radiosity belongs to --method kj92");
+  if (!c.solution.empty()) throw UsageError("--solution belongs to --method kj92");
+}
+
 }  // namespace
 
 int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
   c.options.method = parse_method(c.method);
+  check_method(c);
   for (const std::string& path : c.outputs) {
     image_format(path);  // a wrong ending is a usage error before any work is done
     check_can_write(path);
@@ -126,6 +154,8 @@ int run_render(RenderCommand c) {
   seconds.build = seconds_since(mark);
 
   const StopFlag& stop = install_stop_handlers();
+  const std::unique_ptr<Kj92Preparation> preparation = prepare(scene, c, stop);
+  c.options.preparation = preparation.get();
   RenderResult result;
   {
     ProgressBar bar("render", c.is_quiet);

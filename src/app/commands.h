@@ -31,6 +31,8 @@ struct RenderCommand {
   std::string stats;
   float exposure = 0;  // stops
   std::string tone_map = "filmic";
+  std::vector<std::string> selected_lights;  // kj92: empty: all may be sampled
+  std::string solution;                      // kj92: file, or empty
   std::string eye, target, up;  // "x,y,z"; override the camera
   float fov_deg = 60;
   bool is_quiet = false;
@@ -80,7 +82,7 @@ int run_info(const InfoCommand& command);
 // standard error unless is_quiet.
 Scene load_scene(const std::string& path, const std::vector<std::string>& lights, bool is_quiet);
 
-// "path" and "fixed"; UsageError for methods that do not exist (yet).
+// "path", "fixed" and "kj92"; UsageError for methods that do not exist (yet).
 Method parse_method(const std::string& name);
 
 // Parses the command line and runs it: the whole program but main.

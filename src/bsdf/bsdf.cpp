@@ -305,6 +305,26 @@ bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, 
   return is_finite(out.weight) && !out.weight.is_black();
 }
 
+Bsdf diffuse_part(const Bsdf& b) {
+  Bsdf d = b;
+  if (b.is_lambertian) return d;
+  d.fresnel = Bsdf::Fresnel::none;
+  d.has_transmission = d.is_smooth = false;
+  d.glass_again = d.glass_through = Rgb{0};
+  d.glass_weight = 0;
+  d.has_separable = !d.diffuse.is_black() || !d.metal_again.is_black();
+  return d;
+}
+
+Bsdf specular_part(const Bsdf& b) {
+  Bsdf s = b;
+  s.is_lambertian = false;
+  s.coat = Bsdf::Coat::none;
+  s.diffuse = s.metal_again = Rgb{0};
+  s.has_separable = !s.glass_again.is_black() || !s.glass_through.is_black();
+  return s;
+}
+
 Rgb albedo(const Bsdf& b, float cos_o) {
   if (b.is_lambertian) return b.diffuse;
   if (!(cos_o > 0)) return Rgb{0};

@@ -6,6 +6,7 @@
 
 #include "base/rgb.h"
 #include "base/vec.h"
+#include "integrate/shadow_record.h"
 #include "trace/ray.h"
 
 namespace troffer {
@@ -15,12 +16,15 @@ struct ViewingRays {
   std::vector<Ray> rays;
   std::vector<uint64_t> streams;  // names the random numbers of the ray's pixel
   std::vector<uint32_t> samples;  // which sample of that pixel
+  // Empty, or for each ray what is known of the rays around it (methods that compare patterns).
+  std::vector<NeighbourRecords> neighbours;
 
   size_t size() const { return rays.size(); }
   void clear() {
     rays.clear();
     streams.clear();
     samples.clear();
+    neighbours.clear();
   }
 };
 
@@ -44,6 +48,11 @@ struct RadianceBatch {
   std::vector<Rgb> albedo;
   std::vector<Vec3> normal, position;
   std::vector<uint8_t> is_hit;
+  // How many sources were treated there: sampled by shadow rays; probed, visible as it seems;
+  // probed, hidden as it seems.
+  std::vector<Rgb> sources;
+  // Empty unless asked for by resizing it to n (methods that compare patterns).
+  std::vector<ShadowRecord> records;
 
   void reset(size_t n) {
     direct.assign(n, Rgb{0});
@@ -53,6 +62,8 @@ struct RadianceBatch {
     normal.assign(n, Vec3{});
     position.assign(n, Vec3{});
     is_hit.assign(n, 0);
+    sources.assign(n, Rgb{0});
+    records.clear();
   }
 };
 

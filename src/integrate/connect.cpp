@@ -4,23 +4,19 @@
 
 namespace troffer {
 
-namespace {
-
-Ray shadow_ray_to(const Surface& s, const EmitterSample& light) {
+Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal) {
   Ray ray;
-  ray.origin = offset_origin(s, light.wi);
+  ray.origin = offset_origin(s, point - s.position);
   // The target moves off the emitter, towards this side of it, by twice what a ray that starts
   // there would: the emitter itself must not count.
   const float magnitude =
-      std::max({std::abs(light.point.x), std::abs(light.point.y), std::abs(light.point.z),
-                std::abs(s.position.x), std::abs(s.position.y), std::abs(s.position.z)});
-  const Vec3 target = light.point + light.normal * (2 * ray_offset(magnitude));
+      std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), std::abs(s.position.x),
+                std::abs(s.position.y), std::abs(s.position.z)});
+  const Vec3 target = point + normal * (2 * ray_offset(magnitude));
   ray.direction = target - ray.origin;
   ray.t_max = 1;
   return ray;
 }
-
-}  // namespace
 
 bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
              const LightPrimitive& light, const Vec2& u, LightConnection& out) {
@@ -39,7 +35,7 @@ bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
   if (out.value.is_black()) return false;
   out.pdf_light = s.pdf_solid_angle;
   out.pdf_bsdf = value.pdf;
-  out.shadow_ray = shadow_ray_to(v.surface, s);
+  out.shadow_ray = shadow_ray_to(v.surface, s.point, s.normal);
   return true;
 }
 

@@ -15,6 +15,10 @@ struct LightConnection {
   float pdf_bsdf = 0;   // with which the BSDF's sampling chooses this direction
 };
 
+// The ray from a surface to a point of a source whose unit normal towards the surface is given;
+// t_max = 1 stops it just before the source.
+Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal);
+
 // Connects v with the point of `light` that u picks. False where nothing can arrive.
 bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
              const LightPrimitive& light, const Vec2& u, LightConnection& out);

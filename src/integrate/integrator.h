@@ -15,7 +15,8 @@ struct IntegratorScratch {
 
 // One virtual call per batch, never per ray. Immutable: any number of threads may call radiance,
 // each with a scratch of its own. The result depends on the rays, streams and samples alone, not
-// on how they are cut into batches.
+// on what a scratch was used for before; and not on how rays are cut into batches, unless a method
+// says so (kj92).
 class Integrator {
  public:
   virtual ~Integrator() = default;

@@ -16,7 +16,7 @@ Rgb as_rgb(const Vec3d& v) {
 
 bool needs_first_hit(Aov a) {
   return a == Aov::albedo || a == Aov::normal || a == Aov::depth || a == Aov::position ||
-         a == Aov::shadow_rays;
+         a == Aov::shadow_rays || a == Aov::sources;
 }
 
 }  // namespace
@@ -33,6 +33,19 @@ Film::Film(const PixelRect& window, const std::vector<Aov>& aovs)
   if (std::any_of(aovs.begin(), aovs.end(), needs_first_hit)) first_hits_.resize(pixels_.size());
 }
 
+// Of the mean luminance, from the spread of the samples; 0 with fewer than two.
+double Film::standard_error(const Pixel& p) {
+  if (p.samples < 2) return 0;
+  const double n = p.samples, mean = p.sum_luminance / n;
+  return std::sqrt(std::max(0.0, p.sum_luminance_squared / n - mean * mean) / (n - 1));
+}
+
+PixelEstimate Film::estimate(int x, int y) const {
+  const Pixel& p =
+      pixels_[size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0)];
+  return {p.samples, p.samples > 0 ? p.sum_luminance / p.samples : 0, standard_error(p)};
+}
+
 bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
   const size_t at = size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
   Pixel& p = pixels_[at];
@@ -40,6 +53,7 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   if (!first_hits_.empty()) {
     FirstHit& f = first_hits_[at];
     f.shadow_rays += batch.shadow_rays[i];
+    f.sources += as_vec(batch.sources[i]);
     if (batch.is_hit[i] != 0) {
       f.albedo += as_vec(batch.albedo[i]);
       f.normal += Vec3d(batch.normal[i]);
@@ -110,16 +124,17 @@ Layer Film::make_layer(Aov aov) const {
         if (pixels_[i].samples > 0)
           layer.image.pixels[i] = Rgb{float(first_hits_[i].shadow_rays / pixels_[i].samples)};
       break;
+    case Aov::sources:
+      layer.name = "sources";
+      for (size_t i = 0; i < pixels_.size(); ++i)
+        if (pixels_[i].samples > 0)
+          layer.image.pixels[i] = as_rgb(first_hits_[i].sources * (1.0 / pixels_[i].samples));
+      break;
     case Aov::error:
       layer.name = "error";
       layer.channels = value;
-      for (size_t i = 0; i < pixels_.size(); ++i) {
-        const Pixel& p = pixels_[i];
-        if (p.samples < 2) continue;
-        const double n = p.samples, mean = p.sum_luminance / n;
-        const double variance = std::max(0.0, p.sum_luminance_squared / n - mean * mean) / (n - 1);
-        layer.image.pixels[i] = Rgb{float(std::sqrt(variance))};
-      }
+      for (size_t i = 0; i < pixels_.size(); ++i)
+        layer.image.pixels[i] = Rgb{float(standard_error(pixels_[i]))};
       break;
   }
   return layer;

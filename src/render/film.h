@@ -17,6 +17,12 @@ struct PixelRect {
   int height() const { return y1 - y0; }
 };
 
+// What is known of a pixel.
+struct PixelEstimate {
+  uint32_t samples = 0;
+  double luminance = 0, standard_error = 0;
+};
+
 class Film {
  public:
   // Bytes that a film of this many pixels takes.
@@ -30,6 +36,9 @@ class Film {
   // not finite count as black; returns whether it was finite.
   bool add(int x, int y, const RadianceBatch& batch, size_t i, float depth);
 
+  // (x, y) as in add().
+  PixelEstimate estimate(int x, int y) const;
+
   // The picture, then the AOVs in the order given.
   std::vector<Layer> layers() const;
 
@@ -40,10 +49,11 @@ class Film {
     uint32_t samples = 0;
   };
   struct FirstHit {  // sums over samples that hit something
-    Vec3d albedo, normal, position;
+    Vec3d albedo, normal, position, sources;
     double depth = 0, shadow_rays = 0;
     uint32_t hits = 0;
   };
+  static double standard_error(const Pixel& p);
   Layer make_layer(Aov aov) const;
 
   PixelRect window_;

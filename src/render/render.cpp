@@ -4,16 +4,17 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
-#include <utility>
+#include <optional>
 
 #include "base/error.h"
-#include "base/random.h"
 #include "integrate/fixed.h"
 #include "integrate/integrator.h"
+#include "integrate/kj92.h"
 #include "integrate/path.h"
-#include "integrate/purposes.h"
 #include "render/camera.h"
 #include "render/film.h"
+#include "render/refinement.h"
+#include "render/tile.h"
 
 namespace troffer {
 
@@ -30,17 +31,14 @@ constexpr double most_shadow_rays_per_tile = 1 << 22;
 // the program without a word.
 constexpr double most_film_bytes = 8.0 * (1 << 30);
 
-struct TileWork {
-  ViewingRays rays;
-  RadianceBatch radiance;
-  std::vector<std::pair<int, int>> pixels;  // of each ray
-  std::unique_ptr<IntegratorScratch> scratch;
-  Counters counters;
-};
-
-std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const RenderOptions& o) {
+std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const RenderOptions& o,
+                                            const Kj92Preparation* preparation) {
   if (o.method == Method::fixed)
     return std::make_unique<FixedIntegrator>(scene, FixedOptions{o.shadow_rays});
+  if (o.method == Method::kj92)
+    return std::make_unique<Kj92Integrator>(
+        scene, preparation->solution, preparation->selection,
+        Kj92Options{o.kj92.sampling, o.indirect == Indirect::none});
   PathOptions path;
   path.depth = o.depth;
   path.is_direct_only = o.indirect == Indirect::none;
@@ -53,32 +51,6 @@ int tile_side(const RenderOptions& o, size_t emitters) {
   int side = widest_tile;
   while (side > 1 && per_pixel * side * side > most_shadow_rays_per_tile) side /= 2;
   return side;
-}
-
-std::vector<PixelRect> tiles_of(const PixelRect& window, int side) {
-  std::vector<PixelRect> tiles;
-  for (int y = window.y0; y < window.y1; y += side)
-    for (int x = window.x0; x < window.x1; x += side)
-      tiles.push_back({x, y, std::min(x + side, window.x1), std::min(y + side, window.y1)});
-  return tiles;
-}
-
-void viewing_rays(const ViewingCamera& camera, const PixelRect& tile, int first_sample, int samples,
-                  uint64_t seed, TileWork& work) {
-  work.rays.clear();
-  work.pixels.clear();
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const uint64_t stream = hash_of(seed, uint64_t(x), uint64_t(y));
-      for (int s = first_sample; s < first_sample + samples; ++s) {
-        const SobolGroup random(stream, purpose_camera, uint32_t(s));
-        const Vec2 raster = Vec2{float(x), float(y)} + random.get2(0);  // box filter
-        work.rays.rays.push_back(camera.ray(raster, random.get2(2)));
-        work.rays.streams.push_back(stream);
-        work.rays.samples.push_back(uint32_t(s));
-        work.pixels.emplace_back(x, y);
-      }
-    }
 }
 
 PixelRect window_of(const RenderOptions& o, int width, int height) {
@@ -105,61 +77,195 @@ void check_camera(const ViewingCamera& camera, const PixelRect& window, const Pr
       }
 }
 
+double film_bytes(const PixelRect& window, const RenderOptions& o) {
+  const double pixels = double(window.width()) * window.height();
+  constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern);
+  return Film::bytes(pixels, o.aovs) + (o.max_spp > o.spp ? pixels * record : 0);
+}
+
+// One picture under way.
+class Rendering {
+ public:
+  Rendering(const PreparedScene& scene, const ViewingCamera& camera, const Integrator& integrator,
+            const RenderOptions& options, const PixelRect& window, const ProgressCallback& progress,
+            const StopFlag& stop)
+      : camera_(camera),
+        integrator_(integrator),
+        options_(options),
+        window_(window),
+        tiles_(tiles_of(window, tile_side(options, scene.scene.emitters.size()))),
+        film_(window, options.aovs),
+        work_(size_t(thread_count(options.threads))),
+        progress_(progress),
+        stop_(stop) {
+    is_refined_ = options.method == Method::kj92 && options.max_spp > options.spp;
+    if (is_refined_) records_.emplace(window);
+    const int all = options.spp + (is_refined_ ? options.max_spp - options.spp : 0);
+    passes_ = passes_of(options.spp) + passes_of(all - options.spp);
+  }
+
+  bool run() {
+    for (int first = 0; first < options_.spp && !was_stopped_; first += samples_per_batch) {
+      const int count = std::min(samples_per_batch, options_.spp - first);
+      pass([&](const PixelRect& tile, Work& w) {
+        for (const Pixel2& p : pixels_in_order(tile)) w.add(*this, p, uint32_t(count));
+      });
+    }
+    if (is_refined_ && !was_stopped_) refine();
+    return !was_stopped_;
+  }
+
+  const Film& film() const { return film_; }
+  Counters counters() const {
+    Counters sum;
+    for (const Work& w : work_) sum += w.counters;
+    return sum;
+  }
+
+ private:
+  // Memory of one thread.
+  struct Work {
+    ViewingRays rays;
+    RadianceBatch radiance;
+    std::vector<Pixel2> pixels;  // of each ray
+    std::unique_ptr<IntegratorScratch> scratch;
+    Counters counters;
+
+    // The next `count` viewing rays of a pixel.
+    void add(const Rendering& r, const Pixel2& p, uint32_t count) {
+      add_viewing_rays(r.camera_, p, r.film_.estimate(p.x, p.y).samples, count, r.options_.seed,
+                       rays);
+      pixels.resize(rays.size(), p);
+    }
+  };
+
+  static int passes_of(int samples) {
+    return (samples + samples_per_batch - 1) / samples_per_batch;
+  }
+
+  // fill(tile, work) says which rays are traced; they are, and added to the film.
+  template <class Fill>
+  void pass(Fill&& fill) {
+    parallel_for_slots(tiles_.size(), options_.threads, [&](size_t t, size_t slot) {
+      if (stop_.load(std::memory_order_relaxed)) {
+        was_stopped_ = true;
+        return;
+      }
+      Work& w = work_[slot];
+      if (!w.scratch) w.scratch = integrator_.make_scratch();
+      const CheckContext context(tiles_[t].x0, tiles_[t].y0, 0);
+      w.rays.clear();
+      w.pixels.clear();
+      fill(tiles_[t], w);
+      if (w.rays.size() > 0) trace(w);
+      const std::lock_guard lock(progress_mutex_);
+      ++tiles_done_;
+      if (progress_)
+        progress_(std::min(1.0, double(tiles_done_) / (double(tiles_.size()) * passes_)));
+    });
+  }
+
+  void trace(Work& w) {
+    w.radiance.reset(w.rays.size());
+    if (is_refined_) w.radiance.records.assign(w.rays.size(), {});
+    integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
+    for (size_t i = 0; i < w.rays.size(); ++i) {
+      const auto [x, y] = w.pixels[i];
+      const bool is_first = film_.estimate(x, y).samples == 0;
+      const float depth = camera_.depth(w.radiance.position[i]);
+      if (!film_.add(x, y, w.radiance, i, depth)) ++w.counters.nan_samples;
+      // Refinement compares with what the first pass saw, and does not change it.
+      if (is_refined_ && !is_refining_)
+        records_->note(x, y, std::move(w.radiance.records[i]), is_first);
+    }
+  }
+
+  // Rounds of further rays; each looks at what there was before it, in all of the picture.
+  void refine() {
+    const double mean = mean_luminance();
+    std::vector<uint8_t> is_wanted(size_t(window_.width()) * size_t(window_.height()));
+    for (int y = window_.y0; y < window_.y1; ++y)
+      for (int x = window_.x0; x < window_.x1; ++x)
+        is_wanted[records_->index(x, y)] =
+            needs_refinement(film_, *records_, x, y, mean, refinement_) ? 1 : 0;
+    is_refining_ = true;
+    for (int first = options_.spp; first < options_.max_spp && !was_stopped_;
+         first += samples_per_batch) {
+      const auto count = uint32_t(std::min(samples_per_batch, options_.max_spp - first));
+      pass([&](const PixelRect& tile, Work& w) {
+        for (const Pixel2& p : pixels_in_order(tile)) {
+          if (is_wanted[records_->index(p.x, p.y)] == 0) continue;
+          const PixelEstimate e = film_.estimate(p.x, p.y);
+          // A spread is only worth believing from several samples.
+          if (first > options_.spp && e.samples >= 4 && !needs_more(e, mean, refinement_)) continue;
+          w.add(*this, p, count);
+          w.rays.neighbours.resize(w.rays.size(), records_->around(p.x, p.y));
+        }
+      });
+    }
+  }
+
+  double mean_luminance() const {
+    double sum = 0;
+    for (int y = window_.y0; y < window_.y1; ++y)
+      for (int x = window_.x0; x < window_.x1; ++x) sum += film_.estimate(x, y).luminance;
+    return sum / (double(window_.width()) * window_.height());
+  }
+
+  const ViewingCamera& camera_;
+  const Integrator& integrator_;
+  const RenderOptions& options_;
+  PixelRect window_;
+  std::vector<PixelRect> tiles_;
+  Film film_;
+  std::vector<Work> work_;
+  const ProgressCallback& progress_;
+  const StopFlag& stop_;
+  RefinementOptions refinement_;
+  std::optional<PixelRecords> records_;
+  bool is_refined_ = false, is_refining_ = false;
+  int passes_ = 1;
+  std::mutex progress_mutex_;
+  size_t tiles_done_ = 0;
+  std::atomic<bool> was_stopped_ = false;
+};
+
 }  // namespace
 
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
                     const ProgressCallback& progress, const StopFlag& stop) {
-  const auto start = std::chrono::steady_clock::now();
   const ImageSize size = image_size(camera, options.width, options.height);
   const PixelRect window = window_of(options, size.width, size.height);
-  if (Film::bytes(double(window.width()) * window.height(), options.aovs) > most_film_bytes)
+  if (film_bytes(window, options) > most_film_bytes)
     throw UsageError("an image of " + std::to_string(window.width()) + "x" +
                      std::to_string(window.height()) +
                      " pixels with these layers takes more than 8 GiB: use --size or --crop");
   const ViewingCamera viewing_camera(camera, size.width, size.height);
   check_camera(viewing_camera, window, scene, camera.name);
-  const std::unique_ptr<Integrator> integrator = make_integrator(scene, options);
-  const std::vector<PixelRect> tiles =
-      tiles_of(window, tile_side(options, scene.scene.emitters.size()));
-  Film film(window, options.aovs);
-
-  const int passes = (options.spp + samples_per_batch - 1) / samples_per_batch;
-  std::vector<TileWork> work(size_t(thread_count(options.threads)));
-  std::mutex progress_mutex;
-  size_t tiles_done = 0;
-  std::atomic<bool> was_stopped = false;
-
-  for (int pass = 0; pass < passes && !was_stopped; ++pass) {
-    const int first = pass * samples_per_batch;
-    const int samples = std::min(samples_per_batch, options.spp - first);
-    parallel_for_slots(tiles.size(), options.threads, [&](size_t t, size_t slot) {
-      if (stop.load(std::memory_order_relaxed)) {
-        was_stopped = true;
-        return;
-      }
-      TileWork& w = work[slot];
-      if (!w.scratch) w.scratch = integrator->make_scratch();
-      const CheckContext context(tiles[t].x0, tiles[t].y0, first);
-      viewing_rays(viewing_camera, tiles[t], first, samples, options.seed, w);
-      w.radiance.reset(w.rays.size());
-      integrator->radiance(w.rays, *w.scratch, w.radiance, w.counters);
-      for (size_t i = 0; i < w.rays.size(); ++i) {
-        const auto [x, y] = w.pixels[i];
-        const float depth = viewing_camera.depth(w.radiance.position[i]);
-        if (!film.add(x, y, w.radiance, i, depth)) ++w.counters.nan_samples;
-      }
-      const std::lock_guard lock(progress_mutex);
-      ++tiles_done;
-      if (progress) progress(double(tiles_done) / (double(tiles.size()) * passes));
-    });
-  }
-
   RenderResult result;
-  result.is_complete = !was_stopped;
-  result.layers = film.layers();
   result.statistics.width = window.width();
   result.statistics.height = window.height();
-  for (const TileWork& w : work) result.statistics.counters += w.counters;
+
+  const Kj92Preparation* preparation = options.preparation;
+  std::unique_ptr<Kj92Preparation> own;
+  if (options.method == Method::kj92 && preparation == nullptr) {
+    own = prepare_kj92(scene, options.kj92, options.indirect == Indirect::none, std::nullopt,
+                       options.threads, nullptr, stop);
+    preparation = own.get();
+  }
+  if (options.method == Method::kj92 && preparation == nullptr) {  // stopped: nothing to show
+    result.is_complete = false;
+    result.layers = Film(window, options.aovs).layers();
+    return result;
+  }
+  if (preparation != nullptr) result.statistics.preprocess_seconds = preparation->seconds;
+
+  const auto start = std::chrono::steady_clock::now();
+  const std::unique_ptr<Integrator> integrator = make_integrator(scene, options, preparation);
+  Rendering rendering(scene, viewing_camera, *integrator, options, window, progress, stop);
+  result.is_complete = rendering.run();
+  result.layers = rendering.film().layers();
+  result.statistics.counters = rendering.counters();
   result.statistics.render_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

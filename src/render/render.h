@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,19 +10,28 @@
 #include "image/image.h"
 #include "integrate/batch.h"
 #include "integrate/prepared_scene.h"
+#include "render/preparation.h"
 
 namespace troffer {
 
-enum class Method { fixed, path };
-enum class Indirect { automatic, none };
+enum class Method { kj92, fixed, path };
+// radiosity: the general radiosity value, interpolated (what kj92 does by itself).
+enum class Indirect { automatic, radiosity, none };
 
 // AOVs that an image can carry besides the picture.
-enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays, error };
+// sources: how many sources were sampled by shadow rays; probed and found visible; probed and found
+// hidden (kj92).
+enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays, sources, error };
 
 struct RenderOptions {
   Method method = Method::path;
-  int spp = 4;           // viewing rays per pixel
+  int spp = 4;  // viewing rays per pixel
+  // kj92: where neighbouring pixels differ the picture is refined by further viewing rays, up to so
+  // many in a pixel; at most spp: nowhere.
+  int max_spp = 0;
   int shadow_rays = 64;  // fixed: rays per source per viewing ray
+  Kj92Settings kj92;
+  const Kj92Preparation* preparation = nullptr;  // kj92: made beforehand; null: made by render()
   Indirect indirect = Indirect::automatic;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera
@@ -37,7 +45,8 @@ struct RenderOptions {
 struct RenderStatistics {
   int width = 0, height = 0;
   Counters counters;
-  double render_seconds = 0;
+  double preprocess_seconds = 0;  // of the preparation, whoever made it
+  double render_seconds = 0;      // of what came after
 };
 
 // layers[0] is the picture; then the AOVs in the order asked for. Where a stop was requested,
@@ -47,9 +56,6 @@ struct RenderResult {
   RenderStatistics statistics;
   bool is_complete = true;
 };
-
-// Called from one thread at a time, with the fraction done in [0,1].
-using ProgressCallback = std::function<void(double fraction)>;
 
 // Renders what `camera` sees. The result is the same, bit for bit, for any number of threads.
 // Throws UsageError for options that contradict each other or the scene, InputError for a camera

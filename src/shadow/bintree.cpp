@@ -36,7 +36,7 @@ Bintree::Bintree(const BintreeOptions& options)
 }
 
 void Bintree::begin(float unoccluded) {
-  unoccluded_ = unoccluded;
+  set_unoccluded(unoccluded);
   iterations_ = 0;
   estimate_ = {};
   ask();
@@ -88,7 +88,7 @@ void Bintree::supply(std::span<const ShadowRayResult> results) {
 
 // [§1.3.2] Strictly under, so that 0 is never met.
 bool Bintree::is_variance_met() const {
-  return estimate_.variance < sqr(options_.allowed_variance * unoccluded_);
+  return estimate_.variance < sqr(options_.allowed_variance * leniency_ * unoccluded_);
 }
 
 // [§1.3.5]
@@ -104,7 +104,7 @@ bool Bintree::is_mean_settled() const {
     low = std::min(low, m);
     high = std::max(high, m);
   }
-  return high - low <= options_.mean_change * unoccluded_;
+  return high - low <= options_.mean_change * leniency_ * unoccluded_;
 }
 
 bool Bintree::is_cap_reached() const {
@@ -135,6 +135,16 @@ void Bintree::shrink() {
   if (options_.allowed_variance <= 0) return;  // would only be split again
   troffer::shrink(nodes_, initial_level_, options_.level_difference, random_, scratch_);
   leaves_ = nodes_[BintreeNodes::root].samples;
+}
+
+float Bintree::mean_of_pending(std::span<const ShadowRayResult> results) const {
+  double sum = 0, measure = 0;
+  for (size_t i = 0; i < pending_.size(); ++i) {
+    const double cell = double(nodes_.cell(pending_[i]).measure());
+    sum += cell * double(results[i].kernel);
+    measure += cell;
+  }
+  return measure > 0 ? float(sum / measure) : 0.0f;
 }
 
 float Bintree::kernel_mean() const {

@@ -77,6 +77,16 @@ class Bintree {
   // [§1.4] Begins at the next point with the pattern that is there: all its leaves are pending.
   void resample(uint64_t stream, float unoccluded = 1);
 
+  // For points where what a source would send unoccluded is known from the first round alone:
+  // before the first answers, the mean over the square of a kernel given at pending().
+  float mean_of_pending(std::span<const ShadowRayResult> results) const;
+  // … and what start() or resample() were told is replaced. `leniency` multiplies what the stops
+  // allow, for light that is a small part of what is seen.
+  void set_unoccluded(float unoccluded, float leniency = 1) {
+    unoccluded_ = unoccluded;
+    leniency_ = leniency;
+  }
+
   // Where the rays end that are wanted now; empty when done. Valid until the next call.
   std::span<const Vec2> pending() const { return pending_uv_; }
   // results[i] answers pending()[i]. Then decides: stop, or split and ask for more.
@@ -113,7 +123,7 @@ class Bintree {
   size_t iterations_ = 0;
   size_t leaves_ = 1;
   int initial_level_ = 0;
-  float unoccluded_ = 1;
+  float unoccluded_ = 1, leniency_ = 1;
   BintreeEstimate estimate_;
 };
 

@@ -1,0 +1,46 @@
+#include "render/preparation.h"
+
+#include <chrono>
+
+#include "base/error.h"
+#include "render/radiosity.h"
+
+namespace troffer {
+
+std::unique_ptr<Kj92Preparation> prepare_kj92(const PreparedScene& scene,
+                                              const Kj92Settings& settings, bool is_direct_only,
+                                              std::optional<RadiositySolution> solution,
+                                              int threads, const ProgressCallback& progress,
+                                              const StopFlag& stop) {
+  const auto start = std::chrono::steady_clock::now();
+  if (!solution) {
+    RadiosityOptions options = settings.radiosity;
+    if (is_direct_only) options.unshot_fraction = 1;
+    solution = preprocess(scene, options, threads, progress, stop).solution;
+  }
+  if (stop.load()) return nullptr;
+  SelectionOptions selection = settings.selection;
+  if (is_direct_only) selection.uses_patches = false;
+  SourceSelection selected(*solution, scene.tracer, scene.lights, selection, threads);
+  if (stop.load()) return nullptr;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  return std::make_unique<Kj92Preparation>(
+      Kj92Preparation{std::move(*solution), std::move(selected), seconds.count()});
+}
+
+std::vector<uint32_t> emitters_named(const Scene& scene, const std::vector<std::string>& names) {
+  std::vector<uint32_t> emitters;
+  for (const std::string& name : names) {
+    bool is_found = false;
+    for (uint32_t e = 0; e < scene.emitters.size(); ++e)
+      if (scene.emitters[e].name == name) {
+        emitters.push_back(e);
+        is_found = true;
+      }
+    if (!is_found)
+      throw UsageError("there is no light named '" + name + "' (troffer info lists them)");
+  }
+  return emitters;
+}
+
+}  // namespace troffer

@@ -1,0 +1,38 @@
+#include "render/tile.h"
+
+#include <algorithm>
+
+#include "base/random.h"
+#include "integrate/purposes.h"
+
+namespace troffer {
+
+std::vector<PixelRect> tiles_of(const PixelRect& window, int side) {
+  std::vector<PixelRect> tiles;
+  for (int y = window.y0; y < window.y1; y += side)
+    for (int x = window.x0; x < window.x1; x += side)
+      tiles.push_back({x, y, std::min(x + side, window.x1), std::min(y + side, window.y1)});
+  return tiles;
+}
+
+std::vector<Pixel2> pixels_in_order(const PixelRect& tile) {
+  std::vector<Pixel2> pixels;
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int i = 0; i < tile.width(); ++i)
+      pixels.push_back({(y - tile.y0) % 2 == 0 ? tile.x0 + i : tile.x1 - 1 - i, y});
+  return pixels;
+}
+
+void add_viewing_rays(const ViewingCamera& camera, const Pixel2& pixel, uint32_t first,
+                      uint32_t count, uint64_t seed, ViewingRays& rays) {
+  const uint64_t stream = hash_of(seed, uint64_t(pixel.x), uint64_t(pixel.y));
+  for (uint32_t s = first; s < first + count; ++s) {
+    const SobolGroup random(stream, purpose_camera, s);
+    const Vec2 raster = Vec2{float(pixel.x), float(pixel.y)} + random.get2(0);
+    rays.rays.push_back(camera.ray(raster, random.get2(2)));
+    rays.streams.push_back(stream);
+    rays.samples.push_back(s);
+  }
+}
+
+}  // namespace troffer

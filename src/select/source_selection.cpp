@@ -1,0 +1,241 @@
+#include "select/source_selection.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "radiosity/interpolation.h"
+#include "radiosity/solver.h"
+
+namespace troffer {
+
+namespace {
+
+// One side of a fragment that belongs to a patch.
+struct FragmentSide {
+  uint32_t fragment;
+  uint32_t side;
+};
+
+// The sides of fragments, by patch.
+struct PatchFragments {
+  std::vector<size_t> first;
+  std::vector<FragmentSide> sides;
+
+  explicit PatchFragments(const RadiosityMesh& mesh) : first(mesh.patches.size() + 1, 0) {
+    for_each(mesh, [&](uint32_t patch, FragmentSide) { ++first[patch + 1]; });
+    for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    sides.resize(first.back());
+    std::vector<size_t> next(first.begin(), first.end() - 1);
+    for_each(mesh, [&](uint32_t patch, FragmentSide s) { sides[next[patch]++] = s; });
+  }
+
+  template <class Visit>
+  static void for_each(const RadiosityMesh& mesh, Visit&& visit) {
+    for (uint32_t f = 0; f < mesh.fragments.size(); ++f)
+      for (uint32_t side = 0; side < 2; ++side) {
+        const uint32_t point = mesh.element_points[mesh.fragments[f].element][side];
+        if (point != no_point) visit(mesh.points[point].patch, FragmentSide{f, side});
+      }
+  }
+};
+
+Rgb least(Rgb a, Rgb b) {
+  return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)};
+}
+Rgb without(Rgb a, Rgb b) {  // rounding must not leave less than nothing
+  return {std::max(a.r - b.r, 0.0f), std::max(a.g - b.g, 0.0f), std::max(a.b - b.b, 0.0f)};
+}
+
+// Selection for one patch.
+class PatchSelector {
+ public:
+  PatchSelector(const RadiositySolution& solution, const Tracer& tracer,
+                const LightPrimitives& lights, const SelectionOptions& options)
+      : solution_(solution), tracer_(tracer), lights_(lights), options_(options) {}
+
+  void run(uint32_t patch, std::span<const FragmentSide> sides, std::vector<TreatedSource>& treated,
+           std::vector<GeneralIrradiance>& corners) {
+    treated.clear();
+    gather_points(sides);
+    if (options_.is_enabled) {
+      find_candidates(patch);
+      for (const uint32_t source : candidates_) consider(source, treated);
+    } else {
+      treat_all_emitters(treated);
+    }
+    for (const FragmentSide& s : sides) fill_corners(s, corners);
+  }
+
+ private:
+  // The points that interpolation on the patch uses, sorted, and all that they get as general.
+  void gather_points(std::span<const FragmentSide> sides) {
+    points_.clear();
+    for (const FragmentSide& s : sides)
+      for (size_t k = 0; k < 3; ++k) {
+        interpolate_at_corner(solution_.mesh, s.fragment, k, s.side == 1, at_);
+        for (const PointWeight& w : at_.weights()) points_.push_back(w.point);
+      }
+    std::sort(points_.begin(), points_.end());
+    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+    general_.resize(points_.size());
+    totals_.resize(points_.size());
+    mean_total_ = 0;
+    for (size_t i = 0; i < points_.size(); ++i) {
+      const uint32_t p = points_[i];
+      GeneralIrradiance& g = general_[i];
+      g.direct = solution_.general_direct[p];
+      g.indirect = without(solution_.general[p], g.direct);
+      for (const StoredContribution& c : solution_.contributions(p)) {
+        if (c.source == no_source) continue;
+        (solution_.is_emitter(c.source) ? g.direct : g.indirect) += c.received;
+      }
+      totals_[i] = luminance(g.direct + g.indirect);
+      // What is still unshot comes from everywhere: nowhere where nothing else comes either.
+      if (totals_[i] > 0) g.indirect += solution_.ambient;
+      mean_total_ += totals_[i] / float(points_.size());
+    }
+  }
+
+  bool is_allowed(uint32_t source) const {
+    if (!options_.is_restricted) return solution_.is_emitter(source) || options_.uses_patches;
+    return std::find(options_.only.begin(), options_.only.end(), source) != options_.only.end();
+  }
+
+  // Sources that any of the points kept and that come near a threshold there.
+  void find_candidates(uint32_t patch) {
+    const SelectionThresholds& t = options_.thresholds;
+    const float near = 0.5f * std::min({t.major_share, t.shadow_edge, t.probe_share});
+    candidates_.clear();
+    for (size_t i = 0; i < points_.size(); ++i) {
+      const float whole = std::max(totals_[i], mean_total_);
+      for (const StoredContribution& c : solution_.contributions(points_[i])) {
+        if (c.source == no_source || !is_allowed(c.source)) continue;
+        if (!solution_.is_emitter(c.source)) {
+          // A patch counts where it is partly hidden; elsewhere interpolation serves it as well.
+          if (solution_.patch_of(c.source) == patch) continue;
+          if (luminance(c.received) >= t.visible_above * luminance(c.unoccluded)) continue;
+        }
+        if (luminance(c.unoccluded) >= near * whole) candidates_.push_back(c.source);
+      }
+    }
+    std::sort(candidates_.begin(), candidates_.end());
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+  }
+
+  // What the source gives to each point: as kept there, or looked up again.
+  void look_up(uint32_t source) {
+    received_.assign(points_.size(), {});
+    missing_.clear();
+    missing_points_.clear();
+    for (size_t i = 0; i < points_.size(); ++i) {
+      bool is_kept = false;
+      for (const StoredContribution& c : solution_.contributions(points_[i]))
+        if (c.source == source) {
+          received_[i] = c;
+          is_kept = true;
+        }
+      if (is_kept) continue;
+      missing_.push_back(i);
+      missing_points_.push_back(points_[i]);
+    }
+    if (missing_.empty()) return;
+    completed_.resize(missing_.size());
+    source_contributions(tracer_, lights_, solution_, source, missing_points_, completed_,
+                         scratch_);
+    for (size_t k = 0; k < missing_.size(); ++k) received_[missing_[k]] = completed_[k];
+  }
+
+  void consider(uint32_t source, std::vector<TreatedSource>& treated) {
+    look_up(source);
+    at_points_.clear();
+    for (size_t i = 0; i < points_.size(); ++i)
+      at_points_.push_back(
+          {luminance(received_[i].received), luminance(received_[i].unoccluded), totals_[i]});
+    const SourceClass c = classify(at_points_, mean_total_, options_.thresholds);
+    const bool is_treated = solution_.is_emitter(source) ? c.treatment != SourceTreatment::general
+                                                         : c.treatment == SourceTreatment::sampled;
+    if (!is_treated) return;
+    treated.push_back({source, c});
+    for (size_t i = 0; i < points_.size(); ++i) {
+      Rgb& general = solution_.is_emitter(source) ? general_[i].direct : general_[i].indirect;
+      general = without(general, least(received_[i].received, general));
+    }
+  }
+
+  void treat_all_emitters(std::vector<TreatedSource>& treated) {
+    for (uint32_t e = 0; e < solution_.emitter_count; ++e)
+      if (is_allowed(e))
+        treated.push_back({e, {SourceView::partly, SourceTreatment::sampled, 0, 1, 1}});
+    if (!options_.is_restricted) {
+      for (GeneralIrradiance& g : general_) g.direct = Rgb{0};
+      return;
+    }
+    for (const TreatedSource& t : treated) {
+      look_up(t.source);
+      for (size_t i = 0; i < points_.size(); ++i)
+        general_[i].direct = without(general_[i].direct, received_[i].received);
+    }
+  }
+
+  void fill_corners(const FragmentSide& s, std::vector<GeneralIrradiance>& corners) {
+    for (size_t k = 0; k < 3; ++k) {
+      interpolate_at_corner(solution_.mesh, s.fragment, k, s.side == 1, at_);
+      GeneralIrradiance sum;
+      for (const PointWeight& w : at_.weights()) {
+        const auto it = std::lower_bound(points_.begin(), points_.end(), w.point);
+        const GeneralIrradiance& g = general_[size_t(it - points_.begin())];
+        sum.direct += g.direct * w.weight;
+        sum.indirect += g.indirect * w.weight;
+      }
+      corners[3 * (2 * size_t(s.fragment) + s.side) + k] = sum;
+    }
+  }
+
+  const RadiositySolution& solution_;
+  const Tracer& tracer_;
+  const LightPrimitives& lights_;
+  const SelectionOptions& options_;
+
+  Interpolation at_;
+  std::vector<uint32_t> points_;
+  std::vector<GeneralIrradiance> general_;  // of points_: what is left
+  std::vector<float> totals_;
+  float mean_total_ = 0;
+  std::vector<uint32_t> candidates_;
+  std::vector<StoredContribution> received_, completed_;
+  std::vector<size_t> missing_;
+  std::vector<uint32_t> missing_points_;
+  std::vector<SourceAtPoint> at_points_;
+  TransferScratch scratch_;
+};
+
+}  // namespace
+
+SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer& tracer,
+                                 const LightPrimitives& lights, const SelectionOptions& options,
+                                 int threads) {
+  const RadiosityMesh& mesh = solution.mesh;
+  const PatchFragments fragments(mesh);
+  const size_t patches = mesh.patches.size();
+  corners_.assign(6 * mesh.fragments.size(), {});
+  std::vector<std::vector<TreatedSource>> treated(patches);
+  std::vector<PatchSelector> selectors(size_t(thread_count(threads)),
+                                       PatchSelector(solution, tracer, lights, options));
+  parallel_for_slots(patches, threads, [&](size_t patch, size_t slot) {
+    const std::span sides(fragments.sides.data() + fragments.first[patch],
+                          fragments.first[patch + 1] - fragments.first[patch]);
+    selectors[slot].run(uint32_t(patch), sides, treated[patch], corners_);
+  });
+  first_.push_back(0);
+  for (const auto& list : treated) {
+    sources_.insert(sources_.end(), list.begin(), list.end());
+    first_.push_back(sources_.size());
+  }
+}
+
+size_t SourceSelection::memory_bytes() const {
+  return sources_.capacity() * sizeof(TreatedSource) + first_.capacity() * sizeof(size_t) +
+         corners_.capacity() * sizeof(GeneralIrradiance);
+}
+
+}  // namespace troffer

@@ -1,0 +1,74 @@
+// Source selection: for every patch the sources that deserve shadow rays, and the general radiosity
+// value that all others leave.
+//
+// Nothing is lost and nothing counted twice: at each sample point the general value and what the
+// preprocessing found of the treated sources add up to the irradiance that it found, whichever
+// patch asks. A source that is treated on a patch but was not kept separately at one of the points
+// there is looked up again (source_contributions) and taken out of the point's general value.
+// References: as in source_class.h.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/rgb.h"
+#include "emitter/light_primitive.h"
+#include "radiosity/solution.h"
+#include "select/source_class.h"
+#include "trace/tracer.h"
+
+namespace troffer {
+
+struct SelectionOptions {
+  // false: every emitter is sampled on every patch, bright patches nowhere.
+  bool is_enabled = true;
+  SelectionThresholds thresholds;
+  // Bright patches may be selected like emitters.
+  bool uses_patches = true;
+  // Only these emitters, and no patches, may be treated; all others stay in the general value.
+  bool is_restricted = false;
+  std::vector<uint32_t> only;
+};
+
+// A source that is treated on a patch: SourceTreatment::probed or sampled. Emitters of the scene,
+// then patches, as in StoredContribution.
+struct TreatedSource {
+  uint32_t source = no_source;
+  SourceClass source_class;
+};
+
+// Irradiance that is not sampled, W/m² or lx: what comes straight from emitters, and all else.
+struct GeneralIrradiance {
+  Rgb direct, indirect;
+};
+
+class SourceSelection {
+ public:
+  // All arguments belong to one scene and are used here only. Does not depend on `threads`.
+  SourceSelection(const RadiositySolution& solution, const Tracer& tracer,
+                  const LightPrimitives& lights, const SelectionOptions& options, int threads);
+
+  // In increasing order of source.
+  std::span<const TreatedSource> of_patch(uint32_t patch) const {
+    return {sources_.data() + first_[patch], first_[patch + 1] - first_[patch]};
+  }
+
+  // The general value at a place of a fragment's front or back, which must have a sample point.
+  // weights: of the fragment's corners (fragment_at). With the ambient estimate for light that is
+  // still unshot.
+  GeneralIrradiance general(uint32_t fragment, bool is_back, const Vec3& weights) const {
+    const GeneralIrradiance* c = corners_.data() + 3 * (2 * size_t(fragment) + (is_back ? 1 : 0));
+    return {c[0].direct * weights.x + c[1].direct * weights.y + c[2].direct * weights.z,
+            c[0].indirect * weights.x + c[1].indirect * weights.y + c[2].indirect * weights.z};
+  }
+
+  size_t memory_bytes() const;
+
+ private:
+  std::vector<TreatedSource> sources_;
+  std::vector<size_t> first_;               // per patch, into sources_; one more at the end
+  std::vector<GeneralIrradiance> corners_;  // fragment × side × corner
+};
+
+}  // namespace troffer
