@@ -199,7 +199,9 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
   s->add_option("--method", c.method, "How light is computed: path, fixed, kj92")
       ->capture_default_str();
-  s->add_option("--spp", c.spp, "Samples per point [4096]")->check(CLI::Range(2, 1 << 26));
+  s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256]")
+      ->check(CLI::Range(2, 1 << 26));
+  s->add_option("--solution", c.solution, "kj92: a file made by troffer radiosity");
   s->add_option("--error", raw.error, "certified: allowed standard error")
       ->check(CLI::PositiveNumber);
   s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")

@@ -13,6 +13,9 @@ namespace troffer {
 int run_measure(const MeasureCommand& c) {
   MeasureOptions options;
   options.method = parse_method(c.method);
+  check_method(options.method, c.indirect, c.solution);
+  // A sample of kj92 is all the rays that the bintrees want.
+  if (options.method == Method::kj92) options.spp = 256;
   if (c.spp > 0) options.spp = c.spp;
   options.depth = c.depth;
   options.indirect = c.indirect;
@@ -25,6 +28,10 @@ int run_measure(const MeasureCommand& c) {
   const PreparedScene scene(load_scene(c.scene, c.lights, c.is_quiet));
 
   const StopFlag& stop = install_stop_handlers();
+  const std::unique_ptr<Kj92Preparation> preparation =
+      prepare_method(scene, options.method, options.kj92, options.indirect, c.solution, c.threads,
+                     c.is_quiet, stop);
+  options.preparation = preparation.get();
   MeasureResult result;
   {
     ProgressBar bar("measure", c.is_quiet);

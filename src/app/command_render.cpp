@@ -12,10 +12,8 @@
 #include "app/signals.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
-#include "image/read_image.h"
 #include "image/write_image.h"
 #include "render/camera.h"
-#include "render/radiosity.h"
 
 namespace troffer {
 
@@ -108,37 +106,12 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   return j.dump(2) + "\n";
 }
 
-// Null for methods that need none, and where it was interrupted.
-std::unique_ptr<Kj92Preparation> prepare(const PreparedScene& scene, RenderCommand& c,
-                                         const StopFlag& stop) {
-  if (c.options.method != Method::kj92) return nullptr;
-  if (!c.selected_lights.empty()) {
-    c.options.kj92.selection.is_restricted = true;
-    c.options.kj92.selection.only = emitters_named(scene.scene, c.selected_lights);
-  }
-  std::optional<RadiositySolution> solution;
-  if (!c.solution.empty())
-    solution =
-        load_radiosity(scene, read_file_bytes(c.solution), c.solution, nullptr, c.options.threads);
-  ProgressBar bar("radiosity", c.is_quiet);
-  return prepare_kj92(
-      scene, c.options.kj92, c.options.indirect == Indirect::none, std::move(solution),
-      c.options.threads, [&](double f) { bar.update(f); }, stop);
-}
-
-void check_method(const RenderCommand& c) {
-  if (c.options.method == Method::kj92) return;
-  if (c.options.indirect == Indirect::radiosity)
-    throw UsageError("--indirect radiosity belongs to --method kj92");
-  if (!c.solution.empty()) throw UsageError("--solution belongs to --method kj92");
-}
-
 }  // namespace
 
 int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
   c.options.method = parse_method(c.method);
-  check_method(c);
+  check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs) {
     image_format(path);  // a wrong ending is a usage error before any work is done
     check_can_write(path);
@@ -154,7 +127,13 @@ int run_render(RenderCommand c) {
   seconds.build = seconds_since(mark);
 
   const StopFlag& stop = install_stop_handlers();
-  const std::unique_ptr<Kj92Preparation> preparation = prepare(scene, c, stop);
+  if (!c.selected_lights.empty()) {
+    c.options.kj92.selection.is_restricted = true;
+    c.options.kj92.selection.only = emitters_named(scene.scene, c.selected_lights);
+  }
+  const std::unique_ptr<Kj92Preparation> preparation =
+      prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
+                     c.options.threads, c.is_quiet, stop);
   c.options.preparation = preparation.get();
   RenderResult result;
   {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +34,7 @@ struct RenderCommand {
   std::string tone_map = "filmic";
   std::vector<std::string> selected_lights;  // kj92: empty: all may be sampled
   std::string solution;                      // kj92: file, or empty
-  std::string eye, target, up;  // "x,y,z"; override the camera
+  std::string eye, target, up;               // "x,y,z"; override the camera
   float fov_deg = 60;
   bool is_quiet = false;
 };
@@ -51,7 +52,8 @@ struct MeasureCommand {
   std::string scene, points, output;
   std::string method = "path";
   std::vector<std::string> lights;
-  int spp = 0;  // 0 = default
+  std::string solution;  // kj92: file, or empty
+  int spp = 0;           // 0 = default
   int depth = -1;
   Indirect indirect = Indirect::automatic;
   int threads = 0;
@@ -84,6 +86,17 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& lights
 
 // "path", "fixed" and "kj92"; UsageError for methods that do not exist (yet).
 Method parse_method(const std::string& name);
+
+// UsageError where options belong to another method.
+void check_method(Method method, Indirect indirect, const std::string& solution);
+
+// What `method` needs beforehand, with a progress bar: the radiosity solution of the file
+// `solution`, or (empty) a new one, and the sources selected. Null for methods that need nothing,
+// and where it was interrupted.
+std::unique_ptr<Kj92Preparation> prepare_method(const PreparedScene& scene, Method method,
+                                                const Kj92Settings& settings, Indirect indirect,
+                                                const std::string& solution, int threads,
+                                                bool is_quiet, const StopFlag& stop);
 
 // Parses the command line and runs it: the whole program but main.
 int run(int argc, const char* const* argv);

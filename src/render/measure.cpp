@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "integrate/fixed.h"
+#include "integrate/kj92.h"
 #include "integrate/path.h"
 #include "trace/surface.h"
 
@@ -103,22 +104,50 @@ Measurement measure_point(const Integrator& integrator, const MeasuringPoint& po
   return m;
 }
 
+MeasureResult nothing_measured(size_t points) {
+  MeasureResult result;
+  result.values.resize(points);
+  result.is_measured.assign(points, false);
+  result.is_complete = false;
+  return result;
+}
+
 }  // namespace
 
 MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
                       const MeasureOptions& options, const ProgressCallback& progress,
                       const StopFlag& stop) {
-  std::unique_ptr<Integrator> integrator;
+  const bool is_direct_only = options.indirect == Indirect::none;
+  const Kj92Preparation* preparation = options.preparation;
+  std::unique_ptr<Kj92Preparation> own;
+  if (options.method == Method::kj92 && preparation == nullptr) {
+    own = prepare_kj92(scene, options.kj92, is_direct_only, std::nullopt, options.threads, nullptr,
+                       stop);
+    if (!own) return nothing_measured(points.size());
+    preparation = own.get();
+  }
   // fixed: an estimate is a set of shadow rays to every source.
   constexpr int fixed_set = 16;
   const bool is_fixed = options.method == Method::fixed;
-  if (is_fixed)
-    integrator = std::make_unique<FixedIntegrator>(scene, FixedOptions{fixed_set});
-  else
-    integrator = std::make_unique<PathIntegrator>(
-        scene, PathOptions{options.depth, options.indirect == Indirect::none});
-
-  const double rays_per_sample = is_fixed ? fixed_set * double(scene.scene.emitters.size()) : 1;
+  const double emitters = double(scene.scene.emitters.size());
+  std::unique_ptr<Integrator> integrator;
+  double rays_per_sample = 1;
+  switch (options.method) {
+    case Method::fixed:
+      integrator = std::make_unique<FixedIntegrator>(scene, FixedOptions{fixed_set});
+      rays_per_sample = fixed_set * emitters;
+      break;
+    case Method::kj92:
+      integrator =
+          std::make_unique<Kj92Integrator>(scene, preparation->solution, preparation->selection,
+                                           Kj92Options{options.kj92.sampling, is_direct_only});
+      rays_per_sample = options.kj92.sampling.tree.most_rays * emitters;
+      break;
+    case Method::path:
+      integrator =
+          std::make_unique<PathIntegrator>(scene, PathOptions{options.depth, is_direct_only});
+      break;
+  }
   const int samples_per_batch =
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 

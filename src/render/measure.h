@@ -25,7 +25,11 @@ struct Measurement {
 
 struct MeasureOptions {
   Method method = Method::path;
-  int spp = 4096;  // samples per point: paths, or (fixed) shadow rays per source
+  // Samples per point: paths, or (fixed) shadow rays per source, or (kj92) bintrees for every source
+  // and as many rays that gather the radiosity around.
+  int spp = 4096;
+  Kj92Settings kj92;
+  const Kj92Preparation* preparation = nullptr;  // kj92: made beforehand; null: made here
   int depth = -1;
   Indirect indirect = Indirect::automatic;
   int threads = 0;
