@@ -250,8 +250,11 @@ void find_significant(Bench& b) {
       for (size_t t = 0; t < b.tiles.size(); ++t) {
         const Tile& tile = b.tiles[t];
         values.resize(tile.positions.size());
-        unoccluded_irradiance(b.sources[s].corners(), b.sources[s].plane.normal, values.size(),
-                              tile.positions.data(), tile.normals.data(), values.data());
+        ReceiverArrays arrays;
+        for (size_t r = 0; r < values.size(); ++r) arrays.add(tile.positions[r], tile.normals[r]);
+        arrays.finish();
+        unoccluded_irradiance(b.sources[s].corners(), b.sources[s].plane.normal, arrays,
+                              values.data());
         for (size_t r = 0; r < values.size(); ++r) {
           if (is_second)
             b.is_significant[b.index(t, s, r)] = double(values[r]) > 1e-3 * sum / count;
@@ -328,11 +331,11 @@ CertifiedRun certified_run(const Bench& b, const CertifiedOptions& options, uint
       answers.resize(members.size());
       for (size_t i = 0; i < members.size(); ++i)
         receivers[i] = {tile.positions[members[i]], tile.normals[members[i]],
-                        tile.origins[members[i]], 0};
+                        tile.normals[members[i]], tile.origins[members[i]],
+                        stream_of(tile, members[i], 0, seed)};
+      estimator.begin_cluster(receivers);
       for (size_t s = 0; s < b.sources.size(); ++s) {
-        for (size_t i = 0; i < members.size(); ++i)
-          receivers[i].stream = stream_of(tile, members[i], s, seed);
-        estimator.evaluate(b.sources[s], receivers, world, found[s], answers);
+        estimator.evaluate(b.sources[s], hash_of(s, 7u), world, found[s], answers);
         for (size_t i = 0; i < members.size(); ++i) {
           const size_t at = b.index(t, s, members[i]);
           const SourceVisibility& a = answers[i];
@@ -530,7 +533,7 @@ void run(const std::string& file, int tile_count, uint32_t reference_rays,
     uint32_t most_rays;
   };
   const Setting settings[] = {
-      {"coarse, lists of 64", coarse_lattice, 64, 0.05f, 16},
+
       {"coarse, lists of 256", coarse_lattice, 256, 0.05f, 16},
       {"coarse, lists of 1024", coarse_lattice, 1024, 0.05f, 16},
       {"fine, lists of 256", fine_lattice, 256, 0.02f, 64},

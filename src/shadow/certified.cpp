@@ -1,21 +1,12 @@
 #include "shadow/certified.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/random.h"
-#include "shadow/certified_irradiance.h"
+#include "emitter/irradiance.h"
 
 namespace troffer {
-
-std::vector<Vec3d> FlatSource::corners() const {
-  const auto at = [&](double u, double v) { return plane.origin + plane.u * u + plane.v * v; };
-  if (outline.empty()) return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
-  std::vector<Vec3d> c;
-  for (const Vec2& p : outline) c.push_back(at(double(p.x), double(p.y)));
-  return c;
-}
 
 void FoundFacets::add(uint32_t id) {
   for (Entry& e : entries_)
@@ -38,228 +29,214 @@ ReceiverHull CertifiedEstimator::hull_of(std::span<const uint32_t> members) {
   hull_normals_.clear();
   for (const uint32_t m : members) {
     hull_origins_.push_back(receivers_[m].origin);
-    hull_normals_.push_back(receivers_[m].normal);
+    hull_normals_.push_back(receivers_[m].horizon);
   }
   return bound_receivers(hull_origins_, hull_normals_);
 }
 
-void CertifiedEstimator::evaluate(const FlatSource& source,
-                                  std::span<const ShadowReceiver> receivers, ShadowScene& scene,
-                                  FoundFacets& found, std::span<SourceVisibility> out) {
-  ++counters_.clusters;
-  source_ = &source;
-  scene_ = &scene;
+void CertifiedEstimator::irradiance(std::span<const Vec3d> corners, std::vector<float>& values) {
+  values.resize(receivers_.size());
+  const Parallelogram& p = source_->plane;
+  if (!source_->is_disk) return unoccluded_irradiance(corners, p.normal, arrays_, values.data());
+  const Vec3d centre = p.origin + (p.u + p.v) * 0.5;
+  for (size_t i = 0; i < receivers_.size(); ++i)
+    values[i] = float(disk_irradiance(centre, p.normal, 0.5 * length(p.u), arrays_.position_at(i),
+                                      arrays_.normal_at(i)));
+}
+
+void CertifiedEstimator::begin_cluster(std::span<const ShadowReceiver> receivers) {
   receivers_ = receivers;
-  out_ = out;
-  const std::vector<Vec3d> outline = source.corners();
-  positions_.resize(receivers.size());
-  normals_.resize(receivers.size());
-  unoccluded_.resize(receivers.size());
-  for (size_t i = 0; i < receivers.size(); ++i) {
-    positions_[i] = receivers[i].position;
-    normals_[i] = receivers[i].normal;
-  }
-  unoccluded_irradiance(outline, source.plane.normal, receivers.size(), positions_.data(),
-                        normals_.data(), unoccluded_.data());
+  arrays_.clear();
+  has_own_horizons_ = false;
   members_.clear();
-  for (uint32_t i = 0; i < receivers.size(); ++i) {
+  for (const ShadowReceiver& r : receivers) {
+    arrays_.add(r.position, r.normal);
+    has_own_horizons_ = has_own_horizons_ || length_squared(r.normal - r.horizon) > 1e-12f;
+    members_.push_back(uint32_t(members_.size()));
+  }
+  arrays_.finish();
+  if (has_own_horizons_)
+    for (const ShadowReceiver& r : receivers) arrays_.horizons.push_back(r.horizon);
+  if (!receivers.empty()) cluster_hull_ = hull_of(members_);
+}
+
+// Receivers that some light can reach become members_; false if there are none.
+bool CertifiedEstimator::begin(std::span<SourceVisibility> out) {
+  ++counters_.clusters;
+  out_ = out;
+  const size_t n = receivers_.size();
+  irradiance(source_->corners(), unoccluded_);
+  cell_sums_.assign(n, 0);
+  kinds_.assign(n, 0);
+  members_.clear();
+  segments_.clear();
+  groups_.clear();
+  for (uint32_t i = 0; i < n; ++i) {
     out[i] = {unoccluded_[i], 0, 0, 0, ShadowAnswer::below};
     if (unoccluded_[i] > 0) members_.push_back(i);
   }
-  if (members_.empty()) return;
+  return !members_.empty();
+}
 
-  const ReceiverHull hull = hull_of(members_);
-  const Shaft shaft = make_shaft(hull, outline, source.plane.normal, scene.magnitude());
-  Box receiver_box, source_box;
-  for (int i = 0; i < hull.count; ++i) receiver_box.grow(Vec3(hull.corners[size_t(i)]));
-  double magnitude = hull.magnitude;
-  for (const Vec3d& c : outline) {
-    source_box.grow(Vec3(c));
-    magnitude = std::max({magnitude, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
-  }
-  target_gap_ = 8e-6 * magnitude;
-  ++counters_.gathers;
-  scene.candidates(shaft.all(), receiver_box, source_box, options_.longest_list, candidates_);
+void CertifiedEstimator::gather(const ReceiverHull& hull, const CertifiedCell& part, size_t most) {
+  const Shaft shaft =
+      make_shaft(hull, part.all_corners(), source_->plane.normal, scene_->magnitude());
+  Box receivers, source;
+  for (int i = 0; i < hull.count; ++i) receivers.grow(Vec3(hull.corners[size_t(i)]));
+  for (const Vec3d& c : part.all_corners()) source.grow(Vec3(c));
+  scene_->candidates(shaft.all(), receivers, source, most, candidates_);
   is_complete_ = candidates_.is_complete;
+  ++counters_.gathers;
   counters_.candidates += candidates_.facets.size();
-  if (!is_complete_) ++counters_.incomplete;
-
-  const uint64_t cluster_stream = receivers[members_[0]].stream;
-  const MaskFrame frame(source.plane, options_.lattice, (mix64(cluster_stream) & 1) != 0,
-                        hull.centre, source.outline);
-  frame_ = &frame;
-  FacetList& facets = lists_[0];
-  facets.clear();
-  for (const ShadowCandidate& c : candidates_.facets) facets.add(frame, c.quad, c.is_front_only);
-  if (!is_complete_) {
-    for (const FoundFacets::Entry& e : found.entries()) {
-      const bool is_known = std::any_of(candidates_.facets.begin(), candidates_.facets.end(),
-                                        [&](const ShadowCandidate& c) { return c.id == e.id; });
-      if (!is_known) facets.add(frame, scene.facet(e.id));
-    }
-  }
-  facets.finish();
-  segments_.clear();
-  ray_receivers_.clear();
-  settle(members_, facets, 0);
-  finish_rays(found);
-}
-
-bool CertifiedEstimator::settle_by_certificate(std::span<const uint32_t> members,
-                                               const ReceiverHull& hull, const FacetList& facets,
-                                               FacetList& left) {
-  MaskPoint corners[8];
-  float slack = 0;
-  for (int i = 0; i < hull.count; ++i)
-    corners[i] = mask_point(*frame_, frame_->to_canvas(hull.corners[size_t(i)]), {0, 0});
-  // canvas units per metre are at most this
-  const double stretch = double(frame_->lattice().samples()) *
-                         (1 / length(source_->plane.u) + 1 / length(source_->plane.v));
-  slack = float(hull.slack * stretch);
-  classify(facets, {corners, size_t(hull.count)}, slack, flags_);
-  const auto is_cover = [](int32_t f) { return f == 2; };
-  const bool is_dark = std::any_of(flags_.quads.begin(), flags_.quads.end(), is_cover) ||
-                       std::any_of(flags_.triangles.begin(), flags_.triangles.end(), is_cover);
-  if (is_dark) {
-    for (const uint32_t m : members) out_[m].answer = ShadowAnswer::dark;
-    return true;
-  }
-  left.keep_unsettled(facets, flags_);
-  if (left.size() == 0 && is_complete_) {
-    for (const uint32_t m : members) {
-      out_[m].visible = 1;
-      out_[m].answer = ShadowAnswer::lit;
-    }
-    return true;
-  }
-  return false;
-}
-
-void CertifiedEstimator::settle(std::span<uint32_t> members, const FacetList& facets, int depth) {
-  FacetList& left = lists_[size_t(depth) + 1];
-  const ReceiverHull hull = hull_of(members);
-  if (settle_by_certificate(members, hull, facets, left)) return;
-  if (left.size() < options_.split_above || members.size() < 2 * options_.smallest_cluster ||
-      depth >= most_depth) {
-    mask(members, left);
-    return;
-  }
-  // halved at the median along the longest axis
-  Box box;
-  for (const uint32_t m : members) box.grow(receivers_[m].origin);
-  const Vec3 extent = box.extent();
-  const size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0
-                      : extent.y >= extent.z                       ? 1
-                                                                   : 2;
-  const auto middle = members.begin() + std::ptrdiff_t(members.size() / 2);
-  std::nth_element(members.begin(), middle, members.end(), [&](uint32_t a, uint32_t b) {
-    const float p = receivers_[a].origin[axis], q = receivers_[b].origin[axis];
-    return p != q ? p < q : a < b;
-  });
-  settle(members.first(members.size() / 2), left, depth + 1);
-  settle(members.subspan(members.size() / 2), left, depth + 1);
+  counters_.incomplete += is_complete_ ? 0 : 1;
 }
 
 namespace {
 
-// Expected variance of a mask's share. Edges of all directions through a lattice err by 0.09
-// samples squared per boundary pair on average (measured; docs/certified.md); more is assumed here,
-// because edges along the lattice err by more.
-float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const MaskWeight& sums) {
-  if (sums.boundary_pairs == 0) return 0;
-  float most = 0;
-  for (int i = 0; i < frame.corner_count(); ++i) {
-    const MaskFrame::Corner& c = frame.corners()[i];
-    most = std::max(most, weight_of(weights, int(c.k), int(c.j)));
-  }
-  return 0.15f * float(sums.boundary_pairs) * sqr(most / sums.all);
+double diameter(std::span<const Vec3d> corners) {
+  double most = 0;
+  for (size_t i = 0; i < corners.size(); ++i)
+    for (size_t j = 0; j < i; ++j) most = std::max(most, length_squared(corners[i] - corners[j]));
+  return std::sqrt(most);
+}
+
+// Solid angle of the facet from a point, roughly.
+float apparent_size(const Quad& q, const Vec3& x) {
+  const Vec3 area = cross(q[2] - q[0], q[3] - q[1]) * 0.5f;
+  const Vec3 d = (q[0] + q[2]) * 0.5f - x;
+  const float square = dot(d, d) + 1e-12f;
+  return std::abs(dot(area, d)) / (square * std::sqrt(square));
 }
 
 }  // namespace
 
-void CertifiedEstimator::mask(std::span<const uint32_t> members, const FacetList& facets) {
-  CoverageMask mask;
-  float open_by_row[most_mask_rows];
-  for (const uint32_t m : members) {
-    const ShadowReceiver& r = receivers_[m];
-    const uint64_t bits = mix64(r.stream + 0x5851f42d4c957f2dull);
-    const Vec2 shift{unit_float(uint32_t(bits)), unit_float(uint32_t(bits >> 32))};
-    ++counters_.masks;
-    counters_.mask_facets += facets.size();
-    cover(*frame_, facets, frame_->to_canvas(Vec3d(r.origin)), shift, mask);
-    SourceVisibility& o = out_[m];
-    o.answer = is_complete_ ? ShadowAnswer::masked : ShadowAnswer::mixed;
-    if (!mask.is_any_open) continue;
-    const MaskWeights weights = mask_weights(*frame_, Vec3d(r.position), r.normal, shift);
-    const MaskWeight weight = weigh(*frame_, mask, weights, open_by_row);
-    o.visible = weight.share();
-    o.variance = mask_variance(*frame_, weights, weight);
-    if (!is_complete_) add_rays(m, mask, weights, open_by_row, weight.open, weight.all, shift);
+// Incomplete lists keep what hides most, and what rays met.
+void CertifiedEstimator::shorten_candidates(const Vec3d& centre) {
+  std::vector<ShadowCandidate>& c = candidates_.facets;
+  for (const FoundFacets::Entry& e : found_->entries()) {
+    const bool is_known =
+        std::any_of(c.begin(), c.end(), [&](const ShadowCandidate& f) { return f.id == e.id; });
+    if (!is_known) c.push_back({scene_->facet(e.id), e.id, false});
+  }
+  if (c.size() <= options_.most_found) return;
+  const Vec3 x(centre);
+  std::vector<std::pair<float, uint32_t>> order;
+  for (uint32_t i = 0; i < c.size(); ++i) {
+    const bool is_found = std::any_of(found_->entries().begin(), found_->entries().end(),
+                                      [&](const auto& e) { return e.id == c[i].id; });
+    order.emplace_back(is_found ? -1e30f : -apparent_size(c[i].quad, x), i);
+  }
+  std::nth_element(order.begin(), order.begin() + std::ptrdiff_t(options_.most_found), order.end());
+  std::vector<ShadowCandidate> kept;
+  for (size_t i = 0; i < options_.most_found; ++i) kept.push_back(c[order[i].second]);
+  c = std::move(kept);
+}
+
+// Gathers what can hide `part` of the source from the members; where that is too much, halves the
+// larger of the two.
+void CertifiedEstimator::divide(std::span<uint32_t> members, const ReceiverHull& hull,
+                                const CertifiedCell& part, int halvings) {
+  const bool is_last = halvings == 0 || found_->is_hopeless;
+  gather(
+      hull, part,
+      is_last ? std::min(options_.longest_list, 4 * options_.most_found) : options_.longest_list);
+  if (is_complete_) return settle_cells(members, hull, part);
+  if (is_last) {
+    found_->is_hopeless = true;
+    shorten_candidates(hull.centre);
+    return settle_cells(members, hull, part);
+  }
+  CertifiedCell first, second;
+  const double hull_size = diameter({hull.corners.data(), size_t(hull.count)});
+  const bool can_halve_members = members.size() >= 2 * options_.smallest_cluster;
+  if (can_halve_members && hull_size > 0.5 * diameter(part.all_corners())) {
+    const size_t half = halve_members(members);
+    for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
+      divide(side, hull_of(side), part, halvings - 1);
+  } else if (!source_->is_disk && halve(part, first, second)) {
+    divide(members, hull, first, halvings - 1);
+    divide(members, hull, second, halvings - 1);
+  } else {
+    divide(members, hull, part, 0);
   }
 }
 
-void CertifiedEstimator::add_rays(uint32_t member, const CoverageMask& mask,
-                                  const MaskWeights& weights, const float* open_by_row, float open,
-                                  float all, const Vec2& shift) {
-  if (!(open > 0)) return;
-  SourceVisibility& o = out_[member];
-  const ShadowReceiver& r = receivers_[member];
-  const float share = open / all;
-  const float wanted = std::ceil(sqr(0.5f * share / options_.residual_error));
-  const uint32_t n = uint32_t(std::clamp(wanted, 1.0f, float(options_.most_rays)));
-  o.rays = n;
-  // finish_rays takes away what rays find hidden; V being 0 or 1, its variance is at most 1/4
-  o.variance += share * share / (4 * float(n));
-  // systematic sampling: n equidistant targets over the open weight, with one random start
-  const float start = unit_float(uint32_t(mix64(r.stream + 0x14057b7ef767814full)));
-  float passed = 0;
-  int row = 0, k = -1;
-  float left_in_row = 0;
-  uint32_t bits = 0;
-  const Vec3d first = frame_->first_sample();
-  uint32_t i = 0;
-  for (row = 0; row < frame_->lattice().rows && i < n; ++row) {
-    if (open_by_row[row] <= 0) continue;
-    const float row_end = passed + open_by_row[row];
-    bits = mask.open.row[row];
-    left_in_row = passed;
-    k = -1;
-    while (i < n) {
-      const float target = (float(i) + start) / float(n) * open;
-      if (target >= row_end) break;
-      while (bits != 0 && (k < 0 || left_in_row <= target)) {
-        k = std::countr_zero(bits);
-        bits &= bits - 1;
-        left_in_row += weight_of(weights, k, row);
-      }
-      const Vec3d target_point = first + frame_->step_k() * (double(k) + double(shift.x)) +
-                                 frame_->step_j() * (double(row) + double(shift.y)) +
-                                 source_->plane.normal * target_gap_;
-      segments_.push_back({r.origin, Vec3(target_point)});
-      ray_receivers_.push_back(member);
-      ++i;
-    }
-    passed = row_end;
+void CertifiedEstimator::settle_cells(std::span<uint32_t> members, const ReceiverHull& hull,
+                                      const CertifiedCell& part) {
+  std::vector<CertifiedCell> cells;
+  if (source_->is_disk)
+    cells.push_back(part);
+  else
+    cut_cells(part, hull, options_.cells, cells);
+  // the whole source, or all of it that stands above a common horizon
+  const bool is_whole = cells.size() == 1 && &part == whole_;
+  for (const CertifiedCell& cell : cells) {
+    ++counters_.cells;
+    cell_stream_ = hash_of(cell_stream_, 1u);
+    if (source_->is_disk || is_whole)
+      cell_unoccluded_ = unoccluded_;
+    else
+      irradiance(cell.all_corners(), cell_unoccluded_);
+    cell_members_.clear();
+    for (const uint32_t m : members)
+      if (cell_unoccluded_[m] > 0) cell_members_.push_back(m);
+    if (cell_members_.empty()) continue;
+    const bool is_mirrored =
+        (mix64(cell_stream_ + receivers_[members[0]].stream + source_stream_) & 1) != 0;
+    const MaskFrame frame(cell.plane, options_.lattice, is_mirrored, hull.centre,
+                          cell.all_outline(), source_->is_disk);
+    frame_ = &frame;
+    FacetList& facets = lists_[0];
+    facets.clear();
+    for (const ShadowCandidate& c : candidates_.facets) facets.add(frame, c.quad, c.is_front_only);
+    facets.finish();
+    const bool is_all = cell_members_.size() == members.size();
+    settle(cell_members_, is_all ? hull : hull_of(cell_members_), facets, 0);
   }
-  o.rays = i;  // rounding may leave out the last
 }
 
-void CertifiedEstimator::finish_rays(FoundFacets& found) {
-  if (segments_.empty()) return;
-  hits_.resize(segments_.size());
-  scene_->trace(segments_, hits_);
-  for (size_t i = 0; i < segments_.size();) {
-    const uint32_t m = ray_receivers_[i];
+void CertifiedEstimator::finish_sums() {
+  constexpr auto bit = [](ShadowAnswer a) { return uint8_t(1u << uint32_t(a)); };
+  for (const uint32_t m : members_) {
     SourceVisibility& o = out_[m];
-    uint32_t hidden = 0;
-    for (; i < segments_.size() && ray_receivers_[i] == m; ++i) {
-      if (hits_[i] == ray_is_free) continue;
-      ++hidden;
-      if (hits_[i] != ray_is_stopped) found.add(hits_[i]);
+    const uint8_t kinds = kinds_[m];
+    if (kinds == 0 || !(cell_sums_[m] > 0)) continue;
+    if (kinds == bit(ShadowAnswer::lit)) {
+      o.visible = 1;
+      o.answer = ShadowAnswer::lit;
+    } else if (kinds == bit(ShadowAnswer::dark)) {
+      o.visible = 0;
+      o.answer = ShadowAnswer::dark;
+    } else {
+      o.visible = std::min(o.visible / cell_sums_[m], 1.0f);
+      o.variance /= cell_sums_[m] * cell_sums_[m];
+      o.answer =
+          (kinds & bit(ShadowAnswer::mixed)) != 0 ? ShadowAnswer::mixed : ShadowAnswer::masked;
     }
-    o.visible *= float(o.rays - hidden) / float(o.rays);
   }
-  found.trim(options_.most_found);
+}
+
+void CertifiedEstimator::evaluate(const FlatSource& source, uint64_t source_stream,
+                                  ShadowScene& scene, FoundFacets& found,
+                                  std::span<SourceVisibility> out) {
+  source_ = &source;
+  source_stream_ = source_stream;
+  scene_ = &scene;
+  found_ = &found;
+  if (receivers_.empty() || !begin(out)) return;
+  const bool is_all = members_.size() == receivers_.size();
+  const ReceiverHull hull = is_all ? cluster_hull_ : hull_of(members_);
+  double magnitude = hull.magnitude;
+  for (const Vec3d& c : source.corners())
+    magnitude = std::max({magnitude, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+  target_gap_ = 8e-6 * magnitude;
+  cell_stream_ = source_stream;
+  const CertifiedCell part = visible_part(source, hull);
+  if (part.corner_count == 0) return;
+  whole_ = &part;
+  divide(members_, hull, part, options_.most_halvings);
+  finish_rays();
+  finish_sums();
 }
 
 }  // namespace troffer

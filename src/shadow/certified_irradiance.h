@@ -3,17 +3,35 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "base/vec.h"
 
 namespace troffer {
 
-// out[i] = projected solid angle (steradians) of the convex polygon `outline` above the horizon of
-// receiver i, between 0 and pi; 0 in or behind its plane, whose unit normal is `normal` (of either
-// side of the polygon: receivers behind it get 0). Relative error under 1e-8 for receivers between
-// 1e-4 and 1e3 source sizes. At most 8 corners.
-void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& normal, size_t n,
-                           const Vec3* positions, const Vec3* normals, float* out);
+// Positions and unit normals of receivers, coordinate by coordinate; horizons as in the function
+// below, empty where they are the normals.
+struct ReceiverArrays {
+  std::vector<double> position[3], normal[3];
+  std::vector<Vec3> horizons;
+  size_t size = 0;
+
+  void clear();
+  void add(const Vec3& p, const Vec3& n);
+  // Fills up to whole vectors.
+  void finish();
+  Vec3d position_at(size_t i) const { return {position[0][i], position[1][i], position[2][i]}; }
+  Vec3d normal_at(size_t i) const { return {normal[0][i], normal[1][i], normal[2][i]}; }
+};
+
+// out[i] = projected solid angle (steradians) of the convex polygon `outline` at receiver i,
+// between 0 and pi: of the part above the horizon of its normal and, where there are horizons,
+// above that of horizons[i] too. 0 in or behind the polygon's plane, whose unit normal is
+// `plane_normal`, on either side of the polygon. Relative error under 1e-6 for receivers between
+// 1e-4 and 1e3 source sizes. At most 16 corners.
+void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& plane_normal,
+                           const ReceiverArrays& receivers, float* out);
 
 }  // namespace troffer

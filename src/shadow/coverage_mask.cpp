@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/simd.h"
+#include "base/units.h"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define TROFFER_MASK_DISPATCH 1
@@ -98,11 +99,28 @@ void fill_outline(const float* __restrict k, const float* __restrict j, int n, i
   }
 }
 
+// The square's inscribed disk: turned and scaled only, it is a circle on the canvas.
+void fill_disk(const MaskLattice& lattice, const Vec2& shift, MaskRows& out) {
+  const auto rows = float(lattice.rows);
+  const float radius2 = 0.25f * float(lattice.samples());
+  const float centre_k = 0.5f * float(lattice.a + lattice.b) - shift.x;
+  const float centre_j = 0.5f * float(lattice.a + lattice.b) - shift.y;
+  for (size_t r = 0; r < most_mask_rows; ++r) {
+    const float half2 = radius2 - sqr(float(int(r)) - centre_j);
+    out.row[r] = 0;
+    if (!(half2 > 0)) continue;
+    const float half = std::sqrt(half2);
+    const float lower = std::clamp(centre_k - half + 1, 0.0f, rows);
+    const float upper = std::clamp(centre_k + half + 1, 0.0f, rows);
+    out.row[r] = (~0u << uint32_t(int(lower))) & ~(~0u << uint32_t(int(upper)));
+  }
+}
+
 }  // namespace
 
 MaskFrame::MaskFrame(const Parallelogram& source, const MaskLattice& lattice, bool is_mirrored,
-                     const Vec3d& centre, std::span<const Vec2> outline)
-    : lattice_(lattice), centre_(centre) {
+                     const Vec3d& centre, std::span<const Vec2> outline, bool is_disk)
+    : lattice_(lattice), centre_(centre), is_disk_(is_disk) {
   Vec3d origin = source.origin, u = source.u, v = source.v;
   if (is_mirrored) {  // from the next corner the other way round: the canvas is mirrored
     origin = origin + u;
@@ -147,6 +165,10 @@ MaskFrame::MaskFrame(const Parallelogram& source, const MaskLattice& lattice, bo
 Vec3 MaskFrame::to_canvas(const Vec3d& world) const {
   const Vec3d d = world - centre_;
   return Vec3(Vec3d{dot(row_k_, d), dot(row_j_, d), dot(row_w_, d)});
+}
+
+double MaskFrame::stretch() const {
+  return length(row_k_) + length(row_j_) + length(row_w_);
 }
 
 void FacetList::clear() {
@@ -321,12 +343,16 @@ void FacetList::keep_unsettled(const FacetList& from, const FacetFlags& flags) {
 void cover(const MaskFrame& frame, const FacetList& facets, const Vec3& x, const Vec2& shift,
            CoverageMask& out, int instruction_set) {
   const MaskLattice& lattice = frame.lattice();
-  float k[most_source_corners], j[most_source_corners];
-  for (int i = 0; i < frame.corner_count(); ++i) {
-    k[i] = frame.corners()[i].k - shift.x;
-    j[i] = frame.corners()[i].j - shift.y;
+  if (frame.is_disk()) {
+    fill_disk(lattice, shift, out.inside);
+  } else {
+    float k[most_source_corners], j[most_source_corners];
+    for (int i = 0; i < frame.corner_count(); ++i) {
+      k[i] = frame.corners()[i].k - shift.x;
+      j[i] = frame.corners()[i].j - shift.y;
+    }
+    fill_outline(k, j, frame.corner_count(), lattice.rows, out.inside.row);
   }
-  fill_outline(k, j, frame.corner_count(), lattice.rows, out.inside.row);
   out.open = out.inside;
   out.is_any_open = true;
   if (facets.size() == 0) return;
@@ -335,6 +361,23 @@ void cover(const MaskFrame& frame, const FacetList& facets, const Vec3& x, const
   out.is_any_open = kernels(instruction_set)
                         .cover(p, lattice.rows, facets.quads().data(), facets.quads().size(),
                                facets.triangles().data(), facets.triangles().size(), out.open.row);
+}
+
+void clip_to_horizon(const MaskFrame& frame, const Vec3d& x, const Vec3& n, const Vec2& shift,
+                     CoverageMask& mask) {
+  const Vec3d normal(n), ek = frame.step_k(), ej = frame.step_j();
+  const double rows = frame.lattice().rows, slope = dot(normal, ek), step = dot(normal, ej);
+  double height =
+      dot(normal, frame.first_sample() - x + ek * double(shift.x) + ej * double(shift.y));
+  for (uint32_t r = 0; r < uint32_t(frame.lattice().rows); ++r, height += step) {
+    uint32_t kept = height >= 0 ? ~0u : 0u;
+    if (slope != 0) {
+      const auto crossing = uint32_t(std::clamp(std::floor(-height / slope) + 1, 0.0, rows));
+      kept = slope > 0 ? ~0u << crossing : ~(~0u << crossing);
+    }
+    mask.inside.row[r] &= kept;
+    mask.open.row[r] &= kept;
+  }
 }
 
 MaskWeights mask_weights(const MaskFrame& frame, const Vec3d& x, const Vec3& n, const Vec2& shift) {

@@ -37,7 +37,7 @@ constexpr MaskLattice coarse_lattice{13, 3, 16};  // 178 points
 constexpr MaskLattice fine_lattice{25, 6, 31};    // 661 points
 
 constexpr size_t most_mask_rows = 32;
-constexpr size_t most_source_corners = 8;
+constexpr size_t most_source_corners = 16;
 
 // Rows of bits; bit k of row j is the sample (k,j).
 struct alignas(64) MaskRows {
@@ -59,16 +59,20 @@ struct alignas(64) FacetBatch {
 class MaskFrame {
  public:
   // `outline`: the part of the parallelogram that shines, corners in (u,v), either way round, at
-  // most 8; empty: all of it. is_mirrored turns the lattice the other way.
+  // most 16; empty: all of it. is_disk: the ellipse that touches its sides. is_mirrored turns the
+  // lattice the other way.
   MaskFrame(const Parallelogram& source, const MaskLattice& lattice, bool is_mirrored,
-            const Vec3d& centre, std::span<const Vec2> outline = {});
+            const Vec3d& centre, std::span<const Vec2> outline = {}, bool is_disk = false);
 
   Vec3 to_canvas(const Vec3d& world) const;
   const MaskLattice& lattice() const { return lattice_; }
   // w of the source's plane; receivers that it lights have w below it.
   float height() const { return height_; }
+  // Canvas units per metre, at most.
+  double stretch() const;
   // Receivers that see vertices counterclockwise in space see them clockwise on the canvas.
   bool is_mirroring() const { return is_mirroring_; }
+  bool is_disk() const { return is_disk_; }
 
   // What follows is for the kernels.
   struct Corner {
@@ -88,7 +92,7 @@ class MaskFrame {
   Vec3d first_, step_k_, step_j_;
   Vec3 origin_;  // canvas (0,0) of the source, relative to the centre
   float height_ = 0;
-  bool is_mirroring_ = false;
+  bool is_mirroring_ = false, is_disk_ = false;
   Corner corners_[most_source_corners];
   int corner_count_ = 0;
 };
@@ -153,6 +157,10 @@ struct MaskWeight {
 // 0 plain, 1 AVX2, 2 AVX-512 where there is one; results are the same bits.
 void cover(const MaskFrame& frame, const FacetList& facets, const Vec3& x, const Vec2& shift,
            CoverageMask& out, int instruction_set = -1);
+
+// Takes samples away of which n·d < 0, d from world position x: what lies behind a horizon.
+void clip_to_horizon(const MaskFrame& frame, const Vec3d& x, const Vec3& n, const Vec2& shift,
+                     CoverageMask& mask);
 
 // The unoccluded weights of samples at world position x with unit normal n: max(n·d, 0) / |d|⁴,
 // d from x to the sample, which is the differential form factor but for what all samples share.

@@ -121,11 +121,11 @@ inline std::vector<ShadowReceiver> random_receivers(Random& r, size_t n) {
   std::vector<ShadowReceiver> receivers;
   for (size_t i = 0; i < n; ++i) {
     ShadowReceiver x;
-    x.normal = normal;
+    x.normal = x.horizon = normal;
     x.position = along * (size * (r.next_float() - 0.5f)) + across * (size * r.next_float());
     if (!is_flat) {
       x.position += random_vector(r, size);
-      x.normal = normalize(normal + random_vector(r, 0.3f));
+      x.normal = x.horizon = normalize(normal + random_vector(r, 0.3f));
     }
     x.origin = x.position + x.normal * 4e-6f;
     x.stream = r.next_u64();

@@ -199,20 +199,18 @@ TEST_CASE("irradiance of many receivers equals the single one's") {
   for (int trial = 0; trial < 300; ++trial) {
     const FlatSource source = random_source(r);
     const std::vector<ShadowReceiver> receivers = random_receivers(r, 21);
-    std::vector<Vec3> positions, normals;
-    for (const ShadowReceiver& x : receivers) {
-      positions.push_back(x.position);
-      normals.push_back(x.normal);
-    }
+    ReceiverArrays arrays;
+    for (const ShadowReceiver& x : receivers) arrays.add(x.position, x.normal);
+    arrays.finish();
     std::vector<float> out(receivers.size());
     const std::vector<Vec3d> corners = source.corners();
-    unoccluded_irradiance(corners, source.plane.normal, out.size(), positions.data(),
-                          normals.data(), out.data());
+    unoccluded_irradiance(corners, source.plane.normal, arrays, out.data());
     for (size_t i = 0; i < out.size(); ++i) {
-      const Vec3d x(positions[i]);
-      const double expected = dot(source.plane.normal, x - source.plane.origin) > 0
-                                  ? polygon_irradiance(corners, x, Vec3d(normals[i]), Sides::both)
-                                  : 0;
+      const Vec3d x(receivers[i].position);
+      const double expected =
+          dot(source.plane.normal, x - source.plane.origin) > 0
+              ? polygon_irradiance(corners, x, Vec3d(receivers[i].normal), Sides::both)
+              : 0;
       CHECK(double(out[i]) == doctest::Approx(expected).epsilon(1e-6));
     }
   }

@@ -1,0 +1,160 @@
+#include "shadow/certified_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace troffer {
+
+std::vector<Vec3d> FlatSource::corners() const {
+  const auto at = [&](double u, double v) { return plane.origin + plane.u * u + plane.v * v; };
+  if (outline.empty()) return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+  std::vector<Vec3d> c;
+  for (const Vec2& p : outline) c.push_back(at(double(p.x), double(p.y)));
+  return c;
+}
+
+namespace {
+
+// Convex polygon in (u,v).
+struct Polygon {
+  std::array<Vec2d, most_source_corners> v;
+  int count = 0;
+};
+
+// The part where a u + b v + c >= 0.
+Polygon clipped(const Polygon& p, double a, double b, double c) {
+  Polygon out;
+  const auto add = [&](const Vec2d& q) {
+    if (out.count < int(most_source_corners)) out.v[size_t(out.count++)] = q;
+  };
+  for (int i = 0; i < p.count; ++i) {
+    const Vec2d &q = p.v[size_t(i)], &r = p.v[size_t((i + 1) % p.count)];
+    const double hq = a * q.x + b * q.y + c, hr = a * r.x + b * r.y + c;
+    if (hq >= 0) add(q);
+    if ((hq < 0) != (hr < 0)) add(q + (r - q) * (hq / (hq - hr)));
+  }
+  return out;
+}
+
+double area(const Polygon& p) {
+  double twice = 0;
+  for (int i = 1; i + 1 < p.count; ++i) {
+    const Vec2d e = p.v[size_t(i)] - p.v[0], f = p.v[size_t(i) + 1] - p.v[0];
+    twice += e.x * f.y - e.y * f.x;
+  }
+  return std::abs(twice) / 2;
+}
+
+Polygon polygon_of(const CertifiedCell& cell) {
+  Polygon p;
+  if (cell.count == 0) {
+    p.count = 4;
+    p.v[0] = {0, 0};
+    p.v[1] = {1, 0};
+    p.v[2] = {1, 1};
+    p.v[3] = {0, 1};
+  } else {
+    p.count = cell.count;
+    for (int i = 0; i < cell.count; ++i) p.v[size_t(i)] = Vec2d(cell.outline[size_t(i)]);
+  }
+  return p;
+}
+
+// The polygon, given in (u,v) of `plane`, in the parallelogram that bounds it.
+CertifiedCell cell_of(const Parallelogram& plane, const Polygon& p) {
+  CertifiedCell cell;
+  if (p.count < 3) return cell;
+  Vec2d lower = p.v[0], upper = p.v[0];
+  for (int i = 1; i < p.count; ++i) {
+    const Vec2d& v = p.v[size_t(i)];
+    lower = {std::min(lower.x, v.x), std::min(lower.y, v.y)};
+    upper = {std::max(upper.x, v.x), std::max(upper.y, v.y)};
+  }
+  const Vec2d size = upper - lower;
+  if (!(size.x > 1e-9) || !(size.y > 1e-9)) return cell;
+  if (!(area(p) > 1e-6 * size.x * size.y)) return cell;
+  cell.plane = {plane.origin + plane.u * lower.x + plane.v * lower.y, plane.u * size.x,
+                plane.v * size.y, plane.normal};
+  cell.corner_count = p.count;
+  for (int i = 0; i < p.count; ++i) {
+    const Vec2d& v = p.v[size_t(i)];
+    cell.corners[size_t(i)] = plane.origin + plane.u * v.x + plane.v * v.y;
+    cell.outline[size_t(i)] = Vec2(Vec2d{(v.x - lower.x) / size.x, (v.y - lower.y) / size.y});
+  }
+  const bool is_whole = p.count == 4 && area(p) > (1 - 1e-9) * size.x * size.y;
+  cell.count = is_whole ? 0 : p.count;
+  return cell;
+}
+
+// The unoccluded term for x and a source point, but for what depends on x alone.
+double term(const ReceiverHull& hull, const Vec3d& x, const Vec3d& y) {
+  const Vec3d d = y - x;
+  const double square = length_squared(d);
+  if (!(square > 0)) return 1e300;
+  const double cosine = hull.is_flat ? std::max(0.0, dot(hull.normal, d)) : std::sqrt(square);
+  return cosine / (square * square);
+}
+
+double variation(const CertifiedCell& cell, const ReceiverHull& hull) {
+  Vec3d middle;
+  for (const Vec3d& y : cell.all_corners()) middle += y / double(cell.corner_count);
+  double worst = 1;
+  const auto look = [&](const Vec3d& x) {
+    double most = term(hull, x, middle), sum = most * double(cell.corner_count);
+    for (const Vec3d& y : cell.all_corners()) {
+      const double t = term(hull, x, y);
+      most = std::max(most, t);
+      sum += t;
+    }
+    if (sum > 0) worst = std::max(worst, most * 2 * double(cell.corner_count) / sum);
+  };
+  for (int i = 0; i < hull.count; ++i) look(hull.corners[size_t(i)]);
+  look(hull.centre);
+  return worst;
+}
+
+}  // namespace
+
+CertifiedCell visible_part(const FlatSource& source, const ReceiverHull& hull) {
+  Polygon p;
+  if (source.outline.empty()) {
+    p = polygon_of(CertifiedCell());
+  } else {
+    for (const Vec2& v : source.outline)
+      if (p.count < 8) p.v[size_t(p.count++)] = Vec2d(v);
+  }
+  if (hull.is_flat && !source.is_disk) {
+    // Receivers are some ulps below the origins of their rays: their horizon is lower by that.
+    const double lowest = hull.lowest - 1e-5 * hull.magnitude;
+    const Parallelogram& s = source.plane;
+    p = clipped(p, dot(hull.normal, s.u), dot(hull.normal, s.v),
+                dot(hull.normal, s.origin) - lowest);
+  }
+  return cell_of(source.plane, p);
+}
+
+bool halve(const CertifiedCell& cell, CertifiedCell& first, CertifiedCell& second) {
+  const Polygon p = polygon_of(cell);
+  const bool is_u = length_squared(cell.plane.u) >= length_squared(cell.plane.v);
+  const double a = is_u ? 1 : 0, b = is_u ? 0 : 1;
+  first = cell_of(cell.plane, clipped(p, -a, -b, 0.5));
+  second = cell_of(cell.plane, clipped(p, a, b, -0.5));
+  return first.corner_count > 0 && second.corner_count > 0;
+}
+
+void cut_cells(const CertifiedCell& cell, const ReceiverHull& hull, const CellLimits& limits,
+               std::vector<CertifiedCell>& out) {
+  // widest variation first, so that the limit leaves out what needs it least
+  std::vector<std::pair<double, CertifiedCell>> open{{variation(cell, hull), cell}};
+  while (!open.empty() && open.size() + out.size() < limits.most_cells) {
+    const auto widest = std::max_element(
+        open.begin(), open.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    CertifiedCell first, second;
+    if (widest->first <= limits.variation || !halve(widest->second, first, second)) break;
+    *widest = {variation(first, hull), first};
+    open.emplace_back(variation(second, hull), second);
+  }
+  for (const auto& o : open) out.push_back(o.second);
+}
+
+}  // namespace troffer

@@ -1,0 +1,57 @@
+// A flat source cut into cells for a cluster of receivers: the bintree over the source, grown by
+// geometry alone.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "emitter/source_surface.h"
+#include "shadow/coverage_mask.h"
+#include "shadow/shaft.h"
+
+namespace troffer {
+
+// A flat source: the part `outline` (corners in (u,v), convex, at most 8; empty: all) of a
+// parallelogram whose normal points to the receivers that count. is_disk: the disk inscribed in it,
+// which must then be a square.
+struct FlatSource {
+  Parallelogram plane;
+  std::vector<Vec2> outline;
+  bool is_disk = false;
+
+  std::vector<Vec3d> corners() const;  // in space; of a disk's square
+};
+
+// A convex part of a source, inside a parallelogram of its own.
+struct CertifiedCell {
+  Parallelogram plane;
+  std::array<Vec2, most_source_corners> outline;   // in (u,v) of `plane`
+  int count = 0;                                   // 0: all of the parallelogram
+  std::array<Vec3d, most_source_corners> corners;  // in space
+  int corner_count = 0;
+
+  std::span<const Vec2> all_outline() const { return {outline.data(), size_t(count)}; }
+  std::span<const Vec3d> all_corners() const { return {corners.data(), size_t(corner_count)}; }
+};
+
+struct CellLimits {
+  // A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest
+  // value over it exceeds its mean by more than this factor.
+  double variation = 2.5;
+  size_t most_cells = 16;
+};
+
+// The part of the source above the horizon of flat receivers (all of it for others), as one cell;
+// count of corners 0 where nothing is.
+CertifiedCell visible_part(const FlatSource& source, const ReceiverHull& hull);
+
+// Halves `cell` along its longer side. False where a half would have no area.
+bool halve(const CertifiedCell& cell, CertifiedCell& first, CertifiedCell& second);
+
+// Appends the leaves of the bintree over `cell`. A disk stays whole.
+void cut_cells(const CertifiedCell& cell, const ReceiverHull& hull, const CellLimits& limits,
+               std::vector<CertifiedCell>& out);
+
+}  // namespace troffer
