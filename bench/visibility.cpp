@@ -251,8 +251,9 @@ void find_significant(Bench& b) {
         const Tile& tile = b.tiles[t];
         values.resize(tile.positions.size());
         ReceiverArrays arrays;
-        for (size_t r = 0; r < values.size(); ++r) arrays.add(tile.positions[r], tile.normals[r]);
-        arrays.finish();
+        arrays.assign(values.size());
+        for (size_t r = 0; r < values.size(); ++r)
+          arrays.set(r, tile.positions[r], tile.normals[r]);
         unoccluded_irradiance(b.sources[s].corners(), b.sources[s].plane.normal, arrays,
                               values.data());
         for (size_t r = 0; r < values.size(); ++r) {

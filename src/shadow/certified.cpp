@@ -46,15 +46,14 @@ void CertifiedEstimator::irradiance(std::span<const Vec3d> corners, std::vector<
 
 void CertifiedEstimator::begin_cluster(std::span<const ShadowReceiver> receivers) {
   receivers_ = receivers;
-  arrays_.clear();
+  arrays_.assign(receivers.size());
   has_own_horizons_ = false;
   members_.clear();
   for (const ShadowReceiver& r : receivers) {
-    arrays_.add(r.position, r.normal);
+    arrays_.set(members_.size(), r.position, r.normal);
     has_own_horizons_ = has_own_horizons_ || length_squared(r.normal - r.horizon) > 1e-12f;
     members_.push_back(uint32_t(members_.size()));
   }
-  arrays_.finish();
   if (has_own_horizons_)
     for (const ShadowReceiver& r : receivers) arrays_.horizons.push_back(r.horizon);
   if (!receivers.empty()) cluster_hull_ = hull_of(members_);

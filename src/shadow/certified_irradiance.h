@@ -18,10 +18,8 @@ struct ReceiverArrays {
   std::vector<Vec3> horizons;
   size_t size = 0;
 
-  void clear();
-  void add(const Vec3& p, const Vec3& n);
-  // Fills up to whole vectors.
-  void finish();
+  void assign(size_t n);  // room for n, without horizons
+  void set(size_t i, const Vec3& p, const Vec3& n);
   Vec3d position_at(size_t i) const { return {position[0][i], position[1][i], position[2][i]}; }
   Vec3d normal_at(size_t i) const { return {normal[0][i], normal[1][i], normal[2][i]}; }
 };

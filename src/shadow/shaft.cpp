@@ -88,31 +88,29 @@ struct Bodies {
   std::span<const Vec3d> a, b;
 };
 
-// Adds the plane through edge (p, q) and corner c if both bodies lie on one side of it.
-void add_if_supporting(const Bodies& bodies, const Vec3d& p, const Vec3d& q, const Vec3d& c,
-                       double margin, double tolerance, Shaft& shaft) {
-  const Vec3d n = cross(q - p, c - p);
-  const double size = length(n);
-  if (!(size > 1e-12 * length(q - p) * length(c - p)) || !(size > 0)) return;
-  const Vec3d unit = n / size;
+// Adds the plane through edge (p, q) of one body and a corner of the other if both lie on one side
+// of it. Of the two planes about the edge that touch the other body, the one that leaves the own
+// body on the same side is wanted: wrapping turns the plane from corner to corner, away from
+// `inner`, a point of the own body off the edge.
+void add_tangent(const Bodies& bodies, const Vec3d& p, const Vec3d& q, const Vec3d& inner,
+                 std::span<const Vec3d> other, double margin, double tolerance, Shaft& shaft) {
+  const Vec3d e = q - p;
+  Vec3d normal;
+  for (const Vec3d& c : other) {
+    const Vec3d d = c - p;
+    if (length_squared(normal) > 0 && dot(normal, d) <= 0) continue;
+    const Vec3d n = cross(e, d);
+    normal = dot(n, inner - p) <= 0 ? n : -n;
+  }
+  const double size = length(normal);
+  if (!(size > 0)) return;
+  const Vec3d unit = normal / size;
   const double distance = dot(unit, p);
-  double least = 0, most = 0;
+  double most = 0;
   for (const std::span<const Vec3d> body : {bodies.a, bodies.b})
-    for (const Vec3d& v : body) {
-      const double h = dot(unit, v) - distance;
-      least = std::min(least, h);
-      most = std::max(most, h);
-      if (most > tolerance && least < -tolerance) return;
-    }
-  if (shaft.count >= Shaft::most_planes) return;
-  Plane& plane = shaft.planes[size_t(shaft.count)];
-  if (most <= tolerance)
-    plane = {Vec3(unit), float(distance + most + margin)};
-  else
-    plane = {Vec3(-unit), float(-distance - least + margin)};
-  for (int i = 0; i < shaft.count; ++i)
-    if (dot(shaft.planes[size_t(i)].normal, plane.normal) > 0.99999f) return;
-  ++shaft.count;
+    for (const Vec3d& v : body) most = std::max(most, dot(unit, v) - distance);
+  if (most > tolerance || shaft.count >= Shaft::most_planes) return;
+  shaft.planes[size_t(shaft.count++)] = {Vec3(unit), float(distance + most + margin)};
 }
 
 constexpr int box_edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
@@ -141,15 +139,25 @@ Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const
   const Bodies bodies{corners, outline};
   const double tolerance = 1e-9 * std::max(scene_magnitude, hull.magnitude);
   const double slack = margin + hull.slack;
-  for (size_t i = 0; i < outline.size(); ++i)
-    for (const Vec3d& c : corners)
-      add_if_supporting(bodies, outline[i], outline[(i + 1) % outline.size()], c, slack, tolerance,
-                        shaft);
+  const size_t n = outline.size();
+  for (size_t i = 0; i < n; ++i)
+    add_tangent(bodies, outline[i], outline[(i + 1) % n], outline[(i + 2) % n], corners, slack,
+                tolerance, shaft);
+  // Of a box no corner tells the inside for all planes about an edge: both sides are tried.
   const auto edges = hull.is_flat ? std::span(rectangle_edges) : std::span<const int[2]>(box_edges);
-  for (const auto& e : edges)
-    for (const Vec3d& v : outline)
-      add_if_supporting(bodies, corners[size_t(e[0])], corners[size_t(e[1])], v, slack, tolerance,
-                        shaft);
+  for (const auto& e : edges) {
+    const Vec3d &p = corners[size_t(e[0])], &q = corners[size_t(e[1])];
+    if (hull.is_flat) {
+      add_tangent(bodies, p, q, corners[size_t(e[1] + 1) % 4], outline, slack, tolerance, shaft);
+      continue;
+    }
+    for (const Vec3d& inner : corners)
+      if (length_squared(inner - p) > 0 && length_squared(inner - q) > 0) {
+        const int before = shaft.count;
+        add_tangent(bodies, p, q, inner, outline, slack, tolerance, shaft);
+        if (shaft.count > before) break;
+      }
+  }
   return shaft;
 }
 
