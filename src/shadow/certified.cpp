@@ -111,10 +111,10 @@ float apparent_size(const Quad& q, const Vec3& x) {
 
 // Incomplete lists keep what hides most, and what rays met.
 void CertifiedEstimator::shorten_candidates(const Vec3d& centre) {
-  std::vector<ShadowCandidate>& c = candidates_.facets;
+  std::vector<FacetToAdd>& c = candidates_.facets;
   for (const FoundFacets::Entry& e : found_->entries()) {
     const bool is_known =
-        std::any_of(c.begin(), c.end(), [&](const ShadowCandidate& f) { return f.id == e.id; });
+        std::any_of(c.begin(), c.end(), [&](const FacetToAdd& f) { return f.id == e.id; });
     if (!is_known) c.push_back({scene_->facet(e.id), e.id, false});
   }
   if (c.size() <= options_.most_found) return;
@@ -126,7 +126,7 @@ void CertifiedEstimator::shorten_candidates(const Vec3d& centre) {
     order.emplace_back(is_found ? -1e30f : -apparent_size(c[i].quad, x), i);
   }
   std::nth_element(order.begin(), order.begin() + std::ptrdiff_t(options_.most_found), order.end());
-  std::vector<ShadowCandidate> kept;
+  std::vector<FacetToAdd> kept;
   for (size_t i = 0; i < options_.most_found; ++i) kept.push_back(c[order[i].second]);
   c = std::move(kept);
 }
@@ -187,7 +187,7 @@ void CertifiedEstimator::settle_cells(std::span<uint32_t> members, const Receive
     frame_ = &frame;
     FacetList& facets = lists_[0];
     facets.clear();
-    for (const ShadowCandidate& c : candidates_.facets) facets.add(frame, c.quad, c.is_front_only);
+    facets.add_many(frame, candidates_.facets);
     facets.finish();
     const bool is_all = cell_members_.size() == members.size();
     settle(cell_members_, is_all ? hull : hull_of(cell_members_), facets, 0);

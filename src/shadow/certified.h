@@ -37,14 +37,9 @@ struct ShadowSegment {
   Vec3 from, to;
 };
 
-struct ShadowCandidate {
-  Quad quad;
-  uint32_t id;
-  bool is_front_only;  // part of a closed surface, outside of which both ends lie
-};
-
+// is_front_only where a facet is part of a closed surface outside of which both ends lie.
 struct ShadowCandidates {
-  std::vector<ShadowCandidate> facets;
+  std::vector<FacetToAdd> facets;
   bool is_complete = true;  // nothing else can hide anything inside the shaft
 };
 

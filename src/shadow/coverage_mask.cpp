@@ -263,6 +263,128 @@ void FacetList::add(const MaskFrame& frame, const Quad& quad, bool is_front_only
   }
 }
 
+namespace {
+
+// World coordinates (relative to the frame's centre below) of 16 facets, vertex by vertex.
+template <int edges>
+struct WorldBatch {
+  alignas(64) float x[edges][16];
+  alignas(64) float y[edges][16];
+  alignas(64) float z[edges][16];
+};
+
+// Into canvas coordinates, by the rows and the centre of the frame; highest: largest w of a facet.
+TROFFER_MULTIVERSION
+void place_vertices(const float* __restrict x, const float* __restrict y, const float* __restrict z,
+                    int n, const double* __restrict rows, float* __restrict k, float* __restrict j,
+                    float* __restrict w) {
+  for (int i = 0; i < n; ++i) {
+    const double dx = double(x[i]) - rows[9], dy = double(y[i]) - rows[10],
+                 dz = double(z[i]) - rows[11];
+    k[i] = float(rows[0] * dx + rows[1] * dy + rows[2] * dz);
+    j[i] = float(rows[3] * dx + rows[4] * dy + rows[5] * dz);
+    w[i] = float(rows[6] * dx + rows[7] * dy + rows[8] * dz);
+  }
+}
+
+// Supporting planes of 16 facets of 3 or 4 vertices (`diagonal`: index of the last vertex).
+TROFFER_MULTIVERSION
+void support(const float* __restrict k, const float* __restrict j, const float* __restrict w,
+             int last, float* __restrict nk, float* __restrict nj, float* __restrict nw,
+             float* __restrict distance, float* __restrict highest) {
+  for (int i = 0; i < 16; ++i) {
+    // vertices 0, 2, 1, last: the cross product of the diagonals, or of two sides of a triangle
+    const int a = i, b = i + 16, c = i + 32, d = i + 16 * last;
+    const int from = last == 2 ? a : b;
+    const double pk = double(k[c]) - double(k[a]), pj = double(j[c]) - double(j[a]),
+                 pw = double(w[c]) - double(w[a]);
+    const double qk = double(k[d]) - double(k[b]), qj = double(j[d]) - double(j[b]),
+                 qw = double(w[d]) - double(w[b]);
+    const double rk = pj * qw - pw * qj, rj = pw * qk - pk * qw, rw = pk * qj - pj * qk;
+    const double size = std::sqrt(rk * rk + rj * rj + rw * rw);
+    const double inverse = size > 0 ? 1 / size : 0.0;
+    nk[i] = float(rk * inverse);
+    nj[i] = float(rj * inverse);
+    nw[i] = float(rw * inverse);
+    distance[i] =
+        float((rk * double(k[from]) + rj * double(j[from]) + rw * double(w[from])) * inverse);
+    float most = w[a] > w[b] ? w[a] : w[b];
+    most = most > w[c] ? most : w[c];
+    highest[i] = most > w[d] ? most : w[d];
+  }
+}
+
+}  // namespace
+
+template <int edges>
+void FacetList::add_batch(const MaskFrame& frame, const FacetToAdd* const* facets, size_t n,
+                          std::vector<FacetBatch<edges>>& batches, size_t& count) {
+  constexpr auto lanes = size_t(FacetBatch<edges>::lanes);
+  WorldBatch<edges> world;
+  for (size_t i = 0; i < lanes; ++i) {
+    const Quad& q = facets[std::min(i, n - 1)]->quad;
+    for (size_t e = 0; e < size_t(edges); ++e) {
+      world.x[e][i] = q[e].x;
+      world.y[e][i] = q[e].y;
+      world.z[e][i] = q[e].z;
+    }
+  }
+  double rows[12];
+  for (int r = 0; r < 3; ++r)
+    for (size_t a = 0; a < 3; ++a) rows[size_t(3 * r) + a] = frame.row(r)[a];
+  for (size_t a = 0; a < 3; ++a) rows[9 + a] = frame.centre()[a];
+  // whole batches only: what is there is filled up with lanes that hold nothing
+  finish();
+  count = batches.size() * lanes;
+  FacetBatch<edges>& f = batches.emplace_back();
+  place_vertices(world.x[0], world.y[0], world.z[0], edges * int(lanes), rows, f.k[0], f.j[0],
+                 f.w[0]);
+  float highest[lanes];
+  support(f.k[0], f.j[0], f.w[0], edges - 1, f.normal_k, f.normal_j, f.normal_w, f.distance,
+          highest);
+  const float back = frame.is_mirroring() ? -1 : 1;
+  bool is_crossing[lanes] = {};
+  for (size_t i = 0; i < lanes; ++i) {
+    is_crossing[i] = i < n && !(highest[i] < frame.height());
+    const bool is_kept = i < n && !is_crossing[i] && std::isfinite(f.distance[i]);
+    f.skipped_side[i] = i < n && facets[i]->is_front_only ? back : 0;
+    if (!is_kept) f.normal_k[i] = f.normal_j[i] = f.normal_w[i] = f.distance[i] = 0;
+  }
+  count += lanes;
+  for (size_t i = 0; i < n; ++i)
+    if (is_crossing[i]) add(frame, facets[i]->quad, facets[i]->is_front_only);
+}
+
+void FacetList::add_many(const MaskFrame& frame, std::span<const FacetToAdd> facets) {
+  constexpr size_t lanes = 16;
+  const FacetToAdd *triangles[lanes], *quads[lanes];
+  size_t triangle_count = 0, quad_count = 0;
+  const auto flush_triangles = [&] {
+    if (triangle_count > 0)
+      add_batch<3>(frame, triangles, triangle_count, triangles_, triangle_count_);
+    triangle_count = 0;
+  };
+  const auto flush_quads = [&] {
+    if (quad_count > 0) add_batch<4>(frame, quads, quad_count, quads_, quad_count_);
+    quad_count = 0;
+  };
+  const auto is_same = [](const Vec3& a, const Vec3& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+  };
+  for (const FacetToAdd& f : facets) {
+    const Quad& q = f.quad;
+    if (is_same(q[0], q[1]) || is_same(q[1], q[2]) || is_same(q[3], q[0])) {
+      add(frame, q, f.is_front_only);
+      continue;
+    }
+    (is_triangle(f.quad) ? triangles[triangle_count++] : quads[quad_count++]) = &f;
+    if (triangle_count == lanes) flush_triangles();
+    if (quad_count == lanes) flush_quads();
+  }
+  flush_triangles();
+  flush_quads();
+}
+
 void FacetList::finish() {
   pad(triangles_, triangle_count_);
   pad(quads_, quad_count_);
@@ -311,9 +433,11 @@ void copy_unsettled(const std::vector<FacetBatch<edges>>& from, size_t from_coun
                     size_t& count) {
   constexpr size_t lanes = FacetBatch<edges>::lanes;
   for (size_t i = 0; i < from_count; ++i) {
-    if (flags[i] != 0) continue;
     const FacetBatch<edges>& f = from[i / lanes];
     const size_t source = i % lanes, lane = count % lanes;
+    const bool is_facet =
+        f.normal_k[source] != 0 || f.normal_j[source] != 0 || f.normal_w[source] != 0;
+    if (flags[i] != 0 || !is_facet) continue;
     if (lane == 0) to.emplace_back();
     FacetBatch<edges>& t = to.back();
     for (size_t e = 0; e < size_t(edges); ++e) {

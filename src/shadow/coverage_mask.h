@@ -85,6 +85,8 @@ class MaskFrame {
   Vec3d step_k() const { return step_k_; }
   Vec3d step_j() const { return step_j_; }
   Vec3 canvas_origin() const { return origin_; }
+  // Rows of the linear part of to_canvas.
+  const Vec3d& row(int i) const { return i == 0 ? row_k_ : i == 1 ? row_j_ : row_w_; }
 
  private:
   MaskLattice lattice_;
@@ -99,6 +101,13 @@ class MaskFrame {
 
 struct FacetFlags;
 
+// A facet in space; is_front_only: only receivers count that see its vertices counterclockwise.
+struct FacetToAdd {
+  Quad quad;
+  uint32_t id;  // what it is called outside
+  bool is_front_only;
+};
+
 // Facets of one cluster of receivers and one source.
 class FacetList {
  public:
@@ -106,15 +115,21 @@ class FacetList {
   // Adds the part of a facet in front of the source's plane. is_front_only: only receivers count
   // that see its vertices counterclockwise. Facets without area are left out.
   void add(const MaskFrame& frame, const Quad& quad, bool is_front_only = false);
+  // The same for many, several to a vector register.
+  void add_many(const MaskFrame& frame, std::span<const FacetToAdd> facets);
   void finish();
   // Becomes the facets of `from` whose flag is 0.
   void keep_unsettled(const FacetList& from, const FacetFlags& flags);
+  // Lanes in use; after add_many some of them may hold no facet.
   size_t size() const { return triangle_count_ + quad_count_; }
 
   const std::vector<FacetBatch<3>>& triangles() const { return triangles_; }
   const std::vector<FacetBatch<4>>& quads() const { return quads_; }
 
  private:
+  template <int edges>
+  void add_batch(const MaskFrame& frame, const FacetToAdd* const* facets, size_t n,
+                 std::vector<FacetBatch<edges>>& batches, size_t& count);
   void add_polygon(const Vec3* v, int n, float skipped_side);
   std::vector<FacetBatch<3>> triangles_;
   std::vector<FacetBatch<4>> quads_;

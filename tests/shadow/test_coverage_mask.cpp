@@ -68,7 +68,13 @@ TEST_CASE("masks agree with rays, sample by sample, and on all instruction sets"
     const MaskLattice lattice = seed % 2 == 0 ? coarse_lattice : fine_lattice;
     const MaskFrame frame(source.plane, lattice, seed % 3 == 0, Vec3d(x.position), source.outline);
     FacetList list;
-    for (const Quad& q : scene.facets) list.add(frame, q);
+    if (seed % 4 < 2) {
+      for (const Quad& q : scene.facets) list.add(frame, q);
+    } else {
+      std::vector<FacetToAdd> facets;
+      for (const Quad& q : scene.facets) facets.push_back({q, 0, false});
+      list.add_many(frame, facets);
+    }
     list.finish();
     const Vec2 shift = r.next_vec2();
     CoverageMask mask, plain, middle;
