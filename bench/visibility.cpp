@@ -6,7 +6,7 @@
 // source that some light could reach: the root mean square error of the visible share of the
 // unoccluded irradiance against N Owen-Sobol rays, nanoseconds on one thread (the faster of two
 // runs), and rays. `fixed` casts N Owen-Sobol rays in packets of 16 and takes the ratio estimate.
-// "clutter" as SCENE is generated: 36 000 triangles of small things on a table under two lights.
+// "clutter" and "foliage" as SCENE are generated (generated_scenes.h).
 
 #include <fmt/format.h>
 
@@ -20,6 +20,8 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/warp.h"
+#include "generated_scenes.h"
 #include "import/import.h"
 #include "render/camera.h"
 #include "render/render.h"
@@ -106,21 +108,15 @@ class World final : public ShadowScene {
 
 std::vector<FlatSource> flat_sources(const LightPrimitives& lights) {
   std::vector<FlatSource> sources;
-  for (const LightPrimitive& p : lights.all()) {
-    if (p.vertex_count != 3 && p.shape != PrimitiveShape::rectangle) {
-      fmt::print("  (a light that is no rectangle or triangle is left out)\n");
-      continue;
+  for (const LightPrimitive& p : lights.all())
+    for (const bool is_back : {false, true}) {
+      FlatSource source;
+      if (is_back && !p.is_two_sided) continue;
+      if (make_flat_source(p, is_back, source))
+        sources.push_back(source);
+      else
+        fmt::print("  (a light that is not flat is left out)\n");
     }
-    FlatSource s;
-    const Vec3d o(p.vertices[0]);
-    s.plane = {o, Vec3d(p.vertices[1]) - o, Vec3d(p.vertices[p.vertex_count == 3 ? 2 : 3]) - o,
-               p.normal};
-    if (p.vertex_count == 3) s.outline = {{0, 0}, {1, 0}, {0, 1}};
-    sources.push_back(s);
-    if (!p.is_two_sided) continue;
-    s.plane.normal = -s.plane.normal;
-    sources.push_back(s);
-  }
   return sources;
 }
 
@@ -177,6 +173,36 @@ struct FixedScratch {
   std::vector<uint32_t> samples;
 };
 
+// Moves a point of the unit square into the source's outline, keeping areas: along a fan of
+// triangles, or onto the disk.
+void onto_outline(const FlatSource& s, float& u, float& v) {
+  if (s.is_disk) {
+    const Vec2 p = disk_from_square(Vec2{u, v});
+    u = 0.5f + 0.5f * p.x;
+    v = 0.5f + 0.5f * p.y;
+    return;
+  }
+  const std::vector<Vec2>& o = s.outline;
+  if (o.empty()) return;
+  float all = 0, passed = 0;
+  const auto area = [&](size_t i) {
+    const Vec2 e = o[i] - o[0], f = o[i + 1] - o[0];
+    return std::abs(e.x * f.y - e.y * f.x);
+  };
+  for (size_t i = 1; i + 1 < o.size(); ++i) all += area(i);
+  for (size_t i = 1; i + 1 < o.size(); ++i) {
+    const float share = area(i) / all;
+    if (u < passed + share || i + 2 == o.size()) {
+      const float along = std::min((u - passed) / share, 1.0f), out = std::sqrt(v);
+      const Vec2 p = o[0] + ((o[i] - o[0]) * (1 - along) + (o[i + 1] - o[0]) * along) * out;
+      u = p.x;
+      v = p.y;
+      return;
+    }
+    passed += share;
+  }
+}
+
 bool prepare_fixed(const FlatSource& s, const Vec3& position, const Vec3& normal,
                    const Vec3& origin, uint64_t stream, uint32_t n, FixedScratch& f) {
   const Vec3d x(position), nn(normal);
@@ -186,7 +212,6 @@ bool prepare_fixed(const FlatSource& s, const Vec3& position, const Vec3& normal
   for (uint32_t i = 0; i < n; ++i) f.samples[i] = i;
   f.numbers.resize(2 * n);
   sobol_groups(f.streams.data(), f.samples.data(), n, 0, 2, f.numbers.data());
-  const bool is_triangle = !s.outline.empty();
   const Vec3 o = Vec3(s.plane.origin - x), u(s.plane.u), v(s.plane.v);
   const size_t before = f.weights.size();
   float sum = 0;
@@ -194,10 +219,7 @@ bool prepare_fixed(const FlatSource& s, const Vec3& position, const Vec3& normal
       Vec3(target_of(s, s.plane.origin, origin) - s.plane.origin) + position - origin;
   for (uint32_t i = 0; i < n; ++i) {
     float a = f.numbers[i], b = f.numbers[n + i];
-    if (is_triangle && a + b > 1) {  // the lattice's fold
-      a = 1 - a;
-      b = 1 - b;
-    }
+    onto_outline(s, a, b);
     const Vec3 d = o + u * a + v * b;
     const float cosine = dot(d, normal), square = dot(d, d);
     const float w = cosine > 0 ? cosine / (square * square) : 0;
@@ -379,90 +401,6 @@ Error error_of(const Bench& b, const std::vector<float>& values) {
   return e;
 }
 
-Scene clutter() {
-  Scene s;
-  s.materials.resize(1);
-  Mesh room, things;
-  const auto box = [](Mesh& m, const Vec3& lower, const Vec3& upper, float angle, bool is_inward) {
-    const auto base = uint32_t(m.positions.size());
-    const Vec3 c = (lower + upper) * 0.5f;
-    for (int i = 0; i < 8; ++i) {
-      const Vec3 p{(i & 1) != 0 ? upper.x : lower.x, (i & 2) != 0 ? upper.y : lower.y,
-                   (i & 4) != 0 ? upper.z : lower.z};
-      const Vec3 d = p - c;
-      m.positions.push_back({c.x + d.x * std::cos(angle) - d.y * std::sin(angle),
-                             c.y + d.x * std::sin(angle) + d.y * std::cos(angle), p.z});
-    }
-    constexpr uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                      {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (const auto& q : quads) {
-      Triangle a{base + q[0], base + q[1], base + q[2]}, d{base + q[0], base + q[2], base + q[3]};
-      if (is_inward) {
-        std::swap(a[1], a[2]);
-        std::swap(d[1], d[2]);
-      }
-      m.triangles.push_back(a);
-      m.triangles.push_back(d);
-    }
-  };
-  const auto ball = [](Mesh& m, const Vec3& c, float radius) {
-    constexpr uint32_t n = 16, rings = 9;
-    const auto base = uint32_t(m.positions.size());
-    for (uint32_t r = 0; r <= rings; ++r)
-      for (uint32_t i = 0; i < n; ++i) {
-        const float theta = pi_f * float(r) / float(rings), phi = 2 * pi_f * float(i) / float(n);
-        const float ring = r == 0 || r == rings ? 0 : std::sin(theta);
-        m.positions.push_back(
-            c + Vec3{ring * std::cos(phi), ring * std::sin(phi), std::cos(theta)} * radius);
-      }
-    for (uint32_t r = 0; r < rings; ++r)
-      for (uint32_t i = 0; i < n; ++i) {
-        const uint32_t a = base + r * n + i, b = base + r * n + (i + 1) % n;
-        if (r > 0) m.triangles.push_back({a, a + n, b});
-        if (r + 1 < rings) m.triangles.push_back({b, a + n, b + n});
-      }
-  };
-  box(room, {-3, -3, 0}, {3, 3, 3}, 0, true);
-  box(things, {-1, -0.6f, 0.7f}, {1, 0.6f, 0.74f}, 0, false);
-  for (int i = 0; i < 4; ++i) {
-    const float x = (i & 1) != 0 ? 0.9f : -0.9f, y = (i & 2) != 0 ? 0.5f : -0.5f;
-    box(things, {x - 0.03f, y - 0.03f, 0}, {x + 0.03f, y + 0.03f, 0.7f}, 0, false);
-  }
-  Random random(3);
-  for (int i = 0; i < 120; ++i) {
-    const float r = 0.02f + 0.04f * random.next_float();
-    ball(things,
-         {1.9f * random.next_float() - 0.95f, 1.1f * random.next_float() - 0.55f,
-          0.742f + r + 0.2f * random.next_float()},
-         r);
-  }
-  for (int i = 0; i < 120; ++i) {
-    const Vec3 c{1.9f * random.next_float() - 0.95f, 1.1f * random.next_float() - 0.55f, 0.742f};
-    const Vec3 h{0.01f + 0.04f * random.next_float(), 0.01f + 0.04f * random.next_float(), 0};
-    box(things, c - h, c + h + Vec3{0, 0, 0.02f + 0.2f * random.next_float()},
-        3 * random.next_float(), false);
-  }
-  s.meshes = {room, things};
-  const auto light = [&](const Vec3& centre) {
-    Mesh m;
-    m.positions = {centre + Vec3{-0.5f, -0.5f, 0}, centre + Vec3{-0.5f, 0.5f, 0},
-                   centre + Vec3{0.5f, 0.5f, 0}, centre + Vec3{0.5f, -0.5f, 0}};
-    m.triangles = {{0, 1, 2}, {0, 2, 3}};
-    m.emitters = {int32_t(s.emitters.size()), int32_t(s.emitters.size())};
-    Emitter e;
-    e.radiance = Rgb{1};
-    e.geometry = uint32_t(s.meshes.size());
-    e.triangles = {0, 1};
-    e.polygon = m.positions;
-    s.emitters.push_back(e);
-    s.meshes.push_back(m);
-  };
-  light({-1.2f, 0, 2.9f});
-  light({1.2f, 0.5f, 2.9f});
-  s.cameras = {look_at({0.3f, -2.6f, 1.9f}, {0, 0, 0.6f}, {0, 0, 1}, 50)};
-  return s;
-}
-
 void print(const std::string& name, const Error& e, double seconds, double rays) {
   fmt::print("  {:<28} rms {:.5f}  mean {:+.5f}  worst {:.3f}  {:8.0f} ns  {:7.2f} rays\n", name,
              e.rms, e.mean, e.worst, seconds / double(e.pairs) * 1e9, rays);
@@ -470,7 +408,9 @@ void print(const std::string& name, const Error& e, double seconds, double rays)
 
 void run(const std::string& file, int tile_count, uint32_t reference_rays,
          const std::string& only) {
-  const Scene scene = file == "clutter" ? clutter() : import_scene(file);
+  const Scene scene = file == "clutter"   ? bench::clutter()
+                      : file == "foliage" ? bench::foliage()
+                                          : import_scene(file);
   const Tracer tracer(scene);
   const double start = now();
   const Occluders occluders(scene);
@@ -591,7 +531,8 @@ int main(int argc, char** argv) {
   }
   if (files.empty())
     files = {TROFFER_SOURCE_DIR "/scenes/kj92room/kj92room.gltf",
-             TROFFER_SOURCE_DIR "/scenes/modern-hall/modern-hall-diffuse.pbrt", "clutter"};
+             TROFFER_SOURCE_DIR "/scenes/modern-hall/modern-hall-diffuse.pbrt", "clutter",
+             "foliage"};
   try {
     for (const std::string& f : files) run(f, tiles, reference, only);
   } catch (const std::exception& e) {

@@ -13,6 +13,43 @@ std::vector<Vec3d> FlatSource::corners() const {
   return c;
 }
 
+bool make_flat_source(const LightPrimitive& piece, bool is_back, FlatSource& out) {
+  out = FlatSource();
+  const Vec3d normal = is_back ? -piece.normal : piece.normal;
+  if (piece.shape == PrimitiveShape::sphere || piece.vertex_count > 8) return false;
+  if (piece.shape == PrimitiveShape::disk) {
+    const Vec3d u = Vec3d(piece.axis_x) * (2 * double(piece.radius));
+    const Vec3d v = Vec3d(piece.axis_y) * (2 * double(piece.radius));
+    out.plane = {Vec3d(piece.centroid) - (u + v) * 0.5, u, v, normal};
+    out.is_disk = true;
+    return true;
+  }
+  const Vec3d origin(piece.vertex(0)), side = Vec3d(piece.vertex(1)) - origin;
+  const Vec3d last = Vec3d(piece.vertex(piece.vertex_count - 1)) - origin;
+  if (piece.vertex_count == 3 || piece.shape == PrimitiveShape::rectangle) {
+    out.plane = {origin, side, last, normal};
+    if (piece.vertex_count == 3) out.outline = {{0, 0}, {1, 0}, {0, 1}};
+    return true;
+  }
+  // the rectangle along the first side that bounds the polygon
+  const Vec3d x = normalize(side), y = cross(piece.normal, x);
+  Vec2d lower{0, 0}, upper{0, 0};
+  for (uint32_t i = 0; i < piece.vertex_count; ++i) {
+    const Vec3d d = Vec3d(piece.vertex(i)) - origin;
+    lower = {std::min(lower.x, dot(d, x)), std::min(lower.y, dot(d, y))};
+    upper = {std::max(upper.x, dot(d, x)), std::max(upper.y, dot(d, y))};
+  }
+  const Vec2d size = upper - lower;
+  if (!(size.x > 0) || !(size.y > 0)) return false;
+  out.plane = {origin + x * lower.x + y * lower.y, x * size.x, y * size.y, normal};
+  for (uint32_t i = 0; i < piece.vertex_count; ++i) {
+    const Vec3d d = Vec3d(piece.vertex(i)) - origin;
+    out.outline.push_back(
+        {float((dot(d, x) - lower.x) / size.x), float((dot(d, y) - lower.y) / size.y)});
+  }
+  return true;
+}
+
 namespace {
 
 // Convex polygon in (u,v).

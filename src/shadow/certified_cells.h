@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "emitter/light_primitive.h"
 #include "emitter/source_surface.h"
 #include "shadow/coverage_mask.h"
 #include "shadow/shaft.h"
@@ -23,6 +24,10 @@ struct FlatSource {
 
   std::vector<Vec3d> corners() const;  // in space; of a disk's square
 };
+
+// A piece of an emitter as a flat source; `is_back`: seen from behind. False for spheres and for
+// polygons of more than 8 corners, which are none.
+bool make_flat_source(const LightPrimitive& piece, bool is_back, FlatSource& out);
 
 // A convex part of a source, inside a parallelogram of its own.
 struct CertifiedCell {
