@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/random.h"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr float far_in_piece_radii = 12;
 constexpr int least_disc_points = 8;
+constexpr size_t most_parts = 256;  // they are searched one by one
 constexpr uint32_t purpose_visibility = 1;
 
 void finish(Shooter& s) {
@@ -143,6 +145,18 @@ bool is_whole(const RayBudget& budget, float unoccluded) {
   return budget.whole_rays > 0 && unoccluded > budget.reference * budget.whole_from;
 }
 
+// Of the part whose middle is nearest.
+float share_at(const Shooter& s, const Vec3& point) {
+  float share = 1, nearest = std::numeric_limits<float>::infinity();
+  for (size_t i = 0; i < s.parts.size(); ++i) {
+    const float d = length_squared(s.parts[i].position - point);
+    if (d >= nearest) continue;
+    nearest = d;
+    share = s.share[i];
+  }
+  return share;
+}
+
 int rays_wanted(const RayBudget& budget, float unoccluded) {
   const float share = unoccluded / (budget.reference * budget.tolerance);
   const float n = std::pow(std::max(0.5f * share, 0.0f), 4.0f / 3);
@@ -227,7 +241,7 @@ class Gatherer {
   void add_job(uint32_t i, int wanted, float unoccluded) {
     const bool whole = is_whole(budget_, unoccluded);
     const int first = whole ? wanted : std::min(wanted, std::max(4, wanted / 4));
-    s_.jobs.push_back({i, 0, first, wanted, whole, 0, 0, 0});
+    s_.jobs.push_back({i, 0, first, wanted, whole, 0, 0, 0, 0});
   }
 
   // The unoccluded irradiance and the visibility come from the same points, all of them at once.
@@ -267,6 +281,7 @@ class Gatherer {
   size_t trace_round() {
     s_.rays.clear();
     s_.weights.clear();
+    s_.shares.clear();
     for (TransferScratch::Job& j : s_.jobs) {
       j.ray = s_.rays.size();
       for (int k = j.first; k < j.first + j.count; ++k) {
@@ -274,6 +289,7 @@ class Gatherer {
         if (!ray_end(j.receiver, k, j.wanted, end) || !(end.weight > 0)) continue;
         s_.rays.push_back(ray_to(shooter_, receiver(j.receiver), end));
         s_.weights.push_back(end.weight);
+        s_.shares.push_back(share_at(shooter_, end.point));
       }
     }
     s_.is_occluded.resize(s_.rays.size());
@@ -287,14 +303,20 @@ class Gatherer {
 
   void weigh(TransferScratch::Job j, size_t last_ray) {
     for (size_t k = j.ray; k < last_ray; ++k) {
-      j.sum += double(s_.weights[k]);
-      if (s_.is_occluded[k] == 0) j.visible += double(s_.weights[k]);
+      const double weight = double(s_.weights[k]), sent = weight * double(s_.shares[k]);
+      j.sum_without_shares += weight;
+      j.sum += sent;
+      if (s_.is_occluded[k] == 0) j.visible += sent;
     }
     const float v = j.sum > 0 ? float(std::clamp(j.visible / j.sum, 0.0, 1.0)) : 0.0f;
     transfers_[j.receiver].visibility = v;
     const int done = j.first + j.count;
     const bool agree = !j.is_whole && j.sum > 0 && (j.visible == 0 || j.visible == j.sum);
-    if (agree || done >= j.wanted) return;
+    if (agree || done >= j.wanted) {
+      if (!shooter_.share.empty() && j.sum_without_shares > 0)
+        transfers_[j.receiver].unoccluded *= float(j.sum / j.sum_without_shares);
+      return;
+    }
     j.first = done;
     j.count = j.wanted - done;
     s_.next_jobs.push_back(j);
@@ -349,6 +371,26 @@ Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance) {
   s.offset = sheet.offset;
   finish(s);
   return s;
+}
+
+void set_parts(Shooter& shooter, const RadiosityMesh& mesh, uint32_t patch,
+               std::span<const float> luminances) {
+  constexpr double unequal = 0.02;  // of the mean
+  const Patch& p = mesh.patches[patch];
+  const std::span<const ElementPoint> parts(mesh.points.data() + p.first_point, luminances.size());
+  double sum = 0, area = 0;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    sum += double(luminances[i]) * double(parts[i].area);
+    area += double(parts[i].area);
+  }
+  if (!shooter.is_exact || parts.size() > most_parts || !(sum > 0)) return;
+  const double mean = sum / area;
+  bool is_equal = true;
+  for (const float l : luminances)
+    is_equal = is_equal && std::abs(double(l) - mean) < unequal * mean;
+  if (is_equal) return;
+  shooter.parts = parts;
+  for (const float l : luminances) shooter.share.push_back(float(double(l) / mean));
 }
 
 size_t transfer(const Shooter& shooter, std::span<const ElementPoint> receivers,

@@ -5,7 +5,9 @@
 // than 12 radii away a flat piece counts as a point (relative error under 1 %). Shooters of more
 // than 24 pieces, which are curved, take [1]'s disc approximation at their rays' ends instead.
 // Visibility: the ratio of two sums over rays [2], sum(f V / p) / sum(f / p), the rays' ends being
-// chosen by solid angle within a piece and pieces by what they send.
+// chosen by solid angle within a piece and pieces by what they send. A ray brings the radiosity of
+// the element at its end, relative to the patch's mean: what lies in a narrow gap before the dark
+// end of a patch gets nothing from its bright end.
 // References: [1] Wallace, Elmquist & Haines, "A Ray Tracing Algorithm for Progressive Radiosity",
 //   SIGGRAPH 1989, §3. [2] Heitz, Hill & McGuire, "Combining Analytic Direct Illumination and
 //   Stochastic Shadows", I3D 2018.
@@ -30,6 +32,10 @@ struct Shooter {
   float round_radius = 0;
   float offset = 0;      // metres: rays end this much in front
   bool is_exact = true;  // else disc approximation
+  // What parts of a patch send, relative to its mean: at these sample points of it, `share` each.
+  // Empty: the same everywhere.
+  std::span<const ElementPoint> parts;
+  std::vector<float> share;
   float area() const { return area_sums.empty() ? 0.0f : float(area_sums.back()); }
 };
 
@@ -38,6 +44,9 @@ constexpr size_t max_exact_pieces = 24;
 Shooter emitter_shooter(const LightPrimitives& lights, uint32_t emitter);
 // Its pieces send `radiance`.
 Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance);
+// Sets parts and shares from the luminance that each point of the patch sends, in any unit.
+void set_parts(Shooter& shooter, const RadiosityMesh& mesh, uint32_t patch,
+               std::span<const float> luminances);
 
 struct RayBudget {
   int max_rays = 64;
@@ -53,13 +62,13 @@ struct RayBudget {
 };
 
 struct Transfer {
-  Rgb unoccluded;        // irradiance, W/m² or lx
+  Rgb unoccluded;        // irradiance, W/m² or lx; with the shares of parts at the rays' ends
   float visibility = 0;  // 0 … 1
 };
 
 struct TransferScratch {
   std::vector<Ray> rays;
-  std::vector<float> weights;
+  std::vector<float> weights, shares;
   std::vector<uint8_t> is_occluded;
   std::vector<double> piece_irradiance;
   struct Job {
@@ -67,7 +76,7 @@ struct TransferScratch {
     int first, count, wanted;
     bool is_whole;
     size_t ray;
-    double visible, sum;
+    double visible, sum, sum_without_shares;
   };
   std::vector<Job> jobs, next_jobs;
   std::vector<uint32_t> indices;

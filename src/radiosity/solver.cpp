@@ -88,6 +88,7 @@ class Solver {
     s_.shot_radiance.assign(patches, Rgb{0});
     s_.stored.assign(points * s_.stored_per_point, {});
     unshot_.assign(patches, Rgb{0});
+    unshot_at_.assign(points, 0);
     received_.assign(points, Rgb{0});
     rays_.assign((points + block_size - 1) / block_size, 0);
     for (const LightPrimitive& p : lights.all()) s_.balance.emitted += double(p.power);
@@ -149,6 +150,11 @@ class Solver {
     const Rgb radiance = power / (pi_f * shooter.area());
     for (LightPrimitive& p : shooter.pieces) p.mean_radiance = radiance;
     s_.shot_radiance[brightest] += radiance;
+    const Patch& patch = s_.mesh.patches[brightest];
+    const auto first = unshot_at_.begin() + patch.first_point;
+    const auto last = unshot_at_.begin() + patch.last_point;
+    set_parts(shooter, s_.mesh, brightest, {first, last});
+    std::fill(first, last, 0.0f);
     shoot(shooter, s_.emitter_count + brightest, double(luminance(power)));
   }
 
@@ -191,6 +197,7 @@ class Solver {
       s_.balance.lost_to_specular += other;
       s_.balance.absorbed += all - diffuse - other;
       unshot_[p.patch] += power * p.reflectance;
+      unshot_at_[i] += luminance(received_[i] * p.reflectance);
     }
   }
 
@@ -209,9 +216,10 @@ class Solver {
   RadiositySolution& s_;
   int threads_;
   double area_ = 0, mean_reflectance_ = 0, arrived_ = 0;
-  double waiting_ = 0;  // power of emitters that have not shot
-  std::vector<Rgb> unshot_;    // power, per patch
-  std::vector<Rgb> received_;  // irradiance from the current shot, per point
+  double waiting_ = 0;            // power of emitters that have not shot
+  std::vector<Rgb> unshot_;       // power, per patch
+  std::vector<float> unshot_at_;  // luminance of radiosity, per point
+  std::vector<Rgb> received_;     // irradiance from the current shot, per point
   std::vector<uint64_t> rays_;
   std::vector<TransferScratch> scratch_;
   std::vector<std::vector<Transfer>> transfers_;
@@ -232,14 +240,28 @@ RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
   return s;
 }
 
+namespace {
+
+// All that a patch shot, its parts in the proportions of what they received in all.
+Shooter whole_patch_shooter(const RadiositySolution& s, uint32_t patch) {
+  Shooter shooter = patch_shooter(s.mesh, patch, s.shot_radiance[patch]);
+  const Patch& p = s.mesh.patches[patch];
+  std::vector<float> sent;
+  for (uint32_t i = p.first_point; i < p.last_point; ++i)
+    sent.push_back(luminance(s.mesh.points[i].reflectance * s.irradiance(i)));
+  set_parts(shooter, s.mesh, patch, sent);
+  return shooter;
+}
+
+}  // namespace
+
 void source_contributions(const Tracer& tracer, const LightPrimitives& lights,
                           const RadiositySolution& s, uint32_t source,
                           std::span<const uint32_t> points, std::span<StoredContribution> out,
                           TransferScratch& scratch) {
   const bool is_emitter = s.is_emitter(source);
   const Shooter shooter =
-      is_emitter ? emitter_shooter(lights, source)
-                 : patch_shooter(s.mesh, s.patch_of(source), s.shot_radiance[s.patch_of(source)]);
+      is_emitter ? emitter_shooter(lights, source) : whole_patch_shooter(s, s.patch_of(source));
   scratch.transfers.assign(points.size(), {});
   if (!shooter.pieces.empty())
     transfer_to(shooter, s.mesh.points, points, tracer, ray_budget(s, source),
