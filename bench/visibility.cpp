@@ -61,6 +61,7 @@ class World final : public ShadowScene {
     found_.visited_nodes = 0;
     occluders_.gather(planes, most, found_);
     out.facets.clear();
+    out.is_too_long = !found_.is_complete;
     out.is_complete = found_.is_complete && found_.others == 0;
     for (const uint32_t id : found_.facets) {
       const Occluders::Component& c = occluders_.component_of(id);

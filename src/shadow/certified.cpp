@@ -139,7 +139,7 @@ void CertifiedEstimator::divide(std::span<uint32_t> members, const ReceiverHull&
   gather(
       hull, part,
       is_last ? std::min(options_.longest_list, 4 * options_.most_found) : options_.longest_list);
-  if (is_complete_) return settle_cells(members, hull, part);
+  if (!candidates_.is_too_long) return settle_cells(members, hull, part);
   if (is_last) {
     found_->is_hopeless = true;
     shorten_candidates(hull.centre);

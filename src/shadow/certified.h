@@ -40,7 +40,8 @@ struct ShadowSegment {
 // is_front_only where a facet is part of a closed surface outside of which both ends lie.
 struct ShadowCandidates {
   std::vector<FacetToAdd> facets;
-  bool is_complete = true;  // nothing else can hide anything inside the shaft
+  bool is_complete = true;   // nothing else can hide anything inside the shaft
+  bool is_too_long = false;  // there are more facets: fewer receivers, or less source, would help
 };
 
 // The scene as the estimator sees it: one virtual call per cluster, none per ray.

@@ -154,8 +154,8 @@ void Occluders::build_tree() {
   primitives.reserve(facets_.size() + others_.size());
   for (const Quad& q : facets_)
     primitives.push_back(build_primitive(bounds_of(q), uint32_t(primitives.size())));
-  for (const Box& b : others_)
-    primitives.push_back(build_primitive(b, uint32_t(primitives.size())));
+  for (const Other& o : others_)
+    primitives.push_back(build_primitive(o.bounds, uint32_t(primitives.size())));
   if (primitives.size() <= leaf_size) {
     for (uint32_t i = 0; i < primitives.size(); ++i) leaf_items_.push_back(i);
     root_leaf_count_ = uint32_t(primitives.size());
@@ -238,7 +238,8 @@ void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found)
     for (uint32_t i = first; i < first + count; ++i) {
       const uint32_t item = leaf_items_[i];
       if (item >= facets) {
-        found.others += is_outside(others_[item - facets], set) ? 0 : 1;
+        const Other& o = others_[item - facets];
+        found.others += (o.is_flat ? is_outside(o.cover, set) : is_outside(o.bounds, set)) ? 0 : 1;
       } else if (!is_outside(facets_[item], set)) {
         if (found.facets.size() >= most) return false;
         found.facets.push_back(item);

@@ -68,7 +68,13 @@ class Occluders {
   std::vector<Quad> facets_;
   std::vector<uint32_t> component_;  // per facet
   std::vector<Component> components_;
-  std::vector<Box> others_;
+  // What is no facet: its bounds, and where it is flat a facet that covers it.
+  struct Other {
+    Box bounds;
+    Quad cover;
+    bool is_flat;
+  };
+  std::vector<Other> others_;
   std::vector<std::vector<uint32_t>> facet_of_;  // per mesh, per triangle
   std::vector<Node> nodes_;
   std::vector<uint32_t> leaf_items_;  // facet, or facet_count() + other

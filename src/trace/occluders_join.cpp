@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/frame.h"
 #include "trace/occluders.h"
 
 namespace troffer {
@@ -160,34 +161,30 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
 }
 
 void Occluders::add_others(const Scene& scene) {
+  const auto add_flat = [&](const Quad& q) {
+    Box b;
+    for (const Vec3& v : q) b.grow(v);
+    others_.push_back({b, q, true});
+  };
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.triangles.empty() || !scene.materials[mesh.material].is_alpha_masked) continue;
-    for (const Triangle& t : mesh.triangles) {
-      Box b;
-      for (const uint32_t v : t) b.grow(mesh.positions[v]);
-      others_.push_back(b);
-    }
+    for (const Triangle& t : mesh.triangles)
+      add_flat(
+          {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], mesh.positions[t[2]]});
   }
   for (const Sphere& s : scene.spheres) {
+    // with room for the rounding of Embree's intersections
+    const float slack = 1e-5f * (length(s.centre) + s.radius);
+    const Vec3 reach = Vec3{1, 1, 1} * (s.radius + slack);
     Box b;
-    b.grow(s.centre - Vec3{s.radius, s.radius, s.radius});
-    b.grow(s.centre + Vec3{s.radius, s.radius, s.radius});
-    others_.push_back(b);
+    b.grow(s.centre - reach);
+    b.grow(s.centre + reach);
+    others_.push_back({b, {}, false});
   }
   for (const Disk& d : scene.disks) {
-    Box b;
-    Vec3 reach;
-    for (size_t a = 0; a < 3; ++a)
-      reach[a] = d.radius * std::sqrt(std::max(0.0f, 1 - sqr(d.normal[a])));
-    b.grow(d.centre - reach);
-    b.grow(d.centre + reach);
-    others_.push_back(b);
-  }
-  // rounding of Embree's intersections with them
-  for (Box& b : others_) {
-    const Vec3 slack = (max(abs(b.lower), abs(b.upper))) * 1e-5f + Vec3{1e-30f, 1e-30f, 1e-30f};
-    b.lower = b.lower - slack;
-    b.upper = b.upper + slack;
+    const Frame frame(d.normal);
+    const Vec3 x = frame.tangent * (1.0001f * d.radius), y = frame.bitangent * (1.0001f * d.radius);
+    add_flat({d.centre - x - y, d.centre + x - y, d.centre + x + y, d.centre - x + y});
   }
 }
 

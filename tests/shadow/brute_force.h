@@ -42,6 +42,7 @@ class BruteForceScene final : public ShadowScene {
                   ShadowCandidates& out) override {
     out.facets.clear();
     out.is_complete = is_complete;
+    out.is_too_long = false;
     for (uint32_t i = 0; i < facets.size(); ++i) {
       bool is_outside = false;
       for (const Plane& p : planes) {
@@ -53,6 +54,7 @@ class BruteForceScene final : public ShadowScene {
       if (is_outside) continue;
       if (out.facets.size() >= most) {
         out.is_complete = false;
+        out.is_too_long = true;
         return;
       }
       out.facets.push_back({facets[i], i, false});
