@@ -10,6 +10,8 @@ constexpr float cos_same_way = 0.906f;
 }  // namespace
 
 void TreePool::forget() {
+  // How many there are decides when patterns make room: it must not depend on the past either.
+  if (entries_.size() > most_idle) entries_.resize(most_idle);
   for (const auto& e : entries_) {
     e->has_pattern = false;
     e->last_used = 0;
