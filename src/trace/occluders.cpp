@@ -9,7 +9,21 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/simd.h"
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TROFFER_CULL_DISPATCH 1
+#endif
+#define TROFFER_CULL_WIDTH 4
+#define TROFFER_CULL_NAMESPACE cull_plain
+#include "trace/occluders_kernels.h"
+#ifdef TROFFER_CULL_DISPATCH
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#define TROFFER_CULL_WIDTH 8
+#define TROFFER_CULL_NAMESPACE cull_avx2
+#include "trace/occluders_kernels.h"
+#pragma GCC pop_options
+#endif
 
 namespace troffer {
 
@@ -33,7 +47,7 @@ struct PlaneSet {
       z[count] = p.normal.z;
       distance[count++] = p.distance;
     }
-    padded = (count + 15) / 16 * 16;
+    padded = (count + 7) / 8 * 8;
     for (int i = count; i < padded; ++i) {
       x[i] = y[i] = z[i] = 0;
       distance[i] = std::numeric_limits<float>::infinity();
@@ -41,40 +55,21 @@ struct PlaneSet {
   }
 };
 
-// outside[i] is not 0 where box i of 8 lies outside one plane.
-TROFFER_MULTIVERSION
-void boxes_outside(const float* __restrict lower, const float* __restrict upper,
-                   const float* __restrict x, const float* __restrict y, const float* __restrict z,
-                   const float* __restrict distance, int planes, uint32_t* __restrict outside) {
-  for (int i = 0; i < 8; ++i) outside[i] = 0;
-  for (int p = 0; p < planes; ++p) {
-    // the corner that lies farthest inwards
-    const float* bx = x[p] > 0 ? lower : upper;
-    const float* by = (y[p] > 0 ? lower : upper) + 8;
-    const float* bz = (z[p] > 0 ? lower : upper) + 16;
-    for (int i = 0; i < 8; ++i)
-      outside[i] |= bx[i] * x[p] + by[i] * y[p] + bz[i] * z[p] > distance[p] ? 1u : 0u;
-  }
-}
+struct Kernels {
+  decltype(&cull_plain::boxes_outside) boxes;
+  decltype(&cull_plain::facet_outside) facet;
+};
 
-TROFFER_MULTIVERSION
-uint32_t facet_outside(const float* __restrict v, const float* __restrict x,
-                       const float* __restrict y, const float* __restrict z,
-                       const float* __restrict distance, int padded_planes) {
-  uint32_t outside = 0;
-  for (int p = 0; p < padded_planes; ++p) {
-    const float a = v[0] * x[p] + v[1] * y[p] + v[2] * z[p];
-    const float b = v[3] * x[p] + v[4] * y[p] + v[5] * z[p];
-    const float c = v[6] * x[p] + v[7] * y[p] + v[8] * z[p];
-    const float d = v[9] * x[p] + v[10] * y[p] + v[11] * z[p];
-    const float ab = a < b ? a : b, cd = c < d ? c : d;
-    outside |= (ab < cd ? ab : cd) > distance[p] ? 1u : 0u;
-  }
-  return outside;
+Kernels best_kernels() {
+#ifdef TROFFER_CULL_DISPATCH
+  if (__builtin_cpu_supports("avx2")) return {cull_avx2::boxes_outside, cull_avx2::facet_outside};
+#endif
+  return {cull_plain::boxes_outside, cull_plain::facet_outside};
 }
+const Kernels kernels = best_kernels();
 
 bool is_outside(const Quad& q, const PlaneSet& planes) {
-  return facet_outside(&q[0].x, planes.x, planes.y, planes.z, planes.distance, planes.padded) != 0;
+  return kernels.facet(&q[0].x, planes.x, planes.y, planes.z, planes.distance, planes.padded);
 }
 
 bool is_outside(const Box& b, const PlaneSet& planes) {
@@ -257,11 +252,10 @@ void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found)
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
     ++found.visited_nodes;
-    alignas(32) uint32_t outside[8];
-    boxes_outside(&node.lower[0][0], &node.upper[0][0], set.x, set.y, set.z, set.distance,
-                  set.count, outside);
+    const uint32_t outside = kernels.boxes(&node.lower[0][0], &node.upper[0][0], set.x, set.y,
+                                           set.z, set.distance, set.count);
     for (uint32_t i = 0; i < 8; ++i) {
-      if (outside[i] != 0 || node.count[i] == 255) continue;
+      if ((outside >> i & 1u) != 0 || node.count[i] == 255) continue;
       if (node.count[i] == 0) {
         stack[size++] = node.child[i];
       } else if (!look_at_leaf(node.child[i], node.count[i])) {
