@@ -124,11 +124,10 @@ int largest_level_difference(const BintreeNodes& nodes) {
 
 namespace {
 
-// [§1.4] for one node: a child of a uniform node, with two leaves below it.
-bool can_become_leaf(const BintreeNodes& nodes, int32_t i, int initial_level, int difference) {
+// [§1.4] for one node, a child of a uniform node: it has two leaves below it, and would not come to
+// lie too far above a neighbour.
+bool can_become_leaf(const BintreeNodes& nodes, int32_t i, int difference) {
   const BintreeNode& n = nodes[i];
-  if (n.is_leaf() || n.level < initial_level || n.parent < 0) return false;
-  if (nodes[n.parent].flag == ShadowFlag::penumbra) return false;
   if (!nodes[n.first_child].is_leaf() || !nodes[n.first_child + 1].is_leaf()) return false;
   return std::all_of(bintree_sides.begin(), bintree_sides.end(), [&](BintreeSide side) {
     const int32_t other = nodes.neighbour(i, side);
@@ -136,28 +135,32 @@ bool can_become_leaf(const BintreeNodes& nodes, int32_t i, int initial_level, in
   });
 }
 
-void list_inner(const BintreeNodes& nodes, int32_t i, int min_level, std::vector<int32_t>& out) {
-  if (nodes[i].is_leaf()) return;
-  if (nodes[i].level >= min_level) out.push_back(i);
-  list_inner(nodes, nodes.first_child(i), min_level, out);
-  list_inner(nodes, nodes.first_child(i) + 1, min_level, out);
+// Inner nodes, level by level from the root: an order that does not depend on where nodes are
+// stored.
+void list_inner(const BintreeNodes& nodes, std::vector<int32_t>& out) {
+  out.clear();
+  if (!nodes[BintreeNodes::root].is_leaf()) out.push_back(BintreeNodes::root);
+  for (size_t k = 0; k < out.size(); ++k) {
+    const int32_t first = nodes.first_child(out[k]);
+    for (const int32_t child : {first, first + 1})
+      if (!nodes[child].is_leaf()) out.push_back(child);
+  }
 }
 
 }  // namespace
 
 void shrink(BintreeNodes& nodes, int initial_level, int difference, Random& coin,
             std::vector<int32_t>& order) {
-  order.clear();
-  list_inner(nodes, BintreeNodes::root, initial_level, order);
+  list_inner(nodes, order);
+  // Under a uniform root all goes, level after level, so that no neighbour is ever in the way.
+  const bool is_uniform = difference > 0 && nodes[BintreeNodes::root].flag != ShadowFlag::penumbra;
   // Deepest first: only what lies deeper can keep a node from becoming a leaf, and that is settled
-  // when its turn comes. Ties by place: the order must not depend on where nodes are stored.
-  std::sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
-    const BintreeNode &x = nodes[a], &y = nodes[b];
-    if (x.level != y.level) return x.level > y.level;
-    return x.row != y.row ? x.row < y.row : x.column < y.column;
-  });
-  for (const int32_t i : order) {
-    if (can_become_leaf(nodes, i, initial_level, difference)) nodes.merge(i, coin);
+  // when its turn comes.
+  for (size_t k = order.size(); k-- > 0;) {
+    const BintreeNode& n = nodes[order[k]];
+    if (n.level < initial_level || n.parent < 0) continue;
+    if (nodes[n.parent].flag == ShadowFlag::penumbra) continue;
+    if (is_uniform || can_become_leaf(nodes, order[k], difference)) nodes.merge(order[k], coin);
   }
   nodes.propagate_all();
 }
