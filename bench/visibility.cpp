@@ -1,6 +1,7 @@
 // Visibility of flat sources at the hits of a camera: shadow rays against certified visibility.
 //
-//   bench_visibility [--tiles N] [--reference N] [--only NAME] [SCENE…]
+//   bench_visibility [--tiles N] [--reference N] [--spp N] [--only NAME]
+//                    [SCENE…]
 //
 // Hits of 8 × 8 pixels form tiles, of which N spread over the picture count. Per pair of hit and
 // source that some light could reach: the root mean square error of the visible share of the
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <exception>
 #include <string>
@@ -127,7 +127,7 @@ struct Tile {
 };
 
 std::vector<Tile> hit_tiles(const Scene& scene, const Tracer& tracer, const Camera& camera,
-                            int width, int height, int count) {
+                            int width, int height, int count, int spp) {
   const ViewingCamera view(camera, width, height);
   const int tx = width / 8, ty = height / 8;
   std::vector<Tile> tiles;
@@ -137,22 +137,20 @@ std::vector<Tile> hit_tiles(const Scene& scene, const Tracer& tracer, const Came
     // tiles are numbered so that successive ones lie far apart
     const int at = int((int64_t(t) * 7919) % (tx * ty));
     Tile tile;
-    for (int y = 0; y < 8; ++y) {
-      for (int x = 0; x < 8; ++x) {
-        const int px = at % tx * 8 + x, py = at / tx * 8 + y;
-        const Ray ray = view.ray({float(px) + random.next_float(), float(py) + random.next_float()},
-                                 {0.5f, 0.5f});
-        Hit hit;
-        tracer.closest({&ray, 1}, {&hit, 1});
-        if (!hit.is_valid()) continue;
-        const Surface s = surface_at(scene, ray, hit);
-        const Vec3 n =
-            dot(s.geometric_normal, ray.direction) > 0 ? -s.geometric_normal : s.geometric_normal;
-        tile.positions.push_back(s.position);
-        tile.normals.push_back(n);
-        tile.origins.push_back(offset_origin(s, n));
-        tile.pixels.push_back(uint32_t(py * width + px));
-      }
+    for (int i = 0; i < 64 * spp; ++i) {
+      const int px = at % tx * 8 + i / spp % 8, py = at / tx * 8 + i / spp / 8;
+      const Ray ray = view.ray({float(px) + random.next_float(), float(py) + random.next_float()},
+                               {0.5f, 0.5f});
+      Hit hit;
+      tracer.closest({&ray, 1}, {&hit, 1});
+      if (!hit.is_valid()) continue;
+      const Surface s = surface_at(scene, ray, hit);
+      const Vec3 n =
+          dot(s.geometric_normal, ray.direction) > 0 ? -s.geometric_normal : s.geometric_normal;
+      tile.positions.push_back(s.position);
+      tile.normals.push_back(n);
+      tile.origins.push_back(offset_origin(s, n));
+      tile.pixels.push_back(uint32_t(py * width + px) * uint32_t(spp) + uint32_t(i % spp));
     }
     tiles.push_back(std::move(tile));
   }
@@ -402,13 +400,31 @@ Error error_of(const Bench& b, const std::vector<float>& values) {
   return e;
 }
 
+// Nanoseconds that fixed sampling takes to reach an error: straight lines between its runs, both
+// scales logarithmic.
+double fixed_time(const std::vector<std::pair<double, double>>& runs, double error) {
+  size_t i = 1;
+  while (i + 1 < runs.size() && runs[i].first > error) ++i;
+  const auto& [e0, t0] = runs[i - 1];
+  const auto& [e1, t1] = runs[i];
+  const double slope = std::log(t1 / t0) / std::log(e1 / e0);
+  return t1 * std::pow(error / e1, slope);
+}
+
 void print(const std::string& name, const Error& e, double seconds, double rays) {
   fmt::print("  {:<28} rms {:.5f}  mean {:+.5f}  worst {:.3f}  {:8.0f} ns  {:7.2f} rays\n", name,
              e.rms, e.mean, e.worst, seconds / double(e.pairs) * 1e9, rays);
 }
 
-void run(const std::string& file, int tile_count, uint32_t reference_rays,
-         const std::string& only) {
+struct Arguments {
+  int tiles = 64, spp = 1;
+  uint32_t reference = 4096;
+  std::string only;
+};
+
+void run(const std::string& file, const Arguments& arguments) {
+  const std::string& only = arguments.only;
+  const uint32_t reference_rays = arguments.reference;
   const Scene scene = file == "clutter"   ? bench::clutter()
                       : file == "foliage" ? bench::foliage()
                                           : import_scene(file);
@@ -419,7 +435,7 @@ void run(const std::string& file, int tile_count, uint32_t reference_rays,
   fmt::print("{}: {} triangles, {} facets in {:.3f} s\n", file, triangle_count(scene),
              occluders.facet_count(), now() - start);
   Bench b{scene, tracer, occluders, flat_sources(lights), {}, {}, {}, {}};
-  b.tiles = hit_tiles(scene, tracer, scene.cameras.at(0), 256, 256, tile_count);
+  b.tiles = hit_tiles(scene, tracer, scene.cameras.at(0), 256, 256, arguments.tiles, arguments.spp);
   size_t total = 0;
   for (const Tile& t : b.tiles) {
     b.first.push_back(total);
@@ -460,12 +476,14 @@ void run(const std::string& file, int tile_count, uint32_t reference_rays,
              b.sources.size(), lit + dark + penumbra, 100 * double(lit) / pairs,
              100 * double(dark) / pairs, 100 * double(penumbra) / pairs);
   std::vector<float> values;
-  for (const uint32_t n : {16u, 64u, 256u}) {
+  std::vector<std::pair<double, double>> baseline;  // error, nanoseconds
+  for (const uint32_t n : {16u, 64u, 256u, 1024u}) {
     if (!only.empty() && only != "fixed") continue;
-    const double once = fixed_run(b, n, 1, values);
+    double seconds = fixed_run(b, n, 1, values);
     const Error e = error_of(b, values);
-    const double again = n > 64 ? once : fixed_run(b, n, 2, values);
-    print(fmt::format("fixed {}", n), e, std::min(once, again), n);
+    if (n <= 64) seconds = std::min(seconds, fixed_run(b, n, 2, values));
+    print(fmt::format("fixed {}", n), e, seconds, n);
+    baseline.emplace_back(e.rms, seconds / double(e.pairs) * 1e9);
   }
   struct Setting {
     const char* name;
@@ -493,6 +511,14 @@ void run(const std::string& file, int tile_count, uint32_t reference_rays,
     const CertifiedRun again = certified_run(b, o, 2, values);
     print(s.name, e, std::min(first.seconds, again.seconds), double(first.rays) / double(e.pairs));
     const double all = double(e.pairs);
+    if (baseline.size() > 1) {
+      const double time = std::min(first.seconds, again.seconds) / all * 1e9;
+      fmt::print(
+          "      {:.1f} times as fast as fixed at this error; at an error of .005 at least "
+          "{:.1f} times\n",
+          fixed_time(baseline, e.rms) / time,
+          e.rms <= 0.005 ? fixed_time(baseline, 0.005) / time : 0.0);
+    }
     const auto rms = [&](int a) {
       return first.answers[a] > 0 ? std::sqrt(first.error2[a] / double(first.answers[a])) : 0.0;
     };
@@ -517,25 +543,27 @@ void run(const std::string& file, int tile_count, uint32_t reference_rays,
 
 int main(int argc, char** argv) {
   std::vector<std::string> files;
-  int tiles = 64;
-  uint32_t reference = 4096;
-  std::string only;
+  Arguments arguments;
   for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--tiles") == 0 && i + 1 < argc)
-      tiles = std::stoi(argv[++i]);
-    else if (std::strcmp(argv[i], "--reference") == 0 && i + 1 < argc)
-      reference = uint32_t(std::stoul(argv[++i]));
-    else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc)
-      only = argv[++i];
+    const std::string name = argv[i];
+    const bool has_value = i + 1 < argc;
+    if (name == "--tiles" && has_value)
+      arguments.tiles = std::stoi(argv[++i]);
+    else if (name == "--reference" && has_value)
+      arguments.reference = uint32_t(std::stoul(argv[++i]));
+    else if (name == "--spp" && has_value)
+      arguments.spp = std::stoi(argv[++i]);
+    else if (name == "--only" && has_value)
+      arguments.only = argv[++i];
     else
-      files.emplace_back(argv[i]);
+      files.push_back(name);
   }
   if (files.empty())
     files = {TROFFER_SOURCE_DIR "/scenes/kj92room/kj92room.gltf",
              TROFFER_SOURCE_DIR "/scenes/modern-hall/modern-hall-diffuse.pbrt", "clutter",
              "foliage"};
   try {
-    for (const std::string& f : files) run(f, tiles, reference, only);
+    for (const std::string& f : files) run(f, arguments);
   } catch (const std::exception& e) {
     fmt::print(stderr, "error: {}\n", e.what());
     return 1;

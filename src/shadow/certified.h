@@ -82,12 +82,12 @@ struct CertifiedOptions {
   MaskLattice lattice = coarse_lattice;
   size_t longest_list = 1024;  // facets gathered for a cluster
   int most_halvings = 3;       // of cluster or source, one within the other, where lists are longer
-  size_t split_above = 12;     // facets in a list that make halving a cluster worth while
-  size_t smallest_cluster = 8;  // receivers
+  size_t split_above = 24;     // facets in a list that make halving a cluster worth while
+  size_t smallest_cluster = 16;  // receivers
   CellLimits cells;
   float residual_error = 0.02f;  // standard error allowed to rays, as a share of the source
   uint32_t most_rays = 64;       // per receiver and cell
-  size_t most_found = 32;        // facets in the lists that are not complete
+  size_t most_found = 64;        // facets in the lists that are not complete
 };
 
 // What one tile has learnt of one source; kept from cluster to cluster by the caller.

@@ -132,22 +132,48 @@ double term(const ReceiverHull& hull, const Vec3d& x, const Vec3d& y) {
   return cosine / (square * square);
 }
 
-double variation(const CertifiedCell& cell, const ReceiverHull& hull) {
-  Vec3d middle;
-  for (const Vec3d& y : cell.all_corners()) middle += y / double(cell.corner_count);
-  double worst = 1;
-  const auto look = [&](const Vec3d& x) {
-    double most = term(hull, x, middle), sum = most * double(cell.corner_count);
-    for (const Vec3d& y : cell.all_corners()) {
-      const double t = term(hull, x, y);
-      most = std::max(most, t);
+// The point of the cell's parallelogram nearest to x; exact where its sides are orthogonal.
+Vec3d nearest_point(const Parallelogram& p, const Vec3d& x) {
+  const Vec3d d = x - p.origin;
+  const double u = std::clamp(dot(d, p.u) / length_squared(p.u), 0.0, 1.0);
+  const double v = std::clamp(dot(d - p.u * u, p.v) / length_squared(p.v), 0.0, 1.0);
+  return p.origin + p.u * u + p.v * v;
+}
+
+// How the term varies over a cell, for some receivers: the hull's corners and its centre.
+struct Terms {
+  double variation = 1;          // largest value by mean, for the worst of them
+  std::array<double, 9> gain{};  // mean times area
+};
+
+Terms terms_of(const CertifiedCell& cell, const ReceiverHull& hull) {
+  const Parallelogram& p = cell.plane;
+  Terms terms;
+  const double area = length(cross(p.u, p.v));
+  for (int r = 0; r <= hull.count; ++r) {
+    const Vec3d& x = r < hull.count ? hull.corners[size_t(r)] : hull.centre;
+    double most = term(hull, x, nearest_point(p, x)), sum = 0;
+    for (const Vec3d& y : cell.all_corners()) most = std::max(most, term(hull, x, y));
+    for (int i = 0; i < 9; ++i) {
+      const double t =
+          term(hull, x, p.origin + p.u * ((i % 3 + 0.5) / 3) + p.v * ((i / 3 + 0.5) / 3));
       sum += t;
+      most = std::max(most, t);
     }
-    if (sum > 0) worst = std::max(worst, most * 2 * double(cell.corner_count) / sum);
-  };
-  for (int i = 0; i < hull.count; ++i) look(hull.corners[size_t(i)]);
-  look(hull.centre);
-  return worst;
+    terms.variation = std::max(terms.variation, sum > 0 ? 9 * most / sum : 1e30);
+    terms.gain[size_t(r)] = sum / 9 * area;
+  }
+  return terms;
+}
+
+// So far from the receivers that its term varies little.
+bool is_far(const CertifiedCell& cell, const ReceiverHull& hull) {
+  const Parallelogram& p = cell.plane;
+  double radius = 0;
+  for (int i = 0; i < hull.count; ++i)
+    radius = std::max(radius, length(hull.corners[size_t(i)] - hull.centre));
+  const double size = std::max(length(p.u + p.v), length(p.u - p.v));
+  return length(nearest_point(p, hull.centre) - hull.centre) - radius > 1.5 * size;
 }
 
 }  // namespace
@@ -181,17 +207,34 @@ bool halve(const CertifiedCell& cell, CertifiedCell& first, CertifiedCell& secon
 
 void cut_cells(const CertifiedCell& cell, const ReceiverHull& hull, const CellLimits& limits,
                std::vector<CertifiedCell>& out) {
-  // widest variation first, so that the limit leaves out what needs it least
-  std::vector<std::pair<double, CertifiedCell>> open{{variation(cell, hull), cell}};
-  while (!open.empty() && open.size() + out.size() < limits.most_cells) {
-    const auto widest = std::max_element(
-        open.begin(), open.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  struct Open {
+    CertifiedCell cell;
+    Terms terms;
+  };
+  std::vector<Open> open{{cell, {}}};
+  if (!is_far(cell, hull)) open[0].terms = terms_of(cell, hull);
+  while (open.size() < limits.most_cells) {
+    std::array<double, 9> total{};
+    for (const Open& o : open)
+      for (size_t r = 0; r < total.size(); ++r) total[r] += o.terms.gain[r];
+    // Of the cells that vary too much, the one that gives most to some receiver.
+    double largest = limits.least_share;
+    Open* chosen = nullptr;
+    for (Open& o : open) {
+      if (o.terms.variation <= limits.variation) continue;
+      double share = 0;
+      for (size_t r = 0; r < total.size(); ++r)
+        share = std::max(share, total[r] > 0 ? o.terms.gain[r] / total[r] : 0);
+      if (share <= largest) continue;
+      largest = share;
+      chosen = &o;
+    }
     CertifiedCell first, second;
-    if (widest->first <= limits.variation || !halve(widest->second, first, second)) break;
-    *widest = {variation(first, hull), first};
-    open.emplace_back(variation(second, hull), second);
+    if (chosen == nullptr || !halve(chosen->cell, first, second)) break;
+    *chosen = {first, terms_of(first, hull)};
+    open.push_back({second, terms_of(second, hull)});
   }
-  for (const auto& o : open) out.push_back(o.second);
+  for (const Open& o : open) out.push_back(o.cell);
 }
 
 }  // namespace troffer

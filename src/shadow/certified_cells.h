@@ -41,11 +41,13 @@ struct CertifiedCell {
   std::span<const Vec3d> all_corners() const { return {corners.data(), size_t(corner_count)}; }
 };
 
+// A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest value
+// over it exceeds its mean by more than the factor `variation`, and the cell gives more than
+// `least_share` of all that the source gives.
 struct CellLimits {
-  // A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest
-  // value over it exceeds its mean by more than this factor.
-  double variation = 2.5;
-  size_t most_cells = 16;
+  double variation = 3;
+  double least_share = 0.02;
+  size_t most_cells = 32;
 };
 
 // The part of the source above the horizon of flat receivers (all of it for others), as one cell;

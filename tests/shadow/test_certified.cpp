@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <cmath>
 
 #include "brute_force.h"
@@ -35,7 +36,7 @@ ShadowReceiver receiver(const Vec3& p, const Vec3& n, uint64_t stream) {
 }  // namespace
 
 TEST_CASE("visible shares against a grid of rays on random scenes") {
-  double error2 = 0, mean = 0;
+  double error2 = 0, mean = 0, predicted2 = 0;
   int pairs = 0;
   for (uint64_t seed = 0; seed < 150; ++seed) {
     Random r(seed + 31);
@@ -54,6 +55,7 @@ TEST_CASE("visible shares against a grid of rays on random scenes") {
       if (out[i].unoccluded < 1e-4f) continue;
       const double e = double(out[i].visible) - reference_share(scene, source, receivers[i], 60);
       error2 += e * e;
+      predicted2 += double(out[i].variance);
       mean += e;
       ++pairs;
     }
@@ -61,6 +63,10 @@ TEST_CASE("visible shares against a grid of rays on random scenes") {
   CHECK(pairs > 300);
   CHECK(std::sqrt(error2 / pairs) < 0.006);
   CHECK(std::abs(mean / pairs) < 0.001);
+  // the error that is told is the error that is made, within a factor of 2.5
+  CHECK(error2 < 1.2 * predicted2);
+  CHECK(predicted2 < 6 * error2);
+  MESSAGE("rms error ", std::sqrt(error2 / pairs), ", told ", std::sqrt(predicted2 / pairs));
 }
 
 TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
@@ -97,7 +103,7 @@ TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
       }
       const double mean = sum / seeds, variance = sum2 / seeds - mean * mean;
       CHECK(std::abs(mean - expected) < 4 * std::sqrt(variance / seeds) + 2e-4);
-      CHECK(variance <= 1.5 * bound / seeds);
+      if (!is_complete) CHECK(variance <= bound / seeds);
       MESSAGE(lattice.samples(), " samples, ", is_complete ? "complete" : "with rays", ": ",
               std::sqrt(variance), " against ", std::sqrt(bound / seeds));
     }
@@ -182,6 +188,142 @@ TEST_CASE("thin occluders: none missed, mean error within 0.3 % of the unocclude
   BruteForceScene speck;
   speck.facets = {parallelogram_facet({0, 0, 1.5f}, {0.01f, 0, 0}, {0, 0.01f, 0})};
   CHECK(mean_error(speck) < 0.003);
+}
+
+TEST_CASE("of closed surfaces, outside of which both ends lie, the front is enough") {
+  size_t compared = 0, hidden = 0;
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    Random r(seed + 5);
+    const FlatSource source{{{-0.8, -0.7, 2}, {1.5, 0, 0}, {0.2, 1.4, 0}, {0, 0, -1}}, {}};
+    std::vector<FacetToAdd> all, front;
+    for (int i = 0; i < 4; ++i) {  // boxes, turned at random
+      const Vec3 c = random_vector(r, 0.5f) + Vec3{0, 0, 1};
+      const Vec3 x = random_vector(r, 0.2f), y0 = random_vector(r, 0.2f);
+      const Vec3 z = cross(normalize(x), normalize(y0)) * 0.1f, y = cross(z, x) * 2.0f;
+      for (const bool is_upper : {false, true})
+        for (int axis = 0; axis < 3; ++axis) {
+          const Vec3 a = axis == 0 ? x : axis == 1 ? y : z;
+          const Vec3 u = axis == 0 ? y : axis == 1 ? z : x;
+          const Vec3 v = axis == 0 ? z : axis == 1 ? x : y;
+          const Vec3 corner = c + (is_upper ? a : Vec3{0, 0, 0});
+          Quad q = parallelogram_facet(corner, u, v);  // normal along a
+          if (!is_upper) std::swap(q[1], q[3]);
+          all.push_back({q, 0, false});
+          front.push_back({q, 0, true});
+        }
+    }
+    const MaskFrame frame(source.plane, fine_lattice, seed % 2 == 1, {0, 0, 0});
+    FacetList a, b;
+    a.add_many(frame, all);
+    b.add_many(frame, front);
+    a.finish();
+    b.finish();
+    CoverageMask with, without;
+    const Vec3 x = frame.to_canvas({0.3 * r.next_double(), 0.3 * r.next_double(), -0.1});
+    const Vec2 shift = r.next_vec2();
+    cover(frame, a, x, shift, with);
+    cover(frame, b, x, shift, without);
+    for (size_t row = 0; row < most_mask_rows; ++row)
+      for (uint32_t k = 0; k < 31; ++k) {
+        if ((with.inside.row[row] >> k & 1u) == 0) continue;
+        ++compared;
+        hidden += (with.open.row[row] >> k & 1u) == 0;
+        // a sample on an outline within rounding may differ
+        if ((with.open.row[row] >> k & 1u) != (without.open.row[row] >> k & 1u)) --hidden;
+        CHECK((with.open.row[row] >> k & 1u) <= (without.open.row[row] >> k & 1u));
+      }
+    int differ = 0;
+    for (size_t row = 0; row < most_mask_rows; ++row)
+      differ += std::popcount(with.open.row[row] ^ without.open.row[row]);
+    CHECK(differ <= 1);
+  }
+  CHECK(compared > 100000);
+  CHECK(hidden > 5000);
+}
+
+TEST_CASE("a receiver whose own horizon differs from its normal loses what is behind both") {
+  const FlatSource source{{{0.2, -0.5, 0.1}, {0, 1, 0}, {0, 0, 1.2}, {-1, 0, 0}}, {}};
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({0.1f, -0.1f, 0.2f}, {0, 0.2f, 0}, {0, 0, 0.3f})};
+  ShadowReceiver x = receiver({0, 0, 0}, normalize(Vec3{0.4f, 0, 1}), 3);
+  x.normal = normalize(Vec3{-0.3f, 0.1f, 1});
+  double all = 0, seen = 0;
+  constexpr int n = 1500;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const Vec3d y =
+          source.plane.origin + source.plane.u * ((i + 0.5) / n) + source.plane.v * ((j + 0.5) / n);
+      if (dot(y, Vec3d(x.horizon)) <= 0 || dot(y, Vec3d(x.normal)) <= 0) continue;
+      const double w =
+          dot(y, Vec3d(x.normal)) * y.x / std::pow(length_squared(y), 2) * 1.2 / (n * n);
+      all += w;
+      if (scene.is_hidden(Vec3d(x.origin), y, 0) != 1) seen += w;
+    }
+  CertifiedOptions options;
+  options.lattice = fine_lattice;
+  CertifiedEstimator estimator(options);
+  double unoccluded = 0, visible = 0;
+  constexpr int seeds = 200;
+  for (int i = 0; i < seeds; ++i) {
+    FoundFacets found;
+    SourceVisibility out;
+    x.stream = hash_of(uint64_t(i), 9u);
+    estimator.begin_cluster({&x, 1});
+    estimator.evaluate(source, 1, scene, found, {&out, 1});
+    unoccluded = double(out.unoccluded);
+    visible += double(out.visible) / seeds;
+  }
+  CHECK(unoccluded == doctest::Approx(all).epsilon(1e-3));
+  CHECK(visible == doctest::Approx(seen / all).epsilon(2e-3));
+}
+
+TEST_CASE("near a large source: cells keep shares exact where weights vary by orders") {
+  const FlatSource source{{{-2, -2, 0.15}, {4, 0, 0}, {0, 4, 0}, {0, 0, -1}}, {}};
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({0.02f, -0.1f, 0.05f}, {0.1f, 0.02f, 0.01f}, {0, 0.2f, 0}),
+                  parallelogram_facet({-1.5f, -1, 0.1f}, {1, 0, 0}, {0, 1, 0})};
+  std::vector<ShadowReceiver> receivers;
+  for (int i = 0; i < 16; ++i)
+    receivers.push_back(receiver({0.02f * float(i % 4), 0.02f * float(i / 4), 0}, {0, 0, 1},
+                                 hash_of(uint64_t(i), 1u)));
+  std::vector<SourceVisibility> out(receivers.size());
+  CertifiedOptions options;
+  options.lattice = fine_lattice;
+  CertifiedEstimator estimator(options);
+  FoundFacets found;
+  estimator.begin_cluster(receivers);
+  estimator.evaluate(source, 1, scene, found, out);
+  CHECK(estimator.counters().cells > 4);
+  double error2 = 0;
+  for (size_t i = 0; i < out.size(); ++i) {
+    const double e = double(out[i].visible) - reference_share(scene, source, receivers[i], 1200);
+    error2 += e * e / double(out.size());
+  }
+  CHECK(std::sqrt(error2) < 0.004);
+}
+
+TEST_CASE("disks: exact where open, masked by a circle of samples") {
+  FlatSource source{{{-0.5, -0.5, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}, true};
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({0, -3, 1}, {3, 0, 0}, {0, 6, 0})};
+  std::vector<ShadowReceiver> receivers{receiver({0, 0, 0}, {0, 0, 1}, 7),
+                                        receiver({-2, 0, 0}, {0, 0, 1}, 8),
+                                        receiver({2, 0, 0}, {0, 0, 1}, 9)};
+  double half = 0;
+  for (uint64_t i = 0; i < 400; ++i) {
+    for (size_t k = 0; k < 3; ++k) receivers[k].stream = hash_of(i, k);
+    std::vector<SourceVisibility> out(3);
+    CertifiedEstimator estimator;
+    FoundFacets found;
+    estimator.begin_cluster(receivers);
+    estimator.evaluate(source, 1, scene, found, out);
+    half += double(out[0].visible) / 400;
+    CHECK(double(out[0].unoccluded) ==
+          doctest::Approx(disk_irradiance({0, 0, 2}, {0, 0, -1}, 0.5, {0, 0, 0}, {0, 0, 1})));
+    CHECK(out[1].visible == 1);
+    CHECK(out[2].visible == 0);
+  }
+  CHECK(half == doctest::Approx(0.5).epsilon(2e-3));
 }
 
 TEST_CASE("clusters: planes stay together, each receiver is in one") {
