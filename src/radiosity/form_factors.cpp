@@ -301,6 +301,11 @@ class Gatherer {
     return s_.rays.size();
   }
 
+  static void set_share(Transfer& t, float share) {
+    t.unoccluded *= share;
+    t.share = share;
+  }
+
   void weigh(TransferScratch::Job j, size_t last_ray) {
     for (size_t k = j.ray; k < last_ray; ++k) {
       const double weight = double(s_.weights[k]), sent = weight * double(s_.shares[k]);
@@ -314,7 +319,7 @@ class Gatherer {
     const bool agree = !j.is_whole && j.sum > 0 && (j.visible == 0 || j.visible == j.sum);
     if (agree || done >= j.wanted) {
       if (!shooter_.share.empty() && j.sum_without_shares > 0)
-        transfers_[j.receiver].unoccluded *= float(j.sum / j.sum_without_shares);
+        set_share(transfers_[j.receiver], float(j.sum / j.sum_without_shares));
       return;
     }
     j.first = done;
@@ -373,6 +378,25 @@ Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance) {
   return s;
 }
 
+namespace {
+
+// Of the shares over the shooter's area. The part whose middle is nearest need not be the one that
+// a place belongs to, and what is sent must not be more than what is there.
+double mean_share(const Shooter& s) {
+  double sum = 0;
+  for (const LightPrimitive& p : s.pieces) {
+    const double part = double(p.area) / s.area_sums.back();
+    const auto count = uint32_t(std::clamp(std::ceil(64 * part), 4.0, 64.0));
+    double piece = 0;
+    for (uint32_t k = 0; k < count; ++k)
+      piece += double(share_at(s, point_on(p, SobolGroup(0, purpose_visibility, k).get2())));
+    sum += part * piece / count;
+  }
+  return sum;
+}
+
+}  // namespace
+
 void set_parts(Shooter& shooter, const RadiosityMesh& mesh, uint32_t patch,
                std::span<const float> luminances) {
   constexpr double unequal = 0.02;  // of the mean
@@ -391,6 +415,10 @@ void set_parts(Shooter& shooter, const RadiosityMesh& mesh, uint32_t patch,
   if (is_equal) return;
   shooter.parts = parts;
   for (const float l : luminances) shooter.share.push_back(float(double(l) / mean));
+  const double scale = mean_share(shooter);
+  if (!(scale > 0)) shooter.share.clear();
+  if (shooter.share.empty()) shooter.parts = {};
+  for (float& share : shooter.share) share = float(double(share) / scale);
 }
 
 size_t transfer(const Shooter& shooter, std::span<const ElementPoint> receivers,

@@ -64,6 +64,7 @@ struct RayBudget {
 struct Transfer {
   Rgb unoccluded;        // irradiance, W/m² or lx; with the shares of parts at the rays' ends
   float visibility = 0;  // 0 … 1
+  float share = 1;       // of the parts at the rays' ends, in `unoccluded`
 };
 
 struct TransferScratch {

@@ -89,6 +89,8 @@ class Solver {
     s_.stored.assign(points * s_.stored_per_point, {});
     unshot_.assign(patches, Rgb{0});
     unshot_at_.assign(points, 0);
+    seen_.assign(points, 0);
+    has_shot_.assign(patches, 0);
     received_.assign(points, Rgb{0});
     rays_.assign((points + block_size - 1) / block_size, 0);
     for (const LightPrimitive& p : lights.all()) s_.balance.emitted += double(p.power);
@@ -163,6 +165,9 @@ class Solver {
     const uint64_t stream = s_.is_emitter(source) ? emitter_stream(s_.options, source)
                                                   : hash_of(s_.options.seed, source, s_.shots);
     const RayBudget budget = ray_budget(s_, source);
+    const float luminance_sent = luminance(shooter.pieces[0].mean_radiance);
+    const bool is_first = !s_.is_emitter(source) && has_shot_[s_.patch_of(source)] == 0;
+    if (is_first) has_shot_[s_.patch_of(source)] = 1;
     parallel_for_slots(rays_.size(), threads_, [&](size_t block, size_t slot) {
       const size_t first = block * block_size;
       const size_t count = std::min(block_size, points.size() - first);
@@ -174,6 +179,7 @@ class Solver {
         const size_t point = first + i;
         received_[point] = transfers[i].unoccluded * transfers[i].visibility;
         if (transfers[i].unoccluded.is_black()) continue;
+        if (!s_.is_emitter(source)) limit(point, transfers[i], luminance_sent, is_first);
         keep({s_.stored.data() + point * s_.stored_per_point, s_.stored_per_point},
              {s_.general[point], s_.general_direct[point]}, s_.emitter_count,
              {source, received_[point], transfers[i].unoccluded});
@@ -182,6 +188,18 @@ class Solver {
     ++s_.shots;
     s_.balance.shot += power;
     account();
+  }
+
+  // A point sees no more than a hemisphere. Where it does, as before surfaces of several meshes
+  // that coincide or nearly do, patches give it so much less that light cannot grow from bounce to
+  // bounce.
+  void limit(size_t point, Transfer& t, float luminance_sent, bool is_first) {
+    constexpr float most = 1.03f;  // an error of form factors is not cut
+    if (is_first && t.share > 0)
+      seen_[point] += luminance(t.unoccluded) / t.share * t.visibility / (pi_f * luminance_sent);
+    if (seen_[point] <= most) return;
+    t.unoccluded *= most / seen_[point];
+    received_[point] = t.unoccluded * t.visibility;
   }
 
   // In the order of points, so that sums do not depend on threads.
@@ -219,7 +237,9 @@ class Solver {
   double waiting_ = 0;            // power of emitters that have not shot
   std::vector<Rgb> unshot_;       // power, per patch
   std::vector<float> unshot_at_;  // luminance of radiosity, per point
-  std::vector<Rgb> received_;     // irradiance from the current shot, per point
+  std::vector<float> seen_;       // sum of form factors to patches that have shot, per point
+  std::vector<uint8_t> has_shot_;
+  std::vector<Rgb> received_;  // irradiance from the current shot, per point
   std::vector<uint64_t> rays_;
   std::vector<TransferScratch> scratch_;
   std::vector<std::vector<Transfer>> transfers_;
