@@ -1,0 +1,117 @@
+"""Runs troffer, and remembers what it has run: a command is run again only when its words, the
+program or the scene have changed."""
+
+import hashlib
+import json
+import os
+import shlex
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+
+import exr
+
+USUAL_BUILD, USUAL_OUT = "build/release", "build/experiments/kj92"
+
+
+@dataclass
+class Run:
+    """What a command left behind."""
+
+    command: str  # as a reader would type it in the repository's root
+    exr: str = ""
+    stats: dict = field(default_factory=dict)  # of --stats
+    wall: float = 0  # seconds of the whole process
+    cpu: float = 0  # seconds of processor time, all threads
+    _layers: dict = None
+
+    @property
+    def layers(self):
+        if self._layers is None:
+            self._layers = exr.read(self.exr)
+        return self._layers
+
+    @property
+    def picture(self):
+        return self.layers[""]
+
+    @property
+    def rays(self):
+        return self.stats["shadow_rays_per_viewing_ray"]
+
+
+def _digest(*paths):
+    h = hashlib.sha256()
+    for path in paths:
+        with open(path, "rb") as file:
+            h.update(file.read())
+    return h.hexdigest()
+
+
+class Program:
+    """troffer in `build`, its files in `out`; both relative to the repository's root, which is the
+    working directory."""
+
+    def __init__(self, build, out):
+        self.build, self.out = build, out
+        self.troffer = f"{build}/troffer"
+        self.planned, self.done = 0, 0
+        self.version = _digest(self.troffer)
+        self.begun = time.time()
+        os.makedirs(f"{out}/renders", exist_ok=True)
+
+    def shown(self, words):
+        """A command as a reader would type it, wherever programs and files stand in this run."""
+        command = shlex.join(words).replace(f"{self.build}/", f"{USUAL_BUILD}/")
+        return command.replace(f"{self.out}/", f"{USUAL_OUT}/")
+
+    def _progress(self, what):
+        self.done += 1
+        minutes, seconds = divmod(int(time.time() - self.begun), 60)
+        print(f"[{self.done:3d}/{self.planned}] {minutes:2d}:{seconds:02d}  {what}", flush=True)
+
+    def _execute(self, name, words, scene, target):
+        """Runs unless done; returns the record of the run."""
+        record_path = f"{self.out}/renders/{name}.run.json"
+        key = [self.version, _digest(scene), words]
+        try:
+            with open(record_path) as file:
+                record = json.load(file)
+            if record["key"] == key and os.path.exists(target):
+                self._progress(f"{name} (up to date)")
+                return record
+        except (OSError, ValueError, KeyError):
+            pass
+        self._progress(name)
+        before, start = os.times(), time.time()
+        failed = subprocess.run(words, stdin=subprocess.DEVNULL).returncode
+        after = os.times()
+        if failed:
+            sys.exit(f"error: status {failed} from: {shlex.join(words)}")
+        cpu = after.children_user + after.children_system
+        cpu -= before.children_user + before.children_system
+        record = {"key": key, "wall": time.time() - start, "cpu": cpu}
+        with open(record_path, "w") as file:
+            json.dump(record, file)
+        return record
+
+    def radiosity(self, name, scene, options):
+        """Solution file of the preprocessing."""
+        target = f"{self.out}/renders/{name}.trad"
+        words = [self.troffer, "radiosity", scene, *options.split(), "-o", target]
+        record = self._execute(name, words, scene, target)
+        return Run(self.shown(words), target, {}, record["wall"], record["cpu"])
+
+    def render(self, name, scene, options):
+        target = f"{self.out}/renders/{name}.exr"
+        stats = f"{self.out}/renders/{name}.json"
+        words = [self.troffer, "render", scene, *options.split(), "-o", target]
+        record = self._execute(name, words + ["--stats", stats, "--quiet"], scene, target)
+        with open(stats) as file:
+            numbers = json.load(file)
+        return Run(self.shown(words), target, numbers, record["wall"], record["cpu"])
+
+    def compare(self, image, reference):
+        words = [self.troffer, "compare", image, reference, "--json"]
+        return json.loads(subprocess.run(words, check=True, capture_output=True).stdout)
