@@ -242,6 +242,8 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
                                               const RadiosityMesh& mesh, const Elements& e,
                                               const std::vector<ElementPoint>& sides, int threads) {
   const size_t n = sides.size();
+  // Rays that leave the scene meet in one place: in the open, a few rays miss what shines on a side.
+  const auto lit = uint32_t(n), outside = uint32_t(n + 1);
   std::vector<uint8_t> is_source(n);
   for (uint32_t f = 0; f < mesh.fragments.size(); ++f)
     for (uint32_t side = 0; side < 2; ++side)
@@ -266,7 +268,10 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
       hits.assign(rays.size(), {});
       tracer.closest(rays, hits);
       for (size_t k = 0; k < rays.size(); ++k) {
-        if (!hits[k].is_valid()) continue;
+        if (!hits[k].is_valid()) {
+          seen[i].push_back(outside);
+          continue;
+        }
         Vec3 weights;
         const Vec3 at = rays[k].origin + rays[k].direction * hits[k].t;
         const uint32_t f = fragment_at(scene, mesh, hits[k].geometry, hits[k].primitive, hits[k].u,
@@ -278,8 +283,7 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
       }
     }
   });
-  Rooms rooms(n + 1);
-  const auto lit = uint32_t(n);
+  Rooms rooms(n + 2);
   for (uint32_t i = 0; i < n; ++i) {
     if (is_source[i]) rooms.join(i, lit);
     for (const uint32_t j : seen[i]) rooms.join(i, j);
