@@ -239,3 +239,29 @@ TEST_CASE("every kind of emitter shoots its power") {
     check_balance(solution, 0.01);
   }
 }
+
+TEST_CASE("surfaces of several meshes that coincide: too bright, but it ends") {
+  for (const float gap : {0.0f, 1e-6f, 1e-4f}) {
+    Scene s = lit_room(0.9f);
+    const uint32_t white = add_diffuse(s, Rgb{0.9f});
+    for (int copy = 0; copy < 3; ++copy) {  // of the floor and of a wall
+      const float d = gap * float(copy + 1);
+      add_quad(s, white, {Vec3{0, 0, d}, {4, 0, d}, {4, 3, d}, {0, 3, d}});
+      add_quad(s, white, {Vec3{d, 0, 0}, {d, 3, 0}, {d, 3, 2.5f}, {d, 0, 2.5f}});
+    }
+    const Ready copies(std::move(s)), alone(lit_room(0.9f));
+    RadiosityOptions o;
+    o.meshing = sizes(0.5f, 1.5f);
+    const RadiositySolution a = copies.solve(o), b = alone.solve(o);
+    CHECK(a.is_complete);
+    CHECK(a.shots < 6 * b.shots);
+    float most_a = 0, most_b = 0;
+    for (uint32_t i = 0; i < a.mesh.points.size(); ++i)
+      most_a = std::max(most_a, a.irradiance(i).g);
+    for (uint32_t i = 0; i < b.mesh.points.size(); ++i)
+      most_b = std::max(most_b, b.irradiance(i).g);
+    MESSAGE("gap " << gap << ": brightest point " << most_a << ", " << most_b << " without copies; "
+                   << a.shots << " shots, " << b.shots);
+    CHECK(most_a < (gap < 1e-5f ? 6 : 1.1f) * most_b);
+  }
+}
