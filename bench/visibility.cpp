@@ -1,7 +1,7 @@
 // Visibility of flat sources at the hits of a camera: shadow rays against certified visibility.
 //
-//   bench_visibility [--tiles N] [--reference N] [--spp N] [--only NAME]
-//                    [SCENE…]
+//   bench_visibility [--tiles N] [--reference N] [--spp N] [--bias SEEDS]
+//                    [--only NAME] [SCENE…]
 //
 // Hits of 8 × 8 pixels form tiles, of which N spread over the picture count. Per pair of hit and
 // source that some light could reach: the root mean square error of the visible share of the
@@ -157,10 +157,13 @@ std::vector<Tile> hit_tiles(const Scene& scene, const Tracer& tracer, const Came
   return tiles;
 }
 
-Vec3d target_of(const FlatSource& s, const Vec3d& point, const Vec3& origin) {
+// Rays end this share of the way to the source, clear of its plane.
+float ray_length(const FlatSource& s, const Vec3& origin) {
   double m = 0;
-  for (size_t a = 0; a < 3; ++a) m = std::max({m, std::abs(point[a]), double(std::abs(origin[a]))});
-  return point + s.plane.normal * (8e-6 * m);
+  for (size_t a = 0; a < 3; ++a)
+    m = std::max({m, std::abs(s.plane.origin[a]), double(std::abs(origin[a]))});
+  const double height = dot(s.plane.normal, Vec3d(origin) - s.plane.origin);
+  return float(std::max(1 - 2.5e-6 * m / height, 0.0));
 }
 
 // The visible share by n Owen-Sobol rays, ratio estimate; false where nothing can arrive.
@@ -214,8 +217,8 @@ bool prepare_fixed(const FlatSource& s, const Vec3& position, const Vec3& normal
   const Vec3 o = Vec3(s.plane.origin - x), u(s.plane.u), v(s.plane.v);
   const size_t before = f.weights.size();
   float sum = 0;
-  const Vec3 shift =
-      Vec3(target_of(s, s.plane.origin, origin) - s.plane.origin) + position - origin;
+  const Vec3 shift = position - origin;
+  const float length = ray_length(s, origin);
   for (uint32_t i = 0; i < n; ++i) {
     float a = f.numbers[i], b = f.numbers[n + i];
     onto_outline(s, a, b);
@@ -227,7 +230,7 @@ bool prepare_fixed(const FlatSource& s, const Vec3& position, const Vec3& normal
     Ray r;
     r.origin = origin;
     r.direction = d + shift;
-    r.t_max = w > 0 ? 1.0f : 0.0f;
+    r.t_max = w > 0 ? length : 0.0f;
     f.rays.push_back(r);
   }
   if (sum > 0) return true;
@@ -418,6 +421,7 @@ void print(const std::string& name, const Error& e, double seconds, double rays)
 
 struct Arguments {
   int tiles = 64, spp = 1;
+  uint64_t seeds = 0;  // more than 0: the mean error over so many seeds
   uint32_t reference = 4096;
   std::string only;
 };
@@ -506,6 +510,20 @@ void run(const std::string& file, const Arguments& arguments) {
     o.longest_list = s.longest;
     o.residual_error = s.residual;
     o.most_rays = s.most_rays;
+    if (arguments.seeds > 0) {
+      double sum = 0, sum2 = 0;
+      for (uint64_t seed = 0; seed < arguments.seeds; ++seed) {
+        certified_run(b, o, seed + 100, values);
+        const double mean = error_of(b, values).mean;
+        sum += mean;
+        sum2 += mean * mean;
+      }
+      const auto n = double(arguments.seeds);
+      const double mean = sum / n, variance = std::max(sum2 / n - mean * mean, 0.0);
+      fmt::print("  {:<28} mean error over {} seeds {:+.6f}, its standard error {:.6f}\n", s.name,
+                 arguments.seeds, mean, std::sqrt(variance / (n - 1)));
+      continue;
+    }
     CertifiedRun first = certified_run(b, o, 1, values);
     const Error e = error_of(b, values);
     const CertifiedRun again = certified_run(b, o, 2, values);
@@ -553,6 +571,8 @@ int main(int argc, char** argv) {
       arguments.reference = uint32_t(std::stoul(argv[++i]));
     else if (name == "--spp" && has_value)
       arguments.spp = std::stoi(argv[++i]);
+    else if (name == "--bias" && has_value)
+      arguments.seeds = std::stoull(argv[++i]);
     else if (name == "--only" && has_value)
       arguments.only = argv[++i];
     else

@@ -228,7 +228,7 @@ void CertifiedEstimator::evaluate(const FlatSource& source, uint64_t source_stre
   double magnitude = hull.magnitude;
   for (const Vec3d& c : source.corners())
     magnitude = std::max({magnitude, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
-  target_gap_ = 8e-6 * magnitude;
+  target_gap_ = 2.5e-6 * magnitude;
   cell_stream_ = source_stream;
   const CertifiedCell part = visible_part(source, hull);
   if (part.corner_count == 0) return;

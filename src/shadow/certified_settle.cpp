@@ -126,7 +126,10 @@ void CertifiedEstimator::add_rays(uint32_t member, const CoverageMask& mask,
   o.variance += sqr(weight) / (4 * float(n));
   // Systematic sampling: n targets at equal distances over the open weight, one random start.
   const float start = unit_float(uint32_t(mix64(r.stream + cell_stream_ + 0x14057b7ef767814full)));
-  const Vec3d first = frame_->first_sample() + source_->plane.normal * target_gap_;
+  // A segment ends target_gap_ before the source's plane, on the line to the sample.
+  const Vec3d from(r.origin), first = frame_->first_sample();
+  const double height = dot(source_->plane.normal, from - source_->plane.origin);
+  const double length = std::max(1 - target_gap_ / height, 0.0);
   uint32_t cast = 0;
   float row_start = 0;
   for (int row = 0; row < frame_->lattice().rows && cast < n; ++row) {
@@ -145,7 +148,7 @@ void CertifiedEstimator::add_rays(uint32_t member, const CoverageMask& mask,
       if (k < 0) break;
       const Vec3d to = first + frame_->step_k() * (double(k) + double(shift.x)) +
                        frame_->step_j() * (double(row) + double(shift.y));
-      segments_.push_back({r.origin, Vec3(to)});
+      segments_.push_back({r.origin, Vec3(from + (to - from) * length)});
     }
     row_start = row_end;
   }
