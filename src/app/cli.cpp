@@ -251,6 +251,9 @@ int parse_and_run(int argc, const char* const* argv) {
     // CLI::Range lets NaN pass.
     if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
     if (!std::isfinite(render.exposure)) throw UsageError("--exposure: not a number");
+    const BintreeOptions& tree = render.options.kj92.sampling.tree;
+    if (!std::isfinite(tree.allowed_variance)) throw UsageError("--variance: not a number");
+    if (!std::isfinite(tree.mean_change)) throw UsageError("--mean-change: not a number");
     apply(render_raw, render.options);
     if (render.method != "kj92" && render_raw.shadow_rays == 0)
       throw UsageError("--shadow-rays 0 belongs to --method kj92");
