@@ -242,7 +242,8 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
                                               const RadiosityMesh& mesh, const Elements& e,
                                               const std::vector<ElementPoint>& sides, int threads) {
   const size_t n = sides.size();
-  // Rays that leave the scene meet in one place: in the open, a few rays miss what shines on a side.
+  // Rays that leave the scene meet in one place: in the open, a few rays miss what shines on a
+  // side.
   const auto lit = uint32_t(n), outside = uint32_t(n + 1);
   std::vector<uint8_t> is_source(n);
   for (uint32_t f = 0; f < mesh.fragments.size(); ++f)
@@ -308,6 +309,9 @@ Reflectances reflectances(const BsdfTables& tables, const Scene& scene, uint32_t
   // The coat passes diffuse_mean of what comes, and as much of what leaves.
   const float mean = b.coat == Bsdf::Coat::none ? 1.0f : b.diffuse_mean;
   const Rgb diffuse = b.diffuse * (mean * mean);
+  // A coat's gloss sends on little, over a wide range of places: it counts as diffuse. What is
+  // mirror or glass and nothing else has no diffuse light to hide it in.
+  if (!diffuse.is_black() && !b.has_transmission) return {all, Rgb{0}};
   const auto above = [](float a, float d) { return std::max(0.0f, a - d); };
   return {diffuse, {above(all.r, diffuse.r), above(all.g, diffuse.g), above(all.b, diffuse.b)}};
 }

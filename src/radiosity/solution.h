@@ -58,8 +58,10 @@ struct RadiositySolution {
   std::vector<Rgb> general_direct;         // the part of `general` that came straight from emitters
   std::vector<StoredContribution> stored;  // stored_per_point of them per point; unused: no_source
   std::vector<Rgb> shot_radiance;          // per patch: the radiance it sent, over all its shots
-  Rgb ambient;                             // irradiance expected everywhere from what is unshot
-  float mean_irradiance = 0;               // luminance, as expected from power, area, reflectance
+  // Irradiance expected everywhere from what is unshot, and from what mirrors, glass and gloss
+  // took.
+  Rgb ambient;
+  float mean_irradiance = 0;  // luminance, as expected from power, area, reflectance
   EnergyBalance balance;
   uint32_t shots = 0;
   uint64_t rays = 0;

@@ -94,14 +94,17 @@ class Solver {
     received_.assign(points, Rgb{0});
     rays_.assign((points + block_size - 1) / block_size, 0);
     for (const LightPrimitive& p : lights.all()) s_.balance.emitted += double(p.power);
-    double reflected = 0;
+    double diffuse = 0, all = 0;
     for (const ElementPoint& p : s_.mesh.points) {
       area_ += double(p.area);
-      reflected += double(p.area) * double(luminance(p.reflectance));
+      diffuse += double(p.area) * double(luminance(p.reflectance));
+      all += double(p.area) * double(luminance(p.reflectance + p.specular_albedo));
     }
-    mean_reflectance_ = area_ > 0 ? std::min(reflected / area_, 0.98) : 0.0;
-    if (area_ > 0)
-      s_.mean_irradiance = float(s_.balance.emitted / (area_ * (1 - mean_reflectance_)));
+    if (!(area_ > 0)) return;
+    constexpr double most = 0.98;  // of the light stays; a white room would stay bright for ever
+    mean_albedo_ = std::min(all / area_, most);
+    s_.mean_irradiance =
+        float(s_.balance.emitted / (area_ * (1 - std::min(diffuse / area_, most))));
   }
 
   void solve(const RadiosityCallback& progress, const StopFlag& stop) {
@@ -210,7 +213,9 @@ class Solver {
       if (power.is_black()) continue;
       const double all = double(luminance(power));
       const double diffuse = double(luminance(power * p.reflectance));
-      const double other = double(luminance(power * p.specular_albedo));
+      const Rgb taken = power * p.specular_albedo;
+      const double other = double(luminance(taken));
+      lost_ += taken;
       arrived_ += all;
       s_.balance.lost_to_specular += other;
       s_.balance.absorbed += all - diffuse - other;
@@ -222,10 +227,14 @@ class Solver {
   void finish() {
     s_.balance.escaped = s_.balance.shot - arrived_;
     s_.balance.unshot = unshot_power() + std::max(waiting_, 0.0);
-    Rgb sum;
+    // [1] §3: what is unshot spreads over all surfaces, again and again. So does what mirrors,
+    // glass and gloss took: they do not shoot, but their light is somewhere. Of both a part leaves
+    // an open scene at every bounce, as it did of what was shot.
+    Rgb sum = lost_;
     for (const Rgb& u : unshot_) sum += u;
-    // [1] §3: what is unshot spreads over all surfaces, again and again
-    s_.ambient = sum / float(area_ * (1 - mean_reflectance_));
+    const double stays =
+        s_.balance.shot > 0 ? std::clamp(arrived_ / s_.balance.shot, 0.0, 1.0) : 0.0;
+    s_.ambient = sum * float(stays / (area_ * (1 - stays * mean_albedo_)));
     for (const uint64_t r : rays_) s_.rays += r;
   }
 
@@ -233,7 +242,9 @@ class Solver {
   const LightPrimitives& lights_;
   RadiositySolution& s_;
   int threads_;
-  double area_ = 0, mean_reflectance_ = 0, arrived_ = 0;
+  double area_ = 0, arrived_ = 0;
+  double mean_albedo_ = 0;        // diffuse and specular, by area
+  Rgb lost_;                      // power that specular surfaces took
   double waiting_ = 0;            // power of emitters that have not shot
   std::vector<Rgb> unshot_;       // power, per patch
   std::vector<float> unshot_at_;  // luminance of radiosity, per point
