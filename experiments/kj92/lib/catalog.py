@@ -5,8 +5,9 @@ from dataclasses import dataclass, field
 import coherence
 import paper
 import rooms
-from settings import (CROP_CAMERA, DIFFUSE_HALL, FIGURE_VARIANCE, HALL, ROOM, SELECTION_SCENES,
-                      SOURCE_D, refinement_name, selection_name, sweep_name)
+from settings import (CROP_CAMERA, DIFFUSE_HALL, FIGURE_VARIANCE, HALL, NO_SECOND_STOP_VARIANCE,
+                      ROOM, SELECTION_SCENES, SOURCE_D, no_second_stop_name, refinement_name,
+                      selection_name, sweep_name)
 
 @dataclass
 class Render:
@@ -53,6 +54,8 @@ def _crop(s):
             kj92(sweep_name(v, is_coherent), f"--spp 4 --variance {v:g} --coherence {on}")
             for v in s.variances
         ]
+        renders.append(kj92(no_second_stop_name(is_coherent), f"--spp 4 --coherence {on} "
+                            f"--variance {NO_SECOND_STOP_VARIANCE} --mean-change 0"))
     renders += [fixed(f"crop-fixed-{n}", f"--spp 4 --shadow-rays {n}") for n in s.fixed_rays]
     return renders
 
@@ -120,7 +123,8 @@ def experiments(s):
                    coherence.figure8),
         Experiment("figure9", "Figure 9: where the shadow rays go", coherence.figure9, [],
                    [*chosen, "room-d-all"]),
-        Experiment("claims", "What coherence is said to do", coherence.claims),
+        Experiment("claims", "What coherence is said to do", coherence.claims, [],
+                   [no_second_stop_name(c) for c in (False, True)]),
         Experiment("room", "The whole room against a path-traced reference", rooms.whole_room, [],
                    ["room-default"]),
         Experiment("selection", "What source selection saves", rooms.selection, _selection(s)),

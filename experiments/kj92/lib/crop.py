@@ -95,6 +95,11 @@ class Crop:
                      float(error.mean()) / self.unoccluded_mean,
                      run.stats["seconds"]["render"], run.cpu)
 
+    def error_in(self, region, run, is_fixed=False):
+        """The shadow error over one of the regions alone."""
+        error = (self.direct(run, is_fixed) - self.exact)[self.regions()[region]]
+        return math.sqrt((error.astype(np.float64)**2).mean()) / self.unoccluded_mean
+
     def regions(self):
         """{name: mask} of what the points of the floor see of D."""
         v = self.visible_share

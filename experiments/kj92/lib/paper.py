@@ -35,13 +35,13 @@ def figure4(context):
         "that exist only because of the level difference.",
         "As in the paper the rays gather along the shadow's boundary, and cells on both sides of "
         f"it are split because of the level difference (here in {', '.join(forced)}; the paper "
-        "shows it twice in nine steps, since it lets levels differ by more than our 1). With "
+        "shows it twice in nine steps, as a larger difference than our 1 would give it). With "
         f"{last['rays']} rays the visible share is {float(last['mean']):.3f}; exactly it is "
         f"{float(last['exact']):.3f}, and the tree believes in a standard error of "
         f"{float(last['standard_error']):.3f}, which is far too cautious (see figure 8).",
         "One choice shows how flags mislead: in (b) and (c) rays go into the lower right quarter, "
-        "which is nearly all shadow, because its neighbours differ, while the lower left quarter, "
-        "which the edge does cross, looks like light for want of a second ray.",
+        "which is nearly all shadow, because it differs from its neighbours, while the lower left "
+        "quarter, which the edge does cross, looks like light for want of a second ray.",
     ]
     return Section(text, pictures, [table], [command])
 

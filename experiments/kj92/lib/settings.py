@@ -18,6 +18,7 @@ SOLUTIONS = {"kj92room": (ROOM, "")}
 SELECTION_SCENES = (("kj92room", ROOM, "size"), ("modern-hall", HALL, "small_hall_size"),
                     ("modern-hall-diffuse", DIFFUSE_HALL, "small_hall_size"))
 SOURCE_D = "emitter0"
+NO_SECOND_STOP_VARIANCE = 0.03  # where coherence is tried without the second stop
 FIGURE_VARIANCE = 0.07  # of figures 7d and 9
 
 
@@ -59,6 +60,10 @@ QUICK = Settings(
 
 def sweep_name(variance, is_coherent):
     return f"crop-{'coherent' if is_coherent else 'single'}-{variance:g}"
+
+
+def no_second_stop_name(is_coherent):
+    return f"crop-no-second-stop-{'coherent' if is_coherent else 'single'}"
 
 
 def selection_name(scene, on, variance):
