@@ -262,6 +262,14 @@ uint64_t stream_of(const Tile& t, size_t receiver, size_t source, uint64_t seed)
   return hash_of(uint64_t(t.pixels[receiver]), source, seed);
 }
 
+// Not where the end that a ray leaves out is longer than a hundredth of the source: rays would miss
+// what stands at its rim.
+bool can_rays_tell(const FlatSource& s, const Vec3& origin) {
+  const double left_out = 1 - double(ray_length(s, origin));
+  const double distance = length(s.plane.origin - Vec3d(origin));
+  return left_out * distance < 0.01 * std::min(length(s.plane.u), length(s.plane.v));
+}
+
 // Pairs count where a source unhidden would give at least a thousandth of its mean irradiance:
 // where only a sliver of it stands above the horizon, few rays would say nothing of how much is
 // visible.
@@ -282,7 +290,8 @@ void find_significant(Bench& b) {
                               values.data());
         for (size_t r = 0; r < values.size(); ++r) {
           if (is_second)
-            b.is_significant[b.index(t, s, r)] = double(values[r]) > 1e-3 * sum / count;
+            b.is_significant[b.index(t, s, r)] = double(values[r]) > 1e-3 * sum / count &&
+                                                 can_rays_tell(b.sources[s], tile.origins[r]);
           else if (values[r] > 0) {
             sum += double(values[r]);
             ++count;
