@@ -540,11 +540,11 @@ void run(const std::string& file, const Arguments& arguments) {
     const double all = double(e.pairs);
     if (baseline.size() > 1) {
       const double time = std::min(first.seconds, again.seconds) / all * 1e9;
-      fmt::print(
-          "      {:.1f} times as fast as fixed at this error; at an error of .005 at least "
-          "{:.1f} times\n",
-          fixed_time(baseline, e.rms) / time,
-          e.rms <= 0.005 ? fixed_time(baseline, 0.005) / time : 0.0);
+      fmt::print("      {:.1f} times as fast as fixed at this error",
+                 fixed_time(baseline, e.rms) / time);
+      if (e.rms <= 0.005)
+        fmt::print("; {:.1f} times as fast as fixed at .005", fixed_time(baseline, 0.005) / time);
+      fmt::print("\n");
     }
     const auto rms = [&](int a) {
       return first.answers[a] > 0 ? std::sqrt(first.error2[a] / double(first.answers[a])) : 0.0;
