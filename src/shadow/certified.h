@@ -44,7 +44,8 @@ struct ShadowCandidates {
   bool is_too_long = false;  // there are more facets: fewer receivers, or less source, would help
 };
 
-// The scene as the estimator sees it: one virtual call per cluster, none per ray.
+// The scene as the estimator sees it: one virtual call per cluster, none per ray. It may keep memory
+// between calls: one for each thread.
 class ShadowScene {
  public:
   virtual ~ShadowScene() = default;

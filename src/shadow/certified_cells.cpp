@@ -154,12 +154,12 @@ Terms terms_of(const CertifiedCell& cell, const ReceiverHull& hull) {
     const Vec3d& x = r < hull.count ? hull.corners[size_t(r)] : hull.centre;
     double most = term(hull, x, nearest_point(p, x)), sum = 0;
     for (const Vec3d& y : cell.all_corners()) most = std::max(most, term(hull, x, y));
-    for (int i = 0; i < 9; ++i) {
-      const double t =
-          term(hull, x, p.origin + p.u * ((i % 3 + 0.5) / 3) + p.v * ((i / 3 + 0.5) / 3));
-      sum += t;
-      most = std::max(most, t);
-    }
+    for (const double u : {1.0 / 6, 3.0 / 6, 5.0 / 6})
+      for (const double v : {1.0 / 6, 3.0 / 6, 5.0 / 6}) {
+        const double t = term(hull, x, p.origin + p.u * u + p.v * v);
+        sum += t;
+        most = std::max(most, t);
+      }
     terms.variation = std::max(terms.variation, sum > 0 ? 9 * most / sum : 1e30);
     terms.gain[size_t(r)] = sum / 9 * area;
   }
