@@ -310,9 +310,9 @@ Bsdf diffuse_part(const Bsdf& b) {
   if (b.is_lambertian) return d;
   d.fresnel = Bsdf::Fresnel::none;
   d.has_transmission = d.is_smooth = false;
-  d.glass_again = d.glass_through = Rgb{0};
+  d.metal_again = d.glass_again = d.glass_through = Rgb{0};
   d.glass_weight = 0;
-  d.has_separable = !d.diffuse.is_black() || !d.metal_again.is_black();
+  d.has_separable = !d.diffuse.is_black();
   return d;
 }
 
@@ -320,8 +320,9 @@ Bsdf specular_part(const Bsdf& b) {
   Bsdf s = b;
   s.is_lambertian = false;
   s.coat = Bsdf::Coat::none;
-  s.diffuse = s.metal_again = Rgb{0};
-  s.has_separable = !s.glass_again.is_black() || !s.glass_through.is_black();
+  s.diffuse = Rgb{0};
+  s.has_separable =
+      !s.metal_again.is_black() || !s.glass_again.is_black() || !s.glass_through.is_black();
   return s;
 }
 

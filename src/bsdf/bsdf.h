@@ -148,10 +148,10 @@ inline bool sample(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u
 // (some percent) and rough tinted glass (the tint may be off by the share that reflects).
 Rgb albedo(const Bsdf& bsdf, float cos_o);
 
-// The two parts of a Bsdf: together they scatter what it scatters. What is cosine-shaped and
-// reflects: the diffuse lobe, attenuated by its coat, and what metals' lost energy adds to it …
+// The two parts of a Bsdf: together they scatter what it scatters. The diffuse lobe, attenuated by
+// its coat …
 Bsdf diffuse_part(const Bsdf& bsdf);
-// … and all else: mirrors, gloss, everything that transmits.
+// … and all else: mirrors, gloss with its lost energy, everything that transmits.
 Bsdf specular_part(const Bsdf& bsdf);
 
 // Nothing for next-event estimation to do.

@@ -70,11 +70,12 @@ std::unique_ptr<IntegratorScratch> Kj92Integrator::make_scratch() const {
 
 Kj92Integrator::Place Kj92Integrator::place_of(const Hit& hit, const Vertex& v) const {
   Place place;
+  place.is_back = !v.is_front;
   place.fragment = fragment_at(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u,
-                               hit.v, v.surface.position, place.weights);
+                               hit.v, v.surface.position, place.is_back, place.weights);
   if (place.fragment == no_fragment) return place;
   const uint32_t element = solution_.mesh.fragments[place.fragment].element;
-  place.point = solution_.mesh.element_points[element][v.is_front ? 0 : 1];
+  place.point = solution_.mesh.element_points[element][place.is_back ? 1 : 0];
   return place;
 }
 
@@ -160,7 +161,7 @@ void Kj92Integrator::shade(const Walk& walk, const Hit& hit, const Vertex& v,
   Rgb direct, indirect;
   if (place.point != no_point && s.has_diffuse) {
     const GeneralIrradiance general =
-        selection_.general(place.fragment, !v.is_front, place.weights);
+        selection_.general(place.fragment, place.is_back, place.weights);
     const Rgb reflectance = albedo(s.diffuse, v.wo.z) * inv_pi_f;
     direct += reflectance * general.direct;
     indirect += reflectance * general.indirect;

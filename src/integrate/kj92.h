@@ -49,6 +49,7 @@ class Kj92Integrator final : public Integrator {
   struct Place {
     uint32_t fragment = no_fragment;
     uint32_t point = no_point;
+    bool is_back = false;  // of the fragment
     Vec3 weights;
   };
 

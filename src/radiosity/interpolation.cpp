@@ -57,7 +57,8 @@ void interpolate(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometr
                  Interpolation& out) {
   out.clear();
   Vec3 corner_weights;
-  const uint32_t at = fragment_at(scene, mesh, geometry, primitive, u, v, position, corner_weights);
+  const uint32_t at =
+      fragment_at(scene, mesh, geometry, primitive, u, v, position, is_back, corner_weights);
   if (at == no_fragment) return;
   const uint32_t own = mesh.element_points[mesh.fragments[at].element][is_back ? 1 : 0];
   if (own == no_point) return;

@@ -1,6 +1,7 @@
 #include "radiosity/meshing.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <unordered_map>
 
@@ -11,23 +12,48 @@ namespace troffer {
 
 namespace {
 
-// Triangles over the same three vertices, whichever way round, are one surface.
+// Triangles over the same three places, of whatever mesh and whichever way round, are one surface,
+// unless one of them emits.
 std::vector<uint32_t> find_duplicates(const BaseGeometry& g) {
+  using Corners = std::array<std::array<float, 3>, 3>;
   struct Hash {
-    size_t operator()(const std::array<uint32_t, 3>& v) const {
-      return size_t(hash_of(v[0], v[1], v[2]));
+    size_t operator()(const Corners& corners) const {
+      uint64_t h = 0;
+      for (const auto& c : corners)
+        for (const float x : c) h = hash_combine(h, std::bit_cast<uint32_t>(x + 0.0f));  // no -0
+      return size_t(h);
     }
   };
-  std::unordered_map<std::array<uint32_t, 3>, uint32_t, Hash> first;
+  std::unordered_map<Corners, uint32_t, Hash> first;
   std::vector<uint32_t> same_as(g.triangles.size());
   for (uint32_t i = 0; i < g.triangles.size(); ++i) {
+    const BaseTriangle& t = g.triangles[i];
     same_as[i] = i;
-    if (g.triangles[i].is_degenerate) continue;
-    std::array<uint32_t, 3> v = g.triangles[i].vertices;
-    std::sort(v.begin(), v.end());
-    same_as[i] = first.try_emplace(v, i).first->second;
+    if (t.is_degenerate || t.emitter != no_emitter) continue;
+    if (g.surfaces[t.surface].bulge != Bulge::none) continue;
+    Corners corners;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3& p = g.positions[t.vertices[k]];
+      corners[k] = {p.x, p.y, p.z};
+    }
+    std::sort(corners.begin(), corners.end());
+    same_as[i] = first.try_emplace(corners, i).first->second;
   }
   return same_as;
+}
+
+// Weights of triangle `from`'s corners become those of `to`'s, which lie in the same places. True
+// if the two run opposite ways round, so that the front of one is the back of the other.
+bool move_weights(const BaseGeometry& g, uint32_t from, uint32_t to, Vec3& weights) {
+  const Vec3 own = weights;
+  std::array<size_t, 3> place{};
+  for (size_t k = 0; k < 3; ++k)
+    for (size_t j = 0; j < 3; ++j)
+      if (g.positions[g.triangles[to].vertices[k]] == g.positions[g.triangles[from].vertices[j]]) {
+        weights[k] = own[j];
+        place[k] = j;
+      }
+  return place[1] != (place[0] + 1) % 3;
 }
 
 void index_vertices(RadiosityMesh& mesh) {
@@ -82,20 +108,16 @@ Vec3 fragment_normal(const RadiosityMesh& mesh, uint32_t fragment) {
 }
 
 uint32_t fragment_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometry,
-                     uint32_t primitive, float u, float v, const Vec3& position, Vec3& weights) {
+                     uint32_t primitive, float u, float v, const Vec3& position, bool& is_back,
+                     Vec3& weights) {
   const auto meshes = uint32_t(scene.meshes.size());
   uint32_t triangle = 0;
   if (geometry < meshes) {
     triangle = mesh.geometry.surfaces[geometry].first_triangle + primitive;
     weights = {1 - u - v, u, v};
     const uint32_t same = mesh.same_as[triangle];
-    if (same != triangle) {  // the duplicate's corners may run another way
-      const Vec3 own = weights;
-      for (size_t k = 0; k < 3; ++k)
-        for (size_t j = 0; j < 3; ++j)
-          if (mesh.geometry.triangles[same].vertices[k] ==
-              mesh.geometry.triangles[triangle].vertices[j])
-            weights[k] = own[j];
+    if (same != triangle) {
+      if (move_weights(mesh.geometry, triangle, same, weights)) is_back = !is_back;
       triangle = same;
     }
   } else {

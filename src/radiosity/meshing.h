@@ -7,7 +7,8 @@
 // sizes and the angle of joining grow, and in the end triangles are joined that merely are close
 // and face about the same way; so any scene costs bounded time and memory.
 //
-// Not dealt with: surfaces of different meshes that coincide; both reflect.
+// Triangles that are copies of another, in whatever mesh, are that other one (unless one of them
+// emits). Not dealt with: surfaces that coincide without sharing their triangles; both reflect.
 #pragma once
 
 #include <cstddef>
@@ -60,9 +61,12 @@ RadiosityMesh mesh_for_radiosity(const Scene& scene, const Tracer& tracer, const
 
 // The fragment of a mesh's triangle (or sphere, disk) at weights u, v of corners 1 and 2, and the
 // weights of the fragment's corners. `geometry` and `primitive` as in Hit; round surfaces are
-// looked up by `position` instead. no_fragment on triangles without area.
+// looked up by `position` instead. is_back: whether the back of what was hit is asked for; turned
+// round where the fragment stands for a copy of its triangle that faces the other way. no_fragment
+// on triangles without area.
 uint32_t fragment_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometry,
-                     uint32_t primitive, float u, float v, const Vec3& position, Vec3& weights);
+                     uint32_t primitive, float u, float v, const Vec3& position, bool& is_back,
+                     Vec3& weights);
 
 // Unit normal of a fragment, on the front of its triangle.
 Vec3 fragment_normal(const RadiosityMesh& mesh, uint32_t fragment);

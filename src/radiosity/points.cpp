@@ -274,9 +274,10 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
           continue;
         }
         Vec3 weights;
+        bool is_turned = false;  // the fragment's own normal decides below
         const Vec3 at = rays[k].origin + rays[k].direction * hits[k].t;
         const uint32_t f = fragment_at(scene, mesh, hits[k].geometry, hits[k].primitive, hits[k].u,
-                                       hits[k].v, at, weights);
+                                       hits[k].v, at, is_turned, weights);
         if (f == no_fragment) continue;
         const Vec3 normal = hit_normal(scene, mesh, hits[k], f, at);
         const bool is_back = dot(normal, rays[k].direction) > 0;

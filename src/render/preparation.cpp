@@ -21,7 +21,7 @@ std::unique_ptr<Kj92Preparation> prepare_kj92(const PreparedScene& scene,
   if (stop.load()) return nullptr;
   SelectionOptions selection = settings.selection;
   if (is_direct_only) selection.uses_patches = false;
-  SourceSelection selected(*solution, scene.tracer, scene.lights, selection, threads);
+  SourceSelection selected(*solution, scene.tracer, scene.lights, selection, threads, stop);
   if (stop.load()) return nullptr;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return std::make_unique<Kj92Preparation>(

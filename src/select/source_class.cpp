@@ -19,8 +19,10 @@ SourceClass classify(std::span<const SourceAtPoint> points, float mean_total,
   float largest_unoccluded = 0;  // as a share
   float least = 1, most = 0;
   for (const SourceAtPoint& p : points) {
-    const float whole = std::max(p.total, mean_total);
-    if (!(whole > 0) || !(p.unoccluded > thresholds.least_share * whole)) continue;
+    // In the dark any source is important.
+    const float total = std::max(p.total, mean_total);
+    const float whole = total > 0 ? total : p.unoccluded;
+    if (!(p.unoccluded > thresholds.least_share * whole)) continue;
     const float r = std::clamp(p.received / p.unoccluded, 0.0f, 1.0f);
     least = std::min(least, r);
     most = std::max(most, r);

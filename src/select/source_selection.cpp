@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
 #include "radiosity/interpolation.h"
 #include "radiosity/solver.h"
 
@@ -213,7 +212,7 @@ class PatchSelector {
 
 SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer& tracer,
                                  const LightPrimitives& lights, const SelectionOptions& options,
-                                 int threads) {
+                                 int threads, const StopFlag& stop) {
   const RadiosityMesh& mesh = solution.mesh;
   const PatchFragments fragments(mesh);
   const size_t patches = mesh.patches.size();
@@ -222,6 +221,7 @@ SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer
   std::vector<PatchSelector> selectors(size_t(thread_count(threads)),
                                        PatchSelector(solution, tracer, lights, options));
   parallel_for_slots(patches, threads, [&](size_t patch, size_t slot) {
+    if (stop.load(std::memory_order_relaxed)) return;
     const std::span sides(fragments.sides.data() + fragments.first[patch],
                           fragments.first[patch + 1] - fragments.first[patch]);
     selectors[slot].run(uint32_t(patch), sides, treated[patch], corners_);

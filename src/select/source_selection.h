@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/rgb.h"
 #include "emitter/light_primitive.h"
 #include "radiosity/solution.h"
@@ -45,9 +46,11 @@ struct GeneralIrradiance {
 
 class SourceSelection {
  public:
-  // All arguments belong to one scene and are used here only. Does not depend on `threads`.
+  // All arguments belong to one scene and are used here only. Does not depend on `threads`. Of no
+  // use once `stop` is set.
   SourceSelection(const RadiositySolution& solution, const Tracer& tracer,
-                  const LightPrimitives& lights, const SelectionOptions& options, int threads);
+                  const LightPrimitives& lights, const SelectionOptions& options, int threads,
+                  const StopFlag& stop);
 
   // In increasing order of source.
   std::span<const TreatedSource> of_patch(uint32_t patch) const {

@@ -51,7 +51,7 @@ struct Kj92 {
       : scene(std::move(s)),
         solution(solve_radiosity(scene.scene, scene.tracer, scene.bsdf_tables, scene.lights,
                                  setting.radiosity, 2, {}, StopFlag{false})),
-        selection(solution, scene.tracer, scene.lights, setting.selection, 2),
+        selection(solution, scene.tracer, scene.lights, setting.selection, 2, StopFlag{false}),
         integrator(scene, solution, selection, setting.options) {}
   const PreparedScene scene;
   const RadiositySolution solution;

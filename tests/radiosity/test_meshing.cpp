@@ -108,7 +108,9 @@ TEST_CASE("lookup finds the fragment that holds the point") {
   Random r(3);
   const auto check = [&](uint32_t geometry, uint32_t primitive, Vec2 b, const Vec3& p, float most) {
     Vec3 w;
-    const uint32_t f = fragment_at(ready.scene, mesh, geometry, primitive, b.x, b.y, p, w);
+    bool is_back = false;
+    const uint32_t f = fragment_at(ready.scene, mesh, geometry, primitive, b.x, b.y, p, is_back, w);
+    CHECK(!is_back);
     REQUIRE(f != no_fragment);
     Vec3 q;
     for (size_t k = 0; k < 3; ++k)

@@ -240,18 +240,22 @@ TEST_CASE("every kind of emitter shoots its power") {
   }
 }
 
-TEST_CASE("surfaces of several meshes that coincide: too bright, but it ends") {
+TEST_CASE("surfaces of several meshes that coincide: copies count once, others end") {
   for (const float gap : {0.0f, 1e-6f, 1e-4f}) {
     Scene s = lit_room(0.9f);
+    const size_t alone_meshes = s.meshes.size();
     const uint32_t white = add_diffuse(s, Rgb{0.9f});
     for (int copy = 0; copy < 3; ++copy) {  // of the floor and of a wall
       const float d = gap * float(copy + 1);
       add_quad(s, white, {Vec3{0, 0, d}, {4, 0, d}, {4, 3, d}, {0, 3, d}});
       add_quad(s, white, {Vec3{d, 0, 0}, {d, 3, 0}, {d, 3, 2.5f}, {d, 0, 2.5f}});
     }
+    for (size_t m = 0; m < s.meshes.size(); m += 2)  // some the other way round
+      if (m >= alone_meshes)
+        for (Triangle& t : s.meshes[m].triangles) std::swap(t[1], t[2]);
     const Ready copies(std::move(s)), alone(lit_room(0.9f));
     RadiosityOptions o;
-    o.meshing = sizes(0.5f, 1.5f);
+    o.meshing = sizes(1, 2);
     const RadiositySolution a = copies.solve(o), b = alone.solve(o);
     CHECK(a.is_complete);
     CHECK(a.shots < 6 * b.shots);
@@ -262,6 +266,7 @@ TEST_CASE("surfaces of several meshes that coincide: too bright, but it ends") {
       most_b = std::max(most_b, b.irradiance(i).g);
     MESSAGE("gap " << gap << ": brightest point " << most_a << ", " << most_b << " without copies; "
                    << a.shots << " shots, " << b.shots);
-    CHECK(most_a < (gap < 1e-5f ? 6 : 1.1f) * most_b);
+    // Copies that are no copies but for rounding are too bright.
+    CHECK(most_a < (gap == 0 ? 1.02f : gap < 1e-5f ? 6 : 1.1f) * most_b);
   }
 }

@@ -61,7 +61,7 @@ TEST_CASE("direct light is kept apart") {
   only_emitters.unshot_fraction = 1;
   const RadiositySolution direct = ready.solve(only_emitters);
   REQUIRE(direct.shots == direct.emitter_count);
-  for (const uint32_t stored : {0u, 1u, 2u, 4u, 64u}) {
+  for (const uint32_t stored : {0u, 2u, 64u}) {
     const RadiositySolution s = ready.solve(coarse(stored));
     uint32_t in_general = 0;
     for (uint32_t i = 0; i < s.mesh.points.size(); ++i) {

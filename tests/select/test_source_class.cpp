@@ -191,3 +191,10 @@ TEST_CASE("a partly hidden source that grows never falls out of sampling") {
   }
   CHECK(rises > 3000);
 }
+
+TEST_CASE("in the dark a hidden source is probed, however dark it is") {
+  const std::vector<SourceAtPoint> dark{{0, 3, 0}, {0, 2, 0}};
+  const SourceClass c = classify(dark, 0, {});
+  CHECK(c.view == SourceView::occluded);
+  CHECK(c.treatment == SourceTreatment::probed);
+}

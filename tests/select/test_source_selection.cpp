@@ -68,9 +68,9 @@ struct Selected {
            const SelectionOptions& options = {}, int threads = 2)
       : ready(std::move(scene)),
         solution(ready.solve(radiosity)),
-        selection(solution, ready.tracer, ready.lights, options, threads) {}
+        selection(solution, ready.tracer, ready.lights, options, threads, StopFlag{false}) {}
   SourceSelection again(const SelectionOptions& options, int threads = 2) const {
-    return SourceSelection(solution, ready.tracer, ready.lights, options, threads);
+    return SourceSelection(solution, ready.tracer, ready.lights, options, threads, StopFlag{false});
   }
   Ready ready;
   RadiositySolution solution;
@@ -81,7 +81,7 @@ struct Selected {
 uint32_t patch_at(const Selected& s, uint32_t mesh, uint32_t triangle, bool is_back = false) {
   Vec3 weights;
   const uint32_t f =
-      fragment_at(s.ready.scene, s.solution.mesh, mesh, triangle, 0.3f, 0.3f, {}, weights);
+      fragment_at(s.ready.scene, s.solution.mesh, mesh, triangle, 0.3f, 0.3f, {}, is_back, weights);
   REQUIRE(f != no_fragment);
   const uint32_t point =
       s.solution.mesh.element_points[s.solution.mesh.fragments[f].element][is_back];
