@@ -205,8 +205,8 @@ def _halls_text(rows):
         f"Both halls go through whole, without special settings, in {plain[8]:.0f} s and "
         f"{diffuse[8]:.0f} s and {plain[9]:.0f} and {diffuse[9]:.0f} MB, at {plain[2]:.0f} and "
         f"{diffuse[2]:.0f} shadow rays per viewing ray: 13 sources and many bright patches, at an "
-        "allowance of 0.01, where the second stop or the cap ends most trees. The diffuse hall's mean is "
-        f"{diffuse[3]:+.2f} % off the reference (ours is rgb, the reference spectral: path "
+        "allowance of 0.01, where the second stop or the cap ends most trees. The diffuse "
+        f"hall's mean is {diffuse[3]:+.2f} % off the reference (ours is rgb, the reference spectral: path "
         f"tracing itself is 0.4 % off). modern-hall is {plain[3]:+.1f} % off: the preprocessing "
         "follows no light by way of the glossy floor, chrome and glass to the place where it "
         "arrives.")
