@@ -122,7 +122,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   r->add_option("--select", c.selected_lights,
-                "kj92: only these sources may be sampled; all others count as indirect light")
+                "kj92: only these sources may be sampled; all others stay in the general light")
       ->delimiter(',')
       ->allow_extra_args(false);
   r->add_option("--solution", c.solution, "kj92: a file made by troffer radiosity");
