@@ -1,11 +1,10 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "base/error.h"
@@ -17,18 +16,6 @@
 namespace troffer {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point t) {
-  return std::chrono::duration<double>(Clock::now() - t).count();
-}
-
-double peak_memory_mb() {
-  struct rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return double(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
-}
 
 // All that can be told before any work is done.
 void check_command(const RadiosityCommand& c) {

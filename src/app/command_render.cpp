@@ -1,13 +1,12 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "base/error.h"
@@ -18,18 +17,6 @@
 namespace troffer {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point t) {
-  return std::chrono::duration<double>(Clock::now() - t).count();
-}
-
-double peak_memory_mb() {
-  struct rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return double(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
-}
 
 Vec3 parse_vector(const std::string& text, const char* option) {
   Vec3 v;

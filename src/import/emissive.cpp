@@ -7,6 +7,7 @@
 #include <optional>
 #include <tuple>
 
+#include "base/disjoint_sets.h"
 #include "base/units.h"
 
 namespace troffer {
@@ -53,24 +54,6 @@ struct Edge {
   std::pair<uint32_t, uint32_t> undirected() const { return std::minmax(from, to); }
 };
 
-class UnionFind {
- public:
-  explicit UnionFind(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  uint32_t root(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // The smaller root stays, so that it is the component's first triangle.
-  void join(uint32_t a, uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
-
 Vec3d position(const Mesh& mesh, uint32_t v) {
   return Vec3d(mesh.positions[v]);
 }
@@ -99,7 +82,7 @@ std::vector<Component> components_of(const Mesh& mesh, const Triangles& triangle
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
     return std::tuple(a.undirected(), a.triangle) < std::tuple(b.undirected(), b.triangle);
   });
-  UnionFind sets(mesh.triangles.size());
+  DisjointSets sets(mesh.triangles.size());
   for (size_t i = 1; i < edges.size(); ++i)
     if (edges[i].undirected() == edges[i - 1].undirected())
       sets.join(edges[i].triangle, edges[i - 1].triangle);
@@ -107,14 +90,14 @@ std::vector<Component> components_of(const Mesh& mesh, const Triangles& triangle
   std::vector<uint32_t> number(mesh.triangles.size(), 0);
   std::vector<Component> components;
   for (const uint32_t t : triangles) {
-    const uint32_t root = sets.root(t);
+    const uint32_t root = sets.find(t);
     if (root == t) {
       number[t] = uint32_t(components.size());
       components.emplace_back();
     }
     components[number[root]].triangles.push_back(t);
   }
-  for (const Edge& e : edges) components[number[sets.root(e.triangle)]].edges.push_back(e);
+  for (const Edge& e : edges) components[number[sets.find(e.triangle)]].edges.push_back(e);
   return components;
 }
 

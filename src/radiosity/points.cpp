@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "base/frame.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -205,24 +206,6 @@ ElementPoint point_of(const Scene& scene, const RadiosityMesh& mesh, const Eleme
   return p;
 }
 
-// Which sides belong together: union-find over 2 element + side.
-class Rooms {
- public:
-  explicit Rooms(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  uint32_t find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
-
 bool emits(const Scene& scene, int32_t emitter, bool is_back) {
   if (emitter < 0) return false;
   const Emitter& e = scene.emitters[size_t(emitter)];
@@ -285,7 +268,7 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
       }
     }
   });
-  Rooms rooms(n + 2);
+  DisjointSets rooms(n + 2);  // over 2 element + side, and the two places above
   for (uint32_t i = 0; i < n; ++i) {
     if (is_source[i]) rooms.join(i, lit);
     for (const uint32_t j : seen[i]) rooms.join(i, j);

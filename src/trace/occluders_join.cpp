@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "base/frame.h"
 #include "trace/occluders.h"
 
@@ -34,23 +35,6 @@ std::vector<uint32_t> weld(const std::vector<Vec3>& positions) {
     welded[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? welded[order[i - 1]] : order[i];
   return welded;
 }
-
-class Components {
- public:
-  explicit Components(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  uint32_t find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
 
 bool has_area(const Mesh& mesh, uint32_t t) {
   const Triangle& c = mesh.triangles[t];
@@ -91,7 +75,7 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
 
   std::vector<Edge> edges;
   edges.reserve(3 * size_t(triangles));
-  Components parts(mesh.positions.size());
+  DisjointSets parts(mesh.positions.size());
   for (uint32_t t = 0; t < triangles; ++t) {
     for (uint8_t side = 0; side < 3; ++side) {
       const uint32_t from = welded[mesh.triangles[t][side]];

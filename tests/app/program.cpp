@@ -128,6 +128,17 @@ Finished Running::wait(double limit) {
   return f;
 }
 
+std::string bright_room_pbrt() {
+  std::string text = lit_floor_pbrt;
+  text += "Material \"diffuse\" \"rgb reflectance\" [0.95 0.95 0.95]\n";
+  for (const char* p : {"-2 -2 0  2 -2 0  2 -2 3  -2 -2 3", "-2 2 0  2 2 0  2 2 3  -2 2 3",
+                        "-2 -2 0  -2 2 0  -2 2 3  -2 -2 3", "2 -2 0  2 2 0  2 2 3  2 -2 3",
+                        "-2 -2 3  2 -2 3  2 2 3  -2 2 3"})
+    text += std::string("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [") +
+            p + "]\n";
+  return text;
+}
+
 Finished run_program(const Folder& folder, const std::vector<std::string>& arguments) {
   return Running(folder, arguments).wait();
 }

@@ -52,5 +52,7 @@ Finished run_program(const Folder& folder, const std::vector<std::string>& argum
 
 // A floor of 4 × 4 m under a 1 × 1 m source of radiance 5, two metres up, 40 × 30 pixels.
 extern const char* const lit_floor_pbrt;
+// The same within walls that reflect 0.95, so that light goes to and fro for long.
+std::string bright_room_pbrt();
 
 }  // namespace troffer::test

@@ -31,18 +31,6 @@ std::vector<std::string> render_of(const Folder& folder, const std::string& scen
   return more;
 }
 
-// Walls around lit_floor_pbrt, and so many panes that the solution takes long.
-std::string slow_room() {
-  std::string text = lit_floor_pbrt;
-  text += "Material \"diffuse\" \"rgb reflectance\" [0.95 0.95 0.95]\n";
-  for (const char* p : {"-2 -2 0  2 -2 0  2 -2 3  -2 -2 3", "-2 2 0  2 2 0  2 2 3  -2 2 3",
-                        "-2 -2 0  -2 2 0  -2 2 3  -2 -2 3", "2 -2 0  2 2 0  2 2 3  2 -2 3",
-                        "-2 -2 3  2 -2 3  2 2 3  -2 2 3"})
-    text += std::string("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [") +
-            p + "]\n";
-  return text;
-}
-
 }  // namespace
 
 TEST_CASE("kj92: every option is understood") {
@@ -181,7 +169,7 @@ TEST_CASE("kj92: SIGINT during radiosity and during rendering leaves a picture t
     for (const int which : {SIGINT, SIGTERM}) {
       const Folder folder;
       const std::string scene =
-          folder.write("room.pbrt", is_during_radiosity ? slow_room() : lit_floor_pbrt);
+          folder.write("room.pbrt", is_during_radiosity ? bright_room_pbrt() : lit_floor_pbrt);
       std::vector<std::string> options{"--threads", "1", "--stats", folder.path("s.json")};
       if (is_during_radiosity) {
         // Light goes to and fro between walls of 95 %; a loaded machine only makes it slower.

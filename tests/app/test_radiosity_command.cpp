@@ -33,18 +33,6 @@ std::string refusal(const std::string& scene_path, const std::string& solution,
   return "";
 }
 
-// lit_floor_pbrt within walls, so that light goes to and fro for long.
-std::string bright_room() {
-  std::string text = lit_floor_pbrt;
-  text += "Material \"diffuse\" \"rgb reflectance\" [0.95 0.95 0.95]\n";
-  for (const char* p : {"-2 -2 0  2 -2 0  2 -2 3  -2 -2 3", "-2 2 0  2 2 0  2 2 3  -2 2 3",
-                        "-2 -2 0  -2 2 0  -2 2 3  -2 -2 3", "2 -2 0  2 2 0  2 2 3  2 -2 3",
-                        "-2 -2 3  2 -2 3  2 2 3  -2 2 3"})
-    text += std::string("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [") +
-            p + "]\n";
-  return text;
-}
-
 }  // namespace
 
 TEST_CASE("radiosity writes solution and display, and tells about them") {
@@ -125,7 +113,7 @@ TEST_CASE("radiosity: wrong options, files that cannot be") {
 
 TEST_CASE("radiosity stops at a signal, and what it has is written and whole") {
   const Folder folder;
-  const std::string scene = folder.write("room.pbrt", bright_room());
+  const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   Running program(folder, {"radiosity", scene, "-o", folder.path("a.trad"), "-o",
                            folder.path("a.glb"), "--stats", folder.path("s.json"), "--unshot",
                            "0.000001", "--element-size", "0.04", "--threads", "1"});

@@ -1,0 +1,17 @@
+#include "app/process.h"
+
+#include <sys/resource.h>
+
+namespace troffer {
+
+double seconds_since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
+
+double peak_memory_mb() {
+  struct rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+}
+
+}  // namespace troffer
