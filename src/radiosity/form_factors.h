@@ -17,36 +17,10 @@
 #include <span>
 #include <vector>
 
-#include "emitter/light_primitive.h"
-#include "radiosity/meshing.h"
+#include "radiosity/shooter.h"
 #include "trace/tracer.h"
 
 namespace troffer {
-
-// What shoots. The pieces' mean_radiance is what they send; points may lie on a sphere that
-// the pieces only approximate.
-struct Shooter {
-  std::vector<LightPrimitive> pieces;  // may point into the mesh or the scene's LightPrimitives
-  std::vector<double> area_sums;       // running sums, m²
-  Vec3 round_centre;                   // as in Sheet
-  float round_radius = 0;
-  float offset = 0;      // metres: rays end this much in front
-  bool is_exact = true;  // else disc approximation
-  // What parts of a patch send, relative to its mean: at these sample points of it, `share` each.
-  // Empty: the same everywhere.
-  std::span<const ElementPoint> parts;
-  std::vector<float> share;
-  float area() const { return area_sums.empty() ? 0.0f : float(area_sums.back()); }
-};
-
-constexpr size_t max_exact_pieces = 24;
-
-Shooter emitter_shooter(const LightPrimitives& lights, uint32_t emitter);
-// Its pieces send `radiance`.
-Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance);
-// Sets parts and shares from the luminance that each point of the patch sends, in any unit.
-void set_parts(Shooter& shooter, const RadiosityMesh& mesh, uint32_t patch,
-               std::span<const float> luminances);
 
 struct RayBudget {
   int max_rays = 64;
