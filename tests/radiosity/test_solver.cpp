@@ -256,6 +256,7 @@ TEST_CASE("surfaces of several meshes that coincide: copies count once, others e
     const Ready copies(std::move(s)), alone(lit_room(0.9f));
     RadiosityOptions o;
     o.meshing = sizes(1, 2);
+    o.unshot_fraction = 0.05f;
     const RadiositySolution a = copies.solve(o), b = alone.solve(o);
     CHECK(a.is_complete);
     CHECK(a.shots < 6 * b.shots);
