@@ -24,8 +24,6 @@ const std::map<std::string, Aov> aov_names{
 struct RawOptions {
   std::string size, crop, indirect = "auto";
   std::vector<std::string> aovs;
-  // Belongs to a method that this version does not have; accepted and checked all the same.
-  double error = 0.01;
   int shadow_rays = -1;  // -1: by the method
   std::string coherence = "on", selection = "on";
 };
@@ -125,7 +123,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
                 "kj92: only these sources may be sampled; all others stay in the general light")
       ->delimiter(',')
       ->allow_extra_args(false);
-  r->add_option("--solution", c.solution, "kj92: a file made by troffer radiosity");
+  r->add_option("--solution", c.solution, "kj92, certified: a file made by troffer radiosity");
 }
 
 void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
@@ -134,7 +132,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
       ->required()
       ->allow_extra_args(false);
-  r->add_option("--method", c.method, "How light is computed: path, fixed, kj92")
+  r->add_option("--method", c.method, "How light is computed: path, fixed, kj92, certified")
       ->capture_default_str();
   r->add_option("--spp", c.options.spp, "Viewing rays per pixel")
       ->check(CLI::Range(1, 1 << 20))
@@ -146,10 +144,13 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
                 "fixed: shadow rays per source and viewing ray [64]; kj92: initial ones [8]")
       ->check(CLI::Range(0, 1 << 20));
   add_kj92(r, c, raw);
-  r->add_option("--error", raw.error, "certified: allowed standard error")
-      ->check(CLI::PositiveNumber);
-  r->add_option("--indirect", raw.indirect,
-                "auto; radiosity: interpolated (kj92); none: only light straight from sources")
+  r->add_option("--error", c.options.error,
+                "certified: allowed standard error of direct light, of the unoccluded light")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  r->add_option(
+       "--indirect", raw.indirect,
+       "auto; radiosity: interpolated (kj92, certified); none: only light straight from sources")
       ->check(CLI::IsMember({"auto", "radiosity", "none"}))
       ->capture_default_str();
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
@@ -197,13 +198,14 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
   s->add_option("--points", c.points, "CSV file with header x,y,z,nx,ny,nz")->required();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
-  s->add_option("--method", c.method, "How light is computed: path, fixed, kj92")
+  s->add_option("--method", c.method, "How light is computed: path, fixed, kj92, certified")
       ->capture_default_str();
-  s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256]")
+  s->add_option("--spp", c.spp, "Samples per point [4096; kj92, certified: 256]")
       ->check(CLI::Range(2, 1 << 26));
-  s->add_option("--solution", c.solution, "kj92: a file made by troffer radiosity");
-  s->add_option("--error", raw.error, "certified: allowed standard error")
-      ->check(CLI::PositiveNumber);
+  s->add_option("--solution", c.solution, "kj92, certified: a file made by troffer radiosity");
+  s->add_option("--error", c.error, "certified: allowed standard error of direct light")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
   s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")
       ->check(CLI::Range(0, 1 << 20));
   s->add_option("--indirect", raw.indirect, "auto, or none: direct light only")
@@ -250,6 +252,7 @@ int parse_and_run(int argc, const char* const* argv) {
   if (app.got_subcommand("render")) {
     // CLI::Range lets NaN pass.
     if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
+    if (!std::isfinite(render.options.error)) throw UsageError("--error: not a number");
     if (!std::isfinite(render.exposure)) throw UsageError("--exposure: not a number");
     const BintreeOptions& tree = render.options.kj92.sampling.tree;
     if (!std::isfinite(tree.allowed_variance)) throw UsageError("--variance: not a number");
@@ -261,6 +264,7 @@ int parse_and_run(int argc, const char* const* argv) {
   }
   if (app.got_subcommand("compare")) return run_compare(compare);
   if (app.got_subcommand("measure")) {
+    if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
     measure.indirect = parse_indirect(measure_raw.indirect);
     return run_measure(measure);
   }

@@ -55,6 +55,7 @@ struct MeasureCommand {
   std::string solution;  // kj92: file, or empty
   int spp = 0;           // 0 = default
   int depth = -1;
+  double error = 0.01;  // certified
   Indirect indirect = Indirect::automatic;
   int threads = 0;
   uint64_t seed = 0;
@@ -84,7 +85,7 @@ int run_info(const InfoCommand& command);
 // standard error unless is_quiet.
 Scene load_scene(const std::string& path, const std::vector<std::string>& lights, bool is_quiet);
 
-// "path", "fixed" and "kj92"; UsageError for methods that do not exist (yet).
+// "certified", "kj92", "fixed" and "path"; UsageError for others.
 Method parse_method(const std::string& name);
 
 // UsageError where options belong to another method.

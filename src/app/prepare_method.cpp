@@ -8,22 +8,25 @@ namespace troffer {
 
 void check_method(Method method, Indirect indirect, const std::string& solution) {
   if (method == Method::kj92) return;
-  if (indirect == Indirect::radiosity)
-    throw UsageError("--indirect radiosity belongs to --method kj92");
-  if (!solution.empty()) throw UsageError("--solution belongs to --method kj92");
+  const bool is_certified = method == Method::certified;
+  if (indirect == Indirect::radiosity && !is_certified)
+    throw UsageError("--indirect radiosity belongs to --method kj92 and certified");
+  if (!solution.empty() && !needs_preparation(method, indirect))
+    throw UsageError(is_certified ? "--solution and --indirect none exclude each other"
+                                  : "--solution belongs to --method kj92 and certified");
 }
 
 std::unique_ptr<Kj92Preparation> prepare_method(const PreparedScene& scene, Method method,
                                                 const Kj92Settings& settings, Indirect indirect,
                                                 const std::string& solution, int threads,
                                                 bool is_quiet, const StopFlag& stop) {
-  if (method != Method::kj92) return nullptr;
+  if (!needs_preparation(method, indirect)) return nullptr;
   std::optional<RadiositySolution> loaded;
   if (!solution.empty())
     loaded = load_radiosity(scene, read_file_bytes(solution), solution, nullptr, threads);
   ProgressBar bar("radiosity", is_quiet);
-  return prepare_kj92(
-      scene, settings, indirect == Indirect::none, std::move(loaded), threads,
+  return prepare(
+      scene, method, settings, indirect, std::move(loaded), threads,
       [&](double f) { bar.update(f); }, stop);
 }
 

@@ -5,10 +5,9 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "integrate/integrator.h"
-#include "integrate/walk.h"
+#include "integrate/source_sampler.h"
 
 namespace troffer {
 
@@ -31,13 +30,11 @@ class FixedIntegrator final : public Integrator {
 
   void sample_sources(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, Scratch& scratch,
                       RadianceBatch& out, Counters& counters) const;
-  void sample_source(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, uint32_t emitter,
-                     Scratch& scratch) const;
   void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;
 
   const PreparedScene& scene_;
   FixedOptions options_;
-  std::vector<LightTree> trees_;  // per emitter, over its primitives
+  SourceSampler sampler_;
 };
 
 }  // namespace troffer

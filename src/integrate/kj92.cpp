@@ -12,21 +12,10 @@ namespace {
 
 // Mirrors facing each other would reflect for ever.
 constexpr uint32_t longest_chain = 64;
-// Spawned rays that carry less than this share of the light are cast as rarely as they are weak.
-constexpr float roulette_threshold = 0.1f;
 
 // Notes in Walk::last_place: a patch, or one of these.
 constexpr uint32_t no_place = 0xffffffffu;  // no source was sampled there
 constexpr uint32_t off_mesh = 0xfffffffeu;  // all emitters were
-
-bool survives_roulette(Walk& walk) {
-  const float carried = max_component(walk.throughput) * walk.eta_squared;
-  const float survival = carried / roulette_threshold;
-  if (survival >= 1) return true;
-  if (roulette_number(walk) >= survival) return false;
-  walk.throughput *= 1 / survival;
-  return true;
-}
 
 uint64_t tree_stream(const Walk& walk) {
   return hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1);
@@ -46,7 +35,11 @@ struct Kj92Integrator::Scratch final : IntegratorScratch {
 
 Kj92Integrator::Kj92Integrator(const PreparedScene& scene, const RadiositySolution& solution,
                                const SourceSelection& selection, const Kj92Options& options)
-    : scene_(scene), solution_(solution), selection_(selection), options_(options) {
+    : scene_(scene),
+      solution_(solution),
+      selection_(selection),
+      radiosity_(scene, solution, selection),
+      options_(options) {
   const auto emitters = uint32_t(scene.scene.emitters.size());
   const auto patches = uint32_t(solution.mesh.patches.size());
   index_of_source_.assign(size_t(emitters) + patches, no_source);
@@ -68,18 +61,7 @@ std::unique_ptr<IntegratorScratch> Kj92Integrator::make_scratch() const {
       TreeSampler(scene_, sources_, index_of_source_, options_.sampling));
 }
 
-Kj92Integrator::Place Kj92Integrator::place_of(const Hit& hit, const Vertex& v) const {
-  Place place;
-  place.is_back = !v.is_front;
-  place.fragment = fragment_at(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u,
-                               hit.v, v.surface.position, place.is_back, place.weights);
-  if (place.fragment == no_fragment) return place;
-  const uint32_t element = solution_.mesh.fragments[place.fragment].element;
-  place.point = solution_.mesh.element_points[element][place.is_back ? 1 : 0];
-  return place;
-}
-
-std::span<const TreatedSource> Kj92Integrator::treated_at(const Place& place) const {
+std::span<const TreatedSource> Kj92Integrator::treated_at(const RadiosityPlace& place) const {
   if (place.point == no_point) return everywhere_;
   return selection_.of_patch(solution_.mesh.points[place.point].patch);
 }
@@ -118,7 +100,7 @@ void Kj92Integrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
       shade(walk, hit, v, scattering, neighbours, s, out, counters);
       if (scattering.has_specular && walk.vertex < longest_chain) {
         const bool is_sampled = scattering.has_rough;
-        const Place place = is_sampled ? place_of(hit, v) : Place{};
+        const RadiosityPlace place = is_sampled ? radiosity_.place_of(hit, v) : RadiosityPlace{};
         if (spawn(walk, v, scattering)) {
           walk.last_place = !is_sampled               ? no_place
                             : place.point == no_point ? off_mesh
@@ -156,12 +138,11 @@ void Kj92Integrator::shade(const Walk& walk, const Hit& hit, const Vertex& v,
     *record = {v.surface.geometry, v.is_front, v.frame.normal, v.surface.position, {}};
   }
   if (!s.has_diffuse && !s.has_rough) return;
-  const Place place = place_of(hit, v);
+  const RadiosityPlace place = radiosity_.place_of(hit, v);
   const bool is_direct = walk.scatterings == 0;
   Rgb direct, indirect;
   if (place.point != no_point && s.has_diffuse) {
-    const GeneralIrradiance general =
-        selection_.general(place.fragment, place.is_back, place.weights);
+    const GeneralIrradiance general = radiosity_.general(place);
     const Rgb reflectance = albedo(s.diffuse, v.wo.z) * inv_pi_f;
     direct += reflectance * general.direct;
     indirect += reflectance * general.indirect;
@@ -189,21 +170,7 @@ void Kj92Integrator::shade(const Walk& walk, const Hit& hit, const Vertex& v,
 
 bool Kj92Integrator::spawn(Walk& walk, const Vertex& v, const SurfaceScattering& s) const {
   return step(walk, v, s.specular, lobe_number(walk), direction_number(walk)) &&
-         survives_roulette(walk);
-}
-
-Rgb Kj92Integrator::radiosity_seen(const Ray& ray, const Hit& hit) const {
-  Vertex v;
-  make_vertex(scene_.scene, ray, hit, v);
-  const Place place = place_of(hit, v);
-  if (place.point == no_point) return Rgb{0};
-  Interpolation at;
-  interpolate(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u, hit.v,
-              v.surface.position, !v.is_front, at);
-  const SurfaceScattering s(
-      make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front));
-  return albedo(s.whole, v.wo.z) * inv_pi_f *
-         (interpolated_irradiance(solution_, at) + solution_.ambient);
+         survives_spawning(walk);
 }
 
 void Kj92Integrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
@@ -233,7 +200,8 @@ void Kj92Integrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
   scene_.tracer.closest(s.rays, s.hits);
   counters.extension_rays += sensors.size();
   for (uint32_t i = 0; i < sensors.size(); ++i)
-    if (s.hits[i].is_valid()) out.indirect[i] += radiosity_seen(s.rays[i], s.hits[i]) * pi_f;
+    if (s.hits[i].is_valid())
+      out.indirect[i] += radiosity_.radiance_seen(s.rays[i], s.hits[i]) * pi_f;
 }
 
 }  // namespace troffer

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "integrate/integrator.h"
+#include "integrate/radiosity_light.h"
 #include "integrate/tree_sampling.h"
 #include "integrate/walk.h"
 #include "radiosity/solution.h"
@@ -45,27 +46,18 @@ class Kj92Integrator final : public Integrator {
 
  private:
   struct Scratch;
-  // Where a vertex lies on the radiosity mesh.
-  struct Place {
-    uint32_t fragment = no_fragment;
-    uint32_t point = no_point;
-    bool is_back = false;  // of the fragment
-    Vec3 weights;
-  };
-
-  Place place_of(const Hit& hit, const Vertex& v) const;
-  std::span<const TreatedSource> treated_at(const Place& place) const;
+  std::span<const TreatedSource> treated_at(const RadiosityPlace& place) const;
   bool is_treated(uint32_t place_note, uint32_t emitter) const;
   void add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const;
   void shade(const Walk& walk, const Hit& hit, const Vertex& v, const SurfaceScattering& s,
              const NeighbourRecords* neighbours, Scratch& scratch, RadianceBatch& out,
              Counters& counters) const;
   bool spawn(Walk& walk, const Vertex& v, const SurfaceScattering& s) const;
-  Rgb radiosity_seen(const Ray& ray, const Hit& hit) const;
 
   const PreparedScene& scene_;
   const RadiositySolution& solution_;
   const SourceSelection& selection_;
+  RadiosityLight radiosity_;
   Kj92Options options_;
   std::vector<TreeSource> sources_;
   std::vector<uint32_t> index_of_source_;

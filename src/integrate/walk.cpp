@@ -67,6 +67,15 @@ bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2&
   return true;
 }
 
+bool survives_spawning(Walk& walk) {
+  constexpr float threshold = 0.1f;
+  const float survival = max_component(walk.throughput) * walk.eta_squared / threshold;
+  if (survival >= 1) return true;
+  if (roulette_number(walk) >= survival) return false;
+  walk.throughput *= 1 / survival;
+  return true;
+}
+
 void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, RadianceBatch& out) {
   out.albedo[walk.index] = albedo(bsdf, v.wo.z);
   out.normal[walk.index] = v.frame.normal;

@@ -52,6 +52,10 @@ float roulette_number(const Walk& walk);
 // Chooses a direction by the BSDF and sets out in it; false where the walk ends.
 bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, float lobe, const Vec2& direction);
 
+// Spawned walks that carry less than a tenth of the light go on as rarely as they are weak, and
+// carry more: false where the walk ends.
+bool survives_spawning(Walk& walk);
+
 // Fills in what AOVs want to know of the first surface.
 void record_first_hit(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, RadianceBatch& out);
 

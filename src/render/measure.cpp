@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
+#include "integrate/certified.h"
 #include "integrate/fixed.h"
 #include "integrate/kj92.h"
 #include "integrate/path.h"
@@ -120,9 +121,9 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   const bool is_direct_only = options.indirect == Indirect::none;
   const Kj92Preparation* preparation = options.preparation;
   std::unique_ptr<Kj92Preparation> own;
-  if (options.method == Method::kj92 && preparation == nullptr) {
-    own = prepare_kj92(scene, options.kj92, is_direct_only, std::nullopt, options.threads, nullptr,
-                       stop);
+  if (needs_preparation(options.method, options.indirect) && preparation == nullptr) {
+    own = prepare(scene, options.method, options.kj92, options.indirect, std::nullopt,
+                  options.threads, nullptr, stop);
     if (!own) return nothing_measured(points.size());
     preparation = own.get();
   }
@@ -142,6 +143,10 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
           std::make_unique<Kj92Integrator>(scene, preparation->solution, preparation->selection,
                                            Kj92Options{options.kj92.sampling, is_direct_only});
       rays_per_sample = options.kj92.sampling.tree.most_rays * emitters;
+      break;
+    case Method::certified:
+      integrator = make_certified(scene, options.error, is_direct_only ? nullptr : preparation);
+      rays_per_sample = certified_settings(options.error, size_t(emitters)).shadow_rays * emitters;
       break;
     case Method::path:
       integrator =

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "integrate/certified.h"
 #include "integrate/fixed.h"
 #include "integrate/integrator.h"
 #include "integrate/kj92.h"
@@ -39,6 +40,8 @@ std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const Re
     return std::make_unique<Kj92Integrator>(
         scene, preparation->solution, preparation->selection,
         Kj92Options{o.kj92.sampling, o.indirect == Indirect::none});
+  if (o.method == Method::certified)
+    return make_certified(scene, o.error, o.indirect == Indirect::none ? nullptr : preparation);
   PathOptions path;
   path.depth = o.depth;
   path.is_direct_only = o.indirect == Indirect::none;
@@ -232,6 +235,34 @@ class Rendering {
 
 }  // namespace
 
+bool needs_preparation(Method method, Indirect indirect) {
+  return method == Method::kj92 || (method == Method::certified && indirect != Indirect::none);
+}
+
+std::unique_ptr<Kj92Preparation> prepare(const PreparedScene& scene, Method method,
+                                         const Kj92Settings& settings, Indirect indirect,
+                                         std::optional<RadiositySolution> solution, int threads,
+                                         const ProgressCallback& progress, const StopFlag& stop) {
+  if (!needs_preparation(method, indirect)) return nullptr;
+  Kj92Settings s = settings;
+  // All emitters are treated everywhere: the general value is what comes from elsewhere.
+  if (method == Method::certified) {
+    s.selection = SelectionOptions();
+    s.selection.is_enabled = false;
+  }
+  return prepare_kj92(scene, s, indirect == Indirect::none, std::move(solution), threads, progress,
+                      stop);
+}
+
+std::unique_ptr<Integrator> make_certified(const PreparedScene& scene, double error,
+                                           const Kj92Preparation* preparation) {
+  std::optional<RadiosityLight> radiosity;
+  if (preparation != nullptr)
+    radiosity.emplace(scene, preparation->solution, preparation->selection);
+  return std::make_unique<CertifiedIntegrator>(
+      scene, radiosity, certified_settings(error, scene.scene.emitters.size()));
+}
+
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
                     const ProgressCallback& progress, const StopFlag& stop) {
   const ImageSize size = image_size(camera, options.width, options.height);
@@ -248,12 +279,13 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
 
   const Kj92Preparation* preparation = options.preparation;
   std::unique_ptr<Kj92Preparation> own;
-  if (options.method == Method::kj92 && preparation == nullptr) {
-    own = prepare_kj92(scene, options.kj92, options.indirect == Indirect::none, std::nullopt,
-                       options.threads, nullptr, stop);
+  const bool is_prepared = needs_preparation(options.method, options.indirect);
+  if (is_prepared && preparation == nullptr) {
+    own = prepare(scene, options.method, options.kj92, options.indirect, std::nullopt,
+                  options.threads, nullptr, stop);
     preparation = own.get();
   }
-  if (options.method == Method::kj92 && preparation == nullptr) {  // stopped: nothing to show
+  if (is_prepared && preparation == nullptr) {  // stopped: nothing to show
     result.is_complete = false;
     result.layers = Film(window, options.aovs).layers();
     return result;

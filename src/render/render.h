@@ -3,24 +3,27 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/parallel.h"
 #include "image/image.h"
 #include "integrate/batch.h"
+#include "integrate/integrator.h"
 #include "integrate/prepared_scene.h"
 #include "render/preparation.h"
 
 namespace troffer {
 
-enum class Method { kj92, fixed, path };
+enum class Method { certified, kj92, fixed, path };
 // radiosity: the general radiosity value, interpolated (what kj92 does by itself).
 enum class Indirect { automatic, radiosity, none };
 
 // AOVs that an image can carry besides the picture.
 // sources: how many sources were sampled by shadow rays; probed and found visible; probed and found
-// hidden (kj92).
+// hidden (kj92). certified: neither proved lit nor dark; proved lit; proved dark.
 enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays, sources, error };
 
 struct RenderOptions {
@@ -30,8 +33,10 @@ struct RenderOptions {
   // many in a pixel; at most spp: nowhere.
   int max_spp = 0;
   int shadow_rays = 64;  // fixed: rays per source per viewing ray
-  Kj92Settings kj92;
-  const Kj92Preparation* preparation = nullptr;  // kj92: made beforehand; null: made by render()
+  double error = 0.01;   // certified: see certified_settings
+  Kj92Settings kj92;     // certified: the radiosity of its indirect light
+  // Made beforehand by prepare(); null: made by render(), where it is needed.
+  const Kj92Preparation* preparation = nullptr;
   Indirect indirect = Indirect::automatic;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera
@@ -41,6 +46,20 @@ struct RenderOptions {
   uint64_t seed = 0;
   std::vector<Aov> aovs;
 };
+
+// What a method needs beforehand: kj92 always, certified for indirect light.
+bool needs_preparation(Method method, Indirect indirect);
+
+// Makes it, from a solution where there is one (prepare_kj92). Null where nothing is needed, and
+// once `stop` is set.
+std::unique_ptr<Kj92Preparation> prepare(const PreparedScene& scene, Method method,
+                                         const Kj92Settings& settings, Indirect indirect,
+                                         std::optional<RadiositySolution> solution, int threads,
+                                         const ProgressCallback& progress, const StopFlag& stop);
+
+// `preparation` may be null where the method needs none. All must outlive the integrator.
+std::unique_ptr<Integrator> make_certified(const PreparedScene& scene, double error,
+                                           const Kj92Preparation* preparation);
 
 struct RenderStatistics {
   int width = 0, height = 0;

@@ -1,0 +1,165 @@
+#include "integrate/certified.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/warp.h"
+
+namespace troffer {
+
+namespace {
+
+// Mirrors facing each other would reflect for ever.
+constexpr uint32_t longest_chain = 64;
+// Above this error the coarse lattice does; its own is about as large (docs/certified.md).
+constexpr double coarse_above = 0.003;
+
+}  // namespace
+
+CertifiedSettings certified_settings(double error, size_t emitters) {
+  // Half in shadow, the error of n Owen-Sobol rays is near 1/2 n^-3/4. Those of equal, independent
+  // sources average out. Powers of two are stratified best.
+  const auto rays_for = [](double e) {
+    const double n = std::clamp(std::pow(0.25 / (e * e), 2.0 / 3), 16.0, 256.0);
+    return int(std::bit_floor(unsigned(n)));
+  };
+  CertifiedSettings s;
+  s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(emitters, 1))));
+  s.estimator.lattice = error >= coarse_above ? coarse_lattice : fine_lattice;
+  s.estimator.residual_error = float(error);
+  s.estimator.most_rays = uint32_t(std::max(rays_for(error) / 2, 16));
+  return s;
+}
+
+struct CertifiedIntegrator::Scratch final : IntegratorScratch {
+  Scratch(const CertifiedOptions& options, ShadowWorld world) : flat(options, std::move(world)) {}
+  FlatLightsScratch flat;
+  SourceSamplerScratch rays;
+  std::vector<Walk> walks, next_walks;
+  WalkScratch trace;
+};
+
+CertifiedIntegrator::CertifiedIntegrator(const PreparedScene& scene,
+                                         std::optional<RadiosityLight> radiosity,
+                                         const CertifiedSettings& settings)
+    : scene_(scene),
+      radiosity_(radiosity),
+      settings_(settings),
+      occluders_(scene.scene),
+      flat_(scene),
+      sampler_(scene) {}
+
+std::unique_ptr<IntegratorScratch> CertifiedIntegrator::make_scratch() const {
+  return std::make_unique<Scratch>(settings_.estimator,
+                                   ShadowWorld(scene_.scene, occluders_, scene_.tracer));
+}
+
+void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratch,
+                                   RadianceBatch& out, Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  flat_.forget(s.flat);
+  start_walks(rays, s.walks);
+  counters.viewing_rays += rays.size();
+  for (Coherence c = Coherence::coherent; !s.walks.empty(); c = Coherence::none) {
+    trace_walks(scene_.tracer, s.walks, c, s.trace, counters);
+    s.next_walks.clear();
+    for (size_t i = 0; i < s.walks.size(); ++i) {
+      const Hit& hit = s.trace.hits[i];
+      if (!hit.is_valid()) continue;
+      Walk& walk = s.walks[i];
+      Vertex v;
+      make_vertex(scene_.scene, walk.ray, hit, v);
+      if (v.surface.emitter >= 0) add_emission(walk, v, out);
+      // Without indirect light it left a glossy surface only to look for emission.
+      if (!radiosity_ && walk.scatterings > 0) continue;
+      const SurfaceScattering scattering(make_bsdf(scene_.bsdf_tables, scene_.scene,
+                                                   v.surface.material, v.surface.uv, v.is_front));
+      if (walk.vertex == 0) record_first_hit(walk, v, scattering.whole, out);
+      light(walk, v, scattering, s, out, counters);
+      if (radiosity_ && scattering.has_diffuse) add_indirect(walk, hit, v, scattering, out);
+      if (scattering.has_specular && walk.vertex < longest_chain &&
+          step(walk, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
+          survives_spawning(walk))
+        s.next_walks.push_back(walk);
+    }
+    flat_.illuminate(s.flat, out, counters);
+    sampler_.resolve(s.rays, out, counters);
+    s.walks.swap(s.next_walks);
+  }
+}
+
+void CertifiedIntegrator::add_emission(const Walk& walk, const Vertex& v,
+                                       RadianceBatch& out) const {
+  const Rgb radiance = emission_at(scene_, v);
+  if (radiance.is_black()) return;
+  const float weight = sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
+  // Straight from a source: by mirrors and clear glass, or by the one rough surface it is seen in.
+  const bool is_direct = walk.scatterings == 0 || (walk.scatterings == 1 && walk.pdf > 0);
+  if (!is_direct && !radiosity_) return;
+  (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;
+}
+
+// Light straight from all sources at a vertex: by certificates later, or by rays.
+void CertifiedIntegrator::light(const Walk& walk, const Vertex& v,
+                                const SurfaceScattering& scattering, Scratch& s, RadianceBatch& out,
+                                Counters& counters) const {
+  const bool is_direct = walk.scatterings == 0;
+  const bool is_matte = scattering.is_lambertian;
+  if (is_matte && !flat_.is_empty()) s.flat.hits.add(walk, v, scattering.whole.diffuse, is_direct);
+  if (!scattering.has_diffuse && !scattering.has_rough) return;
+  const SampledVertex at{walk,
+                         v,
+                         scattering.has_diffuse ? &scattering.diffuse : nullptr,
+                         scattering.has_rough ? &scattering.specular : nullptr,
+                         scattering.whole.has_transmission,
+                         is_direct};
+  for (uint32_t e = 0; e < sampler_.emitters(); ++e) {
+    if (sampler_.is_empty(e) || (is_matte && flat_.has(e))) continue;
+    sampler_.sample(at, e, uint32_t(settings_.shadow_rays), s.rays, out, counters);
+    ++counters.mixed;
+    if (walk.vertex == 0) out.sources[walk.index] += Rgb{1, 0, 0};
+  }
+}
+
+void CertifiedIntegrator::add_indirect(const Walk& walk, const Hit& hit, const Vertex& v,
+                                       const SurfaceScattering& scattering,
+                                       RadianceBatch& out) const {
+  const Rgb irradiance = radiosity_->general(radiosity_->place_of(hit, v)).indirect;
+  const Rgb reflectance = albedo(scattering.diffuse, v.wo.z) * inv_pi_f;
+  out.indirect[walk.index] += walk.throughput * reflectance * irradiance;
+}
+
+void CertifiedIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
+                                     RadianceBatch& out, Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  flat_.forget(s.flat);
+  const SurfaceScattering scattering(sensor_bsdf());
+  for (uint32_t i = 0; i < sensors.size(); ++i)
+    light(sensor_walk(sensors, i),
+          make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset), scattering,
+          s, out, counters);
+  flat_.illuminate(s.flat, out, counters);
+  sampler_.resolve(s.rays, out, counters);
+  if (radiosity_) gather(sensors, s, out, counters);
+}
+
+void CertifiedIntegrator::gather(const SensorBatch& sensors, Scratch& s, RadianceBatch& out,
+                                 Counters& counters) const {
+  s.walks.clear();
+  for (uint32_t i = 0; i < sensors.size(); ++i) {
+    Walk walk = sensor_walk(sensors, i);
+    const Vertex v = make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset);
+    const Vec3 wi = v.frame.to_world(cosine_hemisphere_from_square(direction_number(walk)));
+    walk.ray.origin = offset_origin(v.surface, wi);
+    walk.ray.direction = wi;
+    walk.vertex = 1;
+    s.walks.push_back(walk);
+  }
+  trace_walks(scene_.tracer, s.walks, Coherence::none, s.trace, counters);
+  for (uint32_t i = 0; i < sensors.size(); ++i)
+    if (s.trace.hits[i].is_valid())
+      out.indirect[i] += radiosity_->radiance_seen(s.walks[i].ray, s.trace.hits[i]) * pi_f;
+}
+
+}  // namespace troffer

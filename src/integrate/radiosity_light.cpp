@@ -1,0 +1,36 @@
+#include "integrate/radiosity_light.h"
+
+#include "radiosity/interpolation.h"
+
+namespace troffer {
+
+RadiosityPlace RadiosityLight::place_of(const Hit& hit, const Vertex& v) const {
+  RadiosityPlace place;
+  place.is_back = !v.is_front;
+  place.fragment = fragment_at(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u,
+                               hit.v, v.surface.position, place.is_back, place.weights);
+  if (place.fragment == no_fragment) return place;
+  const uint32_t element = solution_.mesh.fragments[place.fragment].element;
+  place.point = solution_.mesh.element_points[element][place.is_back ? 1 : 0];
+  return place;
+}
+
+GeneralIrradiance RadiosityLight::general(const RadiosityPlace& place) const {
+  if (place.point == no_point) return {};
+  return selection_.general(place.fragment, place.is_back, place.weights);
+}
+
+Rgb RadiosityLight::radiance_seen(const Ray& ray, const Hit& hit) const {
+  Vertex v;
+  make_vertex(scene_.scene, ray, hit, v);
+  if (place_of(hit, v).point == no_point) return Rgb{0};
+  Interpolation at;
+  interpolate(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u, hit.v,
+              v.surface.position, !v.is_front, at);
+  const Bsdf bsdf =
+      make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+  return albedo(bsdf, v.wo.z) * inv_pi_f *
+         (interpolated_irradiance(solution_, at) + solution_.ambient);
+}
+
+}  // namespace troffer

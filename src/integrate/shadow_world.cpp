@@ -1,0 +1,63 @@
+#include "integrate/shadow_world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace troffer {
+
+namespace {
+
+bool is_apart(const Box& a, const Box& b) {
+  for (size_t axis = 0; axis < 3; ++axis)
+    if (a.upper[axis] < b.lower[axis] || b.upper[axis] < a.lower[axis]) return true;
+  return false;
+}
+
+}  // namespace
+
+ShadowWorld::ShadowWorld(const Scene& scene, const Occluders& occluders, const Tracer& tracer)
+    : occluders_(occluders), tracer_(tracer) {
+  const Box box = bounds(scene);
+  if (box.is_empty()) return;
+  for (size_t a = 0; a < 3; ++a)
+    magnitude_ =
+        std::max({magnitude_, double(std::abs(box.lower[a])), double(std::abs(box.upper[a]))});
+}
+
+void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
+                             size_t most, ShadowCandidates& out) {
+  found_.facets.clear();
+  found_.others = 0;
+  found_.is_complete = true;
+  found_.visited_nodes = 0;
+  occluders_.gather(planes, most, found_);
+  out.facets.clear();
+  out.is_too_long = !found_.is_complete;
+  out.is_complete = found_.is_complete && found_.others == 0;
+  for (const uint32_t id : found_.facets) {
+    const Occluders::Component& c = occluders_.component_of(id);
+    const bool is_front_only =
+        c.is_closed && is_apart(c.bounds, receivers) && is_apart(c.bounds, source);
+    out.facets.push_back({occluders_.facet(id), id, is_front_only});
+  }
+}
+
+void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<uint32_t> hits) {
+  rays_.resize(segments.size());
+  hits_.resize(segments.size());
+  for (size_t i = 0; i < segments.size(); ++i) {
+    rays_[i] = {};
+    rays_[i].origin = segments[i].from;
+    rays_[i].direction = segments[i].to - segments[i].from;
+    rays_[i].t_max = 1;
+  }
+  tracer_.closest(rays_, hits_, Coherence::coherent);
+  for (size_t i = 0; i < segments.size(); ++i) {
+    hits[i] = ray_is_free;
+    if (!hits_[i].is_valid()) continue;
+    const uint32_t id = occluders_.facet_of(hits_[i].geometry, hits_[i].primitive);
+    hits[i] = id == no_facet ? ray_is_stopped : id;
+  }
+}
+
+}  // namespace troffer

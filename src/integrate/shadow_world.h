@@ -1,0 +1,33 @@
+// A scene as certified visibility sees it: candidates from the hierarchy of facets, rays from the
+// tracer.
+#pragma once
+
+#include <vector>
+
+#include "shadow/certified.h"
+#include "trace/occluders.h"
+#include "trace/tracer.h"
+
+namespace troffer {
+
+// Keeps memory between calls: one for each thread. The scene's structures must outlive it.
+class ShadowWorld final : public ShadowScene {
+ public:
+  ShadowWorld(const Scene& scene, const Occluders& occluders, const Tracer& tracer);
+
+  void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
+                  size_t most, ShadowCandidates& out) override;
+  void trace(std::span<const ShadowSegment> segments, std::span<uint32_t> hits) override;
+  Quad facet(uint32_t id) const override { return occluders_.facet(id); }
+  double magnitude() const override { return magnitude_; }
+
+ private:
+  const Occluders& occluders_;
+  const Tracer& tracer_;
+  double magnitude_ = 0;
+  Occluders::Found found_;
+  std::vector<Ray> rays_;
+  std::vector<Hit> hits_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,62 @@
+// A fixed number of Owen-Sobol shadow rays from a vertex to a source, spread over the source by
+// solid angle: what fixed does for all sources, and certified for those it has no certificates for.
+#pragma once
+
+#include <vector>
+
+#include "integrate/walk.h"
+
+namespace troffer {
+
+// Shadow rays that wait to be traced, and memory for the samples of one source from one vertex.
+struct SourceSamplerScratch {
+  ShadowBatch shadows;
+  std::vector<uint64_t> streams;
+  std::vector<uint32_t> samples, primitives;
+  std::vector<float> numbers, pmfs, u, v;
+  std::vector<Vec3> receivers;
+  std::vector<EmitterSample> points;
+  std::vector<uint8_t> is_valid;
+  EmitterSampleScratch emitters;
+
+  void resize(size_t n);
+};
+
+// A vertex and what of its surface the rays light.
+struct SampledVertex {
+  const Walk& walk;
+  const Vertex& vertex;
+  // Lit by these rays alone; null: nothing is.
+  const Bsdf* alone = nullptr;
+  // Sends rays of its own as well, one sample drawn from all of it: the power heuristic.
+  const Bsdf* competing = nullptr;
+  bool has_transmission = false;  // of either
+  bool is_direct = true;          // the light counts as direct
+};
+
+class SourceSampler {
+ public:
+  explicit SourceSampler(const PreparedScene& scene);
+
+  uint32_t emitters() const { return uint32_t(trees_.size()); }
+  bool is_empty(uint32_t emitter) const { return trees_[emitter].is_empty(); }
+
+  // Adds n shadow rays to an emitter that is not empty. They are traced, and their light added to
+  // `out`, once many have gathered and by resolve().
+  void sample(const SampledVertex& at, uint32_t emitter, uint32_t n, SourceSamplerScratch& s,
+              RadianceBatch& out, Counters& counters) const;
+  void resolve(SourceSamplerScratch& s, RadianceBatch& out, Counters& counters) const;
+
+  // The weight of emission that a walk has run into at v, against n rays to that emitter from the
+  // vertex before; 1 where the walk competes with none.
+  float emission_weight(const Walk& walk, const Vertex& v, uint32_t n) const;
+
+ private:
+  uint32_t choose_points(const SampledVertex& at, uint32_t emitter, uint32_t n,
+                         SourceSamplerScratch& s) const;
+
+  const PreparedScene& scene_;
+  std::vector<LightTree> trees_;  // per emitter, over its primitives
+};
+
+}  // namespace troffer
