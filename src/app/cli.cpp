@@ -137,8 +137,9 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("--spp", c.options.spp, "Viewing rays per pixel")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
-  r->add_option("--max-spp", c.options.max_spp,
-                "kj92: refine where pixels differ, up to so many viewing rays [as --spp]")
+  r->add_option(
+       "--max-spp", c.options.max_spp,
+       "kj92, certified: refine where pixels differ, up to so many viewing rays [as --spp]")
       ->check(CLI::Range(1, 1 << 20));
   r->add_option("--shadow-rays", raw.shadow_rays,
                 "fixed: shadow rays per source and viewing ray [64]; kj92: initial ones [8]")

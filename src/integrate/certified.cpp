@@ -76,6 +76,9 @@ void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& s
       const SurfaceScattering scattering(make_bsdf(scene_.bsdf_tables, scene_.scene,
                                                    v.surface.material, v.surface.uv, v.is_front));
       if (walk.vertex == 0) record_first_hit(walk, v, scattering.whole, out);
+      if (walk.vertex == 0 && !out.records.empty())  // light has no noise worth a pattern
+        out.records[walk.index] = {
+            v.surface.geometry, v.is_front, v.frame.normal, v.surface.position, {}};
       light(walk, v, scattering, s, out, counters);
       if (radiosity_ && scattering.has_diffuse) add_indirect(walk, hit, v, scattering, out);
       if (scattering.has_specular && walk.vertex < longest_chain &&

@@ -27,6 +27,9 @@ constexpr int widest_tile = 16;
 constexpr int samples_per_batch = 4;
 // Stops are looked for between tiles: those of scenes with many sources are smaller.
 constexpr double most_shadow_rays_per_tile = 1 << 22;
+// certified: clusters of hits should be small in space, and few sources get rays.
+constexpr int certified_tile = 8;
+constexpr double most_certified_rays_per_tile = 1 << 25;
 
 // Larger pictures are refused before memory is: machines that promise more than they have would end
 // the program without a word.
@@ -49,10 +52,13 @@ std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const Re
 }
 
 int tile_side(const RenderOptions& o, size_t emitters) {
-  if (o.method != Method::fixed) return widest_tile;
-  const double per_pixel = double(samples_per_batch) * o.shadow_rays * double(emitters);
-  int side = widest_tile;
-  while (side > 1 && per_pixel * side * side > most_shadow_rays_per_tile) side /= 2;
+  const bool is_certified = o.method == Method::certified;
+  if (o.method != Method::fixed && !is_certified) return widest_tile;
+  const int rays = is_certified ? certified_settings(o.error, emitters).shadow_rays : o.shadow_rays;
+  const double most = is_certified ? most_certified_rays_per_tile : most_shadow_rays_per_tile;
+  const double per_pixel = double(samples_per_batch) * rays * double(emitters);
+  int side = is_certified ? certified_tile : widest_tile;
+  while (side > 1 && per_pixel * side * side > most) side /= 2;
   return side;
 }
 
@@ -101,7 +107,8 @@ class Rendering {
         work_(size_t(thread_count(options.threads))),
         progress_(progress),
         stop_(stop) {
-    is_refined_ = options.method == Method::kj92 && options.max_spp > options.spp;
+    const bool can_refine = options.method == Method::kj92 || options.method == Method::certified;
+    is_refined_ = can_refine && options.max_spp > options.spp;
     if (is_refined_) records_.emplace(window);
     const int all = options.spp + (is_refined_ ? options.max_spp - options.spp : 0);
     passes_ = passes_of(options.spp) + passes_of(all - options.spp);

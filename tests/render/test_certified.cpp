@@ -95,6 +95,37 @@ TEST_CASE("certified: with indirect light, the mean of path's picture") {
                     .epsilon(0.03));
 }
 
+TEST_CASE("certified: refinement goes to edges, and gains by it") {
+  const std::string root(TROFFER_SOURCE_DIR);
+  const PreparedScene scene(import_scene(root + "/scenes/kj92room/kj92room_direct.pbrt"));
+  RenderOptions o;
+  o.method = Method::certified;
+  o.indirect = Indirect::none;
+  o.width = o.height = 96;
+  o.threads = 2;
+  o.spp = 256;
+  const Image converged = render_now(scene, scene.scene.cameras.at(0), o).layers[0].image;
+  const auto error = [&](const RenderResult& r) {
+    double sum = 0;
+    for (size_t i = 0; i < converged.pixels.size(); ++i)
+      sum += std::pow(double(r.layers[0].image.pixels[i].g) - double(converged.pixels[i].g), 2);
+    return std::sqrt(sum / double(converged.pixels.size()));
+  };
+  o.seed = 1;
+  o.spp = 4;
+  o.max_spp = 16;
+  const RenderResult refined = render_now(scene, scene.scene.cameras.at(0), o);
+  o.threads = 3;
+  CHECK(is_identical(refined.layers, render_now(scene, scene.scene.cameras.at(0), o).layers));
+  o.max_spp = 0;
+  o.spp = 8;
+  const RenderResult even = render_now(scene, scene.scene.cameras.at(0), o);
+  MESSAGE("rays ", refined.statistics.counters.viewing_rays, " of ",
+          even.statistics.counters.viewing_rays, ", error ", error(refined), " of ", error(even));
+  CHECK(refined.statistics.counters.viewing_rays < even.statistics.counters.viewing_rays);
+  CHECK(error(refined) < error(even));
+}
+
 TEST_CASE("certified: kj92room as its reference shows it") {
   const std::string root(TROFFER_SOURCE_DIR);
   const std::string reference = root + "/../shared/scenes/references/kj92room_direct.exr";
