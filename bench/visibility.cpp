@@ -145,7 +145,7 @@ CertifiedRun certified_run(const Bench& b, const CertifiedOptions& options, uint
   CertifiedRun run;
   out.assign(b.reference.size(), -1);
   CertifiedEstimator estimator(options);
-  World world(b.scene, b.occluders, b.tracer);
+  ShadowWorld world(b.scene, b.occluders, b.tracer);
   ReceiverClusters clusters;
   std::vector<ShadowReceiver> receivers;
   std::vector<SourceVisibility> answers;
@@ -183,7 +183,7 @@ CertifiedRun certified_run(const Bench& b, const CertifiedOptions& options, uint
   }
   run.seconds = now() - start;
   run.counters = estimator.counters();
-  run.visited = world.visited();
+  run.visited = world.visited_nodes();
   return run;
 }
 

@@ -1,5 +1,5 @@
-// What bench_visibility looks at and measures against: the scene as the estimator sees it, the flat
-// sources of a scene, the hits of a camera, and fixed sampling.
+// What bench_visibility looks at and measures against: the flat sources of a scene, the hits of a
+// camera, and fixed sampling.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 
 #include "base/random.h"
 #include "base/warp.h"
+#include "integrate/shadow_world.h"
 #include "render/camera.h"
 #include "shadow/certified.h"
 #include "trace/occluders.h"
@@ -18,70 +19,6 @@
 #include "trace/tracer.h"
 
 namespace troffer::bench {
-
-// Facets from the hierarchy, rays from the tracer.
-class World final : public ShadowScene {
- public:
-  World(const Scene& scene, const Occluders& occluders, const Tracer& tracer)
-      : occluders_(occluders), tracer_(tracer) {
-    const Box b = bounds(scene);
-    for (size_t a = 0; a < 3; ++a)
-      magnitude_ =
-          std::max({magnitude_, double(std::abs(b.lower[a])), double(std::abs(b.upper[a]))});
-  }
-  void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
-                  size_t most, ShadowCandidates& out) override {
-    found_.facets.clear();
-    found_.others = 0;
-    found_.is_complete = true;
-    found_.visited_nodes = 0;
-    occluders_.gather(planes, most, found_);
-    out.facets.clear();
-    out.is_too_long = !found_.is_complete;
-    out.is_complete = found_.is_complete && found_.others == 0;
-    for (const uint32_t id : found_.facets) {
-      const Occluders::Component& c = occluders_.component_of(id);
-      const bool is_front_only =
-          c.is_closed && is_apart(c.bounds, receivers) && is_apart(c.bounds, source);
-      out.facets.push_back({occluders_.facet(id), id, is_front_only});
-    }
-    visited_ += found_.visited_nodes;
-  }
-  void trace(std::span<const ShadowSegment> segments, std::span<uint32_t> ids) override {
-    rays_.resize(segments.size());
-    hits_.resize(segments.size());
-    for (size_t i = 0; i < segments.size(); ++i) {
-      rays_[i].origin = segments[i].from;
-      rays_[i].direction = segments[i].to - segments[i].from;
-      rays_[i].t_min = 0;
-      rays_[i].t_max = 1;
-    }
-    tracer_.closest(rays_, hits_, Coherence::coherent);
-    for (size_t i = 0; i < segments.size(); ++i) {
-      ids[i] = ray_is_free;
-      if (!hits_[i].is_valid()) continue;
-      const uint32_t id = occluders_.facet_of(hits_[i].geometry, hits_[i].primitive);
-      ids[i] = id == no_facet ? ray_is_stopped : id;
-    }
-  }
-  Quad facet(uint32_t id) const override { return occluders_.facet(id); }
-  double magnitude() const override { return magnitude_; }
-  uint64_t visited() const { return visited_; }
-
- private:
-  static bool is_apart(const Box& a, const Box& b) {
-    for (size_t axis = 0; axis < 3; ++axis)
-      if (a.upper[axis] < b.lower[axis] || b.upper[axis] < a.lower[axis]) return true;
-    return false;
-  }
-  const Occluders& occluders_;
-  const Tracer& tracer_;
-  double magnitude_ = 0;
-  uint64_t visited_ = 0;
-  Occluders::Found found_;
-  std::vector<Ray> rays_;
-  std::vector<Hit> hits_;
-};
 
 inline std::vector<FlatSource> flat_sources(const LightPrimitives& lights) {
   std::vector<FlatSource> sources;

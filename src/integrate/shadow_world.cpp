@@ -31,6 +31,7 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
   found_.is_complete = true;
   found_.visited_nodes = 0;
   occluders_.gather(planes, most, found_);
+  visited_nodes_ += found_.visited_nodes;
   out.facets.clear();
   out.is_too_long = !found_.is_complete;
   out.is_complete = found_.is_complete && found_.others == 0;

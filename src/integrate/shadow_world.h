@@ -2,6 +2,7 @@
 // tracer.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "shadow/certified.h"
@@ -20,11 +21,14 @@ class ShadowWorld final : public ShadowScene {
   void trace(std::span<const ShadowSegment> segments, std::span<uint32_t> hits) override;
   Quad facet(uint32_t id) const override { return occluders_.facet(id); }
   double magnitude() const override { return magnitude_; }
+  // Of the hierarchy, by all calls of candidates so far: for benchmarks.
+  uint64_t visited_nodes() const { return visited_nodes_; }
 
  private:
   const Occluders& occluders_;
   const Tracer& tracer_;
   double magnitude_ = 0;
+  uint64_t visited_nodes_ = 0;
   Occluders::Found found_;
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
