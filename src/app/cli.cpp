@@ -115,6 +115,8 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   r->add_option("--coherence", raw.coherence, "kj92: reuse of sampling patterns, on or off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
+  r->add_flag("--ratio", sampling.uses_ratio,
+              "kj92: trees give the visible share of the exact unoccluded light");
   r->add_option("--selection", raw.selection,
                 "kj92: choose sources by the preprocessing, on or off (all emitters, everywhere)")
       ->check(CLI::IsMember({"on", "off"}))

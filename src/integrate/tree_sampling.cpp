@@ -212,6 +212,10 @@ Rgb TreeSampler::light_of(const TreeReceiver& r, const Task& t) const {
   if (t.entry == nullptr) return t.sum;
   if (t.takes_exact) return t.exact;
   const Bintree& tree = t.entry->tree;
+  if (options_.uses_ratio && t.has_exact) {
+    const float all = tree.kernel_mean();
+    return all > 0 ? t.exact * (tree.estimate().mean / all) : Rgb{0};
+  }
   if (const float l = luminance(t.colour); l > 0)
     return t.colour * (tree.nodes()[BintreeNodes::root].mean / l);
   Rgb sum;

@@ -1,6 +1,7 @@
 // Light from the treated sources at one vertex, by a bintree for each: the trees ask for rays in
 // rounds, and the rays of all of them are traced together.
-// References: [1] Kok & Jansen, Eurographics '92, §2 to §4.
+// References: [1] Kok & Jansen, Eurographics '92, §2 to §4. [2] Heitz, Hill & McGuire, "Combining
+//   Analytic Direct Illumination and Stochastic Shadows", I3D 2018.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,9 @@ struct TreeSamplingOptions {
   // they agree with it, its word is taken: nothing, or the exact unoccluded light.
   int probe_rays = 4;
   bool has_coherence = true;  // patterns are reused
+  // Not in [1]: where the unoccluded light is known exactly, a tree gives only the share of it that
+  // is visible (ratio estimator [2]), so that rays' values may differ as they like.
+  bool uses_ratio = false;
 };
 
 // Where light is asked for.

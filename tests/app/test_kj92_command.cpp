@@ -45,7 +45,7 @@ TEST_CASE("kj92: every option is understood") {
       {"--variance", "0", "--most-rays", "4"},
       {"--mean-change", "0", "--level-difference", "3", "--probe-rays", "2"},
       {"--coherence", "off"},
-      {"--coherence", "on", "--selection", "off"},
+      {"--coherence", "on", "--selection", "off", "--ratio"},
       {"--select", "emitter0"},
       {"--shadow-rays", "0"},
       {"--indirect", "none"},

@@ -271,6 +271,38 @@ TEST_CASE("allowed variance 0 with a cap: full stratified sampling, unbiased") {
   }
 }
 
+TEST_CASE(
+    "ratio estimate: open light is exact whatever the rays' values, half-hidden light is right") {
+  Setting setting = Setting::direct(false);
+  setting.options.sampling.uses_ratio = true;
+  Scene open;
+  const uint32_t grey = add_diffuse(open, Rgb{0.5f});
+  // A large source close by: values of rays to it differ by far.
+  make_emitter(
+      open,
+      add_quad(open, grey, {Vec3{-1, -1, 0.05f}, {-1, 1, 0.05f}, {1, 1, 0.05f}, {1, -1, 0.05f}}),
+      Rgb{5});
+  add_floor(open, grey);
+  const Ray ray = ray_towards({-1.5f, 0, 0.03f}, {-0.9f, 0, 0});
+  const Kj92 near(open, setting);
+  const double expected =
+      irradiance(near.scene.lights, 0, Vec3d{-0.9, 0, 0}, Vec3d{0, 0, 1}) * 5 * 0.5 / double(pi);
+  const Probed exact = probe(near.integrator, ray, 1, 20);
+  CHECK(exact.total.mean() == doctest::Approx(expected).epsilon(1e-4));
+  CHECK(exact.total.variance_of_mean() < 1e-8 * expected * expected);
+
+  Scene half;
+  const uint32_t floor = add_diffuse(half, Rgb{0.5f});
+  add_ceiling_light(half, 1, 2, Rgb{5});
+  add_quad(half, floor, {Vec3{0.1f, -3, 1}, {3, -3, 1}, {3, 3, 1}, {0.1f, 3, 1}});
+  add_floor(half, floor);
+  const Kj92 hidden(half, setting);
+  const double share =
+      by_quadrature(hidden.scene, {}, 800, [](const Vec3& y) { return y.x < 0.2f; }) * 0.5 / pi;
+  const Probed p = probe(hidden.integrator, ray_towards({-1, 0.3f, 0.4f}, {}), 16, 60);
+  CHECK(p.total.mean() == doctest::Approx(share).epsilon(0.05));  // biased by design
+}
+
 TEST_CASE("direct light only: as the fixed method says, on surfaces of every kind") {
   struct Named {
     std::string name;

@@ -186,27 +186,33 @@ TEST_CASE("kj92: refinement where nothing differs adds nothing") {
 TEST_CASE("kj92: a stop during preprocessing or rendering comes back soon, with what there is") {
   const PreparedScene scene(mixed_room());
   for (const double after : {0.0, 0.15, 0.8}) {
+    const bool is_rendering = after > 0.5;  // stopped by what has been rendered, not by the clock
     StopFlag stop = after == 0;
     RenderOptions o = coarse();
     o.kj92.radiosity.meshing.element_size = after == 0.15 ? 0.05f : 0.4f;  // preprocessing is long
     o.kj92.radiosity.unshot_fraction = after == 0.15 ? 1e-5f : 0.05f;
     o.spp = 1 << 16;
     o.max_spp = 1 << 17;
+    Clock::time_point start = Clock::now();
     std::thread stopper([&] {
       std::this_thread::sleep_for(std::chrono::duration<double>(after));
-      stop = true;
+      if (!is_rendering) stop = true;
     });
-    const Clock::time_point start = Clock::now();
-    const RenderResult r = render(scene, mixed_room_camera(), o, {}, stop);
+    const auto stop_after_a_tile = [&](double) {
+      if (!is_rendering || stop) return;
+      start = Clock::now();
+      stop = true;
+    };
+    const RenderResult r = render(scene, mixed_room_camera(), o, stop_after_a_tile, stop);
     const double taken = seconds_since(start);
     stopper.join();
     CAPTURE(after);
     CHECK(!r.is_complete);
-    CHECK(taken < after + 3);
+    CHECK(taken < 10);  // on a machine with other work
     REQUIRE(r.layers.size() == 1);
     CHECK(r.layers[0].image.pixels.size() == 48 * 36);
     CHECK(is_finite(r.layers[0].image));
-    if (after > 0.5) CHECK(mean(r.layers[0].image) > 0);
+    if (is_rendering) CHECK(mean(r.layers[0].image) > 0);
   }
   StopFlag stop = true;
   MeasureOptions m;
