@@ -97,12 +97,12 @@ void Kj92Integrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
       if (walk.vertex == 0) record_first_hit(walk, v, scattering.whole, out);
       const NeighbourRecords* neighbours =
           walk.vertex == 0 && !rays.neighbours.empty() ? &rays.neighbours[walk.index] : nullptr;
-      shade(walk, hit, v, scattering, neighbours, s, out, counters);
+      const bool is_lit = scattering.has_diffuse || scattering.has_rough;
+      const RadiosityPlace place = is_lit ? radiosity_.place_of(hit, v) : RadiosityPlace{};
+      shade(walk, place, v, scattering, neighbours, s, out, counters);
       if (scattering.has_specular && walk.vertex < longest_chain) {
-        const bool is_sampled = scattering.has_rough;
-        const RadiosityPlace place = is_sampled ? radiosity_.place_of(hit, v) : RadiosityPlace{};
         if (spawn(walk, v, scattering)) {
-          walk.last_place = !is_sampled               ? no_place
+          walk.last_place = !scattering.has_rough     ? no_place
                             : place.point == no_point ? off_mesh
                                                       : solution_.mesh.points[place.point].patch;
           s.next_walks.push_back(walk);
@@ -129,7 +129,7 @@ void Kj92Integrator::add_emission(const Walk& walk, const Vertex& v, RadianceBat
   (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;
 }
 
-void Kj92Integrator::shade(const Walk& walk, const Hit& hit, const Vertex& v,
+void Kj92Integrator::shade(const Walk& walk, const RadiosityPlace& place, const Vertex& v,
                            const SurfaceScattering& s, const NeighbourRecords* neighbours,
                            Scratch& scratch, RadianceBatch& out, Counters& counters) const {
   ShadowRecord* record = nullptr;
@@ -138,7 +138,6 @@ void Kj92Integrator::shade(const Walk& walk, const Hit& hit, const Vertex& v,
     *record = {v.surface.geometry, v.is_front, v.frame.normal, v.surface.position, {}};
   }
   if (!s.has_diffuse && !s.has_rough) return;
-  const RadiosityPlace place = radiosity_.place_of(hit, v);
   const bool is_direct = walk.scatterings == 0;
   Rgb direct, indirect;
   if (place.point != no_point && s.has_diffuse) {

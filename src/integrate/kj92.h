@@ -49,9 +49,9 @@ class Kj92Integrator final : public Integrator {
   std::span<const TreatedSource> treated_at(const RadiosityPlace& place) const;
   bool is_treated(uint32_t place_note, uint32_t emitter) const;
   void add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const;
-  void shade(const Walk& walk, const Hit& hit, const Vertex& v, const SurfaceScattering& s,
-             const NeighbourRecords* neighbours, Scratch& scratch, RadianceBatch& out,
-             Counters& counters) const;
+  void shade(const Walk& walk, const RadiosityPlace& place, const Vertex& v,
+             const SurfaceScattering& s, const NeighbourRecords* neighbours, Scratch& scratch,
+             RadianceBatch& out, Counters& counters) const;
   bool spawn(Walk& walk, const Vertex& v, const SurfaceScattering& s) const;
 
   const PreparedScene& scene_;

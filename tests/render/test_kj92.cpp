@@ -195,8 +195,9 @@ TEST_CASE("kj92: a stop during preprocessing or rendering comes back soon, with 
     o.max_spp = 1 << 17;
     Clock::time_point start = Clock::now();
     std::thread stopper([&] {
+      if (is_rendering) return;
       std::this_thread::sleep_for(std::chrono::duration<double>(after));
-      if (!is_rendering) stop = true;
+      stop = true;
     });
     const auto stop_after_a_tile = [&](double) {
       if (!is_rendering || stop) return;
@@ -208,7 +209,7 @@ TEST_CASE("kj92: a stop during preprocessing or rendering comes back soon, with 
     stopper.join();
     CAPTURE(after);
     CHECK(!r.is_complete);
-    CHECK(taken < 10);  // on a machine with other work
+    CHECK(taken < (is_rendering ? 0 : after) + 3);
     REQUIRE(r.layers.size() == 1);
     CHECK(r.layers[0].image.pixels.size() == 48 * 36);
     CHECK(is_finite(r.layers[0].image));
