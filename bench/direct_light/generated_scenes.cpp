@@ -1,5 +1,4 @@
-// Scenes for benchmarks, generated: nothing to ship, and as large as wanted.
-#pragma once
+#include "generated_scenes.h"
 
 #include <cmath>
 #include <utility>
@@ -7,11 +6,10 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "render/camera.h"
-#include "scene/scene.h"
 
 namespace troffer::bench {
 
-inline void add_box(Mesh& m, const Vec3& lower, const Vec3& upper, float angle, bool is_inward) {
+void add_box(Mesh& m, const Vec3& lower, const Vec3& upper, float angle, bool is_inward) {
   const auto base = uint32_t(m.positions.size());
   const Vec3 c = (lower + upper) * 0.5f;
   for (int i = 0; i < 8; ++i) {
@@ -34,7 +32,7 @@ inline void add_box(Mesh& m, const Vec3& lower, const Vec3& upper, float angle, 
   }
 }
 
-inline void add_ball(Mesh& m, const Vec3& c, float radius) {
+void add_ball(Mesh& m, const Vec3& c, float radius) {
   constexpr uint32_t n = 16, rings = 9;
   const auto base = uint32_t(m.positions.size());
   for (uint32_t r = 0; r <= rings; ++r)
@@ -52,13 +50,16 @@ inline void add_ball(Mesh& m, const Vec3& c, float radius) {
     }
 }
 
-// A light of side `size`, facing down.
-inline void add_light(Scene& s, const Vec3& centre, float size) {
-  const float h = size / 2;
+void add_sheet(Mesh& m, const Vec3& corner, const Vec3& u, const Vec3& v) {
+  const auto base = uint32_t(m.positions.size());
+  for (const Vec3& p : {corner, corner + u, corner + u + v, corner + v}) m.positions.push_back(p);
+  m.triangles.push_back({base, base + 1, base + 2});
+  m.triangles.push_back({base, base + 2, base + 3});
+}
+
+void add_light(Scene& s, const Vec3& corner, const Vec3& u, const Vec3& v) {
   Mesh m;
-  m.positions = {centre + Vec3{-h, -h, 0}, centre + Vec3{-h, h, 0}, centre + Vec3{h, h, 0},
-                 centre + Vec3{h, -h, 0}};
-  m.triangles = {{0, 1, 2}, {0, 2, 3}};
+  add_sheet(m, corner, u, v);
   m.emitters = {int32_t(s.emitters.size()), int32_t(s.emitters.size())};
   Emitter e;
   e.radiance = Rgb{1};
@@ -69,8 +70,12 @@ inline void add_light(Scene& s, const Vec3& centre, float size) {
   s.meshes.push_back(m);
 }
 
-// 32 000 triangles: balls and boxes on and over a table, in a room with two lights.
-inline Scene clutter() {
+void add_square_light(Scene& s, const Vec3& centre, float size) {
+  const float h = size / 2;
+  add_light(s, centre + Vec3{-h, -h, 0}, {0, size, 0}, {size, 0, 0});
+}
+
+Scene clutter() {
   Scene s;
   s.materials.resize(1);
   Mesh room, things;
@@ -94,14 +99,13 @@ inline Scene clutter() {
             3 * random.next_float(), false);
   }
   s.meshes = {room, things};
-  add_light(s, {-1.2f, 0, 2.9f}, 1);
-  add_light(s, {1.2f, 0.5f, 2.9f}, 1);
+  add_square_light(s, {-1.2f, 0, 2.9f}, 1);
+  add_square_light(s, {1.2f, 0.5f, 2.9f}, 1);
   s.cameras = {look_at({0.3f, -2.6f, 1.9f}, {0, 0, 0.6f}, {0, 0, 1}, 50)};
   return s;
 }
 
-// 100 000 leaves of two triangles, in five crowns under one large light.
-inline Scene foliage() {
+Scene foliage() {
   Scene s;
   s.materials.resize(1);
   Mesh ground, leaves;
@@ -124,7 +128,7 @@ inline Scene foliage() {
     }
   }
   s.meshes = {ground, leaves};
-  add_light(s, {0, 0, 4}, 2);
+  add_square_light(s, {0, 0, 4}, 2);
   s.cameras = {look_at({0, -4.5f, 2.2f}, {0, 0, 0.5f}, {0, 0, 1}, 45)};
   return s;
 }
