@@ -157,28 +157,36 @@ CertifiedRun certified_run(const Bench& b, const CertifiedOptions& options, uint
     for (size_t c = 0; c < clusters.size(); ++c) {
       const auto members = clusters.members(c);
       receivers.resize(members.size());
-      answers.resize(members.size());
       for (size_t i = 0; i < members.size(); ++i)
         receivers[i] = {tile.positions[members[i]], tile.normals[members[i]],
                         tile.normals[members[i]], tile.origins[members[i]],
                         stream_of(tile, members[i], 0, seed)};
       estimator.begin_cluster(receivers);
-      for (size_t s = 0; s < b.sources.size(); ++s) {
-        estimator.evaluate(b.sources[s], hash_of(s, 7u), world, found[s], answers);
+      answers.resize(members.size() * b.sources.size());
+      const auto of_source = [&](size_t s) {
+        return std::span(answers).subspan(s * members.size(), members.size());
+      };
+      for (size_t s = 0; s < b.sources.size(); ++s)
+        estimator.evaluate(b.sources[s], {hash_of(s, 7u), 1, uint32_t(s), nullptr}, world, found[s],
+                           of_source(s));
+      for (const RayAnswer& r : estimator.end_cluster(world)) {
+        SourceVisibility& a = of_source(r.tag)[r.member];
+        run.rays += r.rays;
+        a.visible += r.light / a.unoccluded;
+        a.variance += r.light_variance / (a.unoccluded * a.unoccluded);
+      }
+      for (size_t s = 0; s < b.sources.size(); ++s)
         for (size_t i = 0; i < members.size(); ++i) {
+          const SourceVisibility& a = of_source(s)[i];
           const size_t at = b.index(t, s, members[i]);
-          const SourceVisibility& a = answers[i];
           ++run.answers[size_t(a.answer)];
           if (a.answer == ShadowAnswer::below) continue;
-          run.rays += a.rays;
           out[at] = a.visible;
-          if (b.reference[at] >= 0) {
-            const double e = double(a.visible) - double(b.reference[at]);
-            run.error2[size_t(a.answer)] += e * e;
-            run.predicted2[size_t(a.answer)] += double(a.variance);
-          }
+          if (b.reference[at] < 0) continue;
+          const double e = double(a.visible) - double(b.reference[at]);
+          run.error2[size_t(a.answer)] += e * e;
+          run.predicted2[size_t(a.answer)] += double(a.variance);
         }
-      }
     }
   }
   run.seconds = now() - start;

@@ -25,9 +25,10 @@ ShadowWorld::ShadowWorld(const Scene& scene, const Occluders& occluders, const T
 }
 
 void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
-                             size_t most, ShadowCandidates& out) {
+                             size_t most, uint64_t own, ShadowCandidates& out) {
   found_.facets.clear();
   found_.others = 0;
+  found_.own = own;
   found_.is_complete = true;
   found_.visited_nodes = 0;
   occluders_.gather(planes, most, found_);
@@ -43,7 +44,7 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
   }
 }
 
-void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<uint32_t> hits) {
+void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) {
   rays_.resize(segments.size());
   hits_.resize(segments.size());
   for (size_t i = 0; i < segments.size(); ++i) {
@@ -54,10 +55,11 @@ void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<uint3
   }
   tracer_.closest(rays_, hits_, Coherence::coherent);
   for (size_t i = 0; i < segments.size(); ++i) {
-    hits[i] = ray_is_free;
-    if (!hits_[i].is_valid()) continue;
-    const uint32_t id = occluders_.facet_of(hits_[i].geometry, hits_[i].primitive);
-    hits[i] = id == no_facet ? ray_is_stopped : id;
+    hits[i] = {};
+    const Hit& hit = hits_[i];
+    if (!hit.is_valid() || Occluders::key(hit.geometry, hit.primitive) == segments[i].own) continue;
+    const uint32_t id = occluders_.facet_of(hit.geometry, hit.primitive);
+    hits[i] = {id == no_facet ? ray_is_stopped : id, hit.t};
   }
 }
 

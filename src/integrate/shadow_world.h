@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shadow/certified.h"
+#include "shadow/shadow_scene.h"
 #include "trace/occluders.h"
 #include "trace/tracer.h"
 
@@ -17,8 +17,8 @@ class ShadowWorld final : public ShadowScene {
   ShadowWorld(const Scene& scene, const Occluders& occluders, const Tracer& tracer);
 
   void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
-                  size_t most, ShadowCandidates& out) override;
-  void trace(std::span<const ShadowSegment> segments, std::span<uint32_t> hits) override;
+                  size_t most, uint64_t own, ShadowCandidates& out) override;
+  void trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) override;
   Quad facet(uint32_t id) const override { return occluders_.facet(id); }
   double magnitude() const override { return magnitude_; }
   // Of the hierarchy, by all calls of candidates so far: for benchmarks.

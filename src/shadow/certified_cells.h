@@ -10,6 +10,7 @@
 #include "emitter/light_primitive.h"
 #include "emitter/source_surface.h"
 #include "shadow/coverage_mask.h"
+#include "shadow/shadow_scene.h"
 #include "shadow/shaft.h"
 
 namespace troffer {
@@ -28,6 +29,13 @@ struct FlatSource {
 // A piece of an emitter as a flat source; `is_back`: seen from behind. False for spheres and for
 // polygons of more than 8 corners, which are none.
 bool make_flat_source(const LightPrimitive& piece, bool is_back, FlatSource& out);
+
+// A sphere that shines outwards. `own`: what the scene calls it, so that it does not hide itself.
+struct SphereSource {
+  Vec3d centre;
+  double radius = 0;
+  uint64_t own = no_round_source;
+};
 
 // A convex part of a source, inside a parallelogram of its own.
 struct CertifiedCell {
