@@ -320,8 +320,8 @@ void run(const std::string& file, const Arguments& arguments) {
     CertifiedOptions o;
     o.lattice = s.lattice;
     o.longest_list = s.longest;
-    o.residual_error = s.residual;
-    o.most_rays = s.most_rays;
+    o.rays.pair_error = s.residual;
+    o.rays.most_pair_rays = s.most_rays;
     if (arguments.seeds > 0) {
       double sum = 0, sum2 = 0;
       for (uint64_t seed = 0; seed < arguments.seeds; ++seed) {

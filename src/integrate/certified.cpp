@@ -28,7 +28,7 @@ CertifiedSettings certified_settings(double error, size_t emitters) {
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(emitters, 1))));
   s.estimator.lattice = error >= coarse_above ? coarse_lattice : fine_lattice;
   s.estimator.residual_error = float(error);
-  s.estimator.most_rays = uint32_t(std::max(rays_for(error) / 2, 16));
+  s.estimator.rays.pair_error = float(2 * error);
   return s;
 }
 

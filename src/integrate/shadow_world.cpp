@@ -44,15 +44,27 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
   }
 }
 
-void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) {
+void ShadowWorld::set_rays(std::span<const ShadowSegment> segments) {
   rays_.resize(segments.size());
-  hits_.resize(segments.size());
   for (size_t i = 0; i < segments.size(); ++i) {
     rays_[i] = {};
     rays_[i].origin = segments[i].from;
     rays_[i].direction = segments[i].to - segments[i].from;
+    rays_[i].t_min = segments[i].first;
     rays_[i].t_max = 1;
   }
+}
+
+void ShadowWorld::occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
+                           std::span<uint8_t> is_hidden) {
+  set_rays(segments);
+  for (size_t i = 0; i < segments.size(); ++i) rays_[i].t_max = before[i];
+  tracer_.occluded(rays_, is_hidden, Coherence::coherent);
+}
+
+void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) {
+  set_rays(segments);
+  hits_.resize(segments.size());
   tracer_.closest(rays_, hits_, Coherence::coherent);
   for (size_t i = 0; i < segments.size(); ++i) {
     hits[i] = {};

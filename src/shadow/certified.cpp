@@ -247,7 +247,7 @@ void CertifiedEstimator::evaluate(const FlatSource& source, const SourceTerms& t
 
 std::span<const RayAnswer> CertifiedEstimator::end_cluster(ShadowScene& scene) {
   for (float& e : unhidden_) e *= options_.residual_error;
-  return rays_.finish(scene, unhidden_, options_.most_rays, options_.most_found);
+  return rays_.finish(scene, unhidden_, options_.rays, options_.most_found);
 }
 
 }  // namespace troffer

@@ -82,10 +82,10 @@ struct CertifiedOptions {
   size_t smallest_cluster = 16;  // receivers
   CellLimits cells;
   // Standard error allowed to rays of a receiver, relative to what all sources of the cluster would
-  // send unoccluded: kept unless that takes more than most_rays.
+  // send unoccluded: kept unless that takes more rays than the limits allow.
   float residual_error = 0.01f;
-  uint32_t most_rays = 256;  // per receiver
-  size_t most_found = 64;    // facets in the lists that are not complete
+  RayLimits rays;
+  size_t most_found = 64;  // facets in the lists that are not complete
 };
 
 struct CertifiedCounters {

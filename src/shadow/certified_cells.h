@@ -49,8 +49,8 @@ struct CertifiedCell {
   std::span<const Vec3d> all_corners() const { return {corners.data(), size_t(corner_count)}; }
 };
 
-// A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest value
-// over it exceeds its mean by more than the factor `variation`, and the cell gives more than
+// A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest
+// value over it exceeds its mean by more than the factor `variation`, and the cell gives more than
 // `least_share` of all that the source gives.
 struct CellLimits {
   double variation = 3;

@@ -161,7 +161,7 @@ void CertifiedEstimator::mask(std::span<const uint32_t> members, const FacetList
       if (wanted_points_[m] > 0)
         add_integral(m, light, variance);
       else
-        rays_.add(m, receivers_[m].origin, samples_, light,
+        rays_.add(m, receivers_[m].origin, samples_, light, unoccluded_[m],
                   mix64(receivers_[m].stream + cell_stream_ + 0x14057b7ef767814full));
     }
   }

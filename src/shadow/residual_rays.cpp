@@ -7,13 +7,21 @@
 
 namespace troffer {
 
-void FoundFacets::add(uint32_t id) {
-  for (Entry& e : entries_)
-    if (e.id == id) {
-      ++e.hits;
-      return;
-    }
-  entries_.push_back({id, 1});
+void FoundFacets::add(std::vector<uint32_t>& ids) {
+  std::sort(ids.begin(), ids.end());
+  const size_t before = entries_.size();
+  for (size_t i = 0; i < ids.size();) {
+    size_t end = i;
+    while (end < ids.size() && ids[end] == ids[i]) ++end;
+    const auto hits = uint32_t(end - i);
+    const auto known = std::find_if(entries_.begin(), entries_.begin() + std::ptrdiff_t(before),
+                                    [&](const Entry& e) { return e.id == ids[i]; });
+    if (known != entries_.begin() + std::ptrdiff_t(before))
+      known->hits += hits;
+    else
+      entries_.push_back({ids[i], hits});
+    i = end;
+  }
 }
 
 void FoundFacets::trim(size_t most) {
@@ -46,9 +54,9 @@ void ResidualRays::set_frame(const MaskFrame& frame) {
 }
 
 void ResidualRays::add(uint32_t member, const Vec3& origin, const OpenSamples& samples, float light,
-                       uint64_t random) {
+                       float unoccluded, uint64_t random) {
   pending_.push_back({member, uint32_t(sources_.size() - 1), uint32_t(frames_.size() - 1), origin,
-                      light, random, samples});
+                      light, unoccluded, random, samples});
 }
 
 void ResidualRays::add(uint32_t member, const Vec3& origin, std::span<const Vec3> points,
@@ -82,17 +90,19 @@ void ResidualRays::add_segments(const Vec3& origin, const RaySource& source,
     segments_.push_back({origin, source.is_round ? near_end(source, origin, p) : p, source.own});
 }
 
-void ResidualRays::cast_pending(std::span<const float> allowed, uint32_t most_rays) {
+void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits& limits) {
   open_.assign(receivers_, 0);
   for (const Pending& p : pending_) open_[p.member] += sources_[p.source].brightness * p.light;
   for (const Pending& p : pending_) {
     const float open = sources_[p.source].brightness * p.light;
     const float variance = 4 * sqr(allowed[p.member]);
     // rays of the receiver altogether, were numbers not whole
-    const float all = variance > 0 ? sqr(open_[p.member]) / variance : float(most_rays);
+    const float all = variance > 0 ? sqr(open_[p.member]) / variance : float(limits.most_rays);
     const float share = open / open_[p.member];
-    const float wanted = share * std::min(all, float(most_rays));
-    const auto n = uint32_t(std::max(std::ceil(wanted - 1e-3f), 1.0f));
+    const float wanted = share * std::min(all, float(limits.most_rays));
+    const float for_pair = std::min(sqr(0.5f * p.light / p.unoccluded / limits.pair_error),
+                                    float(limits.most_pair_rays));
+    const auto n = uint32_t(std::max(std::ceil(std::max(wanted, for_pair) - 1e-3f), 1.0f));
     points_.clear();
     draw_points(frames_[p.frame], p.samples, n, unit_float(uint32_t(p.random >> 32)), points_);
     groups_.push_back({p.source, uint32_t(segments_.size()), uint32_t(points_.size()),
@@ -146,23 +156,69 @@ struct ResidualRays::Tally {
   }
 };
 
+// Any occluder will do where nobody wants to know which one it was: rays that end just before the
+// source, and for those that are free the rest of the way.
+void ResidualRays::trace_without_names(ShadowScene& scene) {
+  before_.clear();
+  picked_.clear();
+  picked_segments_.clear();
+  for (const Group& g : groups_) {
+    const RaySource& s = sources_[g.source];
+    if (!s.found->is_hopeless || s.is_round) continue;
+    for (uint32_t i = g.first; i < g.first + g.count; ++i) {
+      const double height = dot(s.normal, Vec3d(segments_[i].from) - s.point);
+      const double end = 1 - 1.25 * s.tolerance / height;
+      if (!(end > 0)) continue;
+      picked_.push_back(i);
+      picked_segments_.push_back(segments_[i]);
+      before_.push_back(float(end));
+    }
+  }
+  is_hidden_.resize(picked_.size());
+  scene.occluded(picked_segments_, before_, is_hidden_);
+  for (size_t k = 0; k < picked_.size(); ++k) {
+    segments_[picked_[k]].first = before_[k];
+    if (is_hidden_[k] != 0) is_settled_[picked_[k]] = 1;
+  }
+}
+
+void ResidualRays::trace(ShadowScene& scene) {
+  is_settled_.assign(segments_.size(), 0);
+  hits_.assign(segments_.size(), ShadowHit{});
+  trace_without_names(scene);
+  picked_.clear();
+  picked_segments_.clear();
+  for (uint32_t i = 0; i < segments_.size(); ++i) {
+    if (is_settled_[i] != 0) continue;
+    picked_.push_back(i);
+    picked_segments_.push_back(segments_[i]);
+  }
+  picked_hits_.resize(picked_.size());
+  scene.trace(picked_segments_, picked_hits_);
+  for (size_t k = 0; k < picked_.size(); ++k) hits_[picked_[k]] = picked_hits_[k];
+}
+
 std::vector<ResidualRays::Tally> ResidualRays::look_at_hits(const ShadowScene& scene) {
   is_free_.resize(segments_.size());
   std::vector<Tally> tallies(sources_.size());
+  std::vector<std::vector<uint32_t>> found(sources_.size());
   for (const Group& g : groups_) {
     const RaySource& source = sources_[g.source];
     Tally& t = tallies[g.source];
     for (uint32_t i = g.first; i < g.first + g.count; ++i) {
-      is_free_[i] = is_free(source, segments_[i], hits_[i], scene) ? 1 : 0;
+      is_free_[i] = is_settled_[i] == 0 && is_free(source, segments_[i], hits_[i], scene) ? 1 : 0;
       t.rays += 1;
       t.free += is_free_[i];
       if (i > g.first) {
         t.neighbours += 1;
         t.changes += is_free_[i] != is_free_[i - 1];
       }
-      if (is_free_[i] == 0 && hits_[i].id != ray_is_stopped) source.found->add(hits_[i].id);
+      if (is_free_[i] == 0 && is_settled_[i] == 0 && hits_[i].id != ray_is_stopped)
+        found[g.source].push_back(hits_[i].id);
     }
   }
+  for (size_t s = 0; s < sources_.size(); ++s)
+    if (!found[s].empty()) sources_[s].found->add(found[s]);
   return tallies;
 }
 
@@ -209,12 +265,11 @@ void ResidualRays::add_up(const ShadowScene& scene) {
 }
 
 std::span<const RayAnswer> ResidualRays::finish(ShadowScene& scene, std::span<const float> allowed,
-                                                uint32_t most_rays, size_t most_found) {
+                                                const RayLimits& limits, size_t most_found) {
   if (is_empty()) return {};
-  cast_pending(allowed, most_rays);
+  cast_pending(allowed, limits);
   cast_chosen();
-  hits_.resize(segments_.size());
-  scene.trace(segments_, hits_);
+  trace(scene);
   add_up(scene);
   for (const RaySource& s : sources_) s.found->trim(most_found);
   return answers_;

@@ -4,6 +4,7 @@
 // A pair of receiver and cell with open light W (weighted by brightness) that casts n rays has a
 // variance of at most W²/4n, as a ray's answer is 0 or 1. For a receiver with an allowed standard
 // error E the numbers n_i = W_i sum W / 4E² make the sum of these bounds E² with the fewest rays.
+// A weak source's visible share is kept to a looser bound of its own.
 // References: docs/certified.md, "Residual rays".
 #pragma once
 
@@ -39,6 +40,12 @@ struct RayAnswer {
   float value_variance = 0;  // of its luminance
 };
 
+struct RayLimits {
+  uint32_t most_rays = 256;      // of a receiver, for its allowed error
+  float pair_error = 0.02f;      // allowed standard error of each source's visible share …
+  uint32_t most_pair_rays = 64;  // … unless that takes more rays than this
+};
+
 class ResidualRays {
  public:
   // Forgets everything; receivers: of the cluster.
@@ -50,10 +57,10 @@ class ResidualRays {
   // … to a cell with this frame.
   void set_frame(const MaskFrame& frame);
 
-  // `light`, in sr, is open: a number of rays to be decided by finish(). `random` starts the
-  // systematic sampling, and is the receiver's and the cell's own.
+  // `light`, in sr, is open, of `unoccluded` of the whole source: a number of rays to be decided by
+  // finish(). `random` starts the systematic sampling, and is the receiver's and the cell's own.
   void add(uint32_t member, const Vec3& origin, const OpenSamples& samples, float light,
-           uint64_t random);
+           float unoccluded, uint64_t random);
   // One ray to each of these points; `light` × the mean of the values of those that are free is the
   // answer.
   void add(uint32_t member, const Vec3& origin, std::span<const Vec3> points,
@@ -62,17 +69,16 @@ class ResidualRays {
   size_t size() const { return pending_.size(); }
   void scale(size_t first, std::span<const float> factor);
 
-  // allowed[i]: standard error of receiver i, in brightness × sr. At most `most_rays` rays are cast
-  // for a receiver in addition to those to chosen points. Facets that were met are noted with their
-  // sources; the `most_found` most hit are kept.
+  // allowed[i]: standard error of receiver i, in brightness × sr. Facets that were met are noted
+  // with their sources; the `most_found` most hit are kept.
   std::span<const RayAnswer> finish(ShadowScene& scene, std::span<const float> allowed,
-                                    uint32_t most_rays, size_t most_found);
+                                    const RayLimits& limits, size_t most_found);
 
  private:
   struct Pending {
     uint32_t member, source, frame;
     Vec3 origin;
-    float light;
+    float light, unoccluded;
     uint64_t random;
     OpenSamples samples;
   };
@@ -87,8 +93,10 @@ class ResidualRays {
     float light;
   };
   void add_segments(const Vec3& origin, const RaySource& source, std::span<const Vec3> points);
-  void cast_pending(std::span<const float> allowed, uint32_t most_rays);
+  void cast_pending(std::span<const float> allowed, const RayLimits& limits);
   void cast_chosen();
+  void trace(ShadowScene& scene);
+  void trace_without_names(ShadowScene& scene);
   bool is_free(const RaySource& source, const ShadowSegment& segment, const ShadowHit& hit,
                const ShadowScene& scene) const;
   struct Tally;
@@ -109,7 +117,12 @@ class ResidualRays {
   std::vector<Vec3> points_;
   std::vector<ShadowSegment> segments_;
   std::vector<ShadowHit> hits_;
-  std::vector<uint8_t> is_free_;
+  std::vector<uint8_t> is_free_, is_settled_;  // settled: hidden, by what nobody asked
+  std::vector<uint32_t> picked_;               // indices of segments that go into one call
+  std::vector<ShadowSegment> picked_segments_;
+  std::vector<ShadowHit> picked_hits_;
+  std::vector<float> before_;
+  std::vector<uint8_t> is_hidden_;
   std::vector<Group> groups_;
   std::vector<RayAnswer> answers_;
 };

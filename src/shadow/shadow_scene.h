@@ -22,6 +22,7 @@ constexpr uint64_t no_round_source = ~0ull;
 struct ShadowSegment {
   Vec3 from, to;
   uint64_t own = no_round_source;
+  float first = 0;  // what lies before, as a share of the way, is known to be free
 };
 
 // The first thing on a segment: ray_is_free, ray_is_stopped, or the id of a facet, and where.
@@ -48,6 +49,9 @@ class ShadowScene {
                           size_t most, uint64_t own, ShadowCandidates& out) = 0;
   // hits[i]: the first thing on segments[i] but for segments[i].own, at which a segment ends free.
   virtual void trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) = 0;
+  // is_hidden[i]: whether anything lies on segments[i] between 0 and before[i] < 1: cheaper.
+  virtual void occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
+                        std::span<uint8_t> is_hidden) = 0;
   virtual Quad facet(uint32_t id) const = 0;
   // Largest absolute coordinate of all facets, metres.
   virtual double magnitude() const = 0;
@@ -60,8 +64,8 @@ class FoundFacets {
     uint32_t id;
     uint32_t hits;
   };
-  // A ray met this facet.
-  void add(uint32_t id);
+  // Rays met these facets; sorts them.
+  void add(std::vector<uint32_t>& ids);
   // Keeps the `most` most hit, and halves the counts.
   void trim(size_t most);
   const std::vector<Entry>& entries() const { return entries_; }

@@ -68,6 +68,15 @@ class BruteForceScene final : public ShadowScene {
         if (meets(Vec3d(s[i].from), Vec3d(s[i].to), facets[f], 0) == 1) hits[i] = {f, 0.5f};
     }
   }
+  void occluded(std::span<const ShadowSegment> s, std::span<const float> before,
+                std::span<uint8_t> is_hidden) override {
+    segments += s.size();
+    for (size_t i = 0; i < s.size(); ++i) {
+      const Vec3d from(s[i].from), end = from + (Vec3d(s[i].to) - from) * double(before[i]);
+      is_hidden[i] = 0;
+      for (const Quad& q : facets) is_hidden[i] |= meets(from, end, q, 0) == 1 ? 1 : 0;
+    }
+  }
   Quad facet(uint32_t id) const override { return facets[id]; }
   double magnitude() const override {
     double m = 0;

@@ -84,7 +84,7 @@ TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
       options.lattice = lattice;
       options.longest_list = is_complete ? 64 : 1;  // one facet known, two left to rays
       options.most_halvings = 0;
-      options.most_rays = 4;
+      options.rays.most_rays = options.rays.most_pair_rays = 4;
       CertifiedEstimator estimator(options);
       double sum = 0, sum2 = 0, bound = 0;
       constexpr int seeds = 4000;
