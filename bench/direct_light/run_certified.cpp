@@ -14,10 +14,20 @@ void take(const Pairs& pairs, size_t tile, size_t source, std::span<const uint32
     const size_t at = pairs.index(tile, source, members[i]);
     out.kinds[at] = a.answer;
     if (a.answer == ShadowAnswer::below) continue;
-    out.rays += a.rays;
     out.visible[at] = a.visible;
     out.variance[at] = a.variance;
     out.unoccluded[at] = a.unoccluded;
+  }
+}
+
+void take_rays(const Pairs& pairs, size_t tile, std::span<const uint32_t> members,
+               std::span<const RayAnswer> rays, Answers& out) {
+  for (const RayAnswer& r : rays) {
+    const size_t at = pairs.index(tile, r.tag, members[r.member]);
+    const float unoccluded = out.unoccluded[at];
+    out.rays += r.rays;
+    out.visible[at] += r.light / unoccluded;
+    out.variance[at] += r.light_variance / (unoccluded * unoccluded);
   }
 }
 
@@ -50,9 +60,11 @@ void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t
       answers.resize(members.size());
       estimator.begin_cluster(receivers);
       for (size_t s = 0; s < scene.sources.size(); ++s) {
-        estimator.evaluate(scene.sources[s], hash_of(s, 7u), world, found[s], answers);
+        const SourceTerms terms{hash_of(s, 7u), float(scene.radiance[s]), uint32_t(s), nullptr};
+        estimator.evaluate(scene.sources[s], terms, world, found[s], answers);
         take(pairs, t, s, members, answers, out);
       }
+      take_rays(pairs, t, members, estimator.end_cluster(world), out);
     }
   }
   out.seconds = thread_seconds() - start;

@@ -44,6 +44,9 @@ struct SensorBatch {
 struct RadianceBatch {
   std::vector<Rgb> direct, indirect;
   std::vector<uint32_t> shadow_rays;
+  // Variance of the luminance of `direct` by the sampling of sources, as far as the method tells it
+  // (certified).
+  std::vector<float> direct_variance;
   // The first surface hit; zero where nothing is.
   std::vector<Rgb> albedo;
   std::vector<Vec3> normal, position;
@@ -58,12 +61,18 @@ struct RadianceBatch {
     direct.assign(n, Rgb{0});
     indirect.assign(n, Rgb{0});
     shadow_rays.assign(n, 0);
+    direct_variance.assign(n, 0);
     albedo.assign(n, Rgb{0});
     normal.assign(n, Vec3{});
     position.assign(n, Vec3{});
     is_hit.assign(n, 0);
     sources.assign(n, Rgb{0});
     records.clear();
+  }
+  // Light along viewing ray i, and the variance of its luminance.
+  void add(size_t i, bool is_direct, Rgb light, float variance) {
+    (is_direct ? direct : indirect)[i] += light;
+    if (is_direct) direct_variance[i] += variance;
   }
 };
 

@@ -28,13 +28,14 @@ CertifiedSettings certified_settings(double error, size_t emitters) {
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(emitters, 1))));
   s.estimator.lattice = error >= coarse_above ? coarse_lattice : fine_lattice;
   s.estimator.residual_error = float(error);
-  s.estimator.most_rays = uint32_t(std::max(rays_for(error) / 2, 16));
+  s.estimator.rays.pair_error = float(2 * error);
   return s;
 }
 
 struct CertifiedIntegrator::Scratch final : IntegratorScratch {
-  Scratch(const CertifiedOptions& options, ShadowWorld world) : flat(options, std::move(world)) {}
-  FlatLightsScratch flat;
+  Scratch(const CertifiedOptions& options, ShadowWorld world, SourceIntegrand integrand)
+      : lights(options, std::move(world), std::move(integrand)) {}
+  CertifiedLightsScratch lights;
   SourceSamplerScratch rays;
   std::vector<Walk> walks, next_walks;
   WalkScratch trace;
@@ -47,18 +48,19 @@ CertifiedIntegrator::CertifiedIntegrator(const PreparedScene& scene,
       radiosity_(radiosity),
       settings_(settings),
       occluders_(scene.scene),
-      flat_(scene),
+      lights_(scene),
       sampler_(scene) {}
 
 std::unique_ptr<IntegratorScratch> CertifiedIntegrator::make_scratch() const {
   return std::make_unique<Scratch>(settings_.estimator,
-                                   ShadowWorld(scene_.scene, occluders_, scene_.tracer));
+                                   ShadowWorld(scene_.scene, occluders_, scene_.tracer),
+                                   SourceIntegrand(scene_, uint32_t(settings_.gloss_samples)));
 }
 
 void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratch,
                                    RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
-  flat_.forget(s.flat);
+  lights_.forget(s.lights);
   start_walks(rays, s.walks);
   counters.viewing_rays += rays.size();
   for (Coherence c = Coherence::coherent; !s.walks.empty(); c = Coherence::none) {
@@ -86,7 +88,7 @@ void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& s
           survives_spawning(walk))
         s.next_walks.push_back(walk);
     }
-    flat_.illuminate(s.flat, out, counters);
+    lights_.illuminate(s.lights, out, counters);
     sampler_.resolve(s.rays, out, counters);
     s.walks.swap(s.next_walks);
   }
@@ -96,11 +98,27 @@ void CertifiedIntegrator::add_emission(const Walk& walk, const Vertex& v,
                                        RadianceBatch& out) const {
   const Rgb radiance = emission_at(scene_, v);
   if (radiance.is_black()) return;
-  const float weight = sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
+  const float weight = emission_weight(walk, v);
   // Straight from a source: by mirrors and clear glass, or by the one rough surface it is seen in.
   const bool is_direct = walk.scatterings == 0 || (walk.scatterings == 1 && walk.pdf > 0);
   if (!is_direct && !radiosity_) return;
-  (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;
+  const Rgb light = walk.throughput * radiance * weight;
+  // The variance of one sample is no more than the mean of its square.
+  out.add(walk.index, is_direct, light, walk.pdf > 0 ? sqr(luminance(light)) : 0.0f);
+}
+
+// Of emission that a walk has run into, against points on the source chosen at the vertex before.
+float CertifiedIntegrator::emission_weight(const Walk& walk, const Vertex& v) const {
+  if (!(walk.pdf > 0)) return 1;
+  const bool is_sampled = walk.last_both_sides || !lights_.has(uint32_t(v.surface.emitter));
+  if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
+  const int32_t primitive = primitive_at(scene_, v.surface);
+  const CertifiedSource* source =
+      primitive < 0 ? nullptr : lights_.source_of(uint32_t(primitive), !v.is_front);
+  if (source == nullptr) return 1;
+  return power_heuristic(walk.pdf, float(settings_.gloss_samples) *
+                                       nominal_density(*source, walk.last_position,
+                                                       walk.last_normal, walk.ray.direction));
 }
 
 // Light straight from all sources at a vertex: by certificates later, or by rays.
@@ -108,9 +126,14 @@ void CertifiedIntegrator::light(const Walk& walk, const Vertex& v,
                                 const SurfaceScattering& scattering, Scratch& s, RadianceBatch& out,
                                 Counters& counters) const {
   const bool is_direct = walk.scatterings == 0;
-  const bool is_matte = scattering.is_lambertian;
-  if (is_matte && !flat_.is_empty()) s.flat.hits.add(walk, v, scattering.whole.diffuse, is_direct);
   if (!scattering.has_diffuse && !scattering.has_rough) return;
+  const bool is_certified = !scattering.is_transmitting();
+  if (is_certified && !lights_.is_empty()) {
+    if (scattering.is_lambertian)
+      s.lights.hits.add_matte(walk, v, scattering.whole.diffuse, is_direct);
+    else
+      s.lights.hits.add_glossy(walk, v, scattering, is_direct);
+  }
   const SampledVertex at{walk,
                          v,
                          scattering.has_diffuse ? &scattering.diffuse : nullptr,
@@ -118,7 +141,7 @@ void CertifiedIntegrator::light(const Walk& walk, const Vertex& v,
                          scattering.whole.has_transmission,
                          is_direct};
   for (uint32_t e = 0; e < sampler_.emitters(); ++e) {
-    if (sampler_.is_empty(e) || (is_matte && flat_.has(e))) continue;
+    if (sampler_.is_empty(e) || (is_certified && lights_.has(e))) continue;
     sampler_.sample(at, e, uint32_t(settings_.shadow_rays), s.rays, out, counters);
     ++counters.mixed;
     if (walk.vertex == 0) out.sources[walk.index] += Rgb{1, 0, 0};
@@ -136,13 +159,13 @@ void CertifiedIntegrator::add_indirect(const Walk& walk, const Hit& hit, const V
 void CertifiedIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
                                      RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
-  flat_.forget(s.flat);
+  lights_.forget(s.lights);
   const SurfaceScattering scattering(sensor_bsdf());
   for (uint32_t i = 0; i < sensors.size(); ++i)
     light(sensor_walk(sensors, i),
           make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset), scattering,
           s, out, counters);
-  flat_.illuminate(s.flat, out, counters);
+  lights_.illuminate(s.lights, out, counters);
   sampler_.resolve(s.rays, out, counters);
   if (radiosity_) gather(sensors, s, out, counters);
 }

@@ -1,18 +1,18 @@
 // Light straight from sources by certified visibility, indirect light from the radiosity
 // preprocessing: the structure of the method of 1992 with shadow flags that are proved.
 //
-// Matte hits of a batch are treated together for every flat source (flat_lights.h), without rays
-// but where no list of facets is complete. A fixed number of shadow rays (source_sampler.h) does
-// what has no certificates: round, textured and finely meshed sources, and all light that coated
-// and glossy surfaces scatter. Mirrors, glass and gloss spawn viewing rays, shaded likewise where
-// they arrive. Direct light is unbiased; indirect light is as good as the radiosity solution.
+// Hits of a batch are treated together for every source (certified_lights.h), without rays but
+// where no list of facets is complete. A fixed number of shadow rays (source_sampler.h) does what
+// has no certificates: finely meshed curved sources, and rough surfaces that transmit. Mirrors,
+// glass and gloss spawn viewing rays, shaded likewise where they arrive. Direct light is unbiased;
+// indirect light is as good as the radiosity solution.
 // References: docs/certified.md.
 #pragma once
 
 #include <memory>
 #include <optional>
 
-#include "integrate/flat_lights.h"
+#include "integrate/certified_lights.h"
 #include "integrate/integrator.h"
 #include "integrate/radiosity_light.h"
 #include "integrate/source_sampler.h"
@@ -22,7 +22,8 @@ namespace troffer {
 
 struct CertifiedSettings {
   CertifiedOptions estimator;
-  int shadow_rays = 64;  // per source and viewing ray where there are no certificates
+  int shadow_rays = 64;    // per source and viewing ray where there are no certificates
+  int gloss_samples = 32;  // points of a source at which gloss and textures are looked at
 };
 
 // Settings for an allowed standard error of a viewing ray's direct light, relative to what its
@@ -51,6 +52,7 @@ class CertifiedIntegrator final : public Integrator {
   struct Scratch;
 
   void add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const;
+  float emission_weight(const Walk& walk, const Vertex& v) const;
   void light(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering, Scratch& s,
              RadianceBatch& out, Counters& counters) const;
   void add_indirect(const Walk& walk, const Hit& hit, const Vertex& v,
@@ -61,7 +63,7 @@ class CertifiedIntegrator final : public Integrator {
   std::optional<RadiosityLight> radiosity_;
   CertifiedSettings settings_;
   Occluders occluders_;
-  FlatLights flat_;
+  CertifiedLights lights_;
   SourceSampler sampler_;
 };
 

@@ -25,9 +25,10 @@ ShadowWorld::ShadowWorld(const Scene& scene, const Occluders& occluders, const T
 }
 
 void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
-                             size_t most, ShadowCandidates& out) {
+                             size_t most, uint64_t own, ShadowCandidates& out) {
   found_.facets.clear();
   found_.others = 0;
+  found_.own = own;
   found_.is_complete = true;
   found_.visited_nodes = 0;
   occluders_.gather(planes, most, found_);
@@ -43,21 +44,34 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
   }
 }
 
-void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<uint32_t> hits) {
+void ShadowWorld::set_rays(std::span<const ShadowSegment> segments) {
   rays_.resize(segments.size());
-  hits_.resize(segments.size());
   for (size_t i = 0; i < segments.size(); ++i) {
     rays_[i] = {};
     rays_[i].origin = segments[i].from;
     rays_[i].direction = segments[i].to - segments[i].from;
+    rays_[i].t_min = segments[i].first;
     rays_[i].t_max = 1;
   }
+}
+
+void ShadowWorld::occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
+                           std::span<uint8_t> is_hidden) {
+  set_rays(segments);
+  for (size_t i = 0; i < segments.size(); ++i) rays_[i].t_max = before[i];
+  tracer_.occluded(rays_, is_hidden, Coherence::coherent);
+}
+
+void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) {
+  set_rays(segments);
+  hits_.resize(segments.size());
   tracer_.closest(rays_, hits_, Coherence::coherent);
   for (size_t i = 0; i < segments.size(); ++i) {
-    hits[i] = ray_is_free;
-    if (!hits_[i].is_valid()) continue;
-    const uint32_t id = occluders_.facet_of(hits_[i].geometry, hits_[i].primitive);
-    hits[i] = id == no_facet ? ray_is_stopped : id;
+    hits[i] = {};
+    const Hit& hit = hits_[i];
+    if (!hit.is_valid() || Occluders::key(hit.geometry, hit.primitive) == segments[i].own) continue;
+    const uint32_t id = occluders_.facet_of(hit.geometry, hit.primitive);
+    hits[i] = {id == no_facet ? ray_is_stopped : id, hit.t};
   }
 }
 

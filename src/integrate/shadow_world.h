@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shadow/certified.h"
+#include "shadow/shadow_scene.h"
 #include "trace/occluders.h"
 #include "trace/tracer.h"
 
@@ -17,14 +17,18 @@ class ShadowWorld final : public ShadowScene {
   ShadowWorld(const Scene& scene, const Occluders& occluders, const Tracer& tracer);
 
   void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
-                  size_t most, ShadowCandidates& out) override;
-  void trace(std::span<const ShadowSegment> segments, std::span<uint32_t> hits) override;
+                  size_t most, uint64_t own, ShadowCandidates& out) override;
+  void trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) override;
+  void occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
+                std::span<uint8_t> is_hidden) override;
   Quad facet(uint32_t id) const override { return occluders_.facet(id); }
   double magnitude() const override { return magnitude_; }
   // Of the hierarchy, by all calls of candidates so far: for benchmarks.
   uint64_t visited_nodes() const { return visited_nodes_; }
 
  private:
+  void set_rays(std::span<const ShadowSegment> segments);
+
   const Occluders& occluders_;
   const Tracer& tracer_;
   double magnitude_ = 0;

@@ -15,6 +15,9 @@ struct SurfaceScattering {
   bool has_specular = false;  // anything to spawn viewing rays for
   bool has_rough = false;     // … of which some is not a mirror: sources are sampled for it too
 
+  // Light that arrives from behind goes through, other than straight on.
+  bool is_transmitting() const { return has_rough && specular.has_transmission; }
+
   explicit SurfaceScattering(const Bsdf& bsdf) : whole(bsdf) {
     is_lambertian = troffer::is_lambertian(bsdf, nullptr);
     diffuse = is_lambertian ? bsdf : diffuse_part(bsdf);

@@ -8,22 +8,6 @@
 
 namespace troffer {
 
-void FoundFacets::add(uint32_t id) {
-  for (Entry& e : entries_)
-    if (e.id == id) {
-      ++e.hits;
-      return;
-    }
-  entries_.push_back({id, 1});
-}
-
-void FoundFacets::trim(size_t most) {
-  std::stable_sort(entries_.begin(), entries_.end(),
-                   [](const Entry& a, const Entry& b) { return a.hits > b.hits; });
-  if (entries_.size() > most) entries_.resize(most);
-  for (Entry& e : entries_) e.hits = (e.hits + 1) / 2;
-}
-
 ReceiverHull CertifiedEstimator::hull_of(std::span<const uint32_t> members) {
   hull_origins_.clear();
   hull_normals_.clear();
@@ -57,37 +41,53 @@ void CertifiedEstimator::begin_cluster(std::span<const ShadowReceiver> receivers
   if (has_own_horizons_)
     for (const ShadowReceiver& r : receivers) arrays_.horizons.push_back(r.horizon);
   if (!receivers.empty()) cluster_hull_ = hull_of(members_);
+  unhidden_.assign(receivers.size(), 0);
+  rays_.begin(receivers.size());
 }
 
-// Receivers that some light can reach become members_; false if there are none.
-bool CertifiedEstimator::begin(std::span<SourceVisibility> out) {
+// Receivers that some light can reach become members_; false if there are none. unoccluded_ is set
+// already.
+bool CertifiedEstimator::begin(const SourceTerms& terms, ShadowScene& scene, FoundFacets& found,
+                               std::span<SourceVisibility> out) {
   ++counters_.clusters;
+  terms_ = terms;
+  scene_ = &scene;
+  found_ = &found;
   out_ = out;
+  cell_stream_ = terms.stream;
+  own_ = no_round_source;
   const size_t n = receivers_.size();
-  irradiance(source_->corners(), unoccluded_);
   cell_sums_.assign(n, 0);
   kinds_.assign(n, 0);
+  wanted_points_.assign(n, 0);
   members_.clear();
-  segments_.clear();
-  groups_.clear();
   for (uint32_t i = 0; i < n; ++i) {
-    out[i] = {unoccluded_[i], 0, 0, 0, ShadowAnswer::below};
-    if (unoccluded_[i] > 0) members_.push_back(i);
+    out[i] = {};
+    out[i].unoccluded = unoccluded_[i];
+    if (!(unoccluded_[i] > 0)) continue;
+    members_.push_back(i);
+    unhidden_[i] += terms.brightness * unoccluded_[i];
+    if (terms.integrand != nullptr) wanted_points_[i] = terms.integrand->points(i);
   }
   return !members_.empty();
 }
 
-void CertifiedEstimator::gather(const ReceiverHull& hull, const CertifiedCell& part, size_t most) {
-  const Shaft shaft =
-      make_shaft(hull, part.all_corners(), source_->plane.normal, scene_->magnitude());
+void CertifiedEstimator::gather(const ReceiverHull& hull, std::span<const Vec3d> outline,
+                                const Vec3d& normal, size_t most) {
+  const Shaft shaft = make_shaft(hull, outline, normal, scene_->magnitude());
   Box receivers, source;
   for (int i = 0; i < hull.count; ++i) receivers.grow(Vec3(hull.corners[size_t(i)]));
-  for (const Vec3d& c : part.all_corners()) source.grow(Vec3(c));
-  scene_->candidates(shaft.all(), receivers, source, most, candidates_);
+  for (const Vec3d& c : outline) source.grow(Vec3(c));
+  scene_->candidates(shaft.all(), receivers, source, most, own_, candidates_);
   is_complete_ = candidates_.is_complete;
   ++counters_.gathers;
   counters_.candidates += candidates_.facets.size();
   counters_.incomplete += is_complete_ ? 0 : 1;
+}
+
+// A last try keeps few, for what it finds stays incomplete.
+size_t CertifiedEstimator::most_candidates(bool is_last) const {
+  return is_last ? std::min(options_.longest_list, 4 * options_.most_found) : options_.longest_list;
 }
 
 namespace {
@@ -135,10 +135,8 @@ void CertifiedEstimator::shorten_candidates(const Vec3d& centre) {
 // larger of the two.
 void CertifiedEstimator::divide(std::span<uint32_t> members, const ReceiverHull& hull,
                                 const CertifiedCell& part, int halvings) {
-  const bool is_last = halvings == 0 || found_->is_hopeless;
-  gather(
-      hull, part,
-      is_last ? std::min(options_.longest_list, 4 * options_.most_found) : options_.longest_list);
+  const bool is_last = is_last_try(halvings);
+  gather(hull, part.all_corners(), source_->plane.normal, most_candidates(is_last));
   if (!candidates_.is_too_long) return settle_cells(members, hull, part);
   if (is_last) {
     found_->is_hopeless = true;
@@ -181,10 +179,11 @@ void CertifiedEstimator::settle_cells(std::span<uint32_t> members, const Receive
       if (cell_unoccluded_[m] > 0) cell_members_.push_back(m);
     if (cell_members_.empty()) continue;
     const bool is_mirrored =
-        (mix64(cell_stream_ + receivers_[members[0]].stream + source_stream_) & 1) != 0;
+        (mix64(cell_stream_ + receivers_[members[0]].stream + terms_.stream) & 1) != 0;
     const MaskFrame frame(cell.plane, options_.lattice, is_mirrored, hull.centre,
                           cell.all_outline(), source_->is_disk);
     frame_ = &frame;
+    if (!is_complete_) rays_.set_frame(frame);
     FacetList& facets = lists_[0];
     facets.clear();
     facets.add_many(frame, candidates_.facets);
@@ -212,30 +211,43 @@ void CertifiedEstimator::finish_sums() {
       o.answer =
           (kinds & bit(ShadowAnswer::mixed)) != 0 ? ShadowAnswer::mixed : ShadowAnswer::masked;
     }
+    cell_sums_[m] = unoccluded_[m] / cell_sums_[m];
   }
 }
 
-void CertifiedEstimator::evaluate(const FlatSource& source, uint64_t source_stream,
+void CertifiedEstimator::evaluate(const FlatSource& source, const SourceTerms& terms,
                                   ShadowScene& scene, FoundFacets& found,
                                   std::span<SourceVisibility> out) {
   source_ = &source;
-  source_stream_ = source_stream;
-  scene_ = &scene;
-  found_ = &found;
-  if (receivers_.empty() || !begin(out)) return;
+  is_round_ = false;
+  if (receivers_.empty()) return;
+  irradiance(source.corners(), unoccluded_);
+  if (!begin(terms, scene, found, out)) return;
   const bool is_all = members_.size() == receivers_.size();
   const ReceiverHull hull = is_all ? cluster_hull_ : hull_of(members_);
   double magnitude = hull.magnitude;
   for (const Vec3d& c : source.corners())
     magnitude = std::max({magnitude, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
-  target_gap_ = 2.5e-6 * magnitude;
-  cell_stream_ = source_stream;
   const CertifiedCell part = visible_part(source, hull);
   if (part.corner_count == 0) return;
+  RaySource target;
+  target.point = source.plane.origin;
+  target.normal = source.plane.normal;
+  target.tolerance = 2e-6 * magnitude;  // as the shaft has it
+  target.found = &found;
+  target.brightness = terms.brightness;
+  target.tag = terms.tag;
+  rays_.set_source(target);
   whole_ = &part;
+  const size_t first_ray = rays_.size();
   divide(members_, hull, part, options_.most_halvings);
-  finish_rays();
   finish_sums();
+  rays_.scale(first_ray, cell_sums_);  // now unoccluded over the sum of the cells
+}
+
+std::span<const RayAnswer> CertifiedEstimator::end_cluster(ShadowScene& scene) {
+  for (float& e : unhidden_) e *= options_.residual_error;
+  return rays_.finish(scene, unhidden_, options_.rays, options_.most_found);
 }
 
 }  // namespace troffer

@@ -10,6 +10,7 @@
 #include "emitter/light_primitive.h"
 #include "emitter/source_surface.h"
 #include "shadow/coverage_mask.h"
+#include "shadow/shadow_scene.h"
 #include "shadow/shaft.h"
 
 namespace troffer {
@@ -29,6 +30,13 @@ struct FlatSource {
 // polygons of more than 8 corners, which are none.
 bool make_flat_source(const LightPrimitive& piece, bool is_back, FlatSource& out);
 
+// A sphere that shines outwards. `own`: what the scene calls it, so that it does not hide itself.
+struct SphereSource {
+  Vec3d centre;
+  double radius = 0;
+  uint64_t own = no_round_source;
+};
+
 // A convex part of a source, inside a parallelogram of its own.
 struct CertifiedCell {
   Parallelogram plane;
@@ -41,8 +49,8 @@ struct CertifiedCell {
   std::span<const Vec3d> all_corners() const { return {corners.data(), size_t(corner_count)}; }
 };
 
-// A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest value
-// over it exceeds its mean by more than the factor `variation`, and the cell gives more than
+// A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest
+// value over it exceeds its mean by more than the factor `variation`, and the cell gives more than
 // `least_share` of all that the source gives.
 struct CellLimits {
   double variation = 3;

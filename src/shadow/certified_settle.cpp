@@ -1,6 +1,5 @@
 // Certificates, masks and rays for one cell of a source: see certified.h.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/random.h"
@@ -49,7 +48,7 @@ bool CertifiedEstimator::settle_by_certificate(std::span<const uint32_t> members
     left.keep_unsettled(facets, flags_);
   }
   if (left.size() > 0 || !is_complete_) return false;
-  for (const uint32_t m : members) add_answer(m, 1, 0, ShadowAnswer::lit);
+  for (const uint32_t m : members) add_lit(m);
   return true;
 }
 
@@ -82,95 +81,90 @@ float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const Ma
 
 }  // namespace
 
+// Sets samples_ to what a receiver sees of the cell past the facets; the visible share, or -1 where
+// no sample stands above the horizon.
+float CertifiedEstimator::look(uint32_t member, const FacetList& facets, float& variance) {
+  const ShadowReceiver& r = receivers_[member];
+  const uint64_t bits = mix64(r.stream + cell_stream_ + 0x5851f42d4c957f2dull);
+  samples_.shift = {unit_float(uint32_t(bits)), unit_float(uint32_t(bits >> 32))};
+  cover(*frame_, facets, frame_->to_canvas(Vec3d(r.origin)), samples_.shift, mask_);
+  samples_.open = 0;
+  variance = 0;
+  if (!mask_.is_any_open) return 0;
+  const Vec3d x(r.position);
+  if (has_own_horizons_) {
+    // A sphere's unoccluded light knows the normal's horizon only: there the other one hides.
+    const MaskRows inside = mask_.inside;
+    clip_to_horizon(*frame_, x, r.horizon, samples_.shift, mask_);
+    if (is_round_) mask_.inside = inside;
+  }
+  samples_.rows = mask_.open;
+  samples_.weights = mask_weights(*frame_, x, r.normal, samples_.shift);
+  const MaskWeight sums = weigh(*frame_, mask_, samples_.weights, samples_.open_by_row);
+  if (!(sums.all > 0)) return -1;
+  samples_.open = sums.open;
+  variance = mask_variance(*frame_, samples_.weights, sums);
+  return sums.share();
+}
+
+// Adds the integrand over the samples_ that are open, which send `light`, in sr.
+void CertifiedEstimator::add_integral(uint32_t member, float light, float share_variance) {
+  const float share = cell_unoccluded_[member] / unoccluded_[member];
+  const auto wanted = float(wanted_points_[member]);
+  const auto n = uint32_t(std::ceil(std::max(wanted * share, std::min(wanted, 4.0f))));
+  const ShadowReceiver& r = receivers_[member];
+  const uint64_t bits = mix64(r.stream + cell_stream_ + 0x14057b7ef767814full);
+  points_.clear();
+  draw_points(*frame_, samples_, n, unit_float(uint32_t(bits >> 32)), points_);
+  if (points_.empty()) return;
+  values_.resize(points_.size());
+  terms_.integrand->evaluate(member, points_, values_);
+  if (!is_complete_) return rays_.add(member, r.origin, points_, values_, light);
+  Rgb sum;
+  float squares = 0;
+  for (const Rgb& v : values_) {
+    sum += v;
+    squares += sqr(luminance(v));
+  }
+  const auto count = float(points_.size());
+  const float mean = luminance(sum) / count;
+  SourceVisibility& o = out_[member];
+  o.value += sum * (light / count);
+  o.value_variance += share_variance * sqr(cell_unoccluded_[member] * mean) +
+                      sqr(light) * std::max(squares - sqr(mean) * count, 0.0f) /
+                          (count * std::max(count - 1, 1.0f));
+}
+
+void CertifiedEstimator::add_lit(uint32_t member) {
+  add_answer(member, 1, 0, ShadowAnswer::lit);
+  if (wanted_points_[member] == 0) return;
+  float variance = 0;
+  static const FacetList nothing;
+  if (look(member, nothing, variance) > 0) add_integral(member, cell_unoccluded_[member], 0);
+}
+
 void CertifiedEstimator::mask(std::span<const uint32_t> members, const FacetList& facets) {
-  CoverageMask mask;
-  float open_by_row[most_mask_rows];
   const ShadowAnswer answer = is_complete_ ? ShadowAnswer::masked : ShadowAnswer::mixed;
   for (const uint32_t m : members) {
-    const ShadowReceiver& r = receivers_[m];
-    const uint64_t bits = mix64(r.stream + cell_stream_ + 0x5851f42d4c957f2dull);
-    const Vec2 shift{unit_float(uint32_t(bits)), unit_float(uint32_t(bits >> 32))};
     ++counters_.masks;
     counters_.mask_facets += facets.size();
-    cover(*frame_, facets, frame_->to_canvas(Vec3d(r.origin)), shift, mask);
-    if (!mask.is_any_open) {
-      add_answer(m, 0, 0, answer);
-      continue;
-    }
-    const Vec3d x(r.position);
-    if (has_own_horizons_) clip_to_horizon(*frame_, x, r.horizon, shift, mask);
-    const MaskWeights weights = mask_weights(*frame_, x, r.normal, shift);
-    const MaskWeight sums = weigh(*frame_, mask, weights, open_by_row);
-    if (!(sums.all > 0)) {
-      // no sample stands above the horizon: hardly any light can come from here
-      add_answer(m, 0.5f, 0.25f, answer);
-    } else if (is_complete_ || !(sums.open > 0)) {
-      add_answer(m, sums.share(), mask_variance(*frame_, weights, sums), answer);
+    float variance = 0;
+    const float share = look(m, facets, variance);
+    const float light = share * cell_unoccluded_[m];
+    if (share < 0) {
+      add_answer(m, 0.5f, 0.25f, answer);  // hardly any light can come from here
+    } else if (is_complete_ || !(share > 0)) {
+      add_answer(m, share, variance, answer);
+      if (share > 0 && wanted_points_[m] > 0) add_integral(m, light, variance);
     } else {
-      add_answer(m, 0, mask_variance(*frame_, weights, sums), answer);
-      add_rays(m, mask, weights, open_by_row, sums, shift);
+      add_answer(m, 0, variance, answer);
+      if (wanted_points_[m] > 0)
+        add_integral(m, light, variance);
+      else
+        rays_.add(m, receivers_[m].origin, samples_, light, unoccluded_[m],
+                  mix64(receivers_[m].stream + cell_stream_ + 0x14057b7ef767814full));
     }
   }
-}
-
-void CertifiedEstimator::add_rays(uint32_t member, const CoverageMask& mask,
-                                  const MaskWeights& weights, const float* open_by_row,
-                                  const MaskWeight& sums, const Vec2& shift) {
-  SourceVisibility& o = out_[member];
-  const ShadowReceiver& r = receivers_[member];
-  const float weight = sums.share() * cell_unoccluded_[member];
-  const float share = weight / o.unoccluded;
-  const float wanted = std::ceil(sqr(0.5f * share / options_.residual_error));
-  const auto n = uint32_t(std::clamp(wanted, 1.0f, float(options_.most_rays)));
-  // V being 0 or 1, the variance of one ray's answer is at most 1/4
-  o.variance += sqr(weight) / (4 * float(n));
-  // Systematic sampling: n targets at equal distances over the open weight, one random start.
-  const float start = unit_float(uint32_t(mix64(r.stream + cell_stream_ + 0x14057b7ef767814full)));
-  // A segment ends target_gap_ before the source's plane, on the line to the sample.
-  const Vec3d from(r.origin), first = frame_->first_sample();
-  const double height = dot(source_->plane.normal, from - source_->plane.origin);
-  const double length = std::max(1 - target_gap_ / height, 0.0);
-  uint32_t cast = 0;
-  float row_start = 0;
-  for (int row = 0; row < frame_->lattice().rows && cast < n; ++row) {
-    const float row_end = row_start + open_by_row[row];
-    uint32_t bits = mask.open.row[row];
-    float passed = row_start;
-    int k = -1;
-    for (; cast < n; ++cast) {
-      const float target = (float(cast) + start) / float(n) * sums.open;
-      if (target >= row_end) break;
-      while (bits != 0 && passed <= target) {
-        k = std::countr_zero(bits);
-        passed += weight_of(weights, k, row);
-        bits &= bits - 1;
-      }
-      if (k < 0) break;
-      const Vec3d to = first + frame_->step_k() * (double(k) + double(shift.x)) +
-                       frame_->step_j() * (double(row) + double(shift.y));
-      segments_.push_back({r.origin, Vec3(from + (to - from) * length)});
-    }
-    row_start = row_end;
-  }
-  o.rays += cast;
-  groups_.push_back({member, cast, weight});
-}
-
-void CertifiedEstimator::finish_rays() {
-  if (segments_.empty()) return;
-  hits_.resize(segments_.size());
-  scene_->trace(segments_, hits_);
-  size_t i = 0;
-  for (const RayGroup& g : groups_) {
-    uint32_t hidden = 0;
-    for (const size_t end = i + g.count; i < end; ++i) {
-      if (hits_[i] == ray_is_free) continue;
-      ++hidden;
-      if (hits_[i] != ray_is_stopped) found_->add(hits_[i]);
-    }
-    if (g.count > 0) out_[g.member].visible += g.weight * float(g.count - hidden) / float(g.count);
-  }
-  found_->trim(options_.most_found);
 }
 
 }  // namespace troffer

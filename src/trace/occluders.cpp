@@ -234,7 +234,9 @@ void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found)
       const uint32_t item = leaf_items_[i];
       if (item >= facets) {
         const Other& o = others_[item - facets];
-        found.others += (o.is_flat ? is_outside(o.cover, set) : is_outside(o.bounds, set)) ? 0 : 1;
+        const bool is_own = o.key == found.own && o.key != no_key;
+        found.others +=
+            is_own || (o.is_flat ? is_outside(o.cover, set) : is_outside(o.bounds, set)) ? 0 : 1;
       } else if (!is_outside(facets_[item], set)) {
         if (found.facets.size() >= most) return false;
         found.facets.push_back(item);

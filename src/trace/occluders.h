@@ -39,6 +39,11 @@ class Occluders {
   };
   const Component& component_of(uint32_t facet) const { return components_[component_[facet]]; }
 
+  static constexpr uint64_t no_key = ~0ull;
+  static uint64_t key(uint32_t geometry, uint32_t primitive) {
+    return uint64_t(geometry) << 32 | primitive;
+  }
+
   // Appends to `facets` the ids of all facets of which a point may lie inside all planes, until
   // more than `most` have been found; counts what is no facet in `others`. False if it stopped
   // early: the list is then incomplete. A facet is left out only if one plane has all of it
@@ -46,6 +51,8 @@ class Occluders {
   struct Found {
     std::vector<uint32_t> facets;
     uint32_t others = 0;
+    // A sphere or disk that does not count: key() of what a hit on it says; none by default.
+    uint64_t own = no_key;
     bool is_complete = true;
     uint64_t visited_nodes = 0;
   };
@@ -73,6 +80,7 @@ class Occluders {
     Box bounds;
     Quad cover;
     bool is_flat;
+    uint64_t key;  // of a hit on it
   };
   std::vector<Other> others_;
   std::vector<std::vector<uint32_t>> facet_of_;  // per mesh, per triangle

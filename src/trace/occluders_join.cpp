@@ -145,30 +145,35 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
 }
 
 void Occluders::add_others(const Scene& scene) {
-  const auto add_flat = [&](const Quad& q) {
+  const auto add_flat = [&](const Quad& q, uint64_t k) {
     Box b;
     for (const Vec3& v : q) b.grow(v);
-    others_.push_back({b, q, true});
+    others_.push_back({b, q, true, k});
   };
+  const auto meshes = uint32_t(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.triangles.empty() || !scene.materials[mesh.material].is_alpha_masked) continue;
     for (const Triangle& t : mesh.triangles)
       add_flat(
-          {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], mesh.positions[t[2]]});
+          {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], mesh.positions[t[2]]},
+          no_key);
   }
-  for (const Sphere& s : scene.spheres) {
+  for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
+    const Sphere& s = scene.spheres[i];
     // with room for the rounding of Embree's intersections
     const float slack = 1e-5f * (length(s.centre) + s.radius);
     const Vec3 reach = Vec3{1, 1, 1} * (s.radius + slack);
     Box b;
     b.grow(s.centre - reach);
     b.grow(s.centre + reach);
-    others_.push_back({b, {}, false});
+    others_.push_back({b, {}, false, key(meshes, i)});
   }
-  for (const Disk& d : scene.disks) {
+  for (uint32_t i = 0; i < scene.disks.size(); ++i) {
+    const Disk& d = scene.disks[i];
     const Frame frame(d.normal);
     const Vec3 x = frame.tangent * (1.0001f * d.radius), y = frame.bitangent * (1.0001f * d.radius);
-    add_flat({d.centre - x - y, d.centre + x - y, d.centre + x + y, d.centre - x + y});
+    add_flat({d.centre - x - y, d.centre + x - y, d.centre + x + y, d.centre - x + y},
+             key(meshes + 1, i));
   }
 }
 

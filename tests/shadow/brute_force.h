@@ -38,7 +38,7 @@ class BruteForceScene final : public ShadowScene {
   bool is_complete = true;
   uint64_t segments = 0;
 
-  void candidates(std::span<const Plane> planes, const Box&, const Box&, size_t most,
+  void candidates(std::span<const Plane> planes, const Box&, const Box&, size_t most, uint64_t,
                   ShadowCandidates& out) override {
     out.facets.clear();
     out.is_complete = is_complete;
@@ -60,12 +60,21 @@ class BruteForceScene final : public ShadowScene {
       out.facets.push_back({facets[i], i, false});
     }
   }
-  void trace(std::span<const ShadowSegment> s, std::span<uint32_t> hits) override {
+  void trace(std::span<const ShadowSegment> s, std::span<ShadowHit> hits) override {
     segments += s.size();
     for (size_t i = 0; i < s.size(); ++i) {
-      hits[i] = ray_is_free;
-      for (uint32_t f = 0; f < facets.size() && hits[i] == ray_is_free; ++f)
-        if (meets(Vec3d(s[i].from), Vec3d(s[i].to), facets[f], 0) == 1) hits[i] = f;
+      hits[i] = {};
+      for (uint32_t f = 0; f < facets.size() && hits[i].id == ray_is_free; ++f)
+        if (meets(Vec3d(s[i].from), Vec3d(s[i].to), facets[f], 0) == 1) hits[i] = {f, 0.5f};
+    }
+  }
+  void occluded(std::span<const ShadowSegment> s, std::span<const float> before,
+                std::span<uint8_t> is_hidden) override {
+    segments += s.size();
+    for (size_t i = 0; i < s.size(); ++i) {
+      const Vec3d from(s[i].from), end = from + (Vec3d(s[i].to) - from) * double(before[i]);
+      is_hidden[i] = 0;
+      for (const Quad& q : facets) is_hidden[i] |= meets(from, end, q, 0) == 1 ? 1 : 0;
     }
   }
   Quad facet(uint32_t id) const override { return facets[id]; }
@@ -179,6 +188,26 @@ inline void add_random_facets(Random& r, BruteForceScene& scene) {
       scene.facets.push_back(
           parallelogram_facet({-1 + float(i) / 32, -1, 1.2f}, {1.0f / 64, 0, 0}, {0, 2, 0}));
   }
+}
+
+// What one source alone comes to for a cluster, rays included; how many rays of each receiver.
+template <class Source>
+std::vector<uint32_t> evaluate_alone(CertifiedEstimator& estimator, const Source& source,
+                                     std::span<const ShadowReceiver> receivers, ShadowScene& scene,
+                                     FoundFacets& found, std::span<SourceVisibility> out,
+                                     ShadowIntegrand* integrand = nullptr) {
+  std::vector<uint32_t> rays(receivers.size(), 0);
+  estimator.begin_cluster(receivers);
+  estimator.evaluate(source, {1, 1, 0, integrand}, scene, found, out);
+  for (const RayAnswer& a : estimator.end_cluster(scene)) {
+    SourceVisibility& o = out[a.member];
+    o.visible += a.light / o.unoccluded;
+    o.variance += a.light_variance / (o.unoccluded * o.unoccluded);
+    o.value += a.value;
+    o.value_variance += a.value_variance;
+    rays[a.member] += a.rays;
+  }
+  return rays;
 }
 
 }  // namespace troffer::test

@@ -31,8 +31,7 @@ TEST_CASE("lit and dark certificates are never contradicted by a ray") {
     CertifiedEstimator estimator;
     FoundFacets found;
     std::vector<SourceVisibility> out(receivers.size());
-    estimator.begin_cluster(receivers);
-    estimator.evaluate(source, 1, scene, found, out);
+    evaluate_alone(estimator, source, receivers, scene, found, out);
     for (size_t i = 0; i < receivers.size(); ++i) {
       const bool is_lit = out[i].answer == ShadowAnswer::lit;
       if (!is_lit && out[i].answer != ShadowAnswer::dark) continue;

@@ -1,0 +1,179 @@
+#include "integrate/certified_lights.h"
+
+#include "base/random.h"
+#include "trace/occluders.h"
+
+namespace troffer {
+
+namespace {
+
+// Emitters of more pieces are left to rays: each piece would be a source of its own.
+constexpr uint32_t most_pieces = 64;
+// Hits on a curved surface are certified together within this share of the scene's diagonal.
+constexpr float reach_of_diagonal = 0.1f;
+
+}  // namespace
+
+void WaitingHits::clear() {
+  receivers.clear();
+  positions.clear();
+  horizons.clear();
+  weights.clear();
+  indices.clear();
+  glossy.clear();
+  is_direct.clear();
+  is_first.clear();
+  glossy_hits.clear();
+}
+
+void WaitingHits::add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct) {
+  const Vec3& horizon = v.geometric_normal;
+  receivers.push_back({v.surface.position, horizon, v.frame.normal,
+                       offset_origin(v.surface, horizon),
+                       hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1)});
+  positions.push_back(v.surface.position);
+  horizons.push_back(horizon);
+  weights.push_back(weight);
+  indices.push_back(walk.index);
+  glossy.push_back(-1);
+  is_direct.push_back(direct ? 1 : 0);
+  is_first.push_back(walk.vertex == 0 ? 1 : 0);
+}
+
+void WaitingHits::add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct) {
+  add(walk, v, walk.throughput * reflectance * inv_pi_f, direct);
+}
+
+void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
+                             bool direct) {
+  add(walk, v, walk.throughput, direct);
+  glossy.back() = int32_t(glossy_hits.size());
+  glossy_hits.push_back({v.frame, v.geometric_normal, v.wo, scattering.diffuse, scattering.specular,
+                         scattering.has_diffuse, scattering.has_rough});
+}
+
+CertifiedLights::CertifiedLights(const PreparedScene& scene)
+    : source_of_front_(scene.lights.size(), -1), source_of_back_(scene.lights.size(), -1) {
+  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
+    has_emitter_.push_back(add_emitter(scene, e));
+  for (uint32_t i = 0; i < sources_.size(); ++i) {
+    const CertifiedSource& s = sources_[i];
+    (s.is_back ? source_of_back_ : source_of_front_)[s.primitive] = int32_t(i);
+  }
+  const Box box = bounds(scene.scene);
+  if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
+}
+
+const CertifiedSource* CertifiedLights::source_of(uint32_t primitive, bool is_back) const {
+  const int32_t i = (is_back ? source_of_back_ : source_of_front_)[primitive];
+  return i < 0 ? nullptr : &sources_[size_t(i)];
+}
+
+bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) {
+  const LightPrimitives::Range pieces = scene.lights.of_emitter(emitter);
+  if (pieces.last - pieces.first > most_pieces) return false;
+  std::vector<CertifiedSource> added;
+  for (uint32_t p = pieces.first; p < pieces.last; ++p) {
+    const LightPrimitive& piece = scene.lights[p];
+    CertifiedSource source;
+    source.primitive = p;
+    source.is_textured = piece.is_textured;
+    source.radiance =
+        piece.is_textured ? piece.mean_radiance : scene.scene.emitters[emitter].radiance;
+    if (piece.shape == PrimitiveShape::sphere) {
+      if (piece.is_inside_out || piece.is_two_sided) return false;
+      source.is_round = true;
+      const auto meshes = uint32_t(scene.scene.meshes.size());
+      source.sphere = {Vec3d(piece.centroid), double(piece.radius),
+                       Occluders::key(meshes, scene.scene.emitters[emitter].geometry)};
+      source.stream = hash_of(p, 0u);
+      added.push_back(source);
+      continue;
+    }
+    for (const bool is_back : {false, true}) {
+      if (is_back && !piece.is_two_sided) continue;
+      if (!make_flat_source(piece, is_back, source.flat)) return false;
+      source.is_back = is_back;
+      source.stream = hash_of(p, is_back ? 1u : 0u);
+      added.push_back(source);
+    }
+  }
+  sources_.insert(sources_.end(), added.begin(), added.end());
+  return true;
+}
+
+void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
+                                 Counters& counters) const {
+  if (s.hits.size() == 0) return;
+  cluster_receivers(s.hits.positions, s.hits.horizons, reach_, s.clusters);
+  for (size_t c = 0; c < s.clusters.size(); ++c)
+    illuminate_cluster(s.clusters.members(c), s, out, counters);
+  s.hits.clear();
+}
+
+void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
+                                         CertifiedLightsScratch& s, RadianceBatch& out,
+                                         Counters& counters) const {
+  s.receivers.clear();
+  s.integrand.hits().clear();
+  for (const uint32_t m : members) {
+    s.receivers.push_back(s.hits.receivers[m]);
+    const int32_t g = s.hits.glossy[m];
+    s.integrand.hits().push_back(
+        {s.hits.positions[m], g < 0 ? nullptr : &s.hits.glossy_hits[size_t(g)]});
+  }
+  s.answers.resize(members.size());
+  s.estimator.begin_cluster(s.receivers);
+  for (uint32_t i = 0; i < sources_.size(); ++i) {
+    const CertifiedSource& source = sources_[i];
+    s.integrand.set_source(source);
+    const SourceTerms terms{source.stream, luminance(source.radiance), i, &s.integrand};
+    if (source.is_round)
+      s.estimator.evaluate(source.sphere, terms, s.world, s.found[i], s.answers);
+    else
+      s.estimator.evaluate(source.flat, terms, s.world, s.found[i], s.answers);
+    add_answers(source, members, s, out, counters);
+  }
+  add_rays(s.estimator.end_cluster(s.world), members, s, out, counters);
+}
+
+void CertifiedLights::add_answers(const CertifiedSource& source, std::span<const uint32_t> members,
+                                  const CertifiedLightsScratch& s, RadianceBatch& out,
+                                  Counters& counters) const {
+  for (uint32_t i = 0; i < members.size(); ++i) {
+    const SourceVisibility& a = s.answers[i];
+    if (a.answer == ShadowAnswer::below) continue;
+    const uint32_t m = members[i], index = s.hits.indices[m];
+    const bool is_lit = a.answer == ShadowAnswer::lit, is_dark = a.answer == ShadowAnswer::dark;
+    counters.lit_certified += is_lit ? 1 : 0;
+    counters.dark_certified += is_dark ? 1 : 0;
+    counters.masked += a.answer == ShadowAnswer::masked ? 1 : 0;
+    counters.mixed += a.answer == ShadowAnswer::mixed ? 1 : 0;
+    if (s.hits.is_first[m] != 0)
+      out.sources[index] +=
+          Rgb{is_lit || is_dark ? 0.0f : 1.0f, is_lit ? 1.0f : 0.0f, is_dark ? 1.0f : 0.0f};
+    if (is_dark) continue;
+    const bool has_value = s.integrand.is_wanted(i);
+    const Rgb factor = has_value ? s.hits.weights[m] : s.hits.weights[m] * source.radiance;
+    out.add(index, s.hits.is_direct[m] != 0,
+            has_value ? factor * a.value : factor * (a.unoccluded * a.visible),
+            has_value ? sqr(luminance(factor)) * a.value_variance
+                      : sqr(luminance(factor) * a.unoccluded) * a.variance);
+  }
+}
+
+void CertifiedLights::add_rays(std::span<const RayAnswer> rays, std::span<const uint32_t> members,
+                               const CertifiedLightsScratch& s, RadianceBatch& out,
+                               Counters& counters) const {
+  for (const RayAnswer& a : rays) {
+    const uint32_t m = members[a.member], index = s.hits.indices[m];
+    counters.shadow_rays += a.rays;
+    out.shadow_rays[index] += a.rays;
+    const Rgb& weight = s.hits.weights[m];
+    const Rgb factor = weight * sources_[a.tag].radiance;
+    out.add(index, s.hits.is_direct[m] != 0, factor * a.light + weight * a.value,
+            sqr(luminance(factor)) * a.light_variance + sqr(luminance(weight)) * a.value_variance);
+  }
+}
+
+}  // namespace troffer

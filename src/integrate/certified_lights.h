@@ -1,0 +1,91 @@
+// Light straight from sources by certified visibility: many hits at a stroke, exact where nothing
+// hides a source, by coverage masks in penumbrae, by rays where lists of occluders are not complete
+// (docs/certified.md).
+//
+// Hits are clustered; for each cluster and source, reflectance / pi × radiance × unoccluded
+// projected solid angle × visible share is added at matte hits, and an integral over the visible
+// part elsewhere. Unbiased.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "integrate/shadow_world.h"
+#include "integrate/source_integrand.h"
+#include "integrate/walk.h"
+#include "shadow/certified.h"
+#include "shadow/certified_cluster.h"
+
+namespace troffer {
+
+// Hits that wait for light: plain arrays of one length.
+struct WaitingHits {
+  std::vector<ShadowReceiver> receivers;
+  std::vector<Vec3> positions, horizons;  // of the receivers, as clustering wants them
+  std::vector<Rgb> weights;               // throughput, times reflectance / pi of matte surfaces
+  std::vector<uint32_t> indices;          // of the viewing rays
+  std::vector<int32_t> glossy;            // index into glossy_hits, or -1: matte
+  std::vector<uint8_t> is_direct;         // the light counts as direct
+  std::vector<uint8_t> is_first;          // the viewing ray's first surface
+  std::vector<GlossyHit> glossy_hits;
+
+  size_t size() const { return receivers.size(); }
+  void clear();
+  // A hit at v; the light counts as direct or not.
+  void add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct);
+  void add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
+                  bool direct);
+
+ private:
+  void add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct);
+};
+
+// Memory of one thread.
+struct CertifiedLightsScratch {
+  CertifiedLightsScratch(const CertifiedOptions& options, ShadowWorld w, SourceIntegrand i)
+      : estimator(options), world(std::move(w)), integrand(std::move(i)) {}
+  WaitingHits hits;
+  CertifiedEstimator estimator;
+  ShadowWorld world;
+  SourceIntegrand integrand;
+  std::vector<FoundFacets> found;  // per source: what this batch has learnt
+  ReceiverClusters clusters;
+  std::vector<ShadowReceiver> receivers;  // of one cluster
+  std::vector<SourceVisibility> answers;
+};
+
+class CertifiedLights {
+ public:
+  explicit CertifiedLights(const PreparedScene& scene);
+
+  // The emitter is dealt with here, whole. Others are meshes of too many pieces that lie in no
+  // common plane, or spheres that shine inwards.
+  bool has(uint32_t emitter) const { return has_emitter_[emitter]; }
+  bool is_empty() const { return sources_.empty(); }
+  // The source that a piece of an emitter belongs to, seen from its front or its back; null if
+  // none.
+  const CertifiedSource* source_of(uint32_t primitive, bool is_back) const;
+
+  // What a batch learns is forgotten at its beginning, so that it does not matter what a thread did
+  // before.
+  void forget(CertifiedLightsScratch& s) const { s.found.assign(sources_.size(), {}); }
+  // Adds the light of all sources at s.hits to `out`, and empties s.hits.
+  void illuminate(CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
+
+ private:
+  bool add_emitter(const PreparedScene& scene, uint32_t emitter);
+  void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
+                          RadianceBatch& out, Counters& counters) const;
+  void add_answers(const CertifiedSource& source, std::span<const uint32_t> members,
+                   const CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
+  void add_rays(std::span<const RayAnswer> rays, std::span<const uint32_t> members,
+                const CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
+
+  std::vector<CertifiedSource> sources_;
+  std::vector<bool> has_emitter_;
+  std::vector<int32_t> source_of_front_, source_of_back_;  // per primitive, -1: none
+  float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart
+};
+
+}  // namespace troffer

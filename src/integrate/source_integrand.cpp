@@ -1,0 +1,61 @@
+#include "integrate/source_integrand.h"
+
+#include "emitter/irradiance.h"
+#include "integrate/connect.h"
+
+namespace troffer {
+
+double CertifiedSource::unoccluded(const Vec3d& x, const Vec3d& n) const {
+  if (is_round) return sphere_irradiance(sphere.centre, sphere.radius, x, n);
+  const Parallelogram& p = flat.plane;
+  if (dot(p.normal, x - p.origin) <= 0) return 0;
+  if (flat.is_disk)
+    return disk_irradiance(p.origin + (p.u + p.v) * 0.5, p.normal, 0.5 * length(p.u), x, n);
+  return polygon_irradiance(flat.corners(), x, n, Sides::both);
+}
+
+float nominal_density(const CertifiedSource& source, const Vec3& x, const Vec3& n, const Vec3& wi) {
+  const float cosine = dot(n, wi);
+  if (!(cosine > 0)) return 0;
+  const auto unoccluded = float(source.unoccluded(Vec3d(x), Vec3d(n)));
+  return unoccluded > 0 ? cosine / unoccluded : 0;
+}
+
+Rgb SourceIntegrand::radiance_at(const Vec3& point) const {
+  if (!source_->is_textured) return source_->radiance;
+  const LightPrimitive& p = scene_.lights[source_->primitive];
+  const Vec3d a(p.vertices[0]), ab = Vec3d(p.vertices[1]) - a, ac = Vec3d(p.vertices[2]) - a;
+  const Vec3d n = cross(ab, ac), d = Vec3d(point) - a;
+  const double area2 = length_squared(n);
+  const auto b1 = float(dot(cross(d, ac), n) / area2), b2 = float(dot(cross(ab, d), n) / area2);
+  const Vec2 uv = p.uvs[0] * (1 - b1 - b2) + p.uvs[1] * b1 + p.uvs[2] * b2;
+  return emitted_radiance(scene_.scene, scene_.scene.emitters[p.emitter], !source_->is_back, uv);
+}
+
+void SourceIntegrand::evaluate(uint32_t member, std::span<const Vec3> points,
+                               std::span<Rgb> values) {
+  const IntegrandHit& hit = hits_[member];
+  if (hit.glossy == nullptr) {
+    for (size_t i = 0; i < points.size(); ++i) values[i] = radiance_at(points[i]);
+    return;
+  }
+  const GlossyHit& g = *hit.glossy;
+  const auto unoccluded =
+      g.has_rough ? float(source_->unoccluded(Vec3d(hit.position), Vec3d(g.geometric_normal))) : 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    values[i] = {};
+    const Vec3 world = normalize(points[i] - hit.position);
+    const Vec3 wi = g.frame.to_local(world);
+    const float cosine = dot(world, g.geometric_normal);
+    if (!(cosine > 0) || !(wi.z > 0)) continue;
+    Rgb f_cos;
+    if (g.has_diffuse) f_cos += troffer::evaluate(g.diffuse, g.wo, wi);
+    if (g.has_rough && unoccluded > 0) {
+      const BsdfValue rough = evaluate_with_pdf(g.rough, g.wo, wi);
+      f_cos += rough.f_cos * power_heuristic(float(points_) * cosine / unoccluded, rough.pdf);
+    }
+    values[i] = f_cos * (1 / wi.z) * radiance_at(points[i]);
+  }
+}
+
+}  // namespace troffer

@@ -1,0 +1,78 @@
+// What certified visibility asks of a scene: who stands in a shaft, and what a ray meets.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/box.h"
+#include "base/quad.h"
+#include "shadow/coverage_mask.h"
+#include "shadow/shaft.h"
+
+namespace troffer {
+
+constexpr uint32_t ray_is_free = 0xffffffffu;
+constexpr uint32_t ray_is_stopped = 0xfffffffeu;  // by what is no facet
+
+// A round source among what is no facet, by the scene's own numbering: it does not hide itself.
+constexpr uint64_t no_round_source = ~0ull;
+
+// From a receiver, clear of its surface, to a point of a source.
+struct ShadowSegment {
+  Vec3 from, to;
+  uint64_t own = no_round_source;
+  float first = 0;  // what lies before, as a share of the way, is known to be free
+};
+
+// The first thing on a segment: ray_is_free, ray_is_stopped, or the id of a facet, and where.
+struct ShadowHit {
+  uint32_t id = ray_is_free;
+  float t = 1;  // 0 at `from`, 1 at `to`
+};
+
+// is_front_only where a facet is part of a closed surface outside of which both ends lie.
+struct ShadowCandidates {
+  std::vector<FacetToAdd> facets;
+  bool is_complete = true;   // nothing else can hide anything inside the shaft
+  bool is_too_long = false;  // there are more facets: fewer receivers, or less source, would help
+};
+
+// The scene as the estimator sees it: a few virtual calls per cluster and source, none per ray. It
+// may keep memory between calls: one for each thread.
+class ShadowScene {
+ public:
+  virtual ~ShadowScene() = default;
+  // Sets `out` to all facets that may have a point inside all planes, at most about `most`. What is
+  // no facet, but for `own`, makes the list incomplete.
+  virtual void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
+                          size_t most, uint64_t own, ShadowCandidates& out) = 0;
+  // hits[i]: the first thing on segments[i] but for segments[i].own, at which a segment ends free.
+  virtual void trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) = 0;
+  // is_hidden[i]: whether anything lies on segments[i] between 0 and before[i] < 1: cheaper.
+  virtual void occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
+                        std::span<uint8_t> is_hidden) = 0;
+  virtual Quad facet(uint32_t id) const = 0;
+  // Largest absolute coordinate of all facets, metres.
+  virtual double magnitude() const = 0;
+};
+
+// Occluders of one source that rays met: kept from cluster to cluster by the caller.
+class FoundFacets {
+ public:
+  struct Entry {
+    uint32_t id;
+    uint32_t hits;
+  };
+  // Rays met these facets; sorts them.
+  void add(std::vector<uint32_t>& ids);
+  // Keeps the `most` most hit, and halves the counts.
+  void trim(size_t most);
+  const std::vector<Entry>& entries() const { return entries_; }
+  bool is_hopeless = false;  // the last cluster's lists stayed too long
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,176 @@
+// Spheres and integrands of the certified estimator against brute force.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/frame.h"
+#include "base/warp.h"
+#include "brute_force.h"
+#include "emitter/irradiance.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// Visible share of the sphere's irradiance by n² directions, uniform in the cone that holds it.
+double reference_share(const BruteForceScene& scene, const SphereSource& s, const ShadowReceiver& x,
+                       int n) {
+  const Vec3d axis = s.centre - Vec3d(x.position);
+  const double distance = length(axis), sine2 = sqr(s.radius / distance);
+  const Framed frame(axis / distance);
+  double all = 0, seen = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      // uniform in solid angle: 1 - cos is uniform
+      const double cosine = 1 - (1 - std::sqrt(1 - sine2)) * (i + 0.5) / n;
+      const double r = std::sqrt(1 - cosine * cosine), a = 2 * pi * (j + 0.5) / n;
+      const Vec3d d = frame.to_world({r * std::cos(a), r * std::sin(a), cosine});
+      const double weight = std::max(dot(d, Vec3d(x.normal)), 0.0);
+      if (weight == 0) continue;
+      all += weight;
+      const double along = distance * cosine;
+      const double half = std::sqrt(std::max(sqr(s.radius) - sqr(distance) + sqr(along), 0.0));
+      if (scene.is_hidden(Vec3d(x.origin), Vec3d(x.position) + d * (along - half), 0) != 1)
+        seen += weight;
+    }
+  return all > 0 ? seen / all : 0;
+}
+
+SphereSource random_sphere(Random& r) {
+  return {{r.next_double() - 0.5, r.next_double() - 0.5, 1.2 + r.next_double()},
+          0.05 + 0.5 * r.next_double()};
+}
+
+}  // namespace
+
+TEST_CASE("spheres: exact where nothing hides them, shares by the disk that they span") {
+  double error2 = 0, mean = 0, predicted2 = 0;
+  int pairs = 0, lit = 0, mixed = 0;
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    Random r(seed + 311);
+    BruteForceScene scene;
+    const SphereSource source = random_sphere(r);
+    if (seed % 4 != 0) add_random_facets(r, scene);
+    const std::vector<ShadowReceiver> receivers = random_receivers(r, 4);
+    CertifiedOptions options;
+    options.lattice = fine_lattice;
+    CertifiedEstimator estimator(options);
+    FoundFacets found;
+    std::vector<SourceVisibility> out(receivers.size());
+    evaluate_alone(estimator, source, receivers, scene, found, out);
+    for (size_t i = 0; i < receivers.size(); ++i) {
+      const Vec3d x(receivers[i].position), n(receivers[i].normal);
+      CHECK(double(out[i].unoccluded) ==
+            doctest::Approx(sphere_irradiance(source.centre, source.radius, x, n)));
+      if (out[i].unoccluded < 1e-4f) continue;
+      const double e = double(out[i].visible) - reference_share(scene, source, receivers[i], 80);
+      if (out[i].answer == ShadowAnswer::lit) {
+        CHECK(out[i].visible == 1);
+        CHECK(std::abs(e) < 1e-6);
+        ++lit;
+        continue;
+      }
+      mixed += out[i].answer == ShadowAnswer::mixed;
+      error2 += e * e;
+      predicted2 += double(out[i].variance);
+      mean += e;
+      ++pairs;
+    }
+  }
+  MESSAGE(pairs, " pairs, ", mixed, " with rays, ", lit, " lit: rms error ",
+          std::sqrt(error2 / pairs), ", told ", std::sqrt(predicted2 / pairs));
+  CHECK(pairs > 300);
+  CHECK(lit > 100);
+  CHECK(std::sqrt(error2 / pairs) < 0.01);
+  CHECK(std::abs(mean / pairs) < 0.001);
+  CHECK(error2 < 1.2 * predicted2);
+  CHECK(predicted2 < 9 * error2);
+}
+
+TEST_CASE("a sphere is not hidden by what is stuck into it") {
+  const SphereSource source{{0, 0, 2}, 0.5};
+  BruteForceScene scene;
+  // A socket: a plate through the sphere's middle, as wide as the sphere.
+  scene.facets = {parallelogram_facet({-0.45f, -0.2f, 2}, {0.9f, 0, 0}, {0, 0.4f, 0})};
+  const ShadowReceiver x{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 4e-6f}, 5};
+  CertifiedEstimator estimator;
+  FoundFacets found;
+  SourceVisibility out;
+  evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1});
+  CHECK(double(out.visible) == doctest::Approx(1).epsilon(0.02));
+}
+
+namespace {
+
+// A lobe about a direction, and a source that is brighter on one side.
+class Lobe final : public ShadowIntegrand {
+ public:
+  Vec3 x, axis;
+  uint32_t points(uint32_t) override { return 32; }
+  static Rgb at(const Vec3& x, const Vec3& axis, const Vec3& p) {
+    const Vec3 d = normalize(p - x);
+    return Rgb{std::pow(std::max(dot(d, axis), 0.0f), 20.0f), 1 + p.x, 1};
+  }
+  void evaluate(uint32_t, std::span<const Vec3> points, std::span<Rgb> values) override {
+    for (size_t i = 0; i < points.size(); ++i) values[i] = at(x, axis, points[i]);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("integrals over the visible part are unbiased, with complete lists and with rays") {
+  const FlatSource source{{{-0.8, -0.7, 2}, {1.5, 0, 0}, {0.2, 1.4, 0}, {0, 0, -1}}, {}};
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({0.1f, -0.4f, 1.1f}, {0.7f, 0.1f, 0.05f}, {-0.1f, 0.6f, 0}),
+                  parallelogram_facet({-0.5f, -0.5f, 0.6f}, {0.02f, 0, 0}, {0.1f, 0.9f, 0.3f}),
+                  parallelogram_facet({-0.2f, 0.1f, 1.9f}, {0.2f, 0, 0.1f}, {0, 0.2f, 0.2f})};
+  const Vec3 n = normalize(Vec3{0.2f, 0.1f, 1});
+  ShadowReceiver x{{0.05f, -0.1f, 0}, n, n, Vec3{0.05f, -0.1f, 0} + n * 4e-6f, 0};
+  Lobe lobe;
+  lobe.x = x.position;
+  lobe.axis = normalize(Vec3{0.1f, 0.3f, 1});
+  double expected[3] = {0, 0, 0};
+  constexpr int grid = 1200;
+  for (int i = 0; i < grid; ++i)
+    for (int j = 0; j < grid; ++j) {
+      const Vec3d y = source.plane.origin + source.plane.u * ((i + 0.5) / grid) +
+                      source.plane.v * ((j + 0.5) / grid);
+      const Vec3d d = y - Vec3d(x.position);
+      const double w = std::max(dot(d, Vec3d(n)), 0.0) * d.z / sqr(length_squared(d)) * 2.1 /
+                       (double(grid) * grid);
+      if (w == 0 || scene.is_hidden(Vec3d(x.origin), y, 0) == 1) continue;
+      const Rgb v = Lobe::at(lobe.x, lobe.axis, Vec3(y));
+      expected[0] += w * double(v.r);
+      expected[1] += w * double(v.g);
+      expected[2] += w * double(v.b);
+    }
+  for (const bool is_complete : {true, false}) {
+    CertifiedOptions options;
+    options.longest_list = is_complete ? 64 : 1;
+    options.most_halvings = 0;
+    double sum[3] = {}, sum2[3] = {}, told = 0;
+    constexpr int seeds = 4000;
+    for (int i = 0; i < seeds; ++i) {
+      CertifiedEstimator estimator(options);
+      FoundFacets found;
+      x.stream = hash_of(uint64_t(i), 15u);
+      SourceVisibility out;
+      evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1}, &lobe);
+      CHECK(out.answer == (is_complete ? ShadowAnswer::masked : ShadowAnswer::mixed));
+      const double v[3] = {double(out.value.r), double(out.value.g), double(out.value.b)};
+      for (size_t c = 0; c < 3; ++c) {
+        sum[c] += v[c];
+        sum2[c] += v[c] * v[c];
+      }
+      told += double(out.value_variance);
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      const double mean = sum[c] / seeds, variance = sum2[c] / seeds - mean * mean;
+      CAPTURE(c);
+      CAPTURE(is_complete);
+      CHECK(std::abs(mean - expected[c]) < 4 * std::sqrt(variance / seeds) + 3e-4 * expected[c]);
+      if (c == 1) CHECK(variance < 2 * told / seeds);
+    }
+  }
+}
