@@ -379,7 +379,7 @@ void RegionMerger::run(double tolerance) {
       axis_ = e;
     }
   }
-  visits_left_ = 200 * n + 10000;
+  visits_left_ = 64 * n + 10000;
   start();
   merge_halves();
   merge_rows(true);
@@ -387,7 +387,7 @@ void RegionMerger::run(double tolerance) {
     const size_t alive = alive_;
     best_parts_.swap(parts_);
     best_next_piece_.swap(next_piece_);
-    visits_left_ = 200 * n + 10000;
+    visits_left_ = 64 * n + 10000;
     start();
     merge_halves();
     merge_rows(false);
