@@ -78,3 +78,15 @@ TEST_CASE("certified: a panel of 20 000 triangles is one source, without a ray")
   CHECK(rms < 0.01 * mean_green(p));
   CHECK(mean_green(q) == doctest::Approx(mean_green(p)).epsilon(0.001));
 }
+
+TEST_CASE("certified: a panel does not light its own back") {
+  Scene s;
+  add_diffuse(s, Rgb{0.5f});
+  Random r(4);
+  Mesh m;
+  append(m, random_grid(r, 10, 10, width, height), place_of_panel());
+  add_mesh_emitter(s, 0, m.positions, m.triangles, Rgb{5}, false);
+  const Camera from_above = look_at({0.3f, 0.5f, 4}, {0.1f, -0.2f, 2.2f}, {0, 1, 0}, 15);
+  const RenderResult result = render_now(PreparedScene(std::move(s)), from_above, options());
+  CHECK(mean_green(result.layers[0].image) == 0);
+}
