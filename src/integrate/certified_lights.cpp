@@ -7,7 +7,8 @@ namespace troffer {
 
 namespace {
 
-// Emitters of more pieces are left to rays: each piece would be a source of its own.
+// Emitters of more pieces, once those in one plane are merged, are left to rays: each piece would
+// be a source of its own.
 constexpr uint32_t most_pieces = 64;
 // Hits on a curved surface are certified together within this share of the scene's diagonal.
 constexpr float reach_of_diagonal = 0.1f;
@@ -71,6 +72,8 @@ const CertifiedSource* CertifiedLights::source_of(uint32_t primitive, bool is_ba
 
 bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) {
   const LightPrimitives::Range pieces = scene.lights.of_emitter(emitter);
+  std::vector<SourcePiece> merged;
+  if (merge_sources(scene.lights, emitter, merged)) return add_flat_emitter(scene, emitter, merged);
   if (pieces.last - pieces.first > most_pieces) return false;
   std::vector<CertifiedSource> added;
   for (uint32_t p = pieces.first; p < pieces.last; ++p) {
@@ -99,6 +102,31 @@ bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) 
     }
   }
   sources_.insert(sources_.end(), added.begin(), added.end());
+  return true;
+}
+
+// Of one radiance.
+bool CertifiedLights::add_flat_emitter(const PreparedScene& scene, uint32_t emitter,
+                                       const std::vector<SourcePiece>& pieces) {
+  if (pieces.size() > most_pieces) return false;
+  // a polygon that had to be cut would be several sources, and source_of knows one
+  for (size_t i = 1; i < pieces.size(); ++i)
+    if (pieces[i].primitives[0] == pieces[i - 1].primitives[0]) return false;
+  for (const SourcePiece& piece : pieces) {
+    CertifiedSource source;
+    source.flat = piece.shape;
+    source.primitive = piece.primitives[0];
+    source.radiance = scene.scene.emitters[emitter].radiance;
+    for (const bool is_back : {false, true}) {
+      if (is_back && !scene.scene.emitters[emitter].is_two_sided) continue;
+      if (is_back) source.flat.plane.normal = -source.flat.plane.normal;
+      source.is_back = is_back;
+      source.stream = hash_of(source.primitive, is_back ? 1u : 0u);
+      for (const uint32_t p : piece.primitives)
+        (is_back ? source_of_back_ : source_of_front_)[p] = int32_t(sources_.size());
+      sources_.push_back(source);
+    }
+  }
   return true;
 }
 

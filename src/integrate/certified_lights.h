@@ -16,6 +16,7 @@
 #include "integrate/walk.h"
 #include "shadow/certified.h"
 #include "shadow/certified_cluster.h"
+#include "shadow/source_pieces.h"
 
 namespace troffer {
 
@@ -75,6 +76,8 @@ class CertifiedLights {
 
  private:
   bool add_emitter(const PreparedScene& scene, uint32_t emitter);
+  bool add_flat_emitter(const PreparedScene& scene, uint32_t emitter,
+                        const std::vector<SourcePiece>& pieces);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
   void add_answers(const CertifiedSource& source, std::span<const uint32_t> members,

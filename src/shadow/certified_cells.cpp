@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emitter/polygon.h"
+
 namespace troffer {
 
 std::vector<Vec3d> FlatSource::corners() const {
@@ -13,39 +15,69 @@ std::vector<Vec3d> FlatSource::corners() const {
   return c;
 }
 
+namespace {
+
+// The rectangle along a side of the polygon that bounds it, as what the sides' directions span.
+struct Bounding {
+  Vec3d x, y;
+  Vec2d lower, upper;
+  double area() const { return (upper.x - lower.x) * (upper.y - lower.y); }
+};
+
+Bounding bounding_along(std::span<const Vec3> polygon, const Vec3d& normal, size_t side) {
+  const Vec3d origin(polygon[0]);
+  Bounding b;
+  b.x = normalize(Vec3d(polygon[(side + 1) % polygon.size()]) - Vec3d(polygon[side]));
+  b.y = cross(normal, b.x);
+  for (const Vec3& v : polygon) {
+    const Vec3d d = Vec3d(v) - origin;
+    b.lower = {std::min(b.lower.x, dot(d, b.x)), std::min(b.lower.y, dot(d, b.y))};
+    b.upper = {std::max(b.upper.x, dot(d, b.x)), std::max(b.upper.y, dot(d, b.y))};
+  }
+  return b;
+}
+
+}  // namespace
+
 bool make_flat_source(const LightPrimitive& piece, bool is_back, FlatSource& out) {
   out = FlatSource();
-  const Vec3d normal = is_back ? -piece.normal : piece.normal;
-  if (piece.shape == PrimitiveShape::sphere || piece.vertex_count > 8) return false;
+  if (piece.shape == PrimitiveShape::sphere) return false;
   if (piece.shape == PrimitiveShape::disk) {
     const Vec3d u = Vec3d(piece.axis_x) * (2 * double(piece.radius));
     const Vec3d v = Vec3d(piece.axis_y) * (2 * double(piece.radius));
-    out.plane = {Vec3d(piece.centroid) - (u + v) * 0.5, u, v, normal};
+    out.plane = {Vec3d(piece.centroid) - (u + v) * 0.5, u, v, piece.normal};
     out.is_disk = true;
+  } else if (!make_flat_source({&piece.vertex(0), piece.vertex_count}, out)) {
+    return false;
+  }
+  if (is_back) out.plane.normal = -out.plane.normal;
+  return true;
+}
+
+bool make_flat_source(std::span<const Vec3> polygon, FlatSource& out) {
+  out = FlatSource();
+  if (polygon.size() < 3 || polygon.size() > most_outline_corners) return false;
+  const Vec3d area = area_vector(polygon);
+  if (!(length_squared(area) > 0) || !is_finite(area)) return false;
+  const Vec3d normal = normalize(area), origin(polygon[0]);
+  if (polygon.size() == 3 || is_parallelogram(polygon)) {
+    out.plane = {origin, Vec3d(polygon[1]) - origin, Vec3d(polygon.back()) - origin, normal};
+    if (polygon.size() == 3) out.outline = {{0, 0}, {1, 0}, {0, 1}};
     return true;
   }
-  const Vec3d origin(piece.vertex(0)), side = Vec3d(piece.vertex(1)) - origin;
-  const Vec3d last = Vec3d(piece.vertex(piece.vertex_count - 1)) - origin;
-  if (piece.vertex_count == 3 || piece.shape == PrimitiveShape::rectangle) {
-    out.plane = {origin, side, last, normal};
-    if (piece.vertex_count == 3) out.outline = {{0, 0}, {1, 0}, {0, 1}};
-    return true;
+  Bounding best = bounding_along(polygon, normal, 0);
+  for (size_t side = 1; side < polygon.size(); ++side) {
+    const Bounding b = bounding_along(polygon, normal, side);
+    if (b.area() < (1 - 1e-6) * best.area()) best = b;
   }
-  // the rectangle along the first side that bounds the polygon
-  const Vec3d x = normalize(side), y = cross(piece.normal, x);
-  Vec2d lower{0, 0}, upper{0, 0};
-  for (uint32_t i = 0; i < piece.vertex_count; ++i) {
-    const Vec3d d = Vec3d(piece.vertex(i)) - origin;
-    lower = {std::min(lower.x, dot(d, x)), std::min(lower.y, dot(d, y))};
-    upper = {std::max(upper.x, dot(d, x)), std::max(upper.y, dot(d, y))};
-  }
-  const Vec2d size = upper - lower;
+  const Vec2d size = best.upper - best.lower;
   if (!(size.x > 0) || !(size.y > 0)) return false;
-  out.plane = {origin + x * lower.x + y * lower.y, x * size.x, y * size.y, normal};
-  for (uint32_t i = 0; i < piece.vertex_count; ++i) {
-    const Vec3d d = Vec3d(piece.vertex(i)) - origin;
-    out.outline.push_back(
-        {float((dot(d, x) - lower.x) / size.x), float((dot(d, y) - lower.y) / size.y)});
+  out.plane = {origin + best.x * best.lower.x + best.y * best.lower.y, best.x * size.x,
+               best.y * size.y, normal};
+  for (const Vec3& v : polygon) {
+    const Vec3d d = Vec3d(v) - origin;
+    out.outline.push_back({float((dot(d, best.x) - best.lower.x) / size.x),
+                           float((dot(d, best.y) - best.lower.y) / size.y)});
   }
   return true;
 }
@@ -184,7 +216,7 @@ CertifiedCell visible_part(const FlatSource& source, const ReceiverHull& hull) {
     p = polygon_of(CertifiedCell());
   } else {
     for (const Vec2& v : source.outline)
-      if (p.count < 8) p.v[size_t(p.count++)] = Vec2d(v);
+      if (p.count < int(most_outline_corners)) p.v[size_t(p.count++)] = Vec2d(v);
   }
   if (hull.is_flat && !source.is_disk) {
     // Receivers are some ulps below the origins of their rays: their horizon is lower by that.

@@ -26,9 +26,10 @@ struct ReceiverArrays {
 
 // out[i] = projected solid angle (steradians) of the convex polygon `outline` at receiver i,
 // between 0 and pi: of the part above the horizon of its normal and, where there are horizons,
-// above that of horizons[i] too. 0 in or behind the polygon's plane, whose unit normal is
-// `plane_normal`, on either side of the polygon. Relative error under 1e-6 for receivers between
-// 1e-4 and 1e3 source sizes. At most 16 corners.
+// above that of horizons[i] too. 0 behind the polygon's plane, whose unit normal is
+// `plane_normal`, on either side of the polygon, and in it: up to 2^-21 of the largest coordinates
+// above it, which is where rounding may put what lies on the source itself. Relative error under
+// 1e-6 for receivers between 1e-4 and 1e3 source sizes. At most 16 corners.
 void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& plane_normal,
                            const ReceiverArrays& receivers, float* out);
 

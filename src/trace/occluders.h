@@ -1,9 +1,11 @@
 // Everything in a scene that can hide a light, as flat convex facets in a bounding-volume hierarchy
 // that is asked for what meets a convex region (a shaft).
 //
-// Triangles that share an edge and lie in one plane are joined to convex quadrilaterals where that
-// is exact to rounding, so that a wall is one facet. What is no opaque facet (spheres, disks,
-// meshes with an alpha mask) is reported by its bounds alone: only rays can tell what it hides.
+// Triangles of a mesh that lie in one plane are merged to larger triangles and convex
+// quadrilaterals where that is exact to rounding (base/merge_polygons.h), so that a tessellated
+// wall is one facet. Each triangle with area belongs to one facet, whole. What is no opaque facet
+// (spheres, disks, meshes with an alpha mask) is reported by its bounds alone: only rays can tell
+// what it hides.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +31,10 @@ class Occluders {
   // The facet that a hit (trace/ray.h) lies on; no_facet for what is none.
   uint32_t facet_of(uint32_t geometry, uint32_t primitive) const;
 
-  // Facets of one connected piece of surface. Where it is closed (each edge belongs to exactly two
-  // facets that run along it in opposite directions), a segment with both ends outside `bounds`
-  // crosses as many facets from the front as from the back: facets of one side suffice to tell
-  // whether it is hidden.
+  // Facets of one connected piece of surface. Where it is closed (each edge of a triangle belongs
+  // to exactly two triangles that run along it in opposite directions), a segment with both ends
+  // outside `bounds` crosses as many facets from the front as from the back: facets of one side
+  // suffice to tell whether it is hidden.
   struct Component {
     Box bounds;
     bool is_closed = false;

@@ -1,0 +1,212 @@
+#include "base/merge_polygons.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/disjoint_sets.h"
+#include "base/frame.h"
+#include "base/merge_region.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double slab_thickness = 0x1p-21, straightness = 0x1p-22;  // of the largest coordinate
+
+double largest_coordinate(const Vec3& p) {
+  return double(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}));
+}
+
+// Two pieces that share the edge from `low` to `high`.
+struct Pair {
+  uint32_t a, b, low, high;
+};
+
+class PolygonMerger {
+ public:
+  PolygonMerger(std::span<const Vec3> positions, const PolygonList& pieces, size_t most_corners);
+  MergedPolygons run(std::span<const PolygonEdge> edges);
+
+ private:
+  Vec3d position(uint32_t v) const { return Vec3d(positions_[v]); }
+  Vec3d area_of(uint32_t piece) const;
+  bool is_coplanar(uint32_t a, uint32_t b) const;
+  void add_region(std::span<const uint32_t> members, std::span<const Pair> pairs);
+  bool add_flat(std::span<const uint32_t> members, bool only_if_merged);
+  void add_alone(uint32_t piece);
+
+  std::span<const Vec3> positions_;
+  const PolygonList& pieces_;
+  std::vector<Vec3d> areas_;  // per piece: unit normal times area
+  std::vector<Pair> pairs_;   // coplanar neighbours
+  DisjointSets regions_;
+  std::vector<uint32_t> root_;         // per piece
+  std::vector<uint32_t> local_;        // per vertex: number in the region at hand
+  std::vector<uint32_t> flat_pieces_;  // of the region at hand: those that merger_ has
+  std::vector<uint32_t> vertices_;     // of the region at hand
+  RegionMerger merger_;
+  MergedPolygons out_;
+};
+
+PolygonMerger::PolygonMerger(std::span<const Vec3> positions, const PolygonList& pieces,
+                             size_t most_corners)
+    : positions_(positions), pieces_(pieces), regions_(pieces.size()), merger_(most_corners) {
+  areas_.reserve(pieces.size());
+  for (uint32_t p = 0; p < pieces.size(); ++p) areas_.push_back(area_of(p));
+}
+
+// Zero where there is none.
+Vec3d PolygonMerger::area_of(uint32_t piece) const {
+  const std::span<const uint32_t> c = pieces_[piece];
+  const Vec3d origin = position(c[0]);
+  Vec3d sum;
+  for (size_t i = 1; i + 1 < c.size(); ++i)
+    sum += cross(position(c[i]) - origin, position(c[i + 1]) - origin);
+  return is_finite(sum) ? sum * 0.5 : Vec3d{};
+}
+
+// A first look, at neighbours: whether both may be part of one flat region.
+bool PolygonMerger::is_coplanar(uint32_t a, uint32_t b) const {
+  double square = length_squared(areas_[a]);
+  const double other_square = length_squared(areas_[b]);
+  if (!(square > 0) || !(other_square > 0) || !(dot(areas_[a], areas_[b]) > 0)) return false;
+  if (square < other_square) {
+    std::swap(a, b);
+    square = other_square;
+  }
+  const Vec3d& normal = areas_[a];
+  const Vec3 origin = positions_[pieces_[a][0]];
+  const double level = largest_coordinate(origin);
+  for (const uint32_t v : pieces_[b]) {
+    const double height = dot(normal, position(v) - Vec3d(origin));
+    const double limit = slab_thickness * std::max(level, largest_coordinate(positions_[v]));
+    if (height * height > limit * limit * square) return false;
+  }
+  return true;
+}
+
+MergedPolygons PolygonMerger::run(std::span<const PolygonEdge> edges) {
+  for (size_t i = 0; i < edges.size();) {
+    size_t end = i + 1;
+    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high)
+      ++end;
+    const PolygonEdge &e = edges[i], &f = edges[end - 1];
+    if (end - i == 2 && e.is_forward != f.is_forward && e.polygon != f.polygon &&
+        is_coplanar(e.polygon, f.polygon)) {
+      pairs_.push_back({e.polygon, f.polygon, e.low, e.high});
+      regions_.join(e.polygon, f.polygon);
+    }
+    i = end;
+  }
+  const auto n = uint32_t(pieces_.size());
+  out_.of_piece.assign(n, no_polygon);
+  out_.polygons.corners.reserve(pieces_.corners.size() / 2);
+  root_.resize(n);
+  std::vector<uint32_t> count(size_t(n) + 1, 0), pair_count(size_t(n) + 1, 0);
+  for (uint32_t p = 0; p < n; ++p) ++count[(root_[p] = regions_.find(p)) + 1];
+  for (const Pair& p : pairs_) ++pair_count[root_[p.a] + 1];
+  for (uint32_t p = 0; p < n; ++p) {
+    count[p + 1] += count[p];
+    pair_count[p + 1] += pair_count[p];
+  }
+  std::vector<uint32_t> members(n), next(count.begin(), count.end() - 1);
+  for (uint32_t p = 0; p < n; ++p) members[next[root_[p]]++] = p;
+  std::vector<Pair> pairs(pairs_.size());
+  next.assign(pair_count.begin(), pair_count.end() - 1);
+  for (const Pair& p : pairs_) pairs[next[root_[p.a]]++] = p;
+  local_.assign(positions_.size(), no_polygon);
+  // a region's root is its first piece
+  for (uint32_t r = 0; r < n; ++r)
+    if (count[r] < count[r + 1])
+      add_region({members.data() + count[r], count[r + 1] - count[r]},
+                 {pairs.data() + pair_count[r], pair_count[r + 1] - pair_count[r]});
+  return std::move(out_);
+}
+
+void PolygonMerger::add_alone(uint32_t piece) {
+  if (!(length_squared(areas_[piece]) > 0)) return;
+  out_.of_piece[piece] = uint32_t(out_.polygons.size());
+  out_.polygons.add(pieces_[piece]);
+}
+
+void PolygonMerger::add_region(std::span<const uint32_t> members, std::span<const Pair> pairs) {
+  if (members.size() == 1) return add_alone(members[0]);
+  if (add_flat(members, false)) return;
+  // Each is flat with its neighbours but all are not: pairs, those with the longest edges first.
+  std::vector<std::pair<double, const Pair*>> order;
+  for (const Pair& p : pairs)
+    order.emplace_back(-length_squared(position(p.high) - position(p.low)), &p);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& p, const auto& q) { return p.first < q.first; });
+  for (const auto& [length, p] : order) {
+    if (out_.of_piece[p->a] != no_polygon || out_.of_piece[p->b] != no_polygon) continue;
+    const uint32_t both[2] = {p->a, p->b};
+    add_flat(both, true);
+  }
+  for (const uint32_t p : members)
+    if (out_.of_piece[p] == no_polygon) add_alone(p);
+}
+
+// Merges pieces that lie in one plane; false, with nothing done, where they do not, or, if
+// only_if_merged, where nothing merges.
+bool PolygonMerger::add_flat(std::span<const uint32_t> members, bool only_if_merged) {
+  Vec3d normal;
+  for (const uint32_t p : members) normal += areas_[p];
+  const double size = length(normal);
+  if (!(size > 0)) return false;
+  normal = normal * (1 / size);
+  const Vec3d origin = position(pieces_[members[0]][0]);
+  double largest = 0, lowest = 0, highest = 0;
+  for (const uint32_t p : members)
+    for (const uint32_t v : pieces_[p]) {
+      const double height = dot(normal, position(v) - origin);
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+      largest = std::max(largest, largest_coordinate(positions_[v]));
+    }
+  if (!(highest - lowest <= slab_thickness * largest)) return false;
+
+  const Framed frame(normal);
+  merger_.points.clear();
+  merger_.pieces.corners.clear();
+  merger_.pieces.first.assign(1, 0);
+  flat_pieces_.clear();
+  for (const uint32_t p : members) {
+    if (!(dot(areas_[p], normal) > 0)) continue;  // a sliver that rounding has turned over
+    flat_pieces_.push_back(p);
+    for (const uint32_t v : pieces_[p]) {
+      if (local_[v] == no_polygon) {
+        local_[v] = uint32_t(merger_.points.size());
+        const Vec3d d = position(v) - origin;
+        merger_.points.push_back({dot(d, frame.tangent), dot(d, frame.bitangent)});
+        vertices_.push_back(v);
+      }
+      merger_.pieces.corners.push_back(local_[v]);
+    }
+    merger_.pieces.first.push_back(uint32_t(merger_.pieces.corners.size()));
+  }
+  merger_.run(straightness * largest);
+  const bool is_wanted =
+      !only_if_merged || (merger_.merged.size() == 1 && flat_pieces_.size() == members.size());
+  if (is_wanted) {
+    const auto first = uint32_t(out_.polygons.size());
+    for (size_t i = 0; i < flat_pieces_.size(); ++i)
+      out_.of_piece[flat_pieces_[i]] = first + merger_.of_piece[i];
+    for (uint32_t& c : merger_.merged.corners) c = vertices_[c];
+    for (size_t i = 0; i < merger_.merged.size(); ++i) out_.polygons.add(merger_.merged[i]);
+    for (const uint32_t p : members)
+      if (out_.of_piece[p] == no_polygon) add_alone(p);
+  }
+  for (const uint32_t v : vertices_) local_[v] = no_polygon;
+  vertices_.clear();
+  return is_wanted;
+}
+
+}  // namespace
+
+MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
+                              std::span<const PolygonEdge> edges, size_t most_corners) {
+  return PolygonMerger(positions, pieces, most_corners).run(edges);
+}
+
+}  // namespace troffer

@@ -1,0 +1,108 @@
+// Convex polygons of one plane that share whole edges, merged to fewer convex polygons: the part of
+// merge_polygons.h that knows two dimensions only.
+//
+// First all of them are tried as one polygon, whatever their edges inside; then pairs are merged,
+// halves of a quadrilateral first, then rows, then rows of rows, so that every merged polygon has
+// grown from parts of about the same size. Both ways to lay rows are tried.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/polygon_list.h"
+#include "base/vec.h"
+
+namespace troffer {
+
+// Of a merged polygon; what may merge has no more.
+constexpr size_t most_merged_corners = 12;
+
+class RegionMerger {
+ public:
+  explicit RegionMerger(size_t most_corners);
+
+  // The pieces of the region at hand; corners index `points`. Each is convex, counterclockwise, and
+  // has area.
+  std::vector<Vec2d> points;
+  PolygonList pieces;
+
+  // Merges. Vertices are left out where they lie within `tolerance` of the merged polygon's edge,
+  // and within 2^-10 of its width (area by half the perimeter). Results: `merged`, and for each
+  // piece the merged polygon that covers it. Deterministic; O(n log n) for grids.
+  void run(double tolerance);
+  PolygonList merged;
+  std::vector<uint32_t> of_piece;
+
+ private:
+  static constexpr uint32_t none = 0xffffffffu, shared_by_many = 0xfffffffeu;
+
+  // Directed edge -> the polygon on its left.
+  class EdgeTable {
+   public:
+    void clear(size_t edges);
+    uint32_t find(uint32_t from, uint32_t to) const;
+    void insert(uint32_t from, uint32_t to, uint32_t polygon);
+    void erase(uint32_t from, uint32_t to);
+
+   private:
+    size_t slot(uint64_t key) const;
+    std::vector<std::pair<uint64_t, uint32_t>> entries_;
+    size_t used_ = 0;
+  };
+  // Vertices left out along an edge: a list in links_.
+  struct Chain {
+    uint32_t head = none, tail = none;
+  };
+  struct Link {
+    uint32_t point, next;
+  };
+  template <size_t capacity>
+  struct Loop {
+    uint32_t count = 0;
+    std::array<uint32_t, capacity> corners;
+    std::array<Chain, capacity> chains;  // from corner i to the next
+    void add(uint32_t corner, Chain chain) {
+      corners[count] = corner;
+      chains[count++] = chain;
+    }
+  };
+  using ShortLoop = Loop<most_merged_corners>;
+  using LongLoop = Loop<2 * most_merged_corners>;
+  struct Part {
+    ShortLoop loop;
+    double area = 0;
+    uint32_t last_piece = 0;  // the first one has the part's own number; next_piece_
+    uint32_t last_round = 0, last_queued = 0;
+    bool is_alive = true, is_single = true;
+  };
+  enum class Edges : uint8_t { along_x, along_y, all };
+
+  bool merge_all();
+  bool find_boundary(std::vector<uint32_t>& loop);
+  void start();
+  void merge_halves();
+  void merge_rows(bool is_x_first);
+  bool merge_rounds(Edges edges);
+  bool try_merge(uint32_t a, uint32_t edge, bool& is_blocked);
+  bool simplify(const LongLoop& loop, double area, ShortLoop& out);
+  bool is_straight(const Vec2d& p, const Vec2d& q, const Chain& chain, double limit);
+  void append(Chain& to, const Chain& from);
+  void append(Chain& to, uint32_t point);
+  void write(const std::vector<Part>& parts, const std::vector<uint32_t>& next_piece);
+
+  size_t most_corners_;
+  double tolerance_ = 0;
+  EdgeTable table_;
+  std::vector<Part> parts_, best_parts_;
+  std::vector<uint32_t> next_piece_, best_next_piece_;
+  std::vector<Link> links_;
+  std::vector<uint32_t> active_, next_active_, boundary_next_, loop_;
+  Vec2d axis_;
+  uint32_t round_ = 0;
+  size_t alive_ = 0, visits_left_ = 0;
+};
+
+}  // namespace troffer
