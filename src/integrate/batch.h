@@ -44,8 +44,8 @@ struct SensorBatch {
 struct RadianceBatch {
   std::vector<Rgb> direct, indirect;
   std::vector<uint32_t> shadow_rays;
-  // Variance of the luminance of `direct` by the sampling of sources, as far as the method tells it
-  // (certified).
+  // Variance of the luminance of `direct` by the sampling of sources; empty where the method does
+  // not tell.
   std::vector<float> direct_variance;
   // The first surface hit; zero where nothing is.
   std::vector<Rgb> albedo;
@@ -61,7 +61,7 @@ struct RadianceBatch {
     direct.assign(n, Rgb{0});
     indirect.assign(n, Rgb{0});
     shadow_rays.assign(n, 0);
-    direct_variance.assign(n, 0);
+    direct_variance.clear();
     albedo.assign(n, Rgb{0});
     normal.assign(n, Vec3{});
     position.assign(n, Vec3{});
@@ -69,7 +69,8 @@ struct RadianceBatch {
     sources.assign(n, Rgb{0});
     records.clear();
   }
-  // Light along viewing ray i, and the variance of its luminance.
+  // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
+  void tell_variance() { direct_variance.assign(direct.size(), 0); }
   void add(size_t i, bool is_direct, Rgb light, float variance) {
     (is_direct ? direct : indirect)[i] += light;
     if (is_direct) direct_variance[i] += variance;

@@ -61,6 +61,7 @@ void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& s
                                    RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   lights_.forget(s.lights);
+  out.tell_variance();
   start_walks(rays, s.walks);
   counters.viewing_rays += rays.size();
   for (Coherence c = Coherence::coherent; !s.walks.empty(); c = Coherence::none) {
@@ -160,6 +161,7 @@ void CertifiedIntegrator::irradiance(const SensorBatch& sensors, IntegratorScrat
                                      RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   lights_.forget(s.lights);
+  out.tell_variance();
   const SurfaceScattering scattering(sensor_bsdf());
   for (uint32_t i = 0; i < sensors.size(); ++i)
     light(sensor_walk(sensors, i),

@@ -80,6 +80,7 @@ void SourceSampler::sample(const SampledVertex& at, uint32_t emitter, uint32_t n
     }
     if (is_connected) s.shadows.add(c.shadow_ray, carried, at.walk.index, at.is_direct);
   }
+  s.shadows.end_group(n);
   // Rays of one vertex to one source stand side by side: packets pay.
   if (s.shadows.rays.size() >= shadow_batch) resolve(s, out, counters);
 }

@@ -98,6 +98,24 @@ void ShadowBatch::add(const Ray& ray, Rgb contribution, uint32_t index, bool dir
   is_direct.push_back(direct ? 1 : 0);
 }
 
+// That of a mean of independent points: stratified ones do better.
+void ShadowBatch::tell_variance(RadianceBatch& out) const {
+  size_t i = 0;
+  for (const Group& g : groups) {
+    float sum = 0, squares = 0;
+    const size_t first = i;
+    for (; i < g.end; ++i) {
+      const float y = is_occluded[i] != 0 ? 0.0f : luminance(contributions[i]);
+      sum += y;
+      squares += y * y;
+    }
+    if (first == g.end || is_direct[first] == 0) continue;
+    const auto n = float(g.points);
+    const float spread = std::max(squares - sum * sum / n, 0.0f);
+    out.direct_variance[indices[first]] += n > 1 ? spread * n / (n - 1) : squares;
+  }
+}
+
 void ShadowBatch::resolve(const Tracer& tracer, Coherence coherence, RadianceBatch& out,
                           Counters& counters) {
   is_occluded.resize(rays.size());
@@ -107,6 +125,8 @@ void ShadowBatch::resolve(const Tracer& tracer, Coherence coherence, RadianceBat
     if (is_occluded[i] != 0) continue;
     (is_direct[i] != 0 ? out.direct : out.indirect)[indices[i]] += contributions[i];
   }
+  if (!out.direct_variance.empty()) tell_variance(out);
+  groups.clear();
   counters.shadow_rays += rays.size();
   rays.clear();
   contributions.clear();

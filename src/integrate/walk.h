@@ -71,10 +71,22 @@ struct ShadowBatch {
   std::vector<uint32_t> indices;
   std::vector<uint8_t> is_direct;
   std::vector<uint8_t> is_occluded;
+  // Rays of one vertex to one source, with how many points they stand for: where the variance is
+  // told.
+  struct Group {
+    size_t end;
+    uint32_t points;
+  };
+  std::vector<Group> groups;
 
   void add(const Ray& ray, Rgb contribution, uint32_t index, bool direct);
+  // The rays since the last group are what is left of so many points, of which others were black.
+  void end_group(uint32_t points) { groups.push_back({rays.size(), points}); }
   // Traces all, adds what arrives to `out`, and empties the batch.
   void resolve(const Tracer& tracer, Coherence coherence, RadianceBatch& out, Counters& counters);
+
+ private:
+  void tell_variance(RadianceBatch& out) const;
 };
 
 }  // namespace troffer

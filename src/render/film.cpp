@@ -40,6 +40,11 @@ double Film::standard_error(const Pixel& p) {
   return std::sqrt(std::max(0.0, p.sum_luminance_squared / n - mean * mean) / (n - 1));
 }
 
+// What the method tells of its sampling of sources, where it does; else the spread of the samples.
+double Film::told_error(const Pixel& p) {
+  return p.has_source_variance ? std::sqrt(p.source_variance) / p.samples : standard_error(p);
+}
+
 PixelEstimate Film::estimate(int x, int y) const {
   const Pixel& p =
       pixels_[size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0)];
@@ -69,6 +74,10 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   const double y_sample = double(luminance(direct + indirect));
   p.sum_luminance += y_sample;
   p.sum_luminance_squared += y_sample * y_sample;
+  if (!batch.direct_variance.empty()) {
+    p.source_variance += double(batch.direct_variance[i]);
+    p.has_source_variance = true;
+  }
   return true;
 }
 
@@ -134,7 +143,7 @@ Layer Film::make_layer(Aov aov) const {
       layer.name = "error";
       layer.channels = value;
       for (size_t i = 0; i < pixels_.size(); ++i)
-        layer.image.pixels[i] = Rgb{float(standard_error(pixels_[i]))};
+        layer.image.pixels[i] = Rgb{float(told_error(pixels_[i]))};
       break;
   }
   return layer;

@@ -46,7 +46,9 @@ class Film {
   struct Pixel {
     Vec3d direct, indirect;
     double sum_luminance = 0, sum_luminance_squared = 0;
+    double source_variance = 0;  // of the samples' direct light, as far as the method tells it
     uint32_t samples = 0;
+    bool has_source_variance = false;
   };
   struct FirstHit {  // sums over samples that hit something
     Vec3d albedo, normal, position, sources;
@@ -54,6 +56,7 @@ class Film {
     uint32_t hits = 0;
   };
   static double standard_error(const Pixel& p);
+  static double told_error(const Pixel& p);
   Layer make_layer(Aov aov) const;
 
   PixelRect window_;

@@ -67,16 +67,17 @@ void CertifiedEstimator::settle(std::span<uint32_t> members, const ReceiverHull&
 namespace {
 
 // Expected variance of a mask's share. Edges of random directions through a lattice err by 0.07 to
-// 0.09 samples squared per boundary pair (docs/certified.md); all samples at the boundary are taken
-// to weigh as much as the heaviest, which makes up for edges along the lattice, that err by more.
+// 0.09 samples squared per boundary pair (docs/certified.md); samples at the boundary are taken to
+// weigh as much as the source's corners, in the root mean square.
 float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const MaskWeight& sums) {
   if (sums.boundary_pairs == 0) return 0;
-  float most = 0;
+  float squares = 0;
   for (int i = 0; i < frame.corner_count(); ++i) {
     const MaskFrame::Corner& c = frame.corners()[i];
-    most = std::max(most, weight_of(weights, int(c.k), int(c.j)));
+    squares += sqr(weight_of(weights, int(c.k), int(c.j)));
   }
-  return 0.08f * float(sums.boundary_pairs) * sqr(most / sums.all);
+  return 0.08f * float(sums.boundary_pairs) * squares /
+         (float(frame.corner_count()) * sqr(sums.all));
 }
 
 }  // namespace
