@@ -27,10 +27,10 @@ struct MergedPolygons {
   std::vector<uint32_t> of_piece;  // per piece: what covers it; no_polygon where it has no area
 };
 
-// pieces: convex polygons, corners indices of welded positions; edges: sorted_edges(pieces). Merged
-// polygons have at most most_corners corners (at most 12); a piece that merges with nothing stays
-// as it is. Polygons are numbered by their connected flat regions, in order of the first pieces.
-// Deterministic; O(n log n) for what tessellation makes.
+// pieces: convex polygons of at most 12 corners, which are indices of welded positions; edges:
+// sorted_edges(pieces). Merged polygons have at most most_corners corners (at most 12); a piece
+// that merges with nothing stays as it is. Polygons are numbered by their connected flat regions,
+// in order of the first pieces. Deterministic; O(n log n) for what tessellation makes.
 MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
                               std::span<const PolygonEdge> edges, size_t most_corners);
 

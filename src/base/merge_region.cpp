@@ -33,48 +33,6 @@ bool turns_left(const Vec2d& p, const Vec2d& q, const Vec2d& r) {
 RegionMerger::RegionMerger(size_t most_corners)
     : most_corners_(std::min(most_corners, most_merged_corners)) {}
 
-void RegionMerger::EdgeTable::clear(size_t edges) {
-  size_t size = 16;
-  while (size < 2 * edges) size *= 2;
-  entries_.assign(size, {~uint64_t(0), none});
-  used_ = 0;
-}
-
-size_t RegionMerger::EdgeTable::slot(uint64_t key) const {
-  const size_t mask = entries_.size() - 1;
-  size_t i = size_t((key * 0x9e3779b97f4a7c15ull) >> 20) & mask;
-  while (entries_[i].first != key && entries_[i].first != ~uint64_t(0)) i = (i + 1) & mask;
-  return i;
-}
-
-uint32_t RegionMerger::EdgeTable::find(uint32_t from, uint32_t to) const {
-  return entries_[slot((uint64_t(from) << 32) + to)].second;
-}
-
-void RegionMerger::EdgeTable::insert(uint32_t from, uint32_t to, uint32_t polygon) {
-  const uint64_t key = (uint64_t(from) << 32) + to;
-  size_t i = slot(key);
-  if (entries_[i].first == key) {
-    uint32_t& value = entries_[i].second;
-    value = value == none ? polygon : shared_by_many;
-    return;
-  }
-  if (2 * (used_ + 1) > entries_.size()) {
-    std::vector<std::pair<uint64_t, uint32_t>> old(2 * entries_.size(), {~uint64_t(0), none});
-    old.swap(entries_);
-    for (const auto& e : old)
-      if (e.first != ~uint64_t(0)) entries_[slot(e.first)] = e;
-    i = slot(key);
-  }
-  entries_[i] = {key, polygon};
-  ++used_;
-}
-
-void RegionMerger::EdgeTable::erase(uint32_t from, uint32_t to) {
-  auto& entry = entries_[slot((uint64_t(from) << 32) + to)];
-  if (entry.second != shared_by_many) entry.second = none;
-}
-
 // The one simple loop of edges with a piece on the left only; false if there is no such.
 bool RegionMerger::find_boundary(std::vector<uint32_t>& loop) {
   boundary_next_.assign(points.size(), none);
@@ -84,7 +42,7 @@ bool RegionMerger::find_boundary(std::vector<uint32_t>& loop) {
     const std::span<const uint32_t> c = pieces[p];
     for (size_t i = 0; i < c.size(); ++i) {
       const uint32_t from = c[i], to = c[i + 1 == c.size() ? 0 : i + 1];
-      if (table_.find(from, to) == shared_by_many) return false;
+      if (table_.find(from, to) == EdgeTable::many) return false;
       if (table_.find(to, from) != none) continue;
       if (boundary_next_[from] != none) return false;
       boundary_next_[from] = start = to;
@@ -229,7 +187,7 @@ bool RegionMerger::try_merge(uint32_t a, uint32_t edge, bool& is_blocked) {
   const uint32_t from = l.corners[edge], to = l.corners[(edge + 1) % l.count];
   if (table_.find(from, to) != a) return false;
   const uint32_t b = table_.find(to, from);
-  if (b >= shared_by_many || b == a) return false;
+  if (b >= EdgeTable::many || b == a) return false;
   if (parts_[b].last_round == round_) {
     is_blocked = true;
     return false;
@@ -278,7 +236,7 @@ void RegionMerger::merge_halves() {
     for (uint32_t e = 0; e < 3; ++e) {
       const uint32_t from = l.corners[e], to = l.corners[(e + 1) % 3];
       const uint32_t b = table_.find(to, from);
-      if (b >= shared_by_many || b <= a || parts_[b].loop.count != 3) continue;
+      if (b >= EdgeTable::many || b <= a || parts_[b].loop.count != 3) continue;
       const Vec2d d = points[to] - points[from];
       pairs.push_back({dot(d, d), a, e, b});
     }

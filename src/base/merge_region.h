@@ -9,9 +9,9 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "base/edge_table.h"
 #include "base/polygon_list.h"
 #include "base/vec.h"
 
@@ -37,21 +37,8 @@ class RegionMerger {
   std::vector<uint32_t> of_piece;
 
  private:
-  static constexpr uint32_t none = 0xffffffffu, shared_by_many = 0xfffffffeu;
+  static constexpr uint32_t none = EdgeTable::none;
 
-  // Directed edge -> the polygon on its left.
-  class EdgeTable {
-   public:
-    void clear(size_t edges);
-    uint32_t find(uint32_t from, uint32_t to) const;
-    void insert(uint32_t from, uint32_t to, uint32_t polygon);
-    void erase(uint32_t from, uint32_t to);
-
-   private:
-    size_t slot(uint64_t key) const;
-    std::vector<std::pair<uint64_t, uint32_t>> entries_;
-    size_t used_ = 0;
-  };
   // Vertices left out along an edge: a list in links_.
   struct Chain {
     uint32_t head = none, tail = none;
