@@ -204,14 +204,13 @@ void bias(const Arguments& a) {
 }
 
 void thin(const Arguments& a) {
-  constexpr double error = 0.01;
   for (ThinScene& t : thin_scenes()) {
     if (!a.only.empty() && a.only != t.name) continue;
     const DirectScene scene(t.name, std::move(t.scene));
     Pairs p(scene, a.view);
     make_reference(p, a.reference);
     Answers answers;
-    run_certified(p, options_for(scene, error), 1, answers);
+    run_certified(p, options_for(scene, a.error), 1, answers);
     const Figures f = figures_of(p, answers);
     double hidden = 0, found = 0;
     for (size_t i = 0; i < p.size(); ++i) {
@@ -227,11 +226,11 @@ void thin(const Arguments& a) {
         scene.name, 100 * hidden / n, 100 * found / n, 100 * f.mean_size, 100 * f.worst,
         100 * f.mean, wrong, p.counted);
     append_row(a.csv_folder, "thin.csv",
-               "scene,what,triangles,pairs,hidden,hidden_found,mean_size_of_error,largest_error,"
-               "contradictions",
-               fmt::format("{},\"{}\",{},{},{:.4g},{:.4g},{:.4g},{:.4g},{}", scene.name, t.what,
-                           triangle_count(scene.prepared.scene), p.counted, hidden / n, found / n,
-                           f.mean_size, f.worst, wrong));
+               "scene,what,error,triangles,pairs,hidden,hidden_found,mean_size_of_error,"
+               "largest_error,contradictions",
+               fmt::format("{},\"{}\",{:g},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{}", scene.name,
+                           t.what, a.error, triangle_count(scene.prepared.scene), p.counted,
+                           hidden / n, found / n, f.mean_size, f.worst, wrong));
   }
 }
 

@@ -15,6 +15,7 @@ struct Arguments {
   View view;
   ReferenceOptions reference;
   uint64_t seeds = 1000;
+  double error = 0.01;  // thin: certified visibility's setting
   bool is_quick = false;
 };
 

@@ -3,7 +3,7 @@
 //
 //   bench_direct curves --scene NAME [--size WxH] [--tiles N] [--spp N]   error against time
 //   bench_direct bias   --scene NAME … [--seeds N]                        mean error over seeds
-//   bench_direct thin   … [--only NAME]                                   thin occluders
+//   bench_direct thin   … [--only NAME] [--error E]                       thin occluders
 //   bench_direct shapes                                                   unoccluded light
 //     --rays N --replicates N   the reference: Owen-Sobol rays, independent sets of them
 //     --keep FOLDER             keep references there
@@ -47,6 +47,8 @@ Arguments parse(int argc, char** argv) {
       a.view.spp = std::stoi(value);
     else if (name == "--seeds")
       a.seeds = std::stoull(value);
+    else if (name == "--error")
+      a.error = std::stod(value);
     else if (name == "--rays")
       a.reference.rays = uint32_t(std::stoul(value));
     else if (name == "--replicates")

@@ -70,7 +70,9 @@ class Bench:
                                     "--spp", str(spp), "--tiles", str(tiles), "--rays", str(rays)])
 
     def thin(self):
-        self.run("thin", ["--size", "256x256", "--tiles", "8" if self.is_quick else "64"])
+        for error in ("0.01", "0.002"):
+            self.run("thin", ["--size", "256x256", "--tiles", "8" if self.is_quick else "64",
+                              "--error", error])
 
     def bias(self):
         rays, seeds, tiles = ("16384", "100", "4") if self.is_quick else ("65536", "1000", "12")

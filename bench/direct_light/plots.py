@@ -10,7 +10,7 @@ import rows
 
 plt.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig.dpi": 110})
 STYLES = {
-    "fixed single": ("#82c99a", "o--", "fixed single"),
+    "fixed single": ("#82c99a", "o--", "fixed, single rays"),
     "fixed packets": ("#1e8449", "o-", "fixed, packets of 16"),
     "kj92 alone": ("#e59866", "s--", "kj92 without coherence"),
     "kj92 coherence": ("#c0392b", "s-", "kj92 with coherence"),
