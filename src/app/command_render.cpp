@@ -88,6 +88,7 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
   j["spp"] = c.options.spp;
+  j["max_spp"] = most_viewing_rays(c.options);
   j["seed"] = c.options.seed;
   j["is_complete"] = is_complete;
   return j.dump(2) + "\n";
@@ -112,6 +113,8 @@ int run_render(RenderCommand c) {
   Clock::time_point mark = Clock::now();
   const PreparedScene scene(std::move(imported));
   seconds.build = seconds_since(mark);
+
+  check_options(scene, camera, c.options);  // before the radiosity, which may take long
 
   const StopFlag& stop = install_stop_handlers();
   if (!c.selected_lights.empty()) {
