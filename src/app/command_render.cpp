@@ -62,7 +62,7 @@ Camera choose_camera(const Scene& scene, const RenderCommand& c) {
 }
 
 struct Seconds {
-  double import = 0, build = 0, render = 0, write = 0;
+  double import = 0, build = 0, preprocess_cpu = 0, render = 0, render_cpu = 0, write = 0;
 };
 
 std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, const Seconds& t,
@@ -83,8 +83,14 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["masked"] = n.masked;
   j["mixed"] = n.mixed;
   j["nan_samples"] = n.nan_samples;
-  j["seconds"] = {{"import", t.import}, {"build", t.build}, {"preprocess", s.preprocess_seconds},
-                  {"render", t.render}, {"write", t.write}, {"total", total}};
+  j["seconds"] = {{"import", t.import},
+                  {"build", t.build},
+                  {"preprocess", s.preprocess_seconds},
+                  {"render", t.render},
+                  {"write", t.write},
+                  {"total", total},
+                  {"preprocess_cpu", t.preprocess_cpu},
+                  {"render_cpu", t.render_cpu}};
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
   j["spp"] = c.options.spp;
@@ -121,9 +127,12 @@ int run_render(RenderCommand c) {
     c.options.kj92.selection.is_restricted = true;
     c.options.kj92.selection.only = emitters_named(scene.scene, c.selected_lights);
   }
+  double cpu = cpu_seconds();
   const std::unique_ptr<Kj92Preparation> preparation =
       prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
                      c.options.threads, c.is_quiet, stop);
+  seconds.preprocess_cpu = cpu_seconds() - cpu;
+  cpu = cpu_seconds();
   c.options.preparation = preparation.get();
   RenderResult result;
   {
@@ -132,6 +141,7 @@ int run_render(RenderCommand c) {
         scene, camera, c.options, [&](double f) { bar.update(f); }, stop);
   }
   seconds.render = result.statistics.render_seconds;
+  seconds.render_cpu = cpu_seconds() - cpu;
 
   mark = Clock::now();
   WriteOptions write;
