@@ -90,7 +90,8 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
                   {"write", t.write},
                   {"total", total},
                   {"preprocess_cpu", t.preprocess_cpu},
-                  {"render_cpu", t.render_cpu}};
+                  {"render_cpu", t.render_cpu},
+                  {"total_cpu", cpu_seconds()}};
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
   j["spp"] = c.options.spp;
