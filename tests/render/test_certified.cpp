@@ -237,7 +237,8 @@ TEST_CASE(
     if (a.standard_error > 0) ++penumbra;
     CHECK(a.standard_error <= 2e-3 * a.illuminance_lx + 1e-6);
     // Single precision of what is exact, and 1e-5 for the bias of ratios.
-    const double s = std::hypot(a.standard_error, b.standard_error) + 1e-5 * b.illuminance_lx + 1e-9;
+    const double s =
+        std::hypot(a.standard_error, b.standard_error) + 1e-5 * b.illuminance_lx + 1e-9;
     const double z = (a.illuminance_lx - b.illuminance_lx) / s;
     squares += z * z / double(points.size());
     far += std::abs(z) > 2 ? 1 : 0;
