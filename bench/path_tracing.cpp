@@ -60,6 +60,7 @@ void run(const std::string& file) {
   PreparedScene scene(import_scene(file));
   const Camera camera = scene.scene.cameras.at(0);
   RenderOptions o;
+  o.method = Method::path;
   o.width = o.height = 256;
   o.spp = 4;
   o.threads = 1;

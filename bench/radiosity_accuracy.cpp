@@ -120,6 +120,7 @@ std::vector<double> reference(const PreparedScene& scene, std::vector<Place>& pl
   std::vector<MeasuringPoint> points;
   for (const Place& p : places) points.push_back({p.position, p.normal});
   MeasureOptions options;
+  options.method = Method::path;
   options.spp = spp;
   options.threads = threads;
   const StopFlag never = false;

@@ -125,7 +125,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
                 "kj92: only these sources may be sampled; all others stay in the general light")
       ->delimiter(',')
       ->allow_extra_args(false);
-  r->add_option("--solution", c.solution, "kj92, certified: a file made by troffer radiosity");
+  r->add_option("--solution", c.solution, "certified, kj92: a file made by troffer radiosity");
 }
 
 void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
@@ -134,14 +134,14 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
       ->required()
       ->allow_extra_args(false);
-  r->add_option("--method", c.method, "How light is computed: path, fixed, kj92, certified")
+  r->add_option("--method", c.method, "How light is computed: certified, kj92, fixed, path")
       ->capture_default_str();
-  r->add_option("--spp", c.options.spp, "Viewing rays per pixel")
+  r->add_option("--spp", c.options.spp, "Viewing rays per pixel, before refinement")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
-  r->add_option(
-       "--max-spp", c.options.max_spp,
-       "kj92, certified: refine where pixels differ, up to so many viewing rays [as --spp]")
+  r->add_option("--max-spp", c.options.max_spp,
+                "certified, kj92: refine where pixels differ, up to so many viewing rays; "
+                "as --spp: nowhere [4 times --spp; kj92: as --spp]")
       ->check(CLI::Range(1, 1 << 20));
   r->add_option("--shadow-rays", raw.shadow_rays,
                 "fixed: shadow rays per source and viewing ray [64]; kj92: initial ones [8]")
@@ -153,7 +153,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->capture_default_str();
   r->add_option(
        "--indirect", raw.indirect,
-       "auto; radiosity: interpolated (kj92, certified); none: only light straight from sources")
+       "auto; radiosity: interpolated (certified, kj92); none: only light straight from sources")
       ->check(CLI::IsMember({"auto", "radiosity", "none"}))
       ->capture_default_str();
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
@@ -201,11 +201,11 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
   s->add_option("--points", c.points, "CSV file with header x,y,z,nx,ny,nz")->required();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
-  s->add_option("--method", c.method, "How light is computed: path, fixed, kj92, certified")
+  s->add_option("--method", c.method, "How light is computed: certified, kj92, fixed, path")
       ->capture_default_str();
-  s->add_option("--spp", c.spp, "Samples per point [4096; kj92, certified: 256]")
+  s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256]")
       ->check(CLI::Range(2, 1 << 26));
-  s->add_option("--solution", c.solution, "kj92, certified: a file made by troffer radiosity");
+  s->add_option("--solution", c.solution, "certified, kj92: a file made by troffer radiosity");
   s->add_option("--error", c.error, "certified: allowed standard error of direct light")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
@@ -263,12 +263,16 @@ int parse_and_run(int argc, const char* const* argv) {
     apply(render_raw, render.options);
     if (render.method != "kj92" && render_raw.shadow_rays == 0)
       throw UsageError("--shadow-rays 0 belongs to --method kj92");
+    parse_method(render.method);
+    warn_of_unused_options(*app.get_subcommand("render"), render.method, render.is_quiet);
     return run_render(std::move(render));
   }
   if (app.got_subcommand("compare")) return run_compare(compare);
   if (app.got_subcommand("measure")) {
     if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
     measure.indirect = parse_indirect(measure_raw.indirect);
+    parse_method(measure.method);
+    warn_of_unused_options(*app.get_subcommand("measure"), measure.method, measure.is_quiet);
     return run_measure(measure);
   }
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);

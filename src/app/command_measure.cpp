@@ -14,9 +14,7 @@ int run_measure(const MeasureCommand& c) {
   MeasureOptions options;
   options.method = parse_method(c.method);
   check_method(options.method, c.indirect, c.solution);
-  // A sample of kj92 is all the rays that the bintrees want; one of certified is nearly exact.
-  if (options.method == Method::kj92 || options.method == Method::certified) options.spp = 256;
-  if (c.spp > 0) options.spp = c.spp;
+  options.spp = c.spp;
   options.depth = c.depth;
   options.error = c.error;
   options.indirect = c.indirect;

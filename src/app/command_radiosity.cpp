@@ -91,11 +91,8 @@ std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
                 {"specular", b.lost_to_specular},
                 {"escaped", b.escaped},
                 {"unshot", b.unshot}};
-  j["seconds"] = {{"import", t.import},
-                  {"build", t.build},
-                  {"preprocess", r.seconds},
-                  {"write", t.write},
-                  {"total", t.total}};
+  j["seconds"] = {{"import", t.import}, {"build", t.build}, {"preprocess", r.seconds},
+                  {"write", t.write},   {"total", t.total}, {"total_cpu", cpu_seconds()}};
   j["solution_mb"] = double(s.memory_bytes()) * 1e-6;
   j["peak_memory_mb"] = peak_memory_mb();
   j["seed"] = c.options.seed;

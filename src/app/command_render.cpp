@@ -62,7 +62,7 @@ Camera choose_camera(const Scene& scene, const RenderCommand& c) {
 }
 
 struct Seconds {
-  double import = 0, build = 0, render = 0, write = 0;
+  double import = 0, build = 0, preprocess_cpu = 0, render = 0, render_cpu = 0, write = 0;
 };
 
 std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, const Seconds& t,
@@ -83,11 +83,19 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["masked"] = n.masked;
   j["mixed"] = n.mixed;
   j["nan_samples"] = n.nan_samples;
-  j["seconds"] = {{"import", t.import}, {"build", t.build}, {"preprocess", s.preprocess_seconds},
-                  {"render", t.render}, {"write", t.write}, {"total", total}};
+  j["seconds"] = {{"import", t.import},
+                  {"build", t.build},
+                  {"preprocess", s.preprocess_seconds},
+                  {"render", t.render},
+                  {"write", t.write},
+                  {"total", total},
+                  {"preprocess_cpu", t.preprocess_cpu},
+                  {"render_cpu", t.render_cpu},
+                  {"total_cpu", cpu_seconds()}};
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
   j["spp"] = c.options.spp;
+  j["max_spp"] = most_viewing_rays(c.options);
   j["seed"] = c.options.seed;
   j["is_complete"] = is_complete;
   return j.dump(2) + "\n";
@@ -113,14 +121,19 @@ int run_render(RenderCommand c) {
   const PreparedScene scene(std::move(imported));
   seconds.build = seconds_since(mark);
 
+  check_options(scene, camera, c.options);  // before the radiosity, which may take long
+
   const StopFlag& stop = install_stop_handlers();
   if (!c.selected_lights.empty()) {
     c.options.kj92.selection.is_restricted = true;
     c.options.kj92.selection.only = emitters_named(scene.scene, c.selected_lights);
   }
+  double cpu = cpu_seconds();
   const std::unique_ptr<Kj92Preparation> preparation =
       prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
                      c.options.threads, c.is_quiet, stop);
+  seconds.preprocess_cpu = cpu_seconds() - cpu;
+  cpu = cpu_seconds();
   c.options.preparation = preparation.get();
   RenderResult result;
   {
@@ -129,6 +142,7 @@ int run_render(RenderCommand c) {
         scene, camera, c.options, [&](double f) { bar.update(f); }, stop);
   }
   seconds.render = result.statistics.render_seconds;
+  seconds.render_cpu = cpu_seconds() - cpu;
 
   mark = Clock::now();
   WriteOptions write;

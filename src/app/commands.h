@@ -26,14 +26,14 @@ struct RenderCommand {
   std::string scene;
   std::vector<std::string> outputs;
   RenderOptions options;
-  std::string method = "path";
+  std::string method = "certified";
   std::string camera;
   std::vector<std::string> lights;
   std::string stats;
   float exposure = 0;  // stops
   std::string tone_map = "filmic";
   std::vector<std::string> selected_lights;  // kj92: empty: all may be sampled
-  std::string solution;                      // kj92: file, or empty
+  std::string solution;                      // kj92, certified: file, or empty
   std::string eye, target, up;               // "x,y,z"; override the camera
   float fov_deg = 60;
   bool is_quiet = false;
@@ -50,10 +50,10 @@ int run_compare(const CompareCommand& command);
 
 struct MeasureCommand {
   std::string scene, points, output;
-  std::string method = "path";
+  std::string method = "certified";
   std::vector<std::string> lights;
-  std::string solution;  // kj92: file, or empty
-  int spp = 0;           // 0 = default
+  std::string solution;  // kj92, certified: file, or empty
+  int spp = 0;           // 0 = by the method
   int depth = -1;
   double error = 0.01;  // certified
   Indirect indirect = Indirect::automatic;
@@ -90,6 +90,9 @@ Method parse_method(const std::string& name);
 
 // UsageError where options belong to another method.
 void check_method(Method method, Indirect indirect, const std::string& solution);
+
+// Warns, unless is_quiet, of every option given to `command` that its method does not use.
+void warn_of_unused_options(const CLI::App& command, const std::string& method, bool is_quiet);
 
 // What `method` needs beforehand, with a progress bar: the radiosity solution of the file
 // `solution`, or (empty) a new one, and the sources selected. Null for methods that need nothing,

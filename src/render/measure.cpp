@@ -115,10 +115,16 @@ MeasureResult nothing_measured(size_t points) {
 
 }  // namespace
 
+int default_samples(Method method) {
+  // A sample of kj92 is all the rays that the bintrees want.
+  return method == Method::kj92 ? 256 : 4096;
+}
+
 MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
                       const MeasureOptions& options, const ProgressCallback& progress,
                       const StopFlag& stop) {
   const bool is_direct_only = options.indirect == Indirect::none;
+  const int spp = options.spp > 0 ? options.spp : default_samples(options.method);
   const Kj92Preparation* preparation = options.preparation;
   std::unique_ptr<Kj92Preparation> own;
   if (needs_preparation(options.method, options.indirect) && preparation == nullptr) {
@@ -177,7 +183,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     w.sensors.offset = std::max(ray_offset(std::max({p.x, p.y, p.z})), least_offset);
     w.samples_per_batch = samples_per_batch;
     result.values[i] =
-        measure_point(*integrator, points[i], hash_of(options.seed, i), options.spp,
+        measure_point(*integrator, points[i], hash_of(options.seed, i), spp,
                       is_fixed ? fixed_set : 1, scene.scene.is_photometric, stop, w, counters[i]);
     if (stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
     is_measured[i] = 1;

@@ -24,10 +24,11 @@ struct Measurement {
 };
 
 struct MeasureOptions {
-  Method method = Method::path;
+  Method method = Method::certified;
   // Samples per point: paths, or (fixed) shadow rays per source, or (kj92) bintrees for every
-  // source and as many rays that gather the radiosity around; certified: as kj92, without trees.
-  int spp = 4096;
+  // source and as many rays that gather the radiosity around; certified: as kj92, with masks in
+  // place of trees. 0: default_samples().
+  int spp = 0;
   double error = 0.01;  // certified
   Kj92Settings kj92;
   const Kj92Preparation* preparation = nullptr;  // made beforehand; null: made here if needed
@@ -36,6 +37,9 @@ struct MeasureOptions {
   int threads = 0;
   uint64_t seed = 0;
 };
+
+// Samples per point of a method where none are asked for.
+int default_samples(Method method);
 
 struct MeasureResult {
   std::vector<Measurement> values;  // one per point

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
 #include "base/error.h"
@@ -89,29 +90,33 @@ void check_camera(const ViewingCamera& camera, const PixelRect& window, const Pr
 double film_bytes(const PixelRect& window, const RenderOptions& o) {
   const double pixels = double(window.width()) * window.height();
   constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern);
-  return Film::bytes(pixels, o.aovs) + (o.max_spp > o.spp ? pixels * record : 0);
+  return Film::bytes(pixels, o.aovs) + (most_viewing_rays(o) > o.spp ? pixels * record : 0);
 }
 
 // One picture under way.
 class Rendering {
  public:
+  // `image`: all of it, of which `window` is wanted.
   Rendering(const PreparedScene& scene, const ViewingCamera& camera, const Integrator& integrator,
-            const RenderOptions& options, const PixelRect& window, const ProgressCallback& progress,
-            const StopFlag& stop)
+            const RenderOptions& options, const PixelRect& window, const PixelRect& image,
+            const ProgressCallback& progress, const StopFlag& stop)
       : camera_(camera),
         integrator_(integrator),
         options_(options),
+        max_spp_(most_viewing_rays(options)),
+        is_refined_(max_spp_ > options.spp),
+        image_(image),
         window_(window),
-        tiles_(tiles_of(window, tile_side(options, scene.scene.emitters.size()))),
-        film_(window, options.aovs),
+        side_(tile_side(options, scene.scene.emitters.size())),
+        region_(is_same_in_crops() ? whole_tiles(window, side_, is_refined_ ? 1 : 0, image)
+                                   : window),
+        tiles_(tiles_of(region_, side_)),
+        film_(region_, options.aovs),
         work_(size_t(thread_count(options.threads))),
         progress_(progress),
-        stop_(stop) {
-    const bool can_refine = options.method == Method::kj92 || options.method == Method::certified;
-    is_refined_ = can_refine && options.max_spp > options.spp;
-    if (is_refined_) records_.emplace(window);
-    const int all = options.spp + (is_refined_ ? options.max_spp - options.spp : 0);
-    passes_ = passes_of(options.spp) + passes_of(all - options.spp);
+        stop_(stop),
+        passes_(passes_of(options.spp) + passes_of(max_spp_ - options.spp)) {
+    if (is_refined_) records_.emplace(region_);
   }
 
   bool run() {
@@ -125,7 +130,11 @@ class Rendering {
     return !was_stopped_;
   }
 
-  const Film& film() const { return film_; }
+  std::vector<Layer> layers() const {
+    std::vector<Layer> layers = film_.layers();
+    for (Layer& l : layers) l.image = part_of(l.image, region_, window_);
+    return layers;
+  }
   Counters counters() const {
     Counters sum;
     for (const Work& w : work_) sum += w.counters;
@@ -152,6 +161,12 @@ class Rendering {
   static int passes_of(int samples) {
     return (samples + samples_per_batch - 1) / samples_per_batch;
   }
+
+  // A method whose noise depends on what else is in a batch gives a pixel of a crop the value it
+  // has in the whole picture if batches are the same: whole tiles of the picture, and a ring of
+  // tiles around them where neighbours decide about refinement. kj92 does not, as its results are
+  // compared with published ones of the very crop.
+  bool is_same_in_crops() const { return options_.method == Method::certified; }
 
   // fill(tile, work) says which rays are traced; they are, and added to the film.
   template <class Fill>
@@ -192,16 +207,16 @@ class Rendering {
 
   // Rounds of further rays; each looks at what there was before it, in all of the picture.
   void refine() {
-    const double mean = mean_luminance();
-    std::vector<uint8_t> is_wanted(size_t(window_.width()) * size_t(window_.height()));
-    for (int y = window_.y0; y < window_.y1; ++y)
-      for (int x = window_.x0; x < window_.x1; ++x)
+    const double mean = is_same_in_crops() ? typical_luminance() : mean_luminance();
+    const PixelRect inner = is_same_in_crops() ? whole_tiles(window_, side_, 0, image_) : window_;
+    std::vector<uint8_t> is_wanted(size_t(region_.width()) * size_t(region_.height()));
+    for (int y = inner.y0; y < inner.y1; ++y)
+      for (int x = inner.x0; x < inner.x1; ++x)
         is_wanted[records_->index(x, y)] =
             needs_refinement(film_, *records_, x, y, mean, refinement_) ? 1 : 0;
     is_refining_ = true;
-    for (int first = options_.spp; first < options_.max_spp && !was_stopped_;
-         first += samples_per_batch) {
-      const auto count = uint32_t(std::min(samples_per_batch, options_.max_spp - first));
+    for (int first = options_.spp; first < max_spp_ && !was_stopped_; first += samples_per_batch) {
+      const auto count = uint32_t(std::min(samples_per_batch, max_spp_ - first));
       pass([&](const PixelRect& tile, Work& w) {
         for (const Pixel2& p : pixels_in_order(tile)) {
           if (is_wanted[records_->index(p.x, p.y)] == 0) continue;
@@ -215,6 +230,29 @@ class Rendering {
     }
   }
 
+  // Mean luminance of the whole picture but its brightest twentieth (lamps), from few rays.
+  double typical_luminance() {
+    constexpr int most = 32;  // rays along each side
+    Work& w = work_[0];
+    if (!w.scratch) w.scratch = integrator_.make_scratch();
+    w.rays.clear();
+    const int nx = std::min(most, image_.width()), ny = std::min(most, image_.height());
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        add_viewing_rays(camera_, {i * image_.width() / nx, j * image_.height() / ny}, 0, 1,
+                         options_.seed, w.rays);
+    w.radiance.reset(w.rays.size());
+    integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
+    std::vector<double> values;
+    for (size_t i = 0; i < w.rays.size(); ++i) {
+      const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
+      values.push_back(is_finite(l) ? double(luminance(l)) : 0);
+    }
+    std::sort(values.begin(), values.end());
+    values.resize(values.size() - values.size() / 20);
+    return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+  }
+
   double mean_luminance() const {
     double sum = 0;
     for (int y = window_.y0; y < window_.y1; ++y)
@@ -222,10 +260,14 @@ class Rendering {
     return sum / (double(window_.width()) * window_.height());
   }
 
-  const ViewingCamera& camera_;
+  const ViewingCamera camera_;
   const Integrator& integrator_;
   const RenderOptions& options_;
-  PixelRect window_;
+  int max_spp_;
+  bool is_refined_, is_refining_ = false;
+  PixelRect image_, window_;
+  int side_;          // of tiles
+  PixelRect region_;  // what is rendered: the window, and what it takes for it to be as it should
   std::vector<PixelRect> tiles_;
   Film film_;
   std::vector<Work> work_;
@@ -233,14 +275,30 @@ class Rendering {
   const StopFlag& stop_;
   RefinementOptions refinement_;
   std::optional<PixelRecords> records_;
-  bool is_refined_ = false, is_refining_ = false;
-  int passes_ = 1;
+  int passes_;
   std::mutex progress_mutex_;
   size_t tiles_done_ = 0;
   std::atomic<bool> was_stopped_ = false;
 };
 
 }  // namespace
+
+int most_viewing_rays(const RenderOptions& options) {
+  if (options.method != Method::kj92 && options.method != Method::certified) return options.spp;
+  if (options.max_spp > 0) return std::max(options.max_spp, options.spp);
+  constexpr int certified_refinement = 4;
+  return options.method == Method::certified ? certified_refinement * options.spp : options.spp;
+}
+
+void check_options(const PreparedScene& scene, const Camera& camera, const RenderOptions& options) {
+  const ImageSize size = image_size(camera, options.width, options.height);
+  const PixelRect window = window_of(options, size.width, size.height);
+  if (film_bytes(window, options) > most_film_bytes)
+    throw UsageError("an image of " + std::to_string(window.width()) + "x" +
+                     std::to_string(window.height()) +
+                     " pixels with these layers takes more than 8 GiB: use --size or --crop");
+  check_camera(ViewingCamera(camera, size.width, size.height), window, scene, camera.name);
+}
 
 bool needs_preparation(Method method, Indirect indirect) {
   return method == Method::kj92 || (method == Method::certified && indirect != Indirect::none);
@@ -272,14 +330,10 @@ std::unique_ptr<Integrator> make_certified(const PreparedScene& scene, double er
 
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
                     const ProgressCallback& progress, const StopFlag& stop) {
+  check_options(scene, camera, options);
   const ImageSize size = image_size(camera, options.width, options.height);
+  const PixelRect image{0, 0, size.width, size.height};
   const PixelRect window = window_of(options, size.width, size.height);
-  if (film_bytes(window, options) > most_film_bytes)
-    throw UsageError("an image of " + std::to_string(window.width()) + "x" +
-                     std::to_string(window.height()) +
-                     " pixels with these layers takes more than 8 GiB: use --size or --crop");
-  const ViewingCamera viewing_camera(camera, size.width, size.height);
-  check_camera(viewing_camera, window, scene, camera.name);
   RenderResult result;
   result.statistics.width = window.width();
   result.statistics.height = window.height();
@@ -301,9 +355,10 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
 
   const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<Integrator> integrator = make_integrator(scene, options, preparation);
-  Rendering rendering(scene, viewing_camera, *integrator, options, window, progress, stop);
+  Rendering rendering(scene, ViewingCamera(camera, size.width, size.height), *integrator, options,
+                      window, image, progress, stop);
   result.is_complete = rendering.run();
-  result.layers = rendering.film().layers();
+  result.layers = rendering.layers();
   result.statistics.counters = rendering.counters();
   result.statistics.render_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

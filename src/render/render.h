@@ -27,10 +27,10 @@ enum class Indirect { automatic, radiosity, none };
 enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays, sources, error };
 
 struct RenderOptions {
-  Method method = Method::path;
+  Method method = Method::certified;
   int spp = 4;  // viewing rays per pixel
-  // kj92, certified: where neighbouring pixels differ the picture is refined by further viewing rays, up to so
-  // many in a pixel; at most spp: nowhere.
+  // kj92, certified: where neighbouring pixels differ the picture is refined by further viewing
+  // rays, up to so many in a pixel; at most spp: nowhere; 0: as most_viewing_rays() says.
   int max_spp = 0;
   int shadow_rays = 64;  // fixed: rays per source per viewing ray
   double error = 0.01;   // certified: see certified_settings
@@ -46,6 +46,14 @@ struct RenderOptions {
   uint64_t seed = 0;
   std::vector<Aov> aovs;
 };
+
+// The most viewing rays that a pixel may get: max_spp where it was given, else four times spp by
+// certified, and spp by all others.
+int most_viewing_rays(const RenderOptions& options);
+
+// UsageError for options that contradict each other or the scene, InputError for a camera whose
+// numbers overflow: what render() would throw, before any work is done.
+void check_options(const PreparedScene& scene, const Camera& camera, const RenderOptions& options);
 
 // What a method needs beforehand: kj92 always, certified for indirect light.
 bool needs_preparation(Method method, Indirect indirect);
@@ -77,8 +85,7 @@ struct RenderResult {
 };
 
 // Renders what `camera` sees. The result is the same, bit for bit, for any number of threads.
-// Throws UsageError for options that contradict each other or the scene, InputError for a camera
-// whose numbers overflow.
+// Throws what check_options() throws.
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
                     const ProgressCallback& progress, const StopFlag& stop);
 

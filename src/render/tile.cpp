@@ -15,6 +15,21 @@ std::vector<PixelRect> tiles_of(const PixelRect& window, int side) {
   return tiles;
 }
 
+PixelRect whole_tiles(const PixelRect& window, int side, int rings, const PixelRect& image) {
+  const auto first = [&](int v) { return (v / side - rings) * side; };
+  const auto last = [&](int v) { return ((v + side - 1) / side + rings) * side; };
+  return {std::max(first(window.x0), image.x0), std::max(first(window.y0), image.y0),
+          std::min(last(window.x1), image.x1), std::min(last(window.y1), image.y1)};
+}
+
+Image part_of(const Image& image, const PixelRect& region, const PixelRect& window) {
+  Image part(window.width(), window.height());
+  for (int y = 0; y < part.height; ++y)
+    for (int x = 0; x < part.width; ++x)
+      part.at(x, y) = image.at(window.x0 - region.x0 + x, window.y0 - region.y0 + y);
+  return part;
+}
+
 std::vector<Pixel2> pixels_in_order(const PixelRect& tile) {
   std::vector<Pixel2> pixels;
   for (int y = tile.y0; y < tile.y1; ++y)

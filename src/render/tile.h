@@ -13,6 +13,13 @@ namespace troffer {
 // The window cut into squares, row by row; those at its right and lower border may be smaller.
 std::vector<PixelRect> tiles_of(const PixelRect& window, int side);
 
+// The window grown to whole tiles of the image's own tiling (from its top left corner), and by
+// `rings` of tiles around them, as far as the image reaches.
+PixelRect whole_tiles(const PixelRect& window, int side, int rings, const PixelRect& image);
+
+// The part `window` of an image whose pixels are those of `region`.
+Image part_of(const Image& image, const PixelRect& region, const PixelRect& window);
+
 struct Pixel2 {
   int x = 0, y = 0;
 };

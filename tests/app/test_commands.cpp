@@ -61,11 +61,16 @@ TEST_CASE("all four formats in one run hold the same picture") {
 TEST_CASE("the same bytes for any number of threads, and twice") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
-  for (const std::string method : {"path", "fixed"}) {
+  for (const std::vector<std::string>& method : std::vector<std::vector<std::string>>{
+           {}, {"--method", "path"}, {"--method", "fixed", "--shadow-rays", "3"}}) {
     const auto render = [&](const std::string& name, const std::string& threads) {
-      run_well(folder, {"render", scene, "--method", method, "--spp", "20", "--shadow-rays", "3",
-                        "--threads", threads, "--aov", "albedo,normal,depth,direct,error", "-o",
-                        folder.path(name)});
+      std::vector<std::string> arguments{"render",    scene,
+                                         "--spp",     "20",
+                                         "--threads", threads,
+                                         "--aov",     "albedo,normal,depth,direct,error",
+                                         "-o",        folder.path(name)};
+      arguments.insert(arguments.end(), method.begin(), method.end());
+      run_well(folder, arguments);
       return read_file(folder.path(name));
     };
     const std::string one = render("1.exr", "1");
@@ -141,8 +146,8 @@ TEST_CASE("compare prints its numbers as text and as JSON") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const std::string a = folder.path("a.exr"), b = folder.path("b.exr"), c = folder.path("c.exr");
-  run_well(folder, {"render", scene, "-o", a});
-  run_well(folder, {"render", scene, "-o", b, "--seed", "7"});
+  run_well(folder, {"render", scene, "-o", a, "--method", "path"});
+  run_well(folder, {"render", scene, "-o", b, "--method", "path", "--seed", "7"});
   run_well(folder, {"render", scene, "-o", c, "--size", "41x30"});
   const char* const keys[] = {"mean_image", "mean_reference", "average_difference",
                               "rmse",       "relative_rmse",  "flip"};
@@ -174,14 +179,17 @@ TEST_CASE("compare prints its numbers as text and as JSON") {
 TEST_CASE("a crop shows a part of the picture") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
-  run_well(folder, {"render", scene, "-o", folder.path("whole.pfm")});
-  run_well(folder, {"render", scene, "-o", folder.path("part.pfm"), "--crop", "7,3,20,21"});
-  const Image whole = read_image(folder.path("whole.pfm")),
-              part = read_image(folder.path("part.pfm"));
-  REQUIRE(part.width == 13);
-  REQUIRE(part.height == 18);
-  for (int y = 0; y < 18; ++y)
-    for (int x = 0; x < 13; ++x) REQUIRE(part.at(x, y) == whole.at(x + 7, y + 3));
+  for (const std::string method : {"certified", "path"}) {
+    run_well(folder, {"render", scene, "-o", folder.path("whole.pfm"), "--method", method});
+    run_well(folder, {"render", scene, "-o", folder.path("part.pfm"), "--crop", "7,3,20,21",
+                      "--method", method});
+    const Image whole = read_image(folder.path("whole.pfm")),
+                part = read_image(folder.path("part.pfm"));
+    REQUIRE(part.width == 13);
+    REQUIRE(part.height == 18);
+    for (int y = 0; y < 18; ++y)
+      for (int x = 0; x < 13; ++x) REQUIRE(part.at(x, y) == whole.at(x + 7, y + 3));
+  }
 }
 
 TEST_CASE("--light keeps only the sources it names") {
@@ -213,7 +221,7 @@ TEST_CASE("measure: the header, the values, the errors") {
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const std::string points = folder.write(
       "p.csv", "nx,ny,nz,x,y,z,remark\r\n0,0,2,0,0,0,middle\r\n\r\n0,0,-1,0,0,0,below\r\n");
-  for (const std::string method : {"path", "fixed"}) {
+  for (const std::string method : {"certified", "path", "fixed"}) {
     const Finished f = run_well(
         folder, {"measure", scene, "--points", points, "--method", method, "--indirect", "none"});
     std::istringstream in(f.out);
@@ -233,7 +241,8 @@ TEST_CASE("measure: the header, the values, the errors") {
     const double e = floor_irradiance();
     CHECK(rows[0][6] == doctest::Approx(e).epsilon(0.01));
     CHECK(rows[0][9] == doctest::Approx(179 * e).epsilon(0.01));
-    CHECK(std::abs(rows[0][9] - 179 * e) < 5 * rows[0][10]);
+    // The text has seven digits; certified has no noise where nothing is in the way.
+    CHECK(std::abs(rows[0][9] - 179 * e) < 5 * rows[0][10] + 1e-6 * rows[0][9]);
     CHECK(rows[1][9] == 0);
     run_well(folder, {"measure", scene, "--points", points, "--method", method, "--indirect",
                       "none", "-o", folder.path("o.csv"), "--threads", "1"});
@@ -268,4 +277,76 @@ TEST_CASE("scenes without light, camera or geometry give a black picture and a w
     run_well(folder, quiet);
     CHECK(run_program(folder, {"info", scene, "--json"}).status == 0);
   }
+}
+
+TEST_CASE("render and measure take certified visibility by default") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1,0,0,0,0,1\n");
+  const auto render = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "render", scene, "-o", folder.path("o.pfm"), "--stats", folder.path("s.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_well(folder, arguments);
+    return read_file(folder.path("o.pfm"));
+  };
+  const auto stats = [&] { return Json::parse(read_file(folder.path("s.json"))); };
+  const std::string plain = render({});
+  const Json of_plain = stats();
+  CHECK(of_plain["method"] == "certified");
+  CHECK(of_plain["spp"] == 4);
+  CHECK(of_plain["max_spp"] == 16);
+  CHECK(of_plain["lit_certified"].get<int>() > 40 * 30);
+  CHECK(of_plain["shadow_rays"] == 0);
+  // Refined at the edges of floor and lamp alone.
+  CHECK(of_plain["viewing_rays"].get<int>() > 40 * 30 * 4);
+  CHECK(of_plain["viewing_rays"].get<int>() < 40 * 30 * 8);
+  CHECK(plain == render({"--method", "certified", "--spp", "4", "--max-spp", "16"}));
+  CHECK(plain != render({"--max-spp", "4"}));
+  CHECK(stats()["viewing_rays"] == 40 * 30 * 4);
+  CHECK(plain != render({"--method", "path"}));
+  CHECK(stats()["viewing_rays"] == 40 * 30 * 4);
+
+  const auto measured = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"measure", scene, "--points", points};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_well(folder, arguments).out;
+  };
+  CHECK(measured({}) == measured({"--method", "certified", "--spp", "4096"}));
+  CHECK(measured({}) != measured({"--method", "path"}));
+}
+
+TEST_CASE("options that the method does not use are named in a warning") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n");
+  const struct {
+    std::string method, option, value;
+    bool is_used;
+  } cases[] = {
+      {"certified", "--depth", "3", false},      {"path", "--depth", "3", true},
+      {"certified", "--error", "0.1", true},     {"path", "--error", "0.1", false},
+      {"certified", "--max-spp", "8", true},     {"path", "--max-spp", "8", false},
+      {"kj92", "--max-spp", "8", true},          {"fixed", "--max-spp", "8", false},
+      {"fixed", "--shadow-rays", "2", true},     {"certified", "--shadow-rays", "2", false},
+      {"kj92", "--variance", "0.5", true},       {"certified", "--variance", "0.5", false},
+      {"certified", "--coherence", "on", false}, {"path", "--select", "emitter0", false},
+  };
+  for (const auto& c : cases) {
+    CAPTURE(c.method);
+    CAPTURE(c.option);
+    std::vector<std::string> arguments{"render",   scene,    "-o",     folder.path("o.pfm"),
+                                       "--size",   "16x12",  "--spp",  "1",
+                                       "--method", c.method, c.option, c.value};
+    const Finished f = run_program(folder, arguments);
+    CHECK(f.status == 0);
+    CHECK(f.error_lines().size() == (c.is_used ? 0 : 1));
+    if (!c.is_used) CHECK(f.err.rfind("warning: " + c.option + " belongs to --method ", 0) == 0);
+    arguments.push_back("--quiet");
+    run_well(folder, arguments);
+  }
+  const Finished f = run_program(
+      folder, {"measure", scene, "--points", points, "--depth", "2", "-o", folder.path("o.csv")});
+  CHECK(f.status == 0);
+  CHECK(f.err == "warning: --depth belongs to --method path; certified does not use it\n");
 }

@@ -22,12 +22,12 @@ void wait_seconds(double s) {
 
 TEST_CASE("SIGINT and SIGTERM stop a long render, which writes what it has") {
   for (const int which : {SIGINT, SIGTERM})
-    for (const std::string method : {"path", "fixed"}) {
+    for (const std::string method : {"certified", "path", "fixed"}) {
       const Folder folder;
       const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
-      Running program(folder, {"render", scene, "-o", folder.path("o.exr"), "--spp", "1000000",
-                               "--method", method, "--shadow-rays", "256", "--stats",
-                               folder.path("s.json"), "--threads", "1"});
+      Running program(folder,
+                      {"render", scene, "-o", folder.path("o.exr"), "--spp", "1000000", "--method",
+                       method, "--stats", folder.path("s.json"), "--threads", "1"});
       wait_seconds(0.7);
       program.send(which);
       const Finished f = program.wait(30);

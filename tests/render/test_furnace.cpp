@@ -51,6 +51,7 @@ Camera furnace_camera() {
 TEST_CASE("in a furnace every pixel is as bright as every other") {
   const PreparedScene scene(uneven_furnace());
   RenderOptions o;
+  o.method = Method::path;
   o.width = 32;
   o.height = 24;
   o.spp = 16;
@@ -85,6 +86,7 @@ TEST_CASE("a furnace with glass, mirrors and gloss in it") {
   s.spheres.push_back({{-1.4f, 0, 0.3f}, 0.3f, false, add_material(s, coated), no_emitter});
   const PreparedScene scene(std::move(s));
   RenderOptions o;
+  o.method = Method::path;
   o.width = 32;
   o.height = 24;
   o.spp = 16;
@@ -107,6 +109,7 @@ TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
   // Straight down from below the sources, so that no pixel shows them or their shadows.
   Camera camera = look_at({0, 0, 0.7f}, {0, 0, 0}, {0, 1, 0}, 100);
   RenderOptions o;
+  o.method = Method::path;
   o.width = o.height = 16;
   o.indirect = Indirect::none;
   o.aovs = {Aov::position};
@@ -145,6 +148,7 @@ TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
 TEST_CASE("fixed and path agree on direct light with gloss, mirrors, glass and shadows") {
   const PreparedScene scene(mixed_room());
   RenderOptions o;
+  o.method = Method::path;
   o.width = 24;
   o.height = 18;
   o.indirect = Indirect::none;

@@ -74,6 +74,7 @@ TEST_CASE("estimates have no bias: z-scores of many points") {
   const PreparedScene scene(lit_floor());
   const auto points = floor_points(2000);
   MeasureOptions o;
+  o.method = Method::path;
   o.spp = 512;
   o.indirect = Indirect::none;
   const MeasureResult r = measure(scene, points, o, {}, never_stop);
@@ -99,6 +100,7 @@ TEST_CASE("a closed white-ish room: mean irradiance is flux / (area (1 - reflect
                                               {{1.5f, 1, 1}, {1, 1, 1}},
                                               {{0.01f, 0.01f, 0.01f}, {0, 1, 0}}};
   MeasureOptions o;
+  o.method = Method::path;
   o.spp = 1 << 15;
   const MeasureResult r = measure(scene, points, o, {}, never_stop);
   const double expected = pi * double(radiance) / (1 - double(rho));
@@ -113,6 +115,7 @@ TEST_CASE("photometric scenes measure lux as they are") {
   s.is_photometric = true;
   const PreparedScene scene(std::move(s));
   MeasureOptions o;
+  o.method = Method::path;
   o.indirect = Indirect::none;
   const std::vector<MeasuringPoint> p = {{{0, 0, 0}, {0, 0, 1}}};
   const MeasureResult r = measure(scene, p, o, {}, never_stop);
@@ -123,6 +126,7 @@ TEST_CASE("measuring does not depend on the number of threads") {
   const PreparedScene scene(lit_floor());
   const auto points = floor_points(50);
   MeasureOptions o;
+  o.method = Method::path;
   o.spp = 64;
   o.threads = 1;
   const MeasureResult a = measure(scene, points, o, {}, never_stop);

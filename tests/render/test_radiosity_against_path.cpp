@@ -78,6 +78,7 @@ TEST_CASE("kj92room: irradiance is the path tracer's, direct and in all") {
   for (const uint32_t i : chosen)
     points.push_back({s.mesh.points[i].position, s.mesh.points[i].normal});
   MeasureOptions o;
+  o.method = Method::path;
   o.threads = 2;
   o.spp = 1024;
   const MeasureResult all = measure(scene, points, o, {}, never);

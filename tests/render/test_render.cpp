@@ -135,6 +135,7 @@ TEST_CASE("direct and indirect light add up to the picture") {
 TEST_CASE("depths add light pixel by pixel, and all of them make the whole") {
   const PreparedScene scene(mixed_room());
   RenderOptions o;
+  o.method = Method::path;
   o.width = 24;
   o.height = 18;
   o.spp = 64;
@@ -176,6 +177,7 @@ TEST_CASE("layers mean what they say") {
 TEST_CASE("the error layer is the spread of pictures with other seeds") {
   const PreparedScene scene(mixed_room());
   RenderOptions o;
+  o.method = Method::path;
   o.width = 24;
   o.height = 18;
   o.spp = 16;

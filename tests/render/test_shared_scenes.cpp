@@ -51,6 +51,7 @@ TEST_CASE("kj92room: direct and full light, from pbrt and glTF") {
   REQUIRE(gltf.scene.cameras.size() == 1);
   const Camera camera = pbrt.scene.cameras[0];
   RenderOptions o;
+  o.method = Method::path;
   o.width = o.height = 64;
   for (const bool is_direct : {true, false}) {
     o.indirect = is_direct ? Indirect::none : Indirect::automatic;
@@ -73,6 +74,7 @@ TEST_CASE("modern-hall-diffuse: as bright as its reference") {
   if (!is_present("modern-hall/modern-hall-diffuse.pbrt")) return;
   const PreparedScene scene(import_scene(folder + "modern-hall/modern-hall-diffuse.pbrt"));
   RenderOptions o;
+  o.method = Method::path;
   o.width = 160;
   o.height = 120;
   o.spp = 8;

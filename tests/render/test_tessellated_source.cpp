@@ -38,6 +38,7 @@ Place place_of_panel() {
 RenderOptions options() {
   RenderOptions o;
   o.method = Method::certified;
+  o.max_spp = o.spp;  // both pictures by the same viewing rays
   o.indirect = Indirect::none;
   o.width = 64;
   o.height = 48;

@@ -94,7 +94,8 @@ def _halls(s):
         Render("hall-default", HALL, f"--size {s.hall_size} --method kj92 {layers}"),
         Render("hall-diffuse-default", DIFFUSE_HALL,
                f"--size {s.hall_size} --method kj92 {layers}"),
-        Render("hall-path", HALL, f"--size {s.hall_size} --spp {s.hall_path_spp}"),
+        Render("hall-path", HALL, f"--size {s.hall_size} --method path "
+               f"--spp {s.hall_path_spp}"),
     ]
 
 

@@ -86,7 +86,7 @@ def main():
     out = options.out + ("/quick" if options.quick else "")
     os.makedirs(out, exist_ok=True)
     experiments = catalog.experiments(chosen)
-    context = Context(chosen, program.Program(options.build, out), out)
+    context = Context(chosen, program.Program(options.build, out, "build/experiments/kj92"), out)
     subprocess.run([f"{options.build}/bench/kj92_bintree_figures", out], check=True)
     render_all(context, experiments)
 

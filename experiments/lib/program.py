@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import exr
 
-USUAL_BUILD, USUAL_OUT = "build/release", "build/experiments/kj92"
+USUAL_BUILD = "build/release"
 
 
 @dataclass
@@ -51,10 +51,10 @@ def _digest(*paths):
 
 class Program:
     """troffer in `build`, its files in `out`; both relative to the repository's root, which is the
-    working directory."""
+    working directory. usual_out: what commands that are shown have in place of `out`."""
 
-    def __init__(self, build, out):
-        self.build, self.out = build, out
+    def __init__(self, build, out, usual_out):
+        self.build, self.out, self.usual_out = build, out, usual_out
         self.troffer = f"{build}/troffer"
         self.planned, self.done = 0, 0
         self.version = _digest(self.troffer)
@@ -64,7 +64,7 @@ class Program:
     def shown(self, words):
         """A command as a reader would type it, wherever programs and files stand in this run."""
         command = shlex.join(words).replace(f"{self.build}/", f"{USUAL_BUILD}/")
-        return command.replace(f"{self.out}/", f"{USUAL_OUT}/")
+        return command.replace(f"{self.out}/", f"{self.usual_out}/")
 
     def _progress(self, what):
         self.done += 1
@@ -111,6 +111,24 @@ class Program:
         with open(stats) as file:
             numbers = json.load(file)
         return Run(self.shown(words), target, numbers, record["wall"], record["cpu"])
+
+    def timed(self, name, scene, options, repeats=3):
+        """Renders anew, `repeats` times, on one thread; seconds of the quickest in the stats."""
+        best = None
+        for _ in range(repeats):
+            self.forget(name)
+            self.planned += 1
+            run = self.render(name, scene, options + " --threads 1")
+            if best is None or (run.stats["seconds"]["render_cpu"]
+                                < best.stats["seconds"]["render_cpu"]):
+                best = run
+        return best
+
+    def forget(self, name):
+        """What was run by this name will be run again."""
+        record = f"{self.out}/renders/{name}.run.json"
+        if os.path.exists(record):
+            os.remove(record)
 
     def compare(self, image, reference):
         words = [self.troffer, "compare", image, reference, "--json"]
