@@ -57,7 +57,7 @@ class Bench:
     def run(self, experiment, words):
         command = [self.program, experiment, *words, "--keep", f"{self.out}/references", "--csv",
                    self.out] + (["--quick"] if self.is_quick else [])
-        self.commands.setdefault(experiment, " ".join(command))
+        self.commands.setdefault(experiment, " ".join(["bench_direct", experiment, *words]))
         subprocess.run(command, check=True)
 
     def curves(self):
