@@ -73,7 +73,7 @@ struct RadianceBatch {
   void tell_variance() { direct_variance.assign(direct.size(), 0); }
   void add(size_t i, bool is_direct, Rgb light, float variance) {
     (is_direct ? direct : indirect)[i] += light;
-    if (is_direct) direct_variance[i] += variance;
+    if (is_direct && !direct_variance.empty()) direct_variance[i] += variance;
   }
 };
 

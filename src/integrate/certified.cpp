@@ -27,6 +27,7 @@ CertifiedSettings certified_settings(double error, size_t emitters) {
   CertifiedSettings s;
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(emitters, 1))));
   s.estimator.lattice = error >= coarse_above ? coarse_lattice : fine_lattice;
+  s.error = error;
   s.estimator.residual_error = float(error);
   s.estimator.rays.pair_error = float(2 * error);
   return s;
@@ -48,7 +49,7 @@ CertifiedIntegrator::CertifiedIntegrator(const PreparedScene& scene,
       radiosity_(radiosity),
       settings_(settings),
       occluders_(scene.scene),
-      lights_(scene),
+      lights_(scene, settings.error),
       sampler_(scene) {}
 
 std::unique_ptr<IntegratorScratch> CertifiedIntegrator::make_scratch() const {

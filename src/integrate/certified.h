@@ -22,6 +22,7 @@ namespace troffer {
 
 struct CertifiedSettings {
   CertifiedOptions estimator;
+  double error = 0.01;     // allowed, relative to unoccluded light
   int shadow_rays = 64;    // per source and viewing ray where there are no certificates
   int gloss_samples = 32;  // points of a source at which gloss and textures are looked at
 };

@@ -1,5 +1,8 @@
 #include "integrate/certified_lights.h"
 
+#include <algorithm>
+#include <unordered_map>
+
 #include "base/random.h"
 #include "trace/occluders.h"
 
@@ -21,6 +24,7 @@ void WaitingHits::clear() {
   horizons.clear();
   weights.clear();
   indices.clear();
+  pixels.clear();
   glossy.clear();
   is_direct.clear();
   is_first.clear();
@@ -36,6 +40,7 @@ void WaitingHits::add(const Walk& walk, const Vertex& v, const Rgb& weight, bool
   horizons.push_back(horizon);
   weights.push_back(weight);
   indices.push_back(walk.index);
+  pixels.push_back(walk.stream);
   glossy.push_back(-1);
   is_direct.push_back(direct ? 1 : 0);
   is_first.push_back(walk.vertex == 0 ? 1 : 0);
@@ -53,8 +58,10 @@ void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceSca
                          scattering.has_diffuse, scattering.has_rough});
 }
 
-CertifiedLights::CertifiedLights(const PreparedScene& scene)
-    : source_of_front_(scene.lights.size(), -1), source_of_back_(scene.lights.size(), -1) {
+CertifiedLights::CertifiedLights(const PreparedScene& scene, double error)
+    : source_of_front_(scene.lights.size(), -1),
+      source_of_back_(scene.lights.size(), -1),
+      error_(float(error)) {
   for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
     has_emitter_.push_back(add_emitter(scene, e));
   for (uint32_t i = 0; i < sources_.size(); ++i) {
@@ -150,24 +157,51 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
     s.integrand.hits().push_back(
         {s.hits.positions[m], g < 0 ? nullptr : &s.hits.glossy_hits[size_t(g)]});
   }
+  choose(members, s);
   s.answers.resize(members.size());
+  s.drawn_sums.assign(members.size(), 0);
+  s.drawn_squares.assign(members.size(), 0);
   s.estimator.begin_cluster(s.receivers);
-  for (uint32_t i = 0; i < sources_.size(); ++i) {
-    const CertifiedSource& source = sources_[i];
+  for (const ChosenSource& chosen : s.weak.chosen) {
+    const CertifiedSource& source = sources_[chosen.source];
     s.integrand.set_source(source);
-    const SourceTerms terms{source.stream, luminance(source.radiance), i, &s.integrand};
+    const SourceTerms terms{source.stream, luminance(source.radiance) * chosen.weight,
+                            uint32_t(&chosen - s.weak.chosen.data()), &s.integrand};
+    FoundFacets& found = s.found[chosen.source];
     if (source.is_round)
-      s.estimator.evaluate(source.sphere, terms, s.world, s.found[i], s.answers);
+      s.estimator.evaluate(source.sphere, terms, s.world, found, s.answers);
     else
-      s.estimator.evaluate(source.flat, terms, s.world, s.found[i], s.answers);
-    add_answers(source, members, s, out, counters);
+      s.estimator.evaluate(source.flat, terms, s.world, found, s.answers);
+    add_answers(chosen, members, s, out, counters);
   }
   add_rays(s.estimator.end_cluster(s.world), members, s, out, counters);
+  add_drawing_variance(members, s, out);
 }
 
-void CertifiedLights::add_answers(const CertifiedSource& source, std::span<const uint32_t> members,
-                                  const CertifiedLightsScratch& s, RadianceBatch& out,
+// The sources to treat: all of them where a surface may pick the light of a weak one out.
+void CertifiedLights::choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const {
+  Box box;
+  ClusterBall ball;
+  ball.normal = s.receivers[0].normal;
+  bool is_matte = true;
+  for (size_t i = 0; i < members.size(); ++i) {
+    const ShadowReceiver& r = s.receivers[i];
+    box.grow(r.position);
+    is_matte = is_matte && s.hits.glossy[members[i]] < 0;
+    if (length_squared(r.normal - s.receivers[0].normal) > 1e-10f ||
+        length_squared(r.horizon - s.receivers[0].normal) > 1e-10f)
+      ball.normal = {};
+  }
+  ball.centre = (box.lower + box.upper) * 0.5f;
+  ball.radius = 0.5f * box.diagonal();
+  choose_sources(sources_, ball, is_matte ? 0.5f * error_ : 0.0f,
+                 hash_combine(s.receivers[0].stream, members.size()), s.weak);
+}
+
+void CertifiedLights::add_answers(const ChosenSource& chosen, std::span<const uint32_t> members,
+                                  CertifiedLightsScratch& s, RadianceBatch& out,
                                   Counters& counters) const {
+  const CertifiedSource& source = sources_[chosen.source];
   for (uint32_t i = 0; i < members.size(); ++i) {
     const SourceVisibility& a = s.answers[i];
     if (a.answer == ShadowAnswer::below) continue;
@@ -182,11 +216,17 @@ void CertifiedLights::add_answers(const CertifiedSource& source, std::span<const
           Rgb{is_lit || is_dark ? 0.0f : 1.0f, is_lit ? 1.0f : 0.0f, is_dark ? 1.0f : 0.0f};
     if (is_dark) continue;
     const bool has_value = s.integrand.is_wanted(i);
-    const Rgb factor = has_value ? s.hits.weights[m] : s.hits.weights[m] * source.radiance;
-    out.add(index, s.hits.is_direct[m] != 0,
-            has_value ? factor * a.value : factor * (a.unoccluded * a.visible),
+    const Rgb weight = s.hits.weights[m] * chosen.weight;
+    const Rgb factor = has_value ? weight : weight * source.radiance;
+    const Rgb light = has_value ? factor * a.value : factor * (a.unoccluded * a.visible);
+    const bool is_direct = s.hits.is_direct[m] != 0;
+    out.add(index, is_direct, light,
             has_value ? sqr(luminance(factor)) * a.value_variance
                       : sqr(luminance(factor) * a.unoccluded) * a.variance);
+    if (chosen.weight != 1 && is_direct) {
+      s.drawn_sums[i] += luminance(light);
+      s.drawn_squares[i] += sqr(luminance(light));
+    }
   }
 }
 
@@ -197,10 +237,28 @@ void CertifiedLights::add_rays(std::span<const RayAnswer> rays, std::span<const 
     const uint32_t m = members[a.member], index = s.hits.indices[m];
     counters.shadow_rays += a.rays;
     out.shadow_rays[index] += a.rays;
-    const Rgb& weight = s.hits.weights[m];
-    const Rgb factor = weight * sources_[a.tag].radiance;
+    const ChosenSource& chosen = s.weak.chosen[a.tag];
+    const Rgb weight = s.hits.weights[m] * chosen.weight;
+    const Rgb factor = weight * sources_[chosen.source].radiance;
     out.add(index, s.hits.is_direct[m] != 0, factor * a.light + weight * a.value,
             sqr(luminance(factor)) * a.light_variance + sqr(luminance(weight)) * a.value_variance);
+  }
+}
+
+// What drawing some of the weak sources adds, from the spread of what they sent. Hits of one pixel
+// share the draw, so that their errors add up.
+void CertifiedLights::add_drawing_variance(std::span<const uint32_t> members,
+                                           const CertifiedLightsScratch& s,
+                                           RadianceBatch& out) const {
+  float drawn = 0;
+  for (const ChosenSource& c : s.weak.chosen) drawn += c.weight != 1 ? 1.0f : 0.0f;
+  if (drawn < 2 || out.direct_variance.empty()) return;
+  std::unordered_map<uint64_t, float> hits_of_pixel;
+  for (const uint32_t m : members) hits_of_pixel[s.hits.pixels[m]] += 1;
+  for (size_t i = 0; i < members.size(); ++i) {
+    const float spread = std::max(s.drawn_squares[i] - sqr(s.drawn_sums[i]) / drawn, 0.0f);
+    out.direct_variance[s.hits.indices[members[i]]] +=
+        spread * drawn / (drawn - 1) * hits_of_pixel[s.hits.pixels[members[i]]];
   }
 }
 

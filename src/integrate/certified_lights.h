@@ -4,7 +4,8 @@
 //
 // Hits are clustered; for each cluster and source, reflectance / pi × radiance × unoccluded
 // projected solid angle × visible share is added at matte hits, and an integral over the visible
-// part elsewhere. Unbiased.
+// part elsewhere. Of many sources the weak ones are represented by a few (weak_sources.h).
+// Unbiased.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "integrate/shadow_world.h"
 #include "integrate/source_integrand.h"
 #include "integrate/walk.h"
+#include "integrate/weak_sources.h"
 #include "shadow/certified.h"
 #include "shadow/certified_cluster.h"
 #include "shadow/source_pieces.h"
@@ -26,6 +28,7 @@ struct WaitingHits {
   std::vector<Vec3> positions, horizons;  // of the receivers, as clustering wants them
   std::vector<Rgb> weights;               // throughput, times reflectance / pi of matte surfaces
   std::vector<uint32_t> indices;          // of the viewing rays
+  std::vector<uint64_t> pixels;           // names of their pixels
   std::vector<int32_t> glossy;            // index into glossy_hits, or -1: matte
   std::vector<uint8_t> is_direct;         // the light counts as direct
   std::vector<uint8_t> is_first;          // the viewing ray's first surface
@@ -54,11 +57,15 @@ struct CertifiedLightsScratch {
   ReceiverClusters clusters;
   std::vector<ShadowReceiver> receivers;  // of one cluster
   std::vector<SourceVisibility> answers;
+  WeakSourcesScratch weak;
+  std::vector<float> drawn_sums, drawn_squares;  // per receiver: luminance by drawn sources
 };
 
 class CertifiedLights {
  public:
-  explicit CertifiedLights(const PreparedScene& scene);
+  // error: allowed standard error of a hit's light by not looking at all of many sources, relative
+  // to what they would send unoccluded.
+  CertifiedLights(const PreparedScene& scene, double error);
 
   // The emitter is dealt with here, whole. Others are meshes of too many pieces that lie in no
   // common plane, or spheres that shine inwards.
@@ -80,14 +87,18 @@ class CertifiedLights {
                         const std::vector<SourcePiece>& pieces);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
-  void add_answers(const CertifiedSource& source, std::span<const uint32_t> members,
-                   const CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
+  void choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const;
+  void add_answers(const ChosenSource& chosen, std::span<const uint32_t> members,
+                   CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
   void add_rays(std::span<const RayAnswer> rays, std::span<const uint32_t> members,
                 const CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
+  void add_drawing_variance(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
+                            RadianceBatch& out) const;
 
   std::vector<CertifiedSource> sources_;
   std::vector<bool> has_emitter_;
   std::vector<int32_t> source_of_front_, source_of_back_;  // per primitive, -1: none
+  float error_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart
 };
 

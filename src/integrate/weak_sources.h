@@ -1,0 +1,48 @@
+// Many lights: for a cluster of hits, sources that could give little of its light are represented
+// by a few of them, chosen at random in proportion to what they could give at most.
+//
+// With bounds b_i on the unoccluded light of the weak sources, T their sum and K drawn sources,
+// each with the weight T / (K b_i), the estimate is unbiased, and as every term lies between 0 and
+// T / K its variance is at most T² / 4K: with T = 2 sqrt(K) E, at most E². Which sources are weak,
+// and which are drawn, depends on geometry and on a hash, never on what is visible.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "integrate/source_integrand.h"
+
+namespace troffer {
+
+// A ball that holds a cluster's receivers; `normal`: the common one, or zero.
+struct ClusterBall {
+  Vec3 centre;
+  float radius = 0;
+  Vec3 normal;
+};
+
+// An upper bound on the projected solid angle of the source, nothing hidden, from any receiver in
+// the ball, sr; 0 where no receiver can see its front. `estimate`: about that of one at the centre.
+float unoccluded_bound(const CertifiedSource& source, const ClusterBall& ball, float& estimate);
+
+struct ChosenSource {
+  uint32_t source;
+  float weight;  // 1: treated for itself; else what it stands for, as a multiple of its own light
+};
+
+// Memory, and the result.
+struct WeakSourcesScratch {
+  std::vector<float> bounds;
+  std::vector<uint32_t> order;
+  std::vector<ChosenSource> chosen;
+};
+
+// Fills scratch.chosen with the sources to treat, in ascending order of those for themselves, then
+// the drawn ones. error: allowed standard error of this choice, relative to the unoccluded light of
+// all sources. random: of the cluster.
+void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall& ball, float error,
+                    uint64_t random, WeakSourcesScratch& scratch);
+
+}  // namespace troffer
