@@ -12,8 +12,11 @@ namespace {
 
 // Mirrors facing each other would reflect for ever.
 constexpr uint32_t longest_chain = 64;
-// Above this error the coarse lattice does; its own is about as large (docs/certified.md).
-constexpr double coarse_above = 0.003;
+// From this error on the coarse lattice does, whose own error is up to .005 (docs/certified.md);
+// specks and wires that fall between its samples would show below.
+constexpr double coarse_from = 0.02;
+// Below these, the fine lattice lies over quarters and sixteenths of sources.
+constexpr double quarters_below = 0.002, sixteenths_below = 0.0007;
 
 }  // namespace
 
@@ -26,7 +29,8 @@ CertifiedSettings certified_settings(double error, size_t emitters) {
   };
   CertifiedSettings s;
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(emitters, 1))));
-  s.estimator.lattice = error >= coarse_above ? coarse_lattice : fine_lattice;
+  s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
+  s.estimator.cells.most_share = error < sixteenths_below ? 0.1 : error < quarters_below ? 0.4 : 1;
   s.error = error;
   s.estimator.residual_error = float(error);
   s.estimator.rays.pair_error = float(2 * error);

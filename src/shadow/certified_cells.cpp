@@ -244,19 +244,19 @@ void cut_cells(const CertifiedCell& cell, const ReceiverHull& hull, const CellLi
     Terms terms;
   };
   std::vector<Open> open{{cell, {}}};
-  if (!is_far(cell, hull)) open[0].terms = terms_of(cell, hull);
+  if (limits.most_share < 1 || !is_far(cell, hull)) open[0].terms = terms_of(cell, hull);
   while (open.size() < limits.most_cells) {
     std::array<double, 9> total{};
     for (const Open& o : open)
       for (size_t r = 0; r < total.size(); ++r) total[r] += o.terms.gain[r];
-    // Of the cells that vary too much, the one that gives most to some receiver.
+    // Of the cells that are too large or vary too much, the one that gives most to some receiver.
     double largest = limits.least_share;
     Open* chosen = nullptr;
     for (Open& o : open) {
-      if (o.terms.variation <= limits.variation) continue;
       double share = 0;
       for (size_t r = 0; r < total.size(); ++r)
         share = std::max(share, total[r] > 0 ? o.terms.gain[r] / total[r] : 0);
+      if (o.terms.variation <= limits.variation && share <= limits.most_share) continue;
       if (share <= largest) continue;
       largest = share;
       chosen = &o;

@@ -59,10 +59,11 @@ struct CertifiedCell {
 
 // A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest
 // value over it exceeds its mean by more than the factor `variation`, and the cell gives more than
-// `least_share` of all that the source gives.
+// `least_share` of all that the source gives; or while it gives more than `most_share`.
 struct CellLimits {
   double variation = 3;
   double least_share = 0.02;
+  double most_share = 1;
   size_t most_cells = 32;
 };
 

@@ -55,10 +55,21 @@ inline __attribute__((always_inline)) void set_up(const FacetBatch<edges>& f, in
   }
   for (int e = 0; e < edges; ++e) {
     const int g = e + 1 == edges ? 0 : e + 1;
-    // inside where side * (a × b) · y >= 0
-    const Floats ek = side * (j[e] * w[g] - w[e] * j[g]);
-    const Floats ej = side * (w[e] * k[g] - k[e] * w[g]);
-    const Floats ew = side * (k[e] * j[g] - j[e] * k[g]);
+    // inside where side * (a × b) · y >= 0. Of a short edge seen from afar a × b would be a small
+    // difference of large products: (a + b) × (b - a) is twice that, with b - a from the facet's
+    // own coordinates. Facets that share the edge get the same numbers, negated.
+    Floats ke, kg, je, jg, we, wg;
+    __builtin_memcpy(&ke, f.k[e] + from, sizeof ke);
+    __builtin_memcpy(&kg, f.k[g] + from, sizeof kg);
+    __builtin_memcpy(&je, f.j[e] + from, sizeof je);
+    __builtin_memcpy(&jg, f.j[g] + from, sizeof jg);
+    __builtin_memcpy(&we, f.w[e] + from, sizeof we);
+    __builtin_memcpy(&wg, f.w[g] + from, sizeof wg);
+    const Floats dk = kg - ke, dj = jg - je, dw = wg - we;
+    const Floats mk = k[e] + k[g], mj = j[e] + j[g], mw = w[e] + w[g];
+    const Floats ek = side * (mj * dw - mw * dj);
+    const Floats ej = side * (mw * dk - mk * dw);
+    const Floats ew = side * (mk * dj - mj * dk);
     const Floats base = ew * p.h;
     Floats most = ek * p.corner_k[0] + ej * p.corner_j[0];
     for (int corner = 1; corner < 4; ++corner) {
