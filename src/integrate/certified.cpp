@@ -120,7 +120,8 @@ float CertifiedIntegrator::emission_weight(const Walk& walk, const Vertex& v) co
   if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
   const int32_t primitive = primitive_at(scene_, v.surface);
   const CertifiedSource* source =
-      primitive < 0 ? nullptr : lights_.source_of(uint32_t(primitive), !v.is_front);
+      primitive < 0 ? nullptr
+                    : lights_.source_of(uint32_t(primitive), !v.is_front, v.surface.position);
   if (source == nullptr) return 1;
   return power_heuristic(walk.pdf, float(settings_.gloss_samples) *
                                        nominal_density(*source, walk.last_position,

@@ -12,7 +12,7 @@ namespace {
 
 // Emitters of more pieces, once those in one plane are merged, are left to rays: each piece would
 // be a source of its own.
-constexpr uint32_t most_pieces = 64;
+constexpr uint32_t most_pieces = 256;
 // Hits on a curved surface are certified together within this share of the scene's diagonal.
 constexpr float reach_of_diagonal = 0.1f;
 
@@ -64,17 +64,46 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, double error)
       error_(float(error)) {
   for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
     has_emitter_.push_back(add_emitter(scene, e));
-  for (uint32_t i = 0; i < sources_.size(); ++i) {
-    const CertifiedSource& s = sources_[i];
-    (s.is_back ? source_of_back_ : source_of_front_)[s.primitive] = int32_t(i);
-  }
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }
 
-const CertifiedSource* CertifiedLights::source_of(uint32_t primitive, bool is_back) const {
-  const int32_t i = (is_back ? source_of_back_ : source_of_front_)[primitive];
-  return i < 0 ? nullptr : &sources_[size_t(i)];
+namespace {
+
+// Whether a point in the source's plane belongs to it.
+bool covers(const FlatSource& s, const Vec3& point) {
+  if (s.outline.size() < 3) return true;
+  const Vec3d d = Vec3d(point) - s.plane.origin, n = cross(s.plane.u, s.plane.v);
+  const double area2 = length_squared(n);
+  const double u = dot(cross(d, s.plane.v), n) / area2, v = dot(cross(s.plane.u, d), n) / area2;
+  int left = 0, right = 0;
+  for (size_t i = 0; i < s.outline.size(); ++i) {
+    const Vec2d p(s.outline[i]), q(s.outline[(i + 1) % s.outline.size()]);
+    const double side = (q.x - p.x) * (v - p.y) - (q.y - p.y) * (u - p.x);
+    left += side > 0;
+    right += side < 0;
+  }
+  return left == 0 || right == 0;
+}
+
+}  // namespace
+
+const CertifiedSource* CertifiedLights::source_of(uint32_t primitive, bool is_back,
+                                                  const Vec3& point) const {
+  int32_t i = (is_back ? source_of_back_ : source_of_front_)[primitive];
+  if (i < 0) return nullptr;
+  // of a polygon in several parts
+  while (before_[size_t(i)] >= 0 && !covers(sources_[size_t(i)].flat, point))
+    i = before_[size_t(i)];
+  return &sources_[size_t(i)];
+}
+
+void CertifiedLights::add_source(const CertifiedSource& source,
+                                 std::span<const uint32_t> primitives) {
+  std::vector<int32_t>& last = source.is_back ? source_of_back_ : source_of_front_;
+  before_.push_back(last[primitives[0]]);
+  for (const uint32_t p : primitives) last[p] = int32_t(sources_.size());
+  sources_.push_back(source);
 }
 
 bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) {
@@ -108,7 +137,7 @@ bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) 
       added.push_back(source);
     }
   }
-  sources_.insert(sources_.end(), added.begin(), added.end());
+  for (const CertifiedSource& source : added) add_source(source, {&source.primitive, 1});
   return true;
 }
 
@@ -116,9 +145,6 @@ bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) 
 bool CertifiedLights::add_flat_emitter(const PreparedScene& scene, uint32_t emitter,
                                        const std::vector<SourcePiece>& pieces) {
   if (pieces.size() > most_pieces) return false;
-  // a polygon that had to be cut would be several sources, and source_of knows one
-  for (size_t i = 1; i < pieces.size(); ++i)
-    if (pieces[i].primitives[0] == pieces[i - 1].primitives[0]) return false;
   for (const SourcePiece& piece : pieces) {
     CertifiedSource source;
     source.flat = piece.shape;
@@ -128,10 +154,8 @@ bool CertifiedLights::add_flat_emitter(const PreparedScene& scene, uint32_t emit
       if (is_back && !scene.scene.emitters[emitter].is_two_sided) continue;
       if (is_back) source.flat.plane.normal = -source.flat.plane.normal;
       source.is_back = is_back;
-      source.stream = hash_of(source.primitive, is_back ? 1u : 0u);
-      for (const uint32_t p : piece.primitives)
-        (is_back ? source_of_back_ : source_of_front_)[p] = int32_t(sources_.size());
-      sources_.push_back(source);
+      source.stream = hash_of(sources_.size(), 2u);  // parts of a polygon share a primitive
+      add_source(source, piece.primitives);
     }
   }
   return true;
@@ -162,6 +186,7 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
   s.drawn_sums.assign(members.size(), 0);
   s.drawn_squares.assign(members.size(), 0);
   s.estimator.begin_cluster(s.receivers);
+  for (const uint32_t weak : s.weak.weak) add_unoccluded(sources_[weak], members, s, out);
   for (const ChosenSource& chosen : s.weak.chosen) {
     const CertifiedSource& source = sources_[chosen.source];
     s.integrand.set_source(source);
@@ -198,6 +223,19 @@ void CertifiedLights::choose(std::span<const uint32_t> members, CertifiedLightsS
                  hash_combine(s.receivers[0].stream, members.size()), s.weak);
 }
 
+void CertifiedLights::add_unoccluded(const CertifiedSource& source,
+                                     std::span<const uint32_t> members, CertifiedLightsScratch& s,
+                                     RadianceBatch& out) const {
+  const std::span<const float> unoccluded =
+      source.is_round ? s.estimator.unoccluded(source.sphere) : s.estimator.unoccluded(source.flat);
+  for (uint32_t i = 0; i < members.size(); ++i) {
+    if (!(unoccluded[i] > 0)) continue;
+    const uint32_t m = members[i];
+    out.add(s.hits.indices[m], s.hits.is_direct[m] != 0,
+            s.hits.weights[m] * source.radiance * unoccluded[i], 0);
+  }
+}
+
 void CertifiedLights::add_answers(const ChosenSource& chosen, std::span<const uint32_t> members,
                                   CertifiedLightsScratch& s, RadianceBatch& out,
                                   Counters& counters) const {
@@ -214,19 +252,21 @@ void CertifiedLights::add_answers(const ChosenSource& chosen, std::span<const ui
     if (s.hits.is_first[m] != 0)
       out.sources[index] +=
           Rgb{is_lit || is_dark ? 0.0f : 1.0f, is_lit ? 1.0f : 0.0f, is_dark ? 1.0f : 0.0f};
-    if (is_dark) continue;
-    const bool has_value = s.integrand.is_wanted(i);
-    const Rgb weight = s.hits.weights[m] * chosen.weight;
-    const Rgb factor = has_value ? weight : weight * source.radiance;
-    const Rgb light = has_value ? factor * a.value : factor * (a.unoccluded * a.visible);
+    if (is_dark && !chosen.is_drawn) continue;
     const bool is_direct = s.hits.is_direct[m] != 0;
-    out.add(index, is_direct, light,
+    if (chosen.is_drawn) {  // of matte receivers
+      const Rgb missing =
+          s.hits.weights[m] * source.radiance * (chosen.weight * a.unoccluded * (1 - a.visible));
+      out.add(index, is_direct, missing * -1.0f, 0);
+      s.drawn_sums[i] += is_direct ? luminance(missing) : 0.0f;
+      s.drawn_squares[i] += is_direct ? sqr(luminance(missing)) : 0.0f;
+      continue;
+    }
+    const bool has_value = s.integrand.is_wanted(i);
+    const Rgb factor = has_value ? s.hits.weights[m] : s.hits.weights[m] * source.radiance;
+    out.add(index, is_direct, has_value ? factor * a.value : factor * (a.unoccluded * a.visible),
             has_value ? sqr(luminance(factor)) * a.value_variance
                       : sqr(luminance(factor) * a.unoccluded) * a.variance);
-    if (chosen.weight != 1 && is_direct) {
-      s.drawn_sums[i] += luminance(light);
-      s.drawn_squares[i] += sqr(luminance(light));
-    }
   }
 }
 
@@ -245,13 +285,13 @@ void CertifiedLights::add_rays(std::span<const RayAnswer> rays, std::span<const 
   }
 }
 
-// What drawing some of the weak sources adds, from the spread of what they sent. Hits of one pixel
-// share the draw, so that their errors add up.
+// What drawing some of the weak sources adds, from the spread of what is missing of them. Hits of
+// one pixel share the draw, so that their errors add up.
 void CertifiedLights::add_drawing_variance(std::span<const uint32_t> members,
                                            const CertifiedLightsScratch& s,
                                            RadianceBatch& out) const {
   float drawn = 0;
-  for (const ChosenSource& c : s.weak.chosen) drawn += c.weight != 1 ? 1.0f : 0.0f;
+  for (const ChosenSource& c : s.weak.chosen) drawn += c.is_drawn ? 1.0f : 0.0f;
   if (drawn < 2 || out.direct_variance.empty()) return;
   std::unordered_map<uint64_t, float> hits_of_pixel;
   for (const uint32_t m : members) hits_of_pixel[s.hits.pixels[m]] += 1;

@@ -71,9 +71,9 @@ class CertifiedLights {
   // common plane, or spheres that shine inwards.
   bool has(uint32_t emitter) const { return has_emitter_[emitter]; }
   bool is_empty() const { return sources_.empty(); }
-  // The source that a piece of an emitter belongs to, seen from its front or its back; null if
-  // none.
-  const CertifiedSource* source_of(uint32_t primitive, bool is_back) const;
+  // The source that a point on a piece of an emitter belongs to, seen from its front or its back;
+  // null if none.
+  const CertifiedSource* source_of(uint32_t primitive, bool is_back, const Vec3& point) const;
 
   // What a batch learns is forgotten at its beginning, so that it does not matter what a thread did
   // before.
@@ -82,12 +82,15 @@ class CertifiedLights {
   void illuminate(CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
 
  private:
+  void add_source(const CertifiedSource& source, std::span<const uint32_t> primitives);
   bool add_emitter(const PreparedScene& scene, uint32_t emitter);
   bool add_flat_emitter(const PreparedScene& scene, uint32_t emitter,
                         const std::vector<SourcePiece>& pieces);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
   void choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const;
+  void add_unoccluded(const CertifiedSource& source, std::span<const uint32_t> members,
+                      CertifiedLightsScratch& s, RadianceBatch& out) const;
   void add_answers(const ChosenSource& chosen, std::span<const uint32_t> members,
                    CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
   void add_rays(std::span<const RayAnswer> rays, std::span<const uint32_t> members,
@@ -97,7 +100,9 @@ class CertifiedLights {
 
   std::vector<CertifiedSource> sources_;
   std::vector<bool> has_emitter_;
-  std::vector<int32_t> source_of_front_, source_of_back_;  // per primitive, -1: none
+  // Per primitive, the last source that covers some of it; per source, one before that covers some
+  // of the same primitive; -1: none.
+  std::vector<int32_t> source_of_front_, source_of_back_, before_;
   float error_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/random.h"
@@ -56,8 +57,9 @@ void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall&
                     uint64_t random, WeakSourcesScratch& s) {
   const auto n = uint32_t(sources.size());
   s.chosen.clear();
+  s.weak.clear();
   if (n < fewest_sources) {
-    for (uint32_t i = 0; i < n; ++i) s.chosen.push_back({i, 1});
+    for (uint32_t i = 0; i < n; ++i) s.chosen.push_back({i});
     return;
   }
   s.bounds.resize(n);
@@ -67,6 +69,9 @@ void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall&
     const float brightness = luminance(sources[i].radiance);
     float estimate = 0;
     s.bounds[i] = brightness * unoccluded_bound(sources[i], ball, estimate);
+    // what a texture shows has no unoccluded light in closed form
+    if (sources[i].is_textured && s.bounds[i] > 0)
+      s.bounds[i] = std::numeric_limits<float>::infinity();
     all += double(brightness * estimate);
     if (s.bounds[i] > 0) s.order.push_back(i);
   }
@@ -82,7 +87,7 @@ void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall&
     total = with;
   }
   if (weak <= 2 * draws) weak = 0;
-  for (uint32_t i = weak; i < s.order.size(); ++i) s.chosen.push_back({s.order[i], 1});
+  for (uint32_t i = weak; i < s.order.size(); ++i) s.chosen.push_back({s.order[i]});
   std::sort(s.chosen.begin(), s.chosen.end(),
             [](const ChosenSource& a, const ChosenSource& b) { return a.source < b.source; });
   if (weak == 0) return;
@@ -91,6 +96,8 @@ void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall&
     const double u = double(mix64(random + k) >> 11) * 0x1p-53;
     return (double(k) + u) / draws * total;
   };
+  s.weak.assign(s.order.begin(), s.order.begin() + weak);
+  std::sort(s.weak.begin(), s.weak.end());
   double passed = 0;
   uint32_t next = 0;
   for (uint32_t i = 0; i < weak && next < draws; ++i) {
@@ -98,7 +105,7 @@ void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall&
     passed += bound;
     uint32_t times = 0;
     for (; next < draws && target(next) < passed; ++next) ++times;
-    if (times > 0) s.chosen.push_back({s.order[i], float(times * total / (draws * bound))});
+    if (times > 0) s.chosen.push_back({s.order[i], true, float(times * total / (draws * bound))});
   }
 }
 

@@ -29,7 +29,8 @@ float unoccluded_bound(const CertifiedSource& source, const ClusterBall& ball, f
 
 struct ChosenSource {
   uint32_t source;
-  float weight;  // 1: treated for itself; else what it stands for, as a multiple of its own light
+  bool is_drawn = false;
+  float weight = 1;  // drawn: what it stands for, as a multiple of its own light
 };
 
 // Memory, and the result.
@@ -37,11 +38,12 @@ struct WeakSourcesScratch {
   std::vector<float> bounds;
   std::vector<uint32_t> order;
   std::vector<ChosenSource> chosen;
+  std::vector<uint32_t> weak;  // ascending
 };
 
-// Fills scratch.chosen with the sources to treat, in ascending order of those for themselves, then
-// the drawn ones. error: allowed standard error of this choice, relative to the unoccluded light of
-// all sources. random: of the cluster.
+// Sets scratch.weak to the weak sources and scratch.chosen to those to look at: the others in
+// ascending order, then the drawn ones. error: allowed standard error of this choice, relative to
+// the unoccluded light of all sources. random: of the cluster.
 void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall& ball, float error,
                     uint64_t random, WeakSourcesScratch& scratch);
 

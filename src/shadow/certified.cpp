@@ -18,14 +18,20 @@ ReceiverHull CertifiedEstimator::hull_of(std::span<const uint32_t> members) {
   return bound_receivers(hull_origins_, hull_normals_);
 }
 
-void CertifiedEstimator::irradiance(std::span<const Vec3d> corners, std::vector<float>& values) {
+void CertifiedEstimator::irradiance(const FlatSource& source, std::span<const Vec3d> corners,
+                                    std::vector<float>& values) {
   values.resize(receivers_.size());
-  const Parallelogram& p = source_->plane;
-  if (!source_->is_disk) return unoccluded_irradiance(corners, p.normal, arrays_, values.data());
+  const Parallelogram& p = source.plane;
+  if (!source.is_disk) return unoccluded_irradiance(corners, p.normal, arrays_, values.data());
   const Vec3d centre = p.origin + (p.u + p.v) * 0.5;
   for (size_t i = 0; i < receivers_.size(); ++i)
     values[i] = float(disk_irradiance(centre, p.normal, 0.5 * length(p.u), arrays_.position_at(i),
                                       arrays_.normal_at(i)));
+}
+
+std::span<const float> CertifiedEstimator::unoccluded(const FlatSource& source) {
+  irradiance(source, source.corners(), unoccluded_);
+  return unoccluded_;
 }
 
 void CertifiedEstimator::begin_cluster(std::span<const ShadowReceiver> receivers) {
@@ -173,7 +179,7 @@ void CertifiedEstimator::settle_cells(std::span<uint32_t> members, const Receive
     if (source_->is_disk || is_whole)
       cell_unoccluded_ = unoccluded_;
     else
-      irradiance(cell.all_corners(), cell_unoccluded_);
+      irradiance(*source_, cell.all_corners(), cell_unoccluded_);
     cell_members_.clear();
     for (const uint32_t m : members)
       if (cell_unoccluded_[m] > 0) cell_members_.push_back(m);
@@ -221,7 +227,7 @@ void CertifiedEstimator::evaluate(const FlatSource& source, const SourceTerms& t
   source_ = &source;
   is_round_ = false;
   if (receivers_.empty()) return;
-  irradiance(source.corners(), unoccluded_);
+  irradiance(source, source.corners(), unoccluded_);
   if (!begin(terms, scene, found, out)) return;
   const bool is_all = members_.size() == receivers_.size();
   const ReceiverHull hull = is_all ? cluster_hull_ : hull_of(members_);

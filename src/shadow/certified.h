@@ -100,6 +100,11 @@ class CertifiedEstimator {
   // The receivers of the calls of evaluate that follow; they must stay where they are.
   void begin_cluster(std::span<const ShadowReceiver> receivers);
 
+  // Projected solid angles of a source from the receivers, nothing hidden, sr. Valid until the next
+  // call.
+  std::span<const float> unoccluded(const FlatSource& source);
+  std::span<const float> unoccluded(const SphereSource& source);
+
   // out[i] answers receivers[i], but for rays. Deterministic in its arguments and the cluster;
   // `found` is read now and updated by end_cluster.
   void evaluate(const FlatSource& source, const SourceTerms& terms, ShadowScene& scene,
@@ -116,7 +121,8 @@ class CertifiedEstimator {
   // certified.cpp: from the cluster and the source to lists and cells
   bool begin(const SourceTerms& terms, ShadowScene& scene, FoundFacets& found,
              std::span<SourceVisibility> out);
-  void irradiance(std::span<const Vec3d> corners, std::vector<float>& values);
+  void irradiance(const FlatSource& source, std::span<const Vec3d> corners,
+                  std::vector<float>& values);
   void gather(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
               size_t most);
   void divide(std::span<uint32_t> members, const ReceiverHull& hull, const CertifiedCell& part,

@@ -115,16 +115,21 @@ void CertifiedEstimator::divide_round(const SphereSource& source, std::span<uint
   settle_round(source, members, hull);
 }
 
+std::span<const float> CertifiedEstimator::unoccluded(const SphereSource& source) {
+  unoccluded_.resize(receivers_.size());
+  for (size_t i = 0; i < receivers_.size(); ++i)
+    unoccluded_[i] = float(sphere_irradiance(source.centre, source.radius, arrays_.position_at(i),
+                                             arrays_.normal_at(i)));
+  return unoccluded_;
+}
+
 void CertifiedEstimator::evaluate(const SphereSource& source, const SourceTerms& terms,
                                   ShadowScene& scene, FoundFacets& found,
                                   std::span<SourceVisibility> out) {
   source_ = nullptr;
   is_round_ = true;
   if (receivers_.empty()) return;
-  unoccluded_.resize(receivers_.size());
-  for (size_t i = 0; i < receivers_.size(); ++i)
-    unoccluded_[i] = float(sphere_irradiance(source.centre, source.radius, arrays_.position_at(i),
-                                             arrays_.normal_at(i)));
+  unoccluded(source);
   if (!begin(terms, scene, found, out)) return;
   own_ = source.own;
   cell_unoccluded_ = unoccluded_;

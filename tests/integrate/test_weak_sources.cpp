@@ -91,8 +91,10 @@ TEST_CASE("drawn sources stand for the weak ones: unbiased, within the error tha
       WeakSourcesScratch scratch;
       choose_sources(sources, ball, error, mix64(k + 5), scratch);
       double estimate = 0;
+      for (const uint32_t i : scratch.weak) estimate += light(i);
       for (const ChosenSource& c : scratch.chosen)
-        estimate += double(c.weight) * light(c.source) * double(visible(c.source));
+        estimate += c.is_drawn ? double(c.weight) * light(c.source) * double(visible(c.source) - 1)
+                               : light(c.source) * double(visible(c.source));
       sum += estimate;
       sum2 += estimate * estimate;
       treated = scratch.chosen.size();
@@ -110,5 +112,6 @@ TEST_CASE("drawn sources stand for the weak ones: unbiased, within the error tha
   WeakSourcesScratch scratch;
   choose_sources(sources, ball, 0, 1, scratch);
   CHECK(scratch.chosen.size() == sources.size());
-  for (const ChosenSource& c : scratch.chosen) CHECK(c.weight == 1);
+  for (const ChosenSource& c : scratch.chosen) CHECK(!c.is_drawn);
+  CHECK(scratch.weak.empty());
 }
