@@ -221,6 +221,36 @@ void CertifiedEstimator::finish_sums() {
   }
 }
 
+// Facets between the source's outline, in the slab that rays may leave out.
+void CertifiedEstimator::look_for_rim(const RaySource& target) {
+  const Vec3d n = target.normal;
+  const std::vector<Vec3d> corners = source_->corners();
+  Vec3d middle;
+  for (const Vec3d& c : corners) middle = middle + c * (1.0 / double(corners.size()));
+  const double margin = 2 * target.tolerance;
+  std::vector<Plane> planes;
+  const auto add = [&](const Vec3d& outwards, const Vec3d& point) {
+    planes.push_back({Vec3(outwards), float(dot(outwards, point) + margin)});
+  };
+  add(n, target.point);
+  add(-n, target.point);
+  Box box;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Vec3d& c = corners[i];
+    box.grow(Vec3(c));
+    const Vec3d side = cross(corners[(i + 1) % corners.size()] - c, n);
+    const double size = length(side);
+    if (size > 0) add(side * ((dot(side, c - middle) < 0 ? -1 : 1) / size), c);
+  }
+  ShadowCandidates near;
+  scene_->candidates(planes, box, box, options_.most_found, own_, near);
+  bool has_rim = !near.is_complete;
+  for (const FacetToAdd& f : near.facets)
+    for (const Vec3& v : f.quad)
+      has_rim = has_rim || dot(n, Vec3d(v) - target.point) > target.tolerance;
+  found_->rim = has_rim ? FoundFacets::Rim::some : FoundFacets::Rim::none;
+}
+
 void CertifiedEstimator::evaluate(const FlatSource& source, const SourceTerms& terms,
                                   ShadowScene& scene, FoundFacets& found,
                                   std::span<SourceVisibility> out) {
@@ -247,6 +277,7 @@ void CertifiedEstimator::evaluate(const FlatSource& source, const SourceTerms& t
   whole_ = &part;
   const size_t first_ray = rays_.size();
   divide(members_, hull, part, options_.most_halvings);
+  if (found.is_hopeless && found.rim == FoundFacets::Rim::unknown) look_for_rim(target);
   finish_sums();
   rays_.scale(first_ray, cell_sums_);  // now unoccluded over the sum of the cells
 }

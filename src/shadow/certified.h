@@ -133,6 +133,7 @@ class CertifiedEstimator {
   void settle_cells(std::span<uint32_t> members, const ReceiverHull& hull,
                     const CertifiedCell& part);
   void finish_sums();
+  void look_for_rim(const RaySource& target);
   ReceiverHull hull_of(std::span<const uint32_t> members);
 
   // certified_sphere.cpp

@@ -264,14 +264,6 @@ MaskWeights mask_weights(const MaskFrame& frame, const Vec3d& x, const Vec3& n, 
   return w;
 }
 
-float weight_of(const MaskWeights& w, int k, int j) {
-  const auto row = float(j), at = float(k);
-  const float cosine = w.cosine + w.cosine_j * row + w.cosine_k * at;
-  const float square = w.square + row * (w.square_j + row * w.square_jj) +
-                       at * (w.slope + w.slope_j * row + at * w.square_kk);
-  return (cosine > 0 ? cosine : 0) / (square * square);
-}
-
 MaskWeight weigh(const MaskFrame& frame, const CoverageMask& mask, const MaskWeights& weights,
                  float* open_by_row, int instruction_set) {
   float sums[2], rows[most_mask_rows];

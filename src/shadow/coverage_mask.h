@@ -180,7 +180,13 @@ void clip_to_horizon(const MaskFrame& frame, const Vec3d& x, const Vec3& n, cons
 // The unoccluded weights of samples at world position x with unit normal n: max(n·d, 0) / |d|⁴,
 // d from x to the sample, which is the differential form factor but for what all samples share.
 MaskWeights mask_weights(const MaskFrame& frame, const Vec3d& x, const Vec3& n, const Vec2& shift);
-float weight_of(const MaskWeights& w, int k, int j);
+inline float weight_of(const MaskWeights& w, int k, int j) {
+  const auto row = float(j), at = float(k);
+  const float cosine = w.cosine + w.cosine_j * row + w.cosine_k * at;
+  const float square = w.square + row * (w.square_j + row * w.square_jj) +
+                       at * (w.slope + w.slope_j * row + at * w.square_kk);
+  return (cosine > 0 ? cosine : 0) / (square * square);
+}
 
 // Visible share of the source's unoccluded irradiance; open_by_row, if not null, receives the open
 // weight of each of 32 rows.

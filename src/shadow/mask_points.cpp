@@ -1,8 +1,69 @@
 #include "shadow/mask_points.h"
 
+#include <array>
 #include <bit>
 
 namespace troffer {
+
+namespace {
+
+constexpr int side = 32;  // of the canvas: most_mask_rows
+static_assert(side == int(most_mask_rows));
+
+struct CanvasPoint {
+  uint8_t k, j;
+};
+
+// Cells of the canvas along a Hilbert curve.
+constexpr std::array<CanvasPoint, size_t(side* side)> hilbert_curve() {
+  std::array<CanvasPoint, size_t(side * side)> curve{};
+  for (int d = 0; d < side * side; ++d) {
+    int x = 0, y = 0, t = d;
+    for (int s = 1; s < side; s *= 2) {
+      const int rx = 1 & (t / 2), ry = 1 & (t ^ rx);
+      if (ry == 0) {
+        if (rx == 1) {
+          x = s - 1 - x;
+          y = s - 1 - y;
+        }
+        const int swapped = x;
+        x = y;
+        y = swapped;
+      }
+      x += s * rx;
+      y += s * ry;
+      t /= 4;
+    }
+    curve[size_t(d)] = {uint8_t(x), uint8_t(y)};
+  }
+  return curve;
+}
+constexpr auto curve = hilbert_curve();
+
+}  // namespace
+
+void draw_points_compact(const MaskFrame& frame, const OpenSamples& s, uint32_t n, float start,
+                         std::vector<Vec3>& points) {
+  const Vec3d first = frame.first_sample() + frame.step_k() * double(s.shift.x) +
+                      frame.step_j() * double(s.shift.y);
+  uint32_t drawn = 0;
+  float passed = 0;
+  Vec3 last;
+  bool is_any = false;
+  // a curve over the smallest power of two that holds the canvas ends where that ends
+  const auto rows = uint32_t(std::bit_ceil(unsigned(frame.lattice().rows)));
+  for (uint32_t d = 0; d < rows * rows && drawn < n; ++d) {
+    const CanvasPoint c = curve[d];
+    if ((s.rows.row[c.j] >> c.k & 1u) == 0) continue;
+    passed += weight_of(s.weights, c.k, c.j);
+    if ((float(drawn) + start) / float(n) * s.open >= passed) continue;
+    last = Vec3(first + frame.step_k() * double(c.k) + frame.step_j() * double(c.j));
+    is_any = true;
+    for (; drawn < n && (float(drawn) + start) / float(n) * s.open < passed; ++drawn)
+      points.push_back(last);
+  }
+  for (; drawn < n && is_any; ++drawn) points.push_back(last);
+}
 
 void draw_points(const MaskFrame& frame, const OpenSamples& s, uint32_t n, float start,
                  std::vector<Vec3>& points) {

@@ -24,4 +24,9 @@ struct OpenSamples {
 void draw_points(const MaskFrame& frame, const OpenSamples& samples, uint32_t n, float start,
                  std::vector<Vec3>& points);
 
+// The same along a Hilbert curve through the samples instead of their rows: neighbours in the order
+// are neighbours on the source, and each point stands for a compact part of it. Slower to draw.
+void draw_points_compact(const MaskFrame& frame, const OpenSamples& samples, uint32_t n,
+                         float start, std::vector<Vec3>& points);
+
 }  // namespace troffer

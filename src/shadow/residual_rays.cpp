@@ -7,6 +7,13 @@
 
 namespace troffer {
 
+namespace {
+
+// So many rays of one receiver are worth an order in which packets are compact.
+constexpr uint32_t fewest_compact = 8;
+
+}  // namespace
+
 void FoundFacets::add(std::vector<uint32_t>& ids) {
   std::sort(ids.begin(), ids.end());
   const size_t before = entries_.size();
@@ -104,7 +111,9 @@ void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits&
                                     float(limits.most_pair_rays));
     const auto n = uint32_t(std::max(std::ceil(std::max(wanted, for_pair) - 1e-3f), 1.0f));
     points_.clear();
-    draw_points(frames_[p.frame], p.samples, n, unit_float(uint32_t(p.random >> 32)), points_);
+    const float start = unit_float(uint32_t(p.random >> 32));
+    (n < fewest_compact ? draw_points : draw_points_compact)(frames_[p.frame], p.samples, n, start,
+                                                             points_);
     groups_.push_back({p.source, uint32_t(segments_.size()), uint32_t(points_.size()),
                        uint32_t(answers_.size()), false, p.light});
     answers_.push_back({p.member, sources_[p.source].tag, uint32_t(points_.size()), 0, 0, {}, 0});
@@ -157,9 +166,10 @@ struct ResidualRays::Tally {
 };
 
 // Any occluder will do where nobody wants to know which one it was: rays that end just before the
-// source, and for those that are free the rest of the way.
+// source. Those that are free go the rest of the way if there is anything in it.
 void ResidualRays::trace_without_names(ShadowScene& scene) {
   before_.clear();
+  has_rim_.clear();
   picked_.clear();
   picked_segments_.clear();
   for (const Group& g : groups_) {
@@ -172,24 +182,29 @@ void ResidualRays::trace_without_names(ShadowScene& scene) {
       picked_.push_back(i);
       picked_segments_.push_back(segments_[i]);
       before_.push_back(float(end));
+      has_rim_.push_back(s.found->rim == FoundFacets::Rim::none ? 0 : 1);
     }
   }
   is_hidden_.resize(picked_.size());
   scene.occluded(picked_segments_, before_, is_hidden_);
   for (size_t k = 0; k < picked_.size(); ++k) {
-    segments_[picked_[k]].first = before_[k];
-    if (is_hidden_[k] != 0) is_settled_[picked_[k]] = 1;
+    const uint32_t i = picked_[k];
+    segments_[i].first = before_[k];
+    if (is_hidden_[k] != 0)
+      state_[i] = RayState::hidden;
+    else if (has_rim_[k] == 0)
+      state_[i] = RayState::free;
   }
 }
 
 void ResidualRays::trace(ShadowScene& scene) {
-  is_settled_.assign(segments_.size(), 0);
+  state_.assign(segments_.size(), RayState::open);
   hits_.assign(segments_.size(), ShadowHit{});
   trace_without_names(scene);
   picked_.clear();
   picked_segments_.clear();
   for (uint32_t i = 0; i < segments_.size(); ++i) {
-    if (is_settled_[i] != 0) continue;
+    if (state_[i] != RayState::open) continue;
     picked_.push_back(i);
     picked_segments_.push_back(segments_[i]);
   }
@@ -206,14 +221,16 @@ std::vector<ResidualRays::Tally> ResidualRays::look_at_hits(const ShadowScene& s
     const RaySource& source = sources_[g.source];
     Tally& t = tallies[g.source];
     for (uint32_t i = g.first; i < g.first + g.count; ++i) {
-      is_free_[i] = is_settled_[i] == 0 && is_free(source, segments_[i], hits_[i], scene) ? 1 : 0;
+      const bool is_open = state_[i] == RayState::open;
+      is_free_[i] =
+          is_open ? is_free(source, segments_[i], hits_[i], scene) : state_[i] == RayState::free;
       t.rays += 1;
       t.free += is_free_[i];
       if (i > g.first) {
         t.neighbours += 1;
         t.changes += is_free_[i] != is_free_[i - 1];
       }
-      if (is_free_[i] == 0 && is_settled_[i] == 0 && hits_[i].id != ray_is_stopped)
+      if (is_open && is_free_[i] == 0 && hits_[i].id != ray_is_stopped)
         found[g.source].push_back(hits_[i].id);
     }
   }

@@ -117,12 +117,14 @@ class ResidualRays {
   std::vector<Vec3> points_;
   std::vector<ShadowSegment> segments_;
   std::vector<ShadowHit> hits_;
-  std::vector<uint8_t> is_free_, is_settled_;  // settled: hidden, by what nobody asked
-  std::vector<uint32_t> picked_;               // indices of segments that go into one call
+  std::vector<uint8_t> is_free_;
+  enum class RayState : uint8_t { open, free, hidden };  // open: what it meets has a name
+  std::vector<RayState> state_;
+  std::vector<uint32_t> picked_;  // indices of segments that go into one call
   std::vector<ShadowSegment> picked_segments_;
   std::vector<ShadowHit> picked_hits_;
   std::vector<float> before_;
-  std::vector<uint8_t> is_hidden_;
+  std::vector<uint8_t> is_hidden_, has_rim_;
   std::vector<Group> groups_;
   std::vector<RayAnswer> answers_;
 };

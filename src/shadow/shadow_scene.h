@@ -69,7 +69,11 @@ class FoundFacets {
   // Keeps the `most` most hit, and halves the counts.
   void trim(size_t most);
   const std::vector<Entry>& entries() const { return entries_; }
-  bool is_hopeless = false;  // the last cluster's lists stayed too long
+  bool is_hopeless = false;  // a cluster's lists stayed too long
+  // Whether anything that rises over the source's plane comes within rounding of the source: rays
+  // must then look at it to its end.
+  enum class Rim : uint8_t { unknown, none, some };
+  Rim rim = Rim::unknown;
 
  private:
   std::vector<Entry> entries_;
