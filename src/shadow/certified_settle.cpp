@@ -66,18 +66,37 @@ void CertifiedEstimator::settle(std::span<uint32_t> members, const ReceiverHull&
 
 namespace {
 
-// Expected variance of a mask's share. Edges of random directions through a lattice err by 0.07 to
-// 0.09 samples squared per boundary pair (docs/certified.md); samples at the boundary are taken to
-// weigh as much as the source's corners, in the root mean square.
+// Variance of a count of lattice samples behind an edge, in samples squared per pair of neighbours
+// that the edge parts: large for edges that run along rows or columns of the lattice, least for
+// those along the sides of the source (docs/certified.md). Along diagonals it is large too, but as
+// many pairs in rows as in columns mostly mean edges along both sides.
+float edge_variance(float least_pairs, float most_pairs) {
+  const float ratio = least_pairs / most_pairs;
+  // A few pairs do not tell a direction.
+  return most_pairs < 6 || ratio > 0.1f ? 0.04f : ratio > 0.05f ? 0.08f : 0.6f;
+}
+
+// Expected variance of a mask's share. Where samples differ from their neighbours as often as if
+// they were thrown at random, a pair stands for a quarter of a sample squared; samples at the
+// boundary are taken to weigh as much as the source's corners, in the root mean square.
 float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const MaskWeight& sums) {
-  if (sums.boundary_pairs == 0) return 0;
+  const auto rows = float(sums.row_pairs), columns = float(sums.column_pairs);
+  const float pairs = rows + columns;
+  if (pairs == 0) return 0;
   float squares = 0;
   for (int i = 0; i < frame.corner_count(); ++i) {
     const MaskFrame::Corner& c = frame.corners()[i];
     squares += sqr(weight_of(weights, int(c.k), int(c.j)));
   }
-  return 0.08f * float(sums.boundary_pairs) * squares /
-         (float(frame.corner_count()) * sqr(sums.all));
+  // Corners of a disk's square may be far from it.
+  const float mean = sums.all / float(frame.lattice().samples());
+  const float weight2 = std::min(squares / float(frame.corner_count()), 4 * sqr(mean));
+  const float share = sums.share();
+  const float random_pairs = 4 * float(frame.lattice().samples()) * share * (1 - share);
+  const float disorder = std::min(pairs / std::max(random_pairs, 1.0f), 1.0f);
+  const float of_edge = edge_variance(std::min(rows, columns), std::max(rows, columns));
+  const float of_pair = of_edge + disorder * std::max(0.25f - of_edge, 0.0f);
+  return of_pair * pairs * weight2 / sqr(sums.all);
 }
 
 }  // namespace

@@ -267,10 +267,11 @@ MaskWeights mask_weights(const MaskFrame& frame, const Vec3d& x, const Vec3& n, 
 MaskWeight weigh(const MaskFrame& frame, const CoverageMask& mask, const MaskWeights& weights,
                  float* open_by_row, int instruction_set) {
   float sums[2], rows[most_mask_rows];
-  const int pairs = kernels(instruction_set)
-                        .weigh(weights, frame.lattice().rows, mask.inside.row, mask.open.row, sums,
-                               open_by_row != nullptr ? open_by_row : rows);
-  return {sums[0], sums[1], pairs};
+  int pairs[2];
+  kernels(instruction_set)
+      .weigh(weights, frame.lattice().rows, mask.inside.row, mask.open.row, sums,
+             open_by_row != nullptr ? open_by_row : rows, pairs);
+  return {sums[0], sums[1], pairs[0], pairs[1]};
 }
 
 }  // namespace troffer

@@ -164,7 +164,8 @@ struct CoverageMask {
 // Weights of the samples inside and of the open ones, in a unit that is the same for one receiver.
 struct MaskWeight {
   float all = 0, open = 0;
-  int boundary_pairs = 0;  // of neighbouring samples, one open and one not
+  // Neighbouring samples of which one is open and one is not: in a row, in a column.
+  int row_pairs = 0, column_pairs = 0;
   float share() const { return all > 0 ? open / all : 0; }
 };
 

@@ -271,32 +271,32 @@ inline __attribute__((always_inline)) void weigh(const MaskWeights& w, const uin
   sums[1] = seen_sum;
 }
 
-// Pairs of neighbouring samples inside of which one is open and one is not.
+// Pairs of neighbouring samples inside of which one is open and one is not: in a row, in a column.
 template <int rows>
-inline __attribute__((always_inline)) int boundary_pairs(const uint32_t* inside,
-                                                         const uint32_t* open) {
-  int pairs = 0;
+inline __attribute__((always_inline)) void boundary_pairs(const uint32_t* inside,
+                                                          const uint32_t* open, int* pairs) {
+  pairs[0] = pairs[1] = 0;
   for (int j = 0; j < rows; j += 2) {  // two rows in 64 bits
     const uint64_t i0 = inside[j], i1 = inside[j + 1], o0 = open[j], o1 = open[j + 1];
     const uint64_t in = i0 | (i1 << 32), on = o0 | (o1 << 32);
     const uint64_t i2 = j + 2 < rows ? inside[j + 2] : 0, o2 = j + 2 < rows ? open[j + 2] : 0;
     const uint64_t in_above = i1 | (i2 << 32), on_above = o1 | (o2 << 32);
-    pairs += __builtin_popcountll((on ^ on_above) & in & in_above);
-    pairs += __builtin_popcountll((on ^ (on >> 1)) & in & (in >> 1) & 0x7fffffff7fffffffull);
+    pairs[1] += __builtin_popcountll((on ^ on_above) & in & in_above);
+    pairs[0] += __builtin_popcountll((on ^ (on >> 1)) & in & (in >> 1) & 0x7fffffff7fffffffull);
   }
-  return pairs;
 }
 
-// sums: weight of all samples inside, of those open; row_sums: of those open, by row. Returns the
-// number of boundary pairs.
-int weigh_rows(const MaskWeights& w, int rows, const uint32_t* inside, const uint32_t* open,
-               float* sums, float* row_sums) {
+// sums: weight of all samples inside, of those open; row_sums: of those open, by row; pairs: as
+// above.
+void weigh_rows(const MaskWeights& w, int rows, const uint32_t* inside, const uint32_t* open,
+                float* sums, float* row_sums, int* pairs) {
   if (rows <= 16) {
     weigh<16, 16>(w, inside, open, sums, row_sums);
-    return boundary_pairs<16>(inside, open);
+    boundary_pairs<16>(inside, open, pairs);
+  } else {
+    weigh<32, 31>(w, inside, open, sums, row_sums);
+    boundary_pairs<32>(inside, open, pairs);
   }
-  weigh<32, 31>(w, inside, open, sums, row_sums);
-  return boundary_pairs<32>(inside, open);
 }
 
 }  // namespace troffer::TROFFER_MASK_NAMESPACE

@@ -281,3 +281,37 @@ TEST_CASE("certified: the standard error of what is measured is the spread over 
           doctest::Approx(1.08).epsilon(0.6));
   }
 }
+
+TEST_CASE("certified: the error that is told is the error that is made, within a factor of 2") {
+  const std::string root(TROFFER_SOURCE_DIR);
+  for (const char* name :
+       {"/scenes/kj92room/kj92room_direct.pbrt", "/scenes/modern-hall/modern-hall-diffuse.pbrt"}) {
+    const PreparedScene scene(import_scene(root + name));
+    for (const double error : {0.05, 0.01}) {
+      RenderOptions o;
+      o.method = Method::certified;
+      o.indirect = Indirect::none;
+      o.width = 96;
+      o.height = 72;
+      o.threads = 2;
+      o.spp = o.max_spp = 4;
+      o.error = error;
+      o.aovs = {Aov::error};
+      const RenderResult told = render_now(scene, scene.scene.cameras.at(0), o);
+      // the same viewing rays, and sources sampled far better by other numbers
+      o.error = 0.0005;
+      const Image better = render_now(scene, scene.scene.cameras.at(0), o).layers[0].image;
+      double made2 = 0, told2 = 0;
+      for (size_t i = 0; i < better.pixels.size(); ++i) {
+        const Rgb difference = told.layers[0].image.pixels[i] - better.pixels[i];
+        made2 += sqr(double(luminance(difference)));
+        told2 += sqr(double(told.layers[1].image.pixels[i].r));
+      }
+      CAPTURE(name);
+      CAPTURE(error);
+      MESSAGE(name, " at ", error, ": told / made ", std::sqrt(told2 / made2));
+      CHECK(told2 > made2);
+      CHECK(told2 < 2 * 2 * made2);
+    }
+  }
+}
