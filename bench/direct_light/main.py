@@ -23,11 +23,13 @@ class SceneRun:
     rays: int  # of a reference; two of them, independently scrambled
 
 
+TILES = 32  # spread over each picture
+
 SCENES = [
     SceneRun("kj92room/kj92room.gltf", "512x512", 16384),
     SceneRun("modern-hall/modern-hall-diffuse.pbrt", "640x480", 16384),
     SceneRun("clutter", "512x512", 16384),
-    SceneRun("foliage", "512x512", 65536),
+    SceneRun("foliage", "512x512", 32768),
 ]
 
 
@@ -62,9 +64,9 @@ class Bench:
 
     def curves(self):
         for scene in present_scenes():
-            for view, size, tiles, spp in [("low resolution", "256x256", 64, 1),
-                                           ("as rendered", scene.size, 64, 4)]:
-                tiles = tiles // 8 if self.is_quick else tiles
+            for view, size, tiles, spp in [("low resolution", "256x256", TILES, 1),
+                                           ("as rendered", scene.size, TILES, 4)]:
+                tiles = tiles // 4 if self.is_quick else tiles
                 rays = scene.rays // 4 if self.is_quick else scene.rays
                 self.run("curves", ["--scene", scene.file, "--view", view, "--size", size,
                                     "--spp", str(spp), "--tiles", str(tiles), "--rays", str(rays)])
@@ -75,7 +77,7 @@ class Bench:
                               "--error", error])
 
     def bias(self):
-        rays, seeds, tiles = ("16384", "100", "4") if self.is_quick else ("65536", "1000", "12")
+        rays, seeds, tiles = ("16384", "100", "4") if self.is_quick else ("65536", "1000", "6")
         for name in [s.file for s in present_scenes()] + (THIN[:2] if self.is_quick else THIN):
             self.run("bias", ["--scene", name, "--size", "256x256", "--tiles", tiles, "--rays", rays,
                               "--replicates", "8", "--seeds", seeds])
@@ -103,7 +105,7 @@ def main():
     for file, error, cost in [("visibility.png", "rms_visible", "ns_pair"),
                               ("light.png", "rms_light", "ns_hit")]:
         plots.error_against_time(f"{options.out}/{file}", table, error, cost)
-    text = page.write(options.out, bench.commands, options.quick, missing)
+    text = page.write(options.out, TILES, bench.commands, options.quick, missing)
     print(page.summary_text(options.out))
     if options.copy:
         os.makedirs(options.copy, exist_ok=True)

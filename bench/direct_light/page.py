@@ -117,7 +117,7 @@ def bias_rows(out):
             for r in rows.read(f"{out}/bias.csv")]
 
 
-def write(out, commands, is_quick, missing):
+def write(out, tiles, commands, is_quick, missing):
     header, body = summary_rows(out)
     command = f"`bench/direct{' --quick' if is_quick else ''} --copy docs/results-direct`"
     first = ("**A quick try: few hits and settings, no results.** " if is_quick else "")
@@ -125,7 +125,7 @@ def write(out, commands, is_quick, missing):
     text = f"""# Direct light: error against time
 
 {first}Made by {command}, all of it, this page too; nothing here is typed by hand.{absent} What
-is measured, by `bench/direct_light` (program `bench_direct`): the hits of 64 tiles of 8 × 8 pixels
+is measured, by `bench/direct_light` (program `bench_direct`): the hits of {tiles} tiles of 8 × 8 pixels
 spread over the picture, at low resolution with one viewing ray per pixel, and as they are rendered
 with four; each paired with every flat source of the scene. A pair counts if its source, unhidden,
 would give at least a thousandth of its mean irradiance. *Visible share*: how much of the source's
