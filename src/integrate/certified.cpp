@@ -39,8 +39,10 @@ CertifiedSettings certified_settings(double error, size_t emitters) {
 
 struct CertifiedIntegrator::Scratch final : IntegratorScratch {
   Scratch(const CertifiedOptions& options, ShadowWorld world, SourceIntegrand integrand)
-      : lights(options, std::move(world), std::move(integrand)) {}
+      : lights(options, std::move(world), std::move(integrand)),
+        patches(CertifiedPatches::options(options)) {}
   CertifiedLightsScratch lights;
+  CertifiedPatchesScratch patches;
   SourceSamplerScratch rays;
   std::vector<Walk> walks, next_walks;
   WalkScratch trace;
@@ -54,7 +56,10 @@ CertifiedIntegrator::CertifiedIntegrator(const PreparedScene& scene,
       settings_(settings),
       occluders_(scene.scene),
       lights_(scene, settings.error),
-      sampler_(scene) {}
+      sampler_(scene) {
+  if (radiosity_)
+    patches_ = CertifiedPatches(scene, radiosity_->solution(), radiosity_->selection());
+}
 
 std::unique_ptr<IntegratorScratch> CertifiedIntegrator::make_scratch() const {
   return std::make_unique<Scratch>(settings_.estimator,
@@ -66,6 +71,7 @@ void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& s
                                    RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   lights_.forget(s.lights);
+  patches_.forget(s.patches);
   out.tell_variance();
   start_walks(rays, s.walks);
   counters.viewing_rays += rays.size();
@@ -88,13 +94,14 @@ void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& s
         out.records[walk.index] = {
             v.surface.geometry, v.is_front, v.frame.normal, v.surface.position, {}};
       light(walk, v, scattering, s, out, counters);
-      if (radiosity_ && scattering.has_diffuse) add_indirect(walk, hit, v, scattering, out);
+      if (radiosity_ && scattering.has_diffuse) add_indirect(walk, hit, v, scattering, s, out);
       if (scattering.has_specular && walk.vertex < longest_chain &&
           step(walk, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
           survives_spawning(walk))
         s.next_walks.push_back(walk);
     }
     lights_.illuminate(s.lights, out, counters);
+    patches_.illuminate(s.patches, s.lights.world, out, counters);
     sampler_.resolve(s.rays, out, counters);
     s.walks.swap(s.next_walks);
   }
@@ -156,11 +163,15 @@ void CertifiedIntegrator::light(const Walk& walk, const Vertex& v,
 }
 
 void CertifiedIntegrator::add_indirect(const Walk& walk, const Hit& hit, const Vertex& v,
-                                       const SurfaceScattering& scattering,
+                                       const SurfaceScattering& scattering, Scratch& s,
                                        RadianceBatch& out) const {
-  const Rgb irradiance = radiosity_->general(radiosity_->place_of(hit, v)).indirect;
-  const Rgb reflectance = albedo(scattering.diffuse, v.wo.z) * inv_pi_f;
-  out.indirect[walk.index] += walk.throughput * reflectance * irradiance;
+  const RadiosityPlace place = radiosity_->place_of(hit, v);
+  if (place.point == no_point) return;
+  const Rgb reflectance = albedo(scattering.diffuse, v.wo.z);
+  out.indirect[walk.index] +=
+      walk.throughput * reflectance * inv_pi_f * radiosity_->general(place).indirect;
+  patches_.add(walk, v, reflectance, radiosity_->solution().mesh.points[place.point].patch,
+               s.patches);
 }
 
 void CertifiedIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "integrate/certified_lights.h"
+#include "integrate/certified_patches.h"
 #include "integrate/integrator.h"
 #include "integrate/radiosity_light.h"
 #include "integrate/source_sampler.h"
@@ -33,9 +34,8 @@ CertifiedSettings certified_settings(double error, size_t emitters);
 
 class CertifiedIntegrator final : public Integrator {
  public:
-  // `radiosity` of the scene, of a selection that treats every emitter everywhere
-  // (SelectionOptions::is_enabled = false); without it there is no indirect light. Throws
-  // EnvironmentError if memory runs out.
+  // `radiosity` of the scene, of a selection by certified_selection(); without it there is no
+  // indirect light. Throws EnvironmentError if memory runs out.
   CertifiedIntegrator(const PreparedScene& scene, std::optional<RadiosityLight> radiosity,
                       const CertifiedSettings& settings);
 
@@ -57,7 +57,7 @@ class CertifiedIntegrator final : public Integrator {
   void light(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering, Scratch& s,
              RadianceBatch& out, Counters& counters) const;
   void add_indirect(const Walk& walk, const Hit& hit, const Vertex& v,
-                    const SurfaceScattering& scattering, RadianceBatch& out) const;
+                    const SurfaceScattering& scattering, Scratch& s, RadianceBatch& out) const;
   void gather(const SensorBatch& sensors, Scratch& s, RadianceBatch& out, Counters& counters) const;
 
   const PreparedScene& scene_;
@@ -65,6 +65,7 @@ class CertifiedIntegrator final : public Integrator {
   CertifiedSettings settings_;
   Occluders occluders_;
   CertifiedLights lights_;
+  CertifiedPatches patches_;
   SourceSampler sampler_;
 };
 

@@ -26,6 +26,8 @@ class RadiosityLight {
   RadiosityPlace place_of(const Hit& hit, const Vertex& v) const;
   // Irradiance that is not sampled, W/m² or lx; zero off the mesh.
   GeneralIrradiance general(const RadiosityPlace& place) const;
+  const RadiositySolution& solution() const { return solution_; }
+  const SourceSelection& selection() const { return selection_; }
   // Radiance that a surface which a ray has hit reflects, all of it, by the solution alone; zero
   // off the mesh.
   Rgb radiance_seen(const Ray& ray, const Hit& hit) const;

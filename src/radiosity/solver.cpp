@@ -271,9 +271,6 @@ RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
   return s;
 }
 
-namespace {
-
-// All that a patch shot, its parts in the proportions of what they received in all.
 Shooter whole_patch_shooter(const RadiositySolution& s, uint32_t patch) {
   Shooter shooter = patch_shooter(s.mesh, patch, s.shot_radiance[patch]);
   const Patch& p = s.mesh.patches[patch];
@@ -283,8 +280,6 @@ Shooter whole_patch_shooter(const RadiositySolution& s, uint32_t patch) {
   set_parts(shooter, s.mesh, patch, sent);
   return shooter;
 }
-
-}  // namespace
 
 void source_contributions(const Tracer& tracer, const LightPrimitives& lights,
                           const RadiositySolution& s, uint32_t source,

@@ -32,6 +32,10 @@ RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
                                   const RadiosityOptions& options, int threads,
                                   const RadiosityCallback& progress, const StopFlag& stop);
 
+// All that a patch shot, its parts in the proportions of what they received in all; points into the
+// solution's mesh.
+Shooter whole_patch_shooter(const RadiositySolution& solution, uint32_t patch);
+
 // What one source gave to any sample points, whether it is in their lists or not. An emitter's
 // values are those of its shot, bit for bit. A patch's are computed anew, in one transfer of all
 // the radiance that it shot: they differ from the sum over its shots by noise. out[i] is for

@@ -310,11 +310,7 @@ std::unique_ptr<Kj92Preparation> prepare(const PreparedScene& scene, Method meth
                                          const ProgressCallback& progress, const StopFlag& stop) {
   if (!needs_preparation(method, indirect)) return nullptr;
   Kj92Settings s = settings;
-  // All emitters are treated everywhere: the general value is what comes from elsewhere.
-  if (method == Method::certified) {
-    s.selection = SelectionOptions();
-    s.selection.is_enabled = false;
-  }
+  if (method == Method::certified) s.selection = certified_selection(s.selection.is_enabled);
   return prepare_kj92(scene, s, indirect == Indirect::none, std::move(solution), threads, progress,
                       stop);
 }

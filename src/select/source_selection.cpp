@@ -56,11 +56,11 @@ class PatchSelector {
            std::vector<GeneralIrradiance>& corners) {
     treated.clear();
     gather_points(sides);
+    const bool treats_all = !options_.is_enabled || options_.treats_all_emitters;
+    if (treats_all) treat_all_emitters(treated);
     if (options_.is_enabled) {
       find_candidates(patch);
       for (const uint32_t source : candidates_) consider(source, treated);
-    } else {
-      treat_all_emitters(treated);
     }
     for (const FragmentSide& s : sides) fill_corners(s, corners);
   }
@@ -95,9 +95,31 @@ class PatchSelector {
     }
   }
 
+  bool is_simple(uint32_t patch) const {
+    const Sheet& sheet = solution_.mesh.sheets[solution_.mesh.patches[patch].sheet];
+    const uint32_t pieces = sheet.last_piece - sheet.first_piece;
+    return options_.most_patch_pieces == 0 ||
+           (pieces <= options_.most_patch_pieces && !(sheet.round_radius > 0));
+  }
+
   bool is_allowed(uint32_t source) const {
-    if (!options_.is_restricted) return solution_.is_emitter(source) || options_.uses_patches;
+    const bool is_emitter = solution_.is_emitter(source);
+    if (is_emitter && options_.treats_all_emitters) return false;  // they are treated already
+    if (!is_emitter && !is_simple(solution_.patch_of(source))) return false;
+    if (!options_.is_restricted) return is_emitter || options_.uses_patches;
     return std::find(options_.only.begin(), options_.only.end(), source) != options_.only.end();
+  }
+
+  // From close by it shows that a patch's elements are coarse.
+  bool is_near(uint32_t source) const {
+    if (!(options_.nearest_patch > 0)) return false;
+    const RadiosityMesh& mesh = solution_.mesh;
+    const float least = sqr(options_.nearest_patch * mesh.patch_size);
+    const Patch& from = mesh.patches[source];
+    for (uint32_t k = from.first_point; k < from.last_point; ++k)
+      for (const uint32_t p : points_)
+        if (length_squared(mesh.points[k].position - mesh.points[p].position) < least) return true;
+    return false;
   }
 
   // Sources that any of the points kept and that come near a threshold there.
@@ -119,6 +141,9 @@ class PatchSelector {
     }
     std::sort(candidates_.begin(), candidates_.end());
     candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
+    std::erase_if(candidates_, [&](uint32_t source) {
+      return !solution_.is_emitter(source) && is_near(solution_.patch_of(source));
+    });
   }
 
   // What the source gives to each point: as kept there, or looked up again.
@@ -161,9 +186,14 @@ class PatchSelector {
     }
   }
 
+  bool is_asked_for(uint32_t emitter) const {
+    return !options_.is_restricted ||
+           std::find(options_.only.begin(), options_.only.end(), emitter) != options_.only.end();
+  }
+
   void treat_all_emitters(std::vector<TreatedSource>& treated) {
     for (uint32_t e = 0; e < solution_.emitter_count; ++e)
-      if (is_allowed(e))
+      if (is_asked_for(e))
         treated.push_back({e, {SourceView::partly, SourceTreatment::sampled, 0, 1, 1}});
     if (!options_.is_restricted) {
       for (GeneralIrradiance& g : general_) g.direct = Rgb{0};

@@ -30,6 +30,14 @@ struct SelectionOptions {
   // Only these emitters, and no patches, may be treated; all others stay in the general value.
   bool is_restricted = false;
   std::vector<uint32_t> only;
+  // Every emitter is sampled on every patch, as if selection were disabled; patches where they are
+  // selected.
+  bool treats_all_emitters = false;
+  // Patches of more pieces, and patches of spheres, are not selected; 0: any may be.
+  uint32_t most_patch_pieces = 0;
+  // Nor are patches with a sample point nearer than so many patch sizes to one of those that
+  // receive.
+  float nearest_patch = 0;
 };
 
 // A source that is treated on a patch: SourceTreatment::probed or sampled. Emitters of the scene,
