@@ -28,7 +28,7 @@ constexpr std::array<MethodOption, 13> method_options{{
     {"--probe-rays", "kj92"},
     {"--coherence", "kj92"},
     {"--ratio", "kj92"},
-    {"--selection", "kj92"},
+    {"--selection", "certified and kj92"},
     {"--select", "kj92"},
 }};
 

@@ -191,7 +191,8 @@ TEST_CASE("selected + general = all that the preprocessing found, at every corne
     if (stored != 4) continue;
     for (const SourceSelection& other :
          {s.again({false, {}, true, false, {}}), s.again({true, {}, false, false, {}}),
-          s.again({true, {}, true, true, {1}}), s.again({false, {}, true, true, {0, 2}})})
+          s.again({true, {}, true, true, {1}}), s.again({false, {}, true, true, {0, 2}}),
+          s.again({true, {}, true, false, {}, true, 1, 0})})
       check_sums(s, other);
   }
 }
@@ -202,8 +203,47 @@ TEST_CASE("… with bright patches among the sources too") {
   const Selected s(uplight(), o);
   const Sums sums = check_sums(s, s.selection);
   CHECK(sums.patches > 100);
+  const Sums certified = check_sums(s, s.again({true, {}, true, false, {}, true, 4, 0}));
+  CHECK(certified.patches == sums.patches);  // whatever is done about emitters
+  CHECK(certified.treated == certified.patches + certified.corners);
   MESSAGE("corners " << sums.corners << ", treated patches at them " << sums.patches
                      << ", of which not kept somewhere " << sums.inexact);
+}
+
+TEST_CASE("patches nearer than asked for, or of too many pieces, stay in the general value") {
+  const Selected s(uplight(), coarse(8));
+  const RadiosityMesh& mesh = s.solution.mesh;
+  SelectionOptions o;
+  o.treats_all_emitters = true;
+  const SourceSelection all = s.again(o);
+  o.nearest_patch = 1.5f;
+  o.most_patch_pieces = 1;
+  const SourceSelection far = s.again(o);
+  const auto distance = [&](uint32_t a, uint32_t b) {
+    float least = 1e30f;
+    for (uint32_t i = mesh.patches[a].first_point; i < mesh.patches[a].last_point; ++i)
+      for (uint32_t k = mesh.patches[b].first_point; k < mesh.patches[b].last_point; ++k)
+        least = std::min(least, length(mesh.points[i].position - mesh.points[k].position));
+    return least;
+  };
+  uint32_t before = 0, after = 0;
+  for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
+    REQUIRE(find(far, p, 0) != nullptr);
+    for (const TreatedSource& t : all.of_patch(p))
+      before += s.solution.is_emitter(t.source) ? 0 : 1;
+    for (const TreatedSource& t : far.of_patch(p)) {
+      if (s.solution.is_emitter(t.source)) continue;
+      const uint32_t source = s.solution.patch_of(t.source);
+      const Sheet& sheet = mesh.sheets[mesh.patches[source].sheet];
+      CHECK(sheet.last_piece - sheet.first_piece == 1);
+      CHECK(distance(p, source) >= 1.5f * mesh.patch_size);
+      CHECK(find(all, p, t.source) != nullptr);
+      ++after;
+    }
+  }
+  CHECK(after > 10);
+  CHECK(after < before);
+  check_sums(s, far);
 }
 
 TEST_CASE("lists are in order, name existing sources, and leave out what is general") {
