@@ -255,7 +255,7 @@ void CertifiedEstimator::evaluate(const FlatSource& source, const SourceTerms& t
                                   ShadowScene& scene, FoundFacets& found,
                                   std::span<SourceVisibility> out) {
   source_ = &source;
-  is_round_ = false;
+  does_horizon_hide_ = has_own_horizons_ && source.is_disk;
   if (receivers_.empty()) return;
   irradiance(source, source.corners(), unoccluded_);
   if (!begin(terms, scene, found, out)) return;

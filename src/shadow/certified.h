@@ -3,8 +3,7 @@
 //
 // For a cluster of receivers (neighbouring hits) and a source:
 //   1. candidates that meet the shaft between them; too many: the cluster or the source is halved,
-//   a
-//      few times at most; none: all receivers are lit, exactly;
+//      a few times at most; none: all receivers are lit, exactly;
 //   2. the source is cut into cells over which the unoccluded term does not vary much;
 //   3. facets proved to hide nothing of a cell are dropped; one proved to hide all of it: dark;
 //   4. the cluster is halved while that shortens lists;
@@ -175,7 +174,8 @@ class CertifiedEstimator {
   const MaskFrame* frame_ = nullptr;
   uint64_t cell_stream_ = 0;
   bool is_complete_ = true;
-  bool is_round_ = false;
+  // Unoccluded light knows the horizon of the normal only: the receiver's own one hides.
+  bool does_horizon_hide_ = false;
   // memory
   std::vector<Vec3> hull_origins_, hull_normals_;
   std::vector<float> unoccluded_, cell_unoccluded_, cell_sums_;

@@ -47,7 +47,7 @@ bool CertifiedEstimator::settle_by_certificate(std::span<const uint32_t> members
     }
     left.keep_unsettled(facets, flags_);
   }
-  if (left.size() > 0 || !is_complete_) return false;
+  if (left.size() > 0 || !is_complete_ || does_horizon_hide_) return false;
   for (const uint32_t m : members) add_lit(m);
   return true;
 }
@@ -113,10 +113,9 @@ float CertifiedEstimator::look(uint32_t member, const FacetList& facets, float& 
   if (!mask_.is_any_open) return 0;
   const Vec3d x(r.position);
   if (has_own_horizons_) {
-    // A sphere's unoccluded light knows the normal's horizon only: there the other one hides.
     const MaskRows inside = mask_.inside;
     clip_to_horizon(*frame_, x, r.horizon, samples_.shift, mask_);
-    if (is_round_) mask_.inside = inside;
+    if (does_horizon_hide_) mask_.inside = inside;
   }
   samples_.rows = mask_.open;
   samples_.weights = mask_weights(*frame_, x, r.normal, samples_.shift);

@@ -82,7 +82,7 @@ void CertifiedEstimator::settle_round(const SphereSource& source, std::span<cons
     frame_ = &frame;
     FacetList& list = lists_[0];
     list.clear();
-    if (is_complete_ && facets.empty() && !has_own_horizons_) {
+    if (is_complete_ && facets.empty() && !does_horizon_hide_) {
       add_lit(m);
       continue;
     }
@@ -127,7 +127,7 @@ void CertifiedEstimator::evaluate(const SphereSource& source, const SourceTerms&
                                   ShadowScene& scene, FoundFacets& found,
                                   std::span<SourceVisibility> out) {
   source_ = nullptr;
-  is_round_ = true;
+  does_horizon_hide_ = has_own_horizons_;
   if (receivers_.empty()) return;
   unoccluded(source);
   if (!begin(terms, scene, found, out)) return;

@@ -105,7 +105,7 @@ void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits&
     const float variance = 4 * sqr(allowed[p.member]);
     // rays of the receiver altogether, were numbers not whole
     const float all = variance > 0 ? sqr(open_[p.member]) / variance : float(limits.most_rays);
-    const float share = open / open_[p.member];
+    const float share = open > 0 ? open / open_[p.member] : 0;
     const float wanted = share * std::min(all, float(limits.most_rays));
     const float for_pair = std::min(sqr(0.5f * p.light / p.unoccluded / limits.pair_error),
                                     float(limits.most_pair_rays));

@@ -317,6 +317,45 @@ TEST_CASE("disks: exact where open, masked by a circle of samples") {
   CHECK(half == doctest::Approx(0.5).epsilon(2e-3));
 }
 
+TEST_CASE("a disk that a receiver's own horizon cuts sends what stands above it") {
+  const FlatSource source{{{0.2, -0.5, -0.3}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}}, {}, true};
+  ShadowReceiver x = receiver({0, 0, 0}, normalize(Vec3{0.4f, 0, 1}), 3);
+  x.normal = normalize(Vec3{-0.3f, 0.1f, 1});
+  for (const Vec3& horizon : {normalize(Vec3{0.4f, 0, 1}), normalize(Vec3{-0.6f, 0, 1})}) {
+    x.horizon = horizon;
+    for (const bool is_hidden : {false, true}) {
+      BruteForceScene scene;
+      if (is_hidden)
+        scene.facets = {parallelogram_facet({0.1f, -0.1f, 0}, {0, 0.2f, 0}, {0, 0, 0.3f})};
+      double expected = 0;
+      constexpr int n = 1500;
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const double u = (i + 0.5) / n, v = (j + 0.5) / n;
+          const Vec3d y = source.plane.origin + source.plane.u * u + source.plane.v * v;
+          if (sqr(u - 0.5) + sqr(v - 0.5) > 0.25) continue;
+          if (dot(y, Vec3d(x.horizon)) <= 0 || dot(y, Vec3d(x.normal)) <= 0) continue;
+          if (scene.is_hidden(Vec3d(x.origin), y, 0) == 1) continue;
+          expected += dot(y, Vec3d(x.normal)) * y.x / std::pow(length_squared(y), 2) / (n * n);
+        }
+      CertifiedOptions options;
+      options.lattice = fine_lattice;
+      CertifiedEstimator estimator(options);
+      double light = 0;
+      constexpr int seeds = 400;
+      for (int i = 0; i < seeds; ++i) {
+        FoundFacets found;
+        SourceVisibility out;
+        x.stream = hash_of(uint64_t(i), 9u);
+        evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1});
+        light += double(out.unoccluded) * double(out.visible) / seeds;
+      }
+      CAPTURE(is_hidden);
+      CHECK(light == doctest::Approx(expected).epsilon(4e-3));
+    }
+  }
+}
+
 TEST_CASE("clusters: planes stay together, each receiver is in one") {
   Random r(2);
   std::vector<Vec3> positions, normals;
