@@ -1,7 +1,6 @@
 #include "integrate/certified_lights.h"
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "base/random.h"
 #include "trace/occluders.h"
@@ -72,10 +71,11 @@ namespace {
 
 // Whether a point in the source's plane belongs to it.
 bool covers(const FlatSource& s, const Vec3& point) {
-  if (s.outline.size() < 3) return true;
+  if (s.is_disk) return true;
   const Vec3d d = Vec3d(point) - s.plane.origin, n = cross(s.plane.u, s.plane.v);
   const double area2 = length_squared(n);
   const double u = dot(cross(d, s.plane.v), n) / area2, v = dot(cross(s.plane.u, d), n) / area2;
+  if (s.outline.empty()) return u >= 0 && u <= 1 && v >= 0 && v <= 1;
   int left = 0, right = 0;
   for (size_t i = 0; i < s.outline.size(); ++i) {
     const Vec2d p(s.outline[i]), q(s.outline[(i + 1) % s.outline.size()]);
@@ -219,6 +219,9 @@ void CertifiedLights::choose(std::span<const uint32_t> members, CertifiedLightsS
   }
   ball.centre = (box.lower + box.upper) * 0.5f;
   ball.radius = 0.5f * box.diagonal();
+  // those of a normal in common need not lie in one plane
+  for (const ShadowReceiver& r : s.receivers)
+    ball.depth = std::max(ball.depth, dot(ball.normal, ball.centre - r.position));
   choose_sources(sources_, ball, is_matte ? 0.5f * error_ : 0.0f,
                  hash_combine(s.receivers[0].stream, members.size()), s.weak);
 }
@@ -286,19 +289,21 @@ void CertifiedLights::add_rays(std::span<const RayAnswer> rays, std::span<const 
 }
 
 // What drawing some of the weak sources adds, from the spread of what is missing of them. Hits of
-// one pixel share the draw, so that their errors add up.
+// one pixel, which stand side by side, share the draw, so that their errors add up.
 void CertifiedLights::add_drawing_variance(std::span<const uint32_t> members,
                                            const CertifiedLightsScratch& s,
                                            RadianceBatch& out) const {
   float drawn = 0;
   for (const ChosenSource& c : s.weak.chosen) drawn += c.is_drawn ? 1.0f : 0.0f;
   if (drawn < 2 || out.direct_variance.empty()) return;
-  std::unordered_map<uint64_t, float> hits_of_pixel;
-  for (const uint32_t m : members) hits_of_pixel[s.hits.pixels[m]] += 1;
-  for (size_t i = 0; i < members.size(); ++i) {
-    const float spread = std::max(s.drawn_squares[i] - sqr(s.drawn_sums[i]) / drawn, 0.0f);
-    out.direct_variance[s.hits.indices[members[i]]] +=
-        spread * drawn / (drawn - 1) * hits_of_pixel[s.hits.pixels[members[i]]];
+  const auto pixel = [&](size_t i) { return s.hits.pixels[members[i]]; };
+  for (size_t first = 0, end = 0; first < members.size(); first = end) {
+    while (end < members.size() && pixel(end) == pixel(first)) ++end;
+    for (size_t i = first; i < end; ++i) {
+      const float spread = std::max(s.drawn_squares[i] - sqr(s.drawn_sums[i]) / drawn, 0.0f);
+      out.direct_variance[s.hits.indices[members[i]]] +=
+          spread * drawn / (drawn - 1) * float(end - first);
+    }
   }
 }
 

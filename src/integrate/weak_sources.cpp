@@ -38,9 +38,9 @@ float unoccluded_bound(const CertifiedSource& s, const ClusterBall& ball, float&
   const bool is_flat = length_squared(ball.normal) > 0;
   const float rise = is_flat ? dot(ball.normal, d) : distance;
   const float over = s.is_round ? distance : -dot(Vec3(s.flat.plane.normal), d);
-  const float highest = rise + radius + (is_flat ? 0 : ball.radius);
+  const float highest = rise + radius + (is_flat ? ball.depth : ball.radius);
   const float farthest = over + ball.radius + (s.is_round ? radius : 0.0f);
-  // flat receivers lie in one plane, within rounding
+  // normals and heights are common to all receivers within rounding
   const float slack = 1e-4f * (distance + radius + ball.radius);
   estimate = 0;
   if (highest < -slack || farthest < -slack) return 0;

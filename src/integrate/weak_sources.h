@@ -16,11 +16,13 @@
 
 namespace troffer {
 
-// A ball that holds a cluster's receivers; `normal`: the common one, or zero.
+// A ball that holds a cluster's receivers; `normal`: the common one, or zero; `depth`: metres by
+// which, where there is one, they lie below the centre at most.
 struct ClusterBall {
   Vec3 centre;
   float radius = 0;
   Vec3 normal;
+  float depth = 0;
 };
 
 // An upper bound on the projected solid angle of the source, nothing hidden, from any receiver in

@@ -272,3 +272,34 @@ TEST_CASE("certified: irradiance at points, exact in the open and as by fixed un
     CHECK(p_of_difference(a, b, 5e-5 * b.mean()) > 1e-4);
   }
 }
+
+TEST_CASE("certified: of many sources, steps of one normal lose none that stands between them") {
+  Scene s;
+  add_diffuse(s, Rgb{0.6f});
+  for (int i = 0; i < 30; ++i) {  // upright, in a row, between the heights of the points
+    const float y = 0.4f * float(i) - 6;
+    make_emitter(
+        s,
+        add_quad(s, 0, {Vec3{3, y, 0.2f}, {3, y, 0.4f}, {3, y + 0.2f, 0.4f}, {3, y + 0.2f, 0.2f}}),
+        Rgb{5});
+  }
+  add_block(s, 0, {20, -20, -1}, {21, 20, 0});  // wide scene, wide clusters
+  const PreparedScene scene(std::move(s));
+  const CertifiedIntegrator mine = certified(scene);
+  SensorBatch sensors;
+  sensors.positions = {{0, 0, 0}, {0, 0, 1}};
+  sensors.normals.assign(2, {0, 0, 1});
+  sensors.streams = {hash_of(1u), hash_of(2u)};
+  sensors.samples = {0, 0};
+  sensors.offset = 1e-5f;
+  RadianceBatch out;
+  Counters counters;
+  out.reset(2);
+  mine.irradiance(sensors, *mine.make_scratch(), out, counters);
+  double expected = 0;
+  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
+    expected += 5 * irradiance(scene.lights, e, {0, 0, 0}, {0, 0, 1});
+  REQUIRE(expected > 0);
+  CHECK(double(out.direct[0].g) == doctest::Approx(expected).epsilon(1e-4));
+  CHECK(out.direct[1].g == 0);
+}

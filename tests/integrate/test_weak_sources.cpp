@@ -43,12 +43,15 @@ TEST_CASE("no receiver in the ball gets more than the bound") {
     const Vec3 n = normalize(random_point(r, 1));
     const bool is_flat = seed % 2 == 0;
     if (is_flat) ball.normal = n;
+    // steps: one normal, several planes
+    ball.depth = is_flat && seed % 4 == 0 ? ball.radius * r.next_float() : 0;
     float estimate = 0;
     const float bound = unoccluded_bound(source, ball, estimate);
     for (int i = 0; i < 20; ++i) {
       Vec3 d = random_point(r, 1);
       if (is_flat) d = d - n * dot(d, n);
-      const Vec3 x = ball.centre + normalize(d) * (ball.radius * std::sqrt(r.next_float()));
+      Vec3 x = ball.centre + normalize(d) * (ball.radius * std::sqrt(r.next_float()));
+      if (ball.depth > 0) x = ball.centre - n * (ball.depth * r.next_float());
       const Vec3 normal = is_flat ? n : normalize(random_point(r, 1));
       const double value = source.unoccluded(Vec3d(x), Vec3d(normal));
       CHECK(value <= double(bound) * (1 + 1e-4) + 1e-9);
