@@ -1,6 +1,7 @@
 #include "integrate/certified_patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>

@@ -303,3 +303,31 @@ TEST_CASE("certified: of many sources, steps of one normal lose none that stands
   CHECK(double(out.direct[0].g) == doctest::Approx(expected).epsilon(1e-4));
   CHECK(out.direct[1].g == 0);
 }
+
+TEST_CASE("certified: a point on a polygon of many corners belongs to one of its parts") {
+  Scene s;
+  add_diffuse(s, Rgb{0.6f});
+  // a square under an arc; of the fan's two parts the second is the square
+  std::vector<Vec3> outline{{0, 0, 2}};
+  for (int i = 1; i < 10; ++i)
+    outline.push_back({0.1f * float(i), -0.3f * std::sin(pi_f * 0.1f * float(i)), 2});
+  outline.insert(outline.end(), {{1, 0, 2}, {1, 1, 2}, {0, 1, 2}});
+  const uint32_t mesh = add_quad(s, 0, {Vec3{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}});
+  s.meshes[mesh].positions = outline;
+  s.meshes[mesh].triangles.clear();
+  for (uint32_t i = 1; i + 1 < outline.size(); ++i)
+    s.meshes[mesh].triangles.push_back({0, i, i + 1});
+  make_emitter(s, mesh, Rgb{5});
+  const size_t triangles = s.meshes[mesh].triangles.size();
+  s.meshes[mesh].emitters.assign(triangles, 0);
+  for (uint32_t t = 2; t < triangles; ++t) s.emitters[0].triangles.push_back(t);
+  const PreparedScene scene(std::move(s));
+  const CertifiedLights lights(scene, 0.01);
+  REQUIRE(lights.has(0));
+  const CertifiedSource* square = lights.source_of(0, false, {0.5f, 0.5f, 2});
+  const CertifiedSource* arc = lights.source_of(0, false, {0.5f, -0.15f, 2});
+  REQUIRE(square != nullptr);
+  REQUIRE(arc != nullptr);
+  CHECK(square->flat.outline.empty());
+  CHECK(arc->flat.outline.size() == 11);
+}
