@@ -134,7 +134,7 @@ void CertifiedEstimator::add_integral(uint32_t member, float light, float share_
   const ShadowReceiver& r = receivers_[member];
   const uint64_t bits = mix64(r.stream + cell_stream_ + 0x14057b7ef767814full);
   points_.clear();
-  draw_points(*frame_, samples_, n, unit_float(uint32_t(bits >> 32)), points_);
+  draw_points(*frame_, samples_, n, bits, points_);
   if (points_.empty()) return;
   values_.resize(points_.size());
   terms_.integrand->evaluate(member, points_, values_);

@@ -3,6 +3,8 @@
 #include <array>
 #include <bit>
 
+#include "base/random.h"
+
 namespace troffer {
 
 namespace {
@@ -40,57 +42,63 @@ constexpr std::array<CanvasPoint, size_t(side* side)> hilbert_curve() {
 }
 constexpr auto curve = hilbert_curve();
 
+// Where in the open weight the points are drawn: one after the other, ascending.
+class Targets {
+ public:
+  Targets(uint32_t n, uint64_t random, float open)
+      : random_(random), part_(open / float(n)), n_(n) {
+    set();
+  }
+  bool is_done() const { return drawn_ == n_; }
+  float next() const { return next_; }
+  void advance() {
+    ++drawn_;
+    set();
+  }
+
+ private:
+  void set() {
+    next_ = (float(drawn_) + unit_float(uint32_t(mix64(random_ + drawn_) >> 32))) * part_;
+  }
+
+  uint64_t random_;
+  float part_, next_ = 0;
+  uint32_t n_, drawn_ = 0;
+};
+
+// World position of canvas (0,0) and its steps.
+struct Canvas {
+  Vec3d first, step_k, step_j;
+
+  Canvas(const MaskFrame& frame, const Vec2& shift)
+      : first(frame.first_sample() + frame.step_k() * double(shift.x) +
+              frame.step_j() * double(shift.y)),
+        step_k(frame.step_k()),
+        step_j(frame.step_j()) {}
+  Vec3 at(int k, int j) const { return Vec3(first + step_k * double(k) + step_j * double(j)); }
+};
+
 }  // namespace
 
-void draw_points_compact(const MaskFrame& frame, const OpenSamples& s, uint32_t n, float start,
-                         std::vector<Vec3>& points) {
-  const Vec3d first = frame.first_sample() + frame.step_k() * double(s.shift.x) +
-                      frame.step_j() * double(s.shift.y);
-  uint32_t drawn = 0;
-  float passed = 0;
-  Vec3 last;
-  bool is_any = false;
-  // a curve over the smallest power of two that holds the canvas ends where that ends
-  const auto rows = uint32_t(std::bit_ceil(unsigned(frame.lattice().rows)));
-  for (uint32_t d = 0; d < rows * rows && drawn < n; ++d) {
-    const CanvasPoint c = curve[d];
-    if ((s.rows.row[c.j] >> c.k & 1u) == 0) continue;
-    passed += weight_of(s.weights, c.k, c.j);
-    if ((float(drawn) + start) / float(n) * s.open >= passed) continue;
-    last = Vec3(first + frame.step_k() * double(c.k) + frame.step_j() * double(c.j));
-    is_any = true;
-    for (; drawn < n && (float(drawn) + start) / float(n) * s.open < passed; ++drawn)
-      points.push_back(last);
-  }
-  for (; drawn < n && is_any; ++drawn) points.push_back(last);
-}
-
-void draw_points(const MaskFrame& frame, const OpenSamples& s, uint32_t n, float start,
+void draw_points(const MaskFrame& frame, const OpenSamples& s, uint32_t n, uint64_t random,
                  std::vector<Vec3>& points) {
-  const Vec3d first = frame.first_sample() + frame.step_k() * double(s.shift.x) +
-                      frame.step_j() * double(s.shift.y);
-  uint32_t drawn = 0;
+  const Canvas canvas(frame, s.shift);
+  Targets targets(n, random, s.open);
   float row_start = 0;
   int last_k = -1, last_row = 0;
-  const auto add = [&](int k, int row) {
-    points.push_back(Vec3(first + frame.step_k() * double(k) + frame.step_j() * double(row)));
-    ++drawn;
-  };
-  for (int row = 0; row < frame.lattice().rows && drawn < n; ++row) {
+  for (int row = 0; row < frame.lattice().rows && !targets.is_done(); ++row) {
     const float row_end = row_start + s.open_by_row[row];
     uint32_t bits = s.rows.row[row];
     float passed = row_start;
     int k = -1;
-    while (drawn < n) {
-      const float target = (float(drawn) + start) / float(n) * s.open;
-      if (target >= row_end) break;
-      while (bits != 0 && passed <= target) {
+    for (; !targets.is_done() && targets.next() < row_end; targets.advance()) {
+      while (bits != 0 && passed <= targets.next()) {
         k = std::countr_zero(bits);
         passed += weight_of(s.weights, k, row);
         bits &= bits - 1;
       }
       if (k < 0) break;
-      add(k, row);
+      points.push_back(canvas.at(k, row));
     }
     if (k >= 0) {
       last_k = k;
@@ -99,7 +107,28 @@ void draw_points(const MaskFrame& frame, const OpenSamples& s, uint32_t n, float
     row_start = row_end;
   }
   // Sums of floats may end short of the last target.
-  while (drawn < n && last_k >= 0) add(last_k, last_row);
+  for (; !targets.is_done() && last_k >= 0; targets.advance())
+    points.push_back(canvas.at(last_k, last_row));
+}
+
+void draw_points_compact(const MaskFrame& frame, const OpenSamples& s, uint32_t n, uint64_t random,
+                         std::vector<Vec3>& points) {
+  const Canvas canvas(frame, s.shift);
+  Targets targets(n, random, s.open);
+  float passed = 0;
+  const CanvasPoint* last = nullptr;
+  // A curve over the smallest power of two that holds the canvas ends where that ends.
+  const auto rows = uint32_t(std::bit_ceil(unsigned(frame.lattice().rows)));
+  for (uint32_t d = 0; d < rows * rows && !targets.is_done(); ++d) {
+    const CanvasPoint& c = curve[d];
+    if ((s.rows.row[c.j] >> c.k & 1u) == 0) continue;
+    last = &c;
+    passed += weight_of(s.weights, c.k, c.j);
+    for (; !targets.is_done() && targets.next() < passed; targets.advance())
+      points.push_back(canvas.at(c.k, c.j));
+  }
+  for (; !targets.is_done() && last != nullptr; targets.advance())
+    points.push_back(canvas.at(last->k, last->j));
 }
 
 }  // namespace troffer

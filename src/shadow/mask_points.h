@@ -18,15 +18,16 @@ struct OpenSamples {
   float open = 0;  // the sum of open_by_row
 };
 
-// Appends n points in world space, drawn from the open samples in proportion to weight, by
-// systematic sampling along the rows with one random start in [0,1): sample i is drawn n weight /
-// open times on average. Fewer than n only where rounding has used the weights up.
-void draw_points(const MaskFrame& frame, const OpenSamples& samples, uint32_t n, float start,
+// Appends n points in world space, drawn from the open samples in proportion to weight: of n equal
+// parts of the open weight, along the rows, one point from each, by numbers of its own hashed from
+// `random`. Of any 0 or 1 of the samples the variance of the mean is therefore at most 1/4n. Fewer
+// than n only where there is no open sample.
+void draw_points(const MaskFrame& frame, const OpenSamples& samples, uint32_t n, uint64_t random,
                  std::vector<Vec3>& points);
 
 // The same along a Hilbert curve through the samples instead of their rows: neighbours in the order
 // are neighbours on the source, and each point stands for a compact part of it. Slower to draw.
 void draw_points_compact(const MaskFrame& frame, const OpenSamples& samples, uint32_t n,
-                         float start, std::vector<Vec3>& points);
+                         uint64_t random, std::vector<Vec3>& points);
 
 }  // namespace troffer

@@ -111,9 +111,8 @@ void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits&
                                     float(limits.most_pair_rays));
     const auto n = uint32_t(std::max(std::ceil(std::max(wanted, for_pair) - 1e-3f), 1.0f));
     points_.clear();
-    const float start = unit_float(uint32_t(p.random >> 32));
-    (n < fewest_compact ? draw_points : draw_points_compact)(frames_[p.frame], p.samples, n, start,
-                                                             points_);
+    (n < fewest_compact ? draw_points : draw_points_compact)(frames_[p.frame], p.samples, n,
+                                                             p.random, points_);
     groups_.push_back({p.source, uint32_t(segments_.size()), uint32_t(points_.size()),
                        uint32_t(answers_.size()), false, p.light});
     answers_.push_back({p.member, sources_[p.source].tag, uint32_t(points_.size()), 0, 0, {}, 0});

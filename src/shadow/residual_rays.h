@@ -58,7 +58,7 @@ class ResidualRays {
   void set_frame(const MaskFrame& frame);
 
   // `light`, in sr, is open, of `unoccluded` of the whole source: a number of rays to be decided by
-  // finish(). `random` starts the systematic sampling, and is the receiver's and the cell's own.
+  // finish(). `random` is the receiver's and the cell's own.
   void add(uint32_t member, const Vec3& origin, const OpenSamples& samples, float light,
            float unoccluded, uint64_t random);
   // One ray to each of these points; `light` × the mean of the values of those that are free is the

@@ -128,7 +128,8 @@ Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const
   double lowest = dot(normal, outline[0]);
   for (const Vec3d& v : outline) lowest = std::min(lowest, dot(normal, v));
   // What does not rise 2e-6 of the largest coordinate over the source's plane (the source itself,
-  // the ceiling it is set into) hides nothing; rays end a little farther from it (certified.cpp).
+  // the ceiling it is set into) hides nothing; for rays it does not count either
+  // (residual_rays.cpp).
   double largest = hull.magnitude;
   for (const Vec3d& v : outline) largest = std::max(largest, largest_coordinate(v));
   shaft.planes[0] = {Vec3(-normal), float(-lowest - 2e-6 * largest)};
