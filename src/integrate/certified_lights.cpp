@@ -255,14 +255,14 @@ void CertifiedLights::add_answers(const ChosenSource& chosen, std::span<const ui
     if (s.hits.is_first[m] != 0)
       out.sources[index] +=
           Rgb{is_lit || is_dark ? 0.0f : 1.0f, is_lit ? 1.0f : 0.0f, is_dark ? 1.0f : 0.0f};
-    if (is_dark && !chosen.is_drawn) continue;
+    if (is_dark && !chosen.is_drawn()) continue;
     const bool is_direct = s.hits.is_direct[m] != 0;
-    if (chosen.is_drawn) {  // of matte receivers
+    if (chosen.is_drawn()) {  // of matte receivers
       const Rgb missing =
           s.hits.weights[m] * source.radiance * (chosen.weight * a.unoccluded * (1 - a.visible));
       out.add(index, is_direct, missing * -1.0f, 0);
       s.drawn_sums[i] += is_direct ? luminance(missing) : 0.0f;
-      s.drawn_squares[i] += is_direct ? sqr(luminance(missing)) : 0.0f;
+      s.drawn_squares[i] += is_direct ? sqr(luminance(missing)) / float(chosen.draws) : 0.0f;
       continue;
     }
     const bool has_value = s.integrand.is_wanted(i);
@@ -294,7 +294,7 @@ void CertifiedLights::add_drawing_variance(std::span<const uint32_t> members,
                                            const CertifiedLightsScratch& s,
                                            RadianceBatch& out) const {
   float drawn = 0;
-  for (const ChosenSource& c : s.weak.chosen) drawn += c.is_drawn ? 1.0f : 0.0f;
+  for (const ChosenSource& c : s.weak.chosen) drawn += float(c.draws);
   if (drawn < 2 || out.direct_variance.empty()) return;
   const auto pixel = [&](size_t i) { return s.hits.pixels[members[i]]; };
   for (size_t first = 0, end = 0; first < members.size(); first = end) {

@@ -105,7 +105,7 @@ void choose_sources(std::span<const CertifiedSource> sources, const ClusterBall&
     passed += bound;
     uint32_t times = 0;
     for (; next < draws && target(next) < passed; ++next) ++times;
-    if (times > 0) s.chosen.push_back({s.order[i], true, float(times * total / (draws * bound))});
+    if (times > 0) s.chosen.push_back({s.order[i], times, float(times * total / (draws * bound))});
   }
 }
 

@@ -31,8 +31,9 @@ float unoccluded_bound(const CertifiedSource& source, const ClusterBall& ball, f
 
 struct ChosenSource {
   uint32_t source;
-  bool is_drawn = false;
-  float weight = 1;  // drawn: what it stands for, as a multiple of its own light
+  uint32_t draws = 0;  // 0: treated for itself
+  float weight = 1;    // drawn: what it stands for, as a multiple of its own light
+  bool is_drawn() const { return draws > 0; }
 };
 
 // Memory, and the result.

@@ -96,7 +96,7 @@ TEST_CASE("drawn sources stand for the weak ones: unbiased, within the error tha
       double estimate = 0;
       for (const uint32_t i : scratch.weak) estimate += light(i);
       for (const ChosenSource& c : scratch.chosen)
-        estimate += c.is_drawn ? double(c.weight) * light(c.source) * double(visible(c.source) - 1)
+        estimate += c.is_drawn() ? double(c.weight) * light(c.source) * double(visible(c.source) - 1)
                                : light(c.source) * double(visible(c.source));
       sum += estimate;
       sum2 += estimate * estimate;
@@ -115,6 +115,6 @@ TEST_CASE("drawn sources stand for the weak ones: unbiased, within the error tha
   WeakSourcesScratch scratch;
   choose_sources(sources, ball, 0, 1, scratch);
   CHECK(scratch.chosen.size() == sources.size());
-  for (const ChosenSource& c : scratch.chosen) CHECK(!c.is_drawn);
+  for (const ChosenSource& c : scratch.chosen) CHECK(!c.is_drawn());
   CHECK(scratch.weak.empty());
 }
