@@ -1,4 +1,5 @@
-// Planar convex polygons: area vector, centroid, and which of them are parallelograms.
+// Planar convex polygons: area vector, centroid, which of them are parallelograms, and how near
+// their plane is in it.
 #pragma once
 
 #include <algorithm>
@@ -32,6 +33,15 @@ inline Vec3d centroid(std::span<const Vec3> polygon, const Vec3d& normal) {
   if (weight > 0) return origin + sum / weight;
   for (const Vec3& p : polygon) mean += Vec3d(p);
   return mean / double(polygon.size());
+}
+
+// Up to so many metres over the plane of a flat source that contains y a receiver x counts as lying
+// in it, and gets no light: rounding puts hits on a source on either side of its plane, and the
+// back would see the front fill its sky. Rays begin and end farther from surfaces than that.
+inline double plane_rounding(const Vec3d& x, const Vec3d& y) {
+  double sum = 0;
+  for (const Vec3d& p : {x, y}) sum += std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return 0x1p-21 * sum;
 }
 
 // Four vertices whose diagonals halve each other within rounding: up to 1e-5 of the diagonal, or

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "base/vec.h"
 #include "emitter/light_primitive.h"
+#include "emitter/polygon.h"
 #include "emitter/spherical_disk.h"
 #include "emitter/spherical_rectangle.h"
 #include "emitter/spherical_triangle.h"
@@ -29,11 +30,11 @@ struct PlanarView {
 
   PlanarView(const LightPrimitive& p, const Vec3& x) {
     // From float coordinates this difference is exact in double precision.
-    const double signed_height =
-        dot(p.normal, Vec3d(x) - Vec3d(p.vertex_count > 0 ? p.vertex(0) : p.centroid));
+    const Vec3d y(p.vertex_count > 0 ? p.vertex(0) : p.centroid);
+    const double signed_height = dot(p.normal, Vec3d(x) - y);
     is_front = signed_height > 0;
     height = std::abs(signed_height);
-    is_visible = is_front || (p.is_two_sided && signed_height < 0);
+    is_visible = (is_front || p.is_two_sided) && height > plane_rounding(Vec3d(x), y);
     is_far = length_squared(x - p.centroid) > sqr(far_in_radii) * sqr(p.radius);
   }
   float pdf_from_area(const LightPrimitive& p, float distance) const {

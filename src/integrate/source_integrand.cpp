@@ -1,6 +1,7 @@
 #include "integrate/source_integrand.h"
 
 #include "emitter/irradiance.h"
+#include "emitter/polygon.h"
 #include "integrate/connect.h"
 
 namespace troffer {
@@ -8,7 +9,7 @@ namespace troffer {
 double CertifiedSource::unoccluded(const Vec3d& x, const Vec3d& n) const {
   if (is_round) return sphere_irradiance(sphere.centre, sphere.radius, x, n);
   const Parallelogram& p = flat.plane;
-  if (dot(p.normal, x - p.origin) <= 0) return 0;
+  if (dot(p.normal, x - p.origin) <= plane_rounding(x, p.origin)) return 0;
   if (flat.is_disk)
     return disk_irradiance(p.origin + (p.u + p.v) * 0.5, p.normal, 0.5 * length(p.u), x, n);
   return polygon_irradiance(flat.corners(), x, n, Sides::both);

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "emitter/irradiance.h"
+#include "emitter/polygon.h"
 
 namespace troffer {
 
@@ -24,9 +25,14 @@ void CertifiedEstimator::irradiance(const FlatSource& source, std::span<const Ve
   const Parallelogram& p = source.plane;
   if (!source.is_disk) return unoccluded_irradiance(corners, p.normal, arrays_, values.data());
   const Vec3d centre = p.origin + (p.u + p.v) * 0.5;
-  for (size_t i = 0; i < receivers_.size(); ++i)
-    values[i] = float(disk_irradiance(centre, p.normal, 0.5 * length(p.u), arrays_.position_at(i),
-                                      arrays_.normal_at(i)));
+  for (size_t i = 0; i < receivers_.size(); ++i) {
+    const Vec3d x = arrays_.position_at(i);
+    const bool is_before = dot(p.normal, x - centre) > plane_rounding(x, centre);
+    values[i] =
+        is_before
+            ? float(disk_irradiance(centre, p.normal, 0.5 * length(p.u), x, arrays_.normal_at(i)))
+            : 0;
+  }
 }
 
 std::span<const float> CertifiedEstimator::unoccluded(const FlatSource& source) {

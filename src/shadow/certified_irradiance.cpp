@@ -9,18 +9,13 @@
 #include "base/units.h"
 #include "emitter/arctangent.h"
 #include "emitter/irradiance.h"
+#include "emitter/polygon.h"
 
 namespace troffer {
 
 namespace {
 
 constexpr size_t block = 16;
-// Receivers no farther above a source's plane than this share of coordinates are in it.
-constexpr double in_plane = 0x1p-21;
-
-double largest_coordinate(const Vec3d& p) {
-  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-}
 
 // Lambert's sum of a polygon that stands above the horizon [1], from receivers relative to its
 // first corner; least: the lowest corner's height.
@@ -186,16 +181,14 @@ void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& plane_no
   outline = outline.first(std::min(outline.size(), most_corners));
   const PolygonSums sums(outline);
   alignas(64) double sum[block], least[block];
-  // A hit on the source itself is in its plane, whichever side of it rounding has put it.
   const double level = dot(plane_normal, outline[0]);
-  const double own_rounding = in_plane * largest_coordinate(outline[0]);
   for (size_t first = 0; first < receivers.size; first += block) {
     sums.block_sums(receivers, first, sum, least);
     const size_t count = std::min(block, receivers.size - first);
     for (size_t i = 0; i < count; ++i) {
       const Vec3d x = receivers.position_at(first + i);
       double value = 0;
-      if (dot(plane_normal, x) > level + own_rounding + in_plane * largest_coordinate(x)) {
+      if (dot(plane_normal, x) > level + plane_rounding(x, outline[0])) {
         if (!receivers.horizons.empty() &&
             lowest_corner(outline, x, Vec3d(receivers.horizons[first + i])) < 0)
           value = clipped_irradiance(outline, x, receivers.normal_at(first + i),
