@@ -64,7 +64,7 @@ struct CellLimits {
   double variation = 3;
   double least_share = 0.02;
   double most_share = 1;
-  size_t most_cells = 32;
+  size_t most_cells = 128;
 };
 
 // The part of the source above the horizon of flat receivers (all of it for others), as one cell;

@@ -102,9 +102,10 @@ void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits&
   for (const Pending& p : pending_) open_[p.member] += sources_[p.source].brightness * p.light;
   for (const Pending& p : pending_) {
     const float open = sources_[p.source].brightness * p.light;
-    const float variance = 4 * sqr(allowed[p.member]);
-    // rays of the receiver altogether, were numbers not whole
-    const float all = variance > 0 ? sqr(open_[p.member]) / variance : float(limits.most_rays);
+    // Rays of the receiver altogether, were numbers not whole. Quotients before squares: those of
+    // brightness may overflow, and a source may have none.
+    const float error = allowed[p.member];
+    const float all = error > 0 ? sqr(open_[p.member] / (2 * error)) : float(limits.most_rays);
     const float share = open > 0 ? open / open_[p.member] : 0;
     const float wanted = share * std::min(all, float(limits.most_rays));
     const float for_pair = std::min(sqr(0.5f * p.light / p.unoccluded / limits.pair_error),
