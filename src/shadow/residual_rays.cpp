@@ -97,9 +97,22 @@ void ResidualRays::add_segments(const Vec3& origin, const RaySource& source,
     segments_.push_back({origin, source.is_round ? near_end(source, origin, p) : p, source.own});
 }
 
+namespace {
+
+// Rays for a pair's own visible share.
+float rays_for_share(float light, float unoccluded, const RayLimits& limits) {
+  return std::min(sqr(0.5f * light / unoccluded / limits.pair_error), float(limits.most_pair_rays));
+}
+
+}  // namespace
+
 void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits& limits) {
   open_.assign(receivers_, 0);
-  for (const Pending& p : pending_) open_[p.member] += sources_[p.source].brightness * p.light;
+  for_shares_.assign(receivers_, 0);
+  for (const Pending& p : pending_) {
+    open_[p.member] += sources_[p.source].brightness * p.light;
+    for_shares_[p.member] += rays_for_share(p.light, p.unoccluded, limits);
+  }
   for (const Pending& p : pending_) {
     const float open = sources_[p.source].brightness * p.light;
     // Rays of the receiver altogether, were numbers not whole. Quotients before squares: those of
@@ -108,9 +121,10 @@ void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits&
     const float all = error > 0 ? sqr(open_[p.member] / (2 * error)) : float(limits.most_rays);
     const float share = open > 0 ? open / open_[p.member] : 0;
     const float wanted = share * std::min(all, float(limits.most_rays));
-    const float for_pair = std::min(sqr(0.5f * p.light / p.unoccluded / limits.pair_error),
-                                    float(limits.most_pair_rays));
-    const auto n = uint32_t(std::max(std::ceil(std::max(wanted, for_pair) - 1e-3f), 1.0f));
+    // One of hundreds of sources is not worth as many rays as one of a few.
+    const float scale = std::min(float(limits.most_share_rays) / for_shares_[p.member], 1.0f);
+    const float for_share = rays_for_share(p.light, p.unoccluded, limits) * scale;
+    const auto n = uint32_t(std::max(std::ceil(std::max(wanted, for_share) - 1e-3f), 1.0f));
     points_.clear();
     (n < fewest_compact ? draw_points : draw_points_compact)(frames_[p.frame], p.samples, n,
                                                              p.random, points_);

@@ -41,9 +41,10 @@ struct RayAnswer {
 };
 
 struct RayLimits {
-  uint32_t most_rays = 256;      // of a receiver, for its allowed error
-  float pair_error = 0.02f;      // allowed standard error of each source's visible share …
-  uint32_t most_pair_rays = 64;  // … unless that takes more rays than this
+  uint32_t most_rays = 256;        // of a receiver, for its allowed error
+  float pair_error = 0.02f;        // allowed standard error of each source's visible share …
+  uint32_t most_pair_rays = 64;    // … unless that takes more rays than this,
+  uint32_t most_share_rays = 512;  // or for all pairs of a receiver more than this
 };
 
 class ResidualRays {
@@ -113,7 +114,8 @@ class ResidualRays {
   std::vector<Rgb> chosen_values_;
   size_t receivers_ = 0;
 
-  std::vector<float> open_;  // per receiver: sum of brightness × light
+  std::vector<float> open_;        // per receiver: sum of brightness × light
+  std::vector<float> for_shares_;  // per receiver: rays wanted for visible shares
   std::vector<Vec3> points_;
   std::vector<ShadowSegment> segments_;
   std::vector<ShadowHit> hits_;
