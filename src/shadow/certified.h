@@ -84,7 +84,8 @@ struct CertifiedOptions {
   // send unoccluded: kept unless that takes more rays than the limits allow.
   float residual_error = 0.01f;
   RayLimits rays;
-  size_t most_found = 64;  // facets in the lists that are not complete
+  uint32_t masks_with_rays = 4;  // per receiver and cell, where lists stay too long
+  size_t most_found = 64;        // facets in the lists that are not complete
 };
 
 struct CertifiedCounters {
@@ -149,7 +150,9 @@ class CertifiedEstimator {
                              const FacetList& facets, FacetList& left);
   void add_lit(uint32_t member);
   void mask(std::span<const uint32_t> members, const FacetList& facets);
-  float look(uint32_t member, const FacetList& facets, float& variance);
+  void mask_often(std::span<const uint32_t> members, const FacetList& facets);
+  uint64_t ray_numbers(uint32_t member, uint64_t pass) const;
+  float look(uint32_t member, const FacetList& facets, uint64_t pass, float& variance);
   void add_integral(uint32_t member, float light, float share_variance);
   void add_answer(uint32_t member, float share, float variance, ShadowAnswer answer);
 

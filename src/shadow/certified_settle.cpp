@@ -73,11 +73,12 @@ namespace {
 float edge_variance(float least_pairs, float most_pairs) {
   const float ratio = least_pairs / most_pairs;
   // A few pairs do not tell a direction.
-  return most_pairs < 6 || ratio > 0.1f ? 0.04f : ratio > 0.05f ? 0.08f : 0.6f;
+  return most_pairs < 6 || ratio > 0.05f ? 0.065f : 0.3f;
 }
 
 // Expected variance of a mask's share. Where samples differ from their neighbours as often as if
-// they were thrown at random, a pair stands for a quarter of a sample squared; samples at the
+// they were thrown at random, and not as rarely as in one piece, a pair stands for a quarter of a
+// sample squared; samples at the
 // boundary are taken to weigh as much as the source's corners, in the root mean square.
 float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const MaskWeight& sums) {
   const auto rows = float(sums.row_pairs), columns = float(sums.column_pairs);
@@ -91,9 +92,11 @@ float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const Ma
   // Corners of a disk's square may be far from it.
   const float mean = sums.all / float(frame.lattice().samples());
   const float weight2 = std::min(squares / float(frame.corner_count()), 4 * sqr(mean));
+  const auto n = float(frame.lattice().samples());
   const float share = sums.share();
-  const float random_pairs = 4 * float(frame.lattice().samples()) * share * (1 - share);
-  const float disorder = std::min(pairs / std::max(random_pairs, 1.0f), 1.0f);
+  const float fewest = 4 * std::sqrt(n * std::min(share, 1 - share));  // of a square
+  const float random = 4 * n * share * (1 - share);
+  const float disorder = std::clamp((pairs - fewest) / std::max(random - fewest, 1.0f), 0.0f, 1.0f);
   const float of_edge = edge_variance(std::min(rows, columns), std::max(rows, columns));
   const float of_pair = of_edge + disorder * std::max(0.25f - of_edge, 0.0f);
   return of_pair * pairs * weight2 / sqr(sums.all);
@@ -103,9 +106,11 @@ float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const Ma
 
 // Sets samples_ to what a receiver sees of the cell past the facets; the visible share, or -1 where
 // no sample stands above the horizon.
-float CertifiedEstimator::look(uint32_t member, const FacetList& facets, float& variance) {
+float CertifiedEstimator::look(uint32_t member, const FacetList& facets, uint64_t pass,
+                               float& variance) {
   const ShadowReceiver& r = receivers_[member];
-  const uint64_t bits = mix64(r.stream + cell_stream_ + 0x5851f42d4c957f2dull);
+  const uint64_t bits =
+      mix64(r.stream + cell_stream_ + pass * 0x9e3779b97f4a7c15ull + 0x5851f42d4c957f2dull);
   samples_.shift = {unit_float(uint32_t(bits)), unit_float(uint32_t(bits >> 32))};
   cover(*frame_, facets, frame_->to_canvas(Vec3d(r.origin)), samples_.shift, mask_);
   samples_.open = 0;
@@ -159,16 +164,17 @@ void CertifiedEstimator::add_lit(uint32_t member) {
   if (wanted_points_[member] == 0) return;
   float variance = 0;
   static const FacetList nothing;
-  if (look(member, nothing, variance) > 0) add_integral(member, cell_unoccluded_[member], 0);
+  if (look(member, nothing, 0, variance) > 0) add_integral(member, cell_unoccluded_[member], 0);
 }
 
 void CertifiedEstimator::mask(std::span<const uint32_t> members, const FacetList& facets) {
+  if (!is_complete_ && found_->is_hopeless) return mask_often(members, facets);
   const ShadowAnswer answer = is_complete_ ? ShadowAnswer::masked : ShadowAnswer::mixed;
   for (const uint32_t m : members) {
     ++counters_.masks;
     counters_.mask_facets += facets.size();
     float variance = 0;
-    const float share = look(m, facets, variance);
+    const float share = look(m, facets, 0, variance);
     const float light = share * cell_unoccluded_[m];
     if (share < 0) {
       add_answer(m, 0.5f, 0.25f, answer);  // hardly any light can come from here
@@ -180,9 +186,37 @@ void CertifiedEstimator::mask(std::span<const uint32_t> members, const FacetList
       if (wanted_points_[m] > 0)
         add_integral(m, light, variance);
       else
-        rays_.add(m, receivers_[m].origin, samples_, light, unoccluded_[m],
-                  mix64(receivers_[m].stream + cell_stream_ + 0x14057b7ef767814full));
+        rays_.add(m, receivers_[m].origin, samples_, light, unoccluded_[m], ray_numbers(m, 0));
     }
+  }
+}
+
+uint64_t CertifiedEstimator::ray_numbers(uint32_t member, uint64_t pass) const {
+  return mix64(receivers_[member].stream + cell_stream_ + pass * 0x9e3779b97f4a7c15ull +
+               0x14057b7ef767814full);
+}
+
+// Where much is left to rays, they must not go through the same few hundred points over and over:
+// masks with several shifts share them.
+void CertifiedEstimator::mask_often(std::span<const uint32_t> members, const FacetList& facets) {
+  const uint32_t passes = options_.masks_with_rays;
+  for (const uint32_t m : members) {
+    bool is_above = false;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+      ++counters_.masks;
+      counters_.mask_facets += facets.size();
+      float variance = 0;
+      const float share = look(m, facets, pass, variance);
+      is_above = is_above || share >= 0;
+      if (!(share > 0)) continue;
+      if (wanted_points_[m] > 0) {
+        add_integral(m, share * cell_unoccluded_[m], variance);
+        break;
+      }
+      rays_.add(m, receivers_[m].origin, samples_, share * cell_unoccluded_[m] / float(passes),
+                unoccluded_[m], ray_numbers(m, pass), passes);
+    }
+    add_answer(m, is_above ? 0.0f : 0.5f, is_above ? 0.0f : 0.25f, ShadowAnswer::mixed);
   }
 }
 

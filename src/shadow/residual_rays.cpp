@@ -61,9 +61,9 @@ void ResidualRays::set_frame(const MaskFrame& frame) {
 }
 
 void ResidualRays::add(uint32_t member, const Vec3& origin, const OpenSamples& samples, float light,
-                       float unoccluded, uint64_t random) {
+                       float unoccluded, uint64_t random, uint32_t passes) {
   pending_.push_back({member, uint32_t(sources_.size() - 1), uint32_t(frames_.size() - 1), origin,
-                      light, unoccluded, random, samples});
+                      light, unoccluded, random, passes, samples});
 }
 
 void ResidualRays::add(uint32_t member, const Vec3& origin, std::span<const Vec3> points,
@@ -129,7 +129,7 @@ void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits&
     (n < fewest_compact ? draw_points : draw_points_compact)(frames_[p.frame], p.samples, n,
                                                              p.random, points_);
     groups_.push_back({p.source, uint32_t(segments_.size()), uint32_t(points_.size()),
-                       uint32_t(answers_.size()), false, p.light});
+                       uint32_t(answers_.size()), p.frame, p.passes, false, p.light});
     answers_.push_back({p.member, sources_[p.source].tag, uint32_t(points_.size()), 0, 0, {}, 0});
     add_segments(p.origin, sources_[p.source], points_);
   }
@@ -138,8 +138,8 @@ void ResidualRays::cast_pending(std::span<const float> allowed, const RayLimits&
 void ResidualRays::cast_chosen() {
   for (size_t i = 0; i < chosen_.size(); ++i) {
     const Chosen& c = chosen_[i];
-    groups_.push_back(
-        {c.source, uint32_t(segments_.size()), c.count, uint32_t(answers_.size()), true, c.light});
+    groups_.push_back({c.source, uint32_t(segments_.size()), c.count, uint32_t(answers_.size()), 0,
+                       1, true, c.light});
     answers_.push_back({c.member, sources_[c.source].tag, c.count, 0, 0, {}, 0});
     add_segments(chosen_origins_[i], sources_[c.source],
                  std::span(chosen_points_).subspan(c.first, c.count));
@@ -162,7 +162,6 @@ bool ResidualRays::is_free(const RaySource& source, const ShadowSegment& segment
 // What all rays of a cluster to one source say of a single one.
 struct ResidualRays::Tally {
   double rays = 0, free = 0;
-  double neighbours = 0, changes = 0;  // pairs of consecutive rays of one group; that differ
 
   // p (1 - p) is concave: the share of all rays bounds, on average, what the shares of the single
   // groups would give.
@@ -170,14 +169,12 @@ struct ResidualRays::Tally {
     const double p = (free + 1) / (rays + 2);
     return p * (1 - p);
   }
-  // Variance that a change from one ray to the next stands for, in squares of what a ray stands
-  // for: 1/12 if it is an edge somewhere between the two, 1/2 where answers are as good as
-  // independent. (Edges meet several rays at small angles: 1/6.)
-  double of_change() const {
-    const double rate = changes / std::max(neighbours, 1.0) / (2 * spread());
-    return 1.0 / 6 + std::min(rate, 1.0) / 3;
-  }
 };
+// Variance that a change from one ray to the next stands for, in squares of what a ray stands for.
+// Two neighbouring strata that are open with probabilities p and q differ with probability
+// p (1 - q) + q (1 - p), which is p (1 - p) + q (1 - q) + (p - q)²: half the number of changes is,
+// on average, no less than the variance, but for half of that of the first and the last one.
+constexpr float variance_of_change = 0.5f;
 
 // Any occluder will do where nobody wants to know which one it was: rays that end just before the
 // source. Those that are free go the rest of the way if there is anything in it.
@@ -240,10 +237,6 @@ std::vector<ResidualRays::Tally> ResidualRays::look_at_hits(const ShadowScene& s
           is_open ? is_free(source, segments_[i], hits_[i], scene) : state_[i] == RayState::free;
       t.rays += 1;
       t.free += is_free_[i];
-      if (i > g.first) {
-        t.neighbours += 1;
-        t.changes += is_free_[i] != is_free_[i - 1];
-      }
       if (is_open && is_free_[i] == 0 && hits_[i].id != ray_is_stopped)
         found[g.source].push_back(hits_[i].id);
     }
@@ -262,7 +255,7 @@ void ResidualRays::add_light(const Group& g, const Tally& tally) {
   }
   const float ray = g.light / float(g.count);
   a.light = ray * float(free);
-  a.light_variance = sqr(ray) * (float(tally.spread()) + float(changes) * float(tally.of_change()));
+  a.light_variance = sqr(ray) * (float(tally.spread()) + float(changes) * variance_of_change);
 }
 
 void ResidualRays::add_value(const Group& g, size_t first_value) {
@@ -281,6 +274,28 @@ void ResidualRays::add_value(const Group& g, size_t first_value) {
   a.value_variance = sqr(g.light) * spread / (n * std::max(n - 1, 1.0f));
 }
 
+// Several masks of a pair, by different shifts, each with rays of its own, are as many independent
+// estimates: their spread tells what masks and rays err by together. Where the first of them stands
+// at first_group.
+void ResidualRays::tell_passes(size_t first_group) {
+  const Group& first = groups_[first_group];
+  const uint32_t member = answers_[first.answer].member;
+  size_t end = first_group;
+  float sum = 0, squares = 0;
+  for (; end < groups_.size() && groups_[end].frame == first.frame &&
+         groups_[end].passes == first.passes && !groups_[end].has_values &&
+         answers_[groups_[end].answer].member == member;
+       ++end) {
+    RayAnswer& a = answers_[groups_[end].answer];
+    sum += a.light;
+    squares += sqr(a.light);
+    a.light_variance = 0;
+  }
+  const auto n = float(first.passes);
+  answers_[first.answer].light_variance =
+      std::max(squares - sqr(sum) / n, 0.0f) * n / std::max(n - 1, 1.0f);
+}
+
 void ResidualRays::add_up(const ShadowScene& scene) {
   const std::vector<Tally> tallies = look_at_hits(scene);
   size_t next_value = 0;
@@ -292,6 +307,12 @@ void ResidualRays::add_up(const ShadowScene& scene) {
     } else {
       add_light(g, tallies[g.source]);
     }
+  }
+  for (size_t i = 0; i < groups_.size(); ++i) {
+    const Group& g = groups_[i];
+    const bool is_first = i == 0 || groups_[i - 1].frame != g.frame || groups_[i - 1].has_values ||
+                          answers_[groups_[i - 1].answer].member != answers_[g.answer].member;
+    if (g.passes > 1 && is_first) tell_passes(i);
   }
 }
 

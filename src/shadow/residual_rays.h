@@ -60,8 +60,10 @@ class ResidualRays {
 
   // `light`, in sr, is open, of `unoccluded` of the whole source: a number of rays to be decided by
   // finish(). `random` is the receiver's and the cell's own.
+  // passes > 1: one of so many masks of the pair, whose calls follow each other; those that found
+  // nothing open may be left out.
   void add(uint32_t member, const Vec3& origin, const OpenSamples& samples, float light,
-           float unoccluded, uint64_t random);
+           float unoccluded, uint64_t random, uint32_t passes = 1);
   // One ray to each of these points; `light` × the mean of the values of those that are free is the
   // answer.
   void add(uint32_t member, const Vec3& origin, std::span<const Vec3> points,
@@ -81,6 +83,7 @@ class ResidualRays {
     Vec3 origin;
     float light, unoccluded;
     uint64_t random;
+    uint32_t passes;
     OpenSamples samples;
   };
   struct Chosen {
@@ -89,7 +92,7 @@ class ResidualRays {
   };
   struct Group {
     uint32_t source, first, count;  // segments
-    uint32_t answer;
+    uint32_t answer, frame, passes;
     bool has_values;
     float light;
   };
@@ -103,6 +106,7 @@ class ResidualRays {
   struct Tally;
   std::vector<Tally> look_at_hits(const ShadowScene& scene);
   void add_light(const Group& group, const Tally& tally);
+  void tell_passes(size_t first_group);
   void add_value(const Group& group, size_t first_value);
   void add_up(const ShadowScene& scene);
 
