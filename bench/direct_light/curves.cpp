@@ -191,15 +191,16 @@ void bias(const Arguments& a) {
     for (const double m : means) sum2 += (m - mean) * (m - mean);
     const double own = std::sqrt(sum2 / (n * (n - 1)));
     const double both = std::hypot(own, reference.mean_error);
+    const double errors = both > 0 ? mean / both : 0;
     fmt::print(
         "  --error {:<6g} mean error over {} seeds {:+.7f} ± {:.7f}, reference ± {:.7f}: "
         "{:+.2f} standard errors\n",
-        error, a.seeds, mean, own, reference.mean_error, mean / both);
+        error, a.seeds, mean, own, reference.mean_error, errors);
     append_row(a.csv_folder, "bias.csv",
                "scene,error,pairs,seeds,mean_error,standard_error,reference_standard_error,"
                "in_standard_errors",
                fmt::format("{},{:g},{},{},{:.4g},{:.3g},{:.3g},{:.3g}", p.scene.name, error,
-                           p.counted, a.seeds, mean, own, reference.mean_error, mean / both));
+                           p.counted, a.seeds, mean, own, reference.mean_error, errors));
   }
 }
 

@@ -110,10 +110,16 @@ def thin_rows(out):
             for r in sorted(rows.read(f"{out}/thin.csv"), key=lambda r: -r["error"])]
 
 
+def _in_standard_errors(row):
+    if row["mean_error"] == 0 and row["standard_error"] == 0:
+        return "exact: nothing there hides a source from these hits"
+    return f"**{row['in_standard_errors']:+.2f}**"
+
+
 def bias_rows(out):
     return [[r["scene"], f"{r['error']:g}", f"{r['pairs']:.0f}", f"{r['seeds']:.0f}",
              f"{r['mean_error']:+.7f}", f"{r['standard_error']:.7f}",
-             f"{r['reference_standard_error']:.7f}", f"**{r['in_standard_errors']:+.2f}**"]
+             f"{r['reference_standard_error']:.7f}", _in_standard_errors(r)]
             for r in rows.read(f"{out}/bias.csv")]
 
 
