@@ -34,6 +34,9 @@ CertifiedSettings certified_settings(double error, size_t emitters) {
   s.error = error;
   s.estimator.residual_error = float(error);
   s.estimator.rays.pair_error = float(2 * error);
+  // Who asks for less than the default error may wait for it.
+  s.estimator.rays.most_rays = uint32_t(256 * std::clamp(0.01 / error, 1.0, 16.0));
+  s.estimator.rays.most_share_rays = 2 * s.estimator.rays.most_rays;
   return s;
 }
 

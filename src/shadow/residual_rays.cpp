@@ -10,7 +10,7 @@ namespace troffer {
 namespace {
 
 // So many rays of one receiver are worth an order in which packets are compact.
-constexpr uint32_t fewest_compact = 8;
+constexpr uint32_t fewest_compact = 96;
 
 }  // namespace
 
