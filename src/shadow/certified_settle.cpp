@@ -199,8 +199,10 @@ uint64_t CertifiedEstimator::ray_numbers(uint32_t member, uint64_t pass) const {
 // Where much is left to rays, they must not go through the same few hundred points over and over:
 // masks with several shifts share them.
 void CertifiedEstimator::mask_often(std::span<const uint32_t> members, const FacetList& facets) {
-  const uint32_t passes = options_.masks_with_rays;
   for (const uint32_t m : members) {
+    // An integrand has a number of points of its own; one mask, and its answer stands even if it
+    // finds nothing open.
+    const uint32_t passes = wanted_points_[m] > 0 ? 1 : options_.masks_with_rays;
     bool is_above = false;
     for (uint32_t pass = 0; pass < passes; ++pass) {
       ++counters_.masks;
@@ -209,12 +211,11 @@ void CertifiedEstimator::mask_often(std::span<const uint32_t> members, const Fac
       const float share = look(m, facets, pass, variance);
       is_above = is_above || share >= 0;
       if (!(share > 0)) continue;
-      if (wanted_points_[m] > 0) {
+      if (wanted_points_[m] > 0)
         add_integral(m, share * cell_unoccluded_[m], variance);
-        break;
-      }
-      rays_.add(m, receivers_[m].origin, samples_, share * cell_unoccluded_[m] / float(passes),
-                unoccluded_[m], ray_numbers(m, pass), passes);
+      else
+        rays_.add(m, receivers_[m].origin, samples_, share * cell_unoccluded_[m] / float(passes),
+                  unoccluded_[m], ray_numbers(m, pass), passes);
     }
     add_answer(m, is_above ? 0.0f : 0.5f, is_above ? 0.0f : 0.25f, ShadowAnswer::mixed);
   }

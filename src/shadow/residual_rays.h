@@ -4,7 +4,8 @@
 // A pair of receiver and cell with open light W (weighted by brightness) that casts n rays has a
 // variance of at most W²/4n, as a ray's answer is 0 or 1. For a receiver with an allowed standard
 // error E the numbers n_i = W_i sum W / 4E² make the sum of these bounds E² with the fewest rays.
-// A weak source's visible share is kept to a looser bound of its own.
+// A weak source's visible share is kept to a looser bound of its own. These are bounds on what rays
+// add to the error of the samples that they go through; that of the samples is estimated.
 // References: docs/certified.md, "Residual rays".
 #pragma once
 

@@ -1,6 +1,7 @@
 // Whole pictures, many times over with other random numbers, and what their pixels have in common.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -32,6 +33,21 @@ inline bool is_identical(const std::vector<Layer>& a, const std::vector<Layer>& 
       return false;
   }
   return true;
+}
+
+// How many pixels of a crop, of all layers, are not those of the whole picture; all of them where
+// sizes do not match.
+inline size_t pixels_off_crop(const RenderResult& whole, const RenderResult& part,
+                              const std::array<int, 4>& crop) {
+  size_t off = 0;
+  for (size_t l = 0; l < whole.layers.size(); ++l) {
+    const Image &a = part.layers.at(l).image, &b = whole.layers[l].image;
+    if (a.width != crop[2] - crop[0] || a.height != crop[3] - crop[1]) return b.pixels.size();
+    for (int y = 0; y < a.height; ++y)
+      for (int x = 0; x < a.width; ++x)
+        off += !(a.at(x, y) == b.at(x + crop[0], y + crop[1])) ? 1 : 0;
+  }
+  return off;
 }
 
 inline double mean_green(const Image& image) {

@@ -1,6 +1,7 @@
 // Spheres and integrands of the certified estimator against brute force.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/frame.h"
@@ -172,5 +173,57 @@ TEST_CASE("integrals over the visible part are unbiased, with complete lists and
       CHECK(std::abs(mean - expected[c]) < 4 * std::sqrt(variance / seeds) + 3e-4 * expected[c]);
       if (c == 1) CHECK(variance < 2 * told / seeds);
     }
+  }
+}
+
+namespace {
+
+class Constant final : public ShadowIntegrand {
+ public:
+  uint32_t points(uint32_t) override { return 8; }
+  void evaluate(uint32_t, std::span<const Vec3>, std::span<Rgb> values) override {
+    std::fill(values.begin(), values.end(), Rgb{1});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a slit that most masks miss counts in an integral with its width, not more") {
+  const FlatSource source{{{-0.5, -0.5, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}};
+  constexpr double edge = 0.497;  // of the plate's shadow; the slit is less than a sample wide
+  const auto plate_edge = float(edge * 1.9 / 2);
+  BruteForceScene scene;
+  scene.facets = {parallelogram_facet({-4, -4, 1.9f}, {4 + plate_edge, 0, 0}, {0, 8, 0}),
+                  parallelogram_facet({-0.2f, -0.2f, 1}, {0.1f, 0, 0}, {0, 0.1f, 0}),
+                  parallelogram_facet({0.1f, -0.2f, 1}, {0.05f, 0, 0}, {0, 0.1f, 0})};
+  const std::vector<Vec3d> slit{{edge, -0.5, 2}, {edge, 0.5, 2}, {0.5, 0.5, 2}, {0.5, -0.5, 2}};
+  const double expected = polygon_irradiance(slit, {0, 0, 0}, {0, 0, 1}, Sides::both);
+  CertifiedOptions options;
+  options.longest_list = 1;
+  options.most_halvings = 0;
+  Constant integrand;
+  for (const bool has_integrand : {true, false}) {
+    double sum = 0, sum2 = 0;
+    int misses = 0;
+    constexpr int seeds = 6000;
+    for (int i = 0; i < seeds; ++i) {
+      CertifiedEstimator estimator(options);
+      FoundFacets found;
+      const ShadowReceiver x{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 0}, hash_of(uint64_t(i), 21u)};
+      SourceVisibility out;
+      evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1},
+                     has_integrand ? &integrand : nullptr);
+      REQUIRE(found.is_hopeless);
+      const double value =
+          has_integrand ? double(out.value.g) : double(out.visible) * double(out.unoccluded);
+      misses += value == 0;
+      sum += value;
+      sum2 += value * value;
+    }
+    const double mean = sum / seeds, variance = sum2 / seeds - mean * mean;
+    CAPTURE(has_integrand);
+    CAPTURE(mean);
+    CHECK(misses > 0);
+    CHECK(std::abs(mean - expected) < 4 * std::sqrt(variance / seeds) + 2e-3 * expected);
   }
 }
