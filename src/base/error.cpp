@@ -15,10 +15,7 @@ std::string located(const std::string& file, int line, int column, const std::st
          std::to_string(has_place ? column : 1) + ": " + what;
 }
 
-struct WorkItem {
-  int x = -1, y = -1, sample = -1;
-};
-thread_local WorkItem work_item;
+thread_local const CheckContext* context = nullptr;
 
 std::string& check_command() {
   static std::string command;
@@ -38,18 +35,31 @@ void set_check_command(std::string command) {
   check_command() = std::move(command);
 }
 
-CheckContext::CheckContext(int pixel_x, int pixel_y, int sample) {
-  work_item = {pixel_x, pixel_y, sample};
+constinit thread_local size_t CheckContext::item_ = CheckContext::no_item;
+
+CheckContext::CheckContext(const void* batch, size_t size, Name name)
+    : batch_(batch), size_(size), name_(name), outer_(context), outer_item_(item_) {
+  context = this;
+  item_ = no_item;
 }
 CheckContext::~CheckContext() {
-  work_item = {};
+  context = outer_;
+  item_ = outer_item_;
+}
+
+std::string check_place() {
+  if (context == nullptr || context->size_ == 0) return {};
+  const CheckContext& c = *context;
+  const size_t item = CheckContext::item_;
+  if (item < c.size_) return c.name_(c.batch_, item);
+  const std::string first = c.name_(c.batch_, 0);
+  return c.size_ == 1 ? first : "one from " + first + " to " + c.name_(c.batch_, c.size_ - 1);
 }
 
 void check_failed(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "bug: %s:%d: CHECK(%s) failed\n", file, line, condition);
-  if (work_item.x >= 0)
-    std::fprintf(stderr, "  near pixel (%d,%d), sample %d\n", work_item.x, work_item.y,
-                 work_item.sample);
+  const std::string place = check_place();
+  if (!place.empty()) std::fprintf(stderr, "  at %s\n", place.c_str());
   if (!check_command().empty())
     std::fprintf(stderr, "  reproduce with: %s\n", check_command().c_str());
   std::abort();

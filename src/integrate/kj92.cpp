@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "base/warp.h"
 #include "integrate/purposes.h"
@@ -84,10 +85,12 @@ void Kj92Integrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
   for (Coherence c = Coherence::coherent; !s.walks.empty(); c = Coherence::none) {
     trace_walks(scene_.tracer, s.walks, c, s.trace, counters);
     s.next_walks.clear();
+    CheckItems items;
     for (size_t i = 0; i < s.walks.size(); ++i) {
       const Hit& hit = s.trace.hits[i];
       if (!hit.is_valid()) continue;
       Walk& walk = s.walks[i];
+      items.at(walk.index);
       Vertex v;
       make_vertex(scene_.scene, walk.ray, hit, v);
       if (v.surface.emitter >= 0) add_emission(walk, v, out);
@@ -178,7 +181,9 @@ void Kj92Integrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
   s.sampler.forget_patterns();
   const SurfaceScattering scattering(sensor_bsdf());
   s.rays.resize(sensors.size());
+  CheckItems items;
   for (uint32_t i = 0; i < sensors.size(); ++i) {
+    items.at(i);
     const Walk walk = sensor_walk(sensors, i);
     const Vertex v = make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset);
     TreeReceiver receiver;

@@ -43,11 +43,17 @@ struct Sums {
 };
 
 struct Worker {
-  SensorBatch sensors;
+  size_t point = 0;     // its number in the list
+  SensorBatch sensors;  // of this point
   RadianceBatch out;
   std::unique_ptr<IntegratorScratch> scratch;
   int samples_per_batch = largest_batch;
 };
+
+std::string name_of_sensor(const void* worker, size_t i) {
+  const Worker& w = *static_cast<const Worker*>(worker);
+  return "point " + std::to_string(w.point) + ", sample " + std::to_string(w.sensors.samples[i]);
+}
 
 // Sum of `samples` estimates of one replicate at one point; cut short by a stop.
 Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point, uint64_t stream,
@@ -63,6 +69,7 @@ Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point,
     w.sensors.samples.resize(count);
     for (size_t i = 0; i < count; ++i) w.sensors.samples[i] = uint32_t(first) + uint32_t(i);
     w.out.reset(count);
+    const CheckContext context(&w, count, name_of_sensor);
     integrator.irradiance(w.sensors, *w.scratch, w.out, counters);
     for (size_t i = 0; i < count; ++i) {
       const Rgb e = w.out.direct[i] + w.out.indirect[i];
@@ -182,6 +189,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     const Vec3 p = abs(points[i].position);
     w.sensors.offset = std::max(ray_offset(std::max({p.x, p.y, p.z})), least_offset);
     w.samples_per_batch = samples_per_batch;
+    w.point = i;
     result.values[i] =
         measure_point(*integrator, points[i], hash_of(options.seed, i), spp,
                       is_fixed ? fixed_set : 1, scene.scene.is_photometric, stop, w, counters[i]);

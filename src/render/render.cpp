@@ -158,6 +158,12 @@ class Rendering {
     }
   };
 
+  static std::string name_of_ray(const void* work, size_t i) {
+    const Work& w = *static_cast<const Work*>(work);
+    return "pixel (" + std::to_string(w.pixels[i].x) + "," + std::to_string(w.pixels[i].y) +
+           "), sample " + std::to_string(w.rays.samples[i]);
+  }
+
   static int passes_of(int samples) {
     return (samples + samples_per_batch - 1) / samples_per_batch;
   }
@@ -178,10 +184,10 @@ class Rendering {
       }
       Work& w = work_[slot];
       if (!w.scratch) w.scratch = integrator_.make_scratch();
-      const CheckContext context(tiles_[t].x0, tiles_[t].y0, 0);
       w.rays.clear();
       w.pixels.clear();
       fill(tiles_[t], w);
+      const CheckContext context(&w, w.rays.size(), name_of_ray);
       if (w.rays.size() > 0) trace(w);
       const std::lock_guard lock(progress_mutex_);
       ++tiles_done_;
@@ -230,19 +236,24 @@ class Rendering {
     }
   }
 
-  // Mean luminance of the whole picture but its brightest twentieth (lamps), from few rays.
+  // Mean luminance of the whole picture but its brightest twentieth (lamps), from few rays, which
+  // are no part of the picture and of its statistics.
   double typical_luminance() {
     constexpr int most = 32;  // rays along each side
     Work& w = work_[0];
     if (!w.scratch) w.scratch = integrator_.make_scratch();
     w.rays.clear();
+    w.pixels.clear();
     const int nx = std::min(most, image_.width()), ny = std::min(most, image_.height());
     for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i)
-        add_viewing_rays(camera_, {i * image_.width() / nx, j * image_.height() / ny}, 0, 1,
-                         options_.seed, w.rays);
+      for (int i = 0; i < nx; ++i) {
+        w.pixels.push_back({i * image_.width() / nx, j * image_.height() / ny});
+        add_viewing_rays(camera_, w.pixels.back(), 0, 1, options_.seed, w.rays);
+      }
+    const CheckContext context(&w, w.rays.size(), name_of_ray);
     w.radiance.reset(w.rays.size());
-    integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
+    Counters uncounted;
+    integrator_.radiance(w.rays, *w.scratch, w.radiance, uncounted);
     std::vector<double> values;
     for (size_t i = 0; i < w.rays.size(); ++i) {
       const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];

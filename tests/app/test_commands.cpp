@@ -124,6 +124,24 @@ TEST_CASE("--stats holds every key") {
   CHECK(s["peak_memory_mb"].get<double>() > 1);
 }
 
+TEST_CASE("--stats counts the viewing rays that the picture took, and no others") {
+  const Folder folder;
+  // Nothing but one radiance to be seen, so that no pixel is refined.
+  const std::string scene = folder.write("lamp.pbrt", R"(LookAt 0 0 0  0 0 1  0 1 0
+Camera "perspective" "float fov" [40]
+WorldBegin
+AreaLightSource "diffuse" "rgb L" [5 5 5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point3 P" [-9 -9 2  -9 9 2  9 9 2  9 -9 2]
+)");
+  run_well(folder, {"render", scene, "-o", folder.path("o.exr"), "--size", "40x30", "--spp", "4",
+                    "--max-spp", "16", "--stats", folder.path("s.json")});
+  const Json s = Json::parse(read_file(folder.path("s.json")));
+  CHECK(s["max_spp"] == 16);
+  CHECK(s["viewing_rays"] == 40 * 30 * 4);
+  CHECK(mean(read_image(folder.path("o.exr"))) == doctest::Approx(5));
+}
+
 TEST_CASE("info tells what is there") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "pictures.h"
+#include "support/abort_message.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -270,4 +271,19 @@ TEST_CASE("empty scenes and scenes without light are black") {
       CHECK(mean(r.layers[0].image) == 0);
       for (const Layer& l : r.layers) CHECK(is_finite(l.image));
     }
+}
+
+TEST_CASE("a broken CHECK names the pixel and the sample under way") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions o = small_options(Method::fixed);
+  o.has_crop = true;
+  o.crop = {20, 11, 21, 12};
+  o.spp = 1;
+  o.threads = 1;
+  const std::string message = abort_message([&] {
+    // called at the end of each batch
+    const ProgressCallback broken = [](double share) { TROFFER_CHECK(share < 0); };
+    render(scene, mixed_room_camera(), o, broken, never_stopped);
+  });
+  CHECK(message.find("at pixel (20,11), sample 0\n") != std::string::npos);
 }
