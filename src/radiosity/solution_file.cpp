@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
@@ -131,13 +132,27 @@ RadiosityOptions unpacked(const FileOptions& f) {
   return o;
 }
 
-// Whether a mesh can be made from them in bounded time and memory: the file may be anybody's.
+bool is_amount(float x) {
+  return x >= 0 && std::isfinite(x);
+}
+
+// Whether a mesh can be made from them in bounded time and memory, and the rest means something:
+// the file may be anybody's.
 bool is_sane(const FileOptions& f) {
   constexpr uint32_t most = 1u << 22;
   const auto is_size = [](float x) { return x >= 0 && x < 1e30f; };
   return is_size(f.element_size) && is_size(f.patch_size) && f.join_angle_deg >= 0 &&
          f.join_angle_deg <= 180 && f.max_elements <= most && f.max_sheets <= most &&
-         f.prune_hidden_sides <= 1 && f.unused == 0;
+         f.prune_hidden_sides <= 1 && f.unused == 0 && f.stored_per_point <= max_stored &&
+         is_amount(f.unshot_fraction) && is_amount(f.tolerance) && is_amount(f.emitter_share);
+}
+
+// Whether the numbers of the header are ones that a solver can have written.
+bool is_sane(const Header& h) {
+  for (const double power : h.balance)
+    if (!std::isfinite(power)) return false;
+  return is_sane(h.options) && h.stored_per_point == h.options.stored_per_point &&
+         h.is_complete <= 1 && is_finite(get(h.ambient)) && is_amount(h.mean_irradiance);
 }
 
 // Names the first setting that differs.
@@ -255,7 +270,7 @@ Header checked_header(std::span<const uint8_t> bytes, const std::string& file) {
   if (h.points * per_point + patches != body) refuse("radiosity solution has bytes too many");
   if (hash_of_file(h, bytes.subspan(sizeof(Header))) != h.hash)
     refuse("radiosity solution is damaged");
-  if (!is_sane(h.options)) refuse("radiosity solution is damaged");
+  if (!is_sane(h)) refuse("radiosity solution has values that none can have");
   return h;
 }
 
@@ -276,6 +291,8 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
   }
   RadiositySolution s;
   s.options = unpacked(h.options);
+  if (h.emitters != scene.emitters.size())
+    throw InputError(file, 0, 0, "radiosity solution was computed with other light sources");
   s.mesh = mesh_for_radiosity(scene, tracer, tables, s.options.meshing, threads);
   if (h.points != s.mesh.points.size() || h.patches != s.mesh.patches.size() ||
       h.points_key != points_key(s.mesh))
@@ -287,21 +304,27 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
   s.shots = h.shots;
   s.rays = h.rays;
   s.is_complete = h.is_complete != 0;
+  const auto finite = [&](const float(&from)[3]) {
+    const Rgb c = get(from);
+    if (!is_finite(c))
+      throw InputError(file, 0, 0, "radiosity solution has light that is not finite");
+    return c;
+  };
   size_t at = sizeof(Header);
   for (size_t i = 0; i < h.points; ++i, at += sizeof(FilePoint)) {
     const auto p = read<FilePoint>(bytes, at);
-    s.general.push_back(get(p.general));
-    s.general_direct.push_back(get(p.general_direct));
+    s.general.push_back(finite(p.general));
+    s.general_direct.push_back(finite(p.general_direct));
   }
   const size_t sources = s.emitter_count + s.mesh.patches.size();
   for (size_t i = 0; i < h.points * h.stored_per_point; ++i, at += sizeof(FileContribution)) {
     const auto c = read<FileContribution>(bytes, at);
     if (c.source != no_source && c.source >= sources)
       throw InputError(file, 0, 0, "radiosity solution is damaged");
-    s.stored.push_back({c.source, get(c.received), get(c.unoccluded)});
+    s.stored.push_back({c.source, finite(c.received), finite(c.unoccluded)});
   }
   for (size_t i = 0; i < h.patches; ++i, at += sizeof(FilePatch))
-    s.shot_radiance.push_back(get(read<FilePatch>(bytes, at).shot_radiance));
+    s.shot_radiance.push_back(finite(read<FilePatch>(bytes, at).shot_radiance));
   s.mean_irradiance = h.mean_irradiance;
   return s;
 }

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <iterator>
+#include <limits>
 #include <string>
 
 #include "base/error.h"
@@ -111,5 +113,69 @@ TEST_CASE("damaged files are refused") {
     const size_t at = i < 200 ? i : r.next_u32() % bytes.size();
     bad[at] = uint8_t(bad[at] ^ (1u << (r.next_u32() % 8)));
     CHECK_FALSE(refusal(ready, bad, coarse()).empty());
+  }
+}
+
+TEST_CASE("light that is no finite number is refused, wherever it stands") {
+  const Ready ready(lit_room(0.5f));
+  const RadiositySolution good = ready.solve(coarse());
+  REQUIRE(refusal(ready, save_solution(ready.scene, good), coarse()).empty());
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  using Spoil = void (*)(RadiositySolution&, float);
+  const Spoil places[] = {
+      [](RadiositySolution& s, float v) { s.general[s.general.size() / 2].g = v; },
+      [](RadiositySolution& s, float v) { s.general_direct.back().b = v; },
+      [](RadiositySolution& s, float v) { s.stored.front().received.r = v; },
+      [](RadiositySolution& s, float v) { s.stored.back().unoccluded.g = v; },
+      [](RadiositySolution& s, float v) { s.shot_radiance.back().r = v; },
+      [](RadiositySolution& s, float v) { s.ambient.b = v; },
+      [](RadiositySolution& s, float v) { s.mean_irradiance = v; },
+      [](RadiositySolution& s, float v) { s.balance.absorbed = double(v); },
+      [](RadiositySolution& s, float v) { s.balance.escaped = double(v); },
+  };
+  for (size_t i = 0; i < std::size(places); ++i)
+    for (const float v : {nan, infinity, -infinity}) {
+      CAPTURE(i);
+      CAPTURE(v);
+      RadiositySolution s = good;
+      places[i](s, v);
+      CHECK_FALSE(refusal(ready, save_solution(ready.scene, s), coarse()).empty());
+    }
+}
+
+TEST_CASE("options that are no finite number are refused by who takes the file's own") {
+  const Ready ready(lit_room(0.5f));
+  const RadiositySolution good = ready.solve(coarse());
+  using Spoil = void (*)(RadiosityOptions&, float);
+  const Spoil places[] = {
+      [](RadiosityOptions& o, float v) { o.unshot_fraction = v; },
+      [](RadiosityOptions& o, float v) { o.tolerance = v; },
+      [](RadiosityOptions& o, float v) { o.emitter_share = v; },
+      [](RadiosityOptions& o, float v) { o.meshing.element_size = v; },
+      [](RadiosityOptions& o, float v) { o.meshing.join_angle_deg = v; },
+  };
+  for (size_t i = 0; i < std::size(places); ++i)
+    for (const float v :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1.0f}) {
+      CAPTURE(i);
+      CAPTURE(v);
+      RadiositySolution s = good;
+      places[i](s.options, v);
+      CHECK_THROWS_AS(load_solution(save_solution(ready.scene, s), "room.radiosity", ready.scene,
+                                    ready.tracer, ready.tables, nullptr, 2),
+                      InputError);
+    }
+}
+
+TEST_CASE("a number of stored contributions that is not the options' is refused") {
+  const Ready ready(lit_room(0.5f));
+  RadiositySolution s = ready.solve(coarse());
+  const size_t points = s.general.size();
+  for (const uint32_t other : {0u, coarse().stored_per_point - 1, coarse().stored_per_point + 1}) {
+    CAPTURE(other);
+    s.stored_per_point = other;
+    s.stored.resize(points * other);
+    CHECK_FALSE(refusal(ready, save_solution(ready.scene, s), coarse()).empty());
   }
 }
