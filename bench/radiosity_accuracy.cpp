@@ -4,7 +4,7 @@
 //
 //   bench_radiosity_accuracy SCENE [--places N] [--spp N] [VARIANT…]
 //
-// A variant is a list such as element=0.5,patch=2,unshot=0.01,tolerance=0.003,rays=64,emitter=64;
+// A variant is a list such as element=0.5,patch=2,unshot=0.01,tolerance=0.003,rays=64,light=64;
 // "default" is the default. Light that comes by way of mirrors or glass is missing from radiosity.
 
 #include <fmt/format.h>
@@ -200,9 +200,9 @@ RadiosityOptions parse(const std::string& text) {
     else if (name == "rays")
       o.max_rays = int(v);
     else if (name == "emitter")
-      o.emitter_rays = int(v);
+      o.light_rays = int(v);
     else if (name == "share")
-      o.emitter_share = float(v);
+      o.light_share = float(v);
     else
       throw std::runtime_error("no variant: " + name);
     at = end + 1;

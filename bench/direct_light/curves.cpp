@@ -133,7 +133,7 @@ void describe_answers(const Arguments& a, const Pairs& p, double error, const An
 }
 
 CertifiedOptions options_for(const DirectScene& s, double error) {
-  return certified_settings(error, s.prepared.scene.emitters.size()).estimator;
+  return certified_settings(error, s.prepared.scene.lights.size()).estimator;
 }
 
 // Single rays are slower everywhere from 16 rays on: packets go on to small errors alone.

@@ -60,13 +60,13 @@ void add_sheet(Mesh& m, const Vec3& corner, const Vec3& u, const Vec3& v) {
 void add_light(Scene& s, const Vec3& corner, const Vec3& u, const Vec3& v) {
   Mesh m;
   add_sheet(m, corner, u, v);
-  m.emitters = {int32_t(s.emitters.size()), int32_t(s.emitters.size())};
-  Emitter e;
+  m.lights = {int32_t(s.lights.size()), int32_t(s.lights.size())};
+  Light e;
   e.radiance = Rgb{1};
   e.geometry = uint32_t(s.meshes.size());
   e.triangles = {0, 1};
   e.polygon = m.positions;
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   s.meshes.push_back(m);
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "render/camera.h"
 #include "shadow_rays.h"
 #include "trace/surface.h"
@@ -13,7 +13,7 @@ namespace troffer::bench {
 
 DirectScene::DirectScene(std::string scene_name, Scene s)
     : name(std::move(scene_name)), prepared(std::move(s)), occluders(prepared.scene) {
-  for (const LightPrimitive& p : prepared.lights.all())
+  for (const LightPrimitive& p : prepared.primitives.all())
     for (const bool is_back : {false, true}) {
       FlatSource source;
       if (is_back && !p.is_two_sided) continue;

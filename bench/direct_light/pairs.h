@@ -23,7 +23,7 @@ struct DirectScene {
   std::vector<FlatSource> sources;
   std::vector<double> radiance;               // of each source, luminance
   std::vector<const LightPrimitive*> pieces;  // what each source was made of
-  size_t left_out = 0;                        // pieces of emitters that are not flat
+  size_t left_out = 0;                        // pieces of lights that are not flat
   double magnitude = 0;                       // largest absolute coordinate, metres
   float reach = 1;  // by which hits of a cluster may lie apart, as in rendering
 };

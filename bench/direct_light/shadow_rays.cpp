@@ -7,7 +7,7 @@
 
 #include "base/random.h"
 #include "base/warp.h"
-#include "emitter/emitter_sample.h"
+#include "light/light_sample.h"
 
 namespace troffer::bench {
 
@@ -155,7 +155,7 @@ bool add_shadow_rays_by_angle(const FlatSource& s, const LightPrimitive& piece, 
   const size_t before = out.rays.size();
   for (uint32_t i = 0; i < n; ++i) {
     const uint32_t k = out.order[i];
-    EmitterSample sample;
+    LightSample sample;
     Ray r{hit.origin, 0, {0, 0, 1}, 0};
     float w = 0;
     if (troffer::sample(piece, hit.position, {out.numbers[k], out.numbers[n + k]}, sample)) {

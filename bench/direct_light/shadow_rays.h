@@ -53,7 +53,7 @@ bool add_shadow_rays(const FlatSource& s, const HitPoint& hit, uint64_t stream, 
 // The light that a source's points send differs much from one to the other, as it is close to it.
 bool is_near(const FlatSource& s, const Vec3& position);
 
-// The same with points nearly uniform in solid angle (emitter/emitter_sample.h), from which sources
+// The same with points nearly uniform in solid angle (light/light_sample.h), from which sources
 // close to the hit gain. piece: what `s` was made of.
 bool add_shadow_rays_by_angle(const FlatSource& s, const LightPrimitive& piece, const HitPoint& hit,
                               uint64_t stream, uint32_t n, RayOrder order, ShadowRays& out);

@@ -6,10 +6,10 @@
 
 #include "base/random.h"
 #include "base/warp.h"
-#include "emitter/irradiance.h"
 #include "experiments.h"
 #include "generated_scenes.h"
 #include "integrate/certified.h"
+#include "light/irradiance.h"
 
 namespace troffer::bench {
 
@@ -17,47 +17,47 @@ namespace {
 
 void add_polygon(Scene& s, int corners) {
   Mesh m;
-  Emitter e;
+  Light e;
   for (int i = 0; i < corners; ++i) {  // clockwise seen from above: it faces down
     const float a = -2 * pi_f * float(i) / float(corners);
     m.positions.push_back({0.6f * std::cos(a), 0.4f * std::sin(a), 2});
   }
   for (uint32_t i = 1; i + 1 < uint32_t(corners); ++i) {
     m.triangles.push_back({0, i, i + 1});
-    m.emitters.push_back(0);
+    m.lights.push_back(0);
     e.triangles.push_back(i - 1);
   }
   e.polygon = m.positions;
   e.radiance = Rgb{1};
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   s.meshes.push_back(m);
 }
 
 void add_slanted_box(Scene& s) {
   Mesh m;
   add_box(m, {-0.3f, -0.2f, 1.8f}, {0.3f, 0.2f, 2.1f}, 0.5f);
-  Emitter e;
-  e.shape = EmitterShape::mesh;
+  Light e;
+  e.shape = LightShape::mesh;
   e.radiance = Rgb{1};
   for (uint32_t i = 0; i < m.triangles.size(); ++i) {
     e.triangles.push_back(i);
-    m.emitters.push_back(0);
+    m.lights.push_back(0);
   }
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   s.meshes.push_back(m);
 }
 
 void add_glowing_ball(Scene& s) {
   Mesh m;
   add_ball(m, {0, 0, 2}, 0.3f);
-  Emitter e;
-  e.shape = EmitterShape::mesh;
+  Light e;
+  e.shape = LightShape::mesh;
   e.radiance = Rgb{1};
   for (uint32_t i = 0; i < m.triangles.size(); ++i) {
     e.triangles.push_back(i);
-    m.emitters.push_back(0);
+    m.lights.push_back(0);
   }
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   s.meshes.push_back(m);
 }
 
@@ -66,11 +66,11 @@ void add_disk(Scene& s) {
   d.centre = {0, 0, 2};
   d.normal = normalize(Vec3{0.2f, 0.1f, -1});
   d.radius = 0.5f;
-  d.emitter = 0;
-  Emitter e;
-  e.shape = EmitterShape::disk;
+  d.light = 0;
+  Light e;
+  e.shape = LightShape::disk;
   e.radiance = Rgb{1};
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   s.disks.push_back(d);
 }
 
@@ -78,11 +78,11 @@ void add_sphere(Scene& s) {
   Sphere b;
   b.centre = {0, 0, 2};
   b.radius = 0.3f;
-  b.emitter = 0;
-  Emitter e;
-  e.shape = EmitterShape::sphere;
+  b.light = 0;
+  Light e;
+  e.shape = LightShape::sphere;
   e.radiance = Rgb{1};
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   s.spheres.push_back(b);
 }
 
@@ -126,7 +126,7 @@ void shapes(const Arguments& a) {
                         {"two-sided rectangle", 0.05f,
                          [](Scene& s) {
                            add_square_light(s, {0, 0, 2}, 1);
-                           s.emitters[0].is_two_sided = true;
+                           s.lights[0].is_two_sided = true;
                          }},
                         {"disk", 0.05f, add_disk},
                         {"sphere", 0.35f, add_sphere},
@@ -147,7 +147,8 @@ void shapes(const Arguments& a) {
     std::vector<double> exact(points.size());
     double mean = 0;
     for (size_t i = 0; i < points.size(); ++i) {
-      exact[i] = irradiance(scene.lights, 0, Vec3d(points.positions[i]), Vec3d(points.normals[i]));
+      exact[i] =
+          irradiance(scene.primitives, 0, Vec3d(points.positions[i]), Vec3d(points.normals[i]));
       mean += exact[i] / double(points.size());
     }
     double worst = 0, sum = 0;

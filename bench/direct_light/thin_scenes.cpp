@@ -129,12 +129,12 @@ void embedded(Scene& s, Mesh& m) {
     disk.centre = {0.3f * y, y, z - 0.2f};
     disk.normal = {0, 0, -1};
     disk.radius = 0.1f;
-    disk.emitter = int32_t(s.emitters.size());
-    Emitter e;
-    e.shape = EmitterShape::disk;
+    disk.light = int32_t(s.lights.size());
+    Light e;
+    e.shape = LightShape::disk;
     e.radiance = Rgb{10};
     e.geometry = uint32_t(s.disks.size());
-    s.emitters.push_back(e);
+    s.lights.push_back(e);
     s.disks.push_back(disk);
     constexpr int sides = 32;
     for (int i = 0; i < sides; ++i) {

@@ -14,24 +14,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* shape_name(EmitterShape s) {
+const char* shape_name(LightShape s) {
   switch (s) {
-    case EmitterShape::polygon:
+    case LightShape::polygon:
       return "polygon";
-    case EmitterShape::disk:
+    case LightShape::disk:
       return "disk";
-    case EmitterShape::sphere:
+    case LightShape::sphere:
       return "sphere";
-    case EmitterShape::mesh:
+    case LightShape::mesh:
       return "mesh";
   }
   return "";
 }
 
 Json info_json(const Scene& scene) {
-  size_t emitter_triangles = 0;
+  size_t light_triangles = 0;
   for (const Mesh& m : scene.meshes)
-    for (const int32_t e : m.emitters) emitter_triangles += e >= 0;
+    for (const int32_t e : m.lights) light_triangles += e >= 0;
 
   const std::vector<SourceInfo> infos = source_infos(scene);
 
@@ -40,10 +40,10 @@ Json info_json(const Scene& scene) {
   j["meshes"] = scene.meshes.size();
   j["materials"] = scene.materials.size();
   j["textures"] = scene.textures.size();
-  j["emitters"] = scene.emitters.size();
-  j["emitter_triangles"] = emitter_triangles;
+  j["emitters"] = scene.lights.size();
+  j["emitter_triangles"] = light_triangles;
   j["lights"] = Json::array();
-  for (const Emitter& e : scene.emitters) j["lights"].push_back(e.name);
+  for (const Light& e : scene.lights) j["lights"].push_back(e.name);
   j["cameras"] = Json::array();
   for (const Camera& c : scene.cameras) j["cameras"].push_back(c.name);
   const Box box = bounds(scene);
@@ -59,8 +59,8 @@ Json info_json(const Scene& scene) {
   j["disks"] = scene.disks.size();
   j["is_photometric"] = scene.is_photometric;
   j["sources"] = Json::array();
-  for (size_t i = 0; i < scene.emitters.size(); ++i) {
-    const Emitter& e = scene.emitters[i];
+  for (size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& e = scene.lights[i];
     j["sources"].push_back({{"name", e.name},
                             {"shape", shape_name(e.shape)},
                             {"area", infos[i].area},
@@ -85,7 +85,7 @@ void print_text(const Scene& scene, const Json& j) {
     if (c.width > 0) fmt::print("  {}x{}", c.width, c.height);
     fmt::print("\n");
   }
-  fmt::print("emitters   {} of {} triangles\n", scene.emitters.size(),
+  fmt::print("emitters   {} of {} triangles\n", scene.lights.size(),
              j["emitter_triangles"].get<size_t>());
   for (const Json& s : j["sources"])
     fmt::print("  {:<16} {:<8} {:10.4g} m2  {:10.4g} {}{}\n", s["name"].get<std::string>(),

@@ -126,7 +126,7 @@ int run_render(RenderCommand c) {
   const StopFlag& stop = install_stop_handlers();
   if (!c.selected_lights.empty()) {
     c.options.kj92.selection.is_restricted = true;
-    c.options.kj92.selection.only = emitters_named(scene.scene, c.selected_lights);
+    c.options.kj92.selection.only = lights_named(scene.scene, c.selected_lights);
   }
   double cpu = cpu_seconds();
   const std::unique_ptr<Kj92Preparation> preparation =

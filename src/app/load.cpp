@@ -10,7 +10,7 @@ namespace troffer {
 
 Scene load_scene(const std::string& path, const std::vector<std::string>& lights, bool is_quiet) {
   Scene scene = import_scene(path);
-  if (!lights.empty()) scene = with_only_emitters(std::move(scene), lights);
+  if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
   if (is_quiet) return scene;
   constexpr size_t most_lines = 20;
   const auto& entries = scene.warnings.entries();

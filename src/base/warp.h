@@ -19,8 +19,12 @@ inline float cosine_small(float x) {
   const float z = x * x;
   return 1 + z * (-0.5f + z * (4.1666667e-2f + z * (-1.3888888e-3f + z * 2.4796e-5f)));
 }
-inline double sine_over_small(double x) { return x == 0 ? 1 : std::sin(x) / x; }
-inline double cosine_small(double x) { return std::cos(x); }
+inline double sine_over_small(double x) {
+  return x == 0 ? 1 : std::sin(x) / x;
+}
+inline double cosine_small(double x) {
+  return std::cos(x);
+}
 
 // Concentric area-preserving map [0,1]^2 -> unit disk [1]. Density 1/pi per unit area.
 template <class T>

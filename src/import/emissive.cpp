@@ -245,26 +245,25 @@ bool is_alpha_masked(const Scene& scene, const Mesh& mesh) {
   return mesh.material < scene.materials.size() && scene.materials[mesh.material].is_alpha_masked;
 }
 
-void add_emitter(Scene& scene, uint32_t mesh, const EmissionSpec& spec, Triangles triangles,
-                 std::vector<Vec3> polygon) {
-  Emitter e;
+void add_light(Scene& scene, uint32_t mesh, const EmissionSpec& spec, Triangles triangles,
+               std::vector<Vec3> polygon) {
+  Light e;
   e.name = spec.name;
-  e.shape = polygon.empty() ? EmitterShape::mesh : EmitterShape::polygon;
+  e.shape = polygon.empty() ? LightShape::mesh : LightShape::polygon;
   e.radiance = spec.radiance;
   e.texture = spec.texture;
   e.is_two_sided = spec.is_two_sided;
   e.is_alpha_masked = is_alpha_masked(scene, scene.meshes[mesh]);
   e.geometry = mesh;
-  for (const uint32_t t : triangles)
-    scene.meshes[mesh].emitters[t] = int32_t(scene.emitters.size());
+  for (const uint32_t t : triangles) scene.meshes[mesh].lights[t] = int32_t(scene.lights.size());
   e.triangles = std::move(triangles);
   e.polygon = std::move(polygon);
-  scene.emitters.push_back(std::move(e));
+  scene.lights.push_back(std::move(e));
 }
 
 }  // namespace
 
-void add_mesh_emitters(Scene& scene, uint32_t mesh_index, const EmissionSpec& given) {
+void add_mesh_lights(Scene& scene, uint32_t mesh_index, const EmissionSpec& given) {
   EmissionSpec spec = given;
   fold_constant_texture(scene, spec);
   if (spec.radiance.is_black()) return;
@@ -276,7 +275,7 @@ void add_mesh_emitters(Scene& scene, uint32_t mesh_index, const EmissionSpec& gi
     scene.warnings.add("the light '" + spec.name + "' has no area and is left out");
     return;
   }
-  scene.meshes[mesh_index].emitters.assign(mesh.triangles.size(), no_emitter);
+  scene.meshes[mesh_index].lights.assign(mesh.triangles.size(), no_light);
 
   Triangles rest;
   if (spec.texture == no_texture && !is_alpha_masked(scene, mesh)) {
@@ -288,14 +287,14 @@ void add_mesh_emitters(Scene& scene, uint32_t mesh_index, const EmissionSpec& gi
         rest.insert(rest.end(), component.triangles.begin(), component.triangles.end());
       } else {
         ++polygons;
-        add_emitter(scene, mesh_index, spec, std::move(component.triangles), std::move(polygon));
+        add_light(scene, mesh_index, spec, std::move(component.triangles), std::move(polygon));
       }
     }
     std::sort(rest.begin(), rest.end());
   } else {
     rest = std::move(with_area);
   }
-  if (!rest.empty()) add_emitter(scene, mesh_index, spec, std::move(rest), {});
+  if (!rest.empty()) add_light(scene, mesh_index, spec, std::move(rest), {});
 }
 
 }  // namespace troffer

@@ -17,9 +17,9 @@ struct EmissionSpec {
 
 // Makes `scene.meshes[mesh]` emit: each connected component whose triangles form one planar convex
 // polygon becomes a polygon source (only where emission has no texture and material no alpha mask);
-// all other triangles together become one mesh source. Fills Mesh::emitters and appends to
-// scene.emitters. A mesh without area, or a black emission, adds no source (and the former a
+// all other triangles together become one mesh source. Fills Mesh::lights and appends to
+// scene.lights. A mesh without area, or a black emission, adds no source (and the former a
 // warning).
-void add_mesh_emitters(Scene& scene, uint32_t mesh, const EmissionSpec& spec);
+void add_mesh_lights(Scene& scene, uint32_t mesh, const EmissionSpec& spec);
 
 }  // namespace troffer

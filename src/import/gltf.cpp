@@ -94,15 +94,15 @@ class Importer {
                           " show one texel only");
     const bool is_emissive = !material.emission.is_black();
     // Counted whether it ends up with a source or not, so that a name depends on the file alone.
-    const std::string emitter_name =
+    const std::string light_name =
         node_name.empty() ? "emitter" + std::to_string(emissive_count_) : node_name;
     if (is_emissive) ++emissive_count_;
     if (is_empty) return;
     scene_.meshes.push_back(std::move(mesh));
     if (is_emissive)
-      add_mesh_emitters(
+      add_mesh_lights(
           scene_, uint32_t(scene_.meshes.size() - 1),
-          {emitter_name, material.emission, material.emission_texture, material.is_two_sided});
+          {light_name, material.emission, material.emission_texture, material.is_two_sided});
   }
 
   void add_camera(const JsonNode& node, const JsonNode& reference, const Affine& world_from_node) {

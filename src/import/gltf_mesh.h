@@ -35,9 +35,9 @@ std::optional<GltfPrimitive> read_gltf_primitive(const JsonNode& primitive, Gltf
 
 // The primitive in world space, with the vertices that its triangles use. Triangles without area
 // or with vertices that are not finite are left out, with a warning. Under a mirroring transform
-// triangles are turned round, so that the front stays the front [1] §3.7.4; a mesh all of whose normals
-// contradict its winding is wound by them, with a warning. `uv_set`: which
-// TEXCOORD_n becomes Mesh::uvs (none if it is not there).
+// triangles are turned round, so that the front stays the front [1] §3.7.4; a mesh all of whose
+// normals contradict its winding is wound by them, with a warning. `uv_set`: which TEXCOORD_n
+// becomes Mesh::uvs (none if it is not there).
 Mesh make_gltf_mesh(const GltfPrimitive& primitive, const Affine& world_from_node, int uv_set,
                     WarningLog& warnings);
 

@@ -67,7 +67,7 @@ class ObjReader {
   };
   std::vector<First> firsts_;
   uint32_t stamp_ = 0;
-  size_t triangles_ = 0, emitters_ = 0;
+  size_t triangles_ = 0, lights_ = 0;
   size_t colored_vertices_ = 0, points_and_lines_ = 0, short_faces_ = 0, dangling_ = 0;
   std::vector<Corner> corners_;
   std::vector<Vec3> points_;
@@ -303,11 +303,11 @@ void ObjReader::finish_part(Part& part) {
   if (!is_empty) scene_.meshes.push_back(std::move(mesh));
   if (material.emission.is_black()) return;
   // A source without area keeps its number, so that names do not depend on what else is wrong.
-  const std::string name = "emitter" + std::to_string(emitters_++);
+  const std::string name = "emitter" + std::to_string(lights_++);
   if (is_empty)
     scene_.warnings.add("area light without area is left out");
   else
-    add_mesh_emitters(scene_, index, {name, material.emission, material.emission_texture, false});
+    add_mesh_lights(scene_, index, {name, material.emission, material.emission_texture, false});
 }
 
 void ObjReader::finish() {

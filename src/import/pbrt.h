@@ -11,7 +11,7 @@ namespace troffer {
 
 // The scene a .pbrt file describes, in its own (left-handed) world; emission in W/(m² sr).
 // Files it names are looked up in its folder and never outside. Shapes, materials, textures and
-// lights that are not supported are warnings that name them. Emitters are called emitter0,
+// lights that are not supported are warnings that name them. Lights are called emitter0,
 // emitter1 … in the order of the shapes that emit.
 // The front of a surface, which alone emits unless the light is twosided, is the side of pbrt's
 // surface normal [1]: per-vertex normals decide where a mesh has some, else its winding or, for

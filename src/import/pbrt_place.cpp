@@ -89,7 +89,7 @@ void PbrtPlacer::place_instance(const PbrtShape& shape, const Affine& world_from
 void PbrtPlacer::place(const Placing& placing) {
   if (placing.shape.material->is_interface()) {
     scene_.warnings.add("shape with the interface material is left out");
-    if (placing.is_emitting) skip_emitter();
+    if (placing.is_emitting) skip_light();
     return;
   }
   const PbrtShape& shape = placing.shape;
@@ -115,9 +115,9 @@ uint32_t PbrtPlacer::material_of(const Placing& placing) {
                              : materials_.index_of(material);
 }
 
-Emitter PbrtPlacer::next_emitter(const PbrtAreaLight& light, double area) {
-  Emitter e;
-  e.name = "emitter" + std::to_string(emitters_++);
+Light PbrtPlacer::next_light(const PbrtAreaLight& light, double area) {
+  Light e;
+  e.name = "emitter" + std::to_string(lights_++);
   e.is_two_sided = light.is_two_sided;
   e.radiance = light.radiance;
   if (light.power > 0 && area > 0) {
@@ -140,7 +140,7 @@ void PbrtPlacer::place_sphere(const Placing& placing) {
   sphere.is_inside_out = placing.is_flipped_quadric;
   if (!is_finite(sphere.centre) || !(sphere.radius > 0) || !std::isfinite(sphere.radius)) {
     scene_.warnings.add("sphere that is not finite or has no area is left out");
-    if (placing.is_emitting) skip_emitter();
+    if (placing.is_emitting) skip_light();
     return;
   }
   sphere.material = material_of(placing);
@@ -150,12 +150,12 @@ void PbrtPlacer::place_sphere(const Placing& placing) {
   if (placing.is_emitting) {
     if (!placing.shape.light->image.empty())
       scene_.warnings.add("image of the emission of a sphere is not supported: ignored");
-    Emitter e = next_emitter(*placing.shape.light, 4 * pi * r * r);
-    e.shape = EmitterShape::sphere;
+    Light e = next_light(*placing.shape.light, 4 * pi * r * r);
+    e.shape = LightShape::sphere;
     e.geometry = geometry;
     if (!e.radiance.is_black()) {
-      sphere.emitter = int32_t(scene_.emitters.size());
-      scene_.emitters.push_back(std::move(e));
+      sphere.light = int32_t(scene_.lights.size());
+      scene_.lights.push_back(std::move(e));
     }
   }
   scene_.spheres.push_back(sphere);
@@ -175,7 +175,7 @@ void PbrtPlacer::place_disk(const Placing& placing) {
   if (!is_finite(disk.centre) || !is_finite(disk.normal) || !(disk.radius > 0) ||
       !std::isfinite(disk.radius)) {
     scene_.warnings.add("disk that is not finite or has no area is left out");
-    if (placing.is_emitting) skip_emitter();
+    if (placing.is_emitting) skip_light();
     return;
   }
   disk.material = material_of(placing);
@@ -185,12 +185,12 @@ void PbrtPlacer::place_disk(const Placing& placing) {
   if (placing.is_emitting) {
     if (!placing.shape.light->image.empty())
       scene_.warnings.add("image of the emission of a disk is not supported: ignored");
-    Emitter e = next_emitter(*placing.shape.light, pi * r * r);
-    e.shape = EmitterShape::disk;
+    Light e = next_light(*placing.shape.light, pi * r * r);
+    e.shape = LightShape::disk;
     e.geometry = geometry;
     if (!e.radiance.is_black()) {
-      disk.emitter = int32_t(scene_.emitters.size());
-      scene_.emitters.push_back(std::move(e));
+      disk.light = int32_t(scene_.lights.size());
+      scene_.lights.push_back(std::move(e));
     }
   }
   scene_.disks.push_back(disk);
@@ -216,7 +216,7 @@ void PbrtPlacer::place_mesh(const Placing& placing, const Mesh& local, bool is_q
   if (mesh.triangles.empty()) {
     if (placing.is_emitting) {
       scene_.warnings.add("area light without area is left out");
-      skip_emitter();
+      skip_light();
     }
     return;
   }
@@ -227,14 +227,14 @@ void PbrtPlacer::place_mesh(const Placing& placing, const Mesh& local, bool is_q
   scene_.meshes.push_back(std::move(mesh));
   if (!placing.is_emitting) return;
 
-  Emitter e = next_emitter(*shape.light, area_of(scene_.meshes[index]));
+  Light e = next_light(*shape.light, area_of(scene_.meshes[index]));
   EmissionSpec spec{e.name, e.radiance, no_texture, e.is_two_sided};
   if (has_image) {
     spec.texture = materials_.textures.image(shape.light->image, true, WrapMode::clamp);
     const double mean = shape.light->power > 0 ? mean_luminance(scene_, spec.texture) : 1;
     if (mean > 1e-9) spec.radiance *= float(1 / mean);  // else black or nearly so
   }
-  add_mesh_emitters(scene_, index, spec);
+  add_mesh_lights(scene_, index, spec);
 }
 
 }  // namespace troffer

@@ -1,4 +1,4 @@
-// Shapes of a pbrt file -> geometry and emitters of the scene, in world space.
+// Shapes of a pbrt file -> geometry and lights of the scene, in world space.
 #pragma once
 
 #include "import/pbrt_shape.h"
@@ -17,7 +17,7 @@ class PbrtPlacer {
   // Counts a shape that waits in an object, so that the limit holds for what is never placed too.
   void count_waiting(const PbrtShape& shape, const PbrtPlace& place);
   // Another shape with an area light has appeared that will not be placed: it keeps its number.
-  void skip_emitter() { ++emitters_; }
+  void skip_light() { ++lights_; }
 
  private:
   // A shape on its way into the scene.
@@ -31,7 +31,7 @@ class PbrtPlacer {
 
   Scene& scene_;
   PbrtMaterials& materials_;
-  size_t emitters_ = 0;
+  size_t lights_ = 0;
   size_t cost_ = 0;  // triangles so far; small shapes count as a few
 
   void place(const Placing& placing);
@@ -39,8 +39,8 @@ class PbrtPlacer {
   void place_disk(const Placing& placing);
   void place_mesh(const Placing& placing, const Mesh& local, bool is_quadric);
   uint32_t material_of(const Placing& placing);
-  // Emission of the next emitter, whose area (m²) turns power into radiance.
-  Emitter next_emitter(const PbrtAreaLight& light, double area);
+  // Emission of the next light, whose area (m²) turns power into radiance.
+  Light next_light(const PbrtAreaLight& light, double area);
   void spend(size_t triangles, const PbrtPlace& place);
 };
 

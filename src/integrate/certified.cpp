@@ -20,7 +20,7 @@ constexpr double quarters_below = 0.002, sixteenths_below = 0.0007;
 
 }  // namespace
 
-CertifiedSettings certified_settings(double error, size_t emitters) {
+CertifiedSettings certified_settings(double error, size_t lights) {
   // Half in shadow, the error of n Owen-Sobol rays is near 1/2 n^-3/4. Those of equal, independent
   // sources average out. Powers of two are stratified best.
   const auto rays_for = [](double e) {
@@ -28,7 +28,7 @@ CertifiedSettings certified_settings(double error, size_t emitters) {
     return int(std::bit_floor(unsigned(n)));
   };
   CertifiedSettings s;
-  s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(emitters, 1))));
+  s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(lights, 1))));
   s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
   s.estimator.cells.most_share = error < sixteenths_below ? 0.1 : error < quarters_below ? 0.4 : 1;
   s.error = error;
@@ -87,7 +87,7 @@ void CertifiedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& s
       Walk& walk = s.walks[i];
       Vertex v;
       make_vertex(scene_.scene, walk.ray, hit, v);
-      if (v.surface.emitter >= 0) add_emission(walk, v, out);
+      if (v.surface.light >= 0) add_emission(walk, v, out);
       // Without indirect light it left a glossy surface only to look for emission.
       if (!radiosity_ && walk.scatterings > 0) continue;
       const SurfaceScattering scattering(make_bsdf(scene_.bsdf_tables, scene_.scene,
@@ -126,7 +126,7 @@ void CertifiedIntegrator::add_emission(const Walk& walk, const Vertex& v,
 // Of emission that a walk has run into, against points on the source chosen at the vertex before.
 float CertifiedIntegrator::emission_weight(const Walk& walk, const Vertex& v) const {
   if (!(walk.pdf > 0)) return 1;
-  const bool is_sampled = walk.last_both_sides || !lights_.has(uint32_t(v.surface.emitter));
+  const bool is_sampled = walk.last_both_sides || !lights_.has(uint32_t(v.surface.light));
   if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
   const int32_t primitive = primitive_at(scene_, v.surface);
   const CertifiedSource* source =
@@ -157,7 +157,7 @@ void CertifiedIntegrator::light(const Walk& walk, const Vertex& v,
                          scattering.has_rough ? &scattering.specular : nullptr,
                          scattering.whole.has_transmission,
                          is_direct};
-  for (uint32_t e = 0; e < sampler_.emitters(); ++e) {
+  for (uint32_t e = 0; e < sampler_.lights(); ++e) {
     if (sampler_.is_empty(e) || (is_certified && lights_.has(e))) continue;
     sampler_.sample(at, e, uint32_t(settings_.shadow_rays), s.rays, out, counters);
     ++counters.mixed;

@@ -29,8 +29,8 @@ struct CertifiedSettings {
 };
 
 // Settings for an allowed standard error of a viewing ray's direct light, relative to what its
-// sources would send unoccluded, in a scene of so many emitters.
-CertifiedSettings certified_settings(double error, size_t emitters);
+// sources would send unoccluded, in a scene of so many lights.
+CertifiedSettings certified_settings(double error, size_t lights);
 
 class CertifiedIntegrator final : public Integrator {
  public:

@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Emitters of more pieces, once those in one plane are merged, are left to rays: each piece would
+// Lights of more pieces, once those in one plane are merged, are left to rays: each piece would
 // be a source of its own.
 constexpr uint32_t most_pieces = 256;
 // Hits on a curved surface are certified together within this share of the scene's diagonal.
@@ -58,11 +58,11 @@ void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceSca
 }
 
 CertifiedLights::CertifiedLights(const PreparedScene& scene, double error)
-    : source_of_front_(scene.lights.size(), -1),
-      source_of_back_(scene.lights.size(), -1),
+    : source_of_front_(scene.primitives.size(), -1),
+      source_of_back_(scene.primitives.size(), -1),
       error_(float(error)) {
-  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
-    has_emitter_.push_back(add_emitter(scene, e));
+  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+    has_light_.push_back(add_light(scene, e));
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }
@@ -106,25 +106,24 @@ void CertifiedLights::add_source(const CertifiedSource& source,
   sources_.push_back(source);
 }
 
-bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) {
-  const LightPrimitives::Range pieces = scene.lights.of_emitter(emitter);
+bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
+  const LightPrimitives::Range pieces = scene.primitives.of_light(light);
   std::vector<SourcePiece> merged;
-  if (merge_sources(scene.lights, emitter, merged)) return add_flat_emitter(scene, emitter, merged);
+  if (merge_sources(scene.primitives, light, merged)) return add_flat_light(scene, light, merged);
   if (pieces.last - pieces.first > most_pieces) return false;
   std::vector<CertifiedSource> added;
   for (uint32_t p = pieces.first; p < pieces.last; ++p) {
-    const LightPrimitive& piece = scene.lights[p];
+    const LightPrimitive& piece = scene.primitives[p];
     CertifiedSource source;
     source.primitive = p;
     source.is_textured = piece.is_textured;
-    source.radiance =
-        piece.is_textured ? piece.mean_radiance : scene.scene.emitters[emitter].radiance;
+    source.radiance = piece.is_textured ? piece.mean_radiance : scene.scene.lights[light].radiance;
     if (piece.shape == PrimitiveShape::sphere) {
       if (piece.is_inside_out || piece.is_two_sided) return false;
       source.is_round = true;
       const auto meshes = uint32_t(scene.scene.meshes.size());
       source.sphere = {Vec3d(piece.centroid), double(piece.radius),
-                       Occluders::key(meshes, scene.scene.emitters[emitter].geometry)};
+                       Occluders::key(meshes, scene.scene.lights[light].geometry)};
       source.stream = hash_of(p, 0u);
       added.push_back(source);
       continue;
@@ -142,16 +141,16 @@ bool CertifiedLights::add_emitter(const PreparedScene& scene, uint32_t emitter) 
 }
 
 // Of one radiance.
-bool CertifiedLights::add_flat_emitter(const PreparedScene& scene, uint32_t emitter,
-                                       const std::vector<SourcePiece>& pieces) {
+bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
+                                     const std::vector<SourcePiece>& pieces) {
   if (pieces.size() > most_pieces) return false;
   for (const SourcePiece& piece : pieces) {
     CertifiedSource source;
     source.flat = piece.shape;
     source.primitive = piece.primitives[0];
-    source.radiance = scene.scene.emitters[emitter].radiance;
+    source.radiance = scene.scene.lights[light].radiance;
     for (const bool is_back : {false, true}) {
-      if (is_back && !scene.scene.emitters[emitter].is_two_sided) continue;
+      if (is_back && !scene.scene.lights[light].is_two_sided) continue;
       if (is_back) source.flat.plane.normal = -source.flat.plane.normal;
       source.is_back = is_back;
       source.stream = hash_of(sources_.size(), 2u);  // parts of a polygon share a primitive

@@ -67,11 +67,11 @@ class CertifiedLights {
   // to what they would send unoccluded.
   CertifiedLights(const PreparedScene& scene, double error);
 
-  // The emitter is dealt with here, whole. Others are meshes of too many pieces that lie in no
+  // The light is dealt with here, whole. Others are meshes of too many pieces that lie in no
   // common plane, or spheres that shine inwards.
-  bool has(uint32_t emitter) const { return has_emitter_[emitter]; }
+  bool has(uint32_t light) const { return has_light_[light]; }
   bool is_empty() const { return sources_.empty(); }
-  // The source that a point on a piece of an emitter belongs to, seen from its front or its back;
+  // The source that a point on a piece of a light belongs to, seen from its front or its back;
   // null if none.
   const CertifiedSource* source_of(uint32_t primitive, bool is_back, const Vec3& point) const;
 
@@ -83,9 +83,9 @@ class CertifiedLights {
 
  private:
   void add_source(const CertifiedSource& source, std::span<const uint32_t> primitives);
-  bool add_emitter(const PreparedScene& scene, uint32_t emitter);
-  bool add_flat_emitter(const PreparedScene& scene, uint32_t emitter,
-                        const std::vector<SourcePiece>& pieces);
+  bool add_light(const PreparedScene& scene, uint32_t light);
+  bool add_flat_light(const PreparedScene& scene, uint32_t light,
+                      const std::vector<SourcePiece>& pieces);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
   void choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const;
@@ -99,7 +99,7 @@ class CertifiedLights {
                             RadianceBatch& out) const;
 
   std::vector<CertifiedSource> sources_;
-  std::vector<bool> has_emitter_;
+  std::vector<bool> has_light_;
   // Per primitive, the last source that covers some of it; per source, one before that covers some
   // of the same primitive; -1: none.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;

@@ -13,10 +13,10 @@ namespace troffer {
 
 namespace {
 
-// By how much larger the relative error of a patch's light may be than that of an emitter's: it is
+// By how much larger the relative error of a patch's light may be than that of a light's: it is
 // a small part of a pixel's light.
 constexpr float looser = 8;
-// Tells random numbers from those of emitters.
+// Tells random numbers from those of lights.
 constexpr uint32_t purpose_patches = 0x70617463;
 
 // Patches of more pieces, each of which would be a source, stay in the general light. So do those
@@ -29,7 +29,7 @@ constexpr float nearest = 1;
 SelectionOptions certified_selection(bool has_patches) {
   SelectionOptions o;
   o.is_enabled = has_patches;
-  o.treats_all_emitters = true;
+  o.treats_all_lights = true;
   o.most_patch_pieces = most_pieces;
   o.nearest_patch = nearest;
   return o;
@@ -57,11 +57,11 @@ void PatchIntegrand::evaluate(uint32_t, std::span<const Vec3> points, std::span<
 CertifiedPatches::CertifiedPatches(const PreparedScene& scene, const RadiositySolution& solution,
                                    const SourceSelection& selection) {
   const auto patches = uint32_t(solution.mesh.patches.size());
-  const auto emitters = uint32_t(scene.scene.emitters.size());
+  const auto lights = uint32_t(scene.scene.lights.size());
   std::vector<uint8_t> is_treated(patches, 0);
   for (uint32_t p = 0; p < patches; ++p)
     for (const TreatedSource& t : selection.of_patch(p))
-      if (t.source >= emitters) is_treated[t.source - emitters] = 1;
+      if (t.source >= lights) is_treated[t.source - lights] = 1;
   std::vector<std::array<uint32_t, 2>> pieces(patches);  // sources of each patch
   for (uint32_t p = 0; p < patches; ++p) {
     pieces[p][0] = uint32_t(sources_.size());
@@ -71,8 +71,8 @@ CertifiedPatches::CertifiedPatches(const PreparedScene& scene, const RadiositySo
   first_.push_back(0);
   for (uint32_t p = 0; p < patches; ++p) {
     for (const TreatedSource& t : selection.of_patch(p)) {
-      if (t.source < emitters) continue;
-      const auto [first, last] = pieces[t.source - emitters];
+      if (t.source < lights) continue;
+      const auto [first, last] = pieces[t.source - lights];
       for (uint32_t i = first; i < last; ++i) lit_by_.push_back(i);
     }
     first_.push_back(lit_by_.size());

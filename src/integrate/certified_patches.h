@@ -19,7 +19,7 @@
 
 namespace troffer {
 
-// What the method wants of the preprocessing: every emitter is treated everywhere, and with patches
+// What the method wants of the preprocessing: every light is treated everywhere, and with patches
 // those that are flat, partly hidden, and far enough away for their elements to tell how they
 // shine.
 SelectionOptions certified_selection(bool has_patches);
@@ -73,7 +73,7 @@ class CertifiedPatches {
 
   bool is_empty() const { return sources_.empty(); }
 
-  // Of estimates by settings that suit the scene's emitters: patches are weaker.
+  // Of estimates by settings that suit the scene's lights: patches are weaker.
   static CertifiedOptions options(const CertifiedOptions& of_lights);
 
   // What a batch learns is forgotten at its beginning.

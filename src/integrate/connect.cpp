@@ -7,8 +7,8 @@ namespace troffer {
 Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal) {
   Ray ray;
   ray.origin = offset_origin(s, point - s.position);
-  // The target moves off the emitter, towards this side of it, by twice what a ray that starts
-  // there would: the emitter itself must not count.
+  // The target moves off the light, towards this side of it, by twice what a ray that starts
+  // there would: the light itself must not count.
   const float magnitude =
       std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), std::abs(s.position.x),
                 std::abs(s.position.y), std::abs(s.position.z)});
@@ -20,17 +20,17 @@ Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal) {
 
 bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
              const LightPrimitive& light, const Vec2& u, LightConnection& out) {
-  EmitterSample s;
+  LightSample s;
   return sample(light, v.surface.position, u, s) && connect(scene, v, bsdf, light, s, out);
 }
 
 bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
-             const LightPrimitive& light, const EmitterSample& s, LightConnection& out) {
+             const LightPrimitive& light, const LightSample& s, LightConnection& out) {
   const Vec3 wi = v.frame.to_local(s.wi);
   if (!v.is_consistent(s.wi, wi)) return false;
   const BsdfValue value = evaluate_with_pdf(bsdf, v.wo, wi);
   if (value.f_cos.is_black()) return false;
-  out.value = value.f_cos * emitted_radiance(scene.scene, scene.scene.emitters[light.emitter],
+  out.value = value.f_cos * emitted_radiance(scene.scene, scene.scene.lights[light.light],
                                              s.is_front, s.texture_uv);
   if (out.value.is_black()) return false;
   out.pdf_light = s.pdf_solid_angle;
@@ -46,15 +46,15 @@ float pdf_of_hit(const LightPrimitive& light, const Vec3& from, const Vec3& dire
 
 int32_t primitive_at(const PreparedScene& scene, const Surface& s) {
   const size_t meshes = scene.scene.meshes.size();
-  if (s.geometry < meshes) return scene.lights.of_triangle(s.geometry, s.primitive);
-  return s.geometry == meshes ? scene.lights.of_sphere(s.primitive)
-                              : scene.lights.of_disk(s.primitive);
+  if (s.geometry < meshes) return scene.primitives.of_triangle(s.geometry, s.primitive);
+  return s.geometry == meshes ? scene.primitives.of_sphere(s.primitive)
+                              : scene.primitives.of_disk(s.primitive);
 }
 
 Rgb emission_at(const PreparedScene& scene, const Vertex& v) {
   const Surface& s = v.surface;
-  if (s.emitter < 0) return Rgb{0};
-  return emitted_radiance(scene.scene, scene.scene.emitters[size_t(s.emitter)], v.is_front, s.uv);
+  if (s.light < 0) return Rgb{0};
+  return emitted_radiance(scene.scene, scene.scene.lights[size_t(s.light)], v.is_front, s.uv);
 }
 
 }  // namespace troffer

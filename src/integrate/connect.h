@@ -1,9 +1,9 @@
 // Connecting a vertex with a point on a light: what every method that samples sources shares.
 #pragma once
 
-#include "emitter/emitter_sample.h"
 #include "integrate/prepared_scene.h"
 #include "integrate/vertex.h"
+#include "light/light_sample.h"
 
 namespace troffer {
 
@@ -25,7 +25,7 @@ bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
 
 // The same for a point of `light` that has been chosen already.
 bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
-             const LightPrimitive& light, const EmitterSample& point, LightConnection& out);
+             const LightPrimitive& light, const LightSample& point, LightConnection& out);
 
 // The density per solid angle, given that `light` is sampled, with which connect() picks the point
 // that a ray from `from` meets at vertex v.

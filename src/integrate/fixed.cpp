@@ -38,7 +38,7 @@ void FixedIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scrat
       Walk& walk = s.walks[i];
       Vertex v;
       make_vertex(scene_.scene, walk.ray, hit, v);
-      if (v.surface.emitter >= 0) add_emission(walk, v, out);
+      if (v.surface.light >= 0) add_emission(walk, v, out);
       if (walk.scatterings > 0) continue;  // it left a glossy surface only to look for emission
       const Bsdf bsdf =
           make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
@@ -74,7 +74,7 @@ void FixedIntegrator::sample_sources(const Walk& walk, const Vertex& v, const Bs
   const bool is_matte = is_lambertian(bsdf, nullptr);  // else a sample of its own competes
   const SampledVertex at{walk, v, is_matte ? &bsdf : nullptr, is_matte ? nullptr : &bsdf,
                          bsdf.has_transmission};
-  for (uint32_t e = 0; e < sampler_.emitters(); ++e)
+  for (uint32_t e = 0; e < sampler_.lights(); ++e)
     if (!sampler_.is_empty(e))
       sampler_.sample(at, e, uint32_t(options_.shadow_rays), s.lights, out, counters);
 }

@@ -16,7 +16,7 @@ constexpr uint32_t longest_chain = 64;
 
 // Notes in Walk::last_place: a patch, or one of these.
 constexpr uint32_t no_place = 0xffffffffu;  // no source was sampled there
-constexpr uint32_t off_mesh = 0xfffffffeu;  // all emitters were
+constexpr uint32_t off_mesh = 0xfffffffeu;  // all lights were
 
 uint64_t tree_stream(const Walk& walk) {
   return hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1);
@@ -41,10 +41,10 @@ Kj92Integrator::Kj92Integrator(const PreparedScene& scene, const RadiositySoluti
       selection_(selection),
       radiosity_(scene, solution, selection),
       options_(options) {
-  const auto emitters = uint32_t(scene.scene.emitters.size());
+  const auto lights = uint32_t(scene.scene.lights.size());
   const auto patches = uint32_t(solution.mesh.patches.size());
-  index_of_source_.assign(size_t(emitters) + patches, no_source);
-  for (uint32_t e = 0; e < emitters; ++e) {
+  index_of_source_.assign(size_t(lights) + patches, no_source);
+  for (uint32_t e = 0; e < lights; ++e) {
     index_of_source_[e] = uint32_t(sources_.size());
     sources_.emplace_back(scene, e);
     everywhere_.push_back({e, {SourceView::occluded, SourceTreatment::probed, 0, 1, 0}});
@@ -53,7 +53,7 @@ Kj92Integrator::Kj92Integrator(const PreparedScene& scene, const RadiositySoluti
     for (const TreatedSource& t : selection.of_patch(p)) {
       if (index_of_source_[t.source] != no_source) continue;
       index_of_source_[t.source] = uint32_t(sources_.size());
-      sources_.emplace_back(scene, solution, t.source - emitters);
+      sources_.emplace_back(scene, solution, t.source - lights);
     }
 }
 
@@ -67,11 +67,11 @@ std::span<const TreatedSource> Kj92Integrator::treated_at(const RadiosityPlace& 
   return selection_.of_patch(solution_.mesh.points[place.point].patch);
 }
 
-bool Kj92Integrator::is_treated(uint32_t place_note, uint32_t emitter) const {
+bool Kj92Integrator::is_treated(uint32_t place_note, uint32_t light) const {
   if (place_note == no_place) return false;
   if (place_note == off_mesh) return true;
   for (const TreatedSource& t : selection_.of_patch(place_note))
-    if (t.source == emitter) return true;
+    if (t.source == light) return true;
   return false;
 }
 
@@ -93,7 +93,7 @@ void Kj92Integrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
       items.at(walk.index);
       Vertex v;
       make_vertex(scene_.scene, walk.ray, hit, v);
-      if (v.surface.emitter >= 0) add_emission(walk, v, out);
+      if (v.surface.light >= 0) add_emission(walk, v, out);
       if (options_.is_direct_only && walk.scatterings > 0) continue;
       const SurfaceScattering scattering(make_bsdf(scene_.bsdf_tables, scene_.scene,
                                                    v.surface.material, v.surface.uv, v.is_front));
@@ -119,11 +119,11 @@ void Kj92Integrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
 void Kj92Integrator::add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const {
   const Rgb radiance = emission_at(scene_, v);
   if (radiance.is_black()) return;
-  const auto emitter = uint32_t(v.surface.emitter);
+  const auto light = uint32_t(v.surface.light);
   float weight = 1;
-  if (walk.pdf > 0 && is_treated(walk.last_place, emitter)) {
-    const float pdf_light = sources_[index_of_source_[emitter]].pdf_of_hit(
-        scene_, walk.last_position, walk.ray.direction, v);
+  if (walk.pdf > 0 && is_treated(walk.last_place, light)) {
+    const float pdf_light = sources_[index_of_source_[light]].pdf_of_hit(scene_, walk.last_position,
+                                                                         walk.ray.direction, v);
     weight = power_heuristic(walk.pdf, float(options_.sampling.tree.initial_rays) * pdf_light);
   }
   // Straight from a source: by mirrors and clear glass, or by the one rough surface it is seen in.
@@ -158,7 +158,7 @@ void Kj92Integrator::shade(const Walk& walk, const RadiosityPlace& place, const 
   receiver.neighbours = neighbours;
   receiver.record = record;
   const TreeLight light = scratch.sampler.run(receiver, treated_at(place));
-  direct += light.from_emitters;
+  direct += light.from_lights;
   indirect += light.from_patches;
   out.shadow_rays[walk.index] += light.rays;
   counters.shadow_rays += light.rays;
@@ -191,7 +191,7 @@ void Kj92Integrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
     receiver.scattering = &scattering;
     receiver.stream = tree_stream(walk);
     const TreeLight light = s.sampler.run(receiver, everywhere_);
-    out.direct[i] += light.from_emitters;
+    out.direct[i] += light.from_lights;
     out.shadow_rays[i] += light.rays;
     counters.shadow_rays += light.rays;
     const Vec3 wi = v.frame.to_world(cosine_hemisphere_from_square(direction_number(walk)));

@@ -54,9 +54,9 @@ struct PathIntegrator::Scratch final : IntegratorScratch {
   std::vector<float> tree_scratch;
   std::vector<Vec3> points_lit;
   std::vector<float> light_u, light_v, light_pmf;
-  std::vector<EmitterSample> points;
+  std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
-  EmitterSampleScratch emitters;
+  LightSampleScratch lights;
 
   void resize_lights(size_t n) {
     lit.resize(n);
@@ -138,7 +138,7 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
     const Walk& walk = s.walks[i];
     Vertex& v = s.vertices[alive];
     make_vertex(scene_.scene, walk.ray, hit, v);
-    if (v.surface.emitter >= 0) add_emission(walk, v, out);
+    if (v.surface.light >= 0) add_emission(walk, v, out);
     if (is_last(walk) && walk.vertex > 0) continue;
     const ColorInput& color = scene_.scene.materials[v.surface.material].base_color;
     if (color.texture >= 0) prefetch(scene_.scene.textures, uint32_t(color.texture), v.surface.uv);
@@ -209,13 +209,14 @@ void PathIntegrator::sample_lights(Scratch& s) const {
     ++kept;
   }
   m = kept;
-  sample_many(scene_.lights, m, s.primitives.data(), s.points_lit.data(), s.light_u.data(),
-              s.light_v.data(), s.points.data(), s.is_valid.data(), s.emitters);
+  sample_many(scene_.primitives, m, s.primitives.data(), s.points_lit.data(), s.light_u.data(),
+              s.light_v.data(), s.points.data(), s.is_valid.data(), s.lights);
   for (size_t k = 0; k < m; ++k) {
     if (s.is_valid[k] == 0) continue;
     const uint32_t i = s.lit[k];
     LightConnection c;
-    if (!connect(scene_, s.vertices[i], s.bsdfs[i], scene_.lights[s.primitives[k]], s.points[k], c))
+    if (!connect(scene_, s.vertices[i], s.bsdfs[i], scene_.primitives[s.primitives[k]], s.points[k],
+                 c))
       continue;
     const float pdf_light = c.pdf_light * s.light_pmf[k];
     const float weight = power_heuristic(pdf_light, c.pdf_bsdf);

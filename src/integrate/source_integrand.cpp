@@ -1,8 +1,8 @@
 #include "integrate/source_integrand.h"
 
-#include "emitter/irradiance.h"
-#include "emitter/polygon.h"
 #include "integrate/connect.h"
+#include "light/irradiance.h"
+#include "light/polygon.h"
 
 namespace troffer {
 
@@ -24,13 +24,13 @@ float nominal_density(const CertifiedSource& source, const Vec3& x, const Vec3& 
 
 Rgb SourceIntegrand::radiance_at(const Vec3& point) const {
   if (!source_->is_textured) return source_->radiance;
-  const LightPrimitive& p = scene_.lights[source_->primitive];
+  const LightPrimitive& p = scene_.primitives[source_->primitive];
   const Vec3d a(p.vertices[0]), ab = Vec3d(p.vertices[1]) - a, ac = Vec3d(p.vertices[2]) - a;
   const Vec3d n = cross(ab, ac), d = Vec3d(point) - a;
   const double area2 = length_squared(n);
   const auto b1 = float(dot(cross(d, ac), n) / area2), b2 = float(dot(cross(ab, d), n) / area2);
   const Vec2 uv = p.uvs[0] * (1 - b1 - b2) + p.uvs[1] * b1 + p.uvs[2] * b2;
-  return emitted_radiance(scene_.scene, scene_.scene.emitters[p.emitter], !source_->is_back, uv);
+  return emitted_radiance(scene_.scene, scene_.scene.lights[p.light], !source_->is_back, uv);
 }
 
 void SourceIntegrand::evaluate(uint32_t member, std::span<const Vec3> points,

@@ -13,7 +13,7 @@
 
 namespace troffer {
 
-// A source as certified visibility treats it whole: a flat piece of an emitter, several of them
+// A source as certified visibility treats it whole: a flat piece of a light, several of them
 // merged, or a sphere.
 struct CertifiedSource {
   bool is_round = false;
@@ -21,7 +21,7 @@ struct CertifiedSource {
   SphereSource sphere;
   Rgb radiance;              // mean, where it varies
   bool is_textured = false;  // a triangle with texture coordinates
-  bool is_back = false;      // the emitter is seen from its back
+  bool is_back = false;      // the light is seen from its back
   uint32_t primitive = 0;    // (one) of LightPrimitives
   uint64_t stream = 0;
 

@@ -26,25 +26,25 @@ void SourceSamplerScratch::resize(size_t n) {
 }
 
 SourceSampler::SourceSampler(const PreparedScene& scene) : scene_(scene) {
-  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
-    trees_.emplace_back(scene.lights, scene.lights.of_emitter(e));
+  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+    trees_.emplace_back(scene.primitives, scene.primitives.of_light(e));
 }
 
-// Points on the emitter, in the order of their numbers; those that can send no light are left out.
+// Points on the light, in the order of their numbers; those that can send no light are left out.
 // Returns how many there are.
-uint32_t SourceSampler::choose_points(const SampledVertex& at, uint32_t emitter, uint32_t n,
+uint32_t SourceSampler::choose_points(const SampledVertex& at, uint32_t light, uint32_t n,
                                       SourceSamplerScratch& s) const {
   const Vertex& v = at.vertex;
   s.resize(n);
   s.receivers.assign(n, v.surface.position);
-  s.streams.assign(n, hash_combine(at.walk.stream, emitter + 1));
+  s.streams.assign(n, hash_combine(at.walk.stream, light + 1));
   std::iota(s.samples.begin(), s.samples.end(), at.walk.sample * n);
   sobol_groups(s.streams.data(), s.samples.data(), n, purpose_light(at.walk.vertex), 3,
                s.numbers.data());
   uint32_t chosen = 0;
   for (uint32_t j = 0; j < n; ++j) {
-    const LightChoice choice = trees_[emitter].choose(v.surface.position, v.geometric_normal,
-                                                      at.has_transmission, s.numbers[2 * n + j]);
+    const LightChoice choice = trees_[light].choose(v.surface.position, v.geometric_normal,
+                                                    at.has_transmission, s.numbers[2 * n + j]);
     if (choice.pmf == 0) continue;  // of these primitives none can send light here
     s.primitives[chosen] = choice.primitive;
     s.pmfs[chosen] = choice.pmf;
@@ -52,27 +52,27 @@ uint32_t SourceSampler::choose_points(const SampledVertex& at, uint32_t emitter,
     s.v[chosen] = s.numbers[n + j];
     ++chosen;
   }
-  sample_many(scene_.lights, chosen, s.primitives.data(), s.receivers.data(), s.u.data(),
-              s.v.data(), s.points.data(), s.is_valid.data(), s.emitters);
+  sample_many(scene_.primitives, chosen, s.primitives.data(), s.receivers.data(), s.u.data(),
+              s.v.data(), s.points.data(), s.is_valid.data(), s.lights);
   return chosen;
 }
 
-void SourceSampler::sample(const SampledVertex& at, uint32_t emitter, uint32_t n,
+void SourceSampler::sample(const SampledVertex& at, uint32_t light, uint32_t n,
                            SourceSamplerScratch& s, RadianceBatch& out, Counters& counters) const {
-  const uint32_t chosen = choose_points(at, emitter, n, s);
+  const uint32_t chosen = choose_points(at, light, n, s);
   for (uint32_t j = 0; j < chosen; ++j) {
     if (s.is_valid[j] == 0) continue;
-    const LightPrimitive& light = scene_.lights[s.primitives[j]];
+    const LightPrimitive& primitive = scene_.primitives[s.primitives[j]];
     LightConnection c;
     Rgb carried;
     bool is_connected = false;
-    if (at.alone != nullptr && connect(scene_, at.vertex, *at.alone, light, s.points[j], c)) {
+    if (at.alone != nullptr && connect(scene_, at.vertex, *at.alone, primitive, s.points[j], c)) {
       const float pdf_light = c.pdf_light * s.pmfs[j] * float(n);
       carried += at.walk.throughput * c.value * (1 / pdf_light);
       is_connected = true;
     }
     if (at.competing != nullptr &&
-        connect(scene_, at.vertex, *at.competing, light, s.points[j], c)) {
+        connect(scene_, at.vertex, *at.competing, primitive, s.points[j], c)) {
       const float pdf_light = c.pdf_light * s.pmfs[j] * float(n);
       const float weight = power_heuristic(pdf_light, c.pdf_bsdf);
       carried += at.walk.throughput * c.value * (weight / pdf_light);
@@ -92,7 +92,7 @@ void SourceSampler::resolve(SourceSamplerScratch& s, RadianceBatch& out, Counter
 float SourceSampler::emission_weight(const Walk& walk, const Vertex& v, uint32_t n) const {
   const int32_t primitive = walk.pdf > 0 ? primitive_at(scene_, v.surface) : no_primitive;
   if (primitive < 0) return 1;
-  return troffer::emission_weight(scene_, trees_[size_t(v.surface.emitter)], walk, v,
+  return troffer::emission_weight(scene_, trees_[size_t(v.surface.light)], walk, v,
                                   uint32_t(primitive), float(n));
 }
 

@@ -15,9 +15,9 @@ struct SourceSamplerScratch {
   std::vector<uint32_t> samples, primitives;
   std::vector<float> numbers, pmfs, u, v;
   std::vector<Vec3> receivers;
-  std::vector<EmitterSample> points;
+  std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
-  EmitterSampleScratch emitters;
+  LightSampleScratch lights;
 
   void resize(size_t n);
 };
@@ -38,25 +38,25 @@ class SourceSampler {
  public:
   explicit SourceSampler(const PreparedScene& scene);
 
-  uint32_t emitters() const { return uint32_t(trees_.size()); }
-  bool is_empty(uint32_t emitter) const { return trees_[emitter].is_empty(); }
+  uint32_t lights() const { return uint32_t(trees_.size()); }
+  bool is_empty(uint32_t light) const { return trees_[light].is_empty(); }
 
-  // Adds n shadow rays to an emitter that is not empty. They are traced, and their light added to
+  // Adds n shadow rays to a light that is not empty. They are traced, and their light added to
   // `out`, once many have gathered and by resolve().
-  void sample(const SampledVertex& at, uint32_t emitter, uint32_t n, SourceSamplerScratch& s,
+  void sample(const SampledVertex& at, uint32_t light, uint32_t n, SourceSamplerScratch& s,
               RadianceBatch& out, Counters& counters) const;
   void resolve(SourceSamplerScratch& s, RadianceBatch& out, Counters& counters) const;
 
-  // The weight of emission that a walk has run into at v, against n rays to that emitter from the
+  // The weight of emission that a walk has run into at v, against n rays to that light from the
   // vertex before; 1 where the walk competes with none.
   float emission_weight(const Walk& walk, const Vertex& v, uint32_t n) const;
 
  private:
-  uint32_t choose_points(const SampledVertex& at, uint32_t emitter, uint32_t n,
+  uint32_t choose_points(const SampledVertex& at, uint32_t light, uint32_t n,
                          SourceSamplerScratch& s) const;
 
   const PreparedScene& scene_;
-  std::vector<LightTree> trees_;  // per emitter, over its primitives
+  std::vector<LightTree> trees_;  // per light, over its primitives
 };
 
 }  // namespace troffer

@@ -64,7 +64,7 @@ TreeLight TreeSampler::run(const TreeReceiver& r, std::span<const TreatedSource>
   }
   for (size_t i = 0; i < task_count_; ++i) {
     const Task& t = tasks_[i];
-    (t.source->is_patch() ? light.from_patches : light.from_emitters) += light_of(r, t);
+    (t.source->is_patch() ? light.from_patches : light.from_lights) += light_of(r, t);
     const SourceClass& c = t.treated.source_class;
     if (c.treatment == SourceTreatment::sampled)
       ++light.sampled;

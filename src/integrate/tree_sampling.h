@@ -38,7 +38,7 @@ struct TreeReceiver {
 };
 
 struct TreeLight {
-  Rgb from_emitters, from_patches;  // radiance towards the viewer
+  Rgb from_lights, from_patches;  // radiance towards the viewer
   uint32_t rays = 0;
   uint32_t sampled = 0, probed_visible = 0, probed_hidden = 0;  // sources
 };

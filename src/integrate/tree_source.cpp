@@ -3,23 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emitter/emitter_sample.h"
-#include "emitter/irradiance.h"
 #include "integrate/connect.h"
+#include "light/irradiance.h"
+#include "light/light_sample.h"
 #include "radiosity/patch_surface.h"
 
 namespace troffer {
 
-TreeSource::TreeSource(const PreparedScene& scene, uint32_t emitter)
-    : surface_(scene.scene, emitter), emitter_(int32_t(emitter)) {
-  const Emitter& e = scene.scene.emitters[emitter];
-  const LightPrimitives::Range range = scene.lights.of_emitter(emitter);
+TreeSource::TreeSource(const PreparedScene& scene, uint32_t light)
+    : surface_(scene.scene, light), light_(int32_t(light)) {
+  const Light& e = scene.scene.lights[light];
+  const LightPrimitives::Range range = scene.primitives.of_light(light);
   radiance_ = e.radiance;
   is_two_sided_ = e.is_two_sided;
   is_black_ = range.first == range.last;
   is_constant_ = e.texture < 0 && !e.is_alpha_masked;
   is_convex_ = range.last - range.first == 1;
-  if (is_convex_ && scene.lights[range.first].shape == PrimitiveShape::sphere)
+  if (is_convex_ && scene.primitives[range.first].shape == PrimitiveShape::sphere)
     sphere_ = int32_t(range.first);
 }
 
@@ -33,15 +33,15 @@ TreeSource::TreeSource(const PreparedScene&, const RadiositySolution& solution, 
 }
 
 Rgb TreeSource::exact_irradiance(const PreparedScene& scene, const Vertex& v) const {
-  return radiance_ * float(irradiance(scene.lights, uint32_t(emitter_), Vec3d(v.surface.position),
+  return radiance_ * float(irradiance(scene.primitives, uint32_t(light_), Vec3d(v.surface.position),
                                       Vec3d(v.frame.normal)));
 }
 
 bool TreeSource::point_towards(const PreparedScene& scene, const Vec2& uv, const Vec3& x,
                                Point& out) const {
   if (sphere_ != no_primitive) {
-    EmitterSample s;
-    if (!troffer::sample(scene.lights[size_t(sphere_)], x, uv, s)) return false;
+    LightSample s;
+    if (!troffer::sample(scene.primitives[size_t(sphere_)], x, uv, s)) return false;
     out = {s.point, s.normal, s.texture_uv, s.pdf_solid_angle, s.is_front};
     return true;
   }
@@ -77,7 +77,7 @@ bool TreeSource::sample(const PreparedScene& scene, const Vec2& uv, const Vertex
   if (f_cos.is_black()) return false;
   const Rgb radiance = is_constant_
                            ? radiance_
-                           : emitted_radiance(scene.scene, scene.scene.emitters[size_t(emitter_)],
+                           : emitted_radiance(scene.scene, scene.scene.lights[size_t(light_)],
                                               p.is_front, p.texture_uv);
   out.value = f_cos * radiance / p.pdf_solid_angle;
   if (out.value.is_black()) return false;
@@ -90,7 +90,7 @@ float TreeSource::pdf_of_hit(const PreparedScene& scene, const Vec3& from, const
   const Vec3 d = v.surface.position - from;
   const float distance_squared = length_squared(d);
   if (sphere_ != no_primitive)
-    return pdf_solid_angle(scene.lights[size_t(sphere_)], from, direction,
+    return pdf_solid_angle(scene.primitives[size_t(sphere_)], from, direction,
                            std::sqrt(distance_squared));
   const float cosine = std::abs(dot(v.surface.geometric_normal, direction));
   return cosine > 0 ? distance_squared / (cosine * float(surface_.area())) : 0;

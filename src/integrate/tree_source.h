@@ -1,15 +1,15 @@
 // A source as a bintree samples it: the unit square laid over it, and what light a point of the
 // square sends to a vertex.
 //
-// Emitters of any shape, and bright patches of the radiosity solution. The square is laid over the
+// Lights of any shape, and bright patches of the radiosity solution. The square is laid over the
 // surface by area (source_surface.h); over a sphere by the solid angle of what the vertex sees of
 // it, or half of the square would lie on the far side.
 #pragma once
 
-#include "emitter/source_surface.h"
 #include "integrate/prepared_scene.h"
 #include "integrate/surface_scattering.h"
 #include "integrate/vertex.h"
+#include "light/source_surface.h"
 #include "radiosity/solution.h"
 
 namespace troffer {
@@ -22,11 +22,11 @@ struct TreeSourceSample {
 
 class TreeSource {
  public:
-  TreeSource(const PreparedScene& scene, uint32_t emitter);
+  TreeSource(const PreparedScene& scene, uint32_t light);
   // `patch` sends the radiance that it has shot.
   TreeSource(const PreparedScene& scene, const RadiositySolution& solution, uint32_t patch);
 
-  bool is_patch() const { return emitter_ < 0; }
+  bool is_patch() const { return light_ < 0; }
   // Nothing to sample.
   bool is_empty() const { return !(surface_.area() > 0) || is_black_; }
   // All points send the same radiance.
@@ -44,7 +44,7 @@ class TreeSource {
               const SurfaceScattering& s, float light_rays, TreeSourceSample& out) const;
 
   // Density per solid angle with which uniform (u,v) choose the direction from `from` in which a
-  // ray has run into this emitter at v.
+  // ray has run into this light at v.
   float pdf_of_hit(const PreparedScene& scene, const Vec3& from, const Vec3& direction,
                    const Vertex& v) const;
 
@@ -58,8 +58,8 @@ class TreeSource {
   bool point_towards(const PreparedScene& scene, const Vec2& uv, const Vec3& x, Point& out) const;
 
   SourceSurface surface_;
-  int32_t emitter_ = -1;
-  int32_t sphere_ = no_primitive;  // the light primitive of a spherical emitter
+  int32_t light_ = -1;
+  int32_t sphere_ = no_primitive;  // the light primitive of a spherical light
   Rgb radiance_;
   bool is_constant_ = true, is_convex_ = true, is_two_sided_ = false, is_black_ = false;
   Vec3 round_centre_;       // of the sphere on which a patch lies …

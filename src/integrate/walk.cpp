@@ -87,7 +87,7 @@ float emission_weight(const PreparedScene& scene, const LightTree& tree, const W
                       const Vertex& v, uint32_t primitive, float samples) {
   const float pmf = tree.pmf(walk.last_position, walk.last_normal, walk.last_both_sides, primitive);
   const float pdf_light =
-      pmf * pdf_of_hit(scene.lights[primitive], walk.last_position, walk.ray.direction, v);
+      pmf * pdf_of_hit(scene.primitives[primitive], walk.last_position, walk.ray.direction, v);
   return power_heuristic(walk.pdf, samples * pdf_light);
 }
 

@@ -7,8 +7,8 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "base/warp.h"
-#include "emitter/emitter_sample.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
+#include "light/light_sample.h"
 
 namespace troffer {
 
@@ -80,7 +80,7 @@ bool exact_end(const Shooter& s, const ElementPoint& r, Vec2 u, std::span<const 
   double x = double(u.x) * sums.back();
   out.piece = choose(sums, x);
   const LightPrimitive& p = s.pieces[out.piece];
-  EmitterSample sample_of;
+  LightSample sample_of;
   if (!sample(p, r.position, {float(x), u.y}, sample_of)) return false;
   const double sent = sums[out.piece] - (out.piece > 0 ? sums[out.piece - 1] : 0.0);
   const float cosine = dot(sample_of.wi, r.normal);

@@ -1,7 +1,7 @@
-// Light from one shooter - an emitter or a patch - to sample points: its unoccluded irradiance, and
+// Light from one shooter - a light or a patch - to sample points: its unoccluded irradiance, and
 // the share of it that gets through.
 //
-// Unoccluded: the exact terms of emitter/irradiance.h, summed over the shooter's pieces; from more
+// Unoccluded: the exact terms of light/irradiance.h, summed over the shooter's pieces; from more
 // than 12 radii away a flat piece counts as a point (relative error under 1 %). Shooters of more
 // than 24 pieces, which are curved, take [1]'s disc approximation at their rays' ends instead.
 // Visibility: the ratio of two sums over rays [2], sum(f V / p) / sum(f / p), the rays' ends being

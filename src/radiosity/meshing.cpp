@@ -29,7 +29,7 @@ std::vector<uint32_t> find_duplicates(const BaseGeometry& g) {
   for (uint32_t i = 0; i < g.triangles.size(); ++i) {
     const BaseTriangle& t = g.triangles[i];
     same_as[i] = i;
-    if (t.is_degenerate || t.emitter != no_emitter) continue;
+    if (t.is_degenerate || t.light != no_light) continue;
     if (g.surfaces[t.surface].bulge != Bulge::none) continue;
     Corners corners;
     for (size_t k = 0; k < 3; ++k) {

@@ -1,8 +1,8 @@
-// A patch as a source that is sampled like an emitter: the unit square over its area, equal areas
-// to equal areas (emitter/source_surface.h).
+// A patch as a source that is sampled like a light: the unit square over its area, equal areas
+// to equal areas (light/source_surface.h).
 #pragma once
 
-#include "emitter/source_surface.h"
+#include "light/source_surface.h"
 #include "radiosity/meshing.h"
 
 namespace troffer {

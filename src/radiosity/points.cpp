@@ -15,7 +15,7 @@ namespace troffer {
 
 namespace {
 
-constexpr int reach_rays = 8, reach_rays_of_emitters = 64;
+constexpr int reach_rays = 8, reach_rays_of_lights = 64;
 constexpr uint32_t purpose_reach = 0;
 
 struct ElementInfo {
@@ -206,9 +206,9 @@ ElementPoint point_of(const Scene& scene, const RadiosityMesh& mesh, const Eleme
   return p;
 }
 
-bool emits(const Scene& scene, int32_t emitter, bool is_back) {
-  if (emitter < 0) return false;
-  const Emitter& e = scene.emitters[size_t(emitter)];
+bool emits(const Scene& scene, int32_t light, bool is_back) {
+  if (light < 0) return false;
+  const Light& e = scene.lights[size_t(light)];
   return !e.radiance.is_black() && (!is_back || e.is_two_sided);
 }
 
@@ -231,7 +231,7 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
   std::vector<uint8_t> is_source(n);
   for (uint32_t f = 0; f < mesh.fragments.size(); ++f)
     for (uint32_t side = 0; side < 2; ++side)
-      if (emits(scene, mesh.geometry.triangles[e.base_triangle[f]].emitter, side == 1))
+      if (emits(scene, mesh.geometry.triangles[e.base_triangle[f]].light, side == 1))
         is_source[2 * mesh.fragments[f].element + side] = 1;
   std::vector<std::vector<uint32_t>> seen(n);
   parallel_for((n + 63) / 64, threads, [&](size_t block) {
@@ -241,7 +241,7 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
       const ElementPoint& p = sides[i];
       const Frame frame(p.normal);
       rays.clear();
-      const int count = is_source[i] ? reach_rays_of_emitters : reach_rays;
+      const int count = is_source[i] ? reach_rays_of_lights : reach_rays;
       for (int k = 0; k < count; ++k) {
         const Vec2 u = SobolGroup(hash_of(i), purpose_reach, uint32_t(k)).get2();
         Ray r;

@@ -16,8 +16,8 @@ void add_geometry(Hasher& h, const Scene& scene) {
     h.add(m.triangles.size());
     for (const Triangle& t : m.triangles)
       for (const uint32_t v : t) h.add(uint64_t(v));
-    h.add(m.emitters.size());
-    for (const int32_t e : m.emitters) h.add(uint64_t(e));
+    h.add(m.lights.size());
+    for (const int32_t e : m.lights) h.add(uint64_t(e));
     h.add(uint64_t(m.material));
   }
   h.add(scene.spheres.size());
@@ -26,7 +26,7 @@ void add_geometry(Hasher& h, const Scene& scene) {
     h.add(s.radius);
     h.add(uint64_t(s.is_inside_out));
     h.add(uint64_t(s.material));
-    h.add(uint64_t(s.emitter));
+    h.add(uint64_t(s.light));
   }
   h.add(scene.disks.size());
   for (const Disk& d : scene.disks) {
@@ -34,7 +34,7 @@ void add_geometry(Hasher& h, const Scene& scene) {
     h.add(d.normal);
     h.add(d.radius);
     h.add(uint64_t(d.material));
-    h.add(uint64_t(d.emitter));
+    h.add(uint64_t(d.light));
   }
 }
 
@@ -77,8 +77,8 @@ uint64_t radiosity_scene_key(const Scene& scene) {
   for (const Material& m : scene.materials) add_material(h, m);
   h.add(scene.textures.size());
   for (const Texture& t : scene.textures) add_texture(h, t);
-  h.add(scene.emitters.size());
-  for (const Emitter& e : scene.emitters) {
+  h.add(scene.lights.size());
+  for (const Light& e : scene.lights) {
     h.add(uint64_t(e.shape) | uint64_t(e.is_two_sided) << 8);
     h.add(e.radiance);
     h.add(uint64_t(e.texture));

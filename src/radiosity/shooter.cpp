@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 #include "base/warp.h"
-#include "emitter/polygon.h"
+#include "light/polygon.h"
 
 namespace troffer {
 
@@ -95,12 +95,12 @@ float share_at(const Shooter& s, const Vec3& point) {
   return share;
 }
 
-Shooter emitter_shooter(const LightPrimitives& lights, uint32_t emitter) {
+Shooter light_shooter(const LightPrimitives& primitives, uint32_t light) {
   Shooter s;
-  const LightPrimitives::Range range = lights.of_emitter(emitter);
+  const LightPrimitives::Range range = primitives.of_light(light);
   for (uint32_t i = range.first; i < range.last; ++i) {
-    s.pieces.push_back(lights[i]);
-    s.offset = std::max(s.offset, 1.6e-5f * largest_coordinate(lights[i].bounds));
+    s.pieces.push_back(primitives[i]);
+    s.offset = std::max(s.offset, 1.6e-5f * largest_coordinate(primitives[i].bounds));
   }
   finish(s);
   return s;

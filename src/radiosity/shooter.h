@@ -1,11 +1,11 @@
-// What shoots in the radiosity preprocessing: an emitter, or a patch with what its elements hold.
+// What shoots in the radiosity preprocessing: a light, or a patch with what its elements hold.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "emitter/light_primitive.h"
+#include "light/light_primitive.h"
 #include "radiosity/meshing.h"
 
 namespace troffer {
@@ -28,7 +28,7 @@ struct Shooter {
 
 constexpr size_t max_exact_pieces = 24;
 
-Shooter emitter_shooter(const LightPrimitives& lights, uint32_t emitter);
+Shooter light_shooter(const LightPrimitives& primitives, uint32_t light);
 // Its pieces send `radiance`.
 Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance);
 // Sets parts and shares from the luminance that each point of the patch sends, in any unit.

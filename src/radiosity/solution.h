@@ -23,16 +23,16 @@ struct RadiosityOptions {
   uint32_t max_shots = 20000;
   int max_rays = 64;         // from a sample point to a shooter
   float tolerance = 0.003f;  // of one transfer, in units of the scene's mean irradiance
-  // To emitters that would give more than `emitter_share` of the mean irradiance if nothing were in
+  // To lights that would give more than `light_share` of the mean irradiance if nothing were in
   // the way, at least this many rays are cast, well spread, and all of them; 0: as to patches.
-  int emitter_rays = 64;
-  float emitter_share = 0.003f;
+  int light_rays = 64;
+  float light_share = 0.003f;
   uint64_t seed = 0;
 };
 constexpr uint32_t max_stored = 64;
 
-// What one source gives to one sample point, over all of its shots. The source is an emitter of the
-// scene, or, from emitter_count on, a patch.
+// What one source gives to one sample point, over all of its shots. The source is a light of the
+// scene, or, from light_count on, a patch.
 struct StoredContribution {
   uint32_t source = no_source;
   Rgb received;    // irradiance, W/m² or lx, with the preprocessing's visibility
@@ -42,7 +42,7 @@ struct StoredContribution {
 // Luminance of power (W, or lm). emitted = absorbed + lost_to_specular + unshot + escaped.
 struct EnergyBalance {
   double emitted = 0;
-  double shot = 0;              // by emitters and patches
+  double shot = 0;              // by lights and patches
   double absorbed = 0;          // at sample points
   double lost_to_specular = 0;  // reflected or transmitted there, but not diffusely
   double unshot = 0;
@@ -52,10 +52,10 @@ struct EnergyBalance {
 struct RadiositySolution {
   RadiosityOptions options;
   RadiosityMesh mesh;
-  uint32_t emitter_count = 0;
+  uint32_t light_count = 0;
   uint32_t stored_per_point = 0;
   std::vector<Rgb> general;                // per point: all that is not stored separately
-  std::vector<Rgb> general_direct;         // the part of `general` that came straight from emitters
+  std::vector<Rgb> general_direct;         // the part of `general` that came straight from lights
   std::vector<StoredContribution> stored;  // stored_per_point of them per point; unused: no_source
   std::vector<Rgb> shot_radiance;          // per patch: the radiance it sent, over all its shots
   // Irradiance expected everywhere from what is unshot, and from what mirrors, glass and gloss
@@ -70,8 +70,8 @@ struct RadiositySolution {
   std::span<const StoredContribution> contributions(uint32_t point) const {
     return {stored.data() + size_t(point) * stored_per_point, stored_per_point};
   }
-  bool is_emitter(uint32_t source) const { return source < emitter_count; }
-  uint32_t patch_of(uint32_t source) const { return source - emitter_count; }
+  bool is_light(uint32_t source) const { return source < light_count; }
+  uint32_t patch_of(uint32_t source) const { return source - light_count; }
   // General value and all stored contributions, in that order; without the ambient estimate.
   Rgb irradiance(uint32_t point) const {
     Rgb sum = general[point];

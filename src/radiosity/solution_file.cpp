@@ -36,8 +36,8 @@ struct FileOptions {
   uint32_t max_shots;
   int32_t max_rays;
   float tolerance;
-  int32_t emitter_rays;
-  float emitter_share;
+  int32_t light_rays;
+  float light_share;
   uint32_t seed[2];
   uint32_t unused;
 };
@@ -54,7 +54,7 @@ struct Header {
   uint32_t shots;
   uint32_t is_complete;
   float ambient[3];
-  uint32_t emitters;
+  uint32_t lights;
   double balance[6];
   uint32_t patches;
   float mean_irradiance;
@@ -106,8 +106,8 @@ FileOptions packed(const RadiosityOptions& o) {
   f.max_shots = o.max_shots;
   f.max_rays = o.max_rays;
   f.tolerance = o.tolerance;
-  f.emitter_rays = o.emitter_rays;
-  f.emitter_share = o.emitter_share;
+  f.light_rays = o.light_rays;
+  f.light_share = o.light_share;
   f.seed[0] = uint32_t(o.seed);
   f.seed[1] = uint32_t(o.seed >> 32);
   return f;
@@ -126,8 +126,8 @@ RadiosityOptions unpacked(const FileOptions& f) {
   o.max_shots = f.max_shots;
   o.max_rays = f.max_rays;
   o.tolerance = f.tolerance;
-  o.emitter_rays = f.emitter_rays;
-  o.emitter_share = f.emitter_share;
+  o.light_rays = f.light_rays;
+  o.light_share = f.light_share;
   o.seed = f.seed[0] | uint64_t(f.seed[1]) << 32;
   return o;
 }
@@ -235,7 +235,7 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
   h.shots = s.shots;
   h.is_complete = s.is_complete;
   put(h.ambient, s.ambient);
-  h.emitters = s.emitter_count;
+  h.lights = s.light_count;
   h.patches = uint32_t(s.shot_radiance.size());
   h.mean_irradiance = s.mean_irradiance;
   const EnergyBalance& b = s.balance;
@@ -297,7 +297,7 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
   if (h.points != s.mesh.points.size() || h.patches != s.mesh.patches.size() ||
       h.points_key != points_key(s.mesh))
     throw InputError(file, 0, 0, "radiosity solution was computed on another mesh of this scene");
-  s.emitter_count = uint32_t(scene.emitters.size());
+  s.light_count = uint32_t(scene.lights.size());
   s.stored_per_point = h.stored_per_point;
   s.ambient = get(h.ambient);
   s.balance = {h.balance[0], h.balance[1], h.balance[2], h.balance[3], h.balance[4], h.balance[5]};
@@ -316,7 +316,7 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
     s.general.push_back(finite(p.general));
     s.general_direct.push_back(finite(p.general_direct));
   }
-  const size_t sources = s.emitter_count + s.mesh.patches.size();
+  const size_t sources = s.light_count + s.mesh.patches.size();
   for (size_t i = 0; i < h.points * h.stored_per_point; ++i, at += sizeof(FileContribution)) {
     const auto c = read<FileContribution>(bytes, at);
     if (c.source != no_source && c.source >= sources)

@@ -23,16 +23,16 @@ float importance(const StoredContribution& c) {
 struct General {
   Rgb& all;
   Rgb& direct;
-  void add(Rgb received, bool is_emitter) const {
+  void add(Rgb received, bool is_light) const {
     all += received;
-    if (is_emitter) direct += received;
+    if (is_light) direct += received;
   }
 };
 
 // Adds to the source's entry, to a free one, or instead of the least important one, which moves to
 // the general value; into the general value if it is the least important itself. A source that
 // shoots again after it was moved counts anew.
-void keep(std::span<StoredContribution> list, const General& general, uint32_t emitter_count,
+void keep(std::span<StoredContribution> list, const General& general, uint32_t light_count,
           const StoredContribution& c) {
   StoredContribution* least = nullptr;
   for (StoredContribution& entry : list) {
@@ -48,16 +48,16 @@ void keep(std::span<StoredContribution> list, const General& general, uint32_t e
     if (least == nullptr || importance(entry) < importance(*least)) least = &entry;
   }
   if (least == nullptr || importance(c) <= importance(*least)) {
-    general.add(c.received, c.source < emitter_count);
+    general.add(c.received, c.source < light_count);
     return;
   }
-  general.add(least->received, least->source < emitter_count);
+  general.add(least->received, least->source < light_count);
   *least = c;
 }
 
-// An emitter shoots once, so that its transfers can be computed again.
-uint64_t emitter_stream(const RadiosityOptions& options, uint32_t emitter) {
-  return hash_of(options.seed, emitter);
+// A light shoots once, so that its transfers can be computed again.
+uint64_t light_stream(const RadiosityOptions& options, uint32_t light) {
+  return hash_of(options.seed, light);
 }
 
 RayBudget ray_budget(const RadiositySolution& s, uint32_t source) {
@@ -65,19 +65,19 @@ RayBudget ray_budget(const RadiositySolution& s, uint32_t source) {
   b.max_rays = std::max(1, s.options.max_rays);
   b.tolerance = std::max(1e-6f, s.options.tolerance);
   b.reference = s.mean_irradiance;
-  if (s.is_emitter(source)) {
-    b.whole_rays = s.options.emitter_rays;
-    b.whole_from = s.options.emitter_share;
+  if (s.is_light(source)) {
+    b.whole_rays = s.options.light_rays;
+    b.whole_from = s.options.light_share;
   }
   return b;
 }
 
 class Solver {
  public:
-  Solver(const Tracer& tracer, const LightPrimitives& lights, RadiositySolution& solution,
+  Solver(const Tracer& tracer, const LightPrimitives& primitives, RadiositySolution& solution,
          int threads)
       : tracer_(tracer),
-        lights_(lights),
+        lights_(primitives),
         s_(solution),
         threads_(threads),
         scratch_(size_t(thread_count(threads))),
@@ -93,7 +93,7 @@ class Solver {
     has_shot_.assign(patches, 0);
     received_.assign(points, Rgb{0});
     rays_.assign((points + block_size - 1) / block_size, 0);
-    for (const LightPrimitive& p : lights.all()) s_.balance.emitted += double(p.power);
+    for (const LightPrimitive& p : primitives.all()) s_.balance.emitted += double(p.power);
     double diffuse = 0, all = 0;
     for (const ElementPoint& p : s_.mesh.points) {
       area_ += double(p.area);
@@ -113,8 +113,8 @@ class Solver {
       return;
     }
     waiting_ = s_.balance.emitted;
-    for (uint32_t e = 0; e < s_.emitter_count && !stop; ++e) {
-      const Shooter shooter = emitter_shooter(lights_, e);
+    for (uint32_t e = 0; e < s_.light_count && !stop; ++e) {
+      const Shooter shooter = light_shooter(lights_, e);
       if (shooter.pieces.empty()) continue;
       double power = 0;
       for (const LightPrimitive& p : shooter.pieces) power += double(p.power);
@@ -160,16 +160,16 @@ class Solver {
     const auto last = unshot_at_.begin() + patch.last_point;
     set_parts(shooter, s_.mesh, brightest, {first, last});
     std::fill(first, last, 0.0f);
-    shoot(shooter, s_.emitter_count + brightest, double(luminance(power)));
+    shoot(shooter, s_.light_count + brightest, double(luminance(power)));
   }
 
   void shoot(const Shooter& shooter, uint32_t source, double power) {
     const std::vector<ElementPoint>& points = s_.mesh.points;
-    const uint64_t stream = s_.is_emitter(source) ? emitter_stream(s_.options, source)
-                                                  : hash_of(s_.options.seed, source, s_.shots);
+    const uint64_t stream = s_.is_light(source) ? light_stream(s_.options, source)
+                                                : hash_of(s_.options.seed, source, s_.shots);
     const RayBudget budget = ray_budget(s_, source);
     const float luminance_sent = luminance(shooter.pieces[0].mean_radiance);
-    const bool is_first = !s_.is_emitter(source) && has_shot_[s_.patch_of(source)] == 0;
+    const bool is_first = !s_.is_light(source) && has_shot_[s_.patch_of(source)] == 0;
     if (is_first) has_shot_[s_.patch_of(source)] = 1;
     parallel_for_slots(rays_.size(), threads_, [&](size_t block, size_t slot) {
       const size_t first = block * block_size;
@@ -182,9 +182,9 @@ class Solver {
         const size_t point = first + i;
         received_[point] = transfers[i].unoccluded * transfers[i].visibility;
         if (transfers[i].unoccluded.is_black()) continue;
-        if (!s_.is_emitter(source)) limit(point, transfers[i], luminance_sent, is_first);
+        if (!s_.is_light(source)) limit(point, transfers[i], luminance_sent, is_first);
         keep({s_.stored.data() + point * s_.stored_per_point, s_.stored_per_point},
-             {s_.general[point], s_.general_direct[point]}, s_.emitter_count,
+             {s_.general[point], s_.general_direct[point]}, s_.light_count,
              {source, received_[point], transfers[i].unoccluded});
       }
     });
@@ -245,7 +245,7 @@ class Solver {
   double area_ = 0, arrived_ = 0;
   double mean_albedo_ = 0;        // diffuse and specular, by area
   Rgb lost_;                      // power that specular surfaces took
-  double waiting_ = 0;            // power of emitters that have not shot
+  double waiting_ = 0;            // power of lights that have not shot
   std::vector<Rgb> unshot_;       // power, per patch
   std::vector<float> unshot_at_;  // luminance of radiosity, per point
   std::vector<float> seen_;       // sum of form factors to patches that have shot, per point
@@ -259,15 +259,15 @@ class Solver {
 }  // namespace
 
 RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
-                                  const BsdfTables& tables, const LightPrimitives& lights,
+                                  const BsdfTables& tables, const LightPrimitives& primitives,
                                   const RadiosityOptions& options, int threads,
                                   const RadiosityCallback& progress, const StopFlag& stop) {
   RadiositySolution s;
   s.options = options;
   s.stored_per_point = std::min(options.stored_per_point, max_stored);
-  s.emitter_count = uint32_t(scene.emitters.size());
+  s.light_count = uint32_t(scene.lights.size());
   s.mesh = mesh_for_radiosity(scene, tracer, tables, options.meshing, threads);
-  Solver(tracer, lights, s, threads).solve(progress, stop);
+  Solver(tracer, primitives, s, threads).solve(progress, stop);
   return s;
 }
 
@@ -281,19 +281,19 @@ Shooter whole_patch_shooter(const RadiositySolution& s, uint32_t patch) {
   return shooter;
 }
 
-void source_contributions(const Tracer& tracer, const LightPrimitives& lights,
+void source_contributions(const Tracer& tracer, const LightPrimitives& primitives,
                           const RadiositySolution& s, uint32_t source,
                           std::span<const uint32_t> points, std::span<StoredContribution> out,
                           TransferScratch& scratch) {
-  const bool is_emitter = s.is_emitter(source);
+  const bool is_light = s.is_light(source);
   const Shooter shooter =
-      is_emitter ? emitter_shooter(lights, source) : whole_patch_shooter(s, s.patch_of(source));
+      is_light ? light_shooter(primitives, source) : whole_patch_shooter(s, s.patch_of(source));
   scratch.transfers.assign(points.size(), {});
   if (!shooter.pieces.empty())
-    transfer_to(shooter, s.mesh.points, points, tracer, ray_budget(s, source),
-                is_emitter ? emitter_stream(s.options, source)
-                           : hash_of(s.options.seed, source, ~uint64_t(0)),
-                scratch.transfers, scratch);
+    transfer_to(
+        shooter, s.mesh.points, points, tracer, ray_budget(s, source),
+        is_light ? light_stream(s.options, source) : hash_of(s.options.seed, source, ~uint64_t(0)),
+        scratch.transfers, scratch);
   for (size_t i = 0; i < points.size(); ++i) {
     const Transfer& t = scratch.transfers[i];
     out[i] = {source, t.unoccluded * t.visibility, t.unoccluded};

@@ -38,7 +38,7 @@ void add_mesh(const Scene& scene, uint32_t index, BaseGeometry& g) {
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     BaseTriangle out;
     out.surface = uint32_t(g.surfaces.size());
-    out.emitter = mesh.emitters.empty() ? no_emitter : mesh.emitters[t];
+    out.light = mesh.lights.empty() ? no_light : mesh.lights[t];
     std::array<Vec3, 3> p;
     for (size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[t][k]];
     out.is_degenerate = !has_area(p[0], p[1], p[2]);
@@ -54,7 +54,7 @@ void add_mesh(const Scene& scene, uint32_t index, BaseGeometry& g) {
 }
 
 // Octants 0 … 7 by the signs of x, y, z (bits 0, 1, 2 set where negative); disks have four.
-void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t material, int32_t emitter,
+void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t material, int32_t light,
                bool is_inside_out, BaseGeometry& g) {
   BaseSurface s;
   s.bulge = bulge;
@@ -73,7 +73,7 @@ void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t materia
   for (uint32_t octant = 0; octant < s.triangle_count; ++octant) {
     BaseTriangle t;
     t.surface = uint32_t(g.surfaces.size());
-    t.emitter = emitter;
+    t.light = light;
     t.vertices = {first + (octant & 1), first + 2 + (octant >> 1 & 1), first + 4 + (octant >> 2)};
     // x, y, z run counterclockwise seen from outside where no or two signs are negative
     const bool is_odd = (std::popcount(octant) & 1) != 0;
@@ -90,10 +90,10 @@ BaseGeometry base_geometry(const Scene& scene) {
   for (uint32_t i = 0; i < scene.meshes.size(); ++i) add_mesh(scene, i, g);
   for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
-    add_round(scene, Bulge::sphere, i, s.material, s.emitter, s.is_inside_out, g);
+    add_round(scene, Bulge::sphere, i, s.material, s.light, s.is_inside_out, g);
   }
   for (uint32_t i = 0; i < scene.disks.size(); ++i)
-    add_round(scene, Bulge::disk, i, scene.disks[i].material, scene.disks[i].emitter, false, g);
+    add_round(scene, Bulge::disk, i, scene.disks[i].material, scene.disks[i].light, false, g);
   return g;
 }
 

@@ -29,7 +29,7 @@ struct BaseSurface {
 struct BaseTriangle {
   std::array<uint32_t, 3> vertices{};
   uint32_t surface = 0;
-  int32_t emitter = no_emitter;
+  int32_t light = no_light;
   bool is_degenerate = false;
 };
 

@@ -143,23 +143,23 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   // fixed: an estimate is a set of shadow rays to every source.
   constexpr int fixed_set = 16;
   const bool is_fixed = options.method == Method::fixed;
-  const double emitters = double(scene.scene.emitters.size());
+  const double lights = double(scene.scene.lights.size());
   std::unique_ptr<Integrator> integrator;
   double rays_per_sample = 1;
   switch (options.method) {
     case Method::fixed:
       integrator = std::make_unique<FixedIntegrator>(scene, FixedOptions{fixed_set});
-      rays_per_sample = fixed_set * emitters;
+      rays_per_sample = fixed_set * lights;
       break;
     case Method::kj92:
       integrator =
           std::make_unique<Kj92Integrator>(scene, preparation->solution, preparation->selection,
                                            Kj92Options{options.kj92.sampling, is_direct_only});
-      rays_per_sample = options.kj92.sampling.tree.most_rays * emitters;
+      rays_per_sample = options.kj92.sampling.tree.most_rays * lights;
       break;
     case Method::certified:
       integrator = make_certified(scene, options.error, is_direct_only ? nullptr : preparation);
-      rays_per_sample = certified_settings(options.error, size_t(emitters)).shadow_rays * emitters;
+      rays_per_sample = certified_settings(options.error, size_t(lights)).shadow_rays * lights;
       break;
     case Method::path:
       integrator =

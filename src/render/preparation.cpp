@@ -21,26 +21,26 @@ std::unique_ptr<Kj92Preparation> prepare_kj92(const PreparedScene& scene,
   if (stop.load()) return nullptr;
   SelectionOptions selection = settings.selection;
   if (is_direct_only) selection.uses_patches = false;
-  SourceSelection selected(*solution, scene.tracer, scene.lights, selection, threads, stop);
+  SourceSelection selected(*solution, scene.tracer, scene.primitives, selection, threads, stop);
   if (stop.load()) return nullptr;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return std::make_unique<Kj92Preparation>(
       Kj92Preparation{std::move(*solution), std::move(selected), seconds.count()});
 }
 
-std::vector<uint32_t> emitters_named(const Scene& scene, const std::vector<std::string>& names) {
-  std::vector<uint32_t> emitters;
+std::vector<uint32_t> lights_named(const Scene& scene, const std::vector<std::string>& names) {
+  std::vector<uint32_t> lights;
   for (const std::string& name : names) {
     bool is_found = false;
-    for (uint32_t e = 0; e < scene.emitters.size(); ++e)
-      if (scene.emitters[e].name == name) {
-        emitters.push_back(e);
+    for (uint32_t e = 0; e < scene.lights.size(); ++e)
+      if (scene.lights[e].name == name) {
+        lights.push_back(e);
         is_found = true;
       }
     if (!is_found)
       throw UsageError("there is no light named '" + name + "' (troffer info lists them)");
   }
-  return emitters;
+  return lights;
 }
 
 }  // namespace troffer

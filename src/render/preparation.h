@@ -29,7 +29,7 @@ struct Kj92Preparation {
 };
 
 // Solves the radiosity of the scene, or takes `solution` (which must be the scene's), and selects
-// sources. is_direct_only: light that has been reflected is not asked for, so that only emitters
+// sources. is_direct_only: light that has been reflected is not asked for, so that only lights
 // shoot. Null once `stop` is set.
 std::unique_ptr<Kj92Preparation> prepare_kj92(const PreparedScene& scene,
                                               const Kj92Settings& settings, bool is_direct_only,
@@ -37,8 +37,8 @@ std::unique_ptr<Kj92Preparation> prepare_kj92(const PreparedScene& scene,
                                               int threads, const ProgressCallback& progress,
                                               const StopFlag& stop);
 
-// Numbers of the scene's emitters that have one of these names, for SelectionOptions::only.
+// Numbers of the scene's lights that have one of these names, for SelectionOptions::only.
 // UsageError names one that does not exist.
-std::vector<uint32_t> emitters_named(const Scene& scene, const std::vector<std::string>& names);
+std::vector<uint32_t> lights_named(const Scene& scene, const std::vector<std::string>& names);
 
 }  // namespace troffer

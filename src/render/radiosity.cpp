@@ -23,7 +23,7 @@ void check(const RadiosityOptions& o) {
   if (o.stored_per_point > max_stored)
     throw UsageError(
         fmt::format("radiosity: at most {} contributions can be stored per point", max_stored));
-  if (o.max_rays < 1 || !(o.tolerance > 0) || o.emitter_rays < 0 || !(o.emitter_share >= 0))
+  if (o.max_rays < 1 || !(o.tolerance > 0) || o.light_rays < 0 || !(o.light_share >= 0))
     throw UsageError("radiosity: numbers of rays and tolerances must be positive");
 }
 
@@ -35,7 +35,7 @@ RadiosityResult preprocess(const PreparedScene& scene, const RadiosityOptions& o
   const double whole = std::log(std::min(0.99, double(options.unshot_fraction)));
   RadiosityResult result;
   result.solution = solve_radiosity(
-      scene.scene, scene.tracer, scene.bsdf_tables, scene.lights, options, threads,
+      scene.scene, scene.tracer, scene.bsdf_tables, scene.primitives, options, threads,
       [&](const RadiosityProgress& p) {
         if (!progress) return;
         if (p.unshot > 0) done = std::clamp(std::log(p.unshot) / whole, done, 1.0);

@@ -59,9 +59,9 @@ Rgb shown(Rgb c) {
   return c;
 }
 
-// Emitter of each fragment's triangle.
-std::vector<int32_t> emitters_of_fragments(const RadiosityMesh& mesh) {
-  std::vector<int32_t> emitters(mesh.fragments.size(), no_emitter);
+// Light of each fragment's triangle.
+std::vector<int32_t> lights_of_fragments(const RadiosityMesh& mesh) {
+  std::vector<int32_t> lights(mesh.fragments.size(), no_light);
   std::vector<int32_t> stack;
   for (size_t t = 0; t < mesh.roots.size(); ++t) {
     if (mesh.roots[t] == RadiosityMesh::no_root) continue;
@@ -70,18 +70,18 @@ std::vector<int32_t> emitters_of_fragments(const RadiosityMesh& mesh) {
       const int32_t at = stack.back();
       stack.pop_back();
       if (at < 0)
-        emitters[size_t(~at)] = mesh.geometry.triangles[t].emitter;
+        lights[size_t(~at)] = mesh.geometry.triangles[t].light;
       else
         for (const int32_t child : mesh.nodes[size_t(at)].child) stack.push_back(child);
     }
   }
-  return emitters;
+  return lights;
 }
 
 // pi L, of the front or the back; textures count as white.
-Rgb exitance(const Scene& scene, int32_t emitter, bool is_back) {
-  if (emitter < 0) return Rgb{0};
-  const Emitter& e = scene.emitters[size_t(emitter)];
+Rgb exitance(const Scene& scene, int32_t light, bool is_back) {
+  if (light < 0) return Rgb{0};
+  const Light& e = scene.lights[size_t(light)];
   return is_back && !e.is_two_sided ? Rgb{0} : e.radiance * pi_f;
 }
 
@@ -115,7 +115,7 @@ float choose_exposure(const RadiositySolution& s) {
 }
 
 Drawing draw_light(const Scene& scene, const RadiositySolution& s, float exposure) {
-  const std::vector<int32_t> emitters = emitters_of_fragments(s.mesh);
+  const std::vector<int32_t> lights = lights_of_fragments(s.mesh);
   Drawing out;
   Interpolation at;
   for (uint32_t f = 0; f < s.mesh.fragments.size(); ++f) {
@@ -123,7 +123,7 @@ Drawing draw_light(const Scene& scene, const RadiositySolution& s, float exposur
     for (uint32_t side = 0; side < 2; ++side) {
       const uint32_t point = s.mesh.element_points[fragment.element][side];
       if (point == no_point) continue;
-      const Rgb emitted = exitance(scene, emitters[f], side == 1);
+      const Rgb emitted = exitance(scene, lights[f], side == 1);
       for (size_t k = 0; k < 3; ++k) {
         const size_t corner = side == 1 ? 2 - k : k;
         at.clear();

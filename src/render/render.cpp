@@ -52,12 +52,12 @@ std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, const Re
   return std::make_unique<PathIntegrator>(scene, path);
 }
 
-int tile_side(const RenderOptions& o, size_t emitters) {
+int tile_side(const RenderOptions& o, size_t lights) {
   const bool is_certified = o.method == Method::certified;
   if (o.method != Method::fixed && !is_certified) return widest_tile;
-  const int rays = is_certified ? certified_settings(o.error, emitters).shadow_rays : o.shadow_rays;
+  const int rays = is_certified ? certified_settings(o.error, lights).shadow_rays : o.shadow_rays;
   const double most = is_certified ? most_certified_rays_per_tile : most_shadow_rays_per_tile;
-  const double per_pixel = double(samples_per_batch) * rays * double(emitters);
+  const double per_pixel = double(samples_per_batch) * rays * double(lights);
   int side = is_certified ? certified_tile : widest_tile;
   while (side > 1 && per_pixel * side * side > most) side /= 2;
   return side;
@@ -107,7 +107,7 @@ class Rendering {
         is_refined_(max_spp_ > options.spp),
         image_(image),
         window_(window),
-        side_(tile_side(options, scene.scene.emitters.size())),
+        side_(tile_side(options, scene.scene.lights.size())),
         region_(is_same_in_crops() ? whole_tiles(window, side_, is_refined_ ? 1 : 0, image)
                                    : window),
         tiles_(tiles_of(region_, side_)),
@@ -332,7 +332,7 @@ std::unique_ptr<Integrator> make_certified(const PreparedScene& scene, double er
   if (preparation != nullptr)
     radiosity.emplace(scene, preparation->solution, preparation->selection);
   return std::make_unique<CertifiedIntegrator>(
-      scene, radiosity, certified_settings(error, scene.scene.emitters.size()));
+      scene, radiosity, certified_settings(error, scene.scene.lights.size()));
 }
 
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,

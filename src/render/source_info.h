@@ -12,7 +12,7 @@ struct SourceInfo {
   double power = 0;  // luminance of the flux that leaves: W, or lm where the scene is photometric
 };
 
-// One per emitter.
+// One per light.
 std::vector<SourceInfo> source_infos(const Scene& scene);
 
 }  // namespace troffer

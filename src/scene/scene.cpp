@@ -32,26 +32,26 @@ Box bounds(const Scene& scene) {
   return box;
 }
 
-Scene with_only_emitters(Scene scene, const std::vector<std::string>& names) {
+Scene with_only_lights(Scene scene, const std::vector<std::string>& names) {
   for (const std::string& name : names)
-    if (std::none_of(scene.emitters.begin(), scene.emitters.end(),
-                     [&](const Emitter& e) { return e.name == name; }))
+    if (std::none_of(scene.lights.begin(), scene.lights.end(),
+                     [&](const Light& e) { return e.name == name; }))
       throw UsageError("no light is named '" + name + "' (troffer info lists them)");
 
-  std::vector<int32_t> renumbered(scene.emitters.size(), no_emitter);
-  std::vector<Emitter> kept;
-  for (size_t i = 0; i < scene.emitters.size(); ++i) {
-    if (std::find(names.begin(), names.end(), scene.emitters[i].name) == names.end()) continue;
+  std::vector<int32_t> renumbered(scene.lights.size(), no_light);
+  std::vector<Light> kept;
+  for (size_t i = 0; i < scene.lights.size(); ++i) {
+    if (std::find(names.begin(), names.end(), scene.lights[i].name) == names.end()) continue;
     renumbered[i] = int32_t(kept.size());
-    kept.push_back(std::move(scene.emitters[i]));
+    kept.push_back(std::move(scene.lights[i]));
   }
-  scene.emitters = std::move(kept);
+  scene.lights = std::move(kept);
   const auto renumber = [&](int32_t& e) {
     if (e >= 0) e = renumbered[size_t(e)];
   };
-  for (Mesh& m : scene.meshes) std::for_each(m.emitters.begin(), m.emitters.end(), renumber);
-  for (Sphere& s : scene.spheres) renumber(s.emitter);
-  for (Disk& d : scene.disks) renumber(d.emitter);
+  for (Mesh& m : scene.meshes) std::for_each(m.lights.begin(), m.lights.end(), renumber);
+  for (Sphere& s : scene.spheres) renumber(s.light);
+  for (Disk& d : scene.disks) renumber(d.light);
   return scene;
 }
 

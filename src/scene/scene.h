@@ -16,7 +16,7 @@
 
 namespace troffer {
 
-constexpr int32_t no_emitter = -1;
+constexpr int32_t no_light = -1;
 
 using Triangle = std::array<uint32_t, 3>;
 
@@ -28,7 +28,7 @@ struct Mesh {
   std::vector<Vec3> normals;    // empty, or per vertex: unit shading normals
   std::vector<Vec2> uvs;        // empty, or per vertex
   std::vector<Triangle> triangles;
-  std::vector<int32_t> emitters;  // empty (nothing emits), or per triangle
+  std::vector<int32_t> lights;  // empty (nothing emits), or per triangle
   uint32_t material = 0;
 };
 
@@ -38,7 +38,7 @@ struct Sphere {
   float radius = 1;
   bool is_inside_out = false;
   uint32_t material = 0;
-  int32_t emitter = no_emitter;
+  int32_t light = no_light;
 };
 
 // A whole flat disk; its front is the side the normal points to.
@@ -47,15 +47,15 @@ struct Disk {
   Vec3 normal{0, 0, 1};  // unit
   float radius = 1;
   uint32_t material = 0;
-  int32_t emitter = no_emitter;
+  int32_t light = no_light;
 };
 
-enum class EmitterShape : uint8_t { polygon, disk, sphere, mesh };
+enum class LightShape : uint8_t { polygon, disk, sphere, mesh };
 
 // A diffuse area light source. Emits from the front, or from both sides where is_two_sided.
-struct Emitter {
+struct Light {
   std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
-  EmitterShape shape = EmitterShape::polygon;
+  LightShape shape = LightShape::polygon;
   Rgb radiance;                  // W/(m² sr), or cd/m² where Scene::is_photometric
   int32_t texture = no_texture;  // factor on radiance over the mesh's (u,v); mesh only
   bool is_two_sided = false;
@@ -91,7 +91,7 @@ struct Scene {
   std::vector<Disk> disks;
   std::vector<Material> materials;  // at least one if there is any geometry
   std::vector<Texture> textures;
-  std::vector<Emitter> emitters;
+  std::vector<Light> lights;
   std::vector<Camera> cameras;
   bool is_photometric = false;  // emission in cd/m² (glTF); else W/(m² sr)
   WarningLog warnings;
@@ -100,11 +100,11 @@ struct Scene {
 size_t triangle_count(const Scene& scene);
 Box bounds(const Scene& scene);
 
-// A copy of which only emitters named in `names` emit; UsageError names one that does not exist.
-Scene with_only_emitters(Scene scene, const std::vector<std::string>& names);
+// A copy of which only lights named in `names` emit; UsageError names one that does not exist.
+Scene with_only_lights(Scene scene, const std::vector<std::string>& names);
 
-// Emission of a triangle's, disk's or sphere's emitter towards a viewer on its front (or back).
-inline Rgb emitted_radiance(const Scene& scene, const Emitter& e, bool is_front, const Vec2& uv) {
+// Emission of a triangle's, disk's or sphere's light towards a viewer on its front (or back).
+inline Rgb emitted_radiance(const Scene& scene, const Light& e, bool is_front, const Vec2& uv) {
   if (!is_front && !e.is_two_sided) return Rgb{0};
   if (e.is_alpha_masked &&
       is_cut_out(scene.textures, scene.materials[scene.meshes[e.geometry].material], uv))

@@ -10,7 +10,7 @@
 
 #include "base/box.h"
 #include "base/vec.h"
-#include "emitter/light_primitive.h"
+#include "light/light_primitive.h"
 
 namespace troffer {
 
@@ -49,7 +49,7 @@ struct LightReceivers {
 class LightTree {
  public:
   explicit LightTree(const LightPrimitives& primitives);
-  // Over a part of them only, such as one emitter's.
+  // Over a part of them only, such as one light's.
   LightTree(const LightPrimitives& primitives, LightPrimitives::Range range);
 
   bool is_empty() const { return nodes_.empty(); }

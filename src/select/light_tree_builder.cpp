@@ -40,7 +40,7 @@ Cone merge(const Cone& a, const Cone& b) {
   return {normalize(axis), std::cos(spread), false};
 }
 
-// Measure of the directions that a cone of diffuse emitters lights [1, Eq. 1, with 90 degrees].
+// Measure of the directions that a cone of diffuse lights lights [1, Eq. 1, with 90 degrees].
 float orientation_measure(const Cone& c) {
   const float spread = std::acos(std::clamp(c.cos_spread, -1.0f, 1.0f));
   const float reach = std::min(spread + pi_f / 2, pi_f);

@@ -49,15 +49,15 @@ Rgb without(Rgb a, Rgb b) {  // rounding must not leave less than nothing
 class PatchSelector {
  public:
   PatchSelector(const RadiositySolution& solution, const Tracer& tracer,
-                const LightPrimitives& lights, const SelectionOptions& options)
-      : solution_(solution), tracer_(tracer), lights_(lights), options_(options) {}
+                const LightPrimitives& primitives, const SelectionOptions& options)
+      : solution_(solution), tracer_(tracer), lights_(primitives), options_(options) {}
 
   void run(uint32_t patch, std::span<const FragmentSide> sides, std::vector<TreatedSource>& treated,
            std::vector<GeneralIrradiance>& corners) {
     treated.clear();
     gather_points(sides);
-    const bool treats_all = !options_.is_enabled || options_.treats_all_emitters;
-    if (treats_all) treat_all_emitters(treated);
+    const bool treats_all = !options_.is_enabled || options_.treats_all_lights;
+    if (treats_all) treat_all_lights(treated);
     if (options_.is_enabled) {
       find_candidates(patch);
       for (const uint32_t source : candidates_) consider(source, treated);
@@ -86,7 +86,7 @@ class PatchSelector {
       g.indirect = without(solution_.general[p], g.direct);
       for (const StoredContribution& c : solution_.contributions(p)) {
         if (c.source == no_source) continue;
-        (solution_.is_emitter(c.source) ? g.direct : g.indirect) += c.received;
+        (solution_.is_light(c.source) ? g.direct : g.indirect) += c.received;
       }
       totals_[i] = luminance(g.direct + g.indirect);
       // What is still unshot comes from everywhere: nowhere where nothing else comes either.
@@ -103,10 +103,10 @@ class PatchSelector {
   }
 
   bool is_allowed(uint32_t source) const {
-    const bool is_emitter = solution_.is_emitter(source);
-    if (is_emitter && options_.treats_all_emitters) return false;  // they are treated already
-    if (!is_emitter && !is_simple(solution_.patch_of(source))) return false;
-    if (!options_.is_restricted) return is_emitter || options_.uses_patches;
+    const bool is_light = solution_.is_light(source);
+    if (is_light && options_.treats_all_lights) return false;  // they are treated already
+    if (!is_light && !is_simple(solution_.patch_of(source))) return false;
+    if (!options_.is_restricted) return is_light || options_.uses_patches;
     return std::find(options_.only.begin(), options_.only.end(), source) != options_.only.end();
   }
 
@@ -131,7 +131,7 @@ class PatchSelector {
       const float whole = std::max(totals_[i], mean_total_);
       for (const StoredContribution& c : solution_.contributions(points_[i])) {
         if (c.source == no_source || !is_allowed(c.source)) continue;
-        if (!solution_.is_emitter(c.source)) {
+        if (!solution_.is_light(c.source)) {
           // A patch counts where it is partly hidden; elsewhere interpolation serves it as well.
           if (solution_.patch_of(c.source) == patch) continue;
           if (luminance(c.received) >= t.visible_above * luminance(c.unoccluded)) continue;
@@ -142,7 +142,7 @@ class PatchSelector {
     std::sort(candidates_.begin(), candidates_.end());
     candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
     std::erase_if(candidates_, [&](uint32_t source) {
-      return !solution_.is_emitter(source) && is_near(solution_.patch_of(source));
+      return !solution_.is_light(source) && is_near(solution_.patch_of(source));
     });
   }
 
@@ -176,23 +176,23 @@ class PatchSelector {
       at_points_.push_back(
           {luminance(received_[i].received), luminance(received_[i].unoccluded), totals_[i]});
     const SourceClass c = classify(at_points_, mean_total_, options_.thresholds);
-    const bool is_treated = solution_.is_emitter(source) ? c.treatment != SourceTreatment::general
-                                                         : c.treatment == SourceTreatment::sampled;
+    const bool is_treated = solution_.is_light(source) ? c.treatment != SourceTreatment::general
+                                                       : c.treatment == SourceTreatment::sampled;
     if (!is_treated) return;
     treated.push_back({source, c});
     for (size_t i = 0; i < points_.size(); ++i) {
-      Rgb& general = solution_.is_emitter(source) ? general_[i].direct : general_[i].indirect;
+      Rgb& general = solution_.is_light(source) ? general_[i].direct : general_[i].indirect;
       general = without(general, least(received_[i].received, general));
     }
   }
 
-  bool is_asked_for(uint32_t emitter) const {
+  bool is_asked_for(uint32_t light) const {
     return !options_.is_restricted ||
-           std::find(options_.only.begin(), options_.only.end(), emitter) != options_.only.end();
+           std::find(options_.only.begin(), options_.only.end(), light) != options_.only.end();
   }
 
-  void treat_all_emitters(std::vector<TreatedSource>& treated) {
-    for (uint32_t e = 0; e < solution_.emitter_count; ++e)
+  void treat_all_lights(std::vector<TreatedSource>& treated) {
+    for (uint32_t e = 0; e < solution_.light_count; ++e)
       if (is_asked_for(e))
         treated.push_back({e, {SourceView::partly, SourceTreatment::sampled, 0, 1, 1}});
     if (!options_.is_restricted) {
@@ -241,7 +241,7 @@ class PatchSelector {
 }  // namespace
 
 SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer& tracer,
-                                 const LightPrimitives& lights, const SelectionOptions& options,
+                                 const LightPrimitives& primitives, const SelectionOptions& options,
                                  int threads, const StopFlag& stop) {
   const RadiosityMesh& mesh = solution.mesh;
   const PatchFragments fragments(mesh);
@@ -249,7 +249,7 @@ SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer
   corners_.assign(6 * mesh.fragments.size(), {});
   std::vector<std::vector<TreatedSource>> treated(patches);
   std::vector<PatchSelector> selectors(size_t(thread_count(threads)),
-                                       PatchSelector(solution, tracer, lights, options));
+                                       PatchSelector(solution, tracer, primitives, options));
   parallel_for_slots(patches, threads, [&](size_t patch, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
     const std::span sides(fragments.sides.data() + fragments.first[patch],

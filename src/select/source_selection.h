@@ -14,7 +14,7 @@
 
 #include "base/parallel.h"
 #include "base/rgb.h"
-#include "emitter/light_primitive.h"
+#include "light/light_primitive.h"
 #include "radiosity/solution.h"
 #include "select/source_class.h"
 #include "trace/tracer.h"
@@ -22,17 +22,17 @@
 namespace troffer {
 
 struct SelectionOptions {
-  // false: every emitter is sampled on every patch, bright patches nowhere.
+  // false: every light is sampled on every patch, bright patches nowhere.
   bool is_enabled = true;
   SelectionThresholds thresholds;
-  // Bright patches may be selected like emitters.
+  // Bright patches may be selected like lights.
   bool uses_patches = true;
-  // Only these emitters, and no patches, may be treated; all others stay in the general value.
+  // Only these lights, and no patches, may be treated; all others stay in the general value.
   bool is_restricted = false;
   std::vector<uint32_t> only;
-  // Every emitter is sampled on every patch, as if selection were disabled; patches where they are
+  // Every light is sampled on every patch, as if selection were disabled; patches where they are
   // selected.
-  bool treats_all_emitters = false;
+  bool treats_all_lights = false;
   // Patches of more pieces, and patches of spheres, are not selected; 0: any may be.
   uint32_t most_patch_pieces = 0;
   // Nor are patches with a sample point nearer than so many patch sizes to one of those that
@@ -40,14 +40,14 @@ struct SelectionOptions {
   float nearest_patch = 0;
 };
 
-// A source that is treated on a patch: SourceTreatment::probed or sampled. Emitters of the scene,
+// A source that is treated on a patch: SourceTreatment::probed or sampled. Lights of the scene,
 // then patches, as in StoredContribution.
 struct TreatedSource {
   uint32_t source = no_source;
   SourceClass source_class;
 };
 
-// Irradiance that is not sampled, W/m² or lx: what comes straight from emitters, and all else.
+// Irradiance that is not sampled, W/m² or lx: what comes straight from lights, and all else.
 struct GeneralIrradiance {
   Rgb direct, indirect;
 };
@@ -57,7 +57,7 @@ class SourceSelection {
   // All arguments belong to one scene and are used here only. Does not depend on `threads`. Of no
   // use once `stop` is set.
   SourceSelection(const RadiositySolution& solution, const Tracer& tracer,
-                  const LightPrimitives& lights, const SelectionOptions& options, int threads,
+                  const LightPrimitives& primitives, const SelectionOptions& options, int threads,
                   const StopFlag& stop);
 
   // In increasing order of source.

@@ -14,7 +14,7 @@
 
 #include "base/random.h"
 #include "base/vec.h"
-#include "emitter/source_surface.h"
+#include "light/source_surface.h"
 #include "shadow/flag.h"
 
 namespace troffer {

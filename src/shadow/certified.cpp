@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "emitter/irradiance.h"
-#include "emitter/polygon.h"
+#include "light/irradiance.h"
+#include "light/polygon.h"
 
 namespace troffer {
 

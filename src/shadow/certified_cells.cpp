@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emitter/polygon.h"
+#include "light/polygon.h"
 
 namespace troffer {
 

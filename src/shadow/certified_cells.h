@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "emitter/light_primitive.h"
-#include "emitter/source_surface.h"
+#include "light/light_primitive.h"
+#include "light/source_surface.h"
 #include "shadow/coverage_mask.h"
 #include "shadow/shadow_scene.h"
 #include "shadow/shaft.h"
@@ -30,7 +30,7 @@ struct FlatSource {
   std::vector<Vec3d> corners() const;  // in space; of a disk's square
 };
 
-// A piece of an emitter as a flat source; `is_back`: seen from behind. False for spheres and for
+// A piece of a light as a flat source; `is_back`: seen from behind. False for spheres and for
 // polygons of more than most_outline_corners corners, which are none.
 bool make_flat_source(const LightPrimitive& piece, bool is_back, FlatSource& out);
 // A convex polygon, counterclockwise seen from its front: itself if it is a parallelogram, else a

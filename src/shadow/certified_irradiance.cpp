@@ -7,9 +7,9 @@
 
 #include "base/simd.h"
 #include "base/units.h"
-#include "emitter/arctangent.h"
-#include "emitter/irradiance.h"
-#include "emitter/polygon.h"
+#include "light/arctangent.h"
+#include "light/irradiance.h"
+#include "light/polygon.h"
 
 namespace troffer {
 

@@ -1,5 +1,5 @@
 // Exact unoccluded irradiance of a flat polygon at many receivers at a stroke.
-// References: [1] Lambert's formula, as in emitter/irradiance.h.
+// References: [1] Lambert's formula, as in light/irradiance.h.
 #pragma once
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 
 #include "base/frame.h"
 #include "base/random.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "shadow/certified.h"
 
 namespace troffer {

@@ -24,7 +24,7 @@
 
 #include "base/quad.h"
 #include "base/vec.h"
-#include "emitter/source_surface.h"
+#include "light/source_surface.h"
 
 namespace troffer {
 

@@ -7,7 +7,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "emitter/source_surface.h"
+#include "light/source_surface.h"
 #include "shadow/bintree_nodes.h"
 
 namespace troffer {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/merge_polygons.h"
-#include "emitter/polygon.h"
+#include "light/polygon.h"
 
 namespace troffer {
 
@@ -73,13 +73,14 @@ bool add_merged(Polygons& polygons, std::vector<SourcePiece>& out) {
 
 }  // namespace
 
-bool merge_sources(const LightPrimitives& lights, uint32_t emitter, std::vector<SourcePiece>& out) {
+bool merge_sources(const LightPrimitives& primitives, uint32_t light,
+                   std::vector<SourcePiece>& out) {
   out.clear();
-  const LightPrimitives::Range range = lights.of_emitter(emitter);
+  const LightPrimitives::Range range = primitives.of_light(light);
   Polygons polygons;
   bool is_good = true;
   for (uint32_t p = range.first; p < range.last && is_good; ++p) {
-    const LightPrimitive& piece = lights[p];
+    const LightPrimitive& piece = primitives[p];
     if (piece.is_textured) {
       is_good = false;
     } else if (piece.vertex_count == 0) {

@@ -1,11 +1,11 @@
-// An emitter's flat pieces as few convex flat sources: what tessellation has cut is put together
+// A light's flat pieces as few convex flat sources: what tessellation has cut is put together
 // again, so that a rectangle of 10 000 triangles is one source (base/merge_polygons.h).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "emitter/light_primitive.h"
+#include "light/light_primitive.h"
 #include "shadow/certified_cells.h"
 
 namespace troffer {
@@ -16,10 +16,11 @@ struct SourcePiece {
                                      // is covered by several pieces
 };
 
-// Sets `out` to sources that together cover what the emitter's pieces cover, each once, to the
+// Sets `out` to sources that together cover what the light's pieces cover, each once, to the
 // rounding of the pieces' vertices. False, with `out` empty, where a piece is a sphere or textured:
-// such an emitter is not flat, or not of one radiance. Polygons merge where they share an edge
+// such a light is not flat, or not of one radiance. Polygons merge where they share an edge
 // between exactly equal vertices. Deterministic; O(n log n).
-bool merge_sources(const LightPrimitives& lights, uint32_t emitter, std::vector<SourcePiece>& out);
+bool merge_sources(const LightPrimitives& primitives, uint32_t light,
+                   std::vector<SourcePiece>& out);
 
 }  // namespace troffer

@@ -58,7 +58,7 @@ void triangle_surface(const Scene& scene, const Hit& hit, Surface& s) {
   s.offset = ray_offset(
       std::max({largest_coordinate(p[0]), largest_coordinate(p[1]), largest_coordinate(p[2])}));
   s.material = mesh.material;
-  s.emitter = mesh.emitters.empty() ? no_emitter : mesh.emitters[hit.primitive];
+  s.light = mesh.lights.empty() ? no_light : mesh.lights[hit.primitive];
   s.shading_normal = s.geometric_normal;
   if (!mesh.normals.empty()) {
     const Vec3 n = mesh.normals[t[0]] * w + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v;
@@ -87,7 +87,7 @@ void sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface&
   // Embree solves a quadratic: its t errs more than a triangle's.
   s.offset = 4 * ray_offset(largest_coordinate(sphere.centre) + sphere.radius);
   s.material = sphere.material;
-  s.emitter = sphere.emitter;
+  s.light = sphere.light;
 }
 
 void disk_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface& s) {
@@ -100,7 +100,7 @@ void disk_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface& s
   s.uv = {};
   s.offset = ray_offset(largest_coordinate(disk.centre) + disk.radius);
   s.material = disk.material;
-  s.emitter = disk.emitter;
+  s.light = disk.light;
 }
 
 }  // namespace

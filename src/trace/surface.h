@@ -19,7 +19,7 @@ struct Surface {
   float offset = 0;                      // metres: farther from the surface than rounding can err
   uint32_t geometry = 0, primitive = 0;  // as in Hit
   uint32_t material = 0;
-  int32_t emitter = no_emitter;
+  int32_t light = no_light;
 };
 
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);

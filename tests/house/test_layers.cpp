@@ -97,8 +97,9 @@ TEST_CASE("rooms include only what their rows name") {
 
 TEST_CASE("one door per dependency") {
   const std::map<std::string, std::set<std::string>> doors{
-      {"embree3/", {"trace"}}, {"tbb/", {"base"}},       {"OpenEXR/", {"image"}},
-      {"Imf", {"image"}},      {"png.h", {"image"}},     {"jpeglib.h", {"image"}},
+      {"embree3/", {"trace"}}, {"tbb/", {"base"}},
+      {"OpenEXR/", {"image"}}, {"Imf", {"image"}},
+      {"png.h", {"image"}},    {"jpeglib.h", {"image"}},
       {"CLI/", {"app"}},       {"nlohmann/", {"import", "app"}}};
   const Layers layers = read_layers();
   for (const std::string& room : layers.order)

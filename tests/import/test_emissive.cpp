@@ -26,7 +26,7 @@ Scene emitting(const Mesh& mesh, Rgb radiance = Rgb{1}) {
   EmissionSpec spec;
   spec.name = "lamp";
   spec.radiance = radiance;
-  add_mesh_emitters(scene, 0, spec);
+  add_mesh_lights(scene, 0, spec);
   return scene;
 }
 
@@ -62,14 +62,14 @@ const Mesh square = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1
 
 TEST_CASE("a square of two triangles is one polygon, counterclockwise from the front") {
   const Scene scene = emitting(square, Rgb{2});
-  REQUIRE(scene.emitters.size() == 1);
-  const Emitter& e = scene.emitters[0];
-  CHECK(e.shape == EmitterShape::polygon);
+  REQUIRE(scene.lights.size() == 1);
+  const Light& e = scene.lights[0];
+  CHECK(e.shape == LightShape::polygon);
   CHECK(e.name == "lamp");
   CHECK(e.radiance == Rgb{2});
   CHECK(e.polygon.size() == 4);
   CHECK(newell(e.polygon).z == doctest::Approx(1));
-  CHECK(scene.meshes[0].emitters == std::vector<int32_t>{0, 0});
+  CHECK(scene.meshes[0].lights == std::vector<int32_t>{0, 0});
 }
 
 TEST_CASE("vertices of their own for every triangle make no difference") {
@@ -77,16 +77,16 @@ TEST_CASE("vertices of their own for every triangle make no difference") {
       mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, -0.0f, -0.0f}, {1, 1, 0}, {0, 1, 0}},
               {{0, 1, 2}, {3, 4, 5}});
   const Scene scene = emitting(split);
-  REQUIRE(scene.emitters.size() == 1);
-  CHECK(scene.emitters[0].polygon.size() == 4);
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].polygon.size() == 4);
 }
 
 TEST_CASE("polygons of any number of corners, and a grid with collinear ones") {
   for (const uint32_t n : {3u, 5u, 8u, 33u, 64u}) {
     const Scene scene = emitting(disk(n));
-    REQUIRE(scene.emitters.size() == 1);
-    CHECK(scene.emitters[0].polygon.size() == n);
-    CHECK(scene.emitters[0].triangles.size() == n);
+    REQUIRE(scene.lights.size() == 1);
+    CHECK(scene.lights[0].polygon.size() == n);
+    CHECK(scene.lights[0].triangles.size() == n);
   }
   Mesh grid;
   const uint32_t n = 20;
@@ -100,9 +100,9 @@ TEST_CASE("polygons of any number of corners, and a grid with collinear ones") {
       grid.triangles.push_back({a, b + 1, b});
     }
   const Scene scene = emitting(grid);
-  REQUIRE(scene.emitters.size() == 1);
-  CHECK(scene.emitters[0].polygon.size() == 4);
-  CHECK(newell(scene.emitters[0].polygon).z == doctest::Approx(2.0 * 6.0));
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].polygon.size() == 4);
+  CHECK(newell(scene.lights[0].polygon).z == doctest::Approx(2.0 * 6.0));
 }
 
 TEST_CASE("property: transformed polygons keep their corners, front and area") {
@@ -119,9 +119,9 @@ TEST_CASE("property: transformed polygons keep their corners, front and area") {
     if (is_flipped)
       for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     const Scene scene = emitting(mesh);
-    REQUIRE(scene.emitters.size() == 1);
-    const Emitter& e = scene.emitters[0];
-    REQUIRE(e.shape == EmitterShape::polygon);
+    REQUIRE(scene.lights.size() == 1);
+    const Light& e = scene.lights[0];
+    REQUIRE(e.shape == LightShape::polygon);
     CHECK(e.polygon.size() == n);
     const Vec3d normal = newell(e.polygon);
     CHECK(length(normal) == doctest::Approx(area(mesh)).epsilon(1e-4));
@@ -132,9 +132,9 @@ TEST_CASE("property: transformed polygons keep their corners, front and area") {
 TEST_CASE("what is no planar convex polygon stays a mesh") {
   const auto is_mesh = [](const Mesh& mesh) {
     const Scene scene = emitting(mesh);
-    return scene.emitters.size() == 1 && scene.emitters[0].shape == EmitterShape::mesh &&
-           scene.emitters[0].triangles.size() == mesh.triangles.size() &&
-           scene.emitters[0].polygon.empty();
+    return scene.lights.size() == 1 && scene.lights[0].shape == LightShape::mesh &&
+           scene.lights[0].triangles.size() == mesh.triangles.size() &&
+           scene.lights[0].polygon.empty();
   };
   Mesh bent = square;
   bent.positions[2].z = 0.01f;
@@ -185,35 +185,35 @@ TEST_CASE("separate components become separate sources, the rest one mesh source
   mesh.positions.insert(mesh.positions.end(), {{1, 1, 0}, {2, 1, 0}, {2, 2, 0}});
   mesh.triangles.push_back({12, 13, 14});
   const Scene scene = emitting(mesh);
-  REQUIRE(scene.emitters.size() == 4);
-  CHECK(scene.emitters[0].polygon.size() == 4);
-  CHECK(scene.emitters[1].polygon.size() == 4);
-  CHECK(scene.emitters[2].polygon.size() == 3);
-  CHECK(scene.emitters[3].shape == EmitterShape::mesh);
-  CHECK(scene.meshes[0].emitters == std::vector<int32_t>{0, 0, 1, 1, 3, 3, 2});
+  REQUIRE(scene.lights.size() == 4);
+  CHECK(scene.lights[0].polygon.size() == 4);
+  CHECK(scene.lights[1].polygon.size() == 4);
+  CHECK(scene.lights[2].polygon.size() == 3);
+  CHECK(scene.lights[3].shape == LightShape::mesh);
+  CHECK(scene.meshes[0].lights == std::vector<int32_t>{0, 0, 1, 1, 3, 3, 2});
 }
 
 TEST_CASE("no area, no emission, constant textures") {
   Mesh flat = square;
   for (Vec3& p : flat.positions) p.y = 0;
   Scene scene = emitting(flat);
-  CHECK(scene.emitters.empty());
-  CHECK(scene.meshes[0].emitters.empty());
+  CHECK(scene.lights.empty());
+  CHECK(scene.meshes[0].lights.empty());
   CHECK(scene.warnings.total() == 1);
-  CHECK(emitting(square, Rgb{0}).emitters.empty());
-  CHECK(emitting(Mesh{}).emitters.empty());
+  CHECK(emitting(square, Rgb{0}).lights.empty());
+  CHECK(emitting(Mesh{}).lights.empty());
 
   scene = Scene{};
   scene.meshes.push_back(square);
   Texture half;
   half.value = Rgb{0.5f};
   scene.textures.push_back(half);
-  add_mesh_emitters(scene, 0, {"x", Rgb{4}, 0, true});
-  REQUIRE(scene.emitters.size() == 1);
-  CHECK(scene.emitters[0].shape == EmitterShape::polygon);
-  CHECK(scene.emitters[0].radiance == Rgb{2});
-  CHECK(scene.emitters[0].texture == no_texture);
-  CHECK(scene.emitters[0].is_two_sided);
+  add_mesh_lights(scene, 0, {"x", Rgb{4}, 0, true});
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].shape == LightShape::polygon);
+  CHECK(scene.lights[0].radiance == Rgb{2});
+  CHECK(scene.lights[0].texture == no_texture);
+  CHECK(scene.lights[0].is_two_sided);
 }
 
 TEST_CASE("a source with an alpha mask stays a mesh that knows of its holes") {
@@ -223,13 +223,13 @@ TEST_CASE("a source with an alpha mask stays a mesh that knows of its holes") {
   masked.alpha.value = 0.25f;
   scene.materials.push_back(masked);
   scene.meshes.push_back(square);
-  add_mesh_emitters(scene, 0, {"x", Rgb{4}, no_texture, false});
-  REQUIRE(scene.emitters.size() == 1);
-  CHECK(scene.emitters[0].shape == EmitterShape::mesh);
-  CHECK(scene.emitters[0].is_alpha_masked);
-  CHECK(emitted_radiance(scene, scene.emitters[0], true, {}) == Rgb{0});
+  add_mesh_lights(scene, 0, {"x", Rgb{4}, no_texture, false});
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].shape == LightShape::mesh);
+  CHECK(scene.lights[0].is_alpha_masked);
+  CHECK(emitted_radiance(scene, scene.lights[0], true, {}) == Rgb{0});
   scene.materials[0].alpha.value = 0.75f;
-  CHECK(emitted_radiance(scene, scene.emitters[0], true, {}) == Rgb{4});
+  CHECK(emitted_radiance(scene, scene.lights[0], true, {}) == Rgb{4});
 }
 
 TEST_CASE("large emissive meshes take near-linear time, and polygons are limited") {
@@ -242,9 +242,9 @@ TEST_CASE("large emissive meshes take near-linear time, and polygons are limited
     many.triangles.push_back({first, first + 2, first + 3});
   }
   const Scene limited = emitting(many);
-  CHECK(limited.emitters.size() == 1001);
-  CHECK(limited.emitters.back().shape == EmitterShape::mesh);
-  CHECK(limited.emitters.back().triangles.size() == 4000);
+  CHECK(limited.lights.size() == 1001);
+  CHECK(limited.lights.back().shape == LightShape::mesh);
+  CHECK(limited.lights.back().triangles.size() == 4000);
 
   // A flat disk of many triangles with a ragged rim, and a bumpy grid.
   Mesh grid;
@@ -263,7 +263,7 @@ TEST_CASE("large emissive meshes take near-linear time, and polygons are limited
   const Scene bumpy = emitting(grid);
   const Scene fan = emitting(disk(100'000));
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  CHECK(bumpy.emitters.size() == 1);
-  CHECK(fan.emitters.size() == 1);
+  CHECK(bumpy.lights.size() == 1);
+  CHECK(fan.lights.size() == 1);
   CHECK(seconds.count() < 5);
 }

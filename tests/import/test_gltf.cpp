@@ -53,7 +53,7 @@ TEST_CASE("a square is read with its normals, texture coordinates and name") {
   CHECK(mesh.normals[2] == Vec3{0, 0, 1});
   check_near(geometric_normal(mesh, 0), {0, 0, 1});
   CHECK(scene.is_photometric);
-  CHECK(scene.emitters.empty());
+  CHECK(scene.lights.empty());
   CHECK(scene.warnings.entries().empty());
 }
 
@@ -88,28 +88,28 @@ TEST_CASE("a mirrored node keeps its front: winding, normals and emission agree"
     check_near(geometric_normal(mesh, 0), front);
     check_near(geometric_normal(mesh, 1), front);
     check_near(mesh.normals[0], front);
-    REQUIRE(scene.emitters.size() == 1);
-    check_near(polygon_normal(scene.emitters[0].polygon), front);
+    REQUIRE(scene.lights.size() == 1);
+    check_near(polygon_normal(scene.lights[0].polygon), front);
   }
 }
 
 TEST_CASE("emitters carry radiance, strength, side and names") {
   const Scene scene = import_text(square_scene(
       "[{'mesh':0},{'mesh':0,'name':'lamp','translation':[0,0,5]},{'mesh':0}]", glowing_material));
-  REQUIRE(scene.emitters.size() == 3);
-  CHECK(scene.emitters[0].name == "emitter0");
-  CHECK(scene.emitters[1].name == "lamp");
-  CHECK(scene.emitters[2].name == "emitter2");
-  const Emitter& lamp = scene.emitters[1];
-  CHECK(lamp.shape == EmitterShape::polygon);
+  REQUIRE(scene.lights.size() == 3);
+  CHECK(scene.lights[0].name == "emitter0");
+  CHECK(scene.lights[1].name == "lamp");
+  CHECK(scene.lights[2].name == "emitter2");
+  const Light& lamp = scene.lights[1];
+  CHECK(lamp.shape == LightShape::polygon);
   CHECK(lamp.radiance == Rgb{8, 4, 2});
   CHECK_FALSE(lamp.is_two_sided);
   CHECK(lamp.polygon.size() == 4);
   CHECK(lamp.triangles == std::vector<uint32_t>{0, 1});
-  CHECK(scene.meshes[lamp.geometry].emitters == std::vector<int32_t>{1, 1});
+  CHECK(scene.meshes[lamp.geometry].lights == std::vector<int32_t>{1, 1});
   const Scene two_sided = import_text(
       square_scene("[{'mesh':0}]", "'materials':[{'emissiveFactor':[1,1,1],'doubleSided':true}]"));
-  CHECK(two_sided.emitters[0].is_two_sided);
+  CHECK(two_sided.lights[0].is_two_sided);
 }
 
 TEST_CASE("only the default scene is shown; without scenes, all roots are") {
@@ -220,13 +220,13 @@ TEST_CASE("kj92room: four polygon sources with the normals and radiances of its 
   const std::string path = shared_scene("kj92room/kj92room.gltf");
   if (path.empty()) return;
   const Scene scene = import_gltf(path);
-  REQUIRE(scene.emitters.size() == 4);
+  REQUIRE(scene.lights.size() == 4);
   const std::array<Vec3, 4> normals{Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{-1, 0, 0}};
   const std::array<float, 4> radiances{4, 4, 600, 600};
   for (size_t i = 0; i < 4; ++i) {
-    const Emitter& e = scene.emitters[i];
+    const Light& e = scene.lights[i];
     CHECK(e.name == "emitter" + std::to_string(i));
-    CHECK(e.shape == EmitterShape::polygon);
+    CHECK(e.shape == LightShape::polygon);
     CHECK(e.radiance == Rgb{radiances[i]});
     REQUIRE(e.polygon.size() == 4);
     check_near(polygon_normal(e.polygon), normals[i]);
@@ -241,7 +241,7 @@ TEST_CASE("modern-hall: thirteen sources, three textures, glass") {
   const std::string path = shared_scene("modern-hall/modern-hall.gltf");
   if (path.empty()) return;
   const Scene scene = import_gltf(path);
-  CHECK(scene.emitters.size() == 13);
+  CHECK(scene.lights.size() == 13);
   CHECK(scene.textures.size() == 3);
   for (const Texture& t : scene.textures) CHECK(t.kind == TextureKind::image);
   CHECK(scene.materials.size() == 12);

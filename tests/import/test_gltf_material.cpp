@@ -88,7 +88,7 @@ TEST_CASE("negative and odd emission") {
   error_of(square_scene("[{'mesh':0}]",
                         "'materials':[{'emissiveFactor':[1,1,1],'extensions':{"
                         "'KHR_materials_emissive_strength':{'emissiveStrength':1e300}}}]"));
-  CHECK(with_material("{'emissiveFactor':[0,0,0]}").emitters.empty());
+  CHECK(with_material("{'emissiveFactor':[0,0,0]}").lights.empty());
 }
 
 TEST_CASE("textures: sampler, transform, colour or data, and one decoding for all") {
@@ -156,9 +156,9 @@ TEST_CASE("an emissive texture keeps the mesh a mesh source") {
                                  "'images':[{'uri':'a.pfm'}],'textures':[{'source':0}],"
                                  "'materials':[{'emissiveFactor':[1,1,1],'emissiveTexture':"
                                  "{'index':0}}]")));
-  REQUIRE(scene.emitters.size() == 1);
-  CHECK(scene.emitters[0].shape == EmitterShape::mesh);
-  CHECK(scene.emitters[0].texture == 0);
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].shape == LightShape::mesh);
+  CHECK(scene.lights[0].texture == 0);
   CHECK(scene.meshes[0].uvs.size() == 4);
 }
 

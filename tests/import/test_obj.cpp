@@ -238,14 +238,14 @@ TEST_CASE("Ke emits from the front, named in order of appearance") {
       square +
           "o x\nusemtl dark\nf 1 2 3 4\no y\nusemtl lamp\nf 4 3 2 1\no z\nusemtl lamp\nf 1 2 3\n",
       "newmtl dark\nKd 1 1 1\nnewmtl lamp\nKd 0 0 0\nKe 3 2 1\n");
-  REQUIRE(scene.emitters.size() == 2);
-  CHECK(scene.emitters[0].name == "emitter0");
-  CHECK(scene.emitters[0].radiance == Rgb(3, 2, 1));
-  CHECK(scene.emitters[0].polygon.size() == 4);
-  CHECK_FALSE(scene.emitters[0].is_two_sided);
-  const Mesh& mesh = scene.meshes.at(scene.emitters[0].geometry);
+  REQUIRE(scene.lights.size() == 2);
+  CHECK(scene.lights[0].name == "emitter0");
+  CHECK(scene.lights[0].radiance == Rgb(3, 2, 1));
+  CHECK(scene.lights[0].polygon.size() == 4);
+  CHECK_FALSE(scene.lights[0].is_two_sided);
+  const Mesh& mesh = scene.meshes.at(scene.lights[0].geometry);
   CHECK(area_vector(mesh, mesh.triangles[0]).z < 0);
-  CHECK(scene.emitters[1].name == "emitter1");
+  CHECK(scene.lights[1].name == "emitter1");
 }
 
 TEST_CASE("what OBJ files hold besides is left out with warnings") {
@@ -270,10 +270,10 @@ TEST_CASE("kj92room as OBJ has four sources that face into the room") {
   const Scene scene = import_obj(path);
   CHECK(scene.warnings.entries().empty());
   CHECK(triangle_count(scene) == 92);
-  REQUIRE(scene.emitters.size() == 4);
+  REQUIRE(scene.lights.size() == 4);
   const Vec3 fronts[] = {{0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}};
   for (size_t i = 0; i < 4; ++i) {
-    const Emitter& e = scene.emitters[i];
+    const Light& e = scene.lights[i];
     CHECK(e.name == "emitter" + std::to_string(i));
     CHECK(e.polygon.size() == 4);
     const Mesh& mesh = scene.meshes.at(e.geometry);

@@ -246,13 +246,13 @@ TEST_CASE("images of emission belong to meshes") {
   const Scene scene = import_world(
       "AreaLightSource \"diffuse\" \"string filename\" \"four.pfm\" \"float scale\" 3\n" +
       triangle + "Shape \"sphere\"");
-  REQUIRE(scene.emitters.size() == 2);
-  const Emitter& e = scene.emitters[0];
-  CHECK(e.shape == EmitterShape::mesh);
+  REQUIRE(scene.lights.size() == 2);
+  const Light& e = scene.lights[0];
+  CHECK(e.shape == LightShape::mesh);
   CHECK(e.radiance == Rgb(3));
   REQUIRE(e.texture >= 0);
   check_near(emitted_radiance(scene, e, true, {0.25f, 0.25f}), {0, 0, 3});
-  CHECK(scene.emitters[1].texture == no_texture);
+  CHECK(scene.lights[1].texture == no_texture);
   CHECK(has_warning(scene, "emission of a sphere"));
 }
 

@@ -22,8 +22,8 @@ bool is_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
   return length(a - b) <= tolerance;
 }
 
-Vec3 front_of(const Scene& scene, const Emitter& e) {
-  if (e.shape == EmitterShape::disk) return scene.disks.at(e.geometry).normal;
+Vec3 front_of(const Scene& scene, const Light& e) {
+  if (e.shape == LightShape::disk) return scene.disks.at(e.geometry).normal;
   const Mesh& mesh = scene.meshes.at(e.geometry);
   return Vec3(normalize(area_vector(mesh, mesh.triangles.at(e.triangles.at(0)))));
 }
@@ -135,11 +135,11 @@ TEST_CASE("the front of meshes") {
         double expected = is_reversed != is_mirrored ? -1 : 1;
         // Covector under the mirror.
         if (normals != 0) expected = normals * (is_mirrored ? -1 : 1) * (is_reversed ? -1 : 1);
-        REQUIRE(scene.emitters.size() == 1);
-        CHECK(front_of(scene, scene.emitters[0]).z == doctest::Approx(expected));
+        REQUIRE(scene.lights.size() == 1);
+        CHECK(front_of(scene, scene.lights[0]).z == doctest::Approx(expected));
         if (normals != 0) CHECK(scene.meshes[0].normals[0].z == doctest::Approx(expected));
-        CHECK(scene.emitters[0].radiance == Rgb(2, 3, 4));
-        CHECK_FALSE(scene.emitters[0].is_two_sided);
+        CHECK(scene.lights[0].radiance == Rgb(2, 3, 4));
+        CHECK_FALSE(scene.lights[0].is_two_sided);
       }
     }
   }
@@ -148,15 +148,15 @@ TEST_CASE("the front of meshes") {
 TEST_CASE("the front of a bilinear patch is on the side of du × dv, its order 00 10 01 11") {
   const std::string patch = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 1 0 2 1 0]";
   const Scene scene = import_world(light + patch);
-  REQUIRE(scene.emitters.size() == 1);
-  const Emitter& e = scene.emitters[0];
-  CHECK(e.shape == EmitterShape::polygon);
+  REQUIRE(scene.lights.size() == 1);
+  const Light& e = scene.lights[0];
+  CHECK(e.shape == LightShape::polygon);
   CHECK(e.polygon.size() == 4);
   CHECK(front_of(scene, e).z == doctest::Approx(1));
   CHECK(area_of(scene.meshes[0]) == doctest::Approx(2));
   CHECK(scene.meshes[0].uvs.at(1) == Vec2(1, 0));
   const Scene reversed = import_world(light + "ReverseOrientation " + patch);
-  CHECK(front_of(reversed, reversed.emitters.at(0)).z == doctest::Approx(-1));
+  CHECK(front_of(reversed, reversed.lights.at(0)).z == doctest::Approx(-1));
 }
 
 TEST_CASE("curved bilinear patches are cut into cells with smooth normals") {
@@ -190,12 +190,12 @@ TEST_CASE("spheres and disks stay what they are under similarities") {
   CHECK(is_near(scene.disks[0].normal, {0, -1, 0}));  // z turned by 90 degrees about x
   CHECK(is_near(scene.disks[0].centre, {1, 0, 3}));
   CHECK(is_near(scene.disks[1].normal, {0, 1, 0}));
-  REQUIRE(scene.emitters.size() == 4);
-  CHECK(scene.emitters[0].shape == EmitterShape::sphere);
-  CHECK(scene.emitters[1].shape == EmitterShape::disk);
-  CHECK(scene.emitters[3].name == "emitter3");
-  CHECK(scene.disks[1].emitter == 3);
-  CHECK(scene.emitters[3].geometry == 1);
+  REQUIRE(scene.lights.size() == 4);
+  CHECK(scene.lights[0].shape == LightShape::sphere);
+  CHECK(scene.lights[1].shape == LightShape::disk);
+  CHECK(scene.lights[3].name == "emitter3");
+  CHECK(scene.disks[1].light == 3);
+  CHECK(scene.lights[3].geometry == 1);
 }
 
 TEST_CASE("mirrored quadrics are turned inside out, as in pbrt") {
@@ -232,7 +232,7 @@ TEST_CASE("partial and stretched quadrics become meshes that agree with them") {
     // Winding and normals agree everywhere.
     for (const Triangle& t : mesh.triangles)
       CHECK(dot(area_vector(mesh, t), Vec3d(mesh.normals[t[0]])) > 0);
-    CHECK(scene.emitters.size() >= 1);
+    CHECK(scene.lights.size() >= 1);
   }
   // Outside is the front, inside where it is mirrored or reversed.
   const auto outward = [](const std::string& world) {
@@ -248,7 +248,7 @@ TEST_CASE("partial and stretched quadrics become meshes that agree with them") {
 TEST_CASE("emission of area lights") {
   const auto radiance = [](const std::string& params) {
     return import_world("AreaLightSource \"diffuse\" " + params + "\n" + triangle)
-        .emitters.at(0)
+        .lights.at(0)
         .radiance;
   };
   CHECK(radiance("") == Rgb(1));
@@ -266,15 +266,15 @@ TEST_CASE("emission of area lights") {
   CHECK(radiance("\"float power\" 6 \"bool twosided\" true").r == doctest::Approx(6 / pi));
 
   const Scene two = import_world("AreaLightSource \"diffuse\" \"bool twosided\" true " + triangle);
-  CHECK(two.emitters.at(0).is_two_sided);
+  CHECK(two.lights.at(0).is_two_sided);
   const Scene black = import_world("AreaLightSource \"diffuse\" \"rgb L\" [0 0 0] " + triangle);
-  CHECK(black.emitters.empty());
+  CHECK(black.lights.empty());
   CHECK_THROWS_AS(radiance("\"rgb L\" [1 1 1] \"string filename\" \"a.png\""), InputError);
   CHECK_THROWS_AS(radiance("\"float scale\" -1"), InputError);
   CHECK_THROWS_AS(radiance("\"rgb L\" [1e39 1 1]"), InputError);
   const Scene blinding = import_world(
       "AreaLightSource \"diffuse\" \"rgb L\" [1e38 1 1] \"float scale\" 1e3 " + triangle);
-  CHECK(blinding.emitters.empty());
+  CHECK(blinding.lights.empty());
   CHECK(blinding.warnings.total() == 1);
 }
 
@@ -283,11 +283,11 @@ TEST_CASE("shapes that emit are numbered in order, whatever becomes of them") {
       triangle + light + "Shape \"cylinder\"\n" + triangle +
       "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 2 0 0]\nShape \"sphere\"\n"
       "AttributeBegin Material \"interface\" Shape \"sphere\" AttributeEnd Shape \"disk\"");
-  REQUIRE(scene.emitters.size() == 3);
-  CHECK(scene.emitters[0].name == "emitter1");
-  CHECK(scene.emitters[1].name == "emitter3");
-  CHECK(scene.emitters[2].name == "emitter5");
-  CHECK(scene.meshes.at(0).emitters.empty());
+  REQUIRE(scene.lights.size() == 3);
+  CHECK(scene.lights[0].name == "emitter1");
+  CHECK(scene.lights[1].name == "emitter3");
+  CHECK(scene.lights[2].name == "emitter5");
+  CHECK(scene.meshes.at(0).lights.empty());
 }
 
 TEST_CASE("instances are placed by both transforms and do not emit") {
@@ -296,7 +296,7 @@ TEST_CASE("instances are placed by both transforms and do not emit") {
                                    "Shape \"disk\"\nObjectEnd\n"
                                    "AttributeBegin Scale 2 2 2 ObjectInstance \"o\" AttributeEnd\n"
                                    "AttributeBegin Scale 1 1 3 ObjectInstance \"o\" AttributeEnd");
-  CHECK(scene.emitters.empty());
+  CHECK(scene.lights.empty());
   CHECK(scene.warnings.total() == 1);
   REQUIRE(scene.meshes.size() == 3);  // two triangles and a stretched sphere
   REQUIRE(scene.spheres.size() == 1);
@@ -338,12 +338,12 @@ TEST_CASE("kj92room has four sources that face into the room") {
   for (const char* name : {"kj92room_direct.pbrt", "kj92room_full.pbrt"}) {
     const Scene scene = import_pbrt(folder + name);
     CHECK(scene.warnings.entries().empty());
-    REQUIRE(scene.emitters.size() == 4);
+    REQUIRE(scene.lights.size() == 4);
     const Vec3 fronts[] = {{0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}};
     for (size_t i = 0; i < 4; ++i) {
-      const Emitter& e = scene.emitters[i];
+      const Light& e = scene.lights[i];
       CHECK(e.name == "emitter" + std::to_string(i));
-      CHECK(e.shape == EmitterShape::polygon);
+      CHECK(e.shape == LightShape::polygon);
       CHECK(e.polygon.size() == 4);
       CHECK(is_near(front_of(scene, e), fronts[i]));
       CHECK(e.radiance == Rgb(i < 2 ? 4.0f : 600.0f));
@@ -368,12 +368,12 @@ TEST_CASE("modern-hall has thirteen sources that face into the hall") {
                          {0, 0, -1}, {1, 0, 0}, {0, 1, 0}};
   for (const char* name : {"modern-hall.pbrt", "modern-hall-diffuse.pbrt"}) {
     const Scene scene = import_pbrt(folder + name);
-    REQUIRE(scene.emitters.size() == 13);
+    REQUIRE(scene.lights.size() == 13);
     CHECK(scene.disks.size() == 5);
     for (size_t i = 0; i < 13; ++i) {
       CAPTURE(i);
-      CHECK(scene.emitters[i].shape == (i < 5 ? EmitterShape::disk : EmitterShape::polygon));
-      CHECK(is_near(front_of(scene, scene.emitters[i]), fronts[i], 1e-4f));
+      CHECK(scene.lights[i].shape == (i < 5 ? LightShape::disk : LightShape::polygon));
+      CHECK(is_near(front_of(scene, scene.lights[i]), fronts[i], 1e-4f));
     }
     CHECK(triangle_count(scene) > 25000);
     CHECK(scene.warnings.entries().size() <= 3);

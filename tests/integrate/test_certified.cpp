@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "emitter/irradiance.h"
 #include "integrate/certified.h"
+#include "light/irradiance.h"
 #include "probe.h"
 
 using namespace troffer;
@@ -16,7 +16,7 @@ using namespace troffer::test;
 namespace {
 
 CertifiedIntegrator certified(const PreparedScene& scene, double error = 0.01) {
-  return {scene, std::nullopt, certified_settings(error, scene.scene.emitters.size())};
+  return {scene, std::nullopt, certified_settings(error, scene.scene.lights.size())};
 }
 
 struct NamedScene {
@@ -30,8 +30,8 @@ void add_floor(Scene& s, uint32_t material) {
 
 // A square source that shines both ways, tilted, above the floor.
 void add_two_sided(Scene& s) {
-  make_emitter(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}), Rgb{3},
-               true);
+  make_light(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}), Rgb{3},
+             true);
 }
 
 void add_textured(Scene& s) {
@@ -43,10 +43,10 @@ void add_textured(Scene& s) {
   t.is_filtered = false;
   t.wrap_u = t.wrap_v = WrapMode::clamp;
   s.textures.push_back(t);
-  add_mesh_emitter(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, {{0, 1, 2}, {0, 2, 3}},
-                   Rgb{2}, false);
+  add_mesh_light(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, {{0, 1, 2}, {0, 2, 3}},
+                 Rgb{2}, false);
   s.meshes.back().uvs = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
-  s.emitters.back().texture = 0;
+  s.lights.back().texture = 0;
 }
 
 const Vec3 eye{-1.5f, 1, 1.2f};  // no source stands between it and the points
@@ -78,13 +78,13 @@ TEST_CASE("certified: where nothing hides a flat source, light is exact, and no 
       {"two-sided square seen from its back", add_two_sided},
       {"wall that the floor's plane cuts",
        [](Scene& s) {
-         make_emitter(s, add_quad(s, 0, {Vec3{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}),
-                      Rgb{2});
+         make_light(s, add_quad(s, 0, {Vec3{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}),
+                    Rgb{2});
        }},
       {"folded mesh",
        [](Scene& s) {
-         add_mesh_emitter(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1.5f}},
-                          {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
+         add_mesh_light(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1.5f}},
+                        {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
        }},
   };
   for (const NamedScene& source : scenes) {
@@ -96,9 +96,9 @@ TEST_CASE("certified: where nothing hides a flat source, light is exact, and no 
     const CertifiedIntegrator mine = certified(scene);
     for (const Vec3& x : targets) {
       double expected = 0;
-      for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
-        expected += irradiance(scene.lights, e, Vec3d(x), {0, 0, 1}) *
-                    double(scene.scene.emitters[e].radiance.g) * double(0.6f) / pi;
+      for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+        expected += irradiance(scene.primitives, e, Vec3d(x), {0, 0, 1}) *
+                    double(scene.scene.lights[e].radiance.g) * double(0.6f) / pi;
       RadianceBatch out;
       Counters counters;
       const ViewingRays rays = repeated(ray_towards(eye, x), 1, 10);
@@ -110,7 +110,7 @@ TEST_CASE("certified: where nothing hides a flat source, light is exact, and no 
         CHECK(double(radiance.g) == doctest::Approx(expected).epsilon(2e-5));
       CHECK(counters.shadow_rays == 0);
       // Of a folded mesh each triangle may stand before the other.
-      if (scene.lights.size() > 1) continue;
+      if (scene.primitives.size() > 1) continue;
       CHECK(counters.lit_certified == 10);
       CHECK(counters.masked + counters.mixed + counters.dark_certified == 0);
     }
@@ -121,16 +121,16 @@ TEST_CASE("certified: sources without certificates are sampled by rays, without 
   const std::vector<NamedScene> scenes{
       {"sphere",
        [](Scene& s) {
-         add_sphere_emitter(s, 0, {0.5f, 0, 1.5f}, 0.4f, Rgb{4});
+         add_sphere_light(s, 0, {0.5f, 0, 1.5f}, 0.4f, Rgb{4});
        }},
       {"disk",
        [](Scene& s) {
-         add_disk_emitter(s, 0, {-1, 0.5f, 2}, normalize(Vec3{0.4f, -0.3f, -1}), 0.6f, Rgb{4});
+         add_disk_light(s, 0, {-1, 0.5f, 2}, normalize(Vec3{0.4f, -0.3f, -1}), 0.6f, Rgb{4});
        }},
       {"textured", add_textured},
       {"sphere and square",
        [](Scene& s) {
-         add_sphere_emitter(s, 0, {1.5f, 0, 1.5f}, 0.3f, Rgb{4});
+         add_sphere_light(s, 0, {1.5f, 0, 1.5f}, 0.3f, Rgb{4});
          add_ceiling_light(s, 1, 2, Rgb{5});
        }},
   };
@@ -175,7 +175,7 @@ TEST_CASE("certified: penumbrae are those of fixed sampling") {
        [](Scene& s) {
          add_two_sided(s);
          add_ceiling_light(s, 1, 2, Rgb{5});
-         s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_emitter});
+         s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_light});
        }},
   };
   const std::vector<Vec3> points{{0, -0.5f, 0}, {-0.7f, -0.6f, 0}, {0.8f, -0.9f, 0}};
@@ -217,7 +217,7 @@ TEST_CASE("certified: what a scratch was used for before leaves no trace") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});
-  s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_emitter});  // rays are needed
+  s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_light});  // rays are needed
   add_block(s, grey, {-0.6f, -0.7f, 0.7f}, {0.6f, 0.3f, 0.75f});
   add_floor(s, grey);
   const PreparedScene scene(std::move(s));
@@ -267,8 +267,9 @@ TEST_CASE("certified: irradiance at points, exact in the open and as by fixed un
     }
     CAPTURE(x.x);
     if (x.x == 5)
-      CHECK(a.mean() ==
-            doctest::Approx(5 * irradiance(scene.lights, 0, Vec3d(x), {0, 0, 1})).epsilon(2e-5));
+      CHECK(
+          a.mean() ==
+          doctest::Approx(5 * irradiance(scene.primitives, 0, Vec3d(x), {0, 0, 1})).epsilon(2e-5));
     CHECK(p_of_difference(a, b, 5e-5 * b.mean()) > 1e-4);
   }
 }
@@ -278,7 +279,7 @@ TEST_CASE("certified: of many sources, steps of one normal lose none that stands
   add_diffuse(s, Rgb{0.6f});
   for (int i = 0; i < 30; ++i) {  // upright, in a row, between the heights of the points
     const float y = 0.4f * float(i) - 6;
-    make_emitter(
+    make_light(
         s,
         add_quad(s, 0, {Vec3{3, y, 0.2f}, {3, y, 0.4f}, {3, y + 0.2f, 0.4f}, {3, y + 0.2f, 0.2f}}),
         Rgb{5});
@@ -297,8 +298,8 @@ TEST_CASE("certified: of many sources, steps of one normal lose none that stands
   out.reset(2);
   mine.irradiance(sensors, *mine.make_scratch(), out, counters);
   double expected = 0;
-  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
-    expected += 5 * irradiance(scene.lights, e, {0, 0, 0}, {0, 0, 1});
+  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+    expected += 5 * irradiance(scene.primitives, e, {0, 0, 0}, {0, 0, 1});
   REQUIRE(expected > 0);
   CHECK(double(out.direct[0].g) == doctest::Approx(expected).epsilon(1e-4));
   CHECK(out.direct[1].g == 0);
@@ -317,10 +318,10 @@ TEST_CASE("certified: a point on a polygon of many corners belongs to one of its
   s.meshes[mesh].triangles.clear();
   for (uint32_t i = 1; i + 1 < outline.size(); ++i)
     s.meshes[mesh].triangles.push_back({0, i, i + 1});
-  make_emitter(s, mesh, Rgb{5});
+  make_light(s, mesh, Rgb{5});
   const size_t triangles = s.meshes[mesh].triangles.size();
-  s.meshes[mesh].emitters.assign(triangles, 0);
-  for (uint32_t t = 2; t < triangles; ++t) s.emitters[0].triangles.push_back(t);
+  s.meshes[mesh].lights.assign(triangles, 0);
+  for (uint32_t t = 2; t < triangles; ++t) s.lights[0].triangles.push_back(t);
   const PreparedScene scene(std::move(s));
   const CertifiedLights lights(scene, 0.01);
   REQUIRE(lights.has(0));

@@ -34,11 +34,11 @@ struct Prepared {
     o.meshing.patch_size = 4 * element;
     o.stored_per_point = stored;
     o.tolerance = 1e-3f;
-    return solve_radiosity(scene.scene, scene.tracer, scene.bsdf_tables, scene.lights, o, 2, {},
+    return solve_radiosity(scene.scene, scene.tracer, scene.bsdf_tables, scene.primitives, o, 2, {},
                            StopFlag{false});
   }
   SourceSelection select(const SelectionOptions& options) const {
-    return SourceSelection(solution, scene.tracer, scene.lights, options, 2, StopFlag{false});
+    return SourceSelection(solution, scene.tracer, scene.primitives, options, 2, StopFlag{false});
   }
   const PreparedScene scene;
   const RadiositySolution solution;
@@ -49,7 +49,7 @@ struct Certified {
   Certified(const Prepared& p, const SelectionOptions& options)
       : selection(p.select(options)),
         integrator(p.scene, RadiosityLight(p.scene, p.solution, selection),
-                   certified_settings(0.01, p.scene.scene.emitters.size())),
+                   certified_settings(0.01, p.scene.scene.lights.size())),
         patches(p.scene, p.solution, selection) {}
   const SourceSelection selection;
   const CertifiedIntegrator integrator;
@@ -64,7 +64,7 @@ Scene uplight_room() {
   const uint32_t lamp =
       add_quad(s, add_diffuse(s, Rgb{0}),
                {Vec3{1.8f, 1.3f, 2}, {2.2f, 1.3f, 2}, {2.2f, 1.7f, 2}, {1.8f, 1.7f, 2}});
-  make_emitter(s, lamp, Rgb{60});
+  make_light(s, lamp, Rgb{60});
   return s;
 }
 
@@ -75,7 +75,7 @@ Scene open_room() {
   const uint32_t lamp =
       add_quad(s, add_diffuse(s, Rgb{0}),
                {Vec3{1.2f, 1, 2.499f}, {1.2f, 2, 2.499f}, {2.2f, 2, 2.499f}, {2.2f, 1, 2.499f}});
-  make_emitter(s, lamp, Rgb{10});
+  make_light(s, lamp, Rgb{10});
   return s;
 }
 

@@ -35,8 +35,8 @@ void add_floor(Scene& s, uint32_t material = 0) {
 
 // A downward panel [x0,x1] × [y0,y1] at height z.
 void add_panel(Scene& s, float x0, float x1, float y0, float y1, float z, float radiance) {
-  make_emitter(s, add_quad(s, 0, {Vec3{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}}),
-               Rgb{radiance});
+  make_light(s, add_quad(s, 0, {Vec3{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}}),
+             Rgb{radiance});
 }
 
 // A coarse ball with smooth normals: its own facets hide what its normals see.
@@ -84,24 +84,24 @@ std::vector<HostileScene> hostile_scenes() {
                    eye, floor_points});
   };
   on_floor("bulb half sunk into the floor behind a step", [](Scene& s) {
-    add_sphere_emitter(s, 0, {0, 0.3f, 0}, 0.5f, Rgb{5});
+    add_sphere_light(s, 0, {0, 0.3f, 0}, 0.5f, Rgb{5});
     add_block(s, 0, {-1, -0.5f, 0}, {0.5f, -0.4f, 0.3f});
   });
   on_floor("bulb with a socket and a wire stuck in", [](Scene& s) {
-    add_sphere_emitter(s, 0, {0, 0, 1.5f}, 0.5f, Rgb{5});
+    add_sphere_light(s, 0, {0, 0, 1.5f}, 0.5f, Rgb{5});
     add_block(s, 0, {-0.2f, -0.2f, 1.7f}, {0.2f, 0.2f, 2.5f});
     add_block(s, 0, {-0.1f, -0.6f, 0.9f}, {0.1f, 0.1f, 1.3f});
   });
   on_floor("bulb behind balls", [](Scene& s) {
-    add_sphere_emitter(s, 0, {0, 0, 2.5f}, 0.3f, Rgb{20});
-    s.spheres.push_back({{0.1f, 0, 1.3f}, 0.4f, false, 0, no_emitter});
+    add_sphere_light(s, 0, {0, 0, 2.5f}, 0.3f, Rgb{20});
+    s.spheres.push_back({{0.1f, 0, 1.3f}, 0.4f, false, 0, no_light});
   });
   on_floor("bulbs that reach into each other", [](Scene& s) {
-    add_sphere_emitter(s, 0, {0, 0, 1.5f}, 0.5f, Rgb{5});
-    add_sphere_emitter(s, 0, {0.3f, -0.1f, 1.4f}, 0.4f, Rgb{3});
+    add_sphere_light(s, 0, {0, 0, 1.5f}, 0.5f, Rgb{5});
+    add_sphere_light(s, 0, {0.3f, -0.1f, 1.4f}, 0.4f, Rgb{3});
   });
   on_floor("bulb that reaches into an inverted box", [](Scene& s) {
-    add_sphere_emitter(s, 0, {0, 0, 1.5f}, 0.4f, Rgb{5});
+    add_sphere_light(s, 0, {0, 0, 1.5f}, 0.4f, Rgb{5});
     add_box_inside(s, 0, {-0.6f, -0.6f, 0.8f}, {0.6f, 0.6f, 1.2f});
   });
   on_floor("panel before which a sheet lies a hair away", [](Scene& s) {
@@ -128,8 +128,8 @@ std::vector<HostileScene> hostile_scenes() {
     add_block(s, 0, {-1, -0.2f, 0.3f}, {0.5f, 0.2f, 0.6f});
   });
   on_floor("disk close to the floor, a ball before it", [](Scene& s) {
-    add_disk_emitter(s, 0, {0, 0, 0.4f}, {0, 0, -1}, 0.8f, Rgb{5});
-    s.spheres.push_back({{0.2f, -0.6f, 0.1f}, 0.1f, false, 0, no_emitter});
+    add_disk_light(s, 0, {0, 0, 0.4f}, {0, 0, -1}, 0.8f, Rgb{5});
+    s.spheres.push_back({{0.2f, -0.6f, 0.1f}, 0.1f, false, 0, no_light});
   });
   all.push_back({"panel a hundred metres wide over a block",
                  [](Scene& s) {
@@ -147,13 +147,13 @@ std::vector<HostileScene> hostile_scenes() {
                    [is_coated](Scene& s) {
                      const uint32_t coat = add_coat(s, 0.3f);
                      add_smooth_ball(s, is_coated ? coat : 0, {0, 0, 0.7f}, 0.6f);
-                     add_disk_emitter(s, 0, {2, 0, 2}, {0, 0, -1}, 0.3f, Rgb{5});
+                     add_disk_light(s, 0, {2, 0, 2}, {0, 0, -1}, 0.3f, Rgb{5});
                    },
                    side, edge});
   all.push_back({"bulb at the horizon of a smooth ball",
                  [](Scene& s) {
                    add_smooth_ball(s, 0, {0, 0, 0.7f}, 0.6f);
-                   add_sphere_emitter(s, 0, {2, 0, 0.7f}, 0.3f, Rgb{5});
+                   add_sphere_light(s, 0, {2, 0, 0.7f}, 0.3f, Rgb{5});
                  },
                  side, edge});
   return all;
@@ -170,7 +170,7 @@ TEST_CASE("certified: hostile scenes look as by fixed sampling") {
     h.build(s);
     const PreparedScene scene(std::move(s));
     const CertifiedIntegrator mine(scene, std::nullopt,
-                                   certified_settings(0.01, scene.scene.emitters.size()));
+                                   certified_settings(0.01, scene.scene.lights.size()));
     const FixedIntegrator fixed(scene, FixedOptions{256});
     for (const Vec3& x : h.targets) {
       const Probed a = probe(mine, ray_towards(h.eye, x), 64, 32);
@@ -192,12 +192,12 @@ TEST_CASE("flat sources do not light their own backs, whichever side rounding pu
     add_diffuse(s, Rgb{0.5f});
     const Vec3 normal = normalize(Vec3{0.1f, -0.3f, -1}), centre{0.31f, -0.17f, 0.7f};
     if (is_disk) {
-      add_disk_emitter(s, 0, centre, normal, 0.8f, Rgb{5});
+      add_disk_light(s, 0, centre, normal, 0.8f, Rgb{5});
     } else {
       const Vec3 u = normalize(cross(normal, Vec3{0, 1, 0})) * 0.8f, v = cross(normal, u);
-      make_emitter(s,
-                   add_quad(s, 0, {centre - u - v, centre + u - v, centre + u + v, centre - u + v}),
-                   Rgb{5});
+      make_light(s,
+                 add_quad(s, 0, {centre - u - v, centre + u - v, centre + u + v, centre - u + v}),
+                 Rgb{5});
     }
     const PreparedScene scene(std::move(s));
     const CertifiedIntegrator mine(scene, std::nullopt, certified_settings(0.01, 1));
@@ -220,7 +220,7 @@ TEST_CASE("certified: sources without light, and of more than squares in single 
     add_diffuse(s, Rgb{0.5f});
     add_floor(s);
     add_panel(s, -0.5f, 0.5f, -0.5f, 0.5f, 2, radiance);
-    s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_emitter});
+    s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_light});
     const PreparedScene scene(std::move(s));
     const CertifiedIntegrator mine(scene, std::nullopt, certified_settings(0.01, 1));
     const FixedIntegrator fixed(scene, FixedOptions{256});

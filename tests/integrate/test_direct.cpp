@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "emitter/irradiance.h"
-#include "emitter/source_surface.h"
+#include "light/irradiance.h"
+#include "light/source_surface.h"
 #include "probe.h"
 
 using namespace troffer;
@@ -27,37 +27,37 @@ std::vector<NamedSource> sources() {
       {"square", [](Scene& s) { add_ceiling_light(s, 1, 2, Rgb{5}); }},
       {"two-sided square seen from its back",
        [](Scene& s) {
-         make_emitter(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}),
-                      Rgb{3}, true);
+         make_light(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}),
+                    Rgb{3}, true);
        }},
       {"wall that the floor's plane cuts",
        [](Scene& s) {
-         make_emitter(s, add_quad(s, 0, {Vec3{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}),
-                      Rgb{2});
+         make_light(s, add_quad(s, 0, {Vec3{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}),
+                    Rgb{2});
        }},
       {"sphere",
        [](Scene& s) {
-         add_sphere_emitter(s, 0, {0.5f, 0, 1.5f}, 0.4f, Rgb{4});
+         add_sphere_light(s, 0, {0.5f, 0, 1.5f}, 0.4f, Rgb{4});
        }},
       {"sphere cut by the floor's plane",
        [](Scene& s) {
-         add_sphere_emitter(s, 0, {1.5f, 0, 0.1f}, 0.5f, Rgb{4});
+         add_sphere_light(s, 0, {1.5f, 0, 0.1f}, 0.5f, Rgb{4});
        }},
       {"disk",
        [](Scene& s) {
-         add_disk_emitter(s, 0, {-1, 0.5f, 2}, normalize(Vec3{0.4f, -0.3f, -1}), 0.6f, Rgb{4});
+         add_disk_light(s, 0, {-1, 0.5f, 2}, normalize(Vec3{0.4f, -0.3f, -1}), 0.6f, Rgb{4});
        }},
       {"folded mesh",
        [](Scene& s) {
-         add_mesh_emitter(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1.5f}},
-                          {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
+         add_mesh_light(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1.5f}},
+                        {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
        }},
       {"many small ones",
        [](Scene& s) {
          for (int i = 0; i < 30; ++i) {
            const float x = float(i % 6) - 2.5f, y = float(i / 6) - 2;
-           add_disk_emitter(s, 0, {x, y, 1.5f + 0.01f * float(i)}, {0, 0, -1}, 0.1f,
-                            Rgb{float(1 + i * i)});
+           add_disk_light(s, 0, {x, y, 1.5f + 0.01f * float(i)}, {0, 0, -1}, 0.1f,
+                          Rgb{float(1 + i * i)});
          }
        }},
   };
@@ -89,8 +89,8 @@ double by_quadrature(const PreparedScene& scene, const Vec3& x, uint32_t materia
   const Vertex v = make_vertex(surface, ray.direction);
   const Bsdf bsdf = make_bsdf(scene.bsdf_tables, scene.scene, material, {}, true);
   double sum = 0;
-  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e) {
-    const Emitter& emitter = scene.scene.emitters[e];
+  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e) {
+    const Light& light = scene.scene.lights[e];
     const SourceSurface source(scene.scene, e);
     double part = 0;
     for (int i = 0; i < cells; ++i)
@@ -100,8 +100,8 @@ double by_quadrature(const PreparedScene& scene, const Vec3& x, uint32_t materia
         const Vec3 to = p.point - x;
         const Vec3 wi = normalize(to);
         const float cos_source = -dot(wi, p.normal);
-        if (wi.z <= 0 || (cos_source <= 0 && !emitter.is_two_sided)) continue;
-        const Rgb radiance = emitted_radiance(scene.scene, emitter, cos_source > 0, p.texture_uv);
+        if (wi.z <= 0 || (cos_source <= 0 && !light.is_two_sided)) continue;
+        const Rgb radiance = emitted_radiance(scene.scene, light, cos_source > 0, p.texture_uv);
         const Rgb f_cos = evaluate(bsdf, v.wo, v.frame.to_local(wi));
         part += double(f_cos.g) * double(radiance.g) * double(std::abs(cos_source)) /
                 double(length_squared(to));
@@ -125,9 +125,9 @@ TEST_CASE("a matte floor shows reflectance × exact irradiance / pi") {
     const auto path = direct_path(scene), one = fixed(scene, 1), many = fixed(scene, 16);
     for (const Vec3& x : targets) {
       double expected = 0;
-      for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
-        expected += irradiance(scene.lights, e, Vec3d(x), {0, 0, 1}) *
-                    double(scene.scene.emitters[e].radiance.g) * double(0.6f) / pi;
+      for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+        expected += irradiance(scene.primitives, e, Vec3d(x), {0, 0, 1}) *
+                    double(scene.scene.lights[e].radiance.g) * double(0.6f) / pi;
       CAPTURE(source.name);
       CAPTURE(x.x);
       REQUIRE(expected > 1e-3);
@@ -194,10 +194,10 @@ TEST_CASE("a textured mesh source over a glossy floor") {
   t.is_filtered = false;
   t.wrap_u = t.wrap_v = WrapMode::clamp;
   s.textures.push_back(t);
-  add_mesh_emitter(s, glossy, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}},
-                   {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
+  add_mesh_light(s, glossy, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}},
+                 {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
   s.meshes.back().uvs = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
-  s.emitters.back().texture = 0;
+  s.lights.back().texture = 0;
   add_floor(s, glossy);
   const PreparedScene scene(std::move(s));
   const auto path = direct_path(scene), many = fixed(scene, 8);
@@ -238,7 +238,7 @@ TEST_CASE("an alpha-masked sheet lets through what its mask does not cover") {
   const auto path = direct_path(scene), many = fixed(scene, 4);
   for (const float x : {-1.0f, 1.0f}) {
     const Vec3 at{x, 0.5f, 0};
-    const double e = 100 * irradiance(scene.lights, 0, Vec3d(at), {0, 0, 1});
+    const double e = 100 * irradiance(scene.primitives, 0, Vec3d(at), {0, 0, 1});
     for (const Integrator* i : {path.get(), many.get()}) {
       const Probed p = probe(*i, ray_towards({x, 0.4f, 0.5f}, at), 64, 16);
       const double expected = x < 0 ? double(0.6f) * e / pi : 0;
@@ -251,7 +251,7 @@ TEST_CASE("fixed sends the shadow rays it is told to send") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});
-  add_disk_emitter(s, 0, {1, 0, 2}, {0, 0, -1}, 0.2f, Rgb{1});
+  add_disk_light(s, 0, {1, 0, 2}, {0, 0, -1}, 0.2f, Rgb{1});
   add_floor(s, grey);
   const PreparedScene scene(std::move(s));
   const auto i = fixed(scene, 7);

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "emitter/irradiance.h"
-#include "emitter/source_surface.h"
+#include "light/irradiance.h"
+#include "light/source_surface.h"
 #include "probe.h"
 #include "radiosity/solver.h"
 
@@ -49,9 +49,9 @@ struct Setting {
 struct Kj92 {
   Kj92(Scene s, const Setting& setting)
       : scene(std::move(s)),
-        solution(solve_radiosity(scene.scene, scene.tracer, scene.bsdf_tables, scene.lights,
+        solution(solve_radiosity(scene.scene, scene.tracer, scene.bsdf_tables, scene.primitives,
                                  setting.radiosity, 2, {}, StopFlag{false})),
-        selection(solution, scene.tracer, scene.lights, setting.selection, 2, StopFlag{false}),
+        selection(solution, scene.tracer, scene.primitives, setting.selection, 2, StopFlag{false}),
         integrator(scene, solution, selection, setting.options) {}
   const PreparedScene scene;
   const RadiositySolution solution;
@@ -77,8 +77,8 @@ void add_texture(Scene& s, std::vector<float> texels) {
 
 std::vector<NamedSource> sources() {
   const auto sheet = [](Scene& s, uint32_t material) {
-    add_mesh_emitter(s, material, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}},
-                     {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
+    add_mesh_light(s, material, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}},
+                   {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
     s.meshes.back().uvs = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
   };
   return {
@@ -90,42 +90,42 @@ std::vector<NamedSource> sources() {
              {-0.5f, -0.5f, 2}, {-0.7f, 0.3f, 2}, {0, 0.8f, 2}, {0.7f, 0.3f, 2}, {0.5f, -0.5f, 2}};
          m.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
          s.meshes.push_back(m);
-         make_emitter(s, uint32_t(s.meshes.size() - 1), Rgb{4});
-         s.emitters.back().triangles = {0, 1, 2};
-         s.meshes.back().emitters.assign(3, int32_t(s.emitters.size()) - 1);
+         make_light(s, uint32_t(s.meshes.size() - 1), Rgb{4});
+         s.lights.back().triangles = {0, 1, 2};
+         s.meshes.back().lights.assign(3, int32_t(s.lights.size()) - 1);
        }},
       {"two-sided square seen from its back",
        [](Scene& s) {
-         make_emitter(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}),
-                      Rgb{3}, true);
+         make_light(s, add_quad(s, 0, {Vec3{0, 0, 1}, {1, 0, 1}, {1, 1, 1.3f}, {0, 1, 1.3f}}),
+                    Rgb{3}, true);
        }},
       {"wall that the floor's plane cuts",
        [](Scene& s) {
-         make_emitter(s, add_quad(s, 0, {Vec3{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}),
-                      Rgb{2});
+         make_light(s, add_quad(s, 0, {Vec3{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}),
+                    Rgb{2});
        }},
       {"sphere",
        [](Scene& s) {
-         add_sphere_emitter(s, 0, {0.5f, 0, 1.5f}, 0.4f, Rgb{4});
+         add_sphere_light(s, 0, {0.5f, 0, 1.5f}, 0.4f, Rgb{4});
        }},
       {"sphere cut by the floor's plane",
        [](Scene& s) {
-         add_sphere_emitter(s, 0, {1.5f, 0, 0.1f}, 0.5f, Rgb{4});
+         add_sphere_light(s, 0, {1.5f, 0, 0.1f}, 0.5f, Rgb{4});
        }},
       {"disk",
        [](Scene& s) {
-         add_disk_emitter(s, 0, {-1, 0.5f, 2}, normalize(Vec3{0.4f, -0.3f, -1}), 0.6f, Rgb{4});
+         add_disk_light(s, 0, {-1, 0.5f, 2}, normalize(Vec3{0.4f, -0.3f, -1}), 0.6f, Rgb{4});
        }},
       {"folded mesh",
        [](Scene& s) {
-         add_mesh_emitter(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1.5f}},
-                          {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
+         add_mesh_light(s, 0, {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1.5f}},
+                        {{0, 1, 2}, {0, 2, 3}}, Rgb{2}, false);
        }},
       {"textured mesh",
        [sheet](Scene& s) {
          add_texture(s, {0, 1, 2, 5});
          sheet(s, 0);
-         s.emitters.back().texture = 0;
+         s.lights.back().texture = 0;
        }},
       {"mesh with holes",
        [sheet](Scene& s) {
@@ -134,14 +134,14 @@ std::vector<NamedSource> sources() {
          m.is_alpha_masked = true;
          m.alpha = {1, 0, 0};
          sheet(s, add_material(s, m));
-         s.emitters.back().is_alpha_masked = true;
+         s.lights.back().is_alpha_masked = true;
        }},
       {"many small ones",
        [](Scene& s) {
          for (int i = 0; i < 30; ++i) {
            const float x = float(i % 6) - 2.5f, y = float(i / 6) - 2;
-           add_disk_emitter(s, 0, {x, y, 1.5f + 0.01f * float(i)}, {0, 0, -1}, 0.1f,
-                            Rgb{float(1 + i * i)});
+           add_disk_light(s, 0, {x, y, 1.5f + 0.01f * float(i)}, {0, 0, -1}, 0.1f,
+                          Rgb{float(1 + i * i)});
          }
        }},
   };
@@ -159,8 +159,8 @@ const std::vector<Vec3> targets{{0, -0.5f, 0}, {0.2f, -2, 0}, {-2, 2, 0}};
 double by_quadrature(const PreparedScene& scene, const Vec3& x, int cells,
                      const std::function<bool(const Vec3&)>& is_open = {}) {
   double sum = 0;
-  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e) {
-    const Emitter& emitter = scene.scene.emitters[e];
+  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e) {
+    const Light& light = scene.scene.lights[e];
     const SourceSurface source(scene.scene, e);
     double part = 0;
     for (int i = 0; i < cells; ++i)
@@ -170,8 +170,8 @@ double by_quadrature(const PreparedScene& scene, const Vec3& x, int cells,
         if (is_open && !is_open(p.point)) continue;
         const Vec3 to = p.point - x, wi = normalize(to);
         const float cos_source = -dot(wi, p.normal);
-        if (wi.z <= 0 || (cos_source <= 0 && !emitter.is_two_sided)) continue;
-        const Rgb radiance = emitted_radiance(scene.scene, emitter, cos_source > 0, p.texture_uv);
+        if (wi.z <= 0 || (cos_source <= 0 && !light.is_two_sided)) continue;
+        const Rgb radiance = emitted_radiance(scene.scene, light, cos_source > 0, p.texture_uv);
         part += double(wi.z) * double(radiance.g) * double(std::abs(cos_source)) /
                 double(length_squared(to));
       }
@@ -278,15 +278,15 @@ TEST_CASE(
   Scene open;
   const uint32_t grey = add_diffuse(open, Rgb{0.5f});
   // A large source close by: values of rays to it differ by far.
-  make_emitter(
+  make_light(
       open,
       add_quad(open, grey, {Vec3{-1, -1, 0.05f}, {-1, 1, 0.05f}, {1, 1, 0.05f}, {1, -1, 0.05f}}),
       Rgb{5});
   add_floor(open, grey);
   const Ray ray = ray_towards({-1.5f, 0, 0.03f}, {-0.9f, 0, 0});
   const Kj92 near(open, setting);
-  const double expected =
-      irradiance(near.scene.lights, 0, Vec3d{-0.9, 0, 0}, Vec3d{0, 0, 1}) * 5 * 0.5 / double(pi);
+  const double expected = irradiance(near.scene.primitives, 0, Vec3d{-0.9, 0, 0}, Vec3d{0, 0, 1}) *
+                          5 * 0.5 / double(pi);
   const Probed exact = probe(near.integrator, ray, 1, 20);
   CHECK(exact.total.mean() == doctest::Approx(expected).epsilon(1e-4));
   CHECK(exact.total.variance_of_mean() < 1e-8 * expected * expected);
@@ -370,14 +370,14 @@ TEST_CASE("white things amid black walls that all shine alike: nothing can be to
         Named{"rough glass", MaterialKind::dielectric, 0.3f}}) {
     Scene s;
     const auto quads = add_box_inside(s, add_diffuse(s, Rgb{0}), {-1, -1, 0}, {1, 1, 2});
-    for (const uint32_t q : quads) make_emitter(s, q, Rgb{1});
+    for (const uint32_t q : quads) make_light(s, q, Rgb{1});
     Material white;
     white.kind = m.kind;
     white.is_reflectance = true;
     white.base_color.value = Rgb{1};
     white.roughness.value = m.roughness;
     const uint32_t material = add_material(s, white);
-    s.spheres.push_back({{0, 0, 0.8f}, 0.5f, false, material, no_emitter});
+    s.spheres.push_back({{0, 0, 0.8f}, 0.5f, false, material, no_light});
     {
       Setting setting;
       const Kj92 kj(s, setting);
@@ -396,11 +396,11 @@ TEST_CASE("white things amid black walls that all shine alike: nothing can be to
 TEST_CASE("a furnace: every surface emits what it absorbs, and all that is seen is 1") {
   Scene s;
   for (const uint32_t q : add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-1, -1, 0}, {1, 1, 2}))
-    make_emitter(s, q, Rgb{0.5f});
+    make_light(s, q, Rgb{0.5f});
   for (const uint32_t q :
        add_box_inside(s, add_diffuse(s, Rgb{0.7f}), {-0.4f, -0.4f, 0.4f}, {0.4f, 0.4f, 1.2f})) {
     std::swap(s.meshes[q].positions[1], s.meshes[q].positions[3]);  // faces outwards
-    make_emitter(s, q, Rgb{0.3f});
+    make_light(s, q, Rgb{0.3f});
   }
   Setting setting;
   setting.radiosity.unshot_fraction = 0.002f;
@@ -442,7 +442,7 @@ Scene bright_wall(int columns) {
   const uint32_t lamp = add_quad(
       s, black,
       {Vec3{0.5f, -0.3f, 1.2f}, {0.5f, -0.3f, 1.6f}, {0.5f, 0.3f, 1.6f}, {0.5f, 0.3f, 1.2f}});
-  make_emitter(s, lamp, Rgb{50});
+  make_light(s, lamp, Rgb{50});
   add_quad(s, grey, {Vec3{-0.5f, -3, 0}, {5, -3, 0}, {5, 3, 0}, {-0.5f, 3, 0}});
   // A screen between wall and floor.
   add_quad(s, black,
@@ -563,7 +563,7 @@ TEST_CASE("irradiance at a sensor: direct light exact, all of it near path's") {
     return std::pair{direct, all};
   };
   const auto [direct, all] = at(kj.integrator, 1024);
-  const double exact = 8 * irradiance(kj.scene.lights, 0, {0.7, -0.4, 0.8}, {0, 0, 1});
+  const double exact = 8 * irradiance(kj.scene.primitives, 0, {0.7, -0.4, 0.8}, {0, 0, 1});
   CHECK(direct == doctest::Approx(exact).epsilon(0.002));
   CHECK(all == doctest::Approx(at(path, 1u << 15).second).epsilon(0.015));
 }

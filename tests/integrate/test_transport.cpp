@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "probe.h"
 
 using namespace troffer;
@@ -25,7 +25,7 @@ Scene furnace(float rho) {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{rho});
   for (const uint32_t quad : add_box_inside(s, grey, {-2, -2, -2}, {2, 2, 2}))
-    make_emitter(s, quad, Rgb{(1 - rho) * L0});
+    make_light(s, quad, Rgb{(1 - rho) * L0});
   return s;
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("a mirror shows a lit floor as it is") {
   // By way of (3, 0, 1) to (1, 0, 0), which the source's mirror image does not light: caustics
   // are left to paths that meet the source by chance.
   const Ray ray = ray_towards({1, 0, 2}, {3, 0, 1});
-  const double expected = 0.5 * 3 / pi * irradiance(scene.lights, 0, {1, 0, 0}, {0, 0, 1});
+  const double expected = 0.5 * 3 / pi * irradiance(scene.primitives, 0, {1, 0, 0}, {0, 0, 1});
   const FixedIntegrator fixed(scene, {4});
   CHECK(p_of_mean(probe(fixed, ray, 32, 32).direct, expected, 1e-5) > 1e-4);
   CHECK(p_of_mean(probe(path(scene, 2), ray, 128, 32).direct, expected, 1e-5) > 1e-4);
@@ -84,7 +84,7 @@ TEST_CASE("white closed rooms come to an end, with and without light") {
     Scene s;
     const uint32_t white = add_diffuse(s, Rgb{1});
     const auto quads = add_box_inside(s, white, {-1, -1, -1}, {1, 1, 1});
-    if (has_light) make_emitter(s, quads[1], Rgb{1});
+    if (has_light) make_light(s, quads[1], Rgb{1});
     const PreparedScene scene(std::move(s));
     const Probed p = probe(path(scene), ray_towards({0, 0, 0}, {1, 0.3f, -0.2f}), 16, 4);
     CHECK(std::isfinite(p.total.mean()));
@@ -121,8 +121,8 @@ TEST_CASE("a sphere that shines inwards lights itself") {
   for (const bool is_two_sided : {true, false})
     for (const Vec3 centre : {Vec3{0, 0, 0}, {-8, 3, 1}}) {
       Scene s;
-      add_sphere_emitter(s, add_diffuse(s, Rgb{rho}), centre, 0.3f, Rgb{(1 - rho) * L0},
-                         is_two_sided, !is_two_sided);
+      add_sphere_light(s, add_diffuse(s, Rgb{rho}), centre, 0.3f, Rgb{(1 - rho) * L0}, is_two_sided,
+                       !is_two_sided);
       const PreparedScene scene(std::move(s));
       const FixedIntegrator fixed(scene, {4});
       for (const Vec3 to : {Vec3{1, 0, 0}, {0.3f, 0.5f, -0.6f}}) {
@@ -142,7 +142,7 @@ TEST_CASE("a sphere that shines inwards lights itself") {
 TEST_CASE("a glass sphere in a furnace changes nothing") {
   Scene s = furnace(0.5f);
   const uint32_t glass = add_glass(s, false);
-  s.spheres.push_back({{0, 0, 0}, 0.7f, false, glass, no_emitter});
+  s.spheres.push_back({{0, 0, 0}, 0.7f, false, glass, no_light});
   const PreparedScene scene(std::move(s));
   for (const float y : {0.0f, 0.3f, 0.65f}) {
     const Probed p = probe(path(scene), ray_towards({-1.5f, y, 0.1f}, {0, y, 0}), 128, 32);
@@ -193,7 +193,7 @@ TEST_CASE("results do not depend on how rays are cut into batches") {
   Scene s = furnace(0.5f);
   const uint32_t glass = add_glass(s, false), mirror = add_mirror(s);
   add_block(s, glass, {-0.2f, -1, -1}, {0.2f, 1, 1});
-  s.spheres.push_back({{1, 0, 0}, 0.3f, false, mirror, no_emitter});
+  s.spheres.push_back({{1, 0, 0}, 0.3f, false, mirror, no_light});
   const PreparedScene scene(std::move(s));
   const PathIntegrator path_integrator = path(scene);
   const FixedIntegrator fixed_integrator(scene, {3});

@@ -96,8 +96,9 @@ TEST_CASE("drawn sources stand for the weak ones: unbiased, within the error tha
       double estimate = 0;
       for (const uint32_t i : scratch.weak) estimate += light(i);
       for (const ChosenSource& c : scratch.chosen)
-        estimate += c.is_drawn() ? double(c.weight) * light(c.source) * double(visible(c.source) - 1)
-                               : light(c.source) * double(visible(c.source));
+        estimate += c.is_drawn()
+                        ? double(c.weight) * light(c.source) * double(visible(c.source) - 1)
+                        : light(c.source) * double(visible(c.source));
       sum += estimate;
       sum2 += estimate * estimate;
       treated = scratch.chosen.size();

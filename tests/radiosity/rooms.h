@@ -42,7 +42,7 @@ inline void add_furnace_box(Scene& s, const Vec3& a, const Vec3& b, const float 
   const auto quads = add_box_inside(s, add_diffuse(s, Rgb{0.5f}), a, b);
   for (size_t i = 0; i < 6; ++i) {
     s.meshes[quads[i]].material = add_diffuse(s, Rgb{rho[i]});
-    make_emitter(s, quads[i], Rgb{radiance * (1 - rho[i])});
+    make_light(s, quads[i], Rgb{radiance * (1 - rho[i])});
   }
 }
 
@@ -50,7 +50,7 @@ inline void add_furnace_box(Scene& s, const Vec3& a, const Vec3& b, const float 
 inline void add_furnace_block(Scene& s, const Vec3& a, const Vec3& b, float rho, float radiance) {
   for (const uint32_t q : add_box_inside(s, add_diffuse(s, Rgb{rho}), a, b)) {
     std::swap(s.meshes[q].positions[1], s.meshes[q].positions[3]);
-    make_emitter(s, q, Rgb{radiance * (1 - rho)});
+    make_light(s, q, Rgb{radiance * (1 - rho)});
   }
 }
 
@@ -61,7 +61,7 @@ inline Scene lit_room(float rho, float w = 4, float h = 3, float d = 2.5f) {
   const uint32_t q =
       add_quad(s, add_diffuse(s, Rgb{0}),
                {Vec3{1.5f, 1, 2.4f}, {1.5f, 2, 2.4f}, {2.5f, 2, 2.4f}, {2.5f, 1, 2.4f}});
-  make_emitter(s, q, Rgb{10});
+  make_light(s, q, Rgb{10});
   return s;
 }
 

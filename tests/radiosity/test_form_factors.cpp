@@ -173,8 +173,8 @@ TEST_CASE("spheres and disks shoot what they should") {
   // a closed sphere lit from within: from any point inside, the whole hemisphere is its inside
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
-  s.spheres.push_back({{0, 0, 0}, 2, true, grey, no_emitter});
-  s.disks.push_back({{0, 0, 0.3f}, {0, 0, 1}, 0.5f, grey, no_emitter});
+  s.spheres.push_back({{0, 0, 0}, 2, true, grey, no_light});
+  s.disks.push_back({{0, 0, 0.3f}, {0, 0, 1}, 0.5f, grey, no_light});
   const Fixture f(std::move(s), open_sizes(0.25f, 1));
   std::vector<double> sums(f.mesh.points.size());
   double sphere_area = 0, disk_area = 0;

@@ -100,9 +100,9 @@ TEST_CASE("lookup finds the fragment that holds the point") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0.5f});
   add_quad(s, m, {Vec3{0, 0, 0}, {2, 0, 0}, {2.5f, 1.7f, 0.3f}, {0, 1.7f, 0.3f}});
-  s.spheres.push_back({{5, 0, 0}, 1.5f, false, m, no_emitter});
-  s.spheres.push_back({{9, 0, 0}, 1.5f, true, m, no_emitter});
-  s.disks.push_back({{5, 5, 0}, normalize(Vec3{1, 2, 3}), 0.8f, m, no_emitter});
+  s.spheres.push_back({{5, 0, 0}, 1.5f, false, m, no_light});
+  s.spheres.push_back({{9, 0, 0}, 1.5f, true, m, no_light});
+  s.disks.push_back({{5, 5, 0}, normalize(Vec3{1, 2, 3}), 0.8f, m, no_light});
   const Ready ready(std::move(s));
   const RadiosityMesh mesh = ready.mesh(all_sides(0.2f, 0.6f));
   Random r(3);
@@ -229,7 +229,7 @@ TEST_CASE("degenerate meshes come to an end") {
   }
   s.meshes.push_back(m);
   s.meshes.push_back({});
-  s.spheres.push_back({{1, 1, 2}, 1e-4f, false, 0, no_emitter});
+  s.spheres.push_back({{1, 1, 2}, 1e-4f, false, 0, no_light});
   const Ready ready(std::move(s));
   RadiosityOptions o;
   o.meshing = sizes(0.4f, 1.2f);

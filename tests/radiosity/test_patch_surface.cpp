@@ -14,7 +14,7 @@ using namespace troffer::test;
 TEST_CASE("patch surfaces have the patches' area, side, and place") {
   Scene s = lit_room(0.5f);
   const uint32_t grey = add_diffuse(s, Rgb{0.4f});
-  add_sphere_emitter(s, grey, {1, 1, 0.8f}, 0.3f, Rgb{1});
+  add_sphere_light(s, grey, {1, 1, 0.8f}, 0.3f, Rgb{1});
   Mesh bent;  // joined, but no convex polygon
   bent.material = grey;
   bent.positions = {{3, 1, 1},    {3.3f, 1, 1},     {3.3f, 1.3f, 1},

@@ -60,7 +60,7 @@ TEST_CASE("a saved solution comes back the same") {
   CHECK(t.shots == s.shots);
   CHECK(t.rays == s.rays);
   CHECK(t.is_complete == s.is_complete);
-  CHECK(t.emitter_count == s.emitter_count);
+  CHECK(t.light_count == s.light_count);
 }
 
 TEST_CASE("another scene or other settings are refused") {
@@ -74,7 +74,7 @@ TEST_CASE("another scene or other settings are refused") {
   o.tolerance *= 2;
   CHECK(refusal(ready, bytes, o).find(settings) != std::string::npos);
   o = coarse();
-  o.emitter_rays /= 2;
+  o.light_rays /= 2;
   CHECK(refusal(ready, bytes, o).find(settings) != std::string::npos);
   o = coarse();
   o.meshing.element_size = 0.7f;

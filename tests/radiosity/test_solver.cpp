@@ -67,7 +67,7 @@ TEST_CASE("uniform closed room: mean irradiance is Phi / (A (1 - rho))") {
   for (const float rho : {0.3f, 0.8f}) {
     Scene s;  // light goes out from the walls themselves, so that nothing absorbs but walls
     const auto quads = add_box_inside(s, add_diffuse(s, Rgb{rho}), {0, 0, 0}, {4, 3, 2.5f});
-    make_emitter(s, quads[1], Rgb{3});
+    make_light(s, quads[1], Rgb{3});
     const Ready ready(std::move(s));
     RadiosityOptions o;
     o.meshing = sizes(0.5f, 1.6f);
@@ -102,14 +102,14 @@ TEST_CASE("integrating sphere") {
       m.triangles.push_back({b, b + sectors, a + sectors});
     }
   const uint32_t lamp = uint32_t(m.triangles.size()) / 2;
-  m.emitters.assign(m.triangles.size(), no_emitter);
-  m.emitters[lamp] = 0;
-  Emitter e;
-  e.shape = EmitterShape::mesh;
+  m.lights.assign(m.triangles.size(), no_light);
+  m.lights[lamp] = 0;
+  Light e;
+  e.shape = LightShape::mesh;
   e.radiance = Rgb{100};
   e.triangles = {lamp};
   s.meshes.push_back(m);
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   const Ready ready(std::move(s));
   RadiosityOptions o;
   o.meshing = sizes(0.3f, 0.9f);
@@ -140,7 +140,7 @@ TEST_CASE("stored contributions and the general value make the whole") {
   o.stored_per_point = 64;
   const RadiositySolution many = ready.solve(o);
   REQUIRE(four.mesh.points.size() == none.mesh.points.size());
-  bool has_emitter = false, has_patch = false;
+  bool has_light = false, has_patch = false;
   for (uint32_t i = 0; i < four.mesh.points.size(); ++i) {
     const Rgb a = four.irradiance(i), b = none.irradiance(i), c = many.irradiance(i);
     CHECK(a.g == doctest::Approx(b.g).epsilon(1e-5));
@@ -151,12 +151,12 @@ TEST_CASE("stored contributions and the general value make the whole") {
       sum += s.received;
       if (s.source == no_source) continue;
       CHECK(s.received.g <= s.unoccluded.g * 1.00001f);
-      (four.is_emitter(s.source) ? has_emitter : has_patch) = true;
-      if (!four.is_emitter(s.source)) CHECK(four.patch_of(s.source) < four.mesh.patches.size());
+      (four.is_light(s.source) ? has_light : has_patch) = true;
+      if (!four.is_light(s.source)) CHECK(four.patch_of(s.source) < four.mesh.patches.size());
     }
     CHECK(sum == a);
   }
-  CHECK(has_emitter);
+  CHECK(has_light);
   CHECK(has_patch);
 }
 
@@ -219,8 +219,8 @@ TEST_CASE("every kind of emitter shoots its power") {
     Scene s;
     const uint32_t black = add_diffuse(s, Rgb{0});
     add_box_inside(s, black, {-2, -2, -2}, {2, 2, 2});
-    if (kind == 0) add_sphere_emitter(s, black, {0.2f, 0, 0.1f}, 0.4f, Rgb{3});
-    if (kind == 1) add_disk_emitter(s, black, {0.2f, 0, 0.1f}, {0, 0.6f, 0.8f}, 0.4f, Rgb{3}, true);
+    if (kind == 0) add_sphere_light(s, black, {0.2f, 0, 0.1f}, 0.4f, Rgb{3});
+    if (kind == 1) add_disk_light(s, black, {0.2f, 0, 0.1f}, {0, 0.6f, 0.8f}, 0.4f, Rgb{3}, true);
     if (kind == 2) {
       std::vector<Vec3> p;
       std::vector<Triangle> t;
@@ -229,7 +229,7 @@ TEST_CASE("every kind of emitter shoots its power") {
         p.insert(p.end(), {{x, 0, 0}, {x + 0.02f, 0, 0}, {x, 0.3f, 0.1f}});
         t.push_back({3 * i, 3 * i + 1, 3 * i + 2});
       }
-      add_mesh_emitter(s, black, p, t, Rgb{3}, true);
+      add_mesh_light(s, black, p, t, Rgb{3}, true);
     }
     const Ready ready(std::move(s));
     RadiosityOptions o;

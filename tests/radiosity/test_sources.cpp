@@ -19,7 +19,7 @@ Scene three_lamps() {
   const auto lamp = [&](const Vec3& at, float size, Rgb radiance) {
     const uint32_t q = add_quad(
         s, grey, {at, at + Vec3{0, size, 0}, at + Vec3{size, size, 0}, at + Vec3{size, 0, 0}});
-    make_emitter(s, q, radiance);
+    make_light(s, q, radiance);
   };
   lamp({0.2f, 0.3f, 2.3f}, 0.4f, {9, 3, 1});
   lamp({3.2f, 2.3f, 2.2f}, 0.3f, {1, 4, 9});
@@ -57,17 +57,17 @@ bool is_same(const Rgb& a, const Rgb& b) {
 
 TEST_CASE("direct light is kept apart") {
   const Ready ready(three_lamps());
-  RadiosityOptions only_emitters = coarse(4);
-  only_emitters.unshot_fraction = 1;
-  const RadiositySolution direct = ready.solve(only_emitters);
-  REQUIRE(direct.shots == direct.emitter_count);
+  RadiosityOptions only_lights = coarse(4);
+  only_lights.unshot_fraction = 1;
+  const RadiositySolution direct = ready.solve(only_lights);
+  REQUIRE(direct.shots == direct.light_count);
   for (const uint32_t stored : {0u, 2u, 64u}) {
     const RadiositySolution s = ready.solve(coarse(stored));
     uint32_t in_general = 0;
     for (uint32_t i = 0; i < s.mesh.points.size(); ++i) {
       Rgb sum = s.general_direct[i];
       for (const StoredContribution& c : s.contributions(i))
-        if (c.source != no_source && s.is_emitter(c.source)) sum += c.received;
+        if (c.source != no_source && s.is_light(c.source)) sum += c.received;
       const Rgb expected = direct.irradiance(i);
       for (size_t k = 0; k < 3; ++k) {
         CHECK(sum[k] == doctest::Approx(expected[k]).epsilon(1e-5));
@@ -85,7 +85,7 @@ TEST_CASE("what an emitter gave can be computed again, bit for bit") {
   const Ready ready(three_lamps());
   const RadiositySolution s = ready.solve(coarse(64));
   const std::vector<uint32_t> points = all_points(s);
-  for (uint32_t e = 0; e < s.emitter_count; ++e) {
+  for (uint32_t e = 0; e < s.light_count; ++e) {
     const std::vector<StoredContribution> all = contributions_of(ready, s, e, points);
     uint32_t stored = 0;
     for (const uint32_t i : points) {
@@ -119,7 +119,7 @@ TEST_CASE("what a patch gave can be computed again, but for noise") {
   double unoccluded = 0, received = 0;  // squares of relative differences
   uint32_t compared = 0;
   for (uint32_t p = 0; p < s.mesh.patches.size(); ++p) {
-    const uint32_t source = s.emitter_count + p;
+    const uint32_t source = s.light_count + p;
     const std::vector<StoredContribution> all = contributions_of(ready, s, source, points);
     if (s.shot_radiance[p].is_black()) {
       for (const StoredContribution& c : all) CHECK(c.unoccluded.is_black());
@@ -149,15 +149,15 @@ TEST_CASE("rays to emitters see thin occluders") {
   const uint32_t black = add_diffuse(s, Rgb{0});
   add_quad(s, black, {Vec3{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
   const uint32_t lamp = add_quad(s, black, {Vec3{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}});
-  make_emitter(s, lamp, Rgb{1});
+  make_light(s, lamp, Rgb{1});
   add_quad(s, black,
            {Vec3{-0.03f, -2, 1.9f}, {0.03f, -2, 1.9f}, {0.03f, 2, 1.9f}, {-0.03f, 2, 1.9f}});
   const Ready ready(std::move(s));
-  const auto partly_lit = [&](int emitter_rays) {
+  const auto partly_lit = [&](int light_rays) {
     RadiosityOptions o;
     o.meshing = sizes(0.2f, 0.8f);
     o.max_rays = 16;
-    o.emitter_rays = emitter_rays;
+    o.light_rays = light_rays;
     const RadiositySolution solution = ready.solve(o);
     double count = 0, partly = 0;
     for (uint32_t i = 0; i < solution.mesh.points.size(); ++i) {

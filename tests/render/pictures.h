@@ -109,11 +109,11 @@ inline Scene mixed_room() {
   mirror.kind = MaterialKind::conductor;
   mirror.is_reflectance = true;
   mirror.base_color.value = Rgb{0.9f};
-  s.spheres.push_back({{0.8f, 0.5f, 0.5f}, 0.5f, false, add_material(s, mirror), no_emitter});
+  s.spheres.push_back({{0.8f, 0.5f, 0.5f}, 0.5f, false, add_material(s, mirror), no_light});
   Material glass;
   glass.kind = MaterialKind::dielectric;
   glass.base_color.value = Rgb{1};
-  s.spheres.push_back({{-0.6f, 0.9f, 0.4f}, 0.4f, false, add_material(s, glass), no_emitter});
+  s.spheres.push_back({{-0.6f, 0.9f, 0.4f}, 0.4f, false, add_material(s, glass), no_light});
   add_ceiling_light(s, 1, 2.4f, Rgb{8, 7, 6});
   return s;
 }

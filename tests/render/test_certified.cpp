@@ -34,7 +34,7 @@ Scene room_with_disks() {
                        {0, 0, 1},
                        0.1f,
                        0,
-                       no_emitter});
+                       no_light});
   return s;
 }
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "pictures.h"
 #include "support/light_scenes.h"
 
@@ -23,22 +23,21 @@ Scene uneven_furnace() {
   const float reflectances[] = {0.2f, 0.9f, 0.5f, 0.0f, 0.7f, 0.35f};
   for (size_t i = 0; i < 6; ++i) {
     s.meshes[walls[i]].material = grey(reflectances[i]);
-    make_emitter(s, walls[i], glow(reflectances[i]));
+    make_light(s, walls[i], glow(reflectances[i]));
   }
   // Things that stand in one another's light: a block that reflects all, a ball, a disk, a screen.
   const auto block = add_box_inside(s, grey(1), {0.3f, 0.2f, 0.1f}, {1, 1, 1.2f});
   for (const uint32_t q : block)
     for (Triangle& t : s.meshes[q].triangles) std::swap(t[1], t[2]);
-  add_sphere_emitter(s, grey(0.6f), {-0.7f, 0.6f, 0.8f}, 0.5f, glow(0.6f));
-  add_disk_emitter(s, grey(0.8f), {-0.5f, -0.4f, 1.6f}, normalize(Vec3{1, 1, 3}), 0.6f, glow(0.8f),
-                   true);
-  make_emitter(
-      s,
-      add_quad(s, grey(0.4f),
-               {Vec3{0.2f, -1, 0.2f}, {1.2f, -0.8f, 0.2f}, {1.2f, -0.8f, 1}, {0.2f, -1, 1}}),
-      glow(0.4f), true);
-  add_mesh_emitter(s, grey(0.3f), {{-1.5f, 1, 0.3f}, {-1, 1.5f, 0.3f}, {-1.2f, 1.2f, 1.5f}},
-                   {{0, 1, 2}}, glow(0.3f), true);
+  add_sphere_light(s, grey(0.6f), {-0.7f, 0.6f, 0.8f}, 0.5f, glow(0.6f));
+  add_disk_light(s, grey(0.8f), {-0.5f, -0.4f, 1.6f}, normalize(Vec3{1, 1, 3}), 0.6f, glow(0.8f),
+                 true);
+  make_light(s,
+             add_quad(s, grey(0.4f),
+                      {Vec3{0.2f, -1, 0.2f}, {1.2f, -0.8f, 0.2f}, {1.2f, -0.8f, 1}, {0.2f, -1, 1}}),
+             glow(0.4f), true);
+  add_mesh_light(s, grey(0.3f), {{-1.5f, 1, 0.3f}, {-1, 1.5f, 0.3f}, {-1.2f, 1.2f, 1.5f}},
+                 {{0, 1, 2}}, glow(0.3f), true);
   return s;
 }
 
@@ -69,7 +68,7 @@ TEST_CASE("a furnace with glass, mirrors and gloss in it") {
   Material glass;
   glass.kind = MaterialKind::dielectric;
   glass.base_color.value = Rgb{1};
-  s.spheres.push_back({{0.1f, -0.2f, 0.7f}, 0.4f, false, add_material(s, glass), no_emitter});
+  s.spheres.push_back({{0.1f, -0.2f, 0.7f}, 0.4f, false, add_material(s, glass), no_light});
   Material thin = glass;
   thin.is_thin = true;
   add_quad(s, add_material(s, thin),
@@ -79,11 +78,11 @@ TEST_CASE("a furnace with glass, mirrors and gloss in it") {
   metal.is_reflectance = true;
   metal.base_color.value = Rgb{1};
   metal.roughness.value = 0.3f;
-  s.spheres.push_back({{1.4f, -0.2f, 0.5f}, 0.4f, false, add_material(s, metal), no_emitter});
+  s.spheres.push_back({{1.4f, -0.2f, 0.5f}, 0.4f, false, add_material(s, metal), no_light});
   Material coated;
   coated.kind = MaterialKind::coated_diffuse;
   coated.base_color.value = Rgb{1};
-  s.spheres.push_back({{-1.4f, 0, 0.3f}, 0.3f, false, add_material(s, coated), no_emitter});
+  s.spheres.push_back({{-1.4f, 0, 0.3f}, 0.3f, false, add_material(s, coated), no_light});
   const PreparedScene scene(std::move(s));
   RenderOptions o;
   o.method = Method::path;
@@ -103,8 +102,8 @@ TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
   const uint32_t grey = add_diffuse(s, Rgb{rho});
   add_quad(s, grey, {Vec3{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});
   add_ceiling_light(s, 1, 2, Rgb{10});
-  add_sphere_emitter(s, 0, {2, 1, 1.2f}, 0.3f, Rgb{20});
-  add_disk_emitter(s, 0, {-2, 1, 1.5f}, normalize(Vec3{1, 0, -1}), 0.4f, Rgb{15});
+  add_sphere_light(s, 0, {2, 1, 1.2f}, 0.3f, Rgb{20});
+  add_disk_light(s, 0, {-2, 1, 1.5f}, normalize(Vec3{1, 0, -1}), 0.4f, Rgb{15});
   const PreparedScene scene(std::move(s));
   // Straight down from below the sources, so that no pixel shows them or their shadows.
   Camera camera = look_at({0, 0, 0.7f}, {0, 0, 0}, {0, 1, 0}, 100);
@@ -124,9 +123,9 @@ TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
         const Vec2 raster{float(double(i % 16) + nodes[a]), float(double(i / 16) + nodes[b])};
         const Ray r = view.ray(raster, {0.5f, 0.5f});
         const Vec3 x = r.origin + r.direction * (-r.origin.z / r.direction.z);
-        for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
-          sum += weights[a] * weights[b] * double(scene.scene.emitters[e].radiance.g) *
-                 irradiance(scene.lights, e, {double(x.x), double(x.y), 0}, {0, 0, 1});
+        for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+          sum += weights[a] * weights[b] * double(scene.scene.lights[e].radiance.g) *
+                 irradiance(scene.primitives, e, {double(x.x), double(x.y), 0}, {0, 0, 1});
       }
     return sum * double(rho) / pi;
   };

@@ -86,13 +86,13 @@ TEST_CASE("kj92: identical too with hundreds of sources, more than a thread keep
   const uint32_t black = add_diffuse(s, Rgb{0});
   for (int i = 0; i < 150; ++i) {
     const float x = -1.5f + 0.2f * float(i % 15), y = -1.5f + 0.3f * float(i / 15);
-    make_emitter(s,
-                 add_quad(s, black,
-                          {Vec3{x, y, 2.3f},
-                           {x, y + 0.05f, 2.3f},
-                           {x + 0.05f, y + 0.05f, 2.3f},
-                           {x + 0.05f, y, 2.3f}}),
-                 Rgb{float(1 + i % 7) * 3});
+    make_light(s,
+               add_quad(s, black,
+                        {Vec3{x, y, 2.3f},
+                         {x, y + 0.05f, 2.3f},
+                         {x + 0.05f, y + 0.05f, 2.3f},
+                         {x + 0.05f, y, 2.3f}}),
+               Rgb{float(1 + i % 7) * 3});
   }
   const PreparedScene scene(std::move(s));
   RenderOptions o = coarse();
@@ -255,8 +255,8 @@ TEST_CASE("kj92: crops and single pixels") {
 
 TEST_CASE("kj92: scenes without light, without geometry, out of sight") {
   Scene dark = room_with_table();
-  dark.emitters.clear();
-  for (Mesh& m : dark.meshes) m.emitters.clear();
+  dark.lights.clear();
+  for (Mesh& m : dark.meshes) m.lights.clear();
   Scene only_light;
   add_ceiling_light(only_light, 1, 2, Rgb{5});
   for (const int max_spp : {0, 8}) {
@@ -282,7 +282,7 @@ TEST_CASE("kj92: sources far apart in size, rooms of a millimetre and of a kilom
     Scene s = room_with_table();
     for (Mesh& m : s.meshes)
       for (Vec3& p : m.positions) p = p * scale;
-    for (Emitter& e : s.emitters)
+    for (Light& e : s.lights)
       for (Vec3& p : e.polygon) p = p * scale;
     const PreparedScene scene(std::move(s));
     Camera camera = table_camera();
@@ -301,14 +301,13 @@ TEST_CASE("kj92: a light that touches a wall has no worse pixels than path's") {
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-1, -1, 0}, {1, 1, 2});
   // Stands on the floor's edge against the wall, and one that lies in the wall's plane.
   const uint32_t black = add_diffuse(s, Rgb{0});
-  make_emitter(
-      s,
-      add_quad(s, black,
-               {Vec3{-0.5f, 0.6f, 0}, {-0.5f, 1, 0}, {-0.5f, 1, 0.5f}, {-0.5f, 0.6f, 0.5f}}),
-      Rgb{5}, true);
-  make_emitter(
-      s, add_quad(s, black, {Vec3{0.2f, 1, 0.5f}, {0.2f, 1, 1}, {0.6f, 1, 1}, {0.6f, 1, 0.5f}}),
-      Rgb{5}, true);
+  make_light(s,
+             add_quad(s, black,
+                      {Vec3{-0.5f, 0.6f, 0}, {-0.5f, 1, 0}, {-0.5f, 1, 0.5f}, {-0.5f, 0.6f, 0.5f}}),
+             Rgb{5}, true);
+  make_light(s,
+             add_quad(s, black, {Vec3{0.2f, 1, 0.5f}, {0.2f, 1, 1}, {0.6f, 1, 1}, {0.6f, 1, 0.5f}}),
+             Rgb{5}, true);
   const PreparedScene scene(std::move(s));
   RenderOptions o = coarse();
   o.indirect = Indirect::none;
@@ -360,8 +359,8 @@ TEST_CASE("kj92room: the floor under the table samples D, open floor only probes
     return SourceTreatment::general;
   };
   uint32_t d = no_source;  // the largest: on the ceiling
-  for (uint32_t e = 0; e < scene.scene.emitters.size(); ++e)
-    if (scene.scene.emitters[e].polygon.size() == 4 && scene.scene.emitters[e].polygon[0].z > 2.9f)
+  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+    if (scene.scene.lights[e].polygon.size() == 4 && scene.scene.lights[e].polygon[0].z > 2.9f)
       d = e;
   REQUIRE(d != no_source);
   CHECK(treatment_at(1.36f, 2.8f, d) == SourceTreatment::sampled);  // at a back leg

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "render/measure.h"
 #include "support/scenes.h"
 
@@ -20,14 +20,14 @@ Scene source_from(float x0) {
   m.positions = {{x0, -1, 1}, {x0, 1, 1}, {1, 1, 1}, {1, -1, 1}};
   for (const Vec3& p : m.positions) m.uvs.push_back({(p.x + 1) / 2, (p.y + 1) / 2});
   m.triangles = {{0, 1, 2}, {0, 2, 3}};
-  m.emitters = {0, 0};
+  m.lights = {0, 0};
   s.meshes.push_back(m);
-  Emitter e;
+  Light e;
   e.name = "source";
-  e.shape = EmitterShape::mesh;
+  e.shape = LightShape::mesh;
   e.radiance = Rgb{3};
   e.triangles = {0, 1};
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   return s;
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("a source with holes lights as much as what is left of it") {
   s.textures.push_back(mask);
   s.materials[0].is_alpha_masked = true;
   s.materials[0].alpha = {1, 0, 0};
-  s.emitters[0].is_alpha_masked = true;
+  s.lights[0].is_alpha_masked = true;
   const PreparedScene holed(std::move(s)), half(source_from(0));
 
   const StopFlag never_stop = false;
@@ -54,7 +54,7 @@ TEST_CASE("a source with holes lights as much as what is left of it") {
     o.method = method;
     const MeasureResult result = measure(holed, points, o, {}, never_stop);
     for (size_t i = 0; i < points.size(); ++i) {
-      const double expected = 3 * irradiance(half.lights, 0, Vec3d(points[i].position),
+      const double expected = 3 * irradiance(half.primitives, 0, Vec3d(points[i].position),
                                              Vec3d(normalize(points[i].normal)));
       REQUIRE(expected > 0.1);
       const double error = result.values[i].standard_error / luminous_efficacy;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "render/measure.h"
 #include "support/scenes.h"
 
@@ -25,7 +25,7 @@ Scene lit_floor() {
 
 // Irradiance from the source of lit_floor, W/m².
 double exact(const PreparedScene& scene, const MeasuringPoint& p) {
-  return 10 * irradiance(scene.lights[0], Vec3d(p.position), Vec3d(normalize(p.normal)));
+  return 10 * irradiance(scene.primitives[0], Vec3d(p.position), Vec3d(normalize(p.normal)));
 }
 
 std::vector<MeasuringPoint> floor_points(size_t n) {
@@ -93,7 +93,7 @@ TEST_CASE("a closed white-ish room: mean irradiance is flux / (area (1 - reflect
   const float rho = 0.6f, radiance = 2;
   const uint32_t grey = add_diffuse(s, Rgb{rho});
   for (const uint32_t quad : add_box_inside(s, grey, {0, 0, 0}, {3, 2, 2.5f}))
-    make_emitter(s, quad, Rgb{radiance});
+    make_light(s, quad, Rgb{radiance});
   const PreparedScene scene(std::move(s));
   const std::vector<MeasuringPoint> points = {{{1, 1, 0}, {0, 0, 1}},
                                               {{3, 1, 1}, {-1, 0, 0}},

@@ -31,7 +31,7 @@ std::vector<uint32_t> choose_points(const RadiositySolution& s, int count) {
 Rgb direct_irradiance(const RadiositySolution& s, uint32_t point) {
   Rgb sum = s.general_direct[point];
   for (const StoredContribution& c : s.contributions(point))
-    if (c.source != no_source && s.is_emitter(c.source)) sum += c.received;
+    if (c.source != no_source && s.is_light(c.source)) sum += c.received;
   return sum;
 }
 

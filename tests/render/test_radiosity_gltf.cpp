@@ -26,7 +26,7 @@ Scene small_room() {
   const uint32_t lamp =
       add_quad(s, add_diffuse(s, Rgb{0}),
                {Vec3{1.5f, 1, 2.4f}, {1.5f, 2, 2.4f}, {2.5f, 2, 2.4f}, {2.5f, 1, 2.4f}});
-  make_emitter(s, lamp, Rgb{10});
+  make_light(s, lamp, Rgb{10});
   return s;
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("the display is glTF that loads, with every side that light reaches") 
                              radiosity_gltf(scene.scene, s, container));
     const Scene back = import_scene(file.path);
     CHECK(triangle_count(back) == sides);
-    CHECK(back.emitters.empty());
+    CHECK(back.lights.empty());
     const Box a = bounds(scene.scene), b = bounds(back);
     CHECK(length(a.lower - b.lower) < 1e-5f);
     CHECK(length(a.upper - b.upper) < 1e-5f);

@@ -215,7 +215,7 @@ TEST_CASE("a stop leaves every pixel the mean of what it has") {
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0});
   for (const uint32_t q : add_box_inside(s, black, {-1, -1, -1}, {1, 1, 1}))
-    make_emitter(s, q, Rgb{2});
+    make_light(s, q, Rgb{2});
   const PreparedScene scene(std::move(s));
   RenderOptions o = small_options(Method::path);
   o.spp = 64;
@@ -246,9 +246,9 @@ TEST_CASE("a stop leaves every pixel the mean of what it has") {
 TEST_CASE("light that is not a number never reaches the picture") {
   for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
     Scene s = mixed_room();
-    make_emitter(s,
-                 add_quad(s, 0, {Vec3{-1.9f, -1, 1}, {-1.9f, 1, 1}, {-1.9f, 1, 2}, {-1.9f, -1, 2}}),
-                 Rgb{bad, 1, 1});
+    make_light(s,
+               add_quad(s, 0, {Vec3{-1.9f, -1, 1}, {-1.9f, 1, 1}, {-1.9f, 1, 2}, {-1.9f, -1, 2}}),
+               Rgb{bad, 1, 1});
     const PreparedScene scene(std::move(s));
     for (const Method method : {Method::path, Method::fixed}) {
       RenderOptions o = small_options(method);

@@ -51,16 +51,16 @@ RenderOptions options() {
 TEST_CASE("certified: a panel of 20 000 triangles is one source, without a ray") {
   Scene whole = room(), cut = room();
   const Place place = place_of_panel();
-  make_emitter(whole,
-               add_quad(whole, 0,
-                        {place.at({0, 0}), place.at({width, 0}), place.at({width, height}),
-                         place.at({0, height})}),
-               Rgb{5});
+  make_light(whole,
+             add_quad(whole, 0,
+                      {place.at({0, 0}), place.at({width, 0}), place.at({width, height}),
+                       place.at({0, height})}),
+             Rgb{5});
   Random r(3);
   Mesh m;
   append(m, random_grid(r, 100, 100, width, height), place);
   CHECK(m.triangles.size() == 20000);
-  add_mesh_emitter(cut, 0, m.positions, m.triangles, Rgb{5}, false);
+  add_mesh_light(cut, 0, m.positions, m.triangles, Rgb{5}, false);
   const Camera camera = look_at({-1.7f, -1.8f, 1.4f}, {0.3f, 0.5f, 0.2f}, {0, 0, 1}, 60);
   const RenderResult a = render_now(PreparedScene(std::move(whole)), camera, options());
   const RenderResult b = render_now(PreparedScene(std::move(cut)), camera, options());
@@ -86,7 +86,7 @@ TEST_CASE("certified: a panel does not light its own back") {
   Random r(4);
   Mesh m;
   append(m, random_grid(r, 10, 10, width, height), place_of_panel());
-  add_mesh_emitter(s, 0, m.positions, m.triangles, Rgb{5}, false);
+  add_mesh_light(s, 0, m.positions, m.triangles, Rgb{5}, false);
   const Camera from_above = look_at({0.3f, 0.5f, 4}, {0.1f, -0.2f, 2.2f}, {0, 1, 0}, 15);
   const RenderResult result = render_now(PreparedScene(std::move(s)), from_above, options());
   CHECK(mean_green(result.layers[0].image) == 0);

@@ -1,4 +1,4 @@
-// Counting, bounds, choosing emitters.
+// Counting, bounds, choosing lights.
 #include <doctest/doctest.h>
 
 #include "base/error.h"
@@ -8,21 +8,21 @@ using namespace troffer;
 
 namespace {
 
-// Two meshes, a sphere, a disk; emitters "lamp" (mesh 0), "lamp" (sphere), "desk" (mesh 1).
+// Two meshes, a sphere, a disk; lights "lamp" (mesh 0), "lamp" (sphere), "desk" (mesh 1).
 Scene small() {
   Scene s;
   s.materials.resize(1);
   Mesh m;
   m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   m.triangles = {{0, 1, 2}, {1, 3, 2}};
-  m.emitters = {0, no_emitter};
+  m.lights = {0, no_light};
   s.meshes.push_back(m);
-  m.emitters = {2, 2};
+  m.lights = {2, 2};
   s.meshes.push_back(m);
   Sphere sphere;
   sphere.centre = {5, 0, 0};
   sphere.radius = 2;
-  sphere.emitter = 1;
+  sphere.light = 1;
   s.spheres.push_back(sphere);
   Disk disk;
   disk.centre = {0, 0, 10};
@@ -30,9 +30,9 @@ Scene small() {
   disk.radius = 3;
   s.disks.push_back(disk);
   for (const char* name : {"lamp", "lamp", "desk"}) {
-    s.emitters.emplace_back();
-    s.emitters.back().name = name;
-    s.emitters.back().radiance = Rgb{float(s.emitters.size())};
+    s.lights.emplace_back();
+    s.lights.back().name = name;
+    s.lights.back().radiance = Rgb{float(s.lights.size())};
   }
   return s;
 }
@@ -56,28 +56,28 @@ TEST_CASE("triangles and bounds count everything") {
 }
 
 TEST_CASE("emitters are kept by name, all of a name together") {
-  const Scene lamps = with_only_emitters(small(), {"lamp"});
-  REQUIRE(lamps.emitters.size() == 2);
-  CHECK(lamps.emitters[1].radiance == Rgb{2});
-  CHECK(lamps.meshes[0].emitters == std::vector<int32_t>{0, no_emitter});
-  CHECK(lamps.meshes[1].emitters == std::vector<int32_t>{no_emitter, no_emitter});
-  CHECK(lamps.spheres[0].emitter == 1);
-  CHECK(lamps.disks[0].emitter == no_emitter);
+  const Scene lamps = with_only_lights(small(), {"lamp"});
+  REQUIRE(lamps.lights.size() == 2);
+  CHECK(lamps.lights[1].radiance == Rgb{2});
+  CHECK(lamps.meshes[0].lights == std::vector<int32_t>{0, no_light});
+  CHECK(lamps.meshes[1].lights == std::vector<int32_t>{no_light, no_light});
+  CHECK(lamps.spheres[0].light == 1);
+  CHECK(lamps.disks[0].light == no_light);
 
-  const Scene desk = with_only_emitters(small(), {"desk", "desk"});
-  REQUIRE(desk.emitters.size() == 1);
-  CHECK(desk.emitters[0].name == "desk");
-  CHECK(desk.meshes[0].emitters[0] == no_emitter);
-  CHECK(desk.meshes[1].emitters == std::vector<int32_t>{0, 0});
-  CHECK(desk.spheres[0].emitter == no_emitter);
+  const Scene desk = with_only_lights(small(), {"desk", "desk"});
+  REQUIRE(desk.lights.size() == 1);
+  CHECK(desk.lights[0].name == "desk");
+  CHECK(desk.meshes[0].lights[0] == no_light);
+  CHECK(desk.meshes[1].lights == std::vector<int32_t>{0, 0});
+  CHECK(desk.spheres[0].light == no_light);
 
-  CHECK(with_only_emitters(small(), {"desk", "lamp"}).emitters.size() == 3);
-  CHECK(with_only_emitters(small(), {}).emitters.empty());
+  CHECK(with_only_lights(small(), {"desk", "lamp"}).lights.size() == 3);
+  CHECK(with_only_lights(small(), {}).lights.empty());
 }
 
 TEST_CASE("an unknown light is a usage error that names it") {
   try {
-    with_only_emitters(small(), {"lamp", "chandelier"});
+    with_only_lights(small(), {"lamp", "chandelier"});
     FAIL("no error");
   } catch (const UsageError& e) {
     CHECK(std::string(e.what()).find("chandelier") != std::string::npos);
@@ -86,7 +86,7 @@ TEST_CASE("an unknown light is a usage error that names it") {
 
 TEST_CASE("emission leaves the front, or both sides, times its texture") {
   Scene s = small();
-  Emitter e;
+  Light e;
   e.radiance = {2, 4, 8};
   CHECK(emitted_radiance(s, e, true, {0, 0}) == Rgb{2, 4, 8});
   CHECK(emitted_radiance(s, e, false, {0, 0}) == Rgb{0});

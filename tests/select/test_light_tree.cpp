@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "support/chi_square.h"
 #include "support/light_scenes.h"
 
@@ -153,7 +153,7 @@ TEST_CASE("a primitive beside one that is 1e12 times as strong still has its cha
   const uint32_t m = add_diffuse(s, Rgb{0});
   for (const float x : {-3.0f, 3.0f}) {
     const Vec3 c{x, 0, 2};
-    make_emitter(
+    make_light(
         s,
         add_quad(s, m,
                  {c + Vec3{-1, -1, 0}, c + Vec3{-1, 1, 0}, c + Vec3{1, 1, 0}, c + Vec3{1, -1, 0}}),
@@ -174,7 +174,7 @@ TEST_CASE("a primitive beside one that is 1e12 times as strong still has its cha
 TEST_CASE("probabilities follow irradiance: the near source is preferred") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0});
-  for (const float x : {0.0f, 10.0f}) add_disk_emitter(s, m, {x, 0, 2}, {0, 0, -1}, 0.5f, Rgb{1});
+  for (const float x : {0.0f, 10.0f}) add_disk_light(s, m, {x, 0, 2}, {0, 0, -1}, 0.5f, Rgb{1});
   const LightPrimitives lights(s);
   const LightTree tree(lights);
   CHECK(tree.pmf({0, 0, 0}, {0, 0, 1}, false, 0) > 0.95f);
@@ -196,13 +196,13 @@ TEST_CASE("no source, one source, black sources") {
     CHECK(tree.is_empty());
     CHECK(tree.choose({0, 0, 0}, {0, 0, 1}, false, 0.5f).pmf == 0);
   }
-  add_disk_emitter(s, m, {0, 0, 2}, {0, 0, -1}, 0.5f, Rgb{0});
+  add_disk_light(s, m, {0, 0, 2}, {0, 0, -1}, 0.5f, Rgb{0});
   {
     const LightPrimitives lights(s);
     const LightTree tree(lights);
     CHECK(tree.is_empty());
   }
-  add_disk_emitter(s, m, {0, 0, 2}, {0, 0, -1}, 0.5f, Rgb{1});
+  add_disk_light(s, m, {0, 0, 2}, {0, 0, -1}, 0.5f, Rgb{1});
   const LightPrimitives lights(s);
   const LightTree tree(lights);
   REQUIRE(lights.size() == 1);
@@ -217,7 +217,7 @@ TEST_CASE("sources at one place share alike") {
   Scene s;
   const uint32_t m = add_diffuse(s, Rgb{0});
   constexpr uint32_t n = 100;
-  for (uint32_t i = 0; i < n; ++i) add_disk_emitter(s, m, {1, 2, 3}, {0, 0, -1}, 0.5f, Rgb{1});
+  for (uint32_t i = 0; i < n; ++i) add_disk_light(s, m, {1, 2, 3}, {0, 0, -1}, 0.5f, Rgb{1});
   const LightPrimitives lights(s);
   const LightTree tree(lights);
   for (uint32_t p = 0; p < n; ++p) {
@@ -233,8 +233,8 @@ TEST_CASE("a tree over one emitter's primitives alone") {
     const Scene scene = random_lights(seed + 700, 20);
     const LightPrimitives lights(scene);
     Random r(seed + 5000);
-    for (uint32_t e = 0; e < scene.emitters.size(); ++e) {
-      const LightPrimitives::Range range = lights.of_emitter(e);
+    for (uint32_t e = 0; e < scene.lights.size(); ++e) {
+      const LightPrimitives::Range range = lights.of_light(e);
       const LightTree tree(lights, range);
       CHECK(tree.is_empty() == (range.first == range.last));
       for (int i = 0; i < 20; ++i) {
@@ -265,7 +265,7 @@ TEST_CASE("ten thousand primitives: built within a second, all within reach") {
     for (int i = 0; i < 10000; ++i) {
       const Vec3 at = is_strung ? Vec3{std::exp2(float(i % 100) - 50), float(i / 100) * 1e-3f, 2}
                                 : random_point(r, 10);
-      add_disk_emitter(s, m, at, {0, 0, -1}, 1e-3f, Rgb{1});
+      add_disk_light(s, m, at, {0, 0, -1}, 1e-3f, Rgb{1});
     }
     const LightPrimitives lights(s);
     const auto start = std::chrono::steady_clock::now();

@@ -29,7 +29,7 @@ void add_lamp(Scene& s, const Vec3& at, float size, Rgb radiance) {
   const uint32_t q =
       add_quad(s, add_diffuse(s, Rgb{0}),
                {at, at + Vec3{0, size, 0}, at + Vec3{size, size, 0}, at + Vec3{size, 0, 0}});
-  make_emitter(s, q, radiance);
+  make_light(s, q, radiance);
 }
 
 void add_table(Scene& s, float height = 1) {
@@ -42,7 +42,7 @@ void add_table(Scene& s, float height = 1) {
             {2.5f, 1, height - 0.05f}});
 }
 
-// A 4 × 3 × 2.5 m room: emitter 0 large, 1 and 2 weaker and coloured; a table.
+// A 4 × 3 × 2.5 m room: light 0 large, 1 and 2 weaker and coloured; a table.
 Scene three_lamps() {
   Scene s = lit_room(0.5f);
   add_lamp(s, {0.2f, 0.3f, 2.3f}, 0.4f, {9, 3, 1});
@@ -58,7 +58,7 @@ Scene uplight() {
   const uint32_t q = add_quad(
       s, add_diffuse(s, Rgb{0.2f}),
       {Vec3{0.3f, 1.2f, 2.2f}, {0.8f, 1.2f, 2.2f}, {0.8f, 1.7f, 2.2f}, {0.3f, 1.7f, 2.2f}});
-  make_emitter(s, q, Rgb{60});
+  make_light(s, q, Rgb{60});
   add_table(s);
   return s;
 }
@@ -140,10 +140,10 @@ Sums check_sums(const Selected& s, const SourceSelection& selection) {
           for (const PointWeight& w : at.weights()) {
             bool is_kept = false;
             sum += given(s, t.source, w.point, is_kept).received * w.weight;
-            is_exact &= is_kept || s.solution.is_emitter(t.source);
+            is_exact &= is_kept || s.solution.is_light(t.source);
           }
           ++sums.treated;
-          sums.patches += !s.solution.is_emitter(t.source);
+          sums.patches += !s.solution.is_light(t.source);
         }
         ++sums.corners;
         sums.inexact += !is_exact;
@@ -204,7 +204,7 @@ TEST_CASE("… with bright patches among the sources too") {
   const Sums sums = check_sums(s, s.selection);
   CHECK(sums.patches > 100);
   const Sums certified = check_sums(s, s.again({true, {}, true, false, {}, true, 4, 0}));
-  CHECK(certified.patches == sums.patches);  // whatever is done about emitters
+  CHECK(certified.patches == sums.patches);  // whatever is done about lights
   CHECK(certified.treated == certified.patches + certified.corners);
   MESSAGE("corners " << sums.corners << ", treated patches at them " << sums.patches
                      << ", of which not kept somewhere " << sums.inexact);
@@ -214,7 +214,7 @@ TEST_CASE("patches nearer than asked for, or of too many pieces, stay in the gen
   const Selected s(uplight(), coarse(8));
   const RadiosityMesh& mesh = s.solution.mesh;
   SelectionOptions o;
-  o.treats_all_emitters = true;
+  o.treats_all_lights = true;
   const SourceSelection all = s.again(o);
   o.nearest_patch = 1.5f;
   o.most_patch_pieces = 1;
@@ -229,10 +229,9 @@ TEST_CASE("patches nearer than asked for, or of too many pieces, stay in the gen
   uint32_t before = 0, after = 0;
   for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
     REQUIRE(find(far, p, 0) != nullptr);
-    for (const TreatedSource& t : all.of_patch(p))
-      before += s.solution.is_emitter(t.source) ? 0 : 1;
+    for (const TreatedSource& t : all.of_patch(p)) before += s.solution.is_light(t.source) ? 0 : 1;
     for (const TreatedSource& t : far.of_patch(p)) {
-      if (s.solution.is_emitter(t.source)) continue;
+      if (s.solution.is_light(t.source)) continue;
       const uint32_t source = s.solution.patch_of(t.source);
       const Sheet& sheet = mesh.sheets[mesh.patches[source].sheet];
       CHECK(sheet.last_piece - sheet.first_piece == 1);
@@ -253,9 +252,9 @@ TEST_CASE("lists are in order, name existing sources, and leave out what is gene
     for (const TreatedSource& t : s.selection.of_patch(p)) {
       CHECK((last == no_source || t.source > last));
       last = t.source;
-      CHECK(t.source < s.solution.emitter_count + s.solution.mesh.patches.size());
+      CHECK(t.source < s.solution.light_count + s.solution.mesh.patches.size());
       CHECK(t.source_class.treatment != SourceTreatment::general);
-      if (s.solution.is_emitter(t.source)) continue;
+      if (s.solution.is_light(t.source)) continue;
       CHECK(s.solution.patch_of(t.source) != p);
       CHECK(t.source_class.treatment == SourceTreatment::sampled);
     }
@@ -345,7 +344,7 @@ TEST_CASE("restriction and switching off") {
     }
   }
   CHECK(found > 0);
-  // All emitters sampled: nothing of their light is left in the general value.
+  // All lights sampled: nothing of their light is left in the general value.
   for (uint32_t f = 0; f < s.solution.mesh.fragments.size(); ++f)
     CHECK(all.general(f, false, {0.2f, 0.3f, 0.5f}).direct.is_black());
 }
@@ -357,7 +356,7 @@ TEST_CASE("the same selection for any number of threads") {
 
 TEST_CASE("scenes that hardly are any") {
   Scene dark = lit_room(0.5f);
-  dark.emitters[0].radiance = Rgb{0};
+  dark.lights[0].radiance = Rgb{0};
   Scene no_lamp;
   add_quad(no_lamp, add_diffuse(no_lamp, Rgb{0.5f}),
            {Vec3{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "brute_force.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "shadow/certified_cluster.h"
 
 using namespace troffer;

@@ -7,7 +7,7 @@
 #include "base/frame.h"
 #include "base/warp.h"
 #include "brute_force.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 
 using namespace troffer;
 using namespace troffer::test;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "brute_force.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "shadow/certified_irradiance.h"
 
 using namespace troffer;

@@ -1,4 +1,4 @@
-// Tessellated emitters put together again.
+// Tessellated lights put together again.
 #include "shadow/source_pieces.h"
 
 #include <doctest/doctest.h>
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/units.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 #include "support/light_scenes.h"
 #include "support/tessellations.h"
 
@@ -35,7 +35,7 @@ Scene scene_with(const Tessellation& t, const Place& place) {
   add_diffuse(s, Rgb{0.5f});
   Mesh m;
   append(m, t, place);
-  add_mesh_emitter(s, 0, m.positions, m.triangles, Rgb{2}, false);
+  add_mesh_light(s, 0, m.positions, m.triangles, Rgb{2}, false);
   return s;
 }
 
@@ -143,9 +143,9 @@ TEST_CASE("polygons with many corners are cut, disks stay whole") {
     t.points = regular(n, 0.8);
     for (uint32_t i = 1; i + 1 < n; ++i) t.triangles.push_back({0, i, i + 1});
     append(m, t, place);
-    add_mesh_emitter(s, 0, m.positions, m.triangles, Rgb{1}, false);
-    s.emitters[0].shape = EmitterShape::polygon;
-    s.emitters[0].polygon = m.positions;
+    add_mesh_light(s, 0, m.positions, m.triangles, Rgb{1}, false);
+    s.lights[0].shape = LightShape::polygon;
+    s.lights[0].polygon = m.positions;
     const LightPrimitives lights(s);
     std::vector<SourcePiece> pieces;
     REQUIRE(merge_sources(lights, 0, pieces));
@@ -160,7 +160,7 @@ TEST_CASE("polygons with many corners are cut, disks stay whole") {
   }
   Scene disk;
   add_diffuse(disk, Rgb{0.5f});
-  add_disk_emitter(disk, 0, {0.2f, 0.3f, 1}, {0, 0, 1}, 0.4f, Rgb{1});
+  add_disk_light(disk, 0, {0.2f, 0.3f, 1}, {0, 0, 1}, 0.4f, Rgb{1});
   CHECK(check_sources(disk, 3) == 1);
 }
 
@@ -171,17 +171,17 @@ TEST_CASE("curved, round and textured emitters") {
   const std::vector<Vec3> tips{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const std::vector<Triangle> sides{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  add_mesh_emitter(s, 0, tips, sides, Rgb{1}, false);
+  add_mesh_light(s, 0, tips, sides, Rgb{1}, false);
   CHECK(check_sources(s, 1) == 8);
   std::vector<SourcePiece> pieces(3);
   Scene sphere;
   add_diffuse(sphere, Rgb{0.5f});
-  add_sphere_emitter(sphere, 0, {0, 0, 0}, 1, Rgb{1});
+  add_sphere_light(sphere, 0, {0, 0, 0}, 1, Rgb{1});
   CHECK_FALSE(merge_sources(LightPrimitives(sphere), 0, pieces));
   CHECK(pieces.empty());
   s.textures.resize(1);
   s.meshes[0].uvs.resize(6);
-  s.emitters[0].texture = 0;
+  s.lights[0].texture = 0;
   CHECK_FALSE(merge_sources(LightPrimitives(s), 0, pieces));
   CHECK(pieces.empty());
 }

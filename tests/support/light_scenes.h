@@ -7,7 +7,7 @@
 #include "base/frame.h"
 #include "base/random.h"
 #include "base/warp.h"
-#include "emitter/light_primitive.h"
+#include "light/light_primitive.h"
 #include "scene/scene.h"
 #include "support/scenes.h"
 
@@ -25,47 +25,46 @@ inline float random_size(Random& r, float smallest, float largest) {
   return smallest * std::pow(largest / smallest, r.next_float());
 }
 
-inline void add_mesh_emitter(Scene& s, uint32_t material, std::vector<Vec3> positions,
-                             std::vector<Triangle> triangles, Rgb radiance, bool is_two_sided) {
+inline void add_mesh_light(Scene& s, uint32_t material, std::vector<Vec3> positions,
+                           std::vector<Triangle> triangles, Rgb radiance, bool is_two_sided) {
   Mesh m;
   m.positions = std::move(positions);
   m.triangles = std::move(triangles);
   m.material = material;
-  m.emitters.assign(m.triangles.size(), int32_t(s.emitters.size()));
-  Emitter e;
-  e.name = "emitter" + std::to_string(s.emitters.size());
-  e.shape = EmitterShape::mesh;
+  m.lights.assign(m.triangles.size(), int32_t(s.lights.size()));
+  Light e;
+  e.name = "emitter" + std::to_string(s.lights.size());
+  e.shape = LightShape::mesh;
   e.radiance = radiance;
   e.is_two_sided = is_two_sided;
   e.geometry = uint32_t(s.meshes.size());
   for (uint32_t t = 0; t < m.triangles.size(); ++t) e.triangles.push_back(t);
   s.meshes.push_back(std::move(m));
-  s.emitters.push_back(std::move(e));
+  s.lights.push_back(std::move(e));
 }
 
-inline void add_sphere_emitter(Scene& s, uint32_t material, const Vec3& centre, float radius,
-                               Rgb radiance, bool is_two_sided = false,
-                               bool is_inside_out = false) {
-  Emitter e;
-  e.name = "emitter" + std::to_string(s.emitters.size());
-  e.shape = EmitterShape::sphere;
+inline void add_sphere_light(Scene& s, uint32_t material, const Vec3& centre, float radius,
+                             Rgb radiance, bool is_two_sided = false, bool is_inside_out = false) {
+  Light e;
+  e.name = "emitter" + std::to_string(s.lights.size());
+  e.shape = LightShape::sphere;
   e.radiance = radiance;
   e.is_two_sided = is_two_sided;
   e.geometry = uint32_t(s.spheres.size());
-  s.spheres.push_back({centre, radius, is_inside_out, material, int32_t(s.emitters.size())});
-  s.emitters.push_back(std::move(e));
+  s.spheres.push_back({centre, radius, is_inside_out, material, int32_t(s.lights.size())});
+  s.lights.push_back(std::move(e));
 }
 
-inline void add_disk_emitter(Scene& s, uint32_t material, const Vec3& centre, const Vec3& normal,
-                             float radius, Rgb radiance, bool is_two_sided = false) {
-  Emitter e;
-  e.name = "emitter" + std::to_string(s.emitters.size());
-  e.shape = EmitterShape::disk;
+inline void add_disk_light(Scene& s, uint32_t material, const Vec3& centre, const Vec3& normal,
+                           float radius, Rgb radiance, bool is_two_sided = false) {
+  Light e;
+  e.name = "emitter" + std::to_string(s.lights.size());
+  e.shape = LightShape::disk;
   e.radiance = radiance;
   e.is_two_sided = is_two_sided;
   e.geometry = uint32_t(s.disks.size());
-  s.disks.push_back({centre, normal, radius, material, int32_t(s.emitters.size())});
-  s.emitters.push_back(std::move(e));
+  s.disks.push_back({centre, normal, radius, material, int32_t(s.lights.size())});
+  s.lights.push_back(std::move(e));
 }
 
 // One source of a random kind, place, size, brightness.
@@ -79,21 +78,21 @@ inline void add_random_source(Scene& s, Random& r, float place, float largest) {
   const Vec3 x = f.tangent * size, y = f.bitangent * (size * random_size(r, 0.05f, 1));
   switch (r.next_u32() % 5) {
     case 0:
-      make_emitter(s, add_quad(s, 0, {at - x - y, at + x - y, at + x + y, at - x + y}), radiance,
-                   is_two_sided);
+      make_light(s, add_quad(s, 0, {at - x - y, at + x - y, at + x + y, at - x + y}), radiance,
+                 is_two_sided);
       break;
     case 1:
-      add_mesh_emitter(s, 0, {at, at + x, at + y}, {{0, 1, 2}}, radiance, is_two_sided);
+      add_mesh_light(s, 0, {at, at + x, at + y}, {{0, 1, 2}}, radiance, is_two_sided);
       break;
     case 2:
-      add_sphere_emitter(s, 0, at, size, radiance, is_two_sided, r.next_u32() % 4 == 0);
+      add_sphere_light(s, 0, at, size, radiance, is_two_sided, r.next_u32() % 4 == 0);
       break;
     case 3:
-      add_disk_emitter(s, 0, at, n, size, radiance, is_two_sided);
+      add_disk_light(s, 0, at, n, size, radiance, is_two_sided);
       break;
     default:  // a folded strip of triangles
-      add_mesh_emitter(s, 0, {at, at + x, at + y, at + x + n * size, at + x + y + n * size},
-                       {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}}, radiance, is_two_sided);
+      add_mesh_light(s, 0, {at, at + x, at + y, at + x + n * size, at + x + y + n * size},
+                     {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}}, radiance, is_two_sided);
   }
 }
 

@@ -33,16 +33,16 @@ inline uint32_t add_quad(Scene& s, uint32_t material, const std::array<Vec3, 4>&
 }
 
 // Makes a quad a polygon source.
-inline void make_emitter(Scene& s, uint32_t mesh, Rgb radiance, bool is_two_sided = false) {
-  Emitter e;
-  e.name = "emitter" + std::to_string(s.emitters.size());
+inline void make_light(Scene& s, uint32_t mesh, Rgb radiance, bool is_two_sided = false) {
+  Light e;
+  e.name = "emitter" + std::to_string(s.lights.size());
   e.radiance = radiance;
   e.is_two_sided = is_two_sided;
   e.geometry = mesh;
   e.triangles = {0, 1};
   e.polygon = s.meshes[mesh].positions;
-  s.meshes[mesh].emitters.assign(2, int32_t(s.emitters.size()));
-  s.emitters.push_back(std::move(e));
+  s.meshes[mesh].lights.assign(2, int32_t(s.lights.size()));
+  s.lights.push_back(std::move(e));
 }
 
 // The inside of the box [lower, upper]: six quads facing inwards (floor, ceiling, four walls).
@@ -67,7 +67,7 @@ inline void add_ceiling_light(Scene& s, float w, float h, Rgb radiance) {
   const uint32_t black = add_diffuse(s, Rgb{0});
   const float r = w / 2;
   const uint32_t quad = add_quad(s, black, {Vec3{-r, -r, h}, {-r, r, h}, {r, r, h}, {r, -r, h}});
-  make_emitter(s, quad, radiance);
+  make_light(s, quad, radiance);
 }
 
 }  // namespace troffer::test

@@ -203,8 +203,8 @@ TEST_CASE("what is no facet is reported, not left out") {
   leaf.triangles = {{0, 1, 2}};
   leaf.material = 1;
   s.meshes.push_back(leaf);
-  s.spheres.push_back({{3, 0, 0}, 0.5f, false, 0, no_emitter});
-  s.disks.push_back({{6, 0, 0}, {0, 0, 1}, 0.5f, 0, no_emitter});
+  s.spheres.push_back({{3, 0, 0}, 0.5f, false, 0, no_light});
+  s.disks.push_back({{6, 0, 0}, {0, 0, 1}, 0.5f, 0, no_light});
   const Occluders o(s);
   CHECK(o.facet_count() == 0);
   for (const float x : {0.2f, 3.4f, 6.4f, 9.0f}) {

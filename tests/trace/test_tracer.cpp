@@ -21,8 +21,8 @@ Scene box_scene() {
   m.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}, {0, 5, 1}, {0, 4, 5},
                  {3, 2, 6}, {3, 6, 7}, {0, 3, 7}, {0, 7, 4}, {1, 5, 6}, {1, 6, 2}};
   s.meshes.push_back(m);
-  s.spheres.push_back({{0.5f, 0.5f, 0.5f}, 0.2f, false, 0, no_emitter});
-  s.disks.push_back({{0.5f, 0.5f, 0.9f}, {0, 0, -1}, 0.1f, 0, no_emitter});
+  s.spheres.push_back({{0.5f, 0.5f, 0.5f}, 0.2f, false, 0, no_light});
+  s.disks.push_back({{0.5f, 0.5f, 0.9f}, {0, 0, -1}, 0.1f, 0, no_light});
   return s;
 }
 

@@ -1,4 +1,4 @@
-#include "emitter/arctangent.h"
+#include "light/arctangent.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "emitter/emitter_sample.h"
+#include "light/light_sample.h"
 
 #include <cmath>
 
@@ -6,15 +6,15 @@
 #include "base/simd.h"
 #include "base/units.h"
 #include "base/warp.h"
-#include "emitter/receiver_view.h"
-#include "emitter/spherical_cap.h"
+#include "light/receiver_view.h"
+#include "light/spherical_cap.h"
 
 namespace troffer {
 
 namespace {
 
 bool finish(const LightPrimitive& p, const PlanarView& view, const Vec3& to_point,
-            EmitterSample& out) {
+            LightSample& out) {
   out.distance = length(to_point);
   if (!(out.distance > 0)) return false;
   out.wi = to_point * (1 / out.distance);
@@ -28,7 +28,7 @@ bool finish(const LightPrimitive& p, const PlanarView& view, const Vec3& to_poin
 // q: the point in radii of the piece, from the receiver's foot (so that no small height is lost in
 // a large lateral distance) and from vertex 0.
 bool finish_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec2& from_foot,
-                      const Vec2& from_corner, EmitterSample& out) {
+                      const Vec2& from_corner, LightSample& out) {
   const Vec2 local = from_corner * p.radius, lateral = from_foot * p.radius;
   out.point = p.vertices[0] + p.axis_x * local.x + p.axis_y * local.y;
   const Vec3 normal(view.is_front ? -p.normal : p.normal);
@@ -37,7 +37,7 @@ bool finish_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec
 }
 
 bool sample_rectangle(const LightPrimitive& p, const PlanarView& view, const Vec3& x, const Vec2& u,
-                      EmitterSample& out) {
+                      LightSample& out) {
   if (!view.is_far) {
     const auto single = rectangle_from<float>(p, x, view.height);
     if (single.solid_angle >= least_rectangle_sr) {
@@ -104,7 +104,7 @@ float fan_solid_angle(const LightPrimitive& p, const PlanarView& view, const Vec
 }
 
 bool finish_fan(const LightPrimitive& p, const PlanarView& view, uint32_t i,
-                const Barycentric<float>& w, const Vec3& to_point, EmitterSample& out) {
+                const Barycentric<float>& w, const Vec3& to_point, LightSample& out) {
   const Vec3 b = p.vertex(0);
   out.point = b + (p.vertex(i + 1) - b) * w.a + (p.vertex(i + 2) - b) * w.c;
   out.texture_uv = p.uvs[0] * w.b + p.uvs[1] * w.a + p.uvs[2] * w.c;
@@ -113,7 +113,7 @@ bool finish_fan(const LightPrimitive& p, const PlanarView& view, uint32_t i,
 
 template <class T>
 bool sample_fan_solid_angle(const LightPrimitive& p, const PlanarView& view, const Vec3& x, Vec2 u,
-                            EmitterSample& out) {
+                            LightSample& out) {
   uint32_t i = 0;
   SphericalTriangle<T> t;
   if (p.vertex_count == 3) {
@@ -147,7 +147,7 @@ bool sample_fan_solid_angle(const LightPrimitive& p, const PlanarView& view, con
 }
 
 bool sample_fan(const LightPrimitive& p, const PlanarView& view, const Vec3& x, Vec2 u,
-                EmitterSample& out) {
+                LightSample& out) {
   if (!view.is_far) {
     return wants_double(p, view) ? sample_fan_solid_angle<double>(p, view, x, u, out)
                                  : sample_fan_solid_angle<float>(p, view, x, u, out);
@@ -173,7 +173,7 @@ float pdf_fan(const LightPrimitive& p, const PlanarView& view, const Vec3& x, fl
 // ---- disk ----
 
 bool sample_disk(const LightPrimitive& p, const PlanarView& view, const Vec3& x, const Vec2& u,
-                 EmitterSample& out) {
+                 LightSample& out) {
   if (view.is_far) {
     const Vec2 d = disk_from_square(u) * p.radius;
     const Vec3 offset = p.axis_x * d.x + p.axis_y * d.y;
@@ -203,7 +203,7 @@ float pdf_disk(const LightPrimitive& p, const PlanarView& view, const Vec3& x, c
 
 // ---- sphere ----
 
-bool sample_sphere(const LightPrimitive& p, const Vec3& x, const Vec2& u, EmitterSample& out) {
+bool sample_sphere(const LightPrimitive& p, const Vec3& x, const Vec2& u, LightSample& out) {
   const SphereView view(p, x);
   if (!view.is_visible) return false;
   out.is_front = view.is_front;
@@ -232,7 +232,7 @@ bool sample_sphere(const LightPrimitive& p, const Vec3& x, const Vec2& u, Emitte
 
 }  // namespace
 
-bool sample(const LightPrimitive& p, const Vec3& x, const Vec2& u, EmitterSample& out) {
+bool sample(const LightPrimitive& p, const Vec3& x, const Vec2& u, LightSample& out) {
   if (p.shape == PrimitiveShape::sphere) {
     out.texture_uv = {};
     return sample_sphere(p, x, u, out);
@@ -269,16 +269,16 @@ void sample_rectangles(size_t n, const float* __restrict corner_x, const float* 
 
 }  // namespace
 
-void sample_many(const LightPrimitives& lights, size_t n, const uint32_t* primitives,
-                 const Vec3* receivers, const float* u, const float* v, EmitterSample* out,
-                 uint8_t* is_valid, EmitterSampleScratch& s) {
+void sample_many(const LightPrimitives& all, size_t n, const uint32_t* primitives,
+                 const Vec3* receivers, const float* u, const float* v, LightSample* out,
+                 uint8_t* is_valid, LightSampleScratch& s) {
   for (auto* a : {&s.corner_x, &s.corner_y, &s.size_x, &s.size_y, &s.height, &s.u, &s.v, &s.x, &s.y,
                   &s.solid_angle})
     a->resize(n);
   s.index.resize(n);
   size_t near = 0;
   for (size_t i = 0; i < n; ++i) {
-    const LightPrimitive& p = lights[primitives[i]];
+    const LightPrimitive& p = all[primitives[i]];
     if (p.shape == PrimitiveShape::rectangle) {
       const PlanarView view(p, receivers[i]);
       is_valid[i] = view.is_visible;
@@ -305,7 +305,7 @@ void sample_many(const LightPrimitives& lights, size_t n, const uint32_t* primit
                     s.solid_angle.data());
   for (size_t k = 0; k < near; ++k) {
     const size_t i = s.index[k];
-    const LightPrimitive& p = lights[primitives[i]];
+    const LightPrimitive& p = all[primitives[i]];
     if (!(s.solid_angle[k] >= least_single_precision_sr)) {
       is_valid[i] = sample(p, receivers[i], {u[i], v[i]}, out[i]);
       continue;

@@ -3,7 +3,7 @@
 
 #include "base/frame.h"
 #include "base/units.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 
 namespace troffer {
 

@@ -45,8 +45,8 @@ struct SourcePoint {
 
 class SourceSurface {
  public:
-  // The surface of scene.emitters[emitter]. Triangles without area are left out.
-  SourceSurface(const Scene& scene, uint32_t emitter);
+  // The surface of scene.lights[light]. Triangles without area are left out.
+  SourceSurface(const Scene& scene, uint32_t light);
 
   // Convex polygons, counterclockwise seen from the front; those without area are left out. Cells
   // are compact where neighbours follow each other. Only one polygon alone can be a parallelogram.
@@ -88,7 +88,7 @@ class SourceSurface {
   const Piece& piece_at(double u) const;
   Box round_bounds(const SourceCell& c) const;
 
-  EmitterShape shape_;
+  LightShape shape_;
   double area_ = 0;
   bool is_parallelogram_ = false;
   Parallelogram parallelogram_;

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "emitter/emitter_scenes.h"
-#include "emitter/polygon.h"
-#include "emitter/source_surface.h"
+#include "light/light_scene_set.h"
+#include "light/polygon.h"
+#include "light/source_surface.h"
 #include "support/chi_square.h"
 
 using namespace troffer;
@@ -188,10 +188,10 @@ TEST_CASE("pieces: shapes, tables, power, cones") {
   CHECK(parts.of_triangle(0, 1) == 1);
   CHECK(parts.of_triangle(0, 2) == no_primitive);
   const LightPrimitives moved = std::move(parts);
-  CHECK(moved.of_emitter(0).last == 2);
+  CHECK(moved.of_light(0).last == 2);
 
   Scene dark = sphere_scene(1);
-  dark.emitters[0].radiance = Rgb{0};
+  dark.lights[0].radiance = Rgb{0};
   CHECK(LightPrimitives(dark).size() == 0);
   CHECK(LightPrimitives(dark).of_sphere(0) == no_primitive);
   const LightPrimitives two(sphere_scene(1, false, true));
@@ -210,7 +210,7 @@ TEST_CASE("a textured triangle's mean radiance is the texture's mean over it") {
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) t.texels_float.push_back(float(x) / 8 + 1.0f / 16);  // = u
   s.textures.push_back(t);
-  s.emitters[0].texture = 0;
+  s.lights[0].texture = 0;
   const LightPrimitives p(s);
   REQUIRE(p.size() == 1);
   CHECK(p[0].is_textured);
@@ -239,7 +239,7 @@ Scene triangle_with_image(int size, const std::vector<std::pair<int, int>>& lit)
 
 TEST_CASE("a source lit in one texel only has power") {
   Scene s = triangle_with_image(100, {{31, 17}});
-  s.emitters[0].texture = 0;
+  s.lights[0].texture = 0;
   const LightPrimitives p(s);
   REQUIRE(p.size() == 1);
   CHECK(p[0].power > 0);
@@ -251,7 +251,7 @@ TEST_CASE("holes of an alpha mask take their part of a source's power") {
   s.materials.resize(1);
   s.materials[0].is_alpha_masked = true;
   s.materials[0].alpha = {1, 0, 0};
-  s.emitters[0].is_alpha_masked = true;
+  s.lights[0].is_alpha_masked = true;
   const LightPrimitives p(s);
   REQUIRE(p.size() == 1);
   CHECK(p[0].is_textured);

@@ -1,11 +1,11 @@
-// square_from_point: the inverses of emitter_sample.cpp, in double precision throughout.
+// square_from_point: the inverses of light_sample.cpp, in double precision throughout.
 #include <cmath>
 
 #include "base/frame.h"
 #include "base/warp.h"
-#include "emitter/emitter_sample.h"
-#include "emitter/receiver_view.h"
-#include "emitter/spherical_cap.h"
+#include "light/light_sample.h"
+#include "light/receiver_view.h"
+#include "light/spherical_cap.h"
 
 namespace troffer {
 

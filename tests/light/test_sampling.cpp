@@ -1,13 +1,13 @@
-// Points on emitters: what `sample` does is what `pdf_solid_angle` says (χ²), the density
+// Points on lights: what `sample` does is what `pdf_solid_angle` says (χ²), the density
 // integrates to one, the inverse inverts, and the estimate of irradiance agrees with the closed
 // form.
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-#include "emitter/emitter_sample.h"
-#include "emitter/emitter_scenes.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
+#include "light/light_sample.h"
+#include "light/light_scene_set.h"
 #include "support/chi_square.h"
 #include "support/quadrature.h"
 
@@ -75,7 +75,7 @@ ChiSquareResult flat_chi_square(const Scene& scene, const Vec3& x, uint64_t seed
   std::vector<double> observed(nu * nv), expected(nu * nv);
   Random random(seed);
   for (int i = 0; i < n; ++i) {
-    EmitterSample s;
+    LightSample s;
     if (!sample(p, x, random.next_vec2(), s)) continue;
     const Vec2 uv = surface.uv_at(s.point);
     observed[bin_of(us, double(uv.x)) * nv + bin_of(vs, double(uv.y))] += 1;
@@ -129,7 +129,7 @@ TEST_CASE("samples on a sphere follow their density, inside and outside") {
     std::vector<double> observed(rings * sectors), expected(rings * sectors);
     Random random(77);
     for (int i = 0; i < n; ++i) {
-      EmitterSample s;
+      LightSample s;
       REQUIRE(sample(p, x, random.next_vec2(), s));
       CHECK(s.is_front);
       // from the direction: the point itself is rounded to world coordinates
@@ -170,7 +170,7 @@ TEST_CASE("a sample is consistent: point, direction, distance, density, side") {
     for (const Vec3d& r : flat_receivers) {
       const Vec3 x = pose.world(r);
       for (int i = 0; i < 300; ++i) {
-        EmitterSample e;
+        LightSample e;
         REQUIRE(sample(p, x, random.next_vec2(), e));
         CHECK(length(e.wi) == doctest::Approx(1).epsilon(1e-6));
         CHECK(length(x + e.wi * e.distance - e.point) <= 2e-6f + 1e-6f * e.distance);
@@ -180,7 +180,7 @@ TEST_CASE("a sample is consistent: point, direction, distance, density, side") {
         CHECK_MESSAGE(double(pdf) == doctest::Approx(double(e.pdf_solid_angle)).epsilon(1e-4),
                       s.name << " from " << r.x << " " << r.y << " " << r.z);
       }
-      EmitterSample corner;
+      LightSample corner;
       for (const Vec2 u : {Vec2{0, 0}, Vec2{0, one_minus_epsilon}, Vec2{one_minus_epsilon, 0},
                            Vec2{one_minus_epsilon, one_minus_epsilon}, Vec2{0.5f, 0.5f}}) {
         REQUIRE(sample(p, x, u, corner));
@@ -197,7 +197,7 @@ TEST_CASE("a sample is consistent: point, direction, distance, density, side") {
 
 TEST_CASE("one-sided sources are not seen from behind nor from their own plane") {
   const Pose pose;
-  EmitterSample e;
+  LightSample e;
   for (const NamedScene& s : flat_scenes()) {
     const LightPrimitives primitives(s.scene);
     for (const Vec3d& r : flat_receivers) {
@@ -240,7 +240,7 @@ TEST_CASE("the inverse of sampling inverts") {
       const int n = 200;
       for (int i = 0; i < n; ++i) {
         const Vec2 u = random.next_vec2();
-        EmitterSample e;
+        LightSample e;
         REQUIRE(sample(primitives[0], x, u, e));
         const Vec2 back = square_from_point(primitives[0], x, e.point);
         double du = double(std::abs(back.x - u.x));
@@ -278,7 +278,7 @@ TEST_CASE("the mean of cos / pdf is the closed-form irradiance") {
         for (int i = 0; i < side * side; ++i) {
           const Vec2 u{(float(i % side) + random.next_float()) / side,
                        (float(i / side) + random.next_float()) / side};
-          EmitterSample e;
+          LightSample e;
           REQUIRE(sample(primitives[0], x, u, e));
           const double f = std::max(0.0, dot(n, Vec3d(e.wi))) / double(e.pdf_solid_angle);
           sum += f;
@@ -315,7 +315,7 @@ TEST_CASE("random receivers, on edges and vertices too: finite samples or none")
       Vec3 x = pose.world(local);
       if (i % 5 == 0 && p.vertex_count > 0)  // on an edge or its continuation, up to rounding
         x = p.vertex(0) + (p.vertex(1) - p.vertex(0)) * float(2 * number());
-      EmitterSample e;
+      LightSample e;
       if (!sample(p, x, random.next_vec2(), e)) continue;
       const bool is_fine = is_finite(e.point) && is_finite(e.wi) && is_finite(e.normal) &&
                            std::isfinite(e.distance) && std::isfinite(e.pdf_solid_angle) &&

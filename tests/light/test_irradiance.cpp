@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "emitter/emitter_scenes.h"
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
+#include "light/light_scene_set.h"
 #include "support/quadrature.h"
 
 using namespace troffer;

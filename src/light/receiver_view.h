@@ -1,4 +1,4 @@
-// How a receiver stands to a piece of an emitter: what sampling, density and inverse share.
+// How a receiver stands to a piece of a light: what sampling, density and inverse share.
 #pragma once
 
 #include <algorithm>
@@ -6,15 +6,15 @@
 
 #include "base/units.h"
 #include "base/vec.h"
-#include "emitter/light_primitive.h"
-#include "emitter/polygon.h"
-#include "emitter/spherical_disk.h"
-#include "emitter/spherical_rectangle.h"
-#include "emitter/spherical_triangle.h"
+#include "light/light_primitive.h"
+#include "light/polygon.h"
+#include "light/spherical_disk.h"
+#include "light/spherical_rectangle.h"
+#include "light/spherical_triangle.h"
 
 namespace troffer {
 
-// See emitter_sample.h.
+// See light_sample.h.
 constexpr float far_in_radii = 32;
 // Below this the single-precision rectangle would place points with an error over 1e-4 of its size.
 constexpr float least_single_precision_sr = 2e-3f;

@@ -14,8 +14,8 @@
 #include <span>
 
 #include "base/vec.h"
-#include "emitter/light_primitive.h"
-#include "emitter/source_surface.h"
+#include "light/light_primitive.h"
+#include "light/source_surface.h"
 
 namespace troffer {
 
@@ -39,9 +39,9 @@ double disk_irradiance(const Vec3d& centre, const Vec3d& m, double radius, const
 // One piece of a source; a two-sided one counts from both sides.
 double irradiance(const LightPrimitive& p, const Vec3d& x, const Vec3d& n);
 
-// Whole sources: the sum over the emitter's pieces that face x. Hiding of a mesh source's triangles
+// Whole sources: the sum over the light's pieces that face x. Hiding of a mesh source's triangles
 // behind each other is not seen: the sum is exact for convex meshes, an upper bound for others.
-double irradiance(const LightPrimitives& primitives, uint32_t emitter, const Vec3d& x,
+double irradiance(const LightPrimitives& primitives, uint32_t light, const Vec3d& x,
                   const Vec3d& n);
 
 // The part `cell` of a parallelogram source, for the leaves of a bintree: made to be called often.

@@ -1,4 +1,4 @@
-// Points on emitters, chosen for a receiver nearly in proportion to solid angle; densities and
+// Points on lights, chosen for a receiver nearly in proportion to solid angle; densities and
 // inverses of that choice.
 //
 // From a receiver farther than 32 radii of the piece's bounding sphere, points are chosen uniformly
@@ -19,37 +19,37 @@
 #include <cstdint>
 #include <vector>
 
-#include "emitter/light_primitive.h"
+#include "light/light_primitive.h"
 
 namespace troffer {
 
-struct EmitterSample {
-  Vec3 point;                 // on the emitter
+struct LightSample {
+  Vec3 point;                 // on the light
   Vec3 normal;                // unit, on the side towards the receiver
   Vec2 texture_uv;            // triangles of mesh sources; else (0,0)
   Vec3 wi;                    // unit, from the receiver to the point
   float distance = 0;         // metres
   float pdf_solid_angle = 0;  // per steradian, > 0
-  bool is_front = true;       // the receiver is on the emitter's front
+  bool is_front = true;       // the receiver is on the light's front
 };
 
 // Chooses a point of `p` that faces receiver x, from u in [0,1)². False where nothing of it does
-// (the back of a one-sided emitter, its own plane) or the solid angle vanishes.
-bool sample(const LightPrimitive& p, const Vec3& x, const Vec2& u, EmitterSample& out);
+// (the back of a one-sided light, its own plane) or the solid angle vanishes.
+bool sample(const LightPrimitive& p, const Vec3& x, const Vec2& u, LightSample& out);
 
 // Memory for sample_many.
-struct EmitterSampleScratch {
+struct LightSampleScratch {
   std::vector<uint32_t> index;
   std::vector<float> corner_x, corner_y, size_x, size_y, height, u, v;  // in radii of the piece
   std::vector<float> x, y, solid_angle;
 };
 
-// sample(lights[primitives[i]], receivers[i], (u[i], v[i]), out[i]) for all i of n; is_valid[i] is
+// sample(all[primitives[i]], receivers[i], (u[i], v[i]), out[i]) for all i of n; is_valid[i] is
 // what it returns. Near rectangles go together, several to a vector register: their points may
 // differ from sample()'s in the last bits, and do not depend on what else is in the batch.
-void sample_many(const LightPrimitives& lights, size_t n, const uint32_t* primitives,
-                 const Vec3* receivers, const float* u, const float* v, EmitterSample* out,
-                 uint8_t* is_valid, EmitterSampleScratch& scratch);
+void sample_many(const LightPrimitives& all, size_t n, const uint32_t* primitives,
+                 const Vec3* receivers, const float* u, const float* v, LightSample* out,
+                 uint8_t* is_valid, LightSampleScratch& scratch);
 
 // Density per steradian with which `sample` for receiver x chooses the direction wi, where a ray
 // from x along wi hits p at `distance`. 0 where sample never does.

@@ -7,8 +7,8 @@
 
 #include "base/frame.h"
 #include "base/random.h"
-#include "emitter/light_primitive.h"
-#include "emitter/source_surface.h"
+#include "light/light_primitive.h"
+#include "light/source_surface.h"
 #include "scene/scene.h"
 
 namespace troffer::test {
@@ -32,7 +32,7 @@ inline Scene polygon_scene(const std::vector<Vec3d>& local, bool is_two_sided = 
   Scene s;
   s.materials.emplace_back();
   Mesh m;
-  Emitter e;
+  Light e;
   e.name = "light";
   e.radiance = Rgb{2};
   e.is_two_sided = is_two_sided;
@@ -44,9 +44,9 @@ inline Scene polygon_scene(const std::vector<Vec3d>& local, bool is_two_sided = 
     e.triangles.push_back(uint32_t(m.triangles.size()));
     m.triangles.push_back({0, i, i + 1});
   }
-  m.emitters.assign(m.triangles.size(), 0);
+  m.lights.assign(m.triangles.size(), 0);
   s.meshes.push_back(m);
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   return s;
 }
 
@@ -54,11 +54,11 @@ inline Scene mesh_scene(const std::vector<Vec3d>& local, const std::vector<Trian
                         const Pose& pose = {}) {
   Scene s = polygon_scene(local, false, pose);
   Mesh& m = s.meshes[0];
-  Emitter& e = s.emitters[0];
+  Light& e = s.lights[0];
   m.triangles = triangles;
-  m.emitters.assign(triangles.size(), 0);
+  m.lights.assign(triangles.size(), 0);
   for (const Vec3d& p : local) m.uvs.push_back({float(p.x), float(p.y)});
-  e.shape = EmitterShape::mesh;
+  e.shape = LightShape::mesh;
   e.polygon.clear();
   e.triangles.clear();
   for (uint32_t i = 0; i < triangles.size(); ++i) e.triangles.push_back(i);
@@ -69,11 +69,11 @@ inline Scene disk_scene(double radius, bool is_two_sided = false, const Pose& po
   Scene s;
   s.materials.emplace_back();
   s.disks.push_back({pose.world({}), Vec3(pose.frame.normal), float(radius), 0, 0});
-  Emitter e;
-  e.shape = EmitterShape::disk;
+  Light e;
+  e.shape = LightShape::disk;
   e.radiance = Rgb{2};
   e.is_two_sided = is_two_sided;
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   return s;
 }
 
@@ -82,11 +82,11 @@ inline Scene sphere_scene(double radius, bool is_inside_out = false, bool is_two
   Scene s;
   s.materials.emplace_back();
   s.spheres.push_back({pose.world({}), float(radius), is_inside_out, 0, 0});
-  Emitter e;
-  e.shape = EmitterShape::sphere;
+  Light e;
+  e.shape = LightShape::sphere;
   e.radiance = Rgb{2};
   e.is_two_sided = is_two_sided;
-  s.emitters.push_back(e);
+  s.lights.push_back(e);
   return s;
 }
 
@@ -99,7 +99,7 @@ struct NamedScene {
 inline std::vector<NamedScene> flat_scenes(bool is_two_sided = false) {
   std::vector<NamedScene> all;
   const auto add = [&](const char* name, Scene s) {
-    s.emitters[0].is_two_sided = is_two_sided;
+    s.lights[0].is_two_sided = is_two_sided;
     all.push_back({name, std::move(s)});
   };
   add("square", polygon_scene({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));

@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 #include "base/warp.h"
-#include "emitter/emitter_sample.h"
+#include "light/light_sample.h"
 #include "support/scenes.h"
 
 using namespace troffer;
@@ -15,14 +15,14 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
   test::add_ceiling_light(s, 1, 2, Rgb{1});
   test::add_ceiling_light(s, 0.01f, 1, Rgb{1});
   const uint32_t black = test::add_diffuse(s, Rgb{0});
-  test::make_emitter(
+  test::make_light(
       s, test::add_quad(s, black, {Vec3{0, 0, 3}, {1, 0.5f, 3}, {1.2f, 1.5f, 3}, {0.2f, 1, 3}}),
       Rgb{1}, true);
-  s.spheres.push_back({{2, 0, 1}, 0.3f, false, black, int32_t(s.emitters.size())});
-  Emitter sphere;
-  sphere.shape = EmitterShape::sphere;
+  s.spheres.push_back({{2, 0, 1}, 0.3f, false, black, int32_t(s.lights.size())});
+  Light sphere;
+  sphere.shape = LightShape::sphere;
   sphere.radiance = Rgb{1};
-  s.emitters.push_back(sphere);
+  s.lights.push_back(sphere);
   const LightPrimitives lights(s);
   REQUIRE(lights.size() == 4);
 
@@ -39,15 +39,15 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
     u[i] = random.next_float();
     v[i] = random.next_float();
   }
-  std::vector<EmitterSample> many(n);
+  std::vector<LightSample> many(n);
   std::vector<uint8_t> is_valid(n, 2);
-  EmitterSampleScratch scratch;
+  LightSampleScratch scratch;
   sample_many(lights, n, primitives.data(), receivers.data(), u.data(), v.data(), many.data(),
               is_valid.data(), scratch);
   size_t valid = 0;
   for (size_t i = 0; i < n; ++i) {
     const LightPrimitive& p = lights[primitives[i]];
-    EmitterSample one;
+    LightSample one;
     REQUIRE(sample(p, receivers[i], {u[i], v[i]}, one) == (is_valid[i] != 0));
     if (is_valid[i] == 0) continue;
     ++valid;
@@ -63,7 +63,7 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
 
   // alone in a batch: the same bits
   for (size_t i = 0; i < 300; ++i) {
-    EmitterSample alone;
+    LightSample alone;
     uint8_t ok = 2;
     sample_many(lights, 1, &primitives[i], &receivers[i], &u[i], &v[i], &alone, &ok, scratch);
     REQUIRE(ok == is_valid[i]);

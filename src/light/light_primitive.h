@@ -1,4 +1,4 @@
-// The scene's emitters cut into simple pieces that can be chosen, sampled and hit: convex polygons,
+// The scene's lights cut into simple pieces that can be chosen, sampled and hit: convex polygons,
 // triangles of mesh sources, disks, spheres.
 #pragma once
 
@@ -17,7 +17,7 @@ enum class PrimitiveShape : uint8_t { rectangle, triangle, polygon, disk, sphere
 
 constexpr int32_t no_primitive = -1;
 
-// One piece of an emitter. Plain data; what is read by sampling comes first.
+// One piece of a light. Plain data; what is read by sampling comes first.
 struct LightPrimitive {
   PrimitiveShape shape = PrimitiveShape::triangle;
   bool is_two_sided = false;
@@ -33,7 +33,7 @@ struct LightPrimitive {
   const Vec3* more_vertices = nullptr;  // all of them, where vertex_count > 4; LightPrimitives owns
   Vec2 uvs[3];                          // triangle: texture coordinates of the vertices
 
-  uint32_t emitter = 0;      // index into Scene::emitters
+  uint32_t light = 0;        // index into Scene::lights
   int32_t triangle = -1;     // of a mesh source: index into that mesh's triangles
   bool is_textured = false;  // radiance varies over it: a texture, or holes of an alpha mask
   Rgb mean_radiance;         // over the surface, W/(m² sr) or cd/m²
@@ -51,8 +51,8 @@ struct LightPrimitive {
   }
 };
 
-// All pieces of a scene's emitters, in the order of Scene::emitters and within them in the order
-// of triangles, and the way back from what a ray hit. Pieces without area or with a black emitter
+// All pieces of a scene's lights, in the order of Scene::lights and within them in the order
+// of triangles, and the way back from what a ray hit. Pieces without area or with a black light
 // are left out.
 class LightPrimitives {
  public:
@@ -68,11 +68,11 @@ class LightPrimitives {
   size_t size() const { return primitives_.size(); }
   const LightPrimitive& operator[](size_t i) const { return primitives_[i]; }
 
-  // The pieces [first, last) of an emitter.
+  // The pieces [first, last) of a light.
   struct Range {
     uint32_t first = 0, last = 0;
   };
-  Range of_emitter(uint32_t emitter) const { return ranges_[emitter]; }
+  Range of_light(uint32_t light) const { return ranges_[light]; }
 
   // What was hit -> index of its piece, or no_primitive.
   int32_t of_triangle(uint32_t mesh, uint32_t triangle) const {
@@ -83,15 +83,15 @@ class LightPrimitives {
   int32_t of_sphere(uint32_t sphere) const { return sphere_table_[sphere]; }
 
  private:
-  void add_polygon(const Scene& scene, uint32_t emitter);
-  void add_mesh(const Scene& scene, uint32_t emitter);
-  void add_disk(const Scene& scene, uint32_t emitter);
-  void add_sphere(const Scene& scene, uint32_t emitter);
-  int32_t append(LightPrimitive p, const Emitter& e);
+  void add_polygon(const Scene& scene, uint32_t light);
+  void add_mesh(const Scene& scene, uint32_t light);
+  void add_disk(const Scene& scene, uint32_t light);
+  void add_sphere(const Scene& scene, uint32_t light);
+  int32_t append(LightPrimitive p, const Light& e);
 
   std::vector<LightPrimitive> primitives_;
   std::vector<std::vector<Vec3>> vertices_;           // of polygons with more than 4
-  std::vector<Range> ranges_;                         // per emitter
+  std::vector<Range> ranges_;                         // per light
   std::vector<std::vector<int32_t>> triangle_table_;  // per mesh: empty, or per triangle
   std::vector<int32_t> disk_table_, sphere_table_;
 };

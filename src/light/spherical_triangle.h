@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "base/vec.h"
-#include "emitter/arctangent.h"
+#include "light/arctangent.h"
 
 namespace troffer {
 

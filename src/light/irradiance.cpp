@@ -1,10 +1,10 @@
-#include "emitter/irradiance.h"
+#include "light/irradiance.h"
 
 #include <array>
 #include <cmath>
 
 #include "base/units.h"
-#include "emitter/arctangent.h"
+#include "light/arctangent.h"
 
 namespace troffer {
 
@@ -82,9 +82,9 @@ double irradiance(const LightPrimitive& p, const Vec3d& x, const Vec3d& n) {
   return irradiance_from_sum(lambert_sum(p.vertex_count, vertex, n), height > 0);
 }
 
-double irradiance(const LightPrimitives& primitives, uint32_t emitter, const Vec3d& x,
+double irradiance(const LightPrimitives& primitives, uint32_t light, const Vec3d& x,
                   const Vec3d& n) {
-  const LightPrimitives::Range range = primitives.of_emitter(emitter);
+  const LightPrimitives::Range range = primitives.of_light(light);
   double sum = 0;
   for (uint32_t i = range.first; i < range.last; ++i) sum += irradiance(primitives[i], x, n);
   return sum;

@@ -1,4 +1,4 @@
-#include "emitter/light_primitive.h"
+#include "light/light_primitive.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/frame.h"
 #include "base/units.h"
-#include "emitter/polygon.h"
+#include "light/polygon.h"
 
 namespace troffer {
 
@@ -46,7 +46,7 @@ bool set_polygon(LightPrimitive& p, std::span<const Vec3> vertices) {
 }
 
 // Mean emission over a triangle: one lookup at the centre of each of n² equal parts.
-Rgb mean_over_triangle(const Scene& scene, const Emitter& e, const Vec2 (&uv)[3], int n) {
+Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3], int n) {
   const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
   Rgb sum;
   int count = 0;
@@ -66,7 +66,7 @@ Rgb mean_over_triangle(const Scene& scene, const Emitter& e, const Vec2 (&uv)[3]
 
 // About one lookup per texel, up to 16²; where those are all dark, up to 128², because a source
 // without power is never sampled.
-Rgb mean_over_triangle(const Scene& scene, const Emitter& e, const Vec2 (&uv)[3]) {
+Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3]) {
   const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
   const float uv_area = 0.5f * std::abs(a.x * b.y - a.y * b.x);
   const int32_t mask =
@@ -95,21 +95,21 @@ LightPrimitives::LightPrimitives(const Scene& scene)
     : disk_table_(scene.disks.size(), no_primitive),
       sphere_table_(scene.spheres.size(), no_primitive) {
   triangle_table_.resize(scene.meshes.size());
-  ranges_.reserve(scene.emitters.size());
-  for (uint32_t i = 0; i < scene.emitters.size(); ++i) {
+  ranges_.reserve(scene.lights.size());
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const auto first = uint32_t(primitives_.size());
-    if (!scene.emitters[i].radiance.is_black()) {
-      switch (scene.emitters[i].shape) {
-        case EmitterShape::polygon:
+    if (!scene.lights[i].radiance.is_black()) {
+      switch (scene.lights[i].shape) {
+        case LightShape::polygon:
           add_polygon(scene, i);
           break;
-        case EmitterShape::mesh:
+        case LightShape::mesh:
           add_mesh(scene, i);
           break;
-        case EmitterShape::disk:
+        case LightShape::disk:
           add_disk(scene, i);
           break;
-        case EmitterShape::sphere:
+        case LightShape::sphere:
           add_sphere(scene, i);
           break;
       }
@@ -118,17 +118,17 @@ LightPrimitives::LightPrimitives(const Scene& scene)
   }
 }
 
-int32_t LightPrimitives::append(LightPrimitive p, const Emitter& e) {
+int32_t LightPrimitives::append(LightPrimitive p, const Light& e) {
   p.is_two_sided = e.is_two_sided;
   p.power = float(pi) * p.area * luminance(p.mean_radiance) * (p.is_two_sided ? 2.0f : 1.0f);
   primitives_.push_back(p);
   return int32_t(primitives_.size()) - 1;
 }
 
-void LightPrimitives::add_polygon(const Scene& scene, uint32_t emitter) {
-  const Emitter& e = scene.emitters[emitter];
+void LightPrimitives::add_polygon(const Scene& scene, uint32_t light) {
+  const Light& e = scene.lights[light];
   LightPrimitive p;
-  p.emitter = emitter;
+  p.light = light;
   p.mean_radiance = e.radiance;
   if (!set_polygon(p, e.polygon)) return;
   if (e.polygon.size() > 4) {
@@ -141,15 +141,15 @@ void LightPrimitives::add_polygon(const Scene& scene, uint32_t emitter) {
   for (const uint32_t t : e.triangles) table[t] = index;
 }
 
-void LightPrimitives::add_mesh(const Scene& scene, uint32_t emitter) {
-  const Emitter& e = scene.emitters[emitter];
+void LightPrimitives::add_mesh(const Scene& scene, uint32_t light) {
+  const Light& e = scene.lights[light];
   const Mesh& mesh = scene.meshes[e.geometry];
   std::vector<int32_t>& table = triangle_table_[e.geometry];
   table.resize(mesh.triangles.size(), no_primitive);
   for (const uint32_t t : e.triangles) {
     const Triangle& corners = mesh.triangles[t];
     LightPrimitive p;
-    p.emitter = emitter;
+    p.light = light;
     p.triangle = int32_t(t);
     p.mean_radiance = e.radiance;
     Vec3 positions[3];
@@ -166,12 +166,12 @@ void LightPrimitives::add_mesh(const Scene& scene, uint32_t emitter) {
   }
 }
 
-void LightPrimitives::add_disk(const Scene& scene, uint32_t emitter) {
-  const Emitter& e = scene.emitters[emitter];
+void LightPrimitives::add_disk(const Scene& scene, uint32_t light) {
+  const Light& e = scene.lights[light];
   const Disk& disk = scene.disks[e.geometry];
   LightPrimitive p;
   p.shape = PrimitiveShape::disk;
-  p.emitter = emitter;
+  p.light = light;
   p.mean_radiance = e.radiance;
   p.radius = disk.radius;
   p.area = pi_f * disk.radius * disk.radius;
@@ -191,12 +191,12 @@ void LightPrimitives::add_disk(const Scene& scene, uint32_t emitter) {
   disk_table_[e.geometry] = append(p, e);
 }
 
-void LightPrimitives::add_sphere(const Scene& scene, uint32_t emitter) {
-  const Emitter& e = scene.emitters[emitter];
+void LightPrimitives::add_sphere(const Scene& scene, uint32_t light) {
+  const Light& e = scene.lights[light];
   const Sphere& sphere = scene.spheres[e.geometry];
   LightPrimitive p;
   p.shape = PrimitiveShape::sphere;
-  p.emitter = emitter;
+  p.light = light;
   p.mean_radiance = e.radiance;
   p.radius = sphere.radius;
   p.area = 4 * pi_f * sphere.radius * sphere.radius;

@@ -13,7 +13,7 @@
 
 #include "base/simd.h"
 #include "base/vec.h"
-#include "emitter/arctangent.h"
+#include "light/arctangent.h"
 
 namespace troffer {
 
