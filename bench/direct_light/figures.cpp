@@ -8,7 +8,7 @@ namespace troffer::bench {
 Figures figures_of(const Pairs& p, const Answers& answers) {
   Figures f;
   std::vector<double> off;  // irradiance of the hits of a tile
-  double light = 0, emitter2 = 0;
+  double light = 0, light2 = 0;
   for (size_t t = 0; t < p.tiles.size(); ++t) {
     off.assign(p.tiles[t].size(), 0);
     for (size_t s = 0; s < p.scene.sources.size(); ++s)
@@ -25,14 +25,14 @@ Figures figures_of(const Pairs& p, const Answers& answers) {
         off[r] += unoccluded * e;
         light += unoccluded;
       }
-    for (const double e : off) emitter2 += e * e;
+    for (const double e : off) light2 += e * e;
   }
   const auto n = double(p.counted), hits = double(p.hits);
   f.rms = std::sqrt(f.rms / n);
   f.mean /= n;
   f.mean_size /= n;
   f.predicted = std::sqrt(f.predicted / n);
-  f.rms_light = std::sqrt(emitter2 / hits) / (light / hits);
+  f.rms_light = std::sqrt(light2 / hits) / (light / hits);
   return f;
 }
 

@@ -144,7 +144,7 @@ bool is_sane(const FileOptions& f) {
   return is_size(f.element_size) && is_size(f.patch_size) && f.join_angle_deg >= 0 &&
          f.join_angle_deg <= 180 && f.max_elements <= most && f.max_sheets <= most &&
          f.prune_hidden_sides <= 1 && f.unused == 0 && f.stored_per_point <= max_stored &&
-         is_amount(f.unshot_fraction) && is_amount(f.tolerance) && is_amount(f.emitter_share);
+         is_amount(f.unshot_fraction) && is_amount(f.tolerance) && is_amount(f.light_share);
 }
 
 // Whether the numbers of the header are ones that a solver can have written.
@@ -291,7 +291,7 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
   }
   RadiositySolution s;
   s.options = unpacked(h.options);
-  if (h.emitters != scene.emitters.size())
+  if (h.lights != scene.lights.size())
     throw InputError(file, 0, 0, "radiosity solution was computed with other light sources");
   s.mesh = mesh_for_radiosity(scene, tracer, tables, s.options.meshing, threads);
   if (h.points != s.mesh.points.size() || h.patches != s.mesh.patches.size() ||

@@ -151,7 +151,7 @@ TEST_CASE("options that are no finite number are refused by who takes the file's
   const Spoil places[] = {
       [](RadiosityOptions& o, float v) { o.unshot_fraction = v; },
       [](RadiosityOptions& o, float v) { o.tolerance = v; },
-      [](RadiosityOptions& o, float v) { o.emitter_share = v; },
+      [](RadiosityOptions& o, float v) { o.light_share = v; },
       [](RadiosityOptions& o, float v) { o.meshing.element_size = v; },
       [](RadiosityOptions& o, float v) { o.meshing.join_angle_deg = v; },
   };
