@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/outputs.h"
 #include "app/points_csv.h"
 #include "app/progress.h"
 #include "app/signals.h"
@@ -22,7 +23,7 @@ int run_measure(const MeasureCommand& c) {
   options.seed = c.seed;
   if (options.method == Method::fixed && options.indirect != Indirect::none && !c.is_quiet)
     fmt::print(stderr, "warning: --method fixed measures direct light only\n");
-  if (!c.output.empty()) check_can_write(c.output);
+  const std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
   const std::vector<MeasuringPoint> points = read_points(c.points);
   const PreparedScene scene(load_scene(c.scene, c.lights, c.is_quiet));
 

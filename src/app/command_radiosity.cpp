@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/outputs.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
@@ -29,9 +30,7 @@ void check_command(const RadiosityCommand& c) {
     for (const char* other : {"exr", "hdr", "pfm", "png", "jpg", "pbrt", "obj", "csv", "json"})
       if (ending == other)
         throw UsageError("radiosity writes .gltf, .glb or a solution (.trad), not ." + ending);
-    check_can_write(path);
   }
-  if (!c.stats.empty()) check_can_write(c.stats);
 }
 
 void write_output(const std::string& path, const PreparedScene& scene,
@@ -136,6 +135,7 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
 int run_radiosity(const RadiosityCommand& c) {
   const Clock::time_point start = Clock::now();
   check_command(c);
+  const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   Seconds seconds;
   Scene imported = load_scene(c.scene, c.lights, c.is_quiet);
   seconds.import = seconds_since(start);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/outputs.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
@@ -107,11 +108,9 @@ int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
   c.options.method = parse_method(c.method);
   check_method(c.options.method, c.options.indirect, c.solution);
-  for (const std::string& path : c.outputs) {
+  for (const std::string& path : c.outputs)
     image_format(path);  // a wrong ending is a usage error before any work is done
-    check_can_write(path);
-  }
-  if (!c.stats.empty()) check_can_write(c.stats);
+  const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
 
   Seconds seconds;
   Scene imported = load_scene(c.scene, c.lights, c.is_quiet);

@@ -4,6 +4,8 @@
 
 #include <unistd.h>
 
+#include "image/temporary_files.h"
+
 namespace troffer {
 
 namespace {
@@ -12,11 +14,16 @@ namespace {
 StopFlag stop_requested = false;
 static_assert(StopFlag::is_always_lock_free);
 
+[[noreturn]] void end_at_once() {
+  remove_temporary_files();
+  _exit(130);
+}
+
 extern "C" void on_stop_signal(int) {
-  if (stop_requested.exchange(true)) _exit(130);
+  if (stop_requested.exchange(true)) end_at_once();
 }
 extern "C" void on_early_signal(int) {
-  _exit(130);
+  end_at_once();
 }
 
 void handle_stop_signals(void (*handler)(int)) {
@@ -31,6 +38,8 @@ void handle_stop_signals(void (*handler)(int)) {
 
 void exit_on_stop_signals() {
   handle_stop_signals(on_early_signal);
+  // A file as large as may be is an error of writing.
+  signal(SIGXFSZ, SIG_IGN);
 }
 
 const StopFlag& install_stop_handlers() {

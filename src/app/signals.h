@@ -1,4 +1,5 @@
-// SIGINT and SIGTERM ask for a stop; a second one ends the program at once.
+// SIGINT and SIGTERM ask for a stop; a second one ends the program at once, without what is written
+// half.
 #pragma once
 
 #include "base/parallel.h"

@@ -5,27 +5,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <climits>
 #include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <system_error>
 #include <utility>
-
-#include "base/error.h"
 
 namespace troffer {
 
 namespace {
-
-// The file behind a chain of links; the path itself where there is none.
-std::string resolve(const std::string& path) {
-  struct stat info {};
-  if (lstat(path.c_str(), &info) != 0 || !S_ISLNK(info.st_mode)) return path;
-  const auto release = [](char* p) { std::free(p); };
-  const std::unique_ptr<char, decltype(release)> real(realpath(path.c_str(), nullptr), release);
-  return real ? std::string(real.get()) : path;
-}
 
 std::string folder_of(const std::string& path) {
   const size_t slash = path.rfind('/');
@@ -34,35 +19,37 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(resolve(path_)) {
-  if (target_.empty()) fail(ENOENT);
-  if (target_.back() == '/') fail(EISDIR);
-  struct stat info {};
-  const bool exists = stat(target_.c_str(), &info) == 0;
-  if (exists && S_ISDIR(info.st_mode)) fail(EISDIR);
-  if (exists && access(target_.c_str(), W_OK) != 0) fail(errno);
-  if (exists && !S_ISREG(info.st_mode)) {
-    descriptor_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor_ < 0) fail(errno);
-  } else {
-    open_temporary();
-    // A file that was private stays private. Where this is not allowed the default will do.
-    if (exists && fchmod(descriptor_, info.st_mode & 0777) != 0) errno = 0;
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(output_target(path_)) {
+  if (target_.kind != OutputTarget::Kind::file) {
+    descriptor_ = open_stream(target_, path_);
+    return;
   }
+  open_temporary();
+  // A file that was private stays private. Where this is not allowed the default will do.
+  struct stat info {};
+  if (stat(target_.path.c_str(), &info) == 0 && fchmod(descriptor_, info.st_mode & 0777) != 0)
+    errno = 0;
 }
 
 // A hidden file in the target's folder; its name does not grow with the target's.
 void AtomicFile::open_temporary() {
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    temporary_ = folder_of(target_) + ".troffer-" + std::to_string(getpid()) + "-" +
+    temporary_ = folder_of(target_.path) + ".troffer-" + std::to_string(getpid()) + "-" +
                  std::to_string(attempt) + ".tmp";
+    cleaner_ = TemporaryFile(temporary_);
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ >= 0) return;
+    if (descriptor_ >= 0) break;
     if (errno != EEXIST) break;
   }
-  const int error = errno;
-  temporary_.clear();
-  fail(error);
+  if (descriptor_ < 0) {
+    const int error = errno;
+    temporary_.clear();
+    fail_to_write(path_, error);
+  }
+  if (are_temporary_files_removed()) {
+    discard();
+    fail_to_write(path_, "the program is ending");
+  }
 }
 
 AtomicFile::~AtomicFile() {
@@ -74,31 +61,24 @@ void AtomicFile::discard() noexcept {
   descriptor_ = -1;
   if (!temporary_.empty()) unlink(temporary_.c_str());
   temporary_.clear();
-}
-
-void AtomicFile::fail(int error) const {
-  throw EnvironmentError("cannot write " + path_ + ": " + std::generic_category().message(error));
+  cleaner_.forget();
 }
 
 void AtomicFile::write(std::span<const uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(errno);
-    bytes = bytes.subspan(size_t(n));
-  }
+  write_all(descriptor_, bytes.data(), bytes.size(), path_);
 }
 
 void AtomicFile::write(std::string_view text) {
-  write(std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size()));
+  write_all(descriptor_, text.data(), text.size(), path_);
 }
 
 void AtomicFile::commit() {
   const int result = close(std::exchange(descriptor_, -1));
-  if (result != 0) fail(errno);
+  if (result != 0) fail_to_write(path_, errno);
   if (temporary_.empty()) return;
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  if (std::rename(temporary_.c_str(), target_.path.c_str()) != 0) fail_to_write(path_, errno);
   temporary_.clear();
+  cleaner_.forget();
 }
 
 void write_file(const std::string& path, std::string_view text) {
@@ -107,8 +87,19 @@ void write_file(const std::string& path, std::string_view text) {
   file.commit();
 }
 
-void check_can_write(const std::string& path) {
-  const AtomicFile file(path);
+OutputReservation::OutputReservation(const std::string& path) {
+  const OutputTarget target = output_target(path);
+  if (target.kind == OutputTarget::Kind::stream)
+    descriptor_ = open_stream(target, path);
+  else if (target.kind == OutputTarget::Kind::file)
+    const AtomicFile file(path);
 }
+
+OutputReservation::~OutputReservation() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+OutputReservation::OutputReservation(OutputReservation&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 }  // namespace troffer

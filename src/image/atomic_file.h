@@ -6,12 +6,16 @@
 #include <string>
 #include <string_view>
 
+#include "image/output_target.h"
+#include "image/temporary_files.h"
+
 namespace troffer {
 
 // Writes to a temporary file beside the target; commit() renames it. Without commit() the
-// temporary goes and the target stays as it was. A target that exists and is no regular file (a
-// pipe, /dev/stdout) is written directly; a link keeps pointing to its file, which is replaced; a
-// replaced file keeps its permissions.
+// temporary goes and the target stays as it was, also where a signal's handler ends the process
+// (temporary_files.h). A target that exists and is no regular file (a pipe, a device), and an open
+// file of this process (/dev/stdout), is written directly; a link keeps pointing to its file, which
+// is replaced; a replaced file keeps its permissions.
 // Every failure throws EnvironmentError{"cannot write PATH: reason"}.
 class AtomicFile {
  public:
@@ -25,20 +29,31 @@ class AtomicFile {
   void commit();
 
  private:
-  [[noreturn]] void fail(int error) const;
   void open_temporary();
   void discard() noexcept;
 
-  std::string path_;       // as the caller gave it
-  std::string target_;     // behind links
+  std::string path_;  // as the caller gave it
+  OutputTarget target_;
   std::string temporary_;  // empty: none, the target is written directly
+  TemporaryFile cleaner_;
   int descriptor_ = -1;
 };
 
 // The whole of a small file in one call.
 void write_file(const std::string& path, std::string_view text);
 
-// Throws as AtomicFile would if the file cannot be begun: to be asked before long work.
-void check_can_write(const std::string& path);
+// An output that can be written, to be made before long work and kept until it is written: throws
+// as AtomicFile would if the file cannot be begun. A pipe is held open, as its reader would take it
+// for ended else.
+class OutputReservation {
+ public:
+  explicit OutputReservation(const std::string& path);
+  ~OutputReservation();
+  OutputReservation(OutputReservation&& other) noexcept;
+  OutputReservation& operator=(OutputReservation&&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
 
 }  // namespace troffer

@@ -169,10 +169,10 @@ TEST_CASE("AtomicFile replaces whole files only") {
         std::filesystem::perms::none);
   CHECK_NOTHROW(write_file("/dev/null", "x"));
   CHECK(std::filesystem::is_character_file("/dev/null"));
-  CHECK_NOTHROW(check_can_write(folder.path("new.csv")));
+  CHECK_NOTHROW(OutputReservation(folder.path("new.csv")));
   CHECK_FALSE(std::filesystem::exists(folder.path("new.csv")));
-  CHECK_THROWS_AS(check_can_write(folder.path("no/new.csv")), EnvironmentError);
-  CHECK_THROWS_AS(check_can_write(""), EnvironmentError);
+  CHECK_THROWS_AS(OutputReservation(folder.path("no/new.csv")), EnvironmentError);
+  CHECK_THROWS_AS(OutputReservation(""), EnvironmentError);
 }
 
 TEST_CASE("reading what is not there is an input error") {
