@@ -68,10 +68,11 @@ std::string printable(std::string_view text) {
   return without_control_characters(out);
 }
 
-JsonDocument::JsonDocument(std::string file, std::string text)
+JsonDocument::JsonDocument(std::string file, std::string text, const JsonLimits& limits)
     : file_(std::move(file)), text_(std::move(text)) {
   if (text_.starts_with("\xef\xbb\xbf"))
     throw InputError(file_, 1, 1, "not valid JSON: begins with a byte order mark");
+  check_limits(text_, limits, file_);
   try {
     json_ = std::make_unique<Json>(Json::parse(text_));
   } catch (const Json::parse_error& e) {

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "import/json_limits.h"
+
 namespace troffer {
 
 class JsonDocument;
@@ -68,8 +70,9 @@ class JsonNode {
 
 class JsonDocument {
  public:
-  // Parses `text` (UTF-8 without byte order mark); a syntax error throws InputError at its place.
-  JsonDocument(std::string file, std::string text);
+  // Parses `text` (UTF-8 without byte order mark); a syntax error throws InputError at its place,
+  // and so does more than the limits allow, before memory is taken for it.
+  JsonDocument(std::string file, std::string text, const JsonLimits& limits = {});
   ~JsonDocument();
   JsonDocument(const JsonDocument&) = delete;
   JsonDocument& operator=(const JsonDocument&) = delete;
