@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -66,7 +68,8 @@ std::vector<std::string> Finished::error_lines() const {
   return lines;
 }
 
-Running::Running(const Folder&, const std::vector<std::string>& arguments) {
+Running::Running(const Folder&, const std::vector<std::string>& arguments,
+                 const std::function<void()>& prepare) {
   static std::atomic<int> count = 0;
   const std::string base =
       (std::filesystem::temp_directory_path() /
@@ -89,6 +92,7 @@ Running::Running(const Folder&, const std::vector<std::string>& arguments) {
   // doctest has handlers of its own, and a shell's background job ignores SIGINT.
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
+  if (prepare) prepare();
   execv(argv[0], argv.data());
   _exit(127);
 }
@@ -102,26 +106,36 @@ Running::~Running() {
   unlink(err_.c_str());
 }
 
-void Running::send(int signal) const {
+double Running::processor_seconds() const {
+  clockid_t clock{};
+  timespec t{};
+  if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &t) != 0) return 0;
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+void Running::let_work(double seconds) const {
+  const auto has_ended = [&] {
+    siginfo_t info{};
+    return waitid(P_PID, id_t(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0;
+  };
+  while (processor_seconds() < seconds && !has_ended())
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+}
+
+void Running::send(int signal) {
+  seconds_at_signal_ = processor_seconds();
   kill(pid_, signal);
 }
 
-Finished Running::wait(double limit) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+Finished Running::wait() {
   int status = 0;
-  while (waitpid(pid_, &status, WNOHANG) == 0) {
-    if (elapsed() > limit) {
-      kill(pid_, SIGKILL);
-      waitpid(pid_, &status, 0);
-      break;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  rusage usage{};
+  wait4(pid_, &status, 0, &usage);
   pid_ = -1;
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
   Finished f;
-  f.seconds = elapsed();
+  f.processor_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  f.seconds_after_signal = f.processor_seconds - seconds_at_signal_;
   f.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   f.out = read_file(out_);
   f.err = read_file(err_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,24 +29,31 @@ std::string read_file(const std::string& path);
 struct Finished {
   int status = -1;  // exit status; 128 + signal where one ended it
   std::string out, err;
-  double seconds = 0;
+  double processor_seconds = 0;                  // in all
+  double seconds_after_signal = 0;               // of those, the ones after the last send()
   std::vector<std::string> error_lines() const;  // err by lines
 };
 
-// A program under way; its standard output and error go to files in `folder`.
+// A program under way; its standard output and error go to files. Times are the processor's, so
+// that a busy machine changes nothing.
 class Running {
  public:
-  Running(const Folder& folder, const std::vector<std::string>& arguments);
+  // `prepare` is called in the new process before the program.
+  Running(const Folder& folder, const std::vector<std::string>& arguments,
+          const std::function<void()>& prepare = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
-  void send(int signal) const;
-  // Ends the program by force after `limit` seconds (status 128 + 9).
-  Finished wait(double limit = 60);
+  // Waits until it has worked for so many seconds, or has ended.
+  void let_work(double seconds) const;
+  double processor_seconds() const;
+  void send(int signal);
+  Finished wait();
 
  private:
   std::string out_, err_;
   int pid_ = -1;
+  double seconds_at_signal_ = 0;
 };
 
 Finished run_program(const Folder& folder, const std::vector<std::string>& arguments);

@@ -2,23 +2,13 @@
 #include <doctest/doctest.h>
 #include <signal.h>
 
-#include <chrono>
 #include <memory>
-#include <thread>
 
 #include "image/read_image.h"
 #include "program.h"
 
 using namespace troffer;
 using namespace troffer::test;
-
-namespace {
-
-void wait_seconds(double s) {
-  std::this_thread::sleep_for(std::chrono::duration<double>(s));
-}
-
-}  // namespace
 
 TEST_CASE("SIGINT and SIGTERM stop a long render, which writes what it has") {
   for (const int which : {SIGINT, SIGTERM})
@@ -28,13 +18,13 @@ TEST_CASE("SIGINT and SIGTERM stop a long render, which writes what it has") {
       Running program(folder,
                       {"render", scene, "-o", folder.path("o.exr"), "--spp", "1000000", "--method",
                        method, "--stats", folder.path("s.json"), "--threads", "1"});
-      wait_seconds(0.7);
+      program.let_work(0.5);
       program.send(which);
-      const Finished f = program.wait(30);
+      const Finished f = program.wait();
       CAPTURE(which);
       CAPTURE(method);
       CHECK(f.status == 130);
-      CHECK(f.seconds < 5);
+      CHECK(f.seconds_after_signal < 5);
       CHECK(folder.names() == std::vector<std::string>{"o.exr", "room.pbrt", "s.json"});
       const Image image = read_image(folder.path("o.exr"));
       CHECK(image.width == 40);
@@ -48,11 +38,11 @@ TEST_CASE("a signal stops measuring, within one point too") {
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1,0,0,0,0,1\n");
   Running program(folder, {"measure", scene, "--points", points, "-o", folder.path("o.csv"),
                            "--spp", "50000000", "--threads", "1"});
-  wait_seconds(0.7);
+  program.let_work(0.5);
   program.send(SIGINT);
-  const Finished f = program.wait(30);
+  const Finished f = program.wait();
   CHECK(f.status == 130);
-  CHECK(f.seconds < 5);
+  CHECK(f.seconds_after_signal < 5);
   CHECK(folder.names() == std::vector<std::string>{"o.csv", "p.csv", "room.pbrt"});
 }
 
@@ -67,11 +57,11 @@ TEST_CASE("many sources and many shadow rays: still stopped within seconds") {
   const std::string scene = folder.write("many.pbrt", text);
   Running program(folder, {"render", scene, "-o", folder.path("o.exr"), "--spp", "16", "--method",
                            "fixed", "--shadow-rays", "64", "--threads", "1"});
-  wait_seconds(1);
+  program.let_work(0.8);
   program.send(SIGINT);
-  const Finished f = program.wait(60);
+  const Finished f = program.wait();
   CHECK(f.status == 130);
-  CHECK(f.seconds < 5);
+  CHECK(f.seconds_after_signal < 5);
 }
 
 TEST_CASE("programs that write the same file do not clash") {

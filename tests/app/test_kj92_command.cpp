@@ -2,9 +2,7 @@
 #include <doctest/doctest.h>
 #include <signal.h>
 
-#include <chrono>
 #include <string>
-#include <thread>
 
 #include "image/read_image.h"
 #include "program.h"
@@ -13,10 +11,6 @@ using namespace troffer;
 using namespace troffer::test;
 
 namespace {
-
-void wait_seconds(double s) {
-  std::this_thread::sleep_for(std::chrono::duration<double>(s));
-}
 
 // The number behind "name": in a JSON file; -1 where there is none.
 double number_in(const std::string& json, const std::string& name) {
@@ -178,13 +172,13 @@ TEST_CASE("kj92: SIGINT during radiosity and during rendering leaves a picture t
         options.insert(options.end(), {"--spp", "1000000"});
       }
       Running program(folder, render_of(folder, scene, options));
-      wait_seconds(is_during_radiosity ? 0.5 : 3);
+      program.let_work(is_during_radiosity ? 0.4 : 2.5);
       program.send(which);
-      const Finished f = program.wait(60);
+      const Finished f = program.wait();
       CAPTURE(is_during_radiosity);
       CAPTURE(f.err);
       CHECK(f.status == 130);
-      CHECK(f.seconds < 8);
+      CHECK(f.seconds_after_signal < 8);
       const Image image = read_image(folder.path("o.exr"));
       CHECK(image.width == 40);
       CHECK(troffer::test::read_file(folder.path("s.json")).find("\"is_complete\": false") !=
