@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "import/gltf_builder.h"
 
@@ -32,11 +31,8 @@ Vec3 polygon_normal(const std::vector<Vec3>& p) {
   return normalize(cross(p[1] - p[0], p[2] - p[1]));
 }
 
-std::string shared_scene(const std::string& name) {
-  const std::string path = std::string(TROFFER_SOURCE_DIR) + "/../shared/scenes/" + name;
-  if (std::filesystem::exists(path)) return path;
-  MESSAGE("skipped: ../shared/scenes is not here");
-  return "";
+Scene scene_of_repository(const std::string& name) {
+  return import_gltf(std::string(TROFFER_SOURCE_DIR) + "/scenes/" + name);
 }
 
 }  // namespace
@@ -217,9 +213,7 @@ TEST_CASE("values of a wrong type are errors, never something else") {
 }
 
 TEST_CASE("kj92room: four polygon sources with the normals and radiances of its description") {
-  const std::string path = shared_scene("kj92room/kj92room.gltf");
-  if (path.empty()) return;
-  const Scene scene = import_gltf(path);
+  const Scene scene = scene_of_repository("kj92room/kj92room.gltf");
   REQUIRE(scene.lights.size() == 4);
   const std::array<Vec3, 4> normals{Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{-1, 0, 0}};
   const std::array<float, 4> radiances{4, 4, 600, 600};
@@ -238,9 +232,7 @@ TEST_CASE("kj92room: four polygon sources with the normals and radiances of its 
 }
 
 TEST_CASE("modern-hall: thirteen sources, three textures, glass") {
-  const std::string path = shared_scene("modern-hall/modern-hall.gltf");
-  if (path.empty()) return;
-  const Scene scene = import_gltf(path);
+  const Scene scene = scene_of_repository("modern-hall/modern-hall.gltf");
   CHECK(scene.lights.size() == 13);
   CHECK(scene.textures.size() == 3);
   for (const Texture& t : scene.textures) CHECK(t.kind == TextureKind::image);

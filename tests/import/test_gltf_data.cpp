@@ -1,8 +1,6 @@
 // Buffers, accessors, primitives, GLB: every way in which glTF stores triangles.
 #include <doctest/doctest.h>
 
-#include <chrono>
-
 #include "import/gltf_builder.h"
 
 using namespace troffer;

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include "base/error.h"
@@ -261,13 +260,7 @@ TEST_CASE("what OBJ files hold besides is left out with warnings") {
 }
 
 TEST_CASE("kj92room as OBJ has four sources that face into the room") {
-  const std::string path =
-      std::string(TROFFER_SOURCE_DIR) + "/../shared/scenes/kj92room/kj92room.obj";
-  if (!std::filesystem::exists(path)) {
-    MESSAGE("skipped: ../shared/scenes is not here");
-    return;
-  }
-  const Scene scene = import_obj(path);
+  const Scene scene = import_obj(std::string(TROFFER_SOURCE_DIR) + "/scenes/kj92room/kj92room.obj");
   CHECK(scene.warnings.entries().empty());
   CHECK(triangle_count(scene) == 92);
   REQUIRE(scene.lights.size() == 4);

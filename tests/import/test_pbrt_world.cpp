@@ -1,7 +1,6 @@
 // Cameras, transforms, orientation and emission of pbrt scenes.
 #include <doctest/doctest.h>
 
-#include <filesystem>
 #include <string>
 
 #include "base/error.h"
@@ -330,11 +329,7 @@ TEST_CASE("odd geometry is left out with counted warnings") {
 }
 
 TEST_CASE("kj92room has four sources that face into the room") {
-  const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/../shared/scenes/kj92room/";
-  if (!std::filesystem::exists(folder)) {
-    MESSAGE("skipped: ../shared/scenes is not here");
-    return;
-  }
+  const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/scenes/kj92room/";
   for (const char* name : {"kj92room_direct.pbrt", "kj92room_full.pbrt"}) {
     const Scene scene = import_pbrt(folder + name);
     CHECK(scene.warnings.entries().empty());
@@ -358,11 +353,7 @@ TEST_CASE("kj92room has four sources that face into the room") {
 }
 
 TEST_CASE("modern-hall has thirteen sources that face into the hall") {
-  const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/../shared/scenes/modern-hall/";
-  if (!std::filesystem::exists(folder)) {
-    MESSAGE("skipped: ../shared/scenes is not here");
-    return;
-  }
+  const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/scenes/modern-hall/";
   const Vec3 fronts[] = {{0, 0, 1},  {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1},
                          {0, 0, 1},  {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, -0.307563f, -0.951528f},
                          {0, 0, -1}, {1, 0, 0}, {0, 1, 0}};

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "import/import.h"
 #include "pictures.h"
@@ -12,13 +11,7 @@ using namespace troffer::test;
 
 namespace {
 
-const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/../shared/scenes/";
-
-bool is_present(const std::string& path) {
-  if (std::filesystem::exists(folder + path)) return true;
-  MESSAGE("skipped: no ", folder + path);
-  return false;
-}
+const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/scenes/";
 
 // Mean over pixels and channels. It does not depend on the resolution, pixels being boxes.
 Moments mean_of(const PreparedScene& scene, const Camera& camera, RenderOptions o, int sets) {
@@ -43,7 +36,6 @@ constexpr double direct_mean = 0.1761, full_mean = 0.3704;  // scenes/README.md
 }  // namespace
 
 TEST_CASE("kj92room: direct and full light, from pbrt and glTF") {
-  if (!is_present("kj92room/kj92room_direct.pbrt")) return;
   const PreparedScene pbrt(import_scene(folder + "kj92room/kj92room_direct.pbrt"));
   const PreparedScene gltf(import_scene(folder + "kj92room/kj92room.gltf"));
   const PreparedScene obj(import_scene(folder + "kj92room/kj92room.obj"));
@@ -71,7 +63,6 @@ TEST_CASE("kj92room: direct and full light, from pbrt and glTF") {
 }
 
 TEST_CASE("modern-hall-diffuse: as bright as its reference") {
-  if (!is_present("modern-hall/modern-hall-diffuse.pbrt")) return;
   const PreparedScene scene(import_scene(folder + "modern-hall/modern-hall-diffuse.pbrt"));
   RenderOptions o;
   o.method = Method::path;
