@@ -115,7 +115,6 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
   RawNode* node = new_node(allocator);
   node->item_count = uint32_t(count);
   for (size_t i = 0; i < count; ++i) node->items[i] = primitives[i].primID;
-  // how primitives are dealt to threads must not show
   std::sort(node->items, node->items + count);
   return node;
 }
@@ -176,7 +175,10 @@ void Occluders::build_tree() {
   args.setNodeChildren = set_children;
   args.setNodeBounds = set_bounds;
   args.createLeaf = create_leaf;
-  const auto* root = static_cast<const RawNode*>(rtcBuildBVH(&args));
+  // Embree would take all cores. Lists are cut short in the order of the tree: on one thread nothing
+  // of it can depend on how many there are.
+  const RawNode* root = nullptr;
+  run_on_one_thread([&] { root = static_cast<const RawNode*>(rtcBuildBVH(&args)); });
   if (root == nullptr || rtcGetDeviceError(embree.device) != RTC_ERROR_NONE)
     throw EnvironmentError("cannot build the hierarchy of occluders: out of memory");
 

@@ -23,7 +23,8 @@ constexpr uint32_t no_facet = 0xffffffffu;
 
 class Occluders {
  public:
-  // Throws EnvironmentError if memory runs out. The scene is not kept.
+  // Throws EnvironmentError if memory runs out. The scene is not kept. Works on the calling thread
+  // alone; what is built, the order of gathered lists too, depends on the scene alone.
   explicit Occluders(const Scene& scene);
 
   size_t facet_count() const { return facets_.size(); }

@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
+#include <time.h>
 
 #include <algorithm>
 #include <set>
 
+#include "base/parallel.h"
 #include "base/random.h"
 #include "base/warp.h"
 #include "trace/occluders.h"
@@ -106,6 +108,58 @@ TEST_CASE("gathering never misses a facet with a point inside the planes") {
   }
   CHECK(expected > 10000);
   CHECK(gathered < 5 * expected);
+}
+
+namespace {
+
+// All facets in the tree's order, and how many nodes it has.
+Occluders::Found all_of(const Occluders& occluders) {
+  Occluders::Found found;
+  occluders.gather({}, occluders.facet_count(), found);
+  return found;
+}
+
+// Many facets in few places, where no split is better than another.
+Scene piles() {
+  Scene s = soup(3, 30'000);
+  Mesh& m = s.meshes[0];
+  for (size_t i = 0; i < m.positions.size(); ++i)
+    if (i / 3 % 2 == 0) m.positions[i] = m.positions[i % 30];
+  return s;
+}
+
+double seconds_of(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+}  // namespace
+
+TEST_CASE("the tree is the same, whatever threads there are") {
+  const Scene scene = piles();
+  Occluders::Found one;
+  run_on_one_thread([&] { one = all_of(Occluders(scene)); });
+  CHECK(one.facets.size() > 15'000);
+  for (const int threads : {2, 5, 8})
+    parallel_for(1, threads, [&](size_t) {
+      const Occluders::Found many = all_of(Occluders(scene));
+      CHECK(many.facets == one.facets);
+      CHECK(many.visited_nodes == one.visited_nodes);
+    });
+}
+
+TEST_CASE("occluders are built on the thread that asks for them, and on no other") {
+  const Scene scene = soup(3, 100'000);
+  const double all = seconds_of(CLOCK_PROCESS_CPUTIME_ID),
+               own = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+  const Occluders occluders(scene);
+  const double by_all = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - all;
+  const double by_own = seconds_of(CLOCK_THREAD_CPUTIME_ID) - own;
+  CAPTURE(by_all);
+  CAPTURE(by_own);
+  CHECK(occluders.facet_count() > 90'000);
+  CHECK(by_all - by_own < 0.02 * by_all);
 }
 
 TEST_CASE("every hit lies on the facet that its triangle became") {
