@@ -119,7 +119,7 @@ TEST_CASE("certified patches: in the open, patches as sources add up to the gene
       points.push_back({0.6f + 0.56f * float(i), 0.6f + 0.6f * float(j), 0});
   const Vec3 eye{0.3f, 0.3f, 1.2f};
   const auto a = indirect_at(general.integrator, eye, points, 1, 1);
-  const auto b = indirect_at(promoted.integrator, eye, points, 64);
+  const auto b = indirect_at(promoted.integrator, eye, points, 32);
   double mean = 0;
   const double error = rms(b, a, mean);
   // what is left as general light shows that the test is not about nothing

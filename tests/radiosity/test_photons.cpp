@@ -70,7 +70,7 @@ TEST_CASE("light goes where photons go: an open room with a block and a pane of 
       Vec3{9, 9, 9}, {9, 9, 9.1f}, {9, 9.1f, 9}, {9, 9.1f, 9.1f}};  // a wall gone
   const Ready ready(std::move(s));
   RadiosityOptions o;
-  o.meshing = sizes(0.2f, 0.8f);
+  o.meshing = sizes(0.3f, 0.9f);
   o.unshot_fraction = 0.001f;
   const EnergyBalance b = ready.solve(o).balance;
   const Fate fate = trace_photons(ready, rho, specular, 200000);

@@ -43,7 +43,7 @@ TEST_CASE("heterogeneous furnace: the same radiance everywhere") {
   add_furnace_block(s, {0.3f, 0.3f, 1.5f}, {0.5f, 1.5f, 1.6f}, 0.75f, radiance);
   const Ready ready(std::move(s));
   RadiosityOptions o;
-  o.meshing = sizes(0.3f, 0.9f);
+  o.meshing = sizes(0.45f, 1.2f);
   o.unshot_fraction = 1e-4f;
   o.max_rays = 1024;
   o.tolerance = 2e-4f;
@@ -113,7 +113,7 @@ TEST_CASE("integrating sphere") {
   const Ready ready(std::move(s));
   RadiosityOptions o;
   o.meshing = sizes(0.3f, 0.9f);
-  o.unshot_fraction = 0.001f;
+  o.unshot_fraction = 0.003f;
   const RadiositySolution solution = ready.solve(o);
   CHECK(solution.is_complete);
   const double expected = solution.balance.emitted / (area_of(solution.mesh) * (1 - double(rho)));
@@ -134,6 +134,7 @@ TEST_CASE("stored contributions and the general value make the whole") {
   const Ready ready(lit_room(0.5f));
   RadiosityOptions o;
   o.meshing = sizes(0.4f, 1.2f);
+  o.unshot_fraction = 0.1f;
   const RadiositySolution four = ready.solve(o);
   o.stored_per_point = 0;
   const RadiositySolution none = ready.solve(o);
@@ -164,6 +165,7 @@ TEST_CASE("the result is the same for any number of threads") {
   const Ready ready(lit_room(0.6f));
   RadiosityOptions o;
   o.meshing = sizes(0.4f, 1.2f);
+  o.unshot_fraction = 0.1f;
   const RadiositySolution one = ready.solve(o, 1), three = ready.solve(o, 3);
   REQUIRE(one.general.size() == three.general.size());
   CHECK(std::memcmp(one.general.data(), three.general.data(), one.general.size() * sizeof(Rgb)) ==
@@ -256,7 +258,7 @@ TEST_CASE("surfaces of several meshes that coincide: copies count once, others e
     const Ready copies(std::move(s)), alone(lit_room(0.9f));
     RadiosityOptions o;
     o.meshing = sizes(1, 2);
-    o.unshot_fraction = 0.05f;
+    o.unshot_fraction = 0.1f;
     const RadiositySolution a = copies.solve(o), b = alone.solve(o);
     CHECK(a.is_complete);
     CHECK(a.shots < 6 * b.shots);

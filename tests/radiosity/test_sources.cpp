@@ -31,6 +31,7 @@ RadiosityOptions coarse(uint32_t stored) {
   RadiosityOptions o;
   o.meshing = sizes(0.4f, 1.2f);
   o.stored_per_point = stored;
+  o.unshot_fraction = 0.1f;
   return o;
 }
 

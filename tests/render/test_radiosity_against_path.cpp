@@ -68,7 +68,7 @@ TEST_CASE("kj92room: irradiance is the path tracer's, direct and in all") {
   options.meshing.element_size = 0.3f;  // coarser than by default, for time's sake
   const RadiositySolution s = preprocess(scene, options, 2, {}, never).solution;
   REQUIRE(s.is_complete);
-  const std::vector<uint32_t> chosen = choose_points(s, 300);
+  const std::vector<uint32_t> chosen = choose_points(s, 200);
   std::vector<MeasuringPoint> points;
   for (const uint32_t i : chosen)
     points.push_back({s.mesh.points[i].position, s.mesh.points[i].normal});
