@@ -42,7 +42,7 @@ void run_fixed(const Pairs& pairs, uint32_t n, Traversal traversal, uint64_t see
 void run_kj92(const Pairs& pairs, const BintreeOptions& options, bool has_coherence, uint64_t seed,
               Answers& out);
 
-// Certified visibility as integrate/flat_lights.cpp drives it.
+// Certified visibility as integrate/certified_lights.cpp drives it.
 void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t seed,
                    Answers& out);
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "integrate/prepared_scene.h"
-#include "shadow/certified_cells.h"
+#include "shadow/shadow_source.h"
 #include "trace/occluders.h"
 
 namespace troffer::bench {

@@ -1,7 +1,7 @@
 #include "base/random.h"
 #include "integrate/shadow_world.h"
 #include "methods.h"
-#include "shadow/certified_cluster.h"
+#include "shadow/receiver_clusters.h"
 
 namespace troffer::bench {
 
@@ -17,23 +17,13 @@ void take(const Pairs& pairs, size_t tile, size_t source, std::span<const uint32
     out.visible[at] = a.visible;
     out.variance[at] = a.variance;
     out.unoccluded[at] = a.unoccluded;
-  }
-}
-
-void take_rays(const Pairs& pairs, size_t tile, std::span<const uint32_t> members,
-               std::span<const RayAnswer> rays, Answers& out) {
-  for (const RayAnswer& r : rays) {
-    const size_t at = pairs.index(tile, r.tag, members[r.member]);
-    const float unoccluded = out.unoccluded[at];
-    out.rays += r.rays;
-    out.visible[at] += r.light / unoccluded;
-    out.variance[at] += r.light_variance / (unoccluded * unoccluded);
+    out.rays += a.rays;
   }
 }
 
 }  // namespace
 
-// The one place that drives the estimator.
+// As integrate/certified_lights.cpp does it.
 void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t seed,
                    Answers& out) {
   const DirectScene& scene = pairs.scene;
@@ -41,11 +31,12 @@ void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t
   out.unoccluded.assign(pairs.size(), 0);
   out.kinds.assign(pairs.size(), ShadowAnswer::below);
   const double start = thread_seconds();
-  CertifiedEstimator estimator(options);
+  CertifiedMemory memory;
   ShadowWorld world(scene.prepared.scene, scene.occluders, scene.prepared.tracer);
   ReceiverClusters clusters;
   std::vector<ShadowReceiver> receivers;
-  std::vector<SourceVisibility> answers;
+  ShadowCluster cluster;
+  std::vector<LightRequest> requests;
   std::vector<FoundFacets> found;
   for (size_t t = 0; t < pairs.tiles.size(); ++t) {
     const Tile& tile = pairs.tiles[t];
@@ -57,18 +48,19 @@ void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t
       for (const uint32_t m : members)
         receivers.push_back({tile.positions[m], tile.normals[m], tile.normals[m], tile.origins[m],
                              stream_of(tile, m, 0, seed)});
-      answers.resize(members.size());
-      estimator.begin_cluster(receivers);
-      for (size_t s = 0; s < scene.sources.size(); ++s) {
-        const SourceTerms terms{hash_of(s, 7u), float(scene.radiance[s]), uint32_t(s), nullptr};
-        estimator.evaluate(scene.sources[s], terms, world, found[s], answers);
-        take(pairs, t, s, members, answers, out);
-      }
-      take_rays(pairs, t, members, estimator.end_cluster(world), out);
+      cluster.set(receivers);
+      requests.clear();
+      for (size_t k = 0; k < scene.sources.size(); ++k)
+        requests.push_back(
+            {&scene.sources[k], nullptr, hash_of(k, 7u), float(scene.radiance[k]), &found[k]});
+      certified_light(cluster, requests, nullptr, world, options, memory,
+                      [&](uint32_t source, std::span<const SourceVisibility> answers) {
+                        take(pairs, t, source, members, answers, out);
+                      });
     }
   }
   out.seconds = thread_seconds() - start;
-  out.counters = estimator.counters();
+  out.counters = memory.counters;
 }
 
 }  // namespace troffer::bench

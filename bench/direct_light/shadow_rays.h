@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shadow/certified_cells.h"
+#include "shadow/shadow_source.h"
 #include "trace/ray.h"
 
 namespace troffer::bench {

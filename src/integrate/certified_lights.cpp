@@ -180,26 +180,34 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
     s.integrand.hits().push_back(
         {s.hits.positions[m], g < 0 ? nullptr : &s.hits.glossy_hits[size_t(g)]});
   }
+  s.cluster.set(s.receivers);
   choose(members, s);
-  s.answers.resize(members.size());
+  set_requests(s);
   s.drawn_sums.assign(members.size(), 0);
   s.drawn_squares.assign(members.size(), 0);
-  s.estimator.begin_cluster(s.receivers);
   for (const uint32_t weak : s.weak.weak) add_unoccluded(sources_[weak], members, s, out);
+  certified_light(s.cluster, s.requests, &s.integrand, s.world, s.options, s.memory,
+                  [&](uint32_t request, std::span<const SourceVisibility> answers) {
+                    add_answers(request, members, answers, s, out, counters);
+                  });
+  add_drawing_variance(members, s, out);
+}
+
+void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
+  s.requests.clear();
+  s.integrand.sources().clear();
   for (const ChosenSource& chosen : s.weak.chosen) {
     const CertifiedSource& source = sources_[chosen.source];
-    s.integrand.set_source(source);
-    const SourceTerms terms{source.stream, luminance(source.radiance) * chosen.weight,
-                            uint32_t(&chosen - s.weak.chosen.data()), &s.integrand};
-    FoundFacets& found = s.found[chosen.source];
+    LightRequest& r = s.requests.emplace_back();
     if (source.is_round)
-      s.estimator.evaluate(source.sphere, terms, s.world, found, s.answers);
+      r.sphere = &source.sphere;
     else
-      s.estimator.evaluate(source.flat, terms, s.world, found, s.answers);
-    add_answers(chosen, members, s, out, counters);
+      r.flat = &source.flat;
+    r.stream = source.stream;
+    r.brightness = luminance(source.radiance) * chosen.weight;
+    r.found = &s.found[chosen.source];
+    s.integrand.sources().push_back(&source);
   }
-  add_rays(s.estimator.end_cluster(s.world), members, s, out, counters);
-  add_drawing_variance(members, s, out);
 }
 
 // The sources to treat: all of them where a surface may pick the light of a weak one out.
@@ -228,29 +236,31 @@ void CertifiedLights::choose(std::span<const uint32_t> members, CertifiedLightsS
 void CertifiedLights::add_unoccluded(const CertifiedSource& source,
                                      std::span<const uint32_t> members, CertifiedLightsScratch& s,
                                      RadianceBatch& out) const {
-  const std::span<const float> unoccluded =
-      source.is_round ? s.estimator.unoccluded(source.sphere) : s.estimator.unoccluded(source.flat);
+  if (source.is_round)
+    unoccluded_light(s.cluster, source.sphere, s.unoccluded);
+  else
+    unoccluded_light(s.cluster, source.flat, s.unoccluded);
   for (uint32_t i = 0; i < members.size(); ++i) {
-    if (!(unoccluded[i] > 0)) continue;
+    if (!(s.unoccluded[i] > 0)) continue;
     const uint32_t m = members[i];
     out.add(s.hits.indices[m], s.hits.is_direct[m] != 0,
-            s.hits.weights[m] * source.radiance * unoccluded[i], 0);
+            s.hits.weights[m] * source.radiance * s.unoccluded[i], 0);
   }
 }
 
-void CertifiedLights::add_answers(const ChosenSource& chosen, std::span<const uint32_t> members,
+void CertifiedLights::add_answers(uint32_t request, std::span<const uint32_t> members,
+                                  std::span<const SourceVisibility> answers,
                                   CertifiedLightsScratch& s, RadianceBatch& out,
                                   Counters& counters) const {
+  const ChosenSource& chosen = s.weak.chosen[request];
   const CertifiedSource& source = sources_[chosen.source];
   for (uint32_t i = 0; i < members.size(); ++i) {
-    const SourceVisibility& a = s.answers[i];
+    const SourceVisibility& a = answers[i];
     if (a.answer == ShadowAnswer::below) continue;
+    count_answer(a, counters);
     const uint32_t m = members[i], index = s.hits.indices[m];
+    if (a.rays > 0) out.shadow_rays[index] += a.rays;
     const bool is_lit = a.answer == ShadowAnswer::lit, is_dark = a.answer == ShadowAnswer::dark;
-    counters.lit_certified += is_lit ? 1 : 0;
-    counters.dark_certified += is_dark ? 1 : 0;
-    counters.masked += a.answer == ShadowAnswer::masked ? 1 : 0;
-    counters.mixed += a.answer == ShadowAnswer::mixed ? 1 : 0;
     if (s.hits.is_first[m] != 0)
       out.sources[index] +=
           Rgb{is_lit || is_dark ? 0.0f : 1.0f, is_lit ? 1.0f : 0.0f, is_dark ? 1.0f : 0.0f};
@@ -264,26 +274,11 @@ void CertifiedLights::add_answers(const ChosenSource& chosen, std::span<const ui
       s.drawn_squares[i] += is_direct ? sqr(luminance(missing)) / float(chosen.draws) : 0.0f;
       continue;
     }
-    const bool has_value = s.integrand.is_wanted(i);
+    const bool has_value = s.integrand.is_wanted(request, i);
     const Rgb factor = has_value ? s.hits.weights[m] : s.hits.weights[m] * source.radiance;
     out.add(index, is_direct, has_value ? factor * a.value : factor * (a.unoccluded * a.visible),
             has_value ? sqr(luminance(factor)) * a.value_variance
                       : sqr(luminance(factor) * a.unoccluded) * a.variance);
-  }
-}
-
-void CertifiedLights::add_rays(std::span<const RayAnswer> rays, std::span<const uint32_t> members,
-                               const CertifiedLightsScratch& s, RadianceBatch& out,
-                               Counters& counters) const {
-  for (const RayAnswer& a : rays) {
-    const uint32_t m = members[a.member], index = s.hits.indices[m];
-    counters.shadow_rays += a.rays;
-    out.shadow_rays[index] += a.rays;
-    const ChosenSource& chosen = s.weak.chosen[a.tag];
-    const Rgb weight = s.hits.weights[m] * chosen.weight;
-    const Rgb factor = weight * sources_[chosen.source].radiance;
-    out.add(index, s.hits.is_direct[m] != 0, factor * a.light + weight * a.value,
-            sqr(luminance(factor)) * a.light_variance + sqr(luminance(weight)) * a.value_variance);
   }
 }
 

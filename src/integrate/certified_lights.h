@@ -16,8 +16,8 @@
 #include "integrate/source_integrand.h"
 #include "integrate/walk.h"
 #include "integrate/weak_sources.h"
-#include "shadow/certified.h"
-#include "shadow/certified_cluster.h"
+#include "shadow/certified_light.h"
+#include "shadow/receiver_clusters.h"
 #include "shadow/source_pieces.h"
 
 namespace troffer {
@@ -45,20 +45,33 @@ struct WaitingHits {
   void add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct);
 };
 
+// A pair of hit and source, by how it was answered, and its rays.
+inline void count_answer(const SourceVisibility& a, Counters& counters) {
+  counters.shadow_rays += a.rays;
+  counters.lit_certified += a.answer == ShadowAnswer::lit ? 1 : 0;
+  counters.dark_certified += a.answer == ShadowAnswer::dark ? 1 : 0;
+  counters.masked += a.answer == ShadowAnswer::masked ? 1 : 0;
+  counters.mixed += a.answer == ShadowAnswer::mixed ? 1 : 0;
+}
+
 // Memory of one thread.
 struct CertifiedLightsScratch {
-  CertifiedLightsScratch(const CertifiedOptions& options, ShadowWorld w, SourceIntegrand i)
-      : estimator(options), world(std::move(w)), integrand(std::move(i)) {}
+  CertifiedLightsScratch(const CertifiedOptions& o, ShadowWorld w, SourceIntegrand i)
+      : options(o), world(std::move(w)), integrand(std::move(i)) {}
   WaitingHits hits;
-  CertifiedEstimator estimator;
+  CertifiedOptions options;
   ShadowWorld world;
   SourceIntegrand integrand;
   std::vector<FoundFacets> found;  // per source: what this batch has learnt
   ReceiverClusters clusters;
-  std::vector<ShadowReceiver> receivers;  // of one cluster
-  std::vector<SourceVisibility> answers;
+  // of the cluster at hand
+  std::vector<ShadowReceiver> receivers;
+  ShadowCluster cluster;
   WeakSourcesScratch weak;
+  std::vector<LightRequest> requests;  // of the chosen sources
+  std::vector<float> unoccluded;
   std::vector<float> drawn_sums, drawn_squares;  // per receiver: luminance by drawn sources
+  CertifiedMemory memory;
 };
 
 class CertifiedLights {
@@ -89,12 +102,12 @@ class CertifiedLights {
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
   void choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const;
+  void set_requests(CertifiedLightsScratch& s) const;
   void add_unoccluded(const CertifiedSource& source, std::span<const uint32_t> members,
                       CertifiedLightsScratch& s, RadianceBatch& out) const;
-  void add_answers(const ChosenSource& chosen, std::span<const uint32_t> members,
-                   CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
-  void add_rays(std::span<const RayAnswer> rays, std::span<const uint32_t> members,
-                const CertifiedLightsScratch& s, RadianceBatch& out, Counters& counters) const;
+  void add_answers(uint32_t request, std::span<const uint32_t> members,
+                   std::span<const SourceVisibility> answers, CertifiedLightsScratch& s,
+                   RadianceBatch& out, Counters& counters) const;
   void add_drawing_variance(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
                             RadianceBatch& out) const;
 

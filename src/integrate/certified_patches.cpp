@@ -49,9 +49,11 @@ uint32_t PatchIntegrand::points_for(const Shooter& shooter) {
   return uint32_t(std::clamp(std::ceil(48 * std::pow(deviation, 4.0 / 3)), 4.0, 64.0));
 }
 
-void PatchIntegrand::evaluate(uint32_t, std::span<const Vec3> points, std::span<Rgb> values) {
+void PatchIntegrand::evaluate(uint32_t request, uint32_t, std::span<const Vec3> points,
+                              std::span<Rgb> values) {
+  const PatchSource& source = *sources_[request];
   for (size_t i = 0; i < points.size(); ++i)
-    values[i] = mean_radiance_ * share_at(*shooter_, points[i]);
+    values[i] = source.radiance * share_at(*source.shooter, points[i]);
 }
 
 CertifiedPatches::CertifiedPatches(const PreparedScene& scene, const RadiositySolution& solution,
@@ -80,18 +82,18 @@ CertifiedPatches::CertifiedPatches(const PreparedScene& scene, const RadiositySo
 }
 
 void CertifiedPatches::add_shooter(const RadiositySolution& solution, uint32_t patch) {
-  Shooter shooter = whole_patch_shooter(solution, patch);
+  shooters_.push_back(std::make_unique<Shooter>(whole_patch_shooter(solution, patch)));
+  const Shooter& shooter = *shooters_.back();
   const uint32_t points = PatchIntegrand::points_for(shooter);
   for (const LightPrimitive& piece : shooter.pieces) {
-    Source s;
+    PatchSource s;
     if (!make_flat_source(piece, false, s.flat)) continue;
     s.radiance = piece.mean_radiance;
-    s.shooter = uint32_t(shooters_.size());
+    s.shooter = &shooter;
     s.points = points;
     s.stream = hash_of(purpose_patches, patch, uint64_t(&piece - shooter.pieces.data()));
     sources_.push_back(std::move(s));
   }
-  shooters_.push_back(std::move(shooter));
 }
 
 CertifiedOptions CertifiedPatches::options(const CertifiedOptions& of_lights) {
@@ -156,38 +158,30 @@ void CertifiedPatches::illuminate_patch(std::span<const uint32_t> hits, Certifie
 void CertifiedPatches::illuminate_cluster(std::span<const uint32_t> sources,
                                           CertifiedPatchesScratch& s, ShadowWorld& world,
                                           RadianceBatch& out, Counters& counters) const {
-  s.answers.resize(s.members.size());
-  s.estimator.begin_cluster(s.receivers);
+  s.cluster.set(s.receivers);
+  s.requests.clear();
+  s.integrand.sources().clear();
   for (const uint32_t i : sources) {
-    const Source& source = sources_[i];
-    s.integrand.set_source(shooters_[source.shooter], source.radiance, source.points);
+    const PatchSource& source = sources_[i];
+    s.requests.push_back(
+        {&source.flat, nullptr, source.stream, luminance(source.radiance), &s.found[i]});
+    s.integrand.sources().push_back(&source);
     s.touched.push_back(i);
-    const SourceTerms terms{source.stream, luminance(source.radiance), i, &s.integrand};
-    s.estimator.evaluate(source.flat, terms, world, s.found[i], s.answers);
-    add_answers(source, s, out, counters);
   }
-  for (const RayAnswer& a : s.estimator.end_cluster(world)) {
-    const uint32_t m = s.members[a.member], index = s.hits.indices[m];
-    counters.shadow_rays += a.rays;
-    out.shadow_rays[index] += a.rays;
-    out.add(index, false, s.hits.weights[m] * (sources_[a.tag].radiance * a.light + a.value), 0);
-  }
-}
-
-void CertifiedPatches::add_answers(const Source& source, const CertifiedPatchesScratch& s,
-                                   RadianceBatch& out, Counters& counters) const {
-  for (size_t i = 0; i < s.members.size(); ++i) {
-    const SourceVisibility& a = s.answers[i];
-    if (a.answer == ShadowAnswer::below) continue;
-    counters.lit_certified += a.answer == ShadowAnswer::lit ? 1 : 0;
-    counters.dark_certified += a.answer == ShadowAnswer::dark ? 1 : 0;
-    counters.masked += a.answer == ShadowAnswer::masked ? 1 : 0;
-    counters.mixed += a.answer == ShadowAnswer::mixed ? 1 : 0;
-    if (a.answer == ShadowAnswer::dark) continue;
-    const Rgb light =
-        s.integrand.is_wanted() ? a.value : source.radiance * (a.unoccluded * a.visible);
-    out.add(s.hits.indices[s.members[i]], false, s.hits.weights[s.members[i]] * light, 0);
-  }
+  const auto add_answers = [&](uint32_t request, std::span<const SourceVisibility> answers) {
+    const PatchSource& source = *s.integrand.sources()[request];
+    for (size_t i = 0; i < s.members.size(); ++i) {
+      const SourceVisibility& a = answers[i];
+      if (a.answer == ShadowAnswer::below) continue;
+      count_answer(a, counters);
+      const uint32_t m = s.members[i], index = s.hits.indices[m];
+      out.shadow_rays[index] += a.rays;
+      if (a.answer == ShadowAnswer::dark) continue;
+      const Rgb light = source.points > 0 ? a.value : source.radiance * (a.unoccluded * a.visible);
+      out.add(index, false, s.hits.weights[m] * light, 0);
+    }
+  };
+  certified_light(s.cluster, s.requests, &s.integrand, world, s.options, s.memory, add_answers);
 }
 
 }  // namespace troffer

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,15 @@ namespace troffer {
 // shine.
 SelectionOptions certified_selection(bool has_patches);
 
+// A piece of a patch as a source of the pieces' mean radiance.
+struct PatchSource {
+  FlatSource flat;
+  Rgb radiance;                      // the mean over the patch
+  const Shooter* shooter = nullptr;  // of the patch
+  uint32_t points = 0;               // PatchIntegrand::points_for
+  uint64_t stream = 0;
+};
+
 // What points of a patch send on to matte hits: its radiance there.
 class PatchIntegrand final : public ShadowIntegrand {
  public:
@@ -31,36 +41,33 @@ class PatchIntegrand final : public ShadowIntegrand {
   // do, its mean does.
   static uint32_t points_for(const Shooter& shooter);
 
-  void set_source(const Shooter& shooter, const Rgb& mean_radiance, uint32_t points) {
-    shooter_ = &shooter;
-    mean_radiance_ = mean_radiance;
-    points_ = points;
-  }
-  bool is_wanted() const { return points_ > 0; }
-  uint32_t points(uint32_t) override { return points_; }
-  void evaluate(uint32_t member, std::span<const Vec3> points, std::span<Rgb> values) override;
+  std::vector<const PatchSource*>& sources() { return sources_; }  // of the cluster's requests
+  uint32_t points(uint32_t request, uint32_t) override { return sources_[request]->points; }
+  void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
+                std::span<Rgb> values) override;
 
  private:
-  const Shooter* shooter_ = nullptr;
-  Rgb mean_radiance_;
-  uint32_t points_ = 0;
+  std::vector<const PatchSource*> sources_;
 };
 
 // Memory of one thread.
 struct CertifiedPatchesScratch {
-  explicit CertifiedPatchesScratch(const CertifiedOptions& options) : estimator(options) {}
+  explicit CertifiedPatchesScratch(const CertifiedOptions& o) : options(o) {}
   WaitingHits hits;
   std::vector<uint32_t> patches;  // that the hits lie on
-  CertifiedEstimator estimator;
+  CertifiedOptions options;
   PatchIntegrand integrand;
   std::vector<FoundFacets> found;  // per source: what this batch has learnt …
   std::vector<uint32_t> touched;   // … of these
   std::vector<uint32_t> order;     // of the hits, by patch
   std::vector<Vec3> positions, horizons;
   ReceiverClusters clusters;
-  std::vector<uint32_t> members;  // of one cluster
+  // of the cluster at hand
+  std::vector<uint32_t> members;
   std::vector<ShadowReceiver> receivers;
-  std::vector<SourceVisibility> answers;
+  ShadowCluster cluster;
+  std::vector<LightRequest> requests;
+  CertifiedMemory memory;
 };
 
 class CertifiedPatches {
@@ -86,13 +93,6 @@ class CertifiedPatches {
                   Counters& counters) const;
 
  private:
-  struct Source {
-    FlatSource flat;
-    Rgb radiance;          // the mean over the patch
-    uint32_t shooter = 0;  // of the patch
-    uint32_t points = 0;   // PatchIntegrand::points_for
-    uint64_t stream = 0;
-  };
   void add_shooter(const RadiositySolution& solution, uint32_t patch);
   std::span<const uint32_t> sources_at(uint32_t patch) const {
     return {lit_by_.data() + first_[patch], first_[patch + 1] - first_[patch]};
@@ -101,11 +101,9 @@ class CertifiedPatches {
                         ShadowWorld& world, RadianceBatch& out, Counters& counters) const;
   void illuminate_cluster(std::span<const uint32_t> sources, CertifiedPatchesScratch& s,
                           ShadowWorld& world, RadianceBatch& out, Counters& counters) const;
-  void add_answers(const Source& source, const CertifiedPatchesScratch& s, RadianceBatch& out,
-                   Counters& counters) const;
 
-  std::vector<Shooter> shooters_;  // of treated patches
-  std::vector<Source> sources_;    // their pieces
+  std::vector<std::unique_ptr<const Shooter>> shooters_;  // of treated patches; they stay in place
+  std::vector<PatchSource> sources_;                      // their pieces
   // Per patch, the sources treated there: [first_[p], first_[p + 1]) of lit_by_.
   std::vector<size_t> first_;
   std::vector<uint32_t> lit_by_;

@@ -9,7 +9,7 @@
 #include "integrate/prepared_scene.h"
 #include "integrate/surface_scattering.h"
 #include "integrate/vertex.h"
-#include "shadow/certified.h"
+#include "shadow/source_task.h"
 
 namespace troffer {
 
@@ -53,21 +53,26 @@ class SourceIntegrand final : public ShadowIntegrand {
   // points: at how many points a source is looked at.
   SourceIntegrand(const PreparedScene& scene, uint32_t points) : scene_(scene), points_(points) {}
 
-  std::vector<IntegrandHit>& hits() { return hits_; }  // of the cluster
-  void set_source(const CertifiedSource& source) { source_ = &source; }
-  bool is_wanted(uint32_t member) const {
-    return source_->is_textured || hits_[member].glossy != nullptr;
+  // The cluster at hand: its hits, and its requests' sources, which must stay where they are.
+  std::vector<IntegrandHit>& hits() { return hits_; }
+  std::vector<const CertifiedSource*>& sources() { return sources_; }
+
+  bool is_wanted(uint32_t request, uint32_t member) const {
+    return sources_[request]->is_textured || hits_[member].glossy != nullptr;
   }
-  uint32_t points(uint32_t member) override { return is_wanted(member) ? points_ : 0; }
-  void evaluate(uint32_t member, std::span<const Vec3> points, std::span<Rgb> values) override;
+  uint32_t points(uint32_t request, uint32_t member) override {
+    return is_wanted(request, member) ? points_ : 0;
+  }
+  void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
+                std::span<Rgb> values) override;
 
  private:
-  Rgb radiance_at(const Vec3& point) const;
+  Rgb radiance_at(const CertifiedSource& source, const Vec3& point) const;
 
   const PreparedScene& scene_;
   uint32_t points_;
   std::vector<IntegrandHit> hits_;
-  const CertifiedSource* source_ = nullptr;
+  std::vector<const CertifiedSource*> sources_;
 };
 
 }  // namespace troffer

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "light/light_primitive.h"
-#include "shadow/certified_cells.h"
+#include "shadow/shadow_source.h"
 
 namespace troffer {
 

@@ -171,15 +171,19 @@ TEST_CASE("certified patches: a patch sends what its elements hold") {
     const Shooter shooter = whole_patch_shooter(room.solution, p);
     if (shooter.pieces.empty() || shooter.share.empty()) continue;
     ++uneven;
+    PatchSource source;
+    source.radiance = room.solution.shot_radiance[p];
+    source.shooter = &shooter;
+    source.points = 16;
     PatchIntegrand integrand;
-    integrand.set_source(shooter, room.solution.shot_radiance[p], 16);
+    integrand.sources().push_back(&source);
     CHECK(PatchIntegrand::points_for(shooter) <= 64);
     // the mean over the patch is what it shot
     std::vector<Vec3> points;
     for (uint32_t k = 0; k < 1024; ++k)
       points.push_back(point_on(shooter.pieces[0], SobolGroup(5, p, k).get2()));
     std::vector<Rgb> values(points.size());
-    integrand.evaluate(0, points, values);
+    integrand.evaluate(0, 0, points, values);
     Rgb sum;
     for (const Rgb& v : values) sum += v / float(values.size());
     if (shooter.pieces.size() == 1)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "shadow/certified.h"
+#include "shadow/certified_light.h"
 
 namespace troffer::test {
 
@@ -190,24 +190,28 @@ inline void add_random_facets(Random& r, BruteForceScene& scene) {
   }
 }
 
-// What one source alone comes to for a cluster, rays included; how many rays of each receiver.
+inline LightRequest request_for(const FlatSource& source, FoundFacets& found) {
+  return {&source, nullptr, 1, 1, &found};
+}
+inline LightRequest request_for(const SphereSource& source, FoundFacets& found) {
+  return {nullptr, &source, 1, 1, &found};
+}
+
+// What one source alone comes to for a cluster, rays included; and what was counted.
 template <class Source>
-std::vector<uint32_t> evaluate_alone(CertifiedEstimator& estimator, const Source& source,
-                                     std::span<const ShadowReceiver> receivers, ShadowScene& scene,
-                                     FoundFacets& found, std::span<SourceVisibility> out,
-                                     ShadowIntegrand* integrand = nullptr) {
-  std::vector<uint32_t> rays(receivers.size(), 0);
-  estimator.begin_cluster(receivers);
-  estimator.evaluate(source, {1, 1, 0, integrand}, scene, found, out);
-  for (const RayAnswer& a : estimator.end_cluster(scene)) {
-    SourceVisibility& o = out[a.member];
-    o.visible += a.light / o.unoccluded;
-    o.variance += a.light_variance / (o.unoccluded * o.unoccluded);
-    o.value += a.value;
-    o.value_variance += a.value_variance;
-    rays[a.member] += a.rays;
-  }
-  return rays;
+CertifiedCounters evaluate_alone(const CertifiedOptions& options, const Source& source,
+                                 std::span<const ShadowReceiver> receivers, ShadowScene& scene,
+                                 FoundFacets& found, std::span<SourceVisibility> out,
+                                 ShadowIntegrand* integrand = nullptr) {
+  ShadowCluster cluster;
+  cluster.set(receivers);
+  const LightRequest request = request_for(source, found);
+  CertifiedMemory memory;
+  certified_light(cluster, {&request, 1}, integrand, scene, options, memory,
+                  [&](uint32_t, std::span<const SourceVisibility> answers) {
+                    std::copy(answers.begin(), answers.end(), out.begin());
+                  });
+  return memory.counters;
 }
 
 }  // namespace troffer::test

@@ -28,10 +28,10 @@ TEST_CASE("lit and dark certificates are never contradicted by a ray") {
     const FlatSource source = random_source(r);
     add_random_facets(r, scene);
     const std::vector<ShadowReceiver> receivers = random_receivers(r, 16);
-    CertifiedEstimator estimator;
+    const CertifiedOptions options;
     FoundFacets found;
     std::vector<SourceVisibility> out(receivers.size());
-    evaluate_alone(estimator, source, receivers, scene, found, out);
+    evaluate_alone(options, source, receivers, scene, found, out);
     for (size_t i = 0; i < receivers.size(); ++i) {
       const bool is_lit = out[i].answer == ShadowAnswer::lit;
       if (!is_lit && out[i].answer != ShadowAnswer::dark) continue;

@@ -5,7 +5,7 @@
 
 #include "brute_force.h"
 #include "light/irradiance.h"
-#include "shadow/certified_cluster.h"
+#include "shadow/receiver_clusters.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -46,10 +46,9 @@ TEST_CASE("visible shares against a grid of rays on random scenes") {
     const std::vector<ShadowReceiver> receivers = random_receivers(r, 4);
     CertifiedOptions options;
     options.lattice = fine_lattice;
-    CertifiedEstimator estimator(options);
     FoundFacets found;
     std::vector<SourceVisibility> out(receivers.size());
-    evaluate_alone(estimator, source, receivers, scene, found, out);
+    evaluate_alone(options, source, receivers, scene, found, out);
     for (size_t i = 0; i < receivers.size(); ++i) {
       if (out[i].unoccluded < 1e-4f) continue;
       const double e = double(out[i].visible) - reference_share(scene, source, receivers[i], 60);
@@ -86,7 +85,6 @@ TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
       options.longest_list = is_complete ? 64 : 1;  // one facet known, two left to rays
       options.most_halvings = 0;
       options.rays.most_rays = options.rays.most_pair_rays = 4;
-      CertifiedEstimator estimator(options);
       double sum = 0, sum2 = 0, bound = 0;
       constexpr int seeds = 4000;
       for (int i = 0; i < seeds; ++i) {
@@ -94,7 +92,7 @@ TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
         ShadowReceiver here = x;
         here.stream = hash_of(uint64_t(i), 5u);
         SourceVisibility out;
-        evaluate_alone(estimator, source, {&here, 1}, scene, found, {&out, 1});
+        evaluate_alone(options, source, {&here, 1}, scene, found, {&out, 1});
         CHECK(out.answer == (is_complete ? ShadowAnswer::masked : ShadowAnswer::mixed));
         sum += double(out.visible);
         sum2 += double(out.visible) * double(out.visible);
@@ -117,9 +115,9 @@ TEST_CASE("what nothing hides is exact and costs no ray") {
     const FlatSource source = random_source(r);
     std::vector<ShadowReceiver> receivers = random_receivers(r, 8);
     std::vector<SourceVisibility> out(receivers.size());
-    CertifiedEstimator estimator;
+    const CertifiedOptions options;
     FoundFacets found;
-    evaluate_alone(estimator, source, receivers, scene, found, out);
+    evaluate_alone(options, source, receivers, scene, found, out);
     for (size_t k = 0; k < out.size(); ++k) {
       const double expected = polygon_irradiance(source.corners(), Vec3d(receivers[k].position),
                                                  Vec3d(receivers[k].normal), Sides::both);
@@ -143,12 +141,12 @@ TEST_CASE("a light set into a ceiling is not hidden by it, nor by itself; a shad
     receivers.push_back(
         receiver({float(i % 8) * 0.1f, float(i / 8) * 0.1f, 0}, {0, 0, 1}, uint64_t(i)));
   std::vector<SourceVisibility> out(receivers.size());
-  CertifiedEstimator estimator;
+  const CertifiedOptions options;
   FoundFacets found;
-  evaluate_alone(estimator, source, receivers, scene, found, out);
+  evaluate_alone(options, source, receivers, scene, found, out);
   for (const SourceVisibility& v : out) CHECK(v.answer == ShadowAnswer::lit);
   scene.facets.push_back(parallelogram_facet({-0.6f, -0.6f, 2.99f}, {1.2f, 0, 0}, {0, 1.2f, 0}));
-  evaluate_alone(estimator, source, receivers, scene, found, out);
+  evaluate_alone(options, source, receivers, scene, found, out);
   for (const SourceVisibility& v : out) CHECK(v.answer == ShadowAnswer::dark);
 }
 
@@ -160,9 +158,9 @@ TEST_CASE("thin occluders: none missed, mean error within 0.3 % of the unocclude
       receivers.push_back(receiver({0.02f + float(i % 8) * 0.03f, float(i / 8) * 0.03f, 0},
                                    {0, 0, 1}, hash_of(uint64_t(i), 1u)));
     std::vector<SourceVisibility> out(receivers.size());
-    CertifiedEstimator estimator;
+    const CertifiedOptions options;
     FoundFacets found;
-    evaluate_alone(estimator, source, receivers, scene, found, out);
+    evaluate_alone(options, source, receivers, scene, found, out);
     double error = 0;
     for (size_t i = 0; i < out.size(); ++i) {
       CHECK(out[i].answer == ShadowAnswer::masked);
@@ -255,14 +253,13 @@ TEST_CASE("a receiver whose own horizon differs from its normal loses what is be
     }
   CertifiedOptions options;
   options.lattice = fine_lattice;
-  CertifiedEstimator estimator(options);
   double unoccluded = 0, visible = 0;
   constexpr int seeds = 200;
   for (int i = 0; i < seeds; ++i) {
     FoundFacets found;
     SourceVisibility out;
     x.stream = hash_of(uint64_t(i), 9u);
-    evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1});
+    evaluate_alone(options, source, {&x, 1}, scene, found, {&out, 1});
     unoccluded = double(out.unoccluded);
     visible += double(out.visible) / seeds;
   }
@@ -282,10 +279,9 @@ TEST_CASE("near a large source: cells keep shares exact where weights vary by or
   std::vector<SourceVisibility> out(receivers.size());
   CertifiedOptions options;
   options.lattice = fine_lattice;
-  CertifiedEstimator estimator(options);
   FoundFacets found;
-  evaluate_alone(estimator, source, receivers, scene, found, out);
-  CHECK(estimator.counters().cells > 4);
+  const CertifiedCounters counters = evaluate_alone(options, source, receivers, scene, found, out);
+  CHECK(counters.cells > 4);
   double error2 = 0;
   for (size_t i = 0; i < out.size(); ++i) {
     const double e = double(out[i].visible) - reference_share(scene, source, receivers[i], 1200);
@@ -305,9 +301,9 @@ TEST_CASE("disks: exact where open, masked by a circle of samples") {
   for (uint64_t i = 0; i < 400; ++i) {
     for (size_t k = 0; k < 3; ++k) receivers[k].stream = hash_of(i, k);
     std::vector<SourceVisibility> out(3);
-    CertifiedEstimator estimator;
+    const CertifiedOptions options;
     FoundFacets found;
-    evaluate_alone(estimator, source, receivers, scene, found, out);
+    evaluate_alone(options, source, receivers, scene, found, out);
     half += double(out[0].visible) / 400;
     CHECK(double(out[0].unoccluded) ==
           doctest::Approx(disk_irradiance({0, 0, 2}, {0, 0, -1}, 0.5, {0, 0, 0}, {0, 0, 1})));
@@ -340,14 +336,13 @@ TEST_CASE("a disk that a receiver's own horizon cuts sends what stands above it"
         }
       CertifiedOptions options;
       options.lattice = fine_lattice;
-      CertifiedEstimator estimator(options);
       double light = 0;
       constexpr int seeds = 400;
       for (int i = 0; i < seeds; ++i) {
         FoundFacets found;
         SourceVisibility out;
         x.stream = hash_of(uint64_t(i), 9u);
-        evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1});
+        evaluate_alone(options, source, {&x, 1}, scene, found, {&out, 1});
         light += double(out.unoccluded) * double(out.visible) / seeds;
       }
       CAPTURE(is_hidden);

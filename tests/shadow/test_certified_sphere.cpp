@@ -1,4 +1,4 @@
-// Spheres and integrands of the certified estimator against brute force.
+// Spheres and integrands by certified visibility against brute force.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -56,10 +56,9 @@ TEST_CASE("spheres: exact where nothing hides them, shares by the disk that they
     const std::vector<ShadowReceiver> receivers = random_receivers(r, 4);
     CertifiedOptions options;
     options.lattice = fine_lattice;
-    CertifiedEstimator estimator(options);
     FoundFacets found;
     std::vector<SourceVisibility> out(receivers.size());
-    evaluate_alone(estimator, source, receivers, scene, found, out);
+    evaluate_alone(options, source, receivers, scene, found, out);
     for (size_t i = 0; i < receivers.size(); ++i) {
       const Vec3d x(receivers[i].position), n(receivers[i].normal);
       CHECK(double(out[i].unoccluded) ==
@@ -95,10 +94,10 @@ TEST_CASE("a sphere is not hidden by what is stuck into it") {
   // A socket: a plate through the sphere's middle, as wide as the sphere.
   scene.facets = {parallelogram_facet({-0.45f, -0.2f, 2}, {0.9f, 0, 0}, {0, 0.4f, 0})};
   const ShadowReceiver x{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 4e-6f}, 5};
-  CertifiedEstimator estimator;
+  const CertifiedOptions options;
   FoundFacets found;
   SourceVisibility out;
-  evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1});
+  evaluate_alone(options, source, {&x, 1}, scene, found, {&out, 1});
   CHECK(double(out.visible) == doctest::Approx(1).epsilon(0.02));
 }
 
@@ -108,12 +107,12 @@ namespace {
 class Lobe final : public ShadowIntegrand {
  public:
   Vec3 x, axis;
-  uint32_t points(uint32_t) override { return 32; }
+  uint32_t points(uint32_t, uint32_t) override { return 32; }
   static Rgb at(const Vec3& x, const Vec3& axis, const Vec3& p) {
     const Vec3 d = normalize(p - x);
     return Rgb{std::pow(std::max(dot(d, axis), 0.0f), 20.0f), 1 + p.x, 1};
   }
-  void evaluate(uint32_t, std::span<const Vec3> points, std::span<Rgb> values) override {
+  void evaluate(uint32_t, uint32_t, std::span<const Vec3> points, std::span<Rgb> values) override {
     for (size_t i = 0; i < points.size(); ++i) values[i] = at(x, axis, points[i]);
   }
 };
@@ -153,11 +152,10 @@ TEST_CASE("integrals over the visible part are unbiased, with complete lists and
     double sum[3] = {}, sum2[3] = {}, told = 0;
     constexpr int seeds = 4000;
     for (int i = 0; i < seeds; ++i) {
-      CertifiedEstimator estimator(options);
       FoundFacets found;
       x.stream = hash_of(uint64_t(i), 15u);
       SourceVisibility out;
-      evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1}, &lobe);
+      evaluate_alone(options, source, {&x, 1}, scene, found, {&out, 1}, &lobe);
       CHECK(out.answer == (is_complete ? ShadowAnswer::masked : ShadowAnswer::mixed));
       const double v[3] = {double(out.value.r), double(out.value.g), double(out.value.b)};
       for (size_t c = 0; c < 3; ++c) {
@@ -180,8 +178,8 @@ namespace {
 
 class Constant final : public ShadowIntegrand {
  public:
-  uint32_t points(uint32_t) override { return 8; }
-  void evaluate(uint32_t, std::span<const Vec3>, std::span<Rgb> values) override {
+  uint32_t points(uint32_t, uint32_t) override { return 8; }
+  void evaluate(uint32_t, uint32_t, std::span<const Vec3>, std::span<Rgb> values) override {
     std::fill(values.begin(), values.end(), Rgb{1});
   }
 };
@@ -207,11 +205,10 @@ TEST_CASE("a slit that most masks miss counts in an integral with its width, not
     int misses = 0;
     constexpr int seeds = 6000;
     for (int i = 0; i < seeds; ++i) {
-      CertifiedEstimator estimator(options);
       FoundFacets found;
       const ShadowReceiver x{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 0}, hash_of(uint64_t(i), 21u)};
       SourceVisibility out;
-      evaluate_alone(estimator, source, {&x, 1}, scene, found, {&out, 1},
+      evaluate_alone(options, source, {&x, 1}, scene, found, {&out, 1},
                      has_integrand ? &integrand : nullptr);
       REQUIRE(found.is_hopeless);
       const double value =

@@ -5,7 +5,7 @@
 
 #include "brute_force.h"
 #include "light/irradiance.h"
-#include "shadow/certified_irradiance.h"
+#include "shadow/unoccluded.h"
 
 using namespace troffer;
 using namespace troffer::test;

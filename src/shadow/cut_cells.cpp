@@ -1,86 +1,9 @@
-#include "shadow/certified_cells.h"
+#include "shadow/cut_cells.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "light/polygon.h"
-
 namespace troffer {
-
-std::vector<Vec3d> FlatSource::corners() const {
-  const auto at = [&](double u, double v) { return plane.origin + plane.u * u + plane.v * v; };
-  if (outline.empty()) return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
-  std::vector<Vec3d> c;
-  for (const Vec2& p : outline) c.push_back(at(double(p.x), double(p.y)));
-  return c;
-}
-
-namespace {
-
-// The rectangle along a side of the polygon that bounds it, as what the sides' directions span.
-struct Bounding {
-  Vec3d x, y;
-  Vec2d lower, upper;
-  double area() const { return (upper.x - lower.x) * (upper.y - lower.y); }
-};
-
-Bounding bounding_along(std::span<const Vec3> polygon, const Vec3d& normal, size_t side) {
-  const Vec3d origin(polygon[0]);
-  Bounding b;
-  b.x = normalize(Vec3d(polygon[(side + 1) % polygon.size()]) - Vec3d(polygon[side]));
-  b.y = cross(normal, b.x);
-  for (const Vec3& v : polygon) {
-    const Vec3d d = Vec3d(v) - origin;
-    b.lower = {std::min(b.lower.x, dot(d, b.x)), std::min(b.lower.y, dot(d, b.y))};
-    b.upper = {std::max(b.upper.x, dot(d, b.x)), std::max(b.upper.y, dot(d, b.y))};
-  }
-  return b;
-}
-
-}  // namespace
-
-bool make_flat_source(const LightPrimitive& piece, bool is_back, FlatSource& out) {
-  out = FlatSource();
-  if (piece.shape == PrimitiveShape::sphere) return false;
-  if (piece.shape == PrimitiveShape::disk) {
-    const Vec3d u = Vec3d(piece.axis_x) * (2 * double(piece.radius));
-    const Vec3d v = Vec3d(piece.axis_y) * (2 * double(piece.radius));
-    out.plane = {Vec3d(piece.centroid) - (u + v) * 0.5, u, v, piece.normal};
-    out.is_disk = true;
-  } else if (!make_flat_source({&piece.vertex(0), piece.vertex_count}, out)) {
-    return false;
-  }
-  if (is_back) out.plane.normal = -out.plane.normal;
-  return true;
-}
-
-bool make_flat_source(std::span<const Vec3> polygon, FlatSource& out) {
-  out = FlatSource();
-  if (polygon.size() < 3 || polygon.size() > most_outline_corners) return false;
-  const Vec3d area = area_vector(polygon);
-  if (!(length_squared(area) > 0) || !is_finite(area)) return false;
-  const Vec3d normal = normalize(area), origin(polygon[0]);
-  if (polygon.size() == 3 || is_parallelogram(polygon)) {
-    out.plane = {origin, Vec3d(polygon[1]) - origin, Vec3d(polygon.back()) - origin, normal};
-    if (polygon.size() == 3) out.outline = {{0, 0}, {1, 0}, {0, 1}};
-    return true;
-  }
-  Bounding best = bounding_along(polygon, normal, 0);
-  for (size_t side = 1; side < polygon.size(); ++side) {
-    const Bounding b = bounding_along(polygon, normal, side);
-    if (b.area() < (1 - 1e-6) * best.area()) best = b;
-  }
-  const Vec2d size = best.upper - best.lower;
-  if (!(size.x > 0) || !(size.y > 0)) return false;
-  out.plane = {origin + best.x * best.lower.x + best.y * best.lower.y, best.x * size.x,
-               best.y * size.y, normal};
-  for (const Vec3& v : polygon) {
-    const Vec3d d = Vec3d(v) - origin;
-    out.outline.push_back({float((dot(d, best.x) - best.lower.x) / size.x),
-                           float((dot(d, best.y) - best.lower.y) / size.y)});
-  }
-  return true;
-}
 
 namespace {
 
@@ -114,7 +37,7 @@ double area(const Polygon& p) {
   return std::abs(twice) / 2;
 }
 
-Polygon polygon_of(const CertifiedCell& cell) {
+Polygon polygon_of(const FlatCell& cell) {
   Polygon p;
   if (cell.count == 0) {
     p.count = 4;
@@ -130,8 +53,8 @@ Polygon polygon_of(const CertifiedCell& cell) {
 }
 
 // The polygon, given in (u,v) of `plane`, in the parallelogram that bounds it.
-CertifiedCell cell_of(const Parallelogram& plane, const Polygon& p) {
-  CertifiedCell cell;
+FlatCell cell_of(const Parallelogram& plane, const Polygon& p) {
+  FlatCell cell;
   if (p.count < 3) return cell;
   Vec2d lower = p.v[0], upper = p.v[0];
   for (int i = 1; i < p.count; ++i) {
@@ -178,7 +101,7 @@ struct Terms {
   std::array<double, 9> gain{};  // mean times area
 };
 
-Terms terms_of(const CertifiedCell& cell, const ReceiverHull& hull) {
+Terms terms_of(const FlatCell& cell, const ReceiverHull& hull) {
   const Parallelogram& p = cell.plane;
   Terms terms;
   const double area = length(cross(p.u, p.v));
@@ -199,7 +122,7 @@ Terms terms_of(const CertifiedCell& cell, const ReceiverHull& hull) {
 }
 
 // So far from the receivers that its term varies little.
-bool is_far(const CertifiedCell& cell, const ReceiverHull& hull) {
+bool is_far(const FlatCell& cell, const ReceiverHull& hull) {
   const Parallelogram& p = cell.plane;
   double radius = 0;
   for (int i = 0; i < hull.count; ++i)
@@ -210,10 +133,10 @@ bool is_far(const CertifiedCell& cell, const ReceiverHull& hull) {
 
 }  // namespace
 
-CertifiedCell visible_part(const FlatSource& source, const ReceiverHull& hull) {
+FlatCell visible_part(const FlatSource& source, const ReceiverHull& hull) {
   Polygon p;
   if (source.outline.empty()) {
-    p = polygon_of(CertifiedCell());
+    p = polygon_of(FlatCell());
   } else {
     for (const Vec2& v : source.outline)
       if (p.count < int(most_outline_corners)) p.v[size_t(p.count++)] = Vec2d(v);
@@ -228,7 +151,7 @@ CertifiedCell visible_part(const FlatSource& source, const ReceiverHull& hull) {
   return cell_of(source.plane, p);
 }
 
-bool halve(const CertifiedCell& cell, CertifiedCell& first, CertifiedCell& second) {
+bool halve(const FlatCell& cell, FlatCell& first, FlatCell& second) {
   const Polygon p = polygon_of(cell);
   const bool is_u = length_squared(cell.plane.u) >= length_squared(cell.plane.v);
   const double a = is_u ? 1 : 0, b = is_u ? 0 : 1;
@@ -237,10 +160,10 @@ bool halve(const CertifiedCell& cell, CertifiedCell& first, CertifiedCell& secon
   return first.corner_count > 0 && second.corner_count > 0;
 }
 
-void cut_cells(const CertifiedCell& cell, const ReceiverHull& hull, const CellLimits& limits,
-               std::vector<CertifiedCell>& out) {
+void cut_cells(const FlatCell& cell, const ReceiverHull& hull, const CellLimits& limits,
+               std::vector<FlatCell>& out) {
   struct Open {
-    CertifiedCell cell;
+    FlatCell cell;
     Terms terms;
   };
   std::vector<Open> open{{cell, {}}};
@@ -261,7 +184,7 @@ void cut_cells(const CertifiedCell& cell, const ReceiverHull& hull, const CellLi
       largest = share;
       chosen = &o;
     }
-    CertifiedCell first, second;
+    FlatCell first, second;
     if (chosen == nullptr || !halve(chosen->cell, first, second)) break;
     *chosen = {first, terms_of(first, hull)};
     open.push_back({second, terms_of(second, hull)});

@@ -1,4 +1,4 @@
-#include "shadow/certified_irradiance.h"
+#include "shadow/unoccluded.h"
 
 #include <algorithm>
 #include <array>

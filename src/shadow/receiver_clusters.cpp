@@ -1,4 +1,4 @@
-#include "shadow/certified_cluster.h"
+#include "shadow/receiver_clusters.h"
 
 #include <algorithm>
 #include <cmath>

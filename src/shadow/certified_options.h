@@ -1,0 +1,40 @@
+// Settings and counts of certified visibility (certified_light.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "shadow/coverage_mask.h"
+#include "shadow/cut_cells.h"
+
+namespace troffer {
+
+struct RayLimits {
+  uint32_t most_rays = 256;        // of a receiver, for its allowed error
+  float pair_error = 0.02f;        // allowed standard error of each source's visible share …
+  uint32_t most_pair_rays = 64;    // … unless that takes more rays than this,
+  uint32_t most_share_rays = 512;  // or for all pairs of a receiver more than this
+};
+
+struct CertifiedOptions {
+  MaskLattice lattice = coarse_lattice;
+  size_t longest_list = 1024;  // facets gathered for a cluster
+  int most_halvings = 3;       // of cluster or source, one within the other, where lists are longer
+  size_t split_above = 24;     // facets in a list that make halving a cluster worth while
+  size_t smallest_cluster = 16;  // receivers
+  CellLimits cells;
+  // Standard error allowed to rays of a receiver, relative to what all sources of the cluster would
+  // send unoccluded: kept unless that takes more rays than the limits allow.
+  float residual_error = 0.01f;
+  RayLimits rays;
+  uint32_t masks_with_rays = 4;  // per receiver and cell, where lists stay too long
+  size_t most_found = 64;        // facets in the lists that are not complete
+};
+
+struct CertifiedCounters {
+  uint64_t clusters = 0;                                 // pairs of cluster and source
+  uint64_t gathers = 0, candidates = 0, incomplete = 0;  // lists, facets in them, not complete ones
+  uint64_t cells = 0, masks = 0, mask_facets = 0;
+};
+
+}  // namespace troffer

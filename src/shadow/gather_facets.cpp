@@ -1,0 +1,201 @@
+#include "shadow/gather_facets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shadow/sphere_outline.h"
+
+namespace troffer {
+
+SourcePart& SourceParts::add() {
+  if (count_ == parts_.size()) parts_.emplace_back();
+  return parts_[count_++];
+}
+
+void gather_facets(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
+                   size_t most, uint64_t own, ShadowScene& scene, ShadowCandidates& out,
+                   CertifiedCounters& counters) {
+  const Shaft shaft = make_shaft(hull, outline, normal, scene.magnitude());
+  Box receivers, source;
+  for (int i = 0; i < hull.count; ++i) receivers.grow(Vec3(hull.corners[size_t(i)]));
+  for (const Vec3d& c : outline) source.grow(Vec3(c));
+  scene.candidates(shaft.all(), receivers, source, most, own, out);
+  ++counters.gathers;
+  counters.candidates += out.facets.size();
+  counters.incomplete += out.is_complete ? 0 : 1;
+}
+
+namespace {
+
+double diameter(std::span<const Vec3d> corners) {
+  double most = 0;
+  for (size_t i = 0; i < corners.size(); ++i)
+    for (size_t j = 0; j < i; ++j) most = std::max(most, length_squared(corners[i] - corners[j]));
+  return std::sqrt(most);
+}
+
+// Solid angle of the facet from a point, roughly.
+float apparent_size(const Quad& q, const Vec3& x) {
+  const Vec3 area = cross(q[2] - q[0], q[3] - q[1]) * 0.5f;
+  const Vec3 d = (q[0] + q[2]) * 0.5f - x;
+  const float square = dot(d, d) + 1e-12f;
+  return std::abs(dot(area, d)) / (square * std::sqrt(square));
+}
+
+}  // namespace
+
+void shorten_candidates(const FoundFacets& found, const Vec3d& centre, size_t most,
+                        const ShadowScene& scene, std::vector<FacetToAdd>& facets) {
+  for (const FoundFacets::Entry& e : found.entries()) {
+    const bool is_known =
+        std::any_of(facets.begin(), facets.end(), [&](const auto& f) { return f.id == e.id; });
+    if (!is_known) facets.push_back({scene.facet(e.id), e.id, false});
+  }
+  if (facets.size() <= most) return;
+  const Vec3 x(centre);
+  std::vector<std::pair<float, uint32_t>> order;
+  for (uint32_t i = 0; i < facets.size(); ++i) {
+    const bool is_found = std::any_of(found.entries().begin(), found.entries().end(),
+                                      [&](const auto& e) { return e.id == facets[i].id; });
+    order.emplace_back(is_found ? -1e30f : -apparent_size(facets[i].quad, x), i);
+  }
+  std::nth_element(order.begin(), order.begin() + std::ptrdiff_t(most), order.end());
+  std::vector<FacetToAdd> kept;
+  for (size_t i = 0; i < most; ++i) kept.push_back(facets[order[i].second]);
+  facets = std::move(kept);
+}
+
+namespace {
+
+// What a division carries along.
+struct Division {
+  const SourceTask& task;
+  ShadowScene& scene;
+  GatherMemory& memory;
+  CertifiedCounters& counters;
+
+  bool is_last_try(int halvings) const { return halvings == 0 || task.request.found->is_hopeless; }
+  // A last try keeps few, for what it finds stays incomplete.
+  size_t most_facets(bool is_last) const {
+    const CertifiedOptions& o = task.options;
+    return is_last ? std::min(o.longest_list, 4 * o.most_found) : o.longest_list;
+  }
+  void cut_list(const Vec3d& centre) {
+    task.request.found->is_hopeless = true;
+    shorten_candidates(*task.request.found, centre, task.options.most_found, scene,
+                       memory.candidates.facets);
+  }
+  // What has been gathered is a part's list.
+  SourcePart& add_part(std::span<const uint32_t> members, const ReceiverHull& hull) {
+    SourcePart& part = memory.parts.add();
+    part.members.assign(members.begin(), members.end());
+    part.hull = hull;
+    part.facets.swap(memory.candidates.facets);
+    part.is_complete = memory.candidates.is_complete;
+    part.is_hopeless = task.request.found->is_hopeless;
+    return part;
+  }
+
+  void flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
+            bool is_whole, int halvings);
+  void sphere(std::span<uint32_t> members, const ReceiverHull& hull, int halvings);
+};
+
+// Where there are too many facets, halves the larger of the two, receivers or source.
+void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
+                    bool is_whole, int halvings) {
+  const bool is_last = is_last_try(halvings);
+  const FlatSource& source = *task.request.flat;
+  gather_facets(hull, cell.all_corners(), source.plane.normal, most_facets(is_last),
+                no_round_source, scene, memory.candidates, counters);
+  if (is_last && memory.candidates.is_too_long) cut_list(hull.centre);
+  if (is_last || !memory.candidates.is_too_long) {
+    SourcePart& part = add_part(members, hull);
+    part.cell = cell;
+    part.is_whole = is_whole;
+    return;
+  }
+  FlatCell first, second;
+  const double hull_size = diameter({hull.corners.data(), size_t(hull.count)});
+  const bool can_halve_members = members.size() >= 2 * task.options.smallest_cluster;
+  if (can_halve_members && hull_size > 0.5 * diameter(cell.all_corners())) {
+    const size_t half = halve_members(task.cluster, members);
+    for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
+      flat(side, hull_of(task.cluster, side), cell, is_whole, halvings - 1);
+  } else if (!source.is_disk && halve(cell, first, second)) {
+    flat(members, hull, first, false, halvings - 1);
+    flat(members, hull, second, false, halvings - 1);
+  } else {
+    flat(members, hull, cell, is_whole, 0);
+  }
+}
+
+void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int halvings) {
+  const bool is_last = is_last_try(halvings);
+  const SphereSource& source = *task.request.sphere;
+  const SphereSquare square = square_about(source, hull);
+  ShadowCandidates& c = memory.candidates;
+  if (square.is_near) {  // nothing is known, and rays decide
+    c.facets.clear();
+    c.is_too_long = c.is_complete = false;
+  } else {
+    gather_facets(hull, square.corners, square.normal, most_facets(is_last), source.own, scene, c,
+                  counters);
+  }
+  if ((square.is_near || c.is_too_long) && !is_last && members.size() >= 2) {
+    const size_t half = halve_members(task.cluster, members);
+    for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
+      sphere(side, hull_of(task.cluster, side), halvings - 1);
+    return;
+  }
+  if (c.is_too_long) cut_list(hull.centre);
+  add_part(members, hull);
+}
+
+}  // namespace
+
+void divide_flat(const SourceTask& task, std::span<uint32_t> members, const ReceiverHull& hull,
+                 const FlatCell& cell, ShadowScene& scene, GatherMemory& memory,
+                 CertifiedCounters& counters) {
+  memory.parts.clear();
+  Division division{task, scene, memory, counters};
+  division.flat(members, hull, cell, true, task.options.most_halvings);
+}
+
+void divide_sphere(const SourceTask& task, std::span<uint32_t> members, const ReceiverHull& hull,
+                   ShadowScene& scene, GatherMemory& memory, CertifiedCounters& counters) {
+  memory.parts.clear();
+  Division division{task, scene, memory, counters};
+  division.sphere(members, hull, task.options.most_halvings);
+}
+
+bool has_rim(const FlatSource& source, double tolerance, size_t most, ShadowScene& scene) {
+  const Vec3d n = source.plane.normal;
+  const std::vector<Vec3d> corners = source.corners();
+  Vec3d middle;
+  for (const Vec3d& c : corners) middle = middle + c * (1.0 / double(corners.size()));
+  const double margin = 2 * tolerance;
+  std::vector<Plane> planes;
+  const auto add = [&](const Vec3d& outwards, const Vec3d& point) {
+    planes.push_back({Vec3(outwards), float(dot(outwards, point) + margin)});
+  };
+  add(n, source.plane.origin);
+  add(-n, source.plane.origin);
+  Box box;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Vec3d& c = corners[i];
+    box.grow(Vec3(c));
+    const Vec3d side = cross(corners[(i + 1) % corners.size()] - c, n);
+    const double size = length(side);
+    if (size > 0) add(side * ((dot(side, c - middle) < 0 ? -1 : 1) / size), c);
+  }
+  ShadowCandidates near;
+  scene.candidates(planes, box, box, most, no_round_source, near);
+  bool is_rim = !near.is_complete;
+  for (const FacetToAdd& f : near.facets)
+    for (const Vec3& v : f.quad)
+      is_rim = is_rim || dot(n, Vec3d(v) - source.plane.origin) > tolerance;
+  return is_rim;
+}
+
+}  // namespace troffer

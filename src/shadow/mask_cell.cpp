@@ -1,0 +1,199 @@
+#include "shadow/mask_cell.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+
+namespace troffer {
+
+namespace {
+
+// Variance of a count of lattice samples behind an edge, in samples squared per pair of neighbours
+// that the edge parts: large for edges that run along rows or columns of the lattice, least for
+// those along the sides of the source (docs/certified.md). Along diagonals it is large too, but as
+// many pairs in rows as in columns mostly mean edges along both sides.
+float edge_variance(float least_pairs, float most_pairs) {
+  const float ratio = least_pairs / most_pairs;
+  // A few pairs do not tell a direction.
+  return most_pairs < 6 || ratio > 0.05f ? 0.065f : 0.3f;
+}
+
+// Expected variance of a mask's share. Where samples differ from their neighbours as often as if
+// they were thrown at random, and not as rarely as in one piece, a pair stands for a quarter of a
+// sample squared; samples at the boundary are taken to weigh as much as the source's corners, in
+// the root mean square.
+float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const MaskWeight& sums) {
+  const auto rows = float(sums.row_pairs), columns = float(sums.column_pairs);
+  const float pairs = rows + columns;
+  if (pairs == 0) return 0;
+  float squares = 0;
+  for (int i = 0; i < frame.corner_count(); ++i) {
+    const MaskFrame::Corner& c = frame.corners()[i];
+    squares += sqr(weight_of(weights, int(c.k), int(c.j)));
+  }
+  // Corners of a disk's square may be far from it.
+  const float mean = sums.all / float(frame.lattice().samples());
+  const float weight2 = std::min(squares / float(frame.corner_count()), 4 * sqr(mean));
+  const auto n = float(frame.lattice().samples());
+  const float share = sums.share();
+  const float fewest = 4 * std::sqrt(n * std::min(share, 1 - share));  // of a square
+  const float random = 4 * n * share * (1 - share);
+  const float disorder = std::clamp((pairs - fewest) / std::max(random - fewest, 1.0f), 0.0f, 1.0f);
+  const float of_edge = edge_variance(std::min(rows, columns), std::max(rows, columns));
+  const float of_pair = of_edge + disorder * std::max(0.25f - of_edge, 0.0f);
+  return of_pair * pairs * weight2 / sqr(sums.all);
+}
+
+// Random numbers of a pair of receiver and cell, for several purposes and passes.
+constexpr uint64_t purpose_shift = 0x5851f42d4c957f2dull, purpose_points = 0x14057b7ef767814full;
+uint64_t numbers_of(const CellTask& cell, uint32_t member, uint64_t pass, uint64_t purpose) {
+  return mix64(cell.receiver(member).stream + cell.stream + pass * 0x9e3779b97f4a7c15ull + purpose);
+}
+
+void add_answer(const CellTask& cell, uint32_t member, const MaskShare& share, ShadowAnswer kind,
+                SourceResults& results) {
+  results.sums[member].add(cell.unoccluded[member], share.share, share.variance, kind);
+}
+
+// Hardly any light can come from where no sample stands above the horizon.
+constexpr MaskShare unknown_share{0.5f, 0.25f};
+
+}  // namespace
+
+MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& facets,
+                       uint64_t pass, MaskMemory& memory) {
+  const MaskFrame& frame = cell.frame;
+  const ShadowReceiver& r = cell.receiver(member);
+  CoverageMask& mask = memory.mask;
+  OpenSamples& samples = memory.samples;
+  const uint64_t bits = numbers_of(cell, member, pass, purpose_shift);
+  samples.shift = {unit_float(uint32_t(bits)), unit_float(uint32_t(bits >> 32))};
+  cover(frame, facets, frame.to_canvas(Vec3d(r.origin)), samples.shift, mask);
+  samples.open = 0;
+  if (!mask.is_any_open) return {0, 0};
+  const Vec3d x(r.position);
+  if (cell.source.cluster.has_own_horizons) {
+    const MaskRows inside = mask.inside;
+    clip_to_horizon(frame, x, r.horizon, samples.shift, mask);
+    if (cell.source.does_horizon_hide()) mask.inside = inside;
+  }
+  samples.rows = mask.open;
+  samples.weights = mask_weights(frame, x, r.normal, samples.shift);
+  const MaskWeight sums = weigh(frame, mask, samples.weights, samples.open_by_row);
+  if (!(sums.all > 0)) return {-1, 0};
+  samples.open = sums.open;
+  return {sums.share(), mask_variance(frame, samples.weights, sums)};
+}
+
+namespace {
+
+// Adds the integrand over the samples that are open, which send `light`, in sr: now, or by rays.
+void add_integral(const CellTask& cell, uint32_t member, float light, float share_variance,
+                  MaskMemory& memory, SourceResults& results) {
+  const SourceTask& source = cell.source;
+  const float share = cell.unoccluded[member] / source.unoccluded[member];
+  const auto wanted = float(source.wanted_points[member]);
+  const auto n = uint32_t(std::ceil(std::max(wanted * share, std::min(wanted, 4.0f))));
+  memory.points.clear();
+  draw_points(cell.frame, memory.samples, n, numbers_of(cell, member, 0, purpose_points),
+              memory.points);
+  if (memory.points.empty()) return;
+  memory.values.resize(memory.points.size());
+  source.integrand->evaluate(source.number, member, memory.points, memory.values);
+  if (!cell.is_complete)
+    return results.rays.add(member, cell.receiver(member).origin, memory.points, memory.values,
+                            light);
+  Rgb sum;
+  float squares = 0;
+  for (const Rgb& v : memory.values) {
+    sum += v;
+    squares += sqr(luminance(v));
+  }
+  const auto count = float(memory.points.size());
+  const float mean = luminance(sum) / count;
+  CellSum& o = results.sums[member];
+  o.value += sum * (light / count);
+  o.value_variance += share_variance * sqr(cell.unoccluded[member] * mean) +
+                      sqr(light) * std::max(squares - sqr(mean) * count, 0.0f) /
+                          (count * std::max(count - 1, 1.0f));
+}
+
+// What of the samples is open waits for rays.
+void queue_samples(const CellTask& cell, uint32_t member, float light, uint32_t pass,
+                   uint32_t passes, const MaskMemory& memory, SourceResults& results) {
+  results.rays.add(member, cell.receiver(member).origin, memory.samples, light,
+                   cell.source.unoccluded[member], numbers_of(cell, member, pass, purpose_points),
+                   passes);
+}
+
+MaskShare counted_look(const CellTask& cell, uint32_t member, const FacetList& facets,
+                       uint64_t pass, MaskMemory& memory, SourceResults& results) {
+  ++results.counters.masks;
+  results.counters.mask_facets += facets.size();
+  return look_at_cell(cell, member, facets, pass, memory);
+}
+
+void mask_complete(const CellTask& cell, uint32_t member, const FacetList& facets,
+                   MaskMemory& memory, SourceResults& results) {
+  const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
+  add_answer(cell, member, seen.share < 0 ? unknown_share : seen, ShadowAnswer::masked, results);
+  if (seen.share > 0 && cell.source.wanted_points[member] > 0)
+    add_integral(cell, member, seen.share * cell.unoccluded[member], seen.variance, memory,
+                 results);
+}
+
+// What a mask of an incomplete list finds dark is dark; for what is open rays count.
+void mask_incomplete(const CellTask& cell, uint32_t member, const FacetList& facets,
+                     MaskMemory& memory, SourceResults& results) {
+  const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
+  const float light = seen.share * cell.unoccluded[member];
+  add_answer(cell, member, seen.share < 0 ? unknown_share : MaskShare{0, seen.variance},
+             ShadowAnswer::mixed, results);
+  if (!(seen.share > 0)) return;
+  if (cell.source.wanted_points[member] > 0)
+    add_integral(cell, member, light, seen.variance, memory, results);
+  else
+    queue_samples(cell, member, light, 0, 1, memory, results);
+}
+
+// Where much is left to rays, they must not go through the same few hundred points over and over:
+// masks with several shifts share them. An integrand has a number of points of its own: one mask,
+// whose answer stands even if it finds nothing open.
+void mask_often(const CellTask& cell, uint32_t member, const FacetList& facets, MaskMemory& memory,
+                SourceResults& results) {
+  const bool has_integrand = cell.source.wanted_points[member] > 0;
+  const uint32_t passes = has_integrand ? 1 : cell.source.options.masks_with_rays;
+  bool is_above = false;
+  for (uint32_t pass = 0; pass < passes; ++pass) {
+    const MaskShare seen = counted_look(cell, member, facets, pass, memory, results);
+    is_above = is_above || seen.share >= 0;
+    if (!(seen.share > 0)) continue;
+    const float light = seen.share * cell.unoccluded[member];
+    if (has_integrand)
+      add_integral(cell, member, light, seen.variance, memory, results);
+    else
+      queue_samples(cell, member, light / float(passes), pass, passes, memory, results);
+  }
+  add_answer(cell, member, is_above ? MaskShare{0, 0} : unknown_share, ShadowAnswer::mixed,
+             results);
+}
+
+}  // namespace
+
+void add_lit(const CellTask& cell, uint32_t member, MaskMemory& memory, SourceResults& results) {
+  add_answer(cell, member, {1, 0}, ShadowAnswer::lit, results);
+  if (cell.source.wanted_points[member] == 0) return;
+  static const FacetList nothing;
+  if (look_at_cell(cell, member, nothing, 0, memory).share > 0)
+    add_integral(cell, member, cell.unoccluded[member], 0, memory, results);
+}
+
+void mask_cell(const CellTask& cell, std::span<const uint32_t> members, const FacetList& facets,
+               MaskMemory& memory, SourceResults& results) {
+  const auto mask =
+      cell.is_complete ? mask_complete : (cell.is_hopeless ? mask_often : mask_incomplete);
+  for (const uint32_t m : members) mask(cell, m, facets, memory, results);
+}
+
+}  // namespace troffer

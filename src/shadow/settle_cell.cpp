@@ -1,0 +1,59 @@
+#include "shadow/settle_cell.h"
+
+#include <algorithm>
+
+namespace troffer {
+
+Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetList& facets,
+                    FacetFlags& flags, FacetList& left) {
+  left.clear();
+  if (facets.size() > 0) {
+    const MaskFrame& frame = cell.frame;
+    MaskPoint corners[8];
+    for (int i = 0; i < hull.count; ++i)
+      corners[i] = mask_point(frame, frame.to_canvas(hull.corners[size_t(i)]), {0, 0});
+    classify(facets, {corners, size_t(hull.count)}, float(hull.slack * frame.stretch()), flags);
+    const auto hides_all = [](int32_t f) { return f == 2; };
+    if (std::any_of(flags.quads.begin(), flags.quads.end(), hides_all) ||
+        std::any_of(flags.triangles.begin(), flags.triangles.end(), hides_all))
+      return Certificate::dark;
+    left.keep_unsettled(facets, flags);
+  }
+  const bool is_lit = left.size() == 0 && cell.is_complete && !cell.source.does_horizon_hide();
+  return is_lit ? Certificate::lit : Certificate::none;
+}
+
+namespace {
+
+void settle(const CellTask& cell, std::span<uint32_t> members, const ReceiverHull& hull,
+            size_t depth, SettleMemory& memory, SourceResults& results) {
+  FacetList& left = memory.lists[depth + 1];
+  switch (certify(cell, hull, memory.lists[depth], memory.flags, left)) {
+    case Certificate::lit:
+      for (const uint32_t m : members) add_lit(cell, m, memory.masks, results);
+      return;
+    case Certificate::dark:
+      for (const uint32_t m : members)
+        results.sums[m].add(cell.unoccluded[m], 0, 0, ShadowAnswer::dark);
+      return;
+    case Certificate::none:
+      break;
+  }
+  const CertifiedOptions& o = cell.source.options;
+  if (left.size() < o.split_above || members.size() < 2 * o.smallest_cluster ||
+      depth >= SettleMemory::most_depth)
+    return mask_cell(cell, members, left, memory.masks, results);
+  const ShadowCluster& cluster = cell.source.cluster;
+  const size_t half = halve_members(cluster, members);
+  for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
+    settle(cell, side, hull_of(cluster, side), depth + 1, memory, results);
+}
+
+}  // namespace
+
+void settle_cell(const CellTask& cell, std::span<uint32_t> members, const ReceiverHull& hull,
+                 SettleMemory& memory, SourceResults& results) {
+  settle(cell, members, hull, 0, memory, results);
+}
+
+}  // namespace troffer

@@ -1,0 +1,83 @@
+#include "shadow/settle_part.h"
+
+#include "base/random.h"
+#include "shadow/sphere_outline.h"
+
+namespace troffer {
+
+namespace {
+
+// Whether the lattice is turned the other way, by the random numbers of a receiver.
+bool is_mirrored(uint64_t stream, const SourceTask& task, uint32_t member) {
+  return (mix64(stream + task.cluster.receivers[member].stream) & 1) != 0;
+}
+
+void set_list(const MaskFrame& frame, std::span<const FacetToAdd> facets, FacetList& list) {
+  list.clear();
+  list.add_many(frame, facets);
+  list.finish();
+}
+
+// The whole source's light, or that of the cell alone, set in `memory`.
+std::span<const float> unoccluded_of(const SourceTask& task, const SourcePart& part,
+                                     const FlatCell& cell, PartMemory& memory) {
+  const bool is_all = task.is_disk() || (part.is_whole && memory.cells.size() == 1);
+  if (is_all) return task.unoccluded;
+  unoccluded_light(task.cluster, *task.request.flat, cell.all_corners(), memory.unoccluded);
+  return memory.unoccluded;
+}
+
+}  // namespace
+
+void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
+                      PartMemory& memory, SourceResults& results) {
+  memory.cells.clear();
+  if (task.is_disk())
+    memory.cells.push_back(part.cell);
+  else
+    cut_cells(part.cell, part.hull, task.options.cells, memory.cells);
+  for (const FlatCell& cell : memory.cells) {
+    ++results.counters.cells;
+    stream = hash_of(stream, 1u);
+    const std::span<const float> unoccluded = unoccluded_of(task, part, cell, memory);
+    memory.members.clear();
+    for (const uint32_t m : part.members)
+      if (unoccluded[m] > 0) memory.members.push_back(m);
+    if (memory.members.empty()) continue;
+    const MaskFrame frame(cell.plane, task.options.lattice,
+                          is_mirrored(stream + task.request.stream, task, part.members[0]),
+                          part.hull.centre, cell.all_outline(), task.is_disk());
+    if (!part.is_complete) results.rays.frames.push_back(frame);
+    set_list(frame, part.facets, memory.settle.lists[0]);
+    const bool is_all = memory.members.size() == part.members.size();
+    settle_cell({task, frame, unoccluded, stream, part.is_complete, part.is_hopeless},
+                memory.members, is_all ? part.hull : hull_of(task.cluster, memory.members),
+                memory.settle, results);
+  }
+}
+
+void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& memory,
+                        SourceResults& results) {
+  const SphereSource& sphere = *task.request.sphere;
+  const size_t entering =
+      std::erase_if(part.facets, [&](const FacetToAdd& f) { return may_enter(f.quad, sphere); });
+  part.is_complete = part.is_complete && entering == 0;
+  ++results.counters.cells;
+  const uint64_t stream = task.request.stream;
+  for (const uint32_t m : part.members) {
+    const MaskFrame frame(outline_of(sphere, Vec3d(task.cluster.receivers[m].position)),
+                          task.options.lattice, is_mirrored(stream, task, m), part.hull.centre, {},
+                          true);
+    const CellTask disk{task, frame, task.unoccluded, stream, part.is_complete, part.is_hopeless};
+    if (part.is_complete && part.facets.empty() && !task.does_horizon_hide()) {
+      add_lit(disk, m, memory.settle.masks, results);
+      continue;
+    }
+    FacetList& list = memory.settle.lists[0];
+    set_list(frame, part.facets, list);
+    if (!part.is_complete) results.rays.frames.push_back(frame);
+    mask_cell(disk, {&m, 1}, list, memory.settle.masks, results);
+  }
+}
+
+}  // namespace troffer

@@ -1,0 +1,29 @@
+// A part of a source and its list of facets -> answers and what waits for rays. A flat source is
+// cut into cells over which its light does not vary much; of a sphere each receiver has its own
+// disk.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shadow/gather_facets.h"
+#include "shadow/settle_cell.h"
+
+namespace troffer {
+
+struct PartMemory {
+  std::vector<FlatCell> cells;
+  std::vector<float> unoccluded;  // per receiver, of a cell
+  std::vector<uint32_t> members;  // whom the cell lights
+  SettleMemory settle;
+};
+
+// stream: hash that each cell of the source takes on.
+void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
+                      PartMemory& memory, SourceResults& results);
+// Facets that may enter the sphere leave the part's list, which is then not complete.
+void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& memory,
+                        SourceResults& results);
+
+}  // namespace troffer

@@ -1,0 +1,63 @@
+// One source against one cluster: what every stage between the two wants to know.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/vec.h"
+#include "shadow/certified_options.h"
+#include "shadow/found_facets.h"
+#include "shadow/pair_answer.h"
+#include "shadow/ray_queue.h"
+#include "shadow/shadow_cluster.h"
+#include "shadow/shadow_source.h"
+
+namespace troffer {
+
+// What is sent on to a receiver through points of a source, per unit of projected solid angle:
+// radiance × BRDF, where either varies. request: the source's number in the cluster's list.
+class ShadowIntegrand {
+ public:
+  virtual ~ShadowIntegrand() = default;
+  // At how many points of the whole source; 0: not at all, the receiver wants its visibility.
+  virtual uint32_t points(uint32_t request, uint32_t member) = 0;
+  virtual void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
+                        std::span<Rgb> values) = 0;
+};
+
+// A source whose light a cluster wants: one of the two shapes.
+struct LightRequest {
+  const FlatSource* flat = nullptr;
+  const SphereSource* sphere = nullptr;
+  uint64_t stream = 0;           // hash that tells its random numbers from others'
+  float brightness = 1;          // luminance of its radiance
+  FoundFacets* found = nullptr;  // what earlier clusters have learnt; this one adds to it
+};
+
+struct SourceTask {
+  const CertifiedOptions& options;
+  const ShadowCluster& cluster;
+  LightRequest request;
+  uint32_t number;                          // of the request
+  std::span<const float> unoccluded;        // per receiver, of the whole source, sr
+  ShadowIntegrand* integrand;               // null: nobody has one
+  std::span<const uint32_t> wanted_points;  // per receiver, of the integrand
+
+  bool is_disk() const { return request.flat != nullptr && request.flat->is_disk; }
+  // Unoccluded light of polygons knows every horizon, that of round shapes that of the normal only:
+  // the receiver's own one hides.
+  bool does_horizon_hide() const {
+    return cluster.has_own_horizons && (request.sphere != nullptr || is_disk());
+  }
+};
+
+// Where the stages put what they find.
+struct SourceResults {
+  std::span<CellSum> sums;  // per receiver
+  RayQueue& rays;           // what only rays can tell
+  CertifiedCounters& counters;
+};
+
+}  // namespace troffer
