@@ -38,7 +38,7 @@ struct ShadowCandidates {
   bool is_too_long = false;  // there are more facets: fewer receivers, or less source, would help
 };
 
-// The scene as the estimator sees it: a few virtual calls per cluster and source; for single rays
+// The scene as certified visibility sees it: a few virtual calls per cluster and source; for single rays
 // none but facet(), of those that are stopped. It may keep memory between calls: one for each
 // thread.
 class ShadowScene {
