@@ -62,9 +62,24 @@ void print_summary(const RadiosityResult& r) {
              r.seconds);
   fmt::print(
       "of the emitted power {:.2f} % is absorbed, {:.2f} % left to specular surfaces, {:.2f} % "
-      "escaped, {:.2f} % not shot\n",
+      "escaped, {:.2f} % not shot, {:.2f} % is missing\n",
       percent(b.absorbed, b.emitted), percent(b.lost_to_specular, b.emitted),
-      percent(b.escaped, b.emitted), percent(b.unshot, b.emitted));
+      percent(b.escaped, b.emitted), percent(b.unshot, b.emitted),
+      percent(b.unaccounted, b.emitted));
+}
+
+const char* end_name(RadiosityEnd end) {
+  switch (end) {
+    case RadiosityEnd::converged:
+      return "converged";
+    case RadiosityEnd::stopped:
+      return "stopped";
+    case RadiosityEnd::out_of_shots:
+      return "out of shots";
+    case RadiosityEnd::out_of_rays:
+      return "out of rays";
+  }
+  return "";
 }
 
 struct Seconds {
@@ -85,17 +100,16 @@ std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
   j["stored_per_point"] = s.stored_per_point;
   j["shots"] = s.shots;
   j["rays"] = s.rays;
-  j["power"] = {{"emitted", b.emitted},
-                {"absorbed", b.absorbed},
-                {"specular", b.lost_to_specular},
-                {"escaped", b.escaped},
-                {"unshot", b.unshot}};
+  j["power"] = {{"emitted", b.emitted},           {"absorbed", b.absorbed},
+                {"specular", b.lost_to_specular}, {"escaped", b.escaped},
+                {"unaccounted", b.unaccounted},   {"unshot", b.unshot}};
   j["seconds"] = {{"import", t.import}, {"build", t.build}, {"preprocess", r.seconds},
                   {"write", t.write},   {"total", t.total}, {"total_cpu", cpu_seconds()}};
   j["solution_mb"] = double(s.memory_bytes()) * 1e-6;
   j["peak_memory_mb"] = peak_memory_mb();
   j["seed"] = c.options.seed;
   j["is_complete"] = s.is_complete;
+  j["end"] = end_name(s.end);
   return j.dump(2) + "\n";
 }
 
@@ -120,7 +134,8 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
       ->check(CLI::Range(0u, max_stored))
       ->capture_default_str();
   s->add_option("--unshot", c.options.unshot_fraction,
-                "Stop when less than this fraction of the emitted power is unshot")
+                "Stop when less is unshot than this fraction of the light that comes straight from "
+                "lights to diffuse surfaces")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
@@ -156,7 +171,10 @@ int run_radiosity(const RadiosityCommand& c) {
   seconds.write = seconds_since(mark);
   seconds.total = seconds_since(start);
   if (!c.stats.empty()) write_file(c.stats, statistics_json(c, result, seconds));
-  if (!c.is_quiet) print_summary(result);
+  if (!c.is_quiet) {
+    print_summary(result);
+    for (const std::string& w : radiosity_warnings(s)) fmt::print(stderr, "warning: {}\n", w);
+  }
   if (stop && !s.is_complete) {
     fmt::print(stderr, "interrupted: wrote the solution after {} shots\n", s.shots);
     return exit_interrupted;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "app/commands.h"
 #include "app/progress.h"
 #include "base/error.h"
@@ -24,10 +26,17 @@ std::unique_ptr<Kj92Preparation> prepare_method(const PreparedScene& scene, Meth
   std::optional<RadiositySolution> loaded;
   if (!solution.empty())
     loaded = load_radiosity(scene, read_file_bytes(solution), solution, nullptr, threads);
-  ProgressBar bar("radiosity", is_quiet);
-  return prepare(
-      scene, method, settings, indirect, std::move(loaded), threads,
-      [&](double f) { bar.update(f); }, stop);
+  std::unique_ptr<Kj92Preparation> made;
+  {
+    ProgressBar bar("radiosity", is_quiet);
+    made = prepare(
+        scene, method, settings, indirect, std::move(loaded), threads,
+        [&](double f) { bar.update(f); }, stop);
+  }
+  if (made && !is_quiet)
+    for (const std::string& w : radiosity_warnings(made->solution))
+      fmt::print(stderr, "warning: {}\n", w);
+  return made;
 }
 
 }  // namespace troffer

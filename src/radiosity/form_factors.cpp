@@ -19,13 +19,15 @@ constexpr int least_disc_points = 8;
 constexpr uint32_t purpose_visibility = 1;
 
 // Irradiance at x per unit radiance: the exact term, or the piece's middle for all of it where it
-// is far and wholly above the horizon.
-double piece_irradiance(const LightPrimitive& p, const Vec3& x, const Vec3& n) {
+// is far and wholly above the horizon. Surfaces in contact, nearer than `contact`, give each other
+// nothing: rays start and end farther from them than that, so that none could tell what is between.
+double piece_irradiance(const LightPrimitive& p, const Vec3& x, const Vec3& n, float contact) {
   if (p.vertex_count > 0) {
     const Vec3 d = p.centroid - x;
     const float along = dot(d, n), d2 = length_squared(d);
     if (along <= -p.radius) return 0;
     const float facing = -dot(d, Vec3(p.normal));
+    if (std::abs(facing) <= contact) return 0;
     if (facing <= 0 && !p.is_two_sided && d2 > sqr(p.radius)) {
       if (facing < -1e-4f * p.radius) return 0;
     }
@@ -159,7 +161,7 @@ class Gatherer {
     double sum = 0;
     for (size_t k = 0; k < pieces_; ++k) {
       const LightPrimitive& p = shooter_.pieces[k];
-      const double e = piece_irradiance(p, r.position, r.normal);
+      const double e = piece_irradiance(p, r.position, r.normal, shooter_.offset + r.offset);
       transfers_[i].unoccluded += p.mean_radiance * float(e);
       sums[k] = sum += e * double(luminance(p.mean_radiance));
     }

@@ -36,6 +36,9 @@ struct Patch {
   uint32_t first_point = 0, last_point = 0;
   bool is_back = false;
   float area = 0;  // m², the sum over its points
+  // Of `open_rays` rays from its points, spread by the cosine: the share that leaves the scene.
+  float open = 0;
+  uint32_t open_rays = 0;
 };
 
 // Pieces [first_piece, last_piece) are convex polygons that together are the sheet.

@@ -220,11 +220,19 @@ Vec3 hit_normal(const Scene& scene, const RadiosityMesh& mesh, const Hit& hit, u
   return s.is_inside_out ? s.centre - at : at - s.centre;
 }
 
-// Sides that see each other, step by step, down to one that emits: by rays from every side.
-std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& tracer,
-                                              const RadiosityMesh& mesh, const Elements& e,
-                                              const std::vector<ElementPoint>& sides, int threads) {
+// What rays from every side of every element find.
+struct Looks {
+  std::vector<uint8_t> reached;  // by light
+  std::vector<uint32_t> rays, leaving;
+};
+
+// Sides that see each other, step by step, down to one that emits, are reached.
+Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh& mesh,
+                  const Elements& e, const std::vector<ElementPoint>& sides, int threads) {
   const size_t n = sides.size();
+  Looks looks;
+  looks.rays.resize(n);
+  looks.leaving.resize(n);
   // Rays that leave the scene meet in one place: in the open, a few rays miss what shines on a
   // side.
   const auto lit = uint32_t(n), outside = uint32_t(n + 1);
@@ -252,7 +260,9 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
       hits.assign(rays.size(), {});
       tracer.closest(rays, hits);
       for (size_t k = 0; k < rays.size(); ++k) {
+        ++looks.rays[i];
         if (!hits[k].is_valid()) {
+          ++looks.leaving[i];
           seen[i].push_back(outside);
           continue;
         }
@@ -273,9 +283,9 @@ std::vector<uint8_t> sides_that_light_reaches(const Scene& scene, const Tracer& 
     if (is_source[i]) rooms.join(i, lit);
     for (const uint32_t j : seen[i]) rooms.join(i, j);
   }
-  std::vector<uint8_t> reached(n);
-  for (uint32_t i = 0; i < n; ++i) reached[i] = rooms.find(i) == rooms.find(lit);
-  return reached;
+  looks.reached.resize(n);
+  for (uint32_t i = 0; i < n; ++i) looks.reached[i] = rooms.find(i) == rooms.find(lit);
+  return looks;
 }
 
 }  // namespace
@@ -313,9 +323,8 @@ void make_points(const Scene& scene, const Tracer& tracer, const BsdfTables& tab
         sides[2 * i + side] = point_of(scene, mesh, e, s, element, side == 1);
     }
   });
-  std::vector<uint8_t> reached(sides.size(), 1);
-  if (options.prune_hidden_sides)
-    reached = sides_that_light_reaches(scene, tracer, mesh, e, sides, threads);
+  Looks looks = look_around(scene, tracer, mesh, e, sides, threads);
+  if (!options.prune_hidden_sides) looks.reached.assign(sides.size(), 1);
 
   std::vector<uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
@@ -327,15 +336,22 @@ void make_points(const Scene& scene, const Tracer& tracer, const BsdfTables& tab
     const uint32_t sheet = cut.element_sheet[order[first]];
     while (last < n && cut.element_sheet[order[last]] == sheet) ++last;
     for (uint32_t side = 0; side < 2; ++side) {
-      Patch patch{sheet, uint32_t(mesh.points.size()), 0, side == 1, 0};
+      Patch patch;
+      patch.sheet = sheet;
+      patch.first_point = uint32_t(mesh.points.size());
+      patch.is_back = side == 1;
+      double open = 0;
       for (size_t k = first; k < last; ++k) {
         const size_t i = 2 * size_t(order[k]) + side;
-        if (!reached[i] || !(sides[i].area > 0)) continue;
+        if (looks.reached[i] == 0 || !(sides[i].area > 0)) continue;
         mesh.element_points[order[k]][side] = uint32_t(mesh.points.size());
         sides[i].patch = uint32_t(mesh.patches.size());
         mesh.points.push_back(sides[i]);
         patch.area += sides[i].area;
+        patch.open_rays += looks.rays[i];
+        open += double(sides[i].area) * looks.leaving[i] / std::max(1u, looks.rays[i]);
       }
+      patch.open = patch.area > 0 ? float(open / double(patch.area)) : 0.0f;
       patch.last_point = uint32_t(mesh.points.size());
       if (patch.last_point > patch.first_point) mesh.patches.push_back(patch);
     }

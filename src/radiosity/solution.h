@@ -19,10 +19,13 @@ constexpr uint32_t no_source = 0xffffffffu;
 struct RadiosityOptions {
   MeshingOptions meshing;
   uint32_t stored_per_point = 4;  // contributions kept separately; at most max_stored
-  float unshot_fraction = 0.01f;  // stop when less of the emitted power than this is unshot
-  uint32_t max_shots = 20000;
-  int max_rays = 64;         // from a sample point to a shooter
-  float tolerance = 0.003f;  // of one transfer, in units of the scene's mean irradiance
+  // Stop when what is unshot is less than this part of the light that came to diffuse surfaces
+  // straight from lights.
+  float unshot_fraction = 0.01f;
+  uint32_t max_shots = 20000;       // bounds of effort: the solution then is as good as it got,
+  uint32_t max_million_rays = 400;  // and says so (RadiosityEnd)
+  int max_rays = 64;                // from a sample point to a shooter
+  float tolerance = 0.003f;         // of one transfer, in units of the scene's mean irradiance
   // To lights that would give more than `light_share` of the mean irradiance if nothing were in
   // the way, at least this many rays are cast, well spread, and all of them; 0: as to patches.
   int light_rays = 64;
@@ -39,15 +42,21 @@ struct StoredContribution {
   Rgb unoccluded;  // what it would be if nothing were in the way
 };
 
-// Luminance of power (W, or lm). emitted = absorbed + lost_to_specular + unshot + escaped.
+// Luminance of power (W, or lm). emitted = absorbed + lost_to_specular + unshot + escaped +
+// unaccounted.
 struct EnergyBalance {
   double emitted = 0;
   double shot = 0;              // by lights and patches
   double absorbed = 0;          // at sample points
   double lost_to_specular = 0;  // reflected or transmitted there, but not diffusely
   double unshot = 0;
-  double escaped = 0;  // shot but arrived nowhere: left the scene, or error of form factors
+  double escaped = 0;  // left the scene, as rays from what shoots tell
+  double unaccounted =
+      0;  // neither came to a sample point nor left: error of mesh and form factors
 };
+
+// Why a solver ended.
+enum class RadiosityEnd : uint32_t { converged, stopped, out_of_shots, out_of_rays };
 
 struct RadiositySolution {
   RadiosityOptions options;
@@ -65,7 +74,8 @@ struct RadiositySolution {
   EnergyBalance balance;
   uint32_t shots = 0;
   uint64_t rays = 0;
-  bool is_complete = false;  // false: stopped before the unshot power fell so low
+  RadiosityEnd end = RadiosityEnd::stopped;
+  bool is_complete = false;  // end == converged: the unshot power fell as low as was asked for
 
   std::span<const StoredContribution> contributions(uint32_t point) const {
     return {stored.data() + size_t(point) * stored_per_point, stored_per_point};
@@ -80,6 +90,9 @@ struct RadiositySolution {
   }
   size_t memory_bytes() const;
 };
+
+// What a user should be told of a solution: a balance that does not close within 1 %, an early end.
+std::vector<std::string> radiosity_warnings(const RadiositySolution& solution);
 
 // Irradiance at a place, without the ambient estimate.
 Rgb interpolated_irradiance(const RadiositySolution& solution, const Interpolation& at);

@@ -14,7 +14,7 @@ namespace troffer {
 namespace {
 
 constexpr char magic[8] = {'t', 'r', 'o', 'f', 'f', 'R', 'a', 'd'};
-constexpr uint32_t version = 2;
+constexpr uint32_t version = 3;
 static_assert(std::endian::native == std::endian::little, "solutions are little endian");
 
 uint64_t points_key(const RadiosityMesh& mesh) {
@@ -39,7 +39,7 @@ struct FileOptions {
   int32_t light_rays;
   float light_share;
   uint32_t seed[2];
-  uint32_t unused;
+  uint32_t max_million_rays;
 };
 static_assert(sizeof(FileOptions) == 64);
 
@@ -52,15 +52,15 @@ struct Header {
   uint64_t points;
   uint64_t rays;
   uint32_t shots;
-  uint32_t is_complete;
+  uint32_t end;
   float ambient[3];
   uint32_t lights;
-  double balance[6];
+  double balance[7];
   uint32_t patches;
   float mean_irradiance;
   uint64_t hash;  // of all else: header with 0 here, and body
 };
-static_assert(sizeof(Header) == 200);
+static_assert(sizeof(Header) == 208);
 
 struct FilePoint {
   float general[3], general_direct[3];
@@ -110,6 +110,7 @@ FileOptions packed(const RadiosityOptions& o) {
   f.light_share = o.light_share;
   f.seed[0] = uint32_t(o.seed);
   f.seed[1] = uint32_t(o.seed >> 32);
+  f.max_million_rays = o.max_million_rays;
   return f;
 }
 
@@ -128,6 +129,7 @@ RadiosityOptions unpacked(const FileOptions& f) {
   o.tolerance = f.tolerance;
   o.light_rays = f.light_rays;
   o.light_share = f.light_share;
+  o.max_million_rays = f.max_million_rays;
   o.seed = f.seed[0] | uint64_t(f.seed[1]) << 32;
   return o;
 }
@@ -143,7 +145,7 @@ bool is_sane(const FileOptions& f) {
   const auto is_size = [](float x) { return x >= 0 && x < 1e30f; };
   return is_size(f.element_size) && is_size(f.patch_size) && f.join_angle_deg >= 0 &&
          f.join_angle_deg <= 180 && f.max_elements <= most && f.max_sheets <= most &&
-         f.prune_hidden_sides <= 1 && f.unused == 0 && f.stored_per_point <= max_stored &&
+         f.prune_hidden_sides <= 1 && f.stored_per_point <= max_stored &&
          is_amount(f.unshot_fraction) && is_amount(f.tolerance) && is_amount(f.light_share);
 }
 
@@ -152,7 +154,8 @@ bool is_sane(const Header& h) {
   for (const double power : h.balance)
     if (!std::isfinite(power)) return false;
   return is_sane(h.options) && h.stored_per_point == h.options.stored_per_point &&
-         h.is_complete <= 1 && is_finite(get(h.ambient)) && is_amount(h.mean_irradiance);
+         h.end <= uint32_t(RadiosityEnd::out_of_rays) && is_finite(get(h.ambient)) &&
+         is_amount(h.mean_irradiance);
 }
 
 // Names the first setting that differs.
@@ -233,14 +236,14 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
   h.points = points;
   h.rays = s.rays;
   h.shots = s.shots;
-  h.is_complete = s.is_complete;
+  h.end = uint32_t(s.end);
   put(h.ambient, s.ambient);
   h.lights = s.light_count;
   h.patches = uint32_t(s.shot_radiance.size());
   h.mean_irradiance = s.mean_irradiance;
   const EnergyBalance& b = s.balance;
-  const double balance[6] = {b.emitted,          b.shot,   b.absorbed,
-                             b.lost_to_specular, b.unshot, b.escaped};
+  const double balance[7] = {b.emitted, b.shot,    b.absorbed,   b.lost_to_specular,
+                             b.unshot,  b.escaped, b.unaccounted};
   std::memcpy(h.balance, balance, sizeof(balance));
   h.hash = hash_of_file(h, body);
   std::vector<uint8_t> out;
@@ -300,10 +303,12 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
   s.light_count = uint32_t(scene.lights.size());
   s.stored_per_point = h.stored_per_point;
   s.ambient = get(h.ambient);
-  s.balance = {h.balance[0], h.balance[1], h.balance[2], h.balance[3], h.balance[4], h.balance[5]};
+  s.balance = {h.balance[0], h.balance[1], h.balance[2], h.balance[3],
+               h.balance[4], h.balance[5], h.balance[6]};
   s.shots = h.shots;
   s.rays = h.rays;
-  s.is_complete = h.is_complete != 0;
+  s.end = RadiosityEnd(h.end);
+  s.is_complete = s.end == RadiosityEnd::converged;
   const auto finite = [&](const float(&from)[3]) {
     const Rgb c = get(from);
     if (!is_finite(c))

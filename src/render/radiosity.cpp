@@ -31,15 +31,11 @@ RadiosityResult preprocess(const PreparedScene& scene, const RadiosityOptions& o
                            const ProgressCallback& progress, const StopFlag& stop) {
   check(options);
   const auto start = std::chrono::steady_clock::now();
-  double done = 0;
-  const double whole = std::log(std::min(0.99, double(options.unshot_fraction)));
   RadiosityResult result;
   result.solution = solve_radiosity(
       scene.scene, scene.tracer, scene.bsdf_tables, scene.primitives, options, threads,
       [&](const RadiosityProgress& p) {
-        if (!progress) return;
-        if (p.unshot > 0) done = std::clamp(std::log(p.unshot) / whole, done, 1.0);
-        progress(done);
+        if (progress) progress(p.done);
       },
       stop);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -20,8 +20,8 @@ struct RadiosityResult {
 // Throws UsageError for options that make no sense.
 void check(const RadiosityOptions& options);
 
-// `progress` gets the logarithm of the unshot power on its way to the end: it falls about
-// evenly. The result does not depend on `threads` (0 = all cores).
+// `progress` gets how far the unshot power is on its way down, by its logarithm, which falls about
+// evenly: it cannot rise. The result does not depend on `threads` (0 = all cores).
 RadiosityResult preprocess(const PreparedScene& scene, const RadiosityOptions& options, int threads,
                            const ProgressCallback& progress, const StopFlag& stop);
 
