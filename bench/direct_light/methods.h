@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrate/certified.h"
+#include "integrate/certified_direct.h"
 #include "pairs.h"
 #include "shadow/bintree.h"
 

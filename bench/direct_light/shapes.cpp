@@ -8,7 +8,7 @@
 #include "base/warp.h"
 #include "experiments.h"
 #include "generated_scenes.h"
-#include "integrate/certified.h"
+#include "integrate/methods.h"
 #include "light/irradiance.h"
 
 namespace troffer::bench {
@@ -137,7 +137,9 @@ void shapes(const Arguments& a) {
     s.materials.resize(1);
     shape.build(s);
     const PreparedScene scene(std::move(s));
-    const CertifiedIntegrator integrator(scene, std::nullopt, certified_settings(0.01, 1));
+    const MethodSettings settings;
+    const std::unique_ptr<Integrator> made = make_integrator(Method::certified, {scene, settings});
+    const Integrator& integrator = *made;
     const auto scratch = integrator.make_scratch();
     const SensorBatch points = sensors(20000, shape.off);
     RadianceBatch out;

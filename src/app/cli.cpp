@@ -47,8 +47,9 @@ std::vector<int> integers(const std::string& text, char separator, size_t count,
 }
 
 Indirect parse_indirect(const std::string& name) {
-  if (name == "auto") return Indirect::automatic;
-  return name == "none" ? Indirect::none : Indirect::radiosity;
+  const std::optional<Indirect> indirect = Indirect::find(name);
+  if (!indirect) throw UsageError("--indirect: there is no '" + name + "'");
+  return *indirect;
 }
 
 // kj92 with 0 initial rays samples no source: the picture is the radiosity solution.
@@ -135,7 +136,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
       ->required()
       ->allow_extra_args(false);
-  r->add_option("--method", c.method, "How light is computed: certified, kj92, fixed, path")
+  r->add_option("--method", c.method, "How light is computed: " + Method::names())
       ->capture_default_str();
   r->add_option("--spp", c.options.spp, "Viewing rays per pixel, before refinement")
       ->check(CLI::Range(1, 1 << 20))
@@ -155,7 +156,6 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option(
        "--indirect", raw.indirect,
        "auto; radiosity: interpolated (certified, kj92); none: only light straight from sources")
-      ->check(CLI::IsMember({"auto", "radiosity", "none"}))
       ->capture_default_str();
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
       ->check(CLI::Range(0, 1 << 20));
@@ -202,7 +202,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
   s->add_option("--points", c.points, "CSV file with header x,y,z,nx,ny,nz")->required();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
-  s->add_option("--method", c.method, "How light is computed: certified, kj92, fixed, path")
+  s->add_option("--method", c.method, "How light is computed: " + Method::names())
       ->capture_default_str();
   s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256]")
       ->check(CLI::Range(2, 1 << 26));
@@ -213,7 +213,6 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")
       ->check(CLI::Range(0, 1 << 20));
   s->add_option("--indirect", raw.indirect, "auto, or none: direct light only")
-      ->check(CLI::IsMember({"auto", "radiosity", "none"}))
       ->capture_default_str();
   s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
       ->delimiter(',')

@@ -28,7 +28,7 @@ int run_measure(const MeasureCommand& c) {
   const PreparedScene scene(load_scene(c.scene, c.lights, c.is_quiet));
 
   const StopFlag& stop = install_stop_handlers();
-  const std::unique_ptr<Kj92Preparation> preparation =
+  const std::unique_ptr<Preparation> preparation =
       prepare_method(scene, options.method, options.kj92, options.indirect, c.solution, c.threads,
                      c.is_quiet, stop);
   options.preparation = preparation.get();

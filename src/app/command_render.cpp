@@ -128,7 +128,7 @@ int run_render(RenderCommand c) {
     c.options.kj92.selection.only = lights_named(scene.scene, c.selected_lights);
   }
   double cpu = cpu_seconds();
-  const std::unique_ptr<Kj92Preparation> preparation =
+  const std::unique_ptr<Preparation> preparation =
       prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
                      c.options.threads, c.is_quiet, stop);
   seconds.preprocess_cpu = cpu_seconds() - cpu;

@@ -97,7 +97,7 @@ void warn_of_unused_options(const CLI::App& command, const std::string& method, 
 // What `method` needs beforehand, with a progress bar: the radiosity solution of the file
 // `solution`, or (empty) a new one, and the sources selected. Null for methods that need nothing,
 // and where it was interrupted.
-std::unique_ptr<Kj92Preparation> prepare_method(const PreparedScene& scene, Method method,
+std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method method,
                                                 const Kj92Settings& settings, Indirect indirect,
                                                 const std::string& solution, int threads,
                                                 bool is_quiet, const StopFlag& stop);

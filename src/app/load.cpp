@@ -26,11 +26,10 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& lights
 }
 
 Method parse_method(const std::string& name) {
-  if (name == "certified") return Method::certified;
-  if (name == "path") return Method::path;
-  if (name == "fixed") return Method::fixed;
-  if (name == "kj92") return Method::kj92;
-  throw UsageError("--method: there is no method '" + name + "'");
+  const std::optional<Method> method = Method::find(name);
+  if (!method)
+    throw UsageError("--method: there is no method '" + name + "', but " + Method::names());
+  return *method;
 }
 
 }  // namespace troffer

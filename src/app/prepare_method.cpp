@@ -13,16 +13,16 @@ void check_method(Method method, Indirect indirect, const std::string& solution)
   const bool is_certified = method == Method::certified;
   if (indirect == Indirect::radiosity && !is_certified)
     throw UsageError("--indirect radiosity belongs to --method kj92 and certified");
-  if (!solution.empty() && !needs_preparation(method, indirect))
+  if (!solution.empty() && !needs_radiosity(method, indirect))
     throw UsageError(is_certified ? "--solution and --indirect none exclude each other"
                                   : "--solution belongs to --method kj92 and certified");
 }
 
-std::unique_ptr<Kj92Preparation> prepare_method(const PreparedScene& scene, Method method,
+std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method method,
                                                 const Kj92Settings& settings, Indirect indirect,
                                                 const std::string& solution, int threads,
                                                 bool is_quiet, const StopFlag& stop) {
-  if (!needs_preparation(method, indirect)) return nullptr;
+  if (!needs_radiosity(method, indirect)) return nullptr;
   std::optional<RadiositySolution> loaded;
   if (!solution.empty())
     loaded = load_radiosity(scene, read_file_bytes(solution), solution, nullptr, threads);

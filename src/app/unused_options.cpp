@@ -16,10 +16,9 @@ struct MethodOption {
 };
 
 // Options of render and measure that not every method uses.
-constexpr std::array<MethodOption, 13> method_options{{
+constexpr std::array<MethodOption, 12> method_options{{
     {"--depth", "path"},
     {"--error", "certified"},
-    {"--max-spp", "certified and kj92"},
     {"--shadow-rays", "fixed and kj92"},
     {"--variance", "kj92"},
     {"--most-rays", "kj92"},

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "integrate/integrator.h"
-#include "integrate/walk.h"
+#include "integrate/light_tree_direct.h"
 
 namespace troffer {
 
@@ -20,7 +20,7 @@ struct PathOptions {
 class PathIntegrator final : public Integrator {
  public:
   PathIntegrator(const PreparedScene& scene, const PathOptions& options)
-      : scene_(scene), options_(options) {}
+      : scene_(scene), options_(options), lights_(scene, true) {}
 
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
   void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
@@ -35,12 +35,12 @@ class PathIntegrator final : public Integrator {
   void arrive(Scratch& scratch, RadianceBatch& out) const;
   void shade(Scratch& scratch, RadianceBatch& out, Counters& counters) const;
   void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;
-  void sample_lights(Scratch& scratch) const;
   void step_on(Scratch& scratch) const;
   bool is_last(const Walk& walk) const;
 
   const PreparedScene& scene_;
   PathOptions options_;
+  LightTreeDirect lights_;
 };
 
 }  // namespace troffer

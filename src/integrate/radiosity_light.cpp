@@ -15,6 +15,15 @@ RadiosityPlace RadiosityLight::place_of(const Hit& hit, const Vertex& v) const {
   return place;
 }
 
+void RadiosityLight::places(WaveHits& wave) const {
+  if (wave.places.size() == wave.size()) return;
+  wave.places.assign(wave.size(), {});
+  for (size_t i = 0; i < wave.hits.size(); ++i) {
+    const SurfaceScattering& s = wave.scatterings[i];
+    if (s.has_diffuse || s.has_rough) wave.places[i] = place_of(wave.hits[i], wave.vertices[i]);
+  }
+}
+
 GeneralIrradiance RadiosityLight::general(const RadiosityPlace& place) const {
   if (place.point == no_point) return {};
   return selection_.general(place.fragment, place.is_back, place.weights);

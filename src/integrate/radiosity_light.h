@@ -3,18 +3,11 @@
 
 #include "integrate/prepared_scene.h"
 #include "integrate/vertex.h"
+#include "integrate/wave.h"
 #include "radiosity/solution.h"
 #include "select/source_selection.h"
 
 namespace troffer {
-
-// Where a vertex lies on the radiosity mesh.
-struct RadiosityPlace {
-  uint32_t fragment = no_fragment;
-  uint32_t point = no_point;  // no_point: off the mesh, nothing is known here
-  bool is_back = false;       // of the fragment
-  Vec3 weights;
-};
 
 // Solution and selection belong to the scene; all three must outlive it.
 class RadiosityLight {
@@ -24,6 +17,11 @@ class RadiosityLight {
       : scene_(scene), solution_(solution), selection_(selection) {}
 
   RadiosityPlace place_of(const Hit& hit, const Vertex& v) const;
+  // Sets wave.places of all hits that scatter light other than mirrors do, if nobody has yet.
+  void places(WaveHits& wave) const;
+  uint32_t patch_of(const RadiosityPlace& place) const {
+    return solution_.mesh.points[place.point].patch;
+  }
   // Irradiance that is not sampled, W/m² or lx; zero off the mesh.
   GeneralIrradiance general(const RadiosityPlace& place) const;
   const RadiositySolution& solution() const { return solution_; }

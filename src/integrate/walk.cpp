@@ -81,6 +81,9 @@ void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, Radia
   out.normal[walk.index] = v.frame.normal;
   out.position[walk.index] = v.surface.position;
   out.is_hit[walk.index] = 1;
+  if (!out.records.empty())
+    out.records[walk.index] = {
+        v.surface.geometry, v.is_front, v.frame.normal, v.surface.position, {}};
 }
 
 float emission_weight(const PreparedScene& scene, const LightTree& tree, const Walk& walk,

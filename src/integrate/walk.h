@@ -57,7 +57,7 @@ bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, float lobe, const 
 bool survives_spawning(Walk& walk);
 
 // Fills in what AOVs want to know of the first surface.
-void record_first_hit(const Walk& walk, const Vertex& vertex, const Bsdf& bsdf, RadianceBatch& out);
+void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, RadianceBatch& out);
 
 // The weight of emission that the walk has run into at v, against `samples` samples of lights drawn
 // at the vertex before by `tree` (the power heuristic).

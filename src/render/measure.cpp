@@ -9,10 +9,6 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
-#include "integrate/certified.h"
-#include "integrate/fixed.h"
-#include "integrate/kj92.h"
-#include "integrate/path.h"
 #include "trace/surface.h"
 
 namespace troffer {
@@ -123,49 +119,32 @@ MeasureResult nothing_measured(size_t points) {
 }  // namespace
 
 int default_samples(Method method) {
-  // A sample of kj92 is all the rays that the bintrees want.
-  return method == Method::kj92 ? 256 : 4096;
+  return method.row().usual_measuring_samples;
 }
 
 MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
                       const MeasureOptions& options, const ProgressCallback& progress,
                       const StopFlag& stop) {
-  const bool is_direct_only = options.indirect == Indirect::none;
+  const MethodRow& row = options.method.row();
   const int spp = options.spp > 0 ? options.spp : default_samples(options.method);
-  const Kj92Preparation* preparation = options.preparation;
-  std::unique_ptr<Kj92Preparation> own;
-  if (needs_preparation(options.method, options.indirect) && preparation == nullptr) {
+  const Preparation* preparation = options.preparation;
+  std::unique_ptr<Preparation> own;
+  if (needs_radiosity(options.method, options.indirect) && preparation == nullptr) {
     own = prepare(scene, options.method, options.kj92, options.indirect, std::nullopt,
                   options.threads, nullptr, stop);
     if (!own) return nothing_measured(points.size());
     preparation = own.get();
   }
-  // fixed: an estimate is a set of shadow rays to every source.
-  constexpr int fixed_set = 16;
-  const bool is_fixed = options.method == Method::fixed;
-  const double lights = double(scene.scene.lights.size());
-  std::unique_ptr<Integrator> integrator;
-  double rays_per_sample = 1;
-  switch (options.method) {
-    case Method::fixed:
-      integrator = std::make_unique<FixedIntegrator>(scene, FixedOptions{fixed_set});
-      rays_per_sample = fixed_set * lights;
-      break;
-    case Method::kj92:
-      integrator =
-          std::make_unique<Kj92Integrator>(scene, preparation->solution, preparation->selection,
-                                           Kj92Options{options.kj92.sampling, is_direct_only});
-      rays_per_sample = options.kj92.sampling.tree.most_rays * lights;
-      break;
-    case Method::certified:
-      integrator = make_certified(scene, options.error, is_direct_only ? nullptr : preparation);
-      rays_per_sample = certified_settings(options.error, size_t(lights)).shadow_rays * lights;
-      break;
-    case Method::path:
-      integrator =
-          std::make_unique<PathIntegrator>(scene, PathOptions{options.depth, is_direct_only});
-      break;
-  }
+  MethodSettings settings;
+  settings.indirect = options.indirect;
+  settings.shadow_rays = row.rays_of_measuring_sample;
+  settings.error = options.error;
+  settings.trees = options.kj92.sampling;
+  settings.depth = options.depth;
+  settings.threads = options.threads;
+  const std::unique_ptr<Integrator> integrator =
+      make_integrator(scene, options.method, settings, preparation);
+  const double rays_per_sample = row.rays_per_sample(settings, scene.scene.lights.size());
   const int samples_per_batch =
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 
@@ -190,9 +169,9 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     w.sensors.offset = std::max(ray_offset(std::max({p.x, p.y, p.z})), least_offset);
     w.samples_per_batch = samples_per_batch;
     w.point = i;
-    result.values[i] =
-        measure_point(*integrator, points[i], hash_of(options.seed, i), spp,
-                      is_fixed ? fixed_set : 1, scene.scene.is_photometric, stop, w, counters[i]);
+    result.values[i] = measure_point(*integrator, points[i], hash_of(options.seed, i), spp,
+                                     row.rays_of_measuring_sample, scene.scene.is_photometric, stop,
+                                     w, counters[i]);
     if (stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
     is_measured[i] = 1;
     const std::lock_guard lock(progress_mutex);

@@ -31,7 +31,7 @@ struct MeasureOptions {
   int spp = 0;
   double error = 0.01;  // certified
   Kj92Settings kj92;
-  const Kj92Preparation* preparation = nullptr;  // made beforehand; null: made here if needed
+  const Preparation* preparation = nullptr;  // made beforehand; null: made here if needed
   int depth = -1;
   Indirect indirect = Indirect::automatic;
   int threads = 0;

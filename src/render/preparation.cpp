@@ -7,25 +7,36 @@
 
 namespace troffer {
 
-std::unique_ptr<Kj92Preparation> prepare_kj92(const PreparedScene& scene,
-                                              const Kj92Settings& settings, bool is_direct_only,
-                                              std::optional<RadiositySolution> solution,
-                                              int threads, const ProgressCallback& progress,
-                                              const StopFlag& stop) {
+std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
+                                     const Kj92Settings& settings, Indirect indirect,
+                                     std::optional<RadiositySolution> solution, int threads,
+                                     const ProgressCallback& progress, const StopFlag& stop) {
+  if (!needs_radiosity(method, indirect)) return nullptr;
+  const bool is_direct_only = indirect == Indirect::none;
   const auto start = std::chrono::steady_clock::now();
   if (!solution) {
     RadiosityOptions options = settings.radiosity;
-    if (is_direct_only) options.unshot_fraction = 1;
+    if (is_direct_only) options.unshot_fraction = 1;  // only lights shoot
     solution = preprocess(scene, options, threads, progress, stop).solution;
   }
   if (stop.load()) return nullptr;
-  SelectionOptions selection = settings.selection;
+  const MethodRow& row = method.row();
+  SelectionOptions selection =
+      row.selection != nullptr ? row.selection(settings.selection) : settings.selection;
   if (is_direct_only) selection.uses_patches = false;
   SourceSelection selected(*solution, scene.tracer, scene.primitives, selection, threads, stop);
   if (stop.load()) return nullptr;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  return std::make_unique<Kj92Preparation>(
-      Kj92Preparation{std::move(*solution), std::move(selected), seconds.count()});
+  return std::make_unique<Preparation>(
+      Preparation{std::move(*solution), std::move(selected), seconds.count()});
+}
+
+std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, Method method,
+                                            const MethodSettings& settings,
+                                            const Preparation* preparation) {
+  if (preparation == nullptr) return make_integrator(method, {scene, settings});
+  const RadiosityLight radiosity(scene, preparation->solution, preparation->selection);
+  return make_integrator(method, {scene, settings, &radiosity});
 }
 
 std::vector<uint32_t> lights_named(const Scene& scene, const std::vector<std::string>& names) {

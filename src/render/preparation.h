@@ -1,5 +1,5 @@
-// What the 1992 method needs before the first viewing ray: the radiosity preprocessing and the
-// selection of sources.
+// What methods that stand on the radiosity preprocessing need before the first viewing ray: it, and
+// the selection of sources.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "integrate/methods.h"
 #include "integrate/prepared_scene.h"
 #include "integrate/tree_sampling.h"
 #include "radiosity/solution.h"
@@ -22,20 +23,23 @@ struct Kj92Settings {
   TreeSamplingOptions sampling;
 };
 
-struct Kj92Preparation {
+struct Preparation {
   RadiositySolution solution;
   SourceSelection selection;
   double seconds = 0;
 };
 
 // Solves the radiosity of the scene, or takes `solution` (which must be the scene's), and selects
-// sources. is_direct_only: light that has been reflected is not asked for, so that only lights
-// shoot. Null once `stop` is set.
-std::unique_ptr<Kj92Preparation> prepare_kj92(const PreparedScene& scene,
-                                              const Kj92Settings& settings, bool is_direct_only,
-                                              std::optional<RadiositySolution> solution,
-                                              int threads, const ProgressCallback& progress,
-                                              const StopFlag& stop);
+// sources. Null where the method needs nothing (needs_radiosity), and once `stop` is set.
+std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
+                                     const Kj92Settings& settings, Indirect indirect,
+                                     std::optional<RadiositySolution> solution, int threads,
+                                     const ProgressCallback& progress, const StopFlag& stop);
+
+// preparation: may be null where the method needs none; must outlive the integrator, as must scene.
+std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, Method method,
+                                            const MethodSettings& settings,
+                                            const Preparation* preparation);
 
 // Numbers of the scene's lights that have one of these names, for SelectionOptions::only.
 // UsageError names one that does not exist.

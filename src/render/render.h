@@ -11,15 +11,11 @@
 #include "base/parallel.h"
 #include "image/image.h"
 #include "integrate/batch.h"
-#include "integrate/integrator.h"
+#include "integrate/methods.h"
 #include "integrate/prepared_scene.h"
 #include "render/preparation.h"
 
 namespace troffer {
-
-enum class Method { certified, kj92, fixed, path };
-// radiosity: the general radiosity value, interpolated (what kj92 does by itself).
-enum class Indirect { automatic, radiosity, none };
 
 // AOVs that an image can carry besides the picture.
 // sources: how many sources were sampled by shadow rays; probed and found visible; probed and found
@@ -29,14 +25,14 @@ enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays,
 struct RenderOptions {
   Method method = Method::certified;
   int spp = 4;  // viewing rays per pixel
-  // kj92, certified: where neighbouring pixels differ the picture is refined by further viewing
-  // rays, up to so many in a pixel; at most spp: nowhere; 0: as most_viewing_rays() says.
+  // Where neighbouring pixels differ the picture is refined by further viewing rays, up to so many
+  // in a pixel; at most spp: nowhere; 0: as most_viewing_rays() says.
   int max_spp = 0;
   int shadow_rays = 64;  // fixed: rays per source per viewing ray
   double error = 0.01;   // certified: see certified_settings
   Kj92Settings kj92;     // certified: the radiosity of its indirect light
   // Made beforehand by prepare(); null: made by render(), where it is needed.
-  const Kj92Preparation* preparation = nullptr;
+  const Preparation* preparation = nullptr;
   Indirect indirect = Indirect::automatic;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera
@@ -47,27 +43,16 @@ struct RenderOptions {
   std::vector<Aov> aovs;
 };
 
-// The most viewing rays that a pixel may get: max_spp where it was given, else four times spp by
-// certified, and spp by all others.
+// The most viewing rays that a pixel may get: max_spp where it was given, else as many as the
+// method takes by itself (MethodRow::refinement).
 int most_viewing_rays(const RenderOptions& options);
+
+// What the options say about the method.
+MethodSettings method_settings(const RenderOptions& options);
 
 // UsageError for options that contradict each other or the scene, InputError for a camera whose
 // numbers overflow: what render() would throw, before any work is done.
 void check_options(const PreparedScene& scene, const Camera& camera, const RenderOptions& options);
-
-// What a method needs beforehand: kj92 always, certified for indirect light.
-bool needs_preparation(Method method, Indirect indirect);
-
-// Makes it, from a solution where there is one (prepare_kj92). Null where nothing is needed, and
-// once `stop` is set.
-std::unique_ptr<Kj92Preparation> prepare(const PreparedScene& scene, Method method,
-                                         const Kj92Settings& settings, Indirect indirect,
-                                         std::optional<RadiositySolution> solution, int threads,
-                                         const ProgressCallback& progress, const StopFlag& stop);
-
-// `preparation` may be null where the method needs none. All must outlive the integrator.
-std::unique_ptr<Integrator> make_certified(const PreparedScene& scene, double error,
-                                           const Kj92Preparation* preparation);
 
 struct RenderStatistics {
   int width = 0, height = 0;

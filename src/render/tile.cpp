@@ -22,6 +22,17 @@ PixelRect whole_tiles(const PixelRect& window, int side, int rings, const PixelR
           std::min(last(window.x1), image.x1), std::min(last(window.y1), image.y1)};
 }
 
+TilePlan plan_tiles(const PixelRect& image, const PixelRect& window, int side, bool has_whole_tiles,
+                    bool is_refined) {
+  TilePlan p{image, window, window, window, side, {}};
+  if (has_whole_tiles) {
+    p.region = whole_tiles(window, side, is_refined ? 1 : 0, image);
+    p.inner = whole_tiles(window, side, 0, image);
+  }
+  p.tiles = tiles_of(p.region, side);
+  return p;
+}
+
 Image part_of(const Image& image, const PixelRect& region, const PixelRect& window) {
   Image part(window.width(), window.height());
   for (int y = 0; y < part.height; ++y)

@@ -20,6 +20,21 @@ PixelRect whole_tiles(const PixelRect& window, int side, int rings, const PixelR
 // The part `window` of an image whose pixels are those of `region`.
 Image part_of(const Image& image, const PixelRect& region, const PixelRect& window);
 
+// Which pixels are rendered, and in which tiles.
+struct TilePlan {
+  PixelRect image;   // the whole picture
+  PixelRect window;  // what is wanted of it
+  PixelRect region;  // what is rendered: the window, and what it takes for it to be as it should
+  PixelRect inner;   // where refinement is decided: the window in whole tiles, or the window itself
+  int side = 0;      // of tiles, pixels
+  std::vector<PixelRect> tiles;  // of the region
+};
+
+// has_whole_tiles: tiles are those of the whole picture, with a ring of tiles around them where
+// neighbours decide about refinement, so that the pixels of a crop can be those of the picture.
+TilePlan plan_tiles(const PixelRect& image, const PixelRect& window, int side, bool has_whole_tiles,
+                    bool is_refined);
+
 struct Pixel2 {
   int x = 0, y = 0;
 };

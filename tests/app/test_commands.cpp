@@ -344,8 +344,8 @@ TEST_CASE("options that the method does not use are named in a warning") {
   } cases[] = {
       {"certified", "--depth", "3", false},      {"path", "--depth", "3", true},
       {"certified", "--error", "0.1", true},     {"path", "--error", "0.1", false},
-      {"certified", "--max-spp", "8", true},     {"path", "--max-spp", "8", false},
-      {"kj92", "--max-spp", "8", true},          {"fixed", "--max-spp", "8", false},
+      {"certified", "--max-spp", "8", true},     {"path", "--max-spp", "8", true},
+      {"kj92", "--max-spp", "8", true},          {"fixed", "--max-spp", "8", true},
       {"fixed", "--shadow-rays", "2", true},     {"certified", "--shadow-rays", "2", false},
       {"kj92", "--variance", "0.5", true},       {"certified", "--variance", "0.5", false},
       {"certified", "--coherence", "on", false}, {"path", "--select", "emitter0", false},

@@ -4,15 +4,33 @@
 #include <cstdint>
 
 #include "base/random.h"
-#include "integrate/fixed.h"
-#include "integrate/integrator.h"
+#include "integrate/certified_direct.h"
+#include "integrate/fixed_direct.h"
 #include "integrate/path.h"
+#include "integrate/radiosity_indirect.h"
+#include "integrate/wave_integrator.h"
 #include "support/chi_square.h"
 #include "support/light_scenes.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
 
 namespace troffer::test {
+
+inline WaveIntegrator fixed_integrator(const PreparedScene& scene, int shadow_rays) {
+  return {scene, std::make_unique<FixedDirect>(scene, shadow_rays), nullptr};
+}
+
+inline WaveIntegrator certified_integrator(const PreparedScene& scene, double error = 0.01,
+                                           const RadiosityLight* radiosity = nullptr) {
+  const CertifiedSettings settings = certified_settings(error, scene.scene.lights.size());
+  const auto occluders = std::make_shared<const Occluders>(scene.scene);
+  std::unique_ptr<IndirectLight> indirect;
+  if (radiosity != nullptr)
+    indirect =
+        std::make_unique<RadiosityIndirect>(scene, *radiosity, occluders, settings.estimator);
+  return {scene, std::make_unique<CertifiedDirect>(scene, occluders, settings),
+          std::move(indirect)};
+}
 
 struct Probed {
   Moments direct, indirect, total;  // of the green channel

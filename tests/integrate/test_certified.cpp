@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "integrate/certified.h"
 #include "light/irradiance.h"
 #include "probe.h"
 
@@ -14,10 +13,6 @@ using namespace troffer;
 using namespace troffer::test;
 
 namespace {
-
-CertifiedIntegrator certified(const PreparedScene& scene, double error = 0.01) {
-  return {scene, std::nullopt, certified_settings(error, scene.scene.lights.size())};
-}
 
 struct NamedScene {
   std::string name;
@@ -55,8 +50,8 @@ const std::vector<Vec3> targets{{0, -0.5f, 0}, {0.2f, -2, 0}, {-2, 2, 0}};
 // Both methods see the same at the targets of `scene`, from the eye.
 void check_against_fixed(const PreparedScene& scene, const std::vector<Vec3>& points, double error,
                          double significance) {
-  const CertifiedIntegrator mine = certified(scene, error);
-  const FixedIntegrator fixed(scene, FixedOptions{256});
+  const WaveIntegrator mine = certified_integrator(scene, error);
+  const WaveIntegrator fixed = fixed_integrator(scene, 256);
   for (const Vec3& x : points) {
     const Probed a = probe(mine, ray_towards(eye, x), 64, 24);
     const Probed b = probe(fixed, ray_towards(eye, x), 4, 24, 77);
@@ -93,7 +88,7 @@ TEST_CASE("certified: where nothing hides a flat source, light is exact, and no 
     source.build(s);
     add_floor(s, grey);
     const PreparedScene scene(std::move(s));
-    const CertifiedIntegrator mine = certified(scene);
+    const WaveIntegrator mine = certified_integrator(scene);
     for (const Vec3& x : targets) {
       double expected = 0;
       for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
@@ -221,7 +216,7 @@ TEST_CASE("certified: what a scratch was used for before leaves no trace") {
   add_block(s, grey, {-0.6f, -0.7f, 0.7f}, {0.6f, 0.3f, 0.75f});
   add_floor(s, grey);
   const PreparedScene scene(std::move(s));
-  const CertifiedIntegrator mine = certified(scene);
+  const WaveIntegrator mine = certified_integrator(scene);
   const auto used = mine.make_scratch(), fresh = mine.make_scratch();
   RadianceBatch first, second;
   Counters counters, more;
@@ -243,8 +238,8 @@ TEST_CASE("certified: irradiance at points, exact in the open and as by fixed un
   add_ceiling_light(s, 1, 2, Rgb{5});
   add_block(s, 0, {-0.6f, -0.7f, 0.7f}, {0.6f, 0.3f, 0.75f});
   const PreparedScene scene(std::move(s));
-  const CertifiedIntegrator mine = certified(scene);
-  const FixedIntegrator fixed(scene, FixedOptions{256});
+  const WaveIntegrator mine = certified_integrator(scene);
+  const WaveIntegrator fixed = fixed_integrator(scene, 256);
   for (const Vec3& x : {Vec3{5, 1, 0}, Vec3{0.9f, 0, 0}}) {
     Moments a, b;
     for (uint64_t set = 0; set < 24; ++set) {
@@ -286,7 +281,7 @@ TEST_CASE("certified: of many sources, steps of one normal lose none that stands
   }
   add_block(s, 0, {20, -20, -1}, {21, 20, 0});  // wide scene, wide clusters
   const PreparedScene scene(std::move(s));
-  const CertifiedIntegrator mine = certified(scene);
+  const WaveIntegrator mine = certified_integrator(scene);
   SensorBatch sensors;
   sensors.positions = {{0, 0, 0}, {0, 0, 1}};
   sensors.normals.assign(2, {0, 0, 1});

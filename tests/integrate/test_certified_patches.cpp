@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include "integrate/certified.h"
 #include "probe.h"
 #include "radiosity/solver.h"
 
@@ -48,11 +47,12 @@ struct Prepared {
 struct Certified {
   Certified(const Prepared& p, const SelectionOptions& options)
       : selection(p.select(options)),
-        integrator(p.scene, RadiosityLight(p.scene, p.solution, selection),
-                   certified_settings(0.01, p.scene.scene.lights.size())),
+        radiosity(p.scene, p.solution, selection),
+        integrator(certified_integrator(p.scene, 0.01, &radiosity)),
         patches(p.scene, p.solution, selection) {}
   const SourceSelection selection;
-  const CertifiedIntegrator integrator;
+  const RadiosityLight radiosity;
+  const WaveIntegrator integrator;
   const CertifiedPatches patches;
 };
 
@@ -196,7 +196,7 @@ TEST_CASE("certified patches: a patch sends what its elements hold") {
 TEST_CASE("certified patches: what a scratch was used for before leaves no trace") {
   const Prepared room(uplight_room_with_table(), 0.5f, 16);
   const Certified promoted(room, certified_selection(true));
-  const CertifiedIntegrator& mine = promoted.integrator;
+  const Integrator& mine = promoted.integrator;
   const auto used = mine.make_scratch(), fresh = mine.make_scratch();
   RadianceBatch first, second;
   Counters counters;

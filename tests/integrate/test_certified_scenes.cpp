@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "integrate/certified.h"
 #include "probe.h"
 
 using namespace troffer;
@@ -169,9 +168,8 @@ TEST_CASE("certified: hostile scenes look as by fixed sampling") {
     add_diffuse(s, Rgb{0.6f});
     h.build(s);
     const PreparedScene scene(std::move(s));
-    const CertifiedIntegrator mine(scene, std::nullopt,
-                                   certified_settings(0.01, scene.scene.lights.size()));
-    const FixedIntegrator fixed(scene, FixedOptions{256});
+    const WaveIntegrator mine = certified_integrator(scene);
+    const WaveIntegrator fixed = fixed_integrator(scene, 256);
     for (const Vec3& x : h.targets) {
       const Probed a = probe(mine, ray_towards(h.eye, x), 64, 32);
       const Probed b = probe(fixed, ray_towards(h.eye, x), 8, 32, 77);
@@ -200,8 +198,8 @@ TEST_CASE("flat sources do not light their own backs, whichever side rounding pu
                  Rgb{5});
     }
     const PreparedScene scene(std::move(s));
-    const CertifiedIntegrator mine(scene, std::nullopt, certified_settings(0.01, 1));
-    const FixedIntegrator fixed(scene, FixedOptions{64});
+    const WaveIntegrator mine = certified_integrator(scene);
+    const WaveIntegrator fixed = fixed_integrator(scene, 64);
     const PathIntegrator path(scene, PathOptions{1});
     const std::vector<const Integrator*> methods{&mine, &fixed, &path};
     Random random(5);
@@ -222,8 +220,8 @@ TEST_CASE("certified: sources without light, and of more than squares in single 
     add_panel(s, -0.5f, 0.5f, -0.5f, 0.5f, 2, radiance);
     s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_light});
     const PreparedScene scene(std::move(s));
-    const CertifiedIntegrator mine(scene, std::nullopt, certified_settings(0.01, 1));
-    const FixedIntegrator fixed(scene, FixedOptions{256});
+    const WaveIntegrator mine = certified_integrator(scene);
+    const WaveIntegrator fixed = fixed_integrator(scene, 256);
     const Ray ray = ray_towards(eye, {0.3f, -0.9f, 0});
     const double a = probe(mine, ray, 64, 8).total.mean(),
                  b = probe(fixed, ray, 64, 8).total.mean();

@@ -69,7 +69,7 @@ std::unique_ptr<Integrator> direct_path(const PreparedScene& scene) {
   return std::make_unique<PathIntegrator>(scene, o);
 }
 std::unique_ptr<Integrator> fixed(const PreparedScene& scene, int shadow_rays) {
-  return std::make_unique<FixedIntegrator>(scene, FixedOptions{shadow_rays});
+  return std::make_unique<WaveIntegrator>(fixed_integrator(scene, shadow_rays));
 }
 
 void add_floor(Scene& s, uint32_t material) {

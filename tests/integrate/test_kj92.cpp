@@ -1,5 +1,5 @@
 // The method of 1992, ray by ray, against closed forms and against the other methods.
-#include "integrate/kj92.h"
+#include "integrate/bintree_direct.h"
 
 #include <doctest/doctest.h>
 
@@ -18,6 +18,11 @@ using namespace troffer;
 using namespace troffer::test;
 
 namespace {
+
+struct Kj92Options {
+  TreeSamplingOptions sampling;
+  bool is_direct_only = false;  // only light that reaches surfaces straight from lights
+};
 
 struct Setting {
   Kj92Options options;
@@ -52,11 +57,21 @@ struct Kj92 {
         solution(solve_radiosity(scene.scene, scene.tracer, scene.bsdf_tables, scene.primitives,
                                  setting.radiosity, 2, {}, StopFlag{false})),
         selection(solution, scene.tracer, scene.primitives, setting.selection, 2, StopFlag{false}),
-        integrator(scene, solution, selection, setting.options) {}
+        integrator(make(setting)) {}
   const PreparedScene scene;
   const RadiositySolution solution;
   const SourceSelection selection;
-  const Kj92Integrator integrator;
+  const WaveIntegrator integrator;
+
+ private:
+  WaveIntegrator make(const Setting& setting) const {
+    const RadiosityLight radiosity(scene, solution, selection);
+    std::unique_ptr<IndirectLight> indirect;
+    if (!setting.options.is_direct_only)
+      indirect = std::make_unique<RadiosityIndirect>(scene, radiosity);
+    return {scene, std::make_unique<BintreeDirect>(scene, radiosity, setting.options.sampling),
+            std::move(indirect)};
+  }
 };
 
 struct NamedSource {
@@ -340,7 +355,7 @@ TEST_CASE("direct light only: as the fixed method says, on surfaces of every kin
       // A shelf that hides part of the light, and that the floor mirrors.
       add_quad(s, white, {Vec3{0.2f, -3, 1}, {1.4f, -3, 1}, {1.4f, 3, 1}, {0.2f, 3, 1}});
       const Kj92 kj(s, Setting::direct(false));
-      const FixedIntegrator fixed(kj.scene, FixedOptions{16});
+      const WaveIntegrator fixed = fixed_integrator(kj.scene, 16);
       for (const Vec3& x : {targets[0], targets[2]}) {
         const Probed a = probe(kj.integrator, ray_towards(eye, x), 16, 16);
         const Probed b = probe(fixed, ray_towards(eye, x), 16, 16);

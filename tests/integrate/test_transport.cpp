@@ -46,7 +46,7 @@ TEST_CASE("a mirror shows the source with its own radiance") {
     CHECK(probe(path(scene, depth), past_it, 16, 4).total.mean() == 0);
   }
   CHECK(probe(path(scene, 0), at_source, 16, 4).total.mean() == 0);
-  const FixedIntegrator fixed(scene, {4});
+  const WaveIntegrator fixed = troffer::test::fixed_integrator(scene, 4);
   CHECK(probe(fixed, at_source, 16, 4).total.mean() == doctest::Approx(3).epsilon(2e-4));
   CHECK(probe(fixed, past_it, 16, 4).total.mean() == 0);
 }
@@ -62,7 +62,7 @@ TEST_CASE("a mirror shows a lit floor as it is") {
   // are left to paths that meet the source by chance.
   const Ray ray = ray_towards({1, 0, 2}, {3, 0, 1});
   const double expected = 0.5 * 3 / pi * irradiance(scene.primitives, 0, {1, 0, 0}, {0, 0, 1});
-  const FixedIntegrator fixed(scene, {4});
+  const WaveIntegrator fixed = troffer::test::fixed_integrator(scene, 4);
   CHECK(p_of_mean(probe(fixed, ray, 32, 32).direct, expected, 1e-5) > 1e-4);
   CHECK(p_of_mean(probe(path(scene, 2), ray, 128, 32).direct, expected, 1e-5) > 1e-4);
 }
@@ -73,7 +73,7 @@ TEST_CASE("mirrors that face each other come to an end") {
   add_box_inside(s, mirror, {-1, -1, -1}, {1, 1, 1});
   add_ceiling_light(s, 0.5f, 0.5f, Rgb{1});
   const PreparedScene scene(std::move(s));
-  const FixedIntegrator fixed(scene, {4});
+  const WaveIntegrator fixed = troffer::test::fixed_integrator(scene, 4);
   const Ray ray = ray_towards({0, 0, 0}, {1, 0.3f, -0.2f});
   CHECK(std::isfinite(probe(fixed, ray, 16, 4).total.mean()));
   CHECK(std::isfinite(probe(path(scene), ray, 16, 4).total.mean()));
@@ -124,7 +124,7 @@ TEST_CASE("a sphere that shines inwards lights itself") {
       add_sphere_light(s, add_diffuse(s, Rgb{rho}), centre, 0.3f, Rgb{(1 - rho) * L0}, is_two_sided,
                        !is_two_sided);
       const PreparedScene scene(std::move(s));
-      const FixedIntegrator fixed(scene, {4});
+      const WaveIntegrator fixed = troffer::test::fixed_integrator(scene, 4);
       for (const Vec3 to : {Vec3{1, 0, 0}, {0.3f, 0.5f, -0.6f}}) {
         const Ray ray = ray_towards(centre + to * 0.1f, centre + to * -1.0f);
         CAPTURE(is_two_sided);
@@ -196,7 +196,7 @@ TEST_CASE("results do not depend on how rays are cut into batches") {
   s.spheres.push_back({{1, 0, 0}, 0.3f, false, mirror, no_light});
   const PreparedScene scene(std::move(s));
   const PathIntegrator path_integrator = path(scene);
-  const FixedIntegrator fixed_integrator(scene, {3});
+  const WaveIntegrator fixed_integrator = troffer::test::fixed_integrator(scene, 3);
   Random r(5);
   ViewingRays rays;
   for (uint32_t i = 0; i < 500; ++i) {

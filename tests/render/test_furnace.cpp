@@ -134,7 +134,7 @@ TEST_CASE("fixed and path show the same exactly known floor, pixel by pixel") {
     o.spp = method == Method::path ? 64 : 4;
     o.shadow_rays = 16;
     const Ensemble e = render_ensemble(scene, camera, o, 24);
-    CAPTURE(int(method));
+    CAPTURE(std::string(method.row().name));
     CHECK(pixels_off(e, expected, 1e-4) == 0);
     double all = 0;
     for (size_t i = 0; i < e.pixels.size(); ++i) all += expected(i) / double(e.pixels.size());

@@ -56,7 +56,7 @@ double rmse(const Image& a, const Image& b) {
 TEST_CASE("kj92: byte-identical for any number of threads, with and without coherence") {
   const PreparedScene scene(mixed_room());
   const auto preparation =
-      prepare_kj92(scene, coarse().kj92, false, std::nullopt, 2, {}, never_stopped);
+      prepare(scene, Method::kj92, coarse().kj92, Indirect::automatic, std::nullopt, 2, {}, never_stopped);
   for (const bool has_coherence : {true, false})
     for (const int max_spp : {0, 16}) {
       RenderOptions o = coarse();
@@ -99,7 +99,8 @@ TEST_CASE("kj92: identical too with hundreds of sources, more than a thread keep
   o.spp = 1;
   o.kj92.selection.is_enabled = false;  // all of them, everywhere
   const Kj92Settings settings = o.kj92;
-  const auto preparation = prepare_kj92(scene, settings, false, std::nullopt, 2, {}, never_stopped);
+  const auto preparation = prepare(scene, Method::kj92, settings, Indirect::automatic, std::nullopt,
+                                   2, {}, never_stopped);
   o.preparation = preparation.get();
   o.threads = 1;
   const RenderResult one = render_now(scene, table_camera(), o);
@@ -137,7 +138,8 @@ TEST_CASE("kj92: refinement adds rays at edges and shadow boundaries, and gains 
   RenderOptions o = coarse();
   o.indirect = Indirect::none;
   o.aovs = {Aov::error, Aov::shadow_rays, Aov::normal};
-  const auto preparation = prepare_kj92(scene, o.kj92, true, std::nullopt, 2, {}, never_stopped);
+  const auto preparation =
+      prepare(scene, Method::kj92, o.kj92, Indirect::none, std::nullopt, 2, {}, never_stopped);
   o.preparation = preparation.get();
   o.spp = 1;
   o.max_spp = 32;
@@ -228,7 +230,8 @@ TEST_CASE("kj92: a stop during preprocessing or rendering comes back soon, with 
 TEST_CASE("kj92: crops and single pixels") {
   const PreparedScene scene(room_with_table());
   RenderOptions o = coarse();
-  const auto preparation = prepare_kj92(scene, o.kj92, false, std::nullopt, 2, {}, never_stopped);
+  const auto preparation =
+      prepare(scene, Method::kj92, o.kj92, Indirect::automatic, std::nullopt, 2, {}, never_stopped);
   o.preparation = preparation.get();
   const Image whole = render_now(scene, table_camera(), o).layers[0].image;
   // A crop that begins at tiles' borders is the same picture, bit for bit.
@@ -343,7 +346,8 @@ TEST_CASE("kj92room: the floor under the table samples D, open floor only probes
   settings.radiosity.unshot_fraction = 0.5f;
   settings.radiosity.meshing.element_size = 0.4f;
   settings.radiosity.meshing.patch_size = 0.8f;
-  const auto p = prepare_kj92(scene, settings, false, std::nullopt, 2, {}, never_stopped);
+  const auto p = prepare(scene, Method::kj92, settings, Indirect::automatic, std::nullopt, 2, {},
+                         never_stopped);
   // How source `name` is treated at the floor's point below (x, y).
   const auto treatment_at = [&](float x, float y, uint32_t source) {
     const RadiosityMesh& mesh = p->solution.mesh;

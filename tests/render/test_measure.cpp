@@ -63,7 +63,7 @@ TEST_CASE("95 % intervals hold the closed form 93 to 97 % of the time") {
       REQUIRE(lit > points.size() / 2);
       const double share = double(inside) / double(lit);
       CAPTURE(spp);
-      CAPTURE(int(method));
+      CAPTURE(std::string(method.row().name));
       CHECK(share >= 0.93);
       CHECK(share <= 0.97);
     }

@@ -65,6 +65,41 @@ TEST_CASE("a crop holds the same pixels as the whole picture") {
   }
 }
 
+TEST_CASE("every method refines the picture where it differs from its neighbours, also in a crop") {
+  const PreparedScene scene(mixed_room());
+  for (const Method method : {Method::path, Method::fixed}) {
+    RenderOptions o = small_options(method);
+    o.aovs = {Aov::direct, Aov::indirect};
+    o.spp = 4;
+    const RenderResult plain = render_now(scene, mixed_room_camera(), o);
+    o.max_spp = 24;
+    o.threads = 1;
+    const RenderResult refined = render_now(scene, mixed_room_camera(), o);
+    const auto rays = [](const RenderResult& r) { return r.statistics.counters.viewing_rays; };
+    CAPTURE(std::string(method.row().name));
+    CHECK(rays(plain) == 53 * 37 * 4);
+    CHECK(rays(refined) > rays(plain));
+    CHECK(rays(refined) <= 53 * 37 * 24);
+    if (method == Method::fixed) CHECK(rays(refined) < 53 * 37 * 24);  // smooth places stay
+    o.threads = 3;
+    CHECK(is_identical(render_now(scene, mixed_room_camera(), o).layers, refined.layers));
+    o.has_crop = true;
+    o.crop = {7, 9, 31, 20};
+    CHECK(pixels_off_crop(refined, render_now(scene, mixed_room_camera(), o), o.crop) == 0);
+    RenderOptions many = small_options(method);
+    many.spp = 256;
+    many.seed = 9;
+    const RenderResult right = render_now(scene, mixed_room_camera(), many);
+    const auto error = [&](const RenderResult& r) {
+      double sum = 0;
+      for (size_t i = 0; i < right.layers[0].image.pixels.size(); ++i)
+        sum += double(sqr(r.layers[0].image.pixels[i].g - right.layers[0].image.pixels[i].g));
+      return std::sqrt(sum);
+    };
+    CHECK(error(refined) < 0.8 * error(plain));
+  }
+}
+
 TEST_CASE("crops that are empty or reach outside are refused") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = small_options(Method::path);

@@ -1,0 +1,132 @@
+#include "integrate/certified_direct.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace troffer {
+
+namespace {
+
+// From this error on the coarse lattice does, whose own error is up to .005 (docs/certified.md);
+// specks and wires that fall between its samples would show below.
+constexpr double coarse_from = 0.02;
+// Below these, the fine lattice lies over quarters and sixteenths of sources.
+constexpr double quarters_below = 0.002, sixteenths_below = 0.0007;
+
+}  // namespace
+
+CertifiedSettings certified_settings(double error, size_t lights) {
+  // Half in shadow, the error of n Owen-Sobol rays is near 1/2 n^-3/4. Those of equal, independent
+  // sources average out. Powers of two are stratified best.
+  const auto rays_for = [](double e) {
+    const double n = std::clamp(std::pow(0.25 / (e * e), 2.0 / 3), 16.0, 256.0);
+    return int(std::bit_floor(unsigned(n)));
+  };
+  CertifiedSettings s;
+  s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(lights, 1))));
+  s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
+  s.estimator.cells.most_share = error < sixteenths_below ? 0.1 : error < quarters_below ? 0.4 : 1;
+  s.error = error;
+  s.estimator.residual_error = float(error);
+  s.estimator.rays.pair_error = float(2 * error);
+  // Who asks for less than the default error may wait for it.
+  s.estimator.rays.most_rays = uint32_t(256 * std::clamp(0.01 / error, 1.0, 16.0));
+  s.estimator.rays.most_share_rays = 2 * s.estimator.rays.most_rays;
+  return s;
+}
+
+struct CertifiedDirect::Scratch final : DirectLightScratch {
+  Scratch(const CertifiedOptions& options, ShadowWorld world, SourceIntegrand integrand)
+      : lights(options, std::move(world), std::move(integrand)) {}
+  CertifiedLightsScratch lights;
+  SourceSamplerScratch rays;
+};
+
+CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
+                                 std::shared_ptr<const Occluders> occluders,
+                                 const CertifiedSettings& settings)
+    : scene_(scene),
+      occluders_(std::move(occluders)),
+      settings_(settings),
+      lights_(scene, settings.error),
+      sampler_(scene) {}
+
+std::unique_ptr<DirectLightScratch> CertifiedDirect::make_scratch() const {
+  return std::make_unique<Scratch>(settings_.estimator,
+                                   ShadowWorld(scene_.scene, *occluders_, scene_.tracer),
+                                   SourceIntegrand(scene_, uint32_t(settings_.gloss_samples)));
+}
+
+void CertifiedDirect::begin(DirectLightScratch& scratch) const {
+  lights_.forget(static_cast<Scratch&>(scratch).lights);
+}
+
+void CertifiedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
+                            Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  CheckItems items;
+  for (size_t i = 0; i < wave.size(); ++i) {
+    items.at(wave.walks[i].index);
+    queue_hit(wave, i, s, out, counters);
+  }
+}
+
+void CertifiedDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
+                            Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  lights_.illuminate(s.lights, out, counters);
+  sampler_.resolve(s.rays, out, counters);
+}
+
+// Light straight from all sources: by certificates later, or by rays.
+void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, RadianceBatch& out,
+                                Counters& counters) const {
+  const Walk& walk = wave.walks[i];
+  const Vertex& v = wave.vertices[i];
+  const SurfaceScattering& scattering = wave.scatterings[i];
+  if (!scattering.has_diffuse && !scattering.has_rough) return;
+  const bool is_direct = is_direct_at(walk);
+  const bool is_certified = !scattering.is_transmitting();
+  if (is_certified && !lights_.is_empty()) {
+    if (scattering.is_lambertian)
+      s.lights.hits.add_matte(walk, v, scattering.whole.diffuse, is_direct);
+    else
+      s.lights.hits.add_glossy(walk, v, scattering, is_direct);
+  }
+  const SampledVertex at{walk,
+                         v,
+                         scattering.has_diffuse ? &scattering.diffuse : nullptr,
+                         scattering.has_rough ? &scattering.specular : nullptr,
+                         scattering.whole.has_transmission,
+                         is_direct};
+  for (uint32_t light = 0; light < sampler_.lights(); ++light) {
+    if (sampler_.is_empty(light) || (is_certified && lights_.has(light))) continue;
+    sampler_.sample(at, light, uint32_t(settings_.shadow_rays), s.rays, out, counters);
+    ++counters.mixed;
+    if (walk.vertex == 0) out.sources[walk.index] += Rgb{1, 0, 0};
+  }
+}
+
+void CertifiedDirect::weigh(SeenEmission& seen) const {
+  for (size_t i = 0; i < seen.size(); ++i)
+    if (seen.vertices[i] != nullptr) seen.weights[i] = weight_of(*seen.walks[i], *seen.vertices[i]);
+}
+
+// Of emission that a walk has run into, against points on the source chosen at the vertex before.
+float CertifiedDirect::weight_of(const Walk& walk, const Vertex& v) const {
+  const bool is_sampled = walk.last_both_sides || !lights_.has(uint32_t(v.surface.light));
+  if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
+  const int32_t primitive = primitive_at(scene_, v.surface);
+  const CertifiedSource* source =
+      primitive < 0 ? nullptr
+                    : lights_.source_of(uint32_t(primitive), !v.is_front, v.surface.position);
+  if (source == nullptr) return 1;
+  return power_heuristic(walk.pdf, float(settings_.gloss_samples) *
+                                       nominal_density(*source, walk.last_position,
+                                                       walk.last_normal, walk.ray.direction));
+}
+
+}  // namespace troffer

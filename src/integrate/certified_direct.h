@@ -1,0 +1,60 @@
+// Direct light by certified visibility: the structure of the method of 1992 with shadow flags that
+// are proved.
+//
+// Hits of a batch are treated together for every source (certified_lights.h), without rays but
+// where no list of facets is complete. A fixed number of shadow rays (source_sampler.h) does what
+// has no certificates: finely meshed curved sources, and rough surfaces that transmit. Unbiased.
+// Hits are clustered, and found occluders are remembered within a batch: the noise of the result,
+// though not its mean, depends on what is in the batch.
+// References: docs/certified.md.
+#pragma once
+
+#include <memory>
+
+#include "integrate/certified_lights.h"
+#include "integrate/direct_light.h"
+#include "integrate/source_sampler.h"
+
+namespace troffer {
+
+struct CertifiedSettings {
+  CertifiedOptions estimator;
+  double error = 0.01;     // allowed, relative to unoccluded light
+  int shadow_rays = 64;    // per source and viewing ray where there are no certificates
+  int gloss_samples = 32;  // points of a source at which gloss and textures are looked at
+};
+
+// Settings for an allowed standard error of a viewing ray's direct light, relative to what its
+// sources would send unoccluded, in a scene of so many lights.
+CertifiedSettings certified_settings(double error, size_t lights);
+
+class CertifiedDirect final : public DirectLight {
+ public:
+  // occluders: of the scene.
+  CertifiedDirect(const PreparedScene& scene, std::shared_ptr<const Occluders> occluders,
+                  const CertifiedSettings& settings);
+
+  std::unique_ptr<DirectLightScratch> make_scratch() const override;
+  WalkedPart walked_part() const override { return WalkedPart::specular; }
+  bool tells_variance() const override { return true; }
+  void begin(DirectLightScratch& scratch) const override;
+  void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
+             Counters& counters) const override;
+  void flush(DirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
+  void weigh(SeenEmission& seen) const override;
+
+ private:
+  struct Scratch;
+
+  void queue_hit(const WaveHits& wave, size_t i, Scratch& s, RadianceBatch& out,
+                 Counters& counters) const;
+  float weight_of(const Walk& walk, const Vertex& v) const;
+
+  const PreparedScene& scene_;
+  std::shared_ptr<const Occluders> occluders_;
+  CertifiedSettings settings_;
+  CertifiedLights lights_;
+  SourceSampler sampler_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,162 @@
+#include "integrate/methods.h"
+
+#include <array>
+
+#include "base/error.h"
+#include "integrate/bintree_direct.h"
+#include "integrate/certified_direct.h"
+#include "integrate/fixed_direct.h"
+#include "integrate/path.h"
+#include "integrate/radiosity_indirect.h"
+#include "integrate/wave_integrator.h"
+
+namespace troffer {
+
+namespace {
+
+std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
+  const CertifiedSettings settings =
+      certified_settings(in.settings.error, in.scene.scene.lights.size());
+  const auto occluders = std::make_shared<const Occluders>(in.scene.scene);
+  std::unique_ptr<IndirectLight> indirect;
+  if (in.radiosity != nullptr && !in.settings.is_direct_only())
+    indirect =
+        std::make_unique<RadiosityIndirect>(in.scene, *in.radiosity, occluders, settings.estimator);
+  return std::make_unique<WaveIntegrator>(
+      in.scene, std::make_unique<CertifiedDirect>(in.scene, occluders, settings),
+      std::move(indirect));
+}
+
+// The trees sample selected patches as they do lights.
+std::unique_ptr<Integrator> make_kj92(const MethodInput& in) {
+  TROFFER_CHECK(in.radiosity != nullptr);
+  std::unique_ptr<IndirectLight> indirect;
+  if (!in.settings.is_direct_only())
+    indirect = std::make_unique<RadiosityIndirect>(in.scene, *in.radiosity);
+  return std::make_unique<WaveIntegrator>(
+      in.scene, std::make_unique<BintreeDirect>(in.scene, *in.radiosity, in.settings.trees),
+      std::move(indirect));
+}
+
+std::unique_ptr<Integrator> make_fixed(const MethodInput& in) {
+  return std::make_unique<WaveIntegrator>(
+      in.scene, std::make_unique<FixedDirect>(in.scene, in.settings.shadow_rays), nullptr);
+}
+
+std::unique_ptr<Integrator> make_path(const MethodInput& in) {
+  return std::make_unique<PathIntegrator>(
+      in.scene, PathOptions{in.settings.depth, in.settings.is_direct_only()});
+}
+
+double certified_rays(const MethodSettings& s, size_t lights) {
+  return double(certified_settings(s.error, lights).shadow_rays) * double(lights);
+}
+double kj92_rays(const MethodSettings& s, size_t lights) {
+  return double(s.trees.tree.most_rays) * double(lights);
+}
+double fixed_rays(const MethodSettings& s, size_t lights) {
+  return double(s.shadow_rays) * double(lights);
+}
+double path_rays(const MethodSettings&, size_t) {
+  return 1;
+}
+
+}  // namespace
+
+// In the order of the constants of Method and Indirect.
+struct MethodTable {
+  static const std::array<MethodRow, 4> methods;
+  static const std::array<IndirectRow, 3> indirects;
+
+  template <class Kind, class Rows>
+  static std::optional<Kind> find(const Rows& rows, std::string_view name) {
+    for (uint8_t i = 0; i < rows.size(); ++i)
+      if (rows[i].name == name) return Kind(i);
+    return std::nullopt;
+  }
+};
+
+// Stops are looked for between tiles: those of scenes with many sources are smaller.
+constexpr double most_rays_of_tile = 1 << 22;
+// certified: few sources get rays.
+constexpr double most_certified_rays_of_tile = 1 << 25;
+
+const std::array<MethodRow, 4> MethodTable::methods{{
+    {
+        .name = "certified",
+        .make = make_certified,
+        .rays_per_sample = certified_rays,
+        .usual_indirect = Indirect::radiosity,
+        .has_choice_of_indirect = true,
+        .selection = [](const SelectionOptions& o) { return certified_selection(o.is_enabled); },
+        .widest_tile = 8,  // clusters of hits should be small in space
+        .most_rays_per_tile = most_certified_rays_of_tile,
+        .has_noise_of_batch = true,
+        .refinement = 4,
+    },
+    {
+        .name = "kj92",
+        .make = make_kj92,
+        .rays_per_sample = kj92_rays,
+        .usual_indirect = Indirect::radiosity,
+        .has_choice_of_indirect = true,
+        .always_needs_radiosity = true,
+        .is_same_in_crops = false,  // results are compared with published ones of the very crop
+        // A sample is all the rays that the bintrees want.
+        .usual_measuring_samples = 256,
+    },
+    {
+        .name = "fixed",
+        .make = make_fixed,
+        .rays_per_sample = fixed_rays,
+        .most_rays_per_tile = most_rays_of_tile,
+        .rays_of_measuring_sample = 16,  // a set of shadow rays to every source
+    },
+    {
+        .name = "path",
+        .make = make_path,
+        .rays_per_sample = path_rays,
+    },
+}};
+
+const std::array<IndirectRow, 3> MethodTable::indirects{{
+    {.name = "auto"},
+    {.name = "none"},
+    {.name = "radiosity", .needs_radiosity = true},
+}};
+
+std::optional<Method> Method::find(std::string_view name) {
+  return MethodTable::find<Method>(MethodTable::methods, name);
+}
+std::string Method::names() {
+  std::string names;
+  for (size_t i = 0; i < MethodTable::methods.size(); ++i) {
+    if (i > 0) names += i + 1 == MethodTable::methods.size() ? " or " : ", ";
+    names += MethodTable::methods[i].name;
+  }
+  return names;
+}
+const MethodRow& Method::row() const {
+  return MethodTable::methods[row_];
+}
+std::optional<Indirect> Indirect::find(std::string_view name) {
+  return MethodTable::find<Indirect>(MethodTable::indirects, name);
+}
+const IndirectRow& Indirect::row() const {
+  return MethodTable::indirects[row_];
+}
+
+Indirect chosen_indirect(Method method, Indirect indirect) {
+  return indirect == Indirect::automatic ? method.row().usual_indirect : indirect;
+}
+
+bool needs_radiosity(Method method, Indirect indirect) {
+  return method.row().always_needs_radiosity ||
+         chosen_indirect(method, indirect).row().needs_radiosity;
+}
+
+std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input) {
+  return method.row().make(input);
+}
+
+}  // namespace troffer

@@ -1,0 +1,118 @@
+// The methods that troffer knows, and what each is made of: the one table and the one factory
+// (methods.cpp).
+//
+// A method is walk × direct light × indirect light (wave_integrator.h), or an integrator of its
+// own.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "integrate/integrator.h"
+#include "integrate/radiosity_light.h"
+#include "integrate/tree_sampling.h"
+
+namespace troffer {
+
+struct MethodRow;
+struct IndirectRow;
+
+// A row of the table of methods. Those that code names are here; find() knows all.
+class Method {
+ public:
+  static const Method certified, kj92, fixed, path;
+
+  static std::optional<Method> find(std::string_view name);
+  // All names, as a sentence lists them.
+  static std::string names();
+
+  const MethodRow& row() const;
+  bool operator==(const Method&) const = default;
+
+ private:
+  friend struct MethodTable;
+  constexpr explicit Method(uint8_t row) : row_(row) {}
+  uint8_t row_;
+};
+inline constexpr Method Method::certified{0}, Method::kj92{1}, Method::fixed{2}, Method::path{3};
+
+// How light that was reflected before is computed, likewise. automatic: as suits the method.
+class Indirect {
+ public:
+  static const Indirect automatic, none, radiosity;
+
+  static std::optional<Indirect> find(std::string_view name);
+
+  const IndirectRow& row() const;
+  bool operator==(const Indirect&) const = default;
+
+ private:
+  friend struct MethodTable;
+  constexpr explicit Indirect(uint8_t row) : row_(row) {}
+  uint8_t row_;
+};
+inline constexpr Indirect Indirect::automatic{0}, Indirect::none{1}, Indirect::radiosity{2};
+
+// What users may choose about a method; each takes what it knows.
+struct MethodSettings {
+  Indirect indirect = Indirect::automatic;
+  int shadow_rays = 64;       // fixed: per source and viewing ray
+  double error = 0.01;        // certified: see certified_settings
+  TreeSamplingOptions trees;  // kj92
+  int depth = -1;             // path: most bounces; -1 = unlimited
+  int threads = 0;            // for what is built; 0 = all cores
+
+  bool is_direct_only() const { return indirect == Indirect::none; }
+};
+
+// What a method is made from. radiosity: null where there is none; it is copied.
+struct MethodInput {
+  const PreparedScene& scene;
+  const MethodSettings& settings;
+  const RadiosityLight* radiosity = nullptr;
+};
+
+struct MethodRow {
+  std::string_view name;
+  std::unique_ptr<Integrator> (*make)(const MethodInput&);
+  // Shadow rays, about and at most, that a viewing ray takes in a scene of so many lights.
+  double (*rays_per_sample)(const MethodSettings&, size_t lights);
+
+  // What `automatic` stands for.
+  Indirect usual_indirect = Indirect::none;
+  // Takes other ways of computing indirect light too.
+  bool has_choice_of_indirect = false;
+  // Needs the radiosity preprocessing even where no indirect light is asked for.
+  bool always_needs_radiosity = false;
+  // What it wants of the selection of sources where this was asked for; null: just that.
+  SelectionOptions (*selection)(const SelectionOptions& asked) = nullptr;
+
+  int widest_tile = 16;  // pixels; as long as a tile does not take more rays than
+  double most_rays_per_tile = 1e300;
+  // The noise of a pixel, though not its mean, depends on what else is in its batch: it is the same
+  // in a crop only if batches are.
+  bool has_noise_of_batch = false;
+  // Pixels of a crop are to have the values that they have in the whole picture.
+  bool is_same_in_crops = true;
+  int refinement = 1;                  // most viewing rays of a pixel, in --spp, by default
+  int usual_measuring_samples = 4096;  // per measuring point
+  int rays_of_measuring_sample = 1;    // one estimate stands for so many of these samples
+};
+
+struct IndirectRow {
+  std::string_view name;
+  bool needs_radiosity = false;
+};
+
+// Indirect light as `method` computes it: `indirect`, or what `automatic` stands for.
+Indirect chosen_indirect(Method method, Indirect indirect);
+// The radiosity preprocessing is needed first.
+bool needs_radiosity(Method method, Indirect indirect);
+
+// Throws EnvironmentError if memory runs out.
+std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input);
+
+}  // namespace troffer

@@ -1,0 +1,192 @@
+#include "integrate/wave_integrator.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace troffer {
+
+namespace {
+
+// Mirrors facing each other would reflect for ever.
+constexpr uint32_t longest_chain = 64;
+// Hits that go to a method at a time: few enough for what is known of them to stay in the caches.
+constexpr size_t hits_at_a_time = 64;
+
+}  // namespace
+
+struct WaveIntegrator::Scratch final : IntegratorScratch {
+  std::unique_ptr<DirectLightScratch> direct;
+  std::unique_ptr<IndirectLightScratch> indirect;  // null: there is none
+  std::vector<Walk> walks, next_walks;
+  WalkScratch trace;
+  WaveHits wave;
+  SeenEmission seen;       // what competes with the sampling of sources
+  SeenEmission undivided;  // what does not
+};
+
+WaveIntegrator::WaveIntegrator(const PreparedScene& scene, std::unique_ptr<DirectLight> direct,
+                               std::unique_ptr<IndirectLight> indirect)
+    : scene_(scene), direct_(std::move(direct)), indirect_(std::move(indirect)) {
+  TROFFER_CHECK(!indirect_ || direct_->walked_part() == WalkedPart::specular);
+}
+
+std::unique_ptr<IntegratorScratch> WaveIntegrator::make_scratch() const {
+  auto s = std::make_unique<Scratch>();
+  s->direct = direct_->make_scratch();
+  if (indirect_) s->indirect = indirect_->make_scratch();
+  return s;
+}
+
+void WaveIntegrator::begin(Scratch& s, RadianceBatch& out) const {
+  direct_->begin(*s.direct);
+  if (indirect_) indirect_->begin(*s.indirect);
+  if (direct_->tells_variance()) out.tell_variance();
+}
+
+void WaveIntegrator::flush(Scratch& s, RadianceBatch& out, Counters& counters) const {
+  direct_->flush(*s.direct, out, counters);
+  if (indirect_) indirect_->flush(*s.indirect, out, counters);
+}
+
+void WaveIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratch,
+                              RadianceBatch& out, Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  begin(s, out);
+  start_walks(rays, s.walks);
+  counters.viewing_rays += rays.size();
+  for (Coherence c = Coherence::coherent; !s.walks.empty(); c = Coherence::none) {
+    trace_walks(scene_.tracer, s.walks, c, s.trace, counters);
+    s.next_walks.clear();
+    for (size_t first = 0; first < s.walks.size(); first += hits_at_a_time) {
+      arrive(first, std::min(first + hits_at_a_time, s.walks.size()), s, out);
+      s.wave.viewing = &rays;
+      scatter(s, out);
+      if (s.wave.size() == 0) continue;
+      direct_->queue(s.wave, *s.direct, out, counters);
+      if (indirect_) indirect_->queue(s.wave, *s.indirect, out, counters);
+      step_on(s);
+    }
+    flush(s, out, counters);
+    s.walks.swap(s.next_walks);
+  }
+}
+
+void WaveIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
+                                RadianceBatch& out, Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  begin(s, out);
+  const bool is_whole = direct_->walked_part() == WalkedPart::whole;
+  const auto n = uint32_t(sensors.size());
+  for (uint32_t first = 0; first < n; first += uint32_t(hits_at_a_time)) {
+    WaveHits& w = s.wave;
+    w.clear();
+    for (uint32_t i = first; i < std::min(first + uint32_t(hits_at_a_time), n); ++i) {
+      w.walks.push_back(sensor_walk(sensors, i));
+      w.vertices.push_back(
+          make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset));
+      if (is_whole)
+        w.bsdfs.push_back(sensor_bsdf());
+      else
+        w.scatterings.emplace_back(sensor_bsdf());
+    }
+    direct_->queue(w, *s.direct, out, counters);
+  }
+  direct_->flush(*s.direct, out, counters);
+  if (indirect_) indirect_->gather(sensors, *s.indirect, out, counters);
+}
+
+// From the hits of some walks to vertices; what they have run into is added to `out`.
+void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch& out) const {
+  WaveHits& w = s.wave;
+  w.clear();
+  w.walks.reserve(hits_at_a_time);
+  w.vertices.reserve(hits_at_a_time);
+  s.seen.clear();
+  s.undivided.clear();
+  CheckItems items;
+  for (size_t i = first; i < last; ++i) {
+    const Hit& hit = s.trace.hits[i];
+    if (!hit.is_valid()) continue;
+    items.at(s.walks[i].index);
+    const Walk& walk = w.walks.emplace_back(s.walks[i]);
+    w.hits.push_back(hit);
+    Vertex& v = w.vertices.emplace_back();
+    make_vertex(scene_.scene, walk.ray, hit, v);
+    if (v.surface.light < 0) continue;
+    const Rgb radiance = emission_at(scene_, v);
+    if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, &v, radiance);
+  }
+  add_emission(s, out);
+}
+
+void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {
+  if (s.seen.size() > 0) direct_->weigh(s.seen);
+  for (const SeenEmission* seen : {&s.undivided, &s.seen})
+    for (size_t i = 0; i < seen->size(); ++i) {
+      const Walk& walk = *seen->walks[i];
+      // Straight from a source: by mirrors and clear glass, or by the one rough surface it is seen
+      // in.
+      const bool is_direct = is_direct_at(walk) || (walk.scatterings == 1 && walk.pdf > 0);
+      if (!is_direct && !indirect_) continue;
+      const Rgb light = walk.throughput * seen->radiance[i] * seen->weights[i];
+      // The variance of one sample is no more than the mean of its square.
+      out.add(walk.index, is_direct, light, walk.pdf > 0 ? sqr(luminance(light)) : 0.0f);
+    }
+}
+
+// Keeps the hits at which light is asked for, with what their surfaces do with it.
+void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
+  WaveHits& w = s.wave;
+  const bool is_whole = direct_->walked_part() == WalkedPart::whole;
+  size_t kept = 0;
+  CheckItems items;
+  for (size_t i = 0; i < w.size(); ++i) {
+    const Walk& walk = w.walks[i];
+    // Without indirect light it left a rough surface only to look for emission.
+    if (!indirect_ && walk.scatterings > 0) continue;
+    items.at(walk.index);
+    if (kept != i) {
+      w.walks[kept] = walk;
+      w.hits[kept] = w.hits[i];
+      w.vertices[kept] = w.vertices[i];
+    }
+    const Vertex& v = w.vertices[kept];
+    const Bsdf bsdf =
+        make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+    if (w.walks[kept].vertex == 0) record_first_hit(w.walks[kept], v, bsdf, out);
+    if (is_whole)
+      w.bsdfs.push_back(bsdf);
+    else
+      w.scatterings.emplace_back(bsdf);
+    ++kept;
+  }
+  w.walks.resize(kept);
+  w.hits.resize(kept);
+  w.vertices.resize(kept);
+}
+
+// The next viewing rays: those that the hits' surfaces spawn.
+void WaveIntegrator::step_on(Scratch& s) const {
+  const bool is_whole = direct_->walked_part() == WalkedPart::whole;
+  CheckItems items;
+  for (size_t i = 0; i < s.wave.size(); ++i) {
+    Walk& walk = s.wave.walks[i];
+    items.at(walk.index);
+    if (walk.vertex >= longest_chain) continue;
+    const Vertex& v = s.wave.vertices[i];
+    if (is_whole) {
+      const Bsdf& bsdf = s.wave.bsdfs[i];
+      if (!is_lambertian(bsdf, nullptr) &&
+          step(walk, v, bsdf, lobe_number(walk), direction_number(walk)))
+        s.next_walks.push_back(walk);
+    } else if (const SurfaceScattering& scattering = s.wave.scatterings[i];
+               scattering.has_specular &&
+               step(walk, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
+               survives_spawning(walk)) {
+      s.next_walks.push_back(walk);
+    }
+  }
+}
+
+}  // namespace troffer

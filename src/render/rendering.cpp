@@ -1,0 +1,182 @@
+#include "render/rendering.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/error.h"
+
+namespace troffer {
+
+namespace {
+
+int passes_of(int samples) {
+  return (samples + samples_per_batch - 1) / samples_per_batch;
+}
+
+}  // namespace
+
+Rendering::Rendering(const ViewingCamera& camera, const Integrator& integrator,
+                     const RenderOptions& options, TilePlan plan, const ProgressCallback& progress,
+                     const StopFlag& stop)
+    : camera_(camera),
+      integrator_(integrator),
+      options_(options),
+      plan_(std::move(plan)),
+      film_(plan_.region, options.aovs),
+      work_(size_t(thread_count(options.threads))),
+      report_(progress),
+      stop_(stop) {
+  refining_.max_spp = most_viewing_rays(options);
+  if (refining_.max_spp > options.spp) refining_.records.emplace(plan_.region);
+  progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(options.spp) +
+                                                       passes_of(refining_.max_spp - options.spp));
+}
+
+bool Rendering::run() {
+  for (int first = 0; first < options_.spp && !was_stopped_; first += samples_per_batch) {
+    const auto count = uint32_t(std::min(samples_per_batch, options_.spp - first));
+    pass([&](const PixelRect& tile, Work& w) {
+      for (const Pixel2& p : pixels_in_order(tile)) add_rays(p, count, w);
+    });
+  }
+  if (refining_.records && !was_stopped_) refine();
+  return !was_stopped_;
+}
+
+std::vector<Layer> Rendering::layers() const {
+  std::vector<Layer> layers = film_.layers();
+  for (Layer& l : layers) l.image = part_of(l.image, plan_.region, plan_.window);
+  return layers;
+}
+
+Counters Rendering::counters() const {
+  Counters sum;
+  for (const Work& w : work_) sum += w.counters;
+  return sum;
+}
+
+std::string Rendering::name_of_ray(const void* work, size_t i) {
+  const Work& w = *static_cast<const Work*>(work);
+  return "pixel (" + std::to_string(w.pixels[i].x) + "," + std::to_string(w.pixels[i].y) +
+         "), sample " + std::to_string(w.rays.samples[i]);
+}
+
+// The rays that `fill` adds are traced, and what they bring is added to the film.
+void Rendering::pass(const Fill& fill) {
+  parallel_for_slots(plan_.tiles.size(), options_.threads, [&](size_t t, size_t slot) {
+    if (stop_.load(std::memory_order_relaxed)) {
+      was_stopped_ = true;
+      return;
+    }
+    Work& w = work_[slot];
+    if (!w.scratch) w.scratch = integrator_.make_scratch();
+    w.rays.clear();
+    w.pixels.clear();
+    fill(plan_.tiles[t], w);
+    const CheckContext context(&w, w.rays.size(), name_of_ray);
+    if (w.rays.size() > 0) trace(w);
+    tell_progress();
+  });
+}
+
+void Rendering::tell_progress() {
+  const std::lock_guard lock(progress_.mutex);
+  ++progress_.tiles_done;
+  if (report_)
+    report_(std::min(1.0, double(progress_.tiles_done) / double(progress_.tiles_in_all)));
+}
+
+// The next `count` viewing rays of a pixel.
+void Rendering::add_rays(const Pixel2& p, uint32_t count, Work& w) const {
+  add_viewing_rays(camera_, p, film_.estimate(p.x, p.y).samples, count, options_.seed, w.rays);
+  w.pixels.resize(w.rays.size(), p);
+}
+
+void Rendering::trace(Work& w) {
+  w.radiance.reset(w.rays.size());
+  if (refining_.records) w.radiance.records.assign(w.rays.size(), {});
+  integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
+  for (size_t i = 0; i < w.rays.size(); ++i) {
+    const auto [x, y] = w.pixels[i];
+    const bool is_first = film_.estimate(x, y).samples == 0;
+    const float depth = camera_.depth(w.radiance.position[i]);
+    if (!film_.add(x, y, w.radiance, i, depth)) ++w.counters.nan_samples;
+    // Refinement compares with what the first pass saw, and does not change it.
+    if (refining_.records && !refining_.has_begun)
+      refining_.records->note(x, y, std::move(w.radiance.records[i]), is_first);
+  }
+}
+
+// Rounds of further rays; each looks at what there was before it, in all of the picture.
+void Rendering::refine() {
+  const bool is_same_in_crops = options_.method.row().is_same_in_crops;
+  const double typical = is_same_in_crops ? typical_luminance() : mean_luminance();
+  const std::vector<uint8_t> is_wanted = pixels_to_refine(typical);
+  const PixelRecords& records = *refining_.records;
+  refining_.has_begun = true;
+  for (int first = options_.spp; first < refining_.max_spp && !was_stopped_;
+       first += samples_per_batch) {
+    const auto count = uint32_t(std::min(samples_per_batch, refining_.max_spp - first));
+    pass([&](const PixelRect& tile, Work& w) {
+      for (const Pixel2& p : pixels_in_order(tile)) {
+        if (is_wanted[records.index(p.x, p.y)] == 0) continue;
+        const PixelEstimate e = film_.estimate(p.x, p.y);
+        // A spread is only worth believing from several samples.
+        if (first > options_.spp && e.samples >= 4 && !needs_more(e, typical, refining_.options))
+          continue;
+        add_rays(p, count, w);
+        w.rays.neighbours.resize(w.rays.size(), records.around(p.x, p.y));
+      }
+    });
+  }
+}
+
+// For each pixel of the region, whether what the first pass saw calls for more.
+std::vector<uint8_t> Rendering::pixels_to_refine(double typical) const {
+  const PixelRecords& records = *refining_.records;
+  std::vector<uint8_t> is_wanted(records.records.size());
+  for (int y = plan_.inner.y0; y < plan_.inner.y1; ++y)
+    for (int x = plan_.inner.x0; x < plan_.inner.x1; ++x)
+      is_wanted[records.index(x, y)] =
+          needs_refinement(film_, records, x, y, typical, refining_.options) ? 1 : 0;
+  return is_wanted;
+}
+
+// Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,
+// which are no part of the picture and of its statistics.
+double Rendering::typical_luminance() {
+  constexpr int most = 32;  // rays along each side
+  Work& w = work_[0];
+  if (!w.scratch) w.scratch = integrator_.make_scratch();
+  w.rays.clear();
+  w.pixels.clear();
+  const int width = plan_.image.width(), height = plan_.image.height();
+  const int nx = std::min(most, width), ny = std::min(most, height);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      w.pixels.push_back({i * width / nx, j * height / ny});
+      add_viewing_rays(camera_, w.pixels.back(), 0, 1, options_.seed, w.rays);
+    }
+  const CheckContext context(&w, w.rays.size(), name_of_ray);
+  w.radiance.reset(w.rays.size());
+  Counters uncounted;
+  integrator_.radiance(w.rays, *w.scratch, w.radiance, uncounted);
+  std::vector<double> values;
+  for (size_t i = 0; i < w.rays.size(); ++i) {
+    const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
+    values.push_back(is_finite(l) ? double(luminance(l)) : 0);
+  }
+  std::sort(values.begin(), values.end());
+  values.resize(values.size() - values.size() / 20);
+  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
+
+double Rendering::mean_luminance() const {
+  const PixelRect& w = plan_.window;
+  double sum = 0;
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x) sum += film_.estimate(x, y).luminance;
+  return sum / (double(w.width()) * w.height());
+}
+
+}  // namespace troffer
