@@ -19,14 +19,14 @@ void check_method(Method method, Indirect indirect, const std::string& solution)
 }
 
 std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method method,
-                                                const Kj92Settings& settings, Indirect indirect,
-                                                const std::string& solution, int threads,
-                                                bool is_quiet, const StopFlag& stop) {
+                                            const Kj92Settings& settings, Indirect indirect,
+                                            const std::string& solution, int threads, bool is_quiet,
+                                            const StopFlag& stop) {
   if (!needs_radiosity(method, indirect)) return nullptr;
   std::optional<RadiositySolution> loaded;
   if (!solution.empty())
     loaded = load_radiosity(scene, read_file_bytes(solution), solution, nullptr, threads);
-  std::unique_ptr<Kj92Preparation> made;
+  std::unique_ptr<Preparation> made;
   {
     ProgressBar bar("radiosity", is_quiet);
     made = prepare(
