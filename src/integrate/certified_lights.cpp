@@ -17,46 +17,6 @@ constexpr float reach_of_diagonal = 0.1f;
 
 }  // namespace
 
-void WaitingHits::clear() {
-  receivers.clear();
-  positions.clear();
-  horizons.clear();
-  weights.clear();
-  indices.clear();
-  pixels.clear();
-  glossy.clear();
-  is_direct.clear();
-  is_first.clear();
-  glossy_hits.clear();
-}
-
-void WaitingHits::add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct) {
-  const Vec3& horizon = v.geometric_normal;
-  receivers.push_back({v.surface.position, horizon, v.frame.normal,
-                       offset_origin(v.surface, horizon),
-                       hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1)});
-  positions.push_back(v.surface.position);
-  horizons.push_back(horizon);
-  weights.push_back(weight);
-  indices.push_back(walk.index);
-  pixels.push_back(walk.stream);
-  glossy.push_back(-1);
-  is_direct.push_back(direct ? 1 : 0);
-  is_first.push_back(walk.vertex == 0 ? 1 : 0);
-}
-
-void WaitingHits::add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct) {
-  add(walk, v, walk.throughput * reflectance * inv_pi_f, direct);
-}
-
-void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
-                             bool direct) {
-  add(walk, v, walk.throughput, direct);
-  glossy.back() = int32_t(glossy_hits.size());
-  glossy_hits.push_back({v.frame, v.geometric_normal, v.wo, scattering.diffuse, scattering.specular,
-                         scattering.has_diffuse, scattering.has_rough});
-}
-
 CertifiedLights::CertifiedLights(const PreparedScene& scene, double error)
     : source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
@@ -172,21 +132,22 @@ void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
 void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
                                          CertifiedLightsScratch& s, RadianceBatch& out,
                                          Counters& counters) const {
-  s.receivers.clear();
+  s.cluster.receivers.clear();
   s.integrand.hits().clear();
   for (const uint32_t m : members) {
-    s.receivers.push_back(s.hits.receivers[m]);
+    s.cluster.receivers.push_back(s.hits.receivers[m]);
     const int32_t g = s.hits.glossy[m];
     s.integrand.hits().push_back(
         {s.hits.positions[m], g < 0 ? nullptr : &s.hits.glossy_hits[size_t(g)]});
   }
-  s.cluster.set(s.receivers);
+  s.cluster.shadow.set(s.cluster.receivers);
   choose(members, s);
   set_requests(s);
   s.drawn_sums.assign(members.size(), 0);
   s.drawn_squares.assign(members.size(), 0);
   for (const uint32_t weak : s.weak.weak) add_unoccluded(sources_[weak], members, s, out);
-  certified_light(s.cluster, s.requests, &s.integrand, s.world, s.options, s.memory,
+  certified_light(s.cluster.shadow, s.cluster.requests, &s.integrand, s.world, s.options,
+                  s.cluster.memory,
                   [&](uint32_t request, std::span<const SourceVisibility> answers) {
                     add_answers(request, members, answers, s, out, counters);
                   });
@@ -194,11 +155,11 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
 }
 
 void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
-  s.requests.clear();
+  s.cluster.requests.clear();
   s.integrand.sources().clear();
   for (const ChosenSource& chosen : s.weak.chosen) {
     const CertifiedSource& source = sources_[chosen.source];
-    LightRequest& r = s.requests.emplace_back();
+    LightRequest& r = s.cluster.requests.emplace_back();
     if (source.is_round)
       r.sphere = &source.sphere;
     else
@@ -214,32 +175,32 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
 void CertifiedLights::choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const {
   Box box;
   ClusterBall ball;
-  ball.normal = s.receivers[0].normal;
+  ball.normal = s.cluster.receivers[0].normal;
   bool is_matte = true;
   for (size_t i = 0; i < members.size(); ++i) {
-    const ShadowReceiver& r = s.receivers[i];
+    const ShadowReceiver& r = s.cluster.receivers[i];
     box.grow(r.position);
     is_matte = is_matte && s.hits.glossy[members[i]] < 0;
-    if (length_squared(r.normal - s.receivers[0].normal) > 1e-10f ||
-        length_squared(r.horizon - s.receivers[0].normal) > 1e-10f)
+    if (length_squared(r.normal - s.cluster.receivers[0].normal) > 1e-10f ||
+        length_squared(r.horizon - s.cluster.receivers[0].normal) > 1e-10f)
       ball.normal = {};
   }
   ball.centre = (box.lower + box.upper) * 0.5f;
   ball.radius = 0.5f * box.diagonal();
   // those of a normal in common need not lie in one plane
-  for (const ShadowReceiver& r : s.receivers)
+  for (const ShadowReceiver& r : s.cluster.receivers)
     ball.depth = std::max(ball.depth, dot(ball.normal, ball.centre - r.position));
   choose_sources(sources_, ball, is_matte ? 0.5f * error_ : 0.0f,
-                 hash_combine(s.receivers[0].stream, members.size()), s.weak);
+                 hash_combine(s.cluster.receivers[0].stream, members.size()), s.weak);
 }
 
 void CertifiedLights::add_unoccluded(const CertifiedSource& source,
                                      std::span<const uint32_t> members, CertifiedLightsScratch& s,
                                      RadianceBatch& out) const {
   if (source.is_round)
-    unoccluded_light(s.cluster, source.sphere, s.unoccluded);
+    unoccluded_light(s.cluster.shadow, source.sphere, s.unoccluded);
   else
-    unoccluded_light(s.cluster, source.flat, s.unoccluded);
+    unoccluded_light(s.cluster.shadow, source.flat, s.unoccluded);
   for (uint32_t i = 0; i < members.size(); ++i) {
     if (!(s.unoccluded[i] > 0)) continue;
     const uint32_t m = members[i];

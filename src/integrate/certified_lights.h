@@ -14,45 +14,13 @@
 
 #include "integrate/shadow_world.h"
 #include "integrate/source_integrand.h"
-#include "integrate/walk.h"
+#include "integrate/waiting_hits.h"
 #include "integrate/weak_sources.h"
 #include "shadow/certified_light.h"
 #include "shadow/receiver_clusters.h"
 #include "shadow/source_pieces.h"
 
 namespace troffer {
-
-// Hits that wait for light: plain arrays of one length.
-struct WaitingHits {
-  std::vector<ShadowReceiver> receivers;
-  std::vector<Vec3> positions, horizons;  // of the receivers, as clustering wants them
-  std::vector<Rgb> weights;               // throughput, times reflectance / pi of matte surfaces
-  std::vector<uint32_t> indices;          // of the viewing rays
-  std::vector<uint64_t> pixels;           // names of their pixels
-  std::vector<int32_t> glossy;            // index into glossy_hits, or -1: matte
-  std::vector<uint8_t> is_direct;         // the light counts as direct
-  std::vector<uint8_t> is_first;          // the viewing ray's first surface
-  std::vector<GlossyHit> glossy_hits;
-
-  size_t size() const { return receivers.size(); }
-  void clear();
-  // A hit at v; the light counts as direct or not.
-  void add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct);
-  void add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
-                  bool direct);
-
- private:
-  void add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct);
-};
-
-// A pair of hit and source, by how it was answered, and its rays.
-inline void count_answer(const SourceVisibility& a, Counters& counters) {
-  counters.shadow_rays += a.rays;
-  counters.lit_certified += a.answer == ShadowAnswer::lit ? 1 : 0;
-  counters.dark_certified += a.answer == ShadowAnswer::dark ? 1 : 0;
-  counters.masked += a.answer == ShadowAnswer::masked ? 1 : 0;
-  counters.mixed += a.answer == ShadowAnswer::mixed ? 1 : 0;
-}
 
 // Memory of one thread.
 struct CertifiedLightsScratch {
@@ -64,14 +32,10 @@ struct CertifiedLightsScratch {
   SourceIntegrand integrand;
   std::vector<FoundFacets> found;  // per source: what this batch has learnt
   ReceiverClusters clusters;
-  // of the cluster at hand
-  std::vector<ShadowReceiver> receivers;
-  ShadowCluster cluster;
-  WeakSourcesScratch weak;
-  std::vector<LightRequest> requests;  // of the chosen sources
+  CertifiedCluster cluster;
+  WeakSourcesScratch weak;  // chosen for the cluster: its requests
   std::vector<float> unoccluded;
   std::vector<float> drawn_sums, drawn_squares;  // per receiver: luminance by drawn sources
-  CertifiedMemory memory;
 };
 
 class CertifiedLights {

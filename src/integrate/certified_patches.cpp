@@ -146,10 +146,10 @@ void CertifiedPatches::illuminate_patch(std::span<const uint32_t> hits, Certifie
   cluster_receivers(s.positions, s.horizons, std::numeric_limits<float>::infinity(), s.clusters);
   for (size_t c = 0; c < s.clusters.size(); ++c) {
     s.members.clear();
-    s.receivers.clear();
+    s.cluster.receivers.clear();
     for (const uint32_t i : s.clusters.members(c)) {
       s.members.push_back(hits[i]);
-      s.receivers.push_back(s.hits.receivers[hits[i]]);
+      s.cluster.receivers.push_back(s.hits.receivers[hits[i]]);
     }
     illuminate_cluster(sources_at(s.patches[hits[0]]), s, world, out, counters);
   }
@@ -158,12 +158,12 @@ void CertifiedPatches::illuminate_patch(std::span<const uint32_t> hits, Certifie
 void CertifiedPatches::illuminate_cluster(std::span<const uint32_t> sources,
                                           CertifiedPatchesScratch& s, ShadowWorld& world,
                                           RadianceBatch& out, Counters& counters) const {
-  s.cluster.set(s.receivers);
-  s.requests.clear();
+  s.cluster.shadow.set(s.cluster.receivers);
+  s.cluster.requests.clear();
   s.integrand.sources().clear();
   for (const uint32_t i : sources) {
     const PatchSource& source = sources_[i];
-    s.requests.push_back(
+    s.cluster.requests.push_back(
         {&source.flat, nullptr, source.stream, luminance(source.radiance), &s.found[i]});
     s.integrand.sources().push_back(&source);
     s.touched.push_back(i);
@@ -181,7 +181,8 @@ void CertifiedPatches::illuminate_cluster(std::span<const uint32_t> sources,
       out.add(index, false, s.hits.weights[m] * light, 0);
     }
   };
-  certified_light(s.cluster, s.requests, &s.integrand, world, s.options, s.memory, add_answers);
+  certified_light(s.cluster.shadow, s.cluster.requests, &s.integrand, world, s.options,
+                  s.cluster.memory, add_answers);
 }
 
 }  // namespace troffer

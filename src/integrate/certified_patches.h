@@ -13,10 +13,12 @@
 #include <span>
 #include <vector>
 
-#include "integrate/certified_lights.h"
+#include "integrate/shadow_world.h"
+#include "integrate/waiting_hits.h"
 #include "radiosity/shooter.h"
 #include "radiosity/solution.h"
 #include "select/source_selection.h"
+#include "shadow/receiver_clusters.h"
 
 namespace troffer {
 
@@ -62,12 +64,8 @@ struct CertifiedPatchesScratch {
   std::vector<uint32_t> order;     // of the hits, by patch
   std::vector<Vec3> positions, horizons;
   ReceiverClusters clusters;
-  // of the cluster at hand
-  std::vector<uint32_t> members;
-  std::vector<ShadowReceiver> receivers;
-  ShadowCluster cluster;
-  std::vector<LightRequest> requests;
-  CertifiedMemory memory;
+  CertifiedCluster cluster;
+  std::vector<uint32_t> members;  // of the cluster
 };
 
 class CertifiedPatches {

@@ -1,0 +1,45 @@
+#include "integrate/waiting_hits.h"
+
+namespace troffer {
+
+void WaitingHits::clear() {
+  receivers.clear();
+  positions.clear();
+  horizons.clear();
+  weights.clear();
+  indices.clear();
+  pixels.clear();
+  glossy.clear();
+  is_direct.clear();
+  is_first.clear();
+  glossy_hits.clear();
+}
+
+void WaitingHits::add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct) {
+  const Vec3& horizon = v.geometric_normal;
+  receivers.push_back({v.surface.position, horizon, v.frame.normal,
+                       offset_origin(v.surface, horizon),
+                       hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1)});
+  positions.push_back(v.surface.position);
+  horizons.push_back(horizon);
+  weights.push_back(weight);
+  indices.push_back(walk.index);
+  pixels.push_back(walk.stream);
+  glossy.push_back(-1);
+  is_direct.push_back(direct ? 1 : 0);
+  is_first.push_back(walk.vertex == 0 ? 1 : 0);
+}
+
+void WaitingHits::add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct) {
+  add(walk, v, walk.throughput * reflectance * inv_pi_f, direct);
+}
+
+void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
+                             bool direct) {
+  add(walk, v, walk.throughput, direct);
+  glossy.back() = int32_t(glossy_hits.size());
+  glossy_hits.push_back({v.frame, v.geometric_normal, v.wo, scattering.diffuse, scattering.specular,
+                         scattering.has_diffuse, scattering.has_rough});
+}
+
+}  // namespace troffer
