@@ -86,12 +86,12 @@ void Bintree::supply(std::span<const ShadowRayResult> results) {
   ask();
 }
 
-// [§1.3.2] Strictly under, so that 0 is never met.
+// [rule 2] Strictly under, so that 0 is never met.
 bool Bintree::is_variance_met() const {
   return estimate_.variance < sqr(options_.allowed_variance * leniency_ * unoccluded_);
 }
 
-// [§1.3.5]
+// [rule 5]
 bool Bintree::is_mean_settled() const {
   const size_t wanted = size_t(options_.mean_change_iterations);
   if (options_.mean_change <= 0 || options_.allowed_variance <= 0) return false;

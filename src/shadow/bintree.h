@@ -10,7 +10,7 @@
 //
 // The estimate is biased: where rays go, and when they stop, depends on what rays found.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
-//   Diffuse Interreflection", Eurographics '92, §3 and §4. [§1.3], [§1.4]: METHOD.md.
+//   Diffuse Interreflection", Eurographics '92, §3 and §4. [rule n], [reuse]: docs/bintree.md.
 #pragma once
 
 #include <array>
@@ -27,25 +27,25 @@
 namespace troffer {
 
 struct BintreeOptions {
-  // Rays cast in any case, spread evenly [§1.3.1]; rounded up to a power of two, at least 1.
+  // Rays cast in any case, spread evenly [rule 1]; rounded up to a power of two, at least 1.
   int initial_rays = 8;
-  // Allowed standard error of the mean, relative to the unoccluded contribution [§1.3.2]: the
+  // Allowed standard error of the mean, relative to the unoccluded contribution [rule 2]: the
   // variance of the root's mean must fall under (allowed_variance × unoccluded)². That variance is
   // estimated as if rays were independent: half in shadow, a source needs a quarter over the
   // square of this, 100 rays at 0.05; at 0.01 mostly the second stop or the cap ends it. 0: refine
   // all cells evenly until most_rays, whatever rays find: full stratified sampling.
   float allowed_variance = 0.01f;
-  // Levels that a leaf may be above a leaf beside it [§1.3.4]; 2 levels halve a cell both ways.
+  // Levels that a leaf may be above a leaf beside it [rule 4]; 2 levels halve a cell both ways.
   int level_difference = 1;
   // Stop where the mean stayed within an interval of this width, relative to the unoccluded
-  // contribution, over the last mean_change_iterations iterations [§1.3.5], 1 … 16, once
+  // contribution, over the last mean_change_iterations iterations [rule 5], 1 … 16, once
   // enough_rays are cast. 0: never.
   float mean_change = 0.004f;
   int mean_change_iterations = 8;
   int enough_rays = 32;
   // Cap on the rays of one point; initial rays are halved until they fit.
   int most_rays = 128;
-  // [§1.4] New positions in the old cells when a pattern is reused, instead of the old positions.
+  // [reuse] New positions in the old cells when a pattern is reused, instead of the old positions.
   bool renews_jitter = true;
 };
 
@@ -74,7 +74,7 @@ class Bintree {
   // Begins at a point with nothing known. `stream` seeds the jitter: a hash of pixel, sample and
   // source. `initial_rays` 0: as in the options.
   void start(uint64_t stream, float unoccluded = 1, int initial_rays = 0);
-  // [§1.4] Begins at the next point with the pattern that is there: all its leaves are pending.
+  // [reuse] Begins at the next point with the pattern that is there: all its leaves are pending.
   void resample(uint64_t stream, float unoccluded = 1);
 
   // For points where what a source would send unoccluded is known from the first round alone:
@@ -92,7 +92,7 @@ class Bintree {
   // results[i] answers pending()[i]. Then decides: stop, or split and ask for more.
   void supply(std::span<const ShadowRayResult> results);
 
-  // [§1.4] After the last answer: removes what showed nothing, for the next point. The estimate
+  // [reuse] After the last answer: removes what showed nothing, for the next point. The estimate
   // stays that of the point.
   void shrink();
 
@@ -140,7 +140,7 @@ const BintreeEstimate& answer_all(Bintree& tree, std::vector<ShadowRayResult>& r
   return tree.estimate();
 }
 
-// One point by itself [§1.3].
+// One point by itself.
 template <class Query>
 const BintreeEstimate& sample_source(Bintree& tree, std::vector<ShadowRayResult>& results,
                                      uint64_t stream, Query&& query, float unoccluded = 1) {
@@ -148,7 +148,7 @@ const BintreeEstimate& sample_source(Bintree& tree, std::vector<ShadowRayResult>
   return answer_all(tree, results, std::forward<Query>(query));
 }
 
-// The next point [§1.4]: shrinks the last point's pattern, resamples it, refines it.
+// The next point [reuse]: shrinks the last point's pattern, resamples it, refines it.
 template <class Query>
 const BintreeEstimate& resample_source(Bintree& tree, std::vector<ShadowRayResult>& results,
                                        uint64_t stream, Query&& query, float unoccluded = 1) {

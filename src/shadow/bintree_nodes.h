@@ -71,7 +71,7 @@ class BintreeNodes {
   // What the leaf's ray found; kernel as in ShadowRayResult.
   void set_result(int32_t leaf, bool is_visible, float kernel = 1);
 
-  // METHOD §1.3.2, passing results up: recomputes the ancestors of i, or i and all below it.
+  // METHOD rule 2, passing results up: recomputes the ancestors of i, or i and all below it.
   void propagate_up(int32_t i);
   void propagate_all(int32_t i = root);
 

@@ -124,7 +124,7 @@ int largest_level_difference(const BintreeNodes& nodes) {
 
 namespace {
 
-// [§1.4] for one node, a child of a uniform node: it has two leaves below it, and would not come to
+// [reuse] for one node, a child of a uniform node: it has two leaves below it, and would not come to
 // lie too far above a neighbour.
 bool can_become_leaf(const BintreeNodes& nodes, int32_t i, int difference) {
   const BintreeNode& n = nodes[i];

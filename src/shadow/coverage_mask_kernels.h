@@ -153,7 +153,7 @@ bool cover_rows(const MaskPoint& p, int rows, const FacetBatch<4>* quads, size_t
          cover_batches<3, 32>(triangles, triangle_batches, p, open);
 }
 
-// Certificates for facets `from` to from + width, see classify() in certificate.h.
+// Certificates for facets `from` to from + width, see classify() in coverage_mask.h.
 template <int edges>
 inline __attribute__((always_inline)) void classify_lanes(const FacetBatch<edges>& f, int from,
                                                           const MaskPoint* receivers, int count,

@@ -245,7 +245,7 @@ TEST_CASE("bintree: what it believes when it stops, and the cap") {
   }
 }
 
-TEST_CASE("§1.3.5: the second stop waits for enough rays and then saves some") {
+TEST_CASE("rule 5: the second stop waits for enough rays and then saves some") {
   BintreeOptions o;
   o.allowed_variance = 0.02f;
   o.most_rays = 1024;

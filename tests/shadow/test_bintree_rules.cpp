@@ -1,4 +1,4 @@
-// Each rule of METHOD.md §1.3 and §1.4 on trees small enough to say what must come out.
+// Each rule of docs/bintree.md on trees small enough to say what must come out.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ struct Planted {
 
 }  // namespace
 
-TEST_CASE("§1.3.1: initial rays are even, one to a cell, all pending") {
+TEST_CASE("rule 1: initial rays are even, one to a cell, all pending") {
   for (int level = 0; level <= 6; ++level) {
     const Planted p(level);
     CHECK(p.pending.size() == size_t(1) << level);
@@ -55,7 +55,7 @@ TEST_CASE("§1.3.1: initial rays are even, one to a cell, all pending") {
   }
 }
 
-TEST_CASE("§1.3.3a: the only child in penumbra is taken") {
+TEST_CASE("rule 3a: the only child in penumbra is taken") {
   Planted p(3);
   // left half light, right half mixed: its upper right cell is dark
   p.answer([](float u, float v) { return !(u > 0.75f && v > 0.5f); });
@@ -67,7 +67,7 @@ TEST_CASE("§1.3.3a: the only child in penumbra is taken") {
   CHECK(choose_leaf(p.t) == p.at(3, 0.9f, 0.9f));
 }
 
-TEST_CASE("§1.3.3b: of two in penumbra the one with fewer samples is taken") {
+TEST_CASE("rule 3b: of two in penumbra the one with fewer samples is taken") {
   Planted p(3);
   p.split(3, 0.1f, 0.9f);
   p.answer([](float, float v) { return v > 0.5f; });
@@ -79,7 +79,7 @@ TEST_CASE("§1.3.3b: of two in penumbra the one with fewer samples is taken") {
   CHECK(choose_fewer_samples(p.t, b, b - 1) == b);
 }
 
-TEST_CASE("§1.3.3c: of two without penumbra the one that differs from its neighbours is taken") {
+TEST_CASE("rule 3c: of two without penumbra the one that differs from its neighbours is taken") {
   Planted p(4);
   // one dark cell of 16 in the left lower quarter's right upper place
   p.answer([](float u, float v) { return !(u > 0.25f && u < 0.5f && v > 0.25f && v < 0.5f); });
@@ -98,7 +98,7 @@ TEST_CASE("§1.3.3c: of two without penumbra the one that differs from its neigh
   CHECK(choose_leaf(p.t) == dark);
 }
 
-TEST_CASE("§1.3.3c: without a difference the one with fewer samples is taken, level by level") {
+TEST_CASE("rule 3c: without a difference the one with fewer samples is taken, level by level") {
   Planted p(2);
   p.split(2, 0.1f, 0.1f);
   p.answer([](float, float) { return true; });
@@ -107,7 +107,7 @@ TEST_CASE("§1.3.3c: without a difference the one with fewer samples is taken, l
   CHECK(choose_leaf_evenly(p.t) == p.at(2, 0.9f, 0.1f));
 }
 
-TEST_CASE("§1.3.3c: a larger leaf counts as neighbour of its smaller ones") {
+TEST_CASE("rule 3c: a larger leaf counts as neighbour of its smaller ones") {
   Planted p(2);
   p.split(2, 0.1f, 0.1f);
   p.split(3, 0.3f, 0.1f);  // level 4 beside the leaf (0.5…1, 0…0.5) of level 2
@@ -116,7 +116,7 @@ TEST_CASE("§1.3.3c: a larger leaf counts as neighbour of its smaller ones") {
   CHECK(!differs_from_neighbours(p.t, p.at(3, 0.1f, 0.1f)));
 }
 
-TEST_CASE("§1.3.4: larger leaves beside deep ones are split, and no others") {
+TEST_CASE("rule 4: larger leaves beside deep ones are split, and no others") {
   Planted p(2);
   p.split(2, 0.1f, 0.1f);
   p.split(3, 0.3f, 0.1f);
@@ -137,7 +137,7 @@ TEST_CASE("§1.3.4: larger leaves beside deep ones are split, and no others") {
   CHECK(p.is_leaf(2, 0.6f, 0.6f));
 }
 
-TEST_CASE("§1.3.4: holds after any sequence of splits; difference 0 means one level") {
+TEST_CASE("rule 4: holds after any sequence of splits; difference 0 means one level") {
   Random random(8);
   for (int difference = 0; difference <= 3; ++difference) {
     for (int k = 0; k < 20; ++k) {
@@ -165,7 +165,7 @@ TEST_CASE("§1.3.4: holds after any sequence of splits; difference 0 means one l
   }
 }
 
-TEST_CASE("§1.3.4: stops at the cap") {
+TEST_CASE("rule 4: stops at the cap") {
   Planted p(2);
   p.answer([](float, float) { return true; });
   p.split(2, 0.1f, 0.1f);

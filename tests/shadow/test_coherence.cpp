@@ -1,4 +1,4 @@
-// Reuse of the pattern from point to point (METHOD.md §1.4) under shadows that move.
+// Reuse of the pattern from point to point (docs/bintree.md) under shadows that move.
 #include <doctest/doctest.h>
 
 #include <cmath>
