@@ -118,7 +118,7 @@ void BintreeNodes::set_result(int32_t leaf, bool is_visible, float kernel) {
   n.samples = 1;
 }
 
-// METHOD §1.3: mean, variance of the mean, flag and count of an inner node. METHOD leaves open how
+// Rule 2: mean, variance of the mean, flag and count of an inner node. The paper leaves open how
 // the variance is estimated. As in [1], it is that of all rays of the subtree taken together, each
 // weighted by its area, divided by their number less one, as if they were independent. That ignores
 // what stratification gains, so it overestimates; and that is what makes the rule work: sums over

@@ -174,7 +174,7 @@ TEST_CASE("rule 4: stops at the cap") {
   CHECK(leaves == 6);
 }
 
-TEST_CASE("§1.4: shrink, before and after") {
+TEST_CASE("reuse: shrink, before and after") {
   // 32 leaves in 8 columns: six columns light, the two on the right dark
   Planted p(5);
   p.answer([](float u, float) { return u < 0.7f; });
@@ -198,7 +198,7 @@ TEST_CASE("§1.4: shrink, before and after") {
   CHECK(p.leaves() == 10);
 }
 
-TEST_CASE("§1.4: shrink stops at the initial level, and at a mixed parent") {
+TEST_CASE("reuse: shrink stops at the initial level, and at a mixed parent") {
   for (int initial = 0; initial <= 5; ++initial) {
     Planted p(5);
     p.answer([](float, float) { return false; });
@@ -212,7 +212,7 @@ TEST_CASE("§1.4: shrink stops at the initial level, and at a mixed parent") {
   CHECK(p.leaves() == 4);  // the halves are uniform, but what they are part of is not
 }
 
-TEST_CASE("§1.4: shrink keeps the level difference") {
+TEST_CASE("reuse: shrink keeps the level difference") {
   Random random(9);
   for (int k = 0; k < 60; ++k) {
     const int difference = 1 + k % 3;
