@@ -37,7 +37,7 @@ void add_slanted_box(Scene& s) {
   Mesh m;
   add_box(m, {-0.3f, -0.2f, 1.8f}, {0.3f, 0.2f, 2.1f}, 0.5f);
   Light e;
-  e.shape = LightShape::mesh;
+  e.kind = LightKind::mesh;
   e.radiance = Rgb{1};
   for (uint32_t i = 0; i < m.triangles.size(); ++i) {
     e.triangles.push_back(i);
@@ -51,7 +51,7 @@ void add_glowing_ball(Scene& s) {
   Mesh m;
   add_ball(m, {0, 0, 2}, 0.3f);
   Light e;
-  e.shape = LightShape::mesh;
+  e.kind = LightKind::mesh;
   e.radiance = Rgb{1};
   for (uint32_t i = 0; i < m.triangles.size(); ++i) {
     e.triangles.push_back(i);
@@ -68,7 +68,7 @@ void add_disk(Scene& s) {
   d.radius = 0.5f;
   d.light = 0;
   Light e;
-  e.shape = LightShape::disk;
+  e.kind = LightKind::disk;
   e.radiance = Rgb{1};
   s.lights.push_back(e);
   s.disks.push_back(d);
@@ -80,7 +80,7 @@ void add_sphere(Scene& s) {
   b.radius = 0.3f;
   b.light = 0;
   Light e;
-  e.shape = LightShape::sphere;
+  e.kind = LightKind::sphere;
   e.radiance = Rgb{1};
   s.lights.push_back(e);
   s.spheres.push_back(b);

@@ -131,7 +131,7 @@ void embedded(Scene& s, Mesh& m) {
     disk.radius = 0.1f;
     disk.light = int32_t(s.lights.size());
     Light e;
-    e.shape = LightShape::disk;
+    e.kind = LightKind::disk;
     e.radiance = Rgb{10};
     e.geometry = uint32_t(s.disks.size());
     s.lights.push_back(e);

@@ -14,20 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* shape_name(LightShape s) {
-  switch (s) {
-    case LightShape::polygon:
-      return "polygon";
-    case LightShape::disk:
-      return "disk";
-    case LightShape::sphere:
-      return "sphere";
-    case LightShape::mesh:
-      return "mesh";
-  }
-  return "";
-}
-
 Json info_json(const Scene& scene) {
   size_t light_triangles = 0;
   for (const Mesh& m : scene.meshes)
@@ -62,7 +48,7 @@ Json info_json(const Scene& scene) {
   for (size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& e = scene.lights[i];
     j["sources"].push_back({{"name", e.name},
-                            {"shape", shape_name(e.shape)},
+                            {"shape", name_of(e.kind)},
                             {"area", infos[i].area},
                             {"radiance", {e.radiance.r, e.radiance.g, e.radiance.b}},
                             {"power", infos[i].power},

@@ -249,7 +249,7 @@ void add_light(Scene& scene, uint32_t mesh, const EmissionSpec& spec, Triangles 
                std::vector<Vec3> polygon) {
   Light e;
   e.name = spec.name;
-  e.shape = polygon.empty() ? LightShape::mesh : LightShape::polygon;
+  e.kind = polygon.empty() ? LightKind::mesh : LightKind::polygon;
   e.radiance = spec.radiance;
   e.texture = spec.texture;
   e.is_two_sided = spec.is_two_sided;

@@ -151,7 +151,7 @@ void PbrtPlacer::place_sphere(const Placing& placing) {
     if (!placing.shape.light->image.empty())
       scene_.warnings.add("image of the emission of a sphere is not supported: ignored");
     Light e = next_light(*placing.shape.light, 4 * pi * r * r);
-    e.shape = LightShape::sphere;
+    e.kind = LightKind::sphere;
     e.geometry = geometry;
     if (!e.radiance.is_black()) {
       sphere.light = int32_t(scene_.lights.size());
@@ -186,7 +186,7 @@ void PbrtPlacer::place_disk(const Placing& placing) {
     if (!placing.shape.light->image.empty())
       scene_.warnings.add("image of the emission of a disk is not supported: ignored");
     Light e = next_light(*placing.shape.light, pi * r * r);
-    e.shape = LightShape::disk;
+    e.kind = LightKind::disk;
     e.geometry = geometry;
     if (!e.radiance.is_black()) {
       disk.light = int32_t(scene_.lights.size());

@@ -114,14 +114,20 @@ void BintreeDirect::shade(WaveHits& wave, size_t i, Scratch& scratch, RadianceBa
 
 void BintreeDirect::weigh(SeenEmission& seen) const {
   for (size_t i = 0; i < seen.size(); ++i) {
-    if (seen.vertices[i] == nullptr) continue;
     const Walk& walk = *seen.walks[i];
+    const auto rays = float(options_.tree.initial_rays);
+    if (seen.vertices[i] == nullptr) {
+      const uint32_t primitive = seen.at_infinity[i];
+      if (is_treated(walk.last_place, scene_.primitives[primitive].light))
+        seen.weights[i] = miss_weight(scene_, walk, primitive, rays);
+      continue;
+    }
     const Vertex& v = *seen.vertices[i];
     const auto light = uint32_t(v.surface.light);
     if (!is_treated(walk.last_place, light)) continue;
     const float pdf_light = sources_[index_of_source_[light]].pdf_of_hit(scene_, walk.last_position,
                                                                          walk.ray.direction, v);
-    seen.weights[i] = power_heuristic(walk.pdf, float(options_.tree.initial_rays) * pdf_light);
+    seen.weights[i] = power_heuristic(walk.pdf, rays * pdf_light);
   }
 }
 

@@ -112,7 +112,10 @@ void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, Radi
 
 void CertifiedDirect::weigh(SeenEmission& seen) const {
   for (size_t i = 0; i < seen.size(); ++i)
-    if (seen.vertices[i] != nullptr) seen.weights[i] = weight_of(*seen.walks[i], *seen.vertices[i]);
+    seen.weights[i] = seen.vertices[i] == nullptr
+                          ? sampler_.miss_weight(*seen.walks[i], seen.at_infinity[i],
+                                                 uint32_t(settings_.shadow_rays))
+                          : weight_of(*seen.walks[i], *seen.vertices[i]);
 }
 
 // Of emission that a walk has run into, against points on the source chosen at the vertex before.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/random.h"
+#include "light/light.h"
 #include "trace/occluders.h"
 
 namespace troffer {
@@ -67,6 +68,8 @@ void CertifiedLights::add_source(const CertifiedSource& source,
 }
 
 bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
+  if (certificate_shape(scene.scene, scene.scene.lights[light]) == CertificateShape::none)
+    return false;
   const LightPrimitives::Range pieces = scene.primitives.of_light(light);
   std::vector<SourcePiece> merged;
   if (merge_sources(scene.primitives, light, merged)) return add_flat_light(scene, light, merged);
@@ -79,7 +82,6 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
     source.is_textured = piece.is_textured;
     source.radiance = piece.is_textured ? piece.mean_radiance : scene.scene.lights[light].radiance;
     if (piece.shape == PrimitiveShape::sphere) {
-      if (piece.is_inside_out || piece.is_two_sided) return false;
       source.is_round = true;
       const auto meshes = uint32_t(scene.scene.meshes.size());
       source.sphere = {Vec3d(piece.centroid), double(piece.radius),

@@ -45,7 +45,7 @@ class CertifiedLights {
   CertifiedLights(const PreparedScene& scene, double error);
 
   // The light is dealt with here, whole. Others are meshes of too many pieces that lie in no
-  // common plane, or spheres that shine inwards.
+  // common plane, or have no certificate shape (light.h).
   bool has(uint32_t light) const { return has_light_[light]; }
   bool is_empty() const { return sources_.empty(); }
   // The source that a point on a piece of a light belongs to, seen from its front or its back;

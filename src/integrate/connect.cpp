@@ -1,6 +1,7 @@
 #include "integrate/connect.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace troffer {
 
@@ -18,30 +19,30 @@ Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal) {
   return ray;
 }
 
-bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
-             const LightPrimitive& light, const Vec2& u, LightConnection& out) {
-  LightSample s;
-  return sample(light, v.surface.position, u, s) && connect(scene, v, bsdf, light, s, out);
+Ray shadow_ray_to(const Surface& surface, const LightSample& light) {
+  if (!std::isinf(light.distance)) return shadow_ray_to(surface, light.point, light.normal);
+  Ray ray;
+  ray.origin = offset_origin(surface, light.wi);
+  ray.direction = light.wi;
+  return ray;
 }
 
-bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
-             const LightPrimitive& light, const LightSample& s, LightConnection& out) {
+bool connect(const Vertex& v, const Bsdf& bsdf, const LightSample& s, LightConnection& out) {
   const Vec3 wi = v.frame.to_local(s.wi);
   if (!v.is_consistent(s.wi, wi)) return false;
   const BsdfValue value = evaluate_with_pdf(bsdf, v.wo, wi);
   if (value.f_cos.is_black()) return false;
-  out.value = value.f_cos * emitted_radiance(scene.scene, scene.scene.lights[light.light],
-                                             s.is_front, s.texture_uv);
+  out.value = value.f_cos * s.radiance;
   if (out.value.is_black()) return false;
   out.pdf_light = s.pdf_solid_angle;
-  out.pdf_bsdf = value.pdf;
-  out.shadow_ray = shadow_ray_to(v.surface, s.point, s.normal);
+  out.pdf_bsdf = s.is_delta ? 0 : value.pdf;
+  out.shadow_ray = shadow_ray_to(v.surface, s);
   return true;
 }
 
-float pdf_of_hit(const LightPrimitive& light, const Vec3& from, const Vec3& direction,
-                 const Vertex& v) {
-  return pdf_solid_angle(light, from, direction, length(v.surface.position - from));
+float pdf_of_hit(const PreparedScene& scene, const LightPrimitive& light, const Vec3& from,
+                 const Vec3& direction, const Vertex& v) {
+  return pdf_solid_angle(scene.scene, light, from, direction, length(v.surface.position - from));
 }
 
 int32_t primitive_at(const PreparedScene& scene, const Surface& s) {
@@ -54,7 +55,8 @@ int32_t primitive_at(const PreparedScene& scene, const Surface& s) {
 Rgb emission_at(const PreparedScene& scene, const Vertex& v) {
   const Surface& s = v.surface;
   if (s.light < 0) return Rgb{0};
-  return emitted_radiance(scene.scene, scene.scene.lights[size_t(s.light)], v.is_front, s.uv);
+  return emitted_radiance(scene.scene, scene.scene.lights[size_t(s.light)], v.is_front, s.uv,
+                          v.frame.to_world(v.wo));
 }
 
 }  // namespace troffer

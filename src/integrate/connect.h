@@ -3,34 +3,32 @@
 
 #include "integrate/prepared_scene.h"
 #include "integrate/vertex.h"
-#include "light/light_sample.h"
+#include "light/light.h"
 
 namespace troffer {
 
 // An unoccluded connection and the ray that tells whether it is one.
 struct LightConnection {
-  Ray shadow_ray;       // t_max = 1; ends just before the light
-  Rgb value;            // f |cos| × emitted radiance
-  float pdf_light = 0;  // of the light's point, per solid angle, the light being given
-  float pdf_bsdf = 0;   // with which the BSDF's sampling chooses this direction
+  Ray shadow_ray;       // t_max = 1; ends just before the light, or never
+  Rgb value;            // f |cos| × radiance that the light sends
+  float pdf_light = 0;  // of the light's point, per solid angle, the light being given; delta: 1
+  float pdf_bsdf = 0;   // with which the BSDF's sampling finds this point of the light; delta: 0
 };
 
 // The ray from a surface to a point of a source whose unit normal towards the surface is given;
 // t_max = 1 stops it just before the source.
 Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal);
 
-// Connects v with the point of `light` that u picks. False where nothing can arrive.
-bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
-             const LightPrimitive& light, const Vec2& u, LightConnection& out);
+// The same towards a sample of a light, whatever its kind.
+Ray shadow_ray_to(const Surface& s, const LightSample& light);
 
-// The same for a point of `light` that has been chosen already.
-bool connect(const PreparedScene& scene, const Vertex& v, const Bsdf& bsdf,
-             const LightPrimitive& light, const LightSample& point, LightConnection& out);
+// Connects v with a sample of a light. False where nothing can arrive.
+bool connect(const Vertex& v, const Bsdf& bsdf, const LightSample& light, LightConnection& out);
 
-// The density per solid angle, given that `light` is sampled, with which connect() picks the point
+// The density per solid angle, given that `light` is sampled, with which sample() picks the point
 // that a ray from `from` meets at vertex v.
-float pdf_of_hit(const LightPrimitive& light, const Vec3& from, const Vec3& direction,
-                 const Vertex& v);
+float pdf_of_hit(const PreparedScene& scene, const LightPrimitive& light, const Vec3& from,
+                 const Vec3& direction, const Vertex& v);
 
 // The light primitive at a vertex, or no_primitive.
 int32_t primitive_at(const PreparedScene& scene, const Surface& surface);

@@ -35,8 +35,10 @@ void FixedDirect::flush(DirectLightScratch& scratch, RadianceBatch& out, Counter
 
 void FixedDirect::weigh(SeenEmission& seen) const {
   for (size_t i = 0; i < seen.size(); ++i)
-    if (seen.vertices[i] != nullptr)
-      seen.weights[i] = sampler_.emission_weight(*seen.walks[i], *seen.vertices[i], shadow_rays_);
+    seen.weights[i] =
+        seen.vertices[i] == nullptr
+            ? sampler_.miss_weight(*seen.walks[i], seen.at_infinity[i], shadow_rays_)
+            : sampler_.emission_weight(*seen.walks[i], *seen.vertices[i], shadow_rays_);
 }
 
 }  // namespace troffer

@@ -65,15 +65,14 @@ void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
   auto& s = static_cast<LightTreeDirectScratch&>(scratch);
   if (wave.size() == 0 || scene_.light_tree.is_empty()) return;
   const size_t m = choose_lights(wave, s);
-  sample_many(scene_.primitives, m, s.primitives.data(), s.points_lit.data(), s.light_u.data(),
-              s.light_v.data(), s.points.data(), s.is_valid.data(), s.light_samples);
+  sample_many(scene_.scene, scene_.primitives, m, s.primitives.data(), s.points_lit.data(),
+              s.light_u.data(), s.light_v.data(), s.points.data(), s.is_valid.data(),
+              s.light_samples);
   for (size_t k = 0; k < m; ++k) {
     if (s.is_valid[k] == 0) continue;
     const uint32_t i = s.lit[k];
     LightConnection c;
-    if (!connect(scene_, wave.vertices[i], wave.bsdfs[i], scene_.primitives[s.primitives[k]],
-                 s.points[k], c))
-      continue;
+    if (!connect(wave.vertices[i], wave.bsdfs[i], s.points[k], c)) continue;
     const float pdf_light = c.pdf_light * s.light_pmf[k];
     const bool has_competition = has_matte_walks_ || !is_lambertian(wave.bsdfs[i], nullptr);
     const float weight = has_competition ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
@@ -91,7 +90,15 @@ void LightTreeDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
 
 void LightTreeDirect::weigh(SeenEmission& seen) const {
   for (size_t i = 0; i < seen.size(); ++i)
-    if (seen.vertices[i] != nullptr) seen.weights[i] = weight_of(*seen.walks[i], *seen.vertices[i]);
+    seen.weights[i] = seen.vertices[i] == nullptr
+                          ? weight_of_miss(*seen.walks[i], seen.at_infinity[i])
+                          : weight_of(*seen.walks[i], *seen.vertices[i]);
+}
+
+float LightTreeDirect::weight_of_miss(const Walk& walk, uint32_t primitive) const {
+  return miss_weight(
+      scene_, walk, primitive,
+      scene_.light_tree.pmf(walk.last_position, walk.last_normal, walk.last_both_sides, primitive));
 }
 
 float LightTreeDirect::weight_of(const Walk& walk, const Vertex& v) const {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "integrate/direct_light.h"
-#include "light/light_sample.h"
+#include "light/light.h"
 #include "select/light_tree.h"
 
 namespace troffer {
@@ -46,6 +46,8 @@ class LightTreeDirect final : public DirectLight {
   void weigh(SeenEmission& seen) const override;
   // Of emission that a walk has run into at v.
   float weight_of(const Walk& walk, const Vertex& v) const;
+  // Of a light at infinity, seen by a walk that has left the scene.
+  float weight_of_miss(const Walk& walk, uint32_t primitive) const;
 
  private:
   size_t choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const;

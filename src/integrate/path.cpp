@@ -116,9 +116,12 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
   CheckItems items;
   for (size_t i = 0; i < n; ++i) {
     const Hit& hit = s.trace.hits[i];
-    if (!hit.is_valid()) continue;
     const Walk& walk = walks[i];
     items.at(walk.index);
+    if (!hit.is_valid()) {
+      add_miss(walk, out);
+      continue;
+    }
     Vertex& v = vertices[alive];
     make_vertex(scene_.scene, walk.ray, hit, v);
     if (v.surface.light >= 0) add_emission(walk, v, out);
@@ -153,7 +156,18 @@ void PathIntegrator::shade(Scratch& s, RadianceBatch& out, Counters& counters) c
 void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const {
   const Rgb radiance = emission_at(scene_, v);
   if (radiance.is_black()) return;
-  const float weight = walk.pdf > 0 ? lights_.weight_of(walk, v) : 1;
+  add_seen(walk, radiance, walk.pdf > 0 ? lights_.weight_of(walk, v) : 1, out);
+}
+
+// What lights at infinity show to a path that has left the scene.
+void PathIntegrator::add_miss(const Walk& walk, RadianceBatch& out) const {
+  for (const uint32_t p : scene_.primitives.at_infinity())
+    add_seen(walk, radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction),
+             walk.pdf > 0 ? lights_.weight_of_miss(walk, p) : 1, out);
+}
+
+void PathIntegrator::add_seen(const Walk& walk, Rgb radiance, float weight,
+                              RadianceBatch& out) const {
   // Straight from the source: seen as it is, or scattered once with nothing in between.
   const bool is_direct = is_direct_at(walk) || (walk.scatterings == 1 && walk.pdf > 0);
   (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;

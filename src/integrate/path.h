@@ -35,6 +35,8 @@ class PathIntegrator final : public Integrator {
   void arrive(Scratch& scratch, RadianceBatch& out) const;
   void shade(Scratch& scratch, RadianceBatch& out, Counters& counters) const;
   void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;
+  void add_miss(const Walk& walk, RadianceBatch& out) const;
+  void add_seen(const Walk& walk, Rgb radiance, float weight, RadianceBatch& out) const;
   void step_on(Scratch& scratch) const;
   bool is_last(const Walk& walk) const;
 

@@ -22,7 +22,8 @@ float nominal_density(const CertifiedSource& source, const Vec3& x, const Vec3& 
   return unoccluded > 0 ? cosine / unoccluded : 0;
 }
 
-Rgb SourceIntegrand::radiance_at(const CertifiedSource& source, const Vec3& point) const {
+Rgb SourceIntegrand::radiance_at(const CertifiedSource& source, const Vec3& point,
+                                 const Vec3& receiver) const {
   if (!source.is_textured) return source.radiance;
   const LightPrimitive& p = scene_.primitives[source.primitive];
   const Vec3d a(p.vertices[0]), ab = Vec3d(p.vertices[1]) - a, ac = Vec3d(p.vertices[2]) - a;
@@ -30,7 +31,8 @@ Rgb SourceIntegrand::radiance_at(const CertifiedSource& source, const Vec3& poin
   const double area2 = length_squared(n);
   const auto b1 = float(dot(cross(d, ac), n) / area2), b2 = float(dot(cross(ab, d), n) / area2);
   const Vec2 uv = p.uvs[0] * (1 - b1 - b2) + p.uvs[1] * b1 + p.uvs[2] * b2;
-  return emitted_radiance(scene_.scene, scene_.scene.lights[p.light], !source.is_back, uv);
+  return emitted_radiance(scene_.scene, scene_.scene.lights[p.light], !source.is_back, uv,
+                          normalize(receiver - point));
 }
 
 void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
@@ -38,7 +40,8 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
   const CertifiedSource& source = *sources_[request];
   const IntegrandHit& hit = hits_[member];
   if (hit.glossy == nullptr) {
-    for (size_t i = 0; i < points.size(); ++i) values[i] = radiance_at(source, points[i]);
+    for (size_t i = 0; i < points.size(); ++i)
+      values[i] = radiance_at(source, points[i], hit.position);
     return;
   }
   const GlossyHit& g = *hit.glossy;
@@ -56,7 +59,7 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
       const BsdfValue rough = evaluate_with_pdf(g.rough, g.wo, wi);
       f_cos += rough.f_cos * power_heuristic(float(points_) * cosine / unoccluded, rough.pdf);
     }
-    values[i] = f_cos * (1 / wi.z) * radiance_at(source, points[i]);
+    values[i] = f_cos * (1 / wi.z) * radiance_at(source, points[i], hit.position);
   }
 }
 

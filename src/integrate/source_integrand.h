@@ -67,7 +67,7 @@ class SourceIntegrand final : public ShadowIntegrand {
                 std::span<Rgb> values) override;
 
  private:
-  Rgb radiance_at(const CertifiedSource& source, const Vec3& point) const;
+  Rgb radiance_at(const CertifiedSource& source, const Vec3& point, const Vec3& receiver) const;
 
   const PreparedScene& scene_;
   uint32_t points_;

@@ -26,8 +26,10 @@ void SourceSamplerScratch::resize(size_t n) {
 }
 
 SourceSampler::SourceSampler(const PreparedScene& scene) : scene_(scene) {
-  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
+  for (uint32_t e = 0; e < scene.scene.lights.size(); ++e) {
     trees_.emplace_back(scene.primitives, scene.primitives.of_light(e));
+    is_delta_.push_back(is_delta(scene.scene.lights[e].kind));
+  }
 }
 
 // Points on the light, in the order of their numbers; those that can send no light are left out.
@@ -52,27 +54,26 @@ uint32_t SourceSampler::choose_points(const SampledVertex& at, uint32_t light, u
     s.v[chosen] = s.numbers[n + j];
     ++chosen;
   }
-  sample_many(scene_.primitives, chosen, s.primitives.data(), s.receivers.data(), s.u.data(),
-              s.v.data(), s.points.data(), s.is_valid.data(), s.lights);
+  sample_many(scene_.scene, scene_.primitives, chosen, s.primitives.data(), s.receivers.data(),
+              s.u.data(), s.v.data(), s.points.data(), s.is_valid.data(), s.lights);
   return chosen;
 }
 
 void SourceSampler::sample(const SampledVertex& at, uint32_t light, uint32_t n,
                            SourceSamplerScratch& s, RadianceBatch& out, Counters& counters) const {
+  if (is_delta_[light]) n = 1;  // one point is all there is
   const uint32_t chosen = choose_points(at, light, n, s);
   for (uint32_t j = 0; j < chosen; ++j) {
     if (s.is_valid[j] == 0) continue;
-    const LightPrimitive& primitive = scene_.primitives[s.primitives[j]];
     LightConnection c;
     Rgb carried;
     bool is_connected = false;
-    if (at.alone != nullptr && connect(scene_, at.vertex, *at.alone, primitive, s.points[j], c)) {
+    if (at.alone != nullptr && connect(at.vertex, *at.alone, s.points[j], c)) {
       const float pdf_light = c.pdf_light * s.pmfs[j] * float(n);
       carried += at.walk.throughput * c.value * (1 / pdf_light);
       is_connected = true;
     }
-    if (at.competing != nullptr &&
-        connect(scene_, at.vertex, *at.competing, primitive, s.points[j], c)) {
+    if (at.competing != nullptr && connect(at.vertex, *at.competing, s.points[j], c)) {
       const float pdf_light = c.pdf_light * s.pmfs[j] * float(n);
       const float weight = power_heuristic(pdf_light, c.pdf_bsdf);
       carried += at.walk.throughput * c.value * (weight / pdf_light);

@@ -41,8 +41,8 @@ class SourceSampler {
   uint32_t lights() const { return uint32_t(trees_.size()); }
   bool is_empty(uint32_t light) const { return trees_[light].is_empty(); }
 
-  // Adds n shadow rays to a light that is not empty. They are traced, and their light added to
-  // `out`, once many have gathered and by resolve().
+  // Adds n shadow rays to a light that is not empty, one to a delta light. They are traced, and
+  // their light added to `out`, once many have gathered and by resolve().
   void sample(const SampledVertex& at, uint32_t light, uint32_t n, SourceSamplerScratch& s,
               RadianceBatch& out, Counters& counters) const;
   void resolve(SourceSamplerScratch& s, RadianceBatch& out, Counters& counters) const;
@@ -50,6 +50,10 @@ class SourceSampler {
   // The weight of emission that a walk has run into at v, against n rays to that light from the
   // vertex before; 1 where the walk competes with none.
   float emission_weight(const Walk& walk, const Vertex& v, uint32_t n) const;
+  // The same for a light at infinity that a walk has left the scene towards.
+  float miss_weight(const Walk& walk, uint32_t primitive, uint32_t n) const {
+    return troffer::miss_weight(scene_, walk, primitive, float(n));
+  }
 
  private:
   uint32_t choose_points(const SampledVertex& at, uint32_t light, uint32_t n,
@@ -57,6 +61,7 @@ class SourceSampler {
 
   const PreparedScene& scene_;
   std::vector<LightTree> trees_;  // per light, over its primitives
+  std::vector<bool> is_delta_;    // per light
 };
 
 }  // namespace troffer

@@ -3,12 +3,14 @@
 //
 // Lights of any shape, and bright patches of the radiosity solution. The square is laid over the
 // surface by area (source_surface.h); over a sphere by the solid angle of what the vertex sees of
-// it, or half of the square would lie on the far side.
+// it, or half of the square would lie on the far side; lights without surface have it laid over the
+// directions from which they shine.
 #pragma once
 
 #include "integrate/prepared_scene.h"
 #include "integrate/surface_scattering.h"
 #include "integrate/vertex.h"
+#include "light/light.h"
 #include "light/source_surface.h"
 #include "radiosity/solution.h"
 
@@ -28,7 +30,11 @@ class TreeSource {
 
   bool is_patch() const { return light_ < 0; }
   // Nothing to sample.
-  bool is_empty() const { return !(surface_.area() > 0) || is_black_; }
+  bool is_empty() const {
+    return (!(surface_.area() > 0) && sampled_ == no_primitive) || is_black_;
+  }
+  // All points are one: a ray tells all.
+  bool is_delta() const { return is_delta_; }
   // All points send the same radiance.
   bool is_constant() const { return is_constant_; }
   Rgb radiance() const { return radiance_; }  // where is_constant
@@ -49,19 +55,15 @@ class TreeSource {
                    const Vertex& v) const;
 
  private:
-  struct Point {
-    Vec3 position, normal;  // the normal on the side of the vertex
-    Vec2 texture_uv;
-    float pdf_solid_angle = 0;
-    bool is_front = true;
-  };
-  bool point_towards(const PreparedScene& scene, const Vec2& uv, const Vec3& x, Point& out) const;
+  bool point_towards(const PreparedScene& scene, const Vec2& uv, const Vec3& x,
+                     LightSample& out) const;
 
   SourceSurface surface_;
   int32_t light_ = -1;
-  int32_t sphere_ = no_primitive;  // the light primitive of a spherical light
+  int32_t sampled_ = no_primitive;  // the light primitive of a sphere or a light without surface
   Rgb radiance_;
-  bool is_constant_ = true, is_convex_ = true, is_two_sided_ = false, is_black_ = false;
+  bool is_constant_ = true, is_convex_ = true, is_two_sided_ = false, is_black_ = false,
+       is_delta_ = false;
   Vec3 round_centre_;       // of the sphere on which a patch lies …
   float round_radius_ = 0;  // … or 0
 };

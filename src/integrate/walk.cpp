@@ -1,5 +1,7 @@
 #include "integrate/walk.h"
 
+#include <limits>
+
 #include "base/random.h"
 #include "integrate/purposes.h"
 
@@ -89,8 +91,15 @@ void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, Radia
 float emission_weight(const PreparedScene& scene, const LightTree& tree, const Walk& walk,
                       const Vertex& v, uint32_t primitive, float samples) {
   const float pmf = tree.pmf(walk.last_position, walk.last_normal, walk.last_both_sides, primitive);
+  const float pdf_light = pmf * pdf_of_hit(scene, scene.primitives[primitive], walk.last_position,
+                                           walk.ray.direction, v);
+  return power_heuristic(walk.pdf, samples * pdf_light);
+}
+
+float miss_weight(const PreparedScene& scene, const Walk& walk, uint32_t primitive, float samples) {
   const float pdf_light =
-      pmf * pdf_of_hit(scene.primitives[primitive], walk.last_position, walk.ray.direction, v);
+      pdf_solid_angle(scene.scene, scene.primitives[primitive], walk.last_position,
+                      walk.ray.direction, std::numeric_limits<float>::infinity());
   return power_heuristic(walk.pdf, samples * pdf_light);
 }
 

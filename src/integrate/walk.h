@@ -64,6 +64,10 @@ void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, Radia
 float emission_weight(const PreparedScene& scene, const LightTree& tree, const Walk& walk,
                       const Vertex& v, uint32_t primitive, float samples);
 
+// The weight of a light at infinity that the walk, which has left the scene, sees, against
+// `samples` samples of it drawn at the vertex before (the power heuristic).
+float miss_weight(const PreparedScene& scene, const Walk& walk, uint32_t primitive, float samples);
+
 // Shadow rays with what they carry, gathered over many vertices.
 struct ShadowBatch {
   std::vector<Ray> rays;

@@ -47,6 +47,7 @@ struct SeenEmission {
   std::vector<const Walk*> walks;
   std::vector<const Vertex*> vertices;  // where; null: the ray has left the scene
   std::vector<Rgb> radiance;
+  std::vector<uint32_t> at_infinity;  // the light primitive, where the ray has left the scene
   std::vector<float> weights;  // to be set: against the sampling of sources from the vertex before
 
   size_t size() const { return walks.size(); }
@@ -54,12 +55,14 @@ struct SeenEmission {
     walks.clear();
     vertices.clear();
     radiance.clear();
+    at_infinity.clear();
     weights.clear();
   }
-  void add(const Walk& walk, const Vertex* vertex, Rgb emitted) {
+  void add(const Walk& walk, const Vertex* vertex, Rgb emitted, uint32_t light_at_infinity = 0) {
     walks.push_back(&walk);
     vertices.push_back(vertex);
     radiance.push_back(emitted);
+    at_infinity.push_back(light_at_infinity);
     weights.push_back(1);
   }
 };

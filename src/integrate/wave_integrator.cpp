@@ -107,8 +107,11 @@ void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch
   CheckItems items;
   for (size_t i = first; i < last; ++i) {
     const Hit& hit = s.trace.hits[i];
-    if (!hit.is_valid()) continue;
     items.at(s.walks[i].index);
+    if (!hit.is_valid()) {
+      see_lights_at_infinity(s.walks[i], s);
+      continue;
+    }
     const Walk& walk = w.walks.emplace_back(s.walks[i]);
     w.hits.push_back(hit);
     Vertex& v = w.vertices.emplace_back();
@@ -118,6 +121,14 @@ void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch
     if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, &v, radiance);
   }
   add_emission(s, out);
+}
+
+void WaveIntegrator::see_lights_at_infinity(const Walk& walk, Scratch& s) const {
+  for (const uint32_t p : scene_.primitives.at_infinity()) {
+    const Rgb radiance =
+        radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction);
+    if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, nullptr, radiance, p);
+  }
 }
 
 void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {

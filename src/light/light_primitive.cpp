@@ -6,6 +6,7 @@
 
 #include "base/frame.h"
 #include "base/units.h"
+#include "light/light.h"
 #include "light/polygon.h"
 
 namespace troffer {
@@ -96,21 +97,27 @@ LightPrimitives::LightPrimitives(const Scene& scene)
       sphere_table_(scene.spheres.size(), no_primitive) {
   triangle_table_.resize(scene.meshes.size());
   ranges_.reserve(scene.lights.size());
+  Box scene_bounds;
+  for (const Light& e : scene.lights)
+    if (!has_surface(e.kind) && scene_bounds.is_empty()) scene_bounds = bounds(scene);
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const auto first = uint32_t(primitives_.size());
     if (!scene.lights[i].radiance.is_black()) {
-      switch (scene.lights[i].shape) {
-        case LightShape::polygon:
+      switch (scene.lights[i].kind) {
+        case LightKind::polygon:
           add_polygon(scene, i);
           break;
-        case LightShape::mesh:
+        case LightKind::mesh:
           add_mesh(scene, i);
           break;
-        case LightShape::disk:
+        case LightKind::disk:
           add_disk(scene, i);
           break;
-        case LightShape::sphere:
+        case LightKind::sphere:
           add_sphere(scene, i);
+          break;
+        default:
+          add_without_surface(scene, i, scene_bounds);
           break;
       }
     }
@@ -121,8 +128,17 @@ LightPrimitives::LightPrimitives(const Scene& scene)
 int32_t LightPrimitives::append(LightPrimitive p, const Light& e) {
   p.is_two_sided = e.is_two_sided;
   p.power = float(pi) * p.area * luminance(p.mean_radiance) * (p.is_two_sided ? 2.0f : 1.0f);
+  p.tree_power = p.power;
   primitives_.push_back(p);
   return int32_t(primitives_.size()) - 1;
+}
+
+void LightPrimitives::add_without_surface(const Scene& scene, uint32_t light,
+                                          const Box& scene_bounds) {
+  LightPrimitive p = make_piece(scene.lights[light], scene_bounds);
+  p.light = light;
+  if (p.is_infinite()) at_infinity_.push_back(uint32_t(primitives_.size()));
+  primitives_.push_back(p);
 }
 
 void LightPrimitives::add_polygon(const Scene& scene, uint32_t light) {

@@ -1,5 +1,6 @@
 // The scene's lights cut into simple pieces that can be chosen, sampled and hit: convex polygons,
-// triangles of mesh sources, disks, spheres.
+// triangles of mesh sources, disks, spheres; and one piece, which no ray hits, of each light
+// without surface.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,8 @@
 namespace troffer {
 
 // Parallelograms without right angles and other polygons are `polygon`.
-enum class PrimitiveShape : uint8_t { rectangle, triangle, polygon, disk, sphere };
+// Without surface: `point` has a position, `infinite` has none.
+enum class PrimitiveShape : uint8_t { rectangle, triangle, polygon, disk, sphere, point, infinite };
 
 constexpr int32_t no_primitive = -1;
 
@@ -38,12 +40,18 @@ struct LightPrimitive {
   bool is_textured = false;  // radiance varies over it: a texture, or holes of an alpha mask
   Rgb mean_radiance;         // over the surface, W/(m² sr) or cd/m²
   float power = 0;           // luminance of the flux that leaves: pi area L, twice if two-sided
-  Box bounds;                // world space
+  // What light trees take for power: that of a light as strong in all its directions as this one is
+  // in its strongest.
+  float tree_power = 0;
+  Box bounds;  // world space; empty where infinite
   // Cone of surface normals, for light trees: unit axis and cosine of its half angle (1: all equal;
   // -1: all directions). From each normal, light leaves through the hemisphere around it (both
-  // hemispheres where is_two_sided).
+  // hemispheres where is_two_sided). Of what is infinite: the directions that its light takes.
   Vec3 cone_axis{0, 0, 1};
   float cos_cone = -1;
+
+  bool has_surface() const { return shape <= PrimitiveShape::sphere; }
+  bool is_infinite() const { return shape == PrimitiveShape::infinite; }
 
   const Vec3& vertex(uint32_t i) const {
     const Vec3* first = more_vertices ? more_vertices : vertices;
@@ -52,8 +60,8 @@ struct LightPrimitive {
 };
 
 // All pieces of a scene's lights, in the order of Scene::lights and within them in the order
-// of triangles, and the way back from what a ray hit. Pieces without area or with a black light
-// are left out.
+// of triangles, and the way back from what a ray hit. Surfaces without area and black lights are
+// left out.
 class LightPrimitives {
  public:
   LightPrimitives() = default;
@@ -74,6 +82,9 @@ class LightPrimitives {
   };
   Range of_light(uint32_t light) const { return ranges_[light]; }
 
+  // The pieces that are infinite, in increasing order.
+  const std::vector<uint32_t>& at_infinity() const { return at_infinity_; }
+
   // What was hit -> index of its piece, or no_primitive.
   int32_t of_triangle(uint32_t mesh, uint32_t triangle) const {
     const std::vector<int32_t>& t = triangle_table_[mesh];
@@ -87,11 +98,13 @@ class LightPrimitives {
   void add_mesh(const Scene& scene, uint32_t light);
   void add_disk(const Scene& scene, uint32_t light);
   void add_sphere(const Scene& scene, uint32_t light);
+  void add_without_surface(const Scene& scene, uint32_t light, const Box& scene_bounds);
   int32_t append(LightPrimitive p, const Light& e);
 
   std::vector<LightPrimitive> primitives_;
-  std::vector<std::vector<Vec3>> vertices_;           // of polygons with more than 4
-  std::vector<Range> ranges_;                         // per light
+  std::vector<std::vector<Vec3>> vertices_;  // of polygons with more than 4
+  std::vector<Range> ranges_;                // per light
+  std::vector<uint32_t> at_infinity_;
   std::vector<std::vector<int32_t>> triangle_table_;  // per mesh: empty, or per triangle
   std::vector<int32_t> disk_table_, sphere_table_;
 };

@@ -298,7 +298,7 @@ void sample_many(const LightPrimitives& all, size_t n, const uint32_t* primitive
         continue;
       }
     }
-    is_valid[i] = sample(p, receivers[i], {u[i], v[i]}, out[i]);
+    is_valid[i] = p.has_surface() && sample(p, receivers[i], {u[i], v[i]}, out[i]);
   }
   sample_rectangles(near, s.corner_x.data(), s.corner_y.data(), s.size_x.data(), s.size_y.data(),
                     s.height.data(), s.u.data(), s.v.data(), s.x.data(), s.y.data(),

@@ -1,5 +1,5 @@
-// Points on lights, chosen for a receiver nearly in proportion to solid angle; densities and
-// inverses of that choice.
+// Points on the surfaces of lights, chosen for a receiver nearly in proportion to solid angle;
+// densities and inverses of that choice. What they emit, and lights without surface: light.h.
 //
 // From a receiver farther than 32 radii of the piece's bounding sphere, points are chosen uniformly
 // by area: distances then differ by at most 1/32 each way, which moves the weight by at most 13 %
@@ -24,13 +24,16 @@
 namespace troffer {
 
 struct LightSample {
-  Vec3 point;                 // on the light
-  Vec3 normal;                // unit, on the side towards the receiver
+  Vec3 point;                 // on the light; undefined for lights at infinity
+  Vec3 normal;                // unit, on the side towards the receiver; 0 without surface
   Vec2 texture_uv;            // triangles of mesh sources; else (0,0)
   Vec3 wi;                    // unit, from the receiver to the point
-  float distance = 0;         // metres
-  float pdf_solid_angle = 0;  // per steradian, > 0
+  float distance = 0;         // metres; infinite for lights at infinity
+  float pdf_solid_angle = 0;  // per steradian, > 0; 1 where is_delta
   bool is_front = true;       // the receiver is on the light's front
+  // Filled in by light.h:
+  bool is_delta = false;  // no other direction brings light, and no ray by chance finds this one
+  Rgb radiance;           // W/(m² sr) or cd/m²; delta: irradiance on a surface that faces it
 };
 
 // Chooses a point of `p` that faces receiver x, from u in [0,1)². False where nothing of it does
@@ -45,8 +48,9 @@ struct LightSampleScratch {
 };
 
 // sample(all[primitives[i]], receivers[i], (u[i], v[i]), out[i]) for all i of n; is_valid[i] is
-// what it returns. Near rectangles go together, several to a vector register: their points may
-// differ from sample()'s in the last bits, and do not depend on what else is in the batch.
+// what it returns, and 0 for pieces without surface. Near rectangles go together, several to a
+// vector register: their points may differ from sample()'s in the last bits, and do not depend on
+// what else is in the batch.
 void sample_many(const LightPrimitives& all, size_t n, const uint32_t* primitives,
                  const Vec3* receivers, const float* u, const float* v, LightSample* out,
                  uint8_t* is_valid, LightSampleScratch& scratch);

@@ -41,9 +41,9 @@ void SourceSurface::set_parallelogram(std::span<const Vec3> v) {
 }
 
 SourceSurface::SourceSurface(std::span<const std::vector<Vec3>> polygons)
-    : shape_(LightShape::mesh) {
+    : shape_(LightKind::mesh) {
   if (polygons.size() == 1 && troffer::is_parallelogram(polygons[0])) {
-    shape_ = LightShape::polygon;
+    shape_ = LightKind::polygon;
     first_triangle_ = 0;
     set_parallelogram(polygons[0]);
     return;
@@ -53,10 +53,10 @@ SourceSurface::SourceSurface(std::span<const std::vector<Vec3>> polygons)
 }
 
 SourceSurface::SourceSurface(const Scene& scene, uint32_t light)
-    : shape_(scene.lights[light].shape) {
+    : shape_(scene.lights[light].kind) {
   const Light& e = scene.lights[light];
   switch (shape_) {
-    case LightShape::polygon: {
+    case LightKind::polygon: {
       const std::vector<Vec3>& v = e.polygon;
       if (!e.triangles.empty()) first_triangle_ = int32_t(e.triangles[0]);
       if (troffer::is_parallelogram(v))
@@ -65,7 +65,7 @@ SourceSurface::SourceSurface(const Scene& scene, uint32_t light)
         add_polygon(v, first_triangle_);
       break;
     }
-    case LightShape::mesh: {
+    case LightKind::mesh: {
       const Mesh& mesh = scene.meshes[e.geometry];
       for (const uint32_t t : e.triangles) {
         const Triangle& c = mesh.triangles[t];
@@ -76,7 +76,7 @@ SourceSurface::SourceSurface(const Scene& scene, uint32_t light)
       }
       break;
     }
-    case LightShape::disk: {
+    case LightKind::disk: {
       const Disk& disk = scene.disks[e.geometry];
       centre_ = disk.centre;
       radius_ = disk.radius;
@@ -84,7 +84,7 @@ SourceSurface::SourceSurface(const Scene& scene, uint32_t light)
       area_ = pi * sqr(double(radius_));
       break;
     }
-    case LightShape::sphere: {
+    case LightKind::sphere: {
       const Sphere& sphere = scene.spheres[e.geometry];
       centre_ = sphere.centre;
       radius_ = sphere.radius;
@@ -92,6 +92,8 @@ SourceSurface::SourceSurface(const Scene& scene, uint32_t light)
       area_ = 4 * pi * sqr(double(radius_));
       break;
     }
+    default:
+      return;  // without surface
   }
   finish_pieces();
 }
@@ -109,11 +111,11 @@ SourcePoint SourceSurface::point_at(const Vec2& uv) const {
     s.point = Vec3(p.origin + p.u * double(uv.x) + p.v * double(uv.y));
     s.normal = Vec3(p.normal);
     s.triangle = first_triangle_;
-  } else if (shape_ == LightShape::disk) {
+  } else if (shape_ == LightKind::disk) {
     const Vec2 d = disk_from_square(uv) * radius_;
     s.point = centre_ + frame_.tangent * d.x + frame_.bitangent * d.y;
     s.normal = frame_.normal;
-  } else if (shape_ == LightShape::sphere) {
+  } else if (shape_ == LightKind::sphere) {
     const Vec3 out = sphere_from_square({uv.y, uv.x});
     s.point = centre_ + out * radius_;
     s.normal = is_inside_out_ ? -out : out;
@@ -139,11 +141,11 @@ Vec2 SourceSurface::uv_at(const Vec3& point, int32_t triangle) const {
     return {float(dot(cross(d, p.v), p.normal) / whole),
             float(dot(cross(p.u, d), p.normal) / whole)};
   }
-  if (shape_ == LightShape::disk) {
+  if (shape_ == LightKind::disk) {
     const Vec3 local = frame_.to_local(point - centre_) / radius_;
     return square_from_disk(Vec2{local.x, local.y});
   }
-  if (shape_ == LightShape::sphere) {
+  if (shape_ == LightKind::sphere) {
     const Vec2 uv = square_from_sphere(normalize(point - centre_));
     return {uv.y, uv.x};
   }
@@ -152,7 +154,7 @@ Vec2 SourceSurface::uv_at(const Vec3& point, int32_t triangle) const {
   Vec2 best;
   double least = std::numeric_limits<double>::infinity();
   for (const Piece& p : pieces_) {
-    if (triangle >= 0 && shape_ == LightShape::mesh && p.triangle != triangle) continue;
+    if (triangle >= 0 && shape_ == LightKind::mesh && p.triangle != triangle) continue;
     const Vec3d e = Vec3d(p.from) - Vec3d(p.apex), f = Vec3d(p.to) - Vec3d(p.apex);
     const Vec3d d = Vec3d(point) - Vec3d(p.apex), n = cross(e, f);
     const double nn = length_squared(n);
@@ -177,7 +179,7 @@ Box SourceSurface::cell_bounds(const SourceCell& c) const {
   Box box;
   if (is_parallelogram_) {
     for (const Vec3& p : cell_corners(c)) box.grow(p);
-  } else if (shape_ == LightShape::disk || shape_ == LightShape::sphere) {
+  } else if (shape_ == LightKind::disk || shape_ == LightKind::sphere) {
     box = round_bounds(c);
   } else {
     // Within a piece a cell is a quadrilateral.
@@ -202,7 +204,7 @@ Box SourceSurface::cell_bounds(const SourceCell& c) const {
 
 Box SourceSurface::round_bounds(const SourceCell& c) const {
   Box box;
-  if (shape_ == LightShape::disk) {
+  if (shape_ == LightKind::disk) {
     // The concentric map stretches by less than 1.5 (its derivative's Frobenius norm) from the
     // square [-1,1]², which is twice the unit square.
     const Vec3 middle = point_at({0.5f * (c.u0 + c.u1), 0.5f * (c.v0 + c.v1)}).point;

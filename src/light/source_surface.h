@@ -45,7 +45,8 @@ struct SourcePoint {
 
 class SourceSurface {
  public:
-  // The surface of scene.lights[light]. Triangles without area are left out.
+  // The surface of scene.lights[light]. Triangles without area are left out; lights without surface
+  // have area 0.
   SourceSurface(const Scene& scene, uint32_t light);
 
   // Convex polygons, counterclockwise seen from the front; those without area are left out. Cells
@@ -88,7 +89,7 @@ class SourceSurface {
   const Piece& piece_at(double u) const;
   Box round_bounds(const SourceCell& c) const;
 
-  LightShape shape_;
+  LightKind shape_;
   double area_ = 0;
   bool is_parallelogram_ = false;
   Parallelogram parallelogram_;

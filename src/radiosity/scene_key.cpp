@@ -79,11 +79,7 @@ uint64_t radiosity_scene_key(const Scene& scene) {
   for (const Texture& t : scene.textures) add_texture(h, t);
   h.add(scene.lights.size());
   for (const Light& e : scene.lights) {
-    h.add(uint64_t(e.shape) | uint64_t(e.is_two_sided) << 8);
-    h.add(e.radiance);
-    h.add(uint64_t(e.texture));
-    h.add(uint64_t(e.geometry));
-    for (const Vec3& p : e.polygon) h.add(p);
+    for_each_value(e, [&](const auto& v) { h.add(v); });
   }
   return h.value();
 }

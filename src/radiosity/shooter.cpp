@@ -99,6 +99,7 @@ Shooter light_shooter(const LightPrimitives& primitives, uint32_t light) {
   Shooter s;
   const LightPrimitives::Range range = primitives.of_light(light);
   for (uint32_t i = range.first; i < range.last; ++i) {
+    if (!primitives[i].has_surface()) continue;
     s.pieces.push_back(primitives[i]);
     s.offset = std::max(s.offset, 1.6e-5f * largest_coordinate(primitives[i].bounds));
   }

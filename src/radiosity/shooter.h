@@ -28,6 +28,7 @@ struct Shooter {
 
 constexpr size_t max_exact_pieces = 24;
 
+// Without pieces where the light has no surface.
 Shooter light_shooter(const LightPrimitives& primitives, uint32_t light);
 // Its pieces send `radiance`.
 Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance);

@@ -134,7 +134,8 @@ class Solver {
     has_shot_.assign(patches, 0);
     transfers_.resize(points);
     powers_.assign(points, 0);
-    for (const LightPrimitive& p : primitives.all()) s_.balance.emitted += double(p.power);
+    for (const LightPrimitive& p : primitives.all())
+      if (p.has_surface()) s_.balance.emitted += double(p.power);
     for (const Patch& p : s_.mesh.patches) is_closed_ = is_closed_ && p.open == 0;
     double diffuse = 0, all = 0;
     for (const PointSurface& p : surfaces_) {

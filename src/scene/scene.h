@@ -11,12 +11,11 @@
 #include "base/rgb.h"
 #include "base/units.h"
 #include "base/vec.h"
+#include "scene/light.h"
 #include "scene/material.h"
 #include "scene/texture.h"
 
 namespace troffer {
-
-constexpr int32_t no_light = -1;
 
 using Triangle = std::array<uint32_t, 3>;
 
@@ -48,21 +47,6 @@ struct Disk {
   float radius = 1;
   uint32_t material = 0;
   int32_t light = no_light;
-};
-
-enum class LightShape : uint8_t { polygon, disk, sphere, mesh };
-
-// A diffuse area light source. Emits from the front, or from both sides where is_two_sided.
-struct Light {
-  std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
-  LightShape shape = LightShape::polygon;
-  Rgb radiance;                  // W/(m² sr), or cd/m² where Scene::is_photometric
-  int32_t texture = no_texture;  // factor on radiance over the mesh's (u,v); mesh only
-  bool is_two_sided = false;
-  bool is_alpha_masked = false;     // mesh only: dark where its material's mask makes holes
-  uint32_t geometry = 0;            // index into meshes, disks or spheres
-  std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
-  std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
 };
 
 enum class CameraKind : uint8_t { perspective, orthographic };
@@ -103,7 +87,8 @@ Box bounds(const Scene& scene);
 // A copy of which only lights named in `names` emit; UsageError names one that does not exist.
 Scene with_only_lights(Scene scene, const std::vector<std::string>& names);
 
-// Emission of a triangle's, disk's or sphere's light towards a viewer on its front (or back).
+// Emission of a light that has a surface towards a viewer on its front (or back), where the surface
+// has texture coordinates uv.
 inline Rgb emitted_radiance(const Scene& scene, const Light& e, bool is_front, const Vec2& uv) {
   if (!is_front && !e.is_two_sided) return Rgb{0};
   if (e.is_alpha_masked &&

@@ -16,6 +16,13 @@ LightTree::LightTree(const LightPrimitives& primitives)
 LightTree::LightTree(const LightPrimitives& primitives, LightPrimitives::Range range)
     : first_(range.first), places_(range.last - range.first) {
   LightTreeBuilder(primitives, range, *this);
+  for (const uint32_t i : primitives.at_infinity()) {
+    if (i < range.first || i >= range.last) continue;
+    const LightPrimitive& p = primitives[i];
+    const float sin_spread = std::sqrt(std::max(0.0f, 1 - sqr(p.cos_cone)));
+    places_[i - first_].slot = uint32_t(infinite_.size());
+    infinite_.push_back({i, p.cone_axis, sin_spread, p.cos_cone <= 0});
+  }
 }
 
 namespace {
@@ -117,15 +124,43 @@ LightChoice LightTree::choose_below(uint32_t at, const Vec3& x, const Vec3& n, b
   }
 }
 
+// Of the tree and the lights beside it, 1 for each.
+float LightTree::weight_sum(const Vec3& n, bool both_sides) const {
+  float sum = nodes_.empty() ? 0.0f : 1.0f;
+  for (const Infinite& i : infinite_) sum += i.may_light(n, both_sides) ? 1.0f : 0.0f;
+  return sum;
+}
+
+// Picks a light at infinity; false where the tree's turn comes, or nothing's, with what is left of
+// the random number.
+bool LightTree::choose_infinite(const Vec3& n, bool both_sides, LightChoice& choice) const {
+  const float sum = weight_sum(n, both_sides);
+  float target = choice.u * sum;
+  for (const Infinite& i : infinite_) {
+    if (!i.may_light(n, both_sides)) continue;
+    if (target < 1) {
+      choice = {i.primitive, 1 / sum, target};
+      return true;
+    }
+    target -= 1;
+  }
+  choice.u = std::min(target, one_minus_epsilon);
+  choice.pmf = nodes_.empty() ? 0 : 1 / sum;
+  return false;
+}
+
 LightChoice LightTree::choose(const Vec3& x, const Vec3& n, bool both_sides, float u) const {
-  return nodes_.empty() ? LightChoice{} : choose_below(0, x, n, both_sides, 1, u);
+  LightChoice c{0, 1, u};
+  if (!infinite_.empty() && choose_infinite(n, both_sides, c)) return c;
+  return nodes_.empty() ? LightChoice{} : choose_below(0, x, n, both_sides, c.pmf, c.u);
 }
 
 void LightTree::choose_many(const LightReceivers& r, LightChoice* out,
                             std::vector<float>& scratch) const {
   const size_t n = r.size();
   if (nodes_.empty()) {
-    std::fill(out, out + n, LightChoice{});
+    for (size_t i = 0; i < n; ++i)
+      out[i] = choose(r.position(i), r.normal(i), r.sides[i] != 0, r.u[i]);
     return;
   }
   // The root is everybody's: its children are weighed for all points together.
@@ -139,22 +174,28 @@ void LightTree::choose_many(const LightReceivers& r, LightChoice* out,
                          r.nz.data(), r.sides.data(), scratch.data() + k * n);
   for (size_t i = 0; i < n; ++i) {
     const Lanes weight{scratch[i], scratch[n + i], scratch[2 * n + i], scratch[3 * n + i]};
-    float pmf = 1, u = r.u[i];
-    const uint32_t k = pick(weight, pmf, u);
+    const bool both_sides = r.sides[i] != 0;
+    LightChoice& c = out[i] = {0, 1, r.u[i]};
+    if (!infinite_.empty() && choose_infinite(r.normal(i), both_sides, c)) continue;
+    const uint32_t k = pick(weight, c.pmf, c.u);
     if (k == width)
-      out[i] = {};
+      c = {};
     else if (root.is_leaf[k])
-      out[i] = {root.child[k], pmf, u};
+      c.primitive = root.child[k];
     else
-      out[i] = choose_below(root.child[k], {r.x[i], r.y[i], r.z[i]}, {r.nx[i], r.ny[i], r.nz[i]},
-                            r.sides[i] != 0, pmf, u);
+      c = choose_below(root.child[k], r.position(i), r.normal(i), both_sides, c.pmf, c.u);
   }
 }
 
 float LightTree::pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const {
   const Place place = places_[primitive - first_];
-  if (place.node == no_node) return 0;
-  float pmf = 1;
+  if (place.node == no_node) {
+    const bool is_beside = place.slot < infinite_.size() &&
+                           infinite_[place.slot].primitive == primitive &&
+                           infinite_[place.slot].may_light(n, both_sides);
+    return is_beside ? 1 / weight_sum(n, both_sides) : 0;
+  }
+  float pmf = infinite_.empty() ? 1 : 1 / weight_sum(n, both_sides);
   for (uint32_t at = place.node, slot = place.slot;;) {
     const Node& node = nodes_[at];
     alignas(16) Lanes weight;

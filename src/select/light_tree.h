@@ -30,6 +30,8 @@ struct LightReceivers {
   void resize(size_t n) {
     for (auto* a : {&x, &y, &z, &nx, &ny, &nz, &sides, &u}) a->resize(n);
   }
+  Vec3 position(size_t i) const { return {x[i], y[i], z[i]}; }
+  Vec3 normal(size_t i) const { return {nx[i], ny[i], nz[i]}; }
   void set(size_t i, const Vec3& p, const Vec3& n, bool both_sides, float random) {
     x[i] = p.x;
     y[i] = p.y;
@@ -42,17 +44,18 @@ struct LightReceivers {
   }
 };
 
-// A tree over light primitives, each node with the bounds, the power and a cone that holds the
-// normals of its primitives [1]; built binary, then collapsed to four children per node, whose
-// importances are computed at a stroke. Never gives probability 0 to a primitive that can light the
-// point, so estimates by it are unbiased.
+// A tree over light primitives that have a place, each node with the bounds, the power and a cone
+// that holds the normals of its primitives [1]; built binary, then collapsed to four children per
+// node, whose importances are computed at a stroke. Lights at infinity stand beside the tree: each
+// that may light the point is as probable as the whole tree. Never gives probability 0 to a
+// primitive that can light the point, so estimates by it are unbiased.
 class LightTree {
  public:
   explicit LightTree(const LightPrimitives& primitives);
   // Over a part of them only, such as one light's.
   LightTree(const LightPrimitives& primitives, LightPrimitives::Range range);
 
-  bool is_empty() const { return nodes_.empty(); }
+  bool is_empty() const { return nodes_.empty() && infinite_.empty(); }
 
   // For a point x on a surface of unit normal n; both_sides: light from behind n counts as well.
   LightChoice choose(const Vec3& x, const Vec3& n, bool both_sides, float u) const;
@@ -82,7 +85,20 @@ class LightTree {
   };
   static constexpr uint32_t no_node = 0xffffffffu;
 
+  // A light at infinity, and the directions that its light takes.
+  struct Infinite {
+    uint32_t primitive = 0;
+    Vec3 axis;
+    float sin_spread = 0;
+    bool is_everywhere = false;
+    bool may_light(const Vec3& n, bool both_sides) const {
+      return is_everywhere || both_sides || dot(axis, n) < sin_spread;
+    }
+  };
+
   friend class LightTreeBuilder;
+  float weight_sum(const Vec3& n, bool both_sides) const;
+  bool choose_infinite(const Vec3& n, bool both_sides, LightChoice& choice) const;
   static void importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
                           Lanes& out);
   static uint32_t pick(const Lanes& weight, float& pmf, float& u);
@@ -90,8 +106,9 @@ class LightTree {
                            float u) const;
 
   std::vector<Node> nodes_;
+  std::vector<Infinite> infinite_;
   uint32_t first_ = 0;         // primitive of the first place
-  std::vector<Place> places_;  // of each primitive
+  std::vector<Place> places_;  // of each primitive; beside the tree: no node, slot in infinite_
 };
 
 }  // namespace troffer

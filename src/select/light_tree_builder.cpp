@@ -110,9 +110,9 @@ LightTreeBuilder::LightTreeBuilder(const LightPrimitives& primitives, LightPrimi
   items_.reserve(range.last - range.first);
   for (uint32_t i = range.first; i < range.last; ++i) {
     const LightPrimitive& p = primitives[i];
-    if (!(p.power > 0) || !std::isfinite(p.power)) continue;
+    if (p.is_infinite() || !(p.tree_power > 0) || !std::isfinite(p.tree_power)) continue;
     const Cone cone{p.cone_axis, p.cos_cone, false};
-    items_.push_back({i, p.bounds, p.bounds.centre(), cone, p.power, p.is_two_sided});
+    items_.push_back({i, p.bounds, p.bounds.centre(), cone, p.tree_power, p.is_two_sided});
   }
   if (items_.empty()) return;
   binary_.reserve(items_.size() * 2);

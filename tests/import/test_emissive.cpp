@@ -64,7 +64,7 @@ TEST_CASE("a square of two triangles is one polygon, counterclockwise from the f
   const Scene scene = emitting(square, Rgb{2});
   REQUIRE(scene.lights.size() == 1);
   const Light& e = scene.lights[0];
-  CHECK(e.shape == LightShape::polygon);
+  CHECK(e.kind == LightKind::polygon);
   CHECK(e.name == "lamp");
   CHECK(e.radiance == Rgb{2});
   CHECK(e.polygon.size() == 4);
@@ -121,7 +121,7 @@ TEST_CASE("property: transformed polygons keep their corners, front and area") {
     const Scene scene = emitting(mesh);
     REQUIRE(scene.lights.size() == 1);
     const Light& e = scene.lights[0];
-    REQUIRE(e.shape == LightShape::polygon);
+    REQUIRE(e.kind == LightKind::polygon);
     CHECK(e.polygon.size() == n);
     const Vec3d normal = newell(e.polygon);
     CHECK(length(normal) == doctest::Approx(area(mesh)).epsilon(1e-4));
@@ -132,7 +132,7 @@ TEST_CASE("property: transformed polygons keep their corners, front and area") {
 TEST_CASE("what is no planar convex polygon stays a mesh") {
   const auto is_mesh = [](const Mesh& mesh) {
     const Scene scene = emitting(mesh);
-    return scene.lights.size() == 1 && scene.lights[0].shape == LightShape::mesh &&
+    return scene.lights.size() == 1 && scene.lights[0].kind == LightKind::mesh &&
            scene.lights[0].triangles.size() == mesh.triangles.size() &&
            scene.lights[0].polygon.empty();
   };
@@ -189,7 +189,7 @@ TEST_CASE("separate components become separate sources, the rest one mesh source
   CHECK(scene.lights[0].polygon.size() == 4);
   CHECK(scene.lights[1].polygon.size() == 4);
   CHECK(scene.lights[2].polygon.size() == 3);
-  CHECK(scene.lights[3].shape == LightShape::mesh);
+  CHECK(scene.lights[3].kind == LightKind::mesh);
   CHECK(scene.meshes[0].lights == std::vector<int32_t>{0, 0, 1, 1, 3, 3, 2});
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("no area, no emission, constant textures") {
   scene.textures.push_back(half);
   add_mesh_lights(scene, 0, {"x", Rgb{4}, 0, true});
   REQUIRE(scene.lights.size() == 1);
-  CHECK(scene.lights[0].shape == LightShape::polygon);
+  CHECK(scene.lights[0].kind == LightKind::polygon);
   CHECK(scene.lights[0].radiance == Rgb{2});
   CHECK(scene.lights[0].texture == no_texture);
   CHECK(scene.lights[0].is_two_sided);
@@ -225,7 +225,7 @@ TEST_CASE("a source with an alpha mask stays a mesh that knows of its holes") {
   scene.meshes.push_back(square);
   add_mesh_lights(scene, 0, {"x", Rgb{4}, no_texture, false});
   REQUIRE(scene.lights.size() == 1);
-  CHECK(scene.lights[0].shape == LightShape::mesh);
+  CHECK(scene.lights[0].kind == LightKind::mesh);
   CHECK(scene.lights[0].is_alpha_masked);
   CHECK(emitted_radiance(scene, scene.lights[0], true, {}) == Rgb{0});
   scene.materials[0].alpha.value = 0.75f;
@@ -243,7 +243,7 @@ TEST_CASE("large emissive meshes take near-linear time, and polygons are limited
   }
   const Scene limited = emitting(many);
   CHECK(limited.lights.size() == 1001);
-  CHECK(limited.lights.back().shape == LightShape::mesh);
+  CHECK(limited.lights.back().kind == LightKind::mesh);
   CHECK(limited.lights.back().triangles.size() == 4000);
 
   // A flat disk of many triangles with a ragged rim, and a bumpy grid.

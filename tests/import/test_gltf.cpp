@@ -97,7 +97,7 @@ TEST_CASE("emitters carry radiance, strength, side and names") {
   CHECK(scene.lights[1].name == "lamp");
   CHECK(scene.lights[2].name == "emitter2");
   const Light& lamp = scene.lights[1];
-  CHECK(lamp.shape == LightShape::polygon);
+  CHECK(lamp.kind == LightKind::polygon);
   CHECK(lamp.radiance == Rgb{8, 4, 2});
   CHECK_FALSE(lamp.is_two_sided);
   CHECK(lamp.polygon.size() == 4);
@@ -220,7 +220,7 @@ TEST_CASE("kj92room: four polygon sources with the normals and radiances of its 
   for (size_t i = 0; i < 4; ++i) {
     const Light& e = scene.lights[i];
     CHECK(e.name == "emitter" + std::to_string(i));
-    CHECK(e.shape == LightShape::polygon);
+    CHECK(e.kind == LightKind::polygon);
     CHECK(e.radiance == Rgb{radiances[i]});
     REQUIRE(e.polygon.size() == 4);
     check_near(polygon_normal(e.polygon), normals[i]);

@@ -157,7 +157,7 @@ TEST_CASE("an emissive texture keeps the mesh a mesh source") {
                                  "'materials':[{'emissiveFactor':[1,1,1],'emissiveTexture':"
                                  "{'index':0}}]")));
   REQUIRE(scene.lights.size() == 1);
-  CHECK(scene.lights[0].shape == LightShape::mesh);
+  CHECK(scene.lights[0].kind == LightKind::mesh);
   CHECK(scene.lights[0].texture == 0);
   CHECK(scene.meshes[0].uvs.size() == 4);
 }

@@ -248,7 +248,7 @@ TEST_CASE("images of emission belong to meshes") {
       triangle + "Shape \"sphere\"");
   REQUIRE(scene.lights.size() == 2);
   const Light& e = scene.lights[0];
-  CHECK(e.shape == LightShape::mesh);
+  CHECK(e.kind == LightKind::mesh);
   CHECK(e.radiance == Rgb(3));
   REQUIRE(e.texture >= 0);
   check_near(emitted_radiance(scene, e, true, {0.25f, 0.25f}), {0, 0, 3});

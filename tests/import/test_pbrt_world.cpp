@@ -22,7 +22,7 @@ bool is_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
 }
 
 Vec3 front_of(const Scene& scene, const Light& e) {
-  if (e.shape == LightShape::disk) return scene.disks.at(e.geometry).normal;
+  if (e.kind == LightKind::disk) return scene.disks.at(e.geometry).normal;
   const Mesh& mesh = scene.meshes.at(e.geometry);
   return Vec3(normalize(area_vector(mesh, mesh.triangles.at(e.triangles.at(0)))));
 }
@@ -149,7 +149,7 @@ TEST_CASE("the front of a bilinear patch is on the side of du × dv, its order 0
   const Scene scene = import_world(light + patch);
   REQUIRE(scene.lights.size() == 1);
   const Light& e = scene.lights[0];
-  CHECK(e.shape == LightShape::polygon);
+  CHECK(e.kind == LightKind::polygon);
   CHECK(e.polygon.size() == 4);
   CHECK(front_of(scene, e).z == doctest::Approx(1));
   CHECK(area_of(scene.meshes[0]) == doctest::Approx(2));
@@ -190,8 +190,8 @@ TEST_CASE("spheres and disks stay what they are under similarities") {
   CHECK(is_near(scene.disks[0].centre, {1, 0, 3}));
   CHECK(is_near(scene.disks[1].normal, {0, 1, 0}));
   REQUIRE(scene.lights.size() == 4);
-  CHECK(scene.lights[0].shape == LightShape::sphere);
-  CHECK(scene.lights[1].shape == LightShape::disk);
+  CHECK(scene.lights[0].kind == LightKind::sphere);
+  CHECK(scene.lights[1].kind == LightKind::disk);
   CHECK(scene.lights[3].name == "emitter3");
   CHECK(scene.disks[1].light == 3);
   CHECK(scene.lights[3].geometry == 1);
@@ -338,7 +338,7 @@ TEST_CASE("kj92room has four sources that face into the room") {
     for (size_t i = 0; i < 4; ++i) {
       const Light& e = scene.lights[i];
       CHECK(e.name == "emitter" + std::to_string(i));
-      CHECK(e.shape == LightShape::polygon);
+      CHECK(e.kind == LightKind::polygon);
       CHECK(e.polygon.size() == 4);
       CHECK(is_near(front_of(scene, e), fronts[i]));
       CHECK(e.radiance == Rgb(i < 2 ? 4.0f : 600.0f));
@@ -363,7 +363,7 @@ TEST_CASE("modern-hall has thirteen sources that face into the hall") {
     CHECK(scene.disks.size() == 5);
     for (size_t i = 0; i < 13; ++i) {
       CAPTURE(i);
-      CHECK(scene.lights[i].shape == (i < 5 ? LightShape::disk : LightShape::polygon));
+      CHECK(scene.lights[i].kind == (i < 5 ? LightKind::disk : LightKind::polygon));
       CHECK(is_near(front_of(scene, scene.lights[i]), fronts[i], 1e-4f));
     }
     CHECK(triangle_count(scene) > 25000);

@@ -58,7 +58,7 @@ inline Scene mesh_scene(const std::vector<Vec3d>& local, const std::vector<Trian
   m.triangles = triangles;
   m.lights.assign(triangles.size(), 0);
   for (const Vec3d& p : local) m.uvs.push_back({float(p.x), float(p.y)});
-  e.shape = LightShape::mesh;
+  e.kind = LightKind::mesh;
   e.polygon.clear();
   e.triangles.clear();
   for (uint32_t i = 0; i < triangles.size(); ++i) e.triangles.push_back(i);
@@ -70,7 +70,7 @@ inline Scene disk_scene(double radius, bool is_two_sided = false, const Pose& po
   s.materials.emplace_back();
   s.disks.push_back({pose.world({}), Vec3(pose.frame.normal), float(radius), 0, 0});
   Light e;
-  e.shape = LightShape::disk;
+  e.kind = LightKind::disk;
   e.radiance = Rgb{2};
   e.is_two_sided = is_two_sided;
   s.lights.push_back(e);
@@ -83,7 +83,7 @@ inline Scene sphere_scene(double radius, bool is_inside_out = false, bool is_two
   s.materials.emplace_back();
   s.spheres.push_back({pose.world({}), float(radius), is_inside_out, 0, 0});
   Light e;
-  e.shape = LightShape::sphere;
+  e.kind = LightKind::sphere;
   e.radiance = Rgb{2};
   e.is_two_sided = is_two_sided;
   s.lights.push_back(e);

@@ -20,7 +20,7 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
       Rgb{1}, true);
   s.spheres.push_back({{2, 0, 1}, 0.3f, false, black, int32_t(s.lights.size())});
   Light sphere;
-  sphere.shape = LightShape::sphere;
+  sphere.kind = LightKind::sphere;
   sphere.radiance = Rgb{1};
   s.lights.push_back(sphere);
   const LightPrimitives lights(s);

@@ -106,7 +106,7 @@ TEST_CASE("integrating sphere") {
   m.lights.assign(m.triangles.size(), no_light);
   m.lights[lamp] = 0;
   Light e;
-  e.shape = LightShape::mesh;
+  e.kind = LightKind::mesh;
   e.radiance = Rgb{100};
   e.triangles = {lamp};
   s.meshes.push_back(m);

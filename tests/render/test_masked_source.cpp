@@ -24,7 +24,7 @@ Scene source_from(float x0) {
   s.meshes.push_back(m);
   Light e;
   e.name = "source";
-  e.shape = LightShape::mesh;
+  e.kind = LightKind::mesh;
   e.radiance = Rgb{3};
   e.triangles = {0, 1};
   s.lights.push_back(e);

@@ -144,7 +144,7 @@ TEST_CASE("polygons with many corners are cut, disks stay whole") {
     for (uint32_t i = 1; i + 1 < n; ++i) t.triangles.push_back({0, i, i + 1});
     append(m, t, place);
     add_mesh_light(s, 0, m.positions, m.triangles, Rgb{1}, false);
-    s.lights[0].shape = LightShape::polygon;
+    s.lights[0].kind = LightKind::polygon;
     s.lights[0].polygon = m.positions;
     const LightPrimitives lights(s);
     std::vector<SourcePiece> pieces;

@@ -34,7 +34,7 @@ inline void add_mesh_light(Scene& s, uint32_t material, std::vector<Vec3> positi
   m.lights.assign(m.triangles.size(), int32_t(s.lights.size()));
   Light e;
   e.name = "emitter" + std::to_string(s.lights.size());
-  e.shape = LightShape::mesh;
+  e.kind = LightKind::mesh;
   e.radiance = radiance;
   e.is_two_sided = is_two_sided;
   e.geometry = uint32_t(s.meshes.size());
@@ -47,7 +47,7 @@ inline void add_sphere_light(Scene& s, uint32_t material, const Vec3& centre, fl
                              Rgb radiance, bool is_two_sided = false, bool is_inside_out = false) {
   Light e;
   e.name = "emitter" + std::to_string(s.lights.size());
-  e.shape = LightShape::sphere;
+  e.kind = LightKind::sphere;
   e.radiance = radiance;
   e.is_two_sided = is_two_sided;
   e.geometry = uint32_t(s.spheres.size());
@@ -59,7 +59,7 @@ inline void add_disk_light(Scene& s, uint32_t material, const Vec3& centre, cons
                            float radius, Rgb radiance, bool is_two_sided = false) {
   Light e;
   e.name = "emitter" + std::to_string(s.lights.size());
-  e.shape = LightShape::disk;
+  e.kind = LightKind::disk;
   e.radiance = radiance;
   e.is_two_sided = is_two_sided;
   e.geometry = uint32_t(s.disks.size());

@@ -1,0 +1,76 @@
+#include "light/light.h"
+
+#include "light/environment_light.h"
+#include "light/point_light.h"
+#include "light/surface_light.h"
+
+namespace troffer {
+
+namespace {
+
+// The one place that knows which file answers for a kind.
+template <class Ask>
+decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
+  switch (kind) {
+    case LightKind::point:
+      return ask(PointLight());
+    case LightKind::environment:
+      return ask(EnvironmentLight());
+    case LightKind::polygon:
+    case LightKind::disk:
+    case LightKind::sphere:
+    case LightKind::mesh:
+      break;
+  }
+  return ask(SurfaceLight());
+}
+
+}  // namespace
+
+bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec2& u,
+            LightSample& out) {
+  return ask_kind(scene.lights[p.light].kind,
+                  [&](auto kind) { return kind.sample(scene, p, x, u, out); });
+}
+
+void sample_many(const Scene& scene, const LightPrimitives& all, size_t n,
+                 const uint32_t* primitives, const Vec3* receivers, const float* u, const float* v,
+                 LightSample* out, uint8_t* is_valid, LightSampleScratch& scratch) {
+  sample_many(all, n, primitives, receivers, u, v, out, is_valid, scratch);
+  for (size_t i = 0; i < n; ++i) {
+    const LightPrimitive& p = all[primitives[i]];
+    if (!p.has_surface())
+      is_valid[i] = sample(scene, p, receivers[i], {u[i], v[i]}, out[i]);
+    else if (is_valid[i] != 0)
+      SurfaceLight::finish(scene, p, out[i]);
+  }
+}
+
+float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec3& wi,
+                      float distance) {
+  return ask_kind(scene.lights[p.light].kind,
+                  [&](auto kind) { return kind.pdf_solid_angle(scene, p, x, wi, distance); });
+}
+
+Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const Vec2& uv,
+                     const Vec3& towards) {
+  return ask_kind(light.kind,
+                  [&](auto kind) { return kind.emitted(scene, light, is_front, uv, towards); });
+}
+
+Rgb radiance_at_infinity(const Scene& scene, const LightPrimitive& p, const Vec3& wi) {
+  const Light& light = scene.lights[p.light];
+  return ask_kind(light.kind, [&](auto kind) { return kind.radiance_at_infinity(light, wi); });
+}
+
+LightPrimitive make_piece(const Light& light, const Box& scene_bounds) {
+  LightPrimitive p;
+  ask_kind(light.kind, [&](auto kind) { kind.bound(light, scene_bounds, p); });
+  return p;
+}
+
+CertificateShape certificate_shape(const Scene& scene, const Light& light) {
+  return ask_kind(light.kind, [&](auto kind) { return kind.certificate(scene, light); });
+}
+
+}  // namespace troffer

@@ -1,0 +1,43 @@
+// Polygons, disks, spheres and meshes that emit diffusely: their pieces are sampled by
+// light_sample.h.
+#pragma once
+
+#include "light/light.h"
+
+namespace troffer {
+
+struct SurfaceLight {
+  static Rgb emitted(const Scene& scene, const Light& e, bool is_front, const Vec2& uv,
+                     const Vec3& /*towards*/) {
+    return emitted_radiance(scene, e, is_front, uv);  // the same in all directions
+  }
+
+  // The radiance of a point that light_sample.h has chosen.
+  static void finish(const Scene& scene, const LightPrimitive& p, LightSample& s) {
+    s.is_delta = false;
+    s.radiance = p.is_textured
+                     ? emitted(scene, scene.lights[p.light], s.is_front, s.texture_uv, -s.wi)
+                     : p.mean_radiance;
+  }
+
+  static bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec2& u,
+                     LightSample& out) {
+    if (!troffer::sample(p, x, u, out)) return false;
+    finish(scene, p, out);
+    return true;
+  }
+  static float pdf_solid_angle(const Scene& /*scene*/, const LightPrimitive& p, const Vec3& x,
+                               const Vec3& wi, float distance) {
+    return troffer::pdf_solid_angle(p, x, wi, distance);
+  }
+  static Rgb radiance_at_infinity(const Light&, const Vec3&) { return Rgb{0}; }
+  static void bound(const Light&, const Box&, LightPrimitive&) {}  // has more than one piece
+
+  static CertificateShape certificate(const Scene& scene, const Light& e) {
+    if (e.kind != LightKind::sphere) return CertificateShape::flat;
+    const bool is_inwards = e.is_two_sided || scene.spheres[e.geometry].is_inside_out;
+    return is_inwards ? CertificateShape::none : CertificateShape::sphere;
+  }
+};
+
+}  // namespace troffer

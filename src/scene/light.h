@@ -1,0 +1,85 @@
+// What the scene says gives light: one closed set of kinds, plain data. What each kind does is in
+// light/light.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/rgb.h"
+#include "base/vec.h"
+#include "scene/material.h"
+
+namespace troffer {
+
+constexpr int32_t no_light = -1;
+
+enum class LightKind : uint8_t {
+  // Diffuse surfaces; what is hit has their number (Mesh::lights, Sphere::light, Disk::light).
+  polygon,
+  disk,
+  sphere,
+  mesh,
+  // Without surface: no ray hits them.
+  point,
+  // At infinity: rays that leave the scene see them.
+  environment,
+};
+
+struct Light {
+  std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
+  LightKind kind = LightKind::polygon;
+  // W/(m² sr), or cd/m² where Scene::is_photometric; point: radiant intensity, W/sr or cd.
+  Rgb radiance;
+
+  // Kinds with a surface: it emits from the front, or from both sides where is_two_sided.
+  int32_t texture = no_texture;  // factor on radiance over the mesh's (u,v); mesh only
+  bool is_two_sided = false;
+  bool is_alpha_masked = false;     // mesh only: dark where its material's mask makes holes
+  uint32_t geometry = 0;            // index into meshes, disks or spheres
+  std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
+  std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
+
+  Vec3 position;  // point
+};
+
+inline bool has_surface(LightKind k) {
+  return k <= LightKind::mesh;
+}
+
+// A single direction brings its light to a point: none meets it by chance.
+inline bool is_delta(LightKind k) {
+  return k == LightKind::point;
+}
+
+// Calls visit(v) with all that says what a light is, but its name and the list of its triangles
+// (which Mesh::lights says too): numbers, vectors and colours.
+template <class Visit>
+void for_each_value(const Light& e, const Visit& visit) {
+  visit(uint64_t(e.kind) | uint64_t(e.is_two_sided) << 8);
+  visit(e.radiance);
+  visit(uint64_t(e.texture));
+  visit(uint64_t(e.geometry));
+  for (const Vec3& p : e.polygon) visit(p);
+  if (!has_surface(e.kind)) visit(e.position);
+}
+
+inline const char* name_of(LightKind k) {
+  switch (k) {
+    case LightKind::polygon:
+      return "polygon";
+    case LightKind::disk:
+      return "disk";
+    case LightKind::sphere:
+      return "sphere";
+    case LightKind::mesh:
+      return "mesh";
+    case LightKind::point:
+      return "point";
+    case LightKind::environment:
+      return "environment";
+  }
+  return "";
+}
+
+}  // namespace troffer
