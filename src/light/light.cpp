@@ -1,7 +1,9 @@
 #include "light/light.h"
 
+#include "light/distant_light.h"
 #include "light/environment_light.h"
 #include "light/point_light.h"
+#include "light/spot_light.h"
 #include "light/surface_light.h"
 
 namespace troffer {
@@ -14,6 +16,10 @@ decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
   switch (kind) {
     case LightKind::point:
       return ask(PointLight());
+    case LightKind::spot:
+      return ask(SpotLight());
+    case LightKind::distant:
+      return ask(DistantLight());
     case LightKind::environment:
       return ask(EnvironmentLight());
     case LightKind::polygon:

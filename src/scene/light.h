@@ -22,14 +22,17 @@ enum class LightKind : uint8_t {
   mesh,
   // Without surface: no ray hits them.
   point,
+  spot,
   // At infinity: rays that leave the scene see them.
+  distant,
   environment,
 };
 
 struct Light {
   std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
   LightKind kind = LightKind::polygon;
-  // W/(m² sr), or cd/m² where Scene::is_photometric; point: radiant intensity, W/sr or cd.
+  // W/(m² sr), or cd/m² where Scene::is_photometric; point, spot: radiant intensity (largest), W/sr
+  // or cd; distant: irradiance of a surface that faces it, W/m² or lx.
   Rgb radiance;
 
   // Kinds with a surface: it emits from the front, or from both sides where is_two_sided.
@@ -40,7 +43,10 @@ struct Light {
   std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
   std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
 
-  Vec3 position;  // point
+  Vec3 position;             // point, spot
+  Vec3 direction{0, 0, -1};  // spot: axis of its beam; distant: which its light takes; unit
+  // spot: whole within the inner angle, none beyond the outer one, which is larger
+  float cos_inner = 1, cos_outer = 0;
 };
 
 inline bool has_surface(LightKind k) {
@@ -49,7 +55,7 @@ inline bool has_surface(LightKind k) {
 
 // A single direction brings its light to a point: none meets it by chance.
 inline bool is_delta(LightKind k) {
-  return k == LightKind::point;
+  return k == LightKind::point || k == LightKind::spot || k == LightKind::distant;
 }
 
 // Calls visit(v) with all that says what a light is, but its name and the list of its triangles
@@ -61,7 +67,11 @@ void for_each_value(const Light& e, const Visit& visit) {
   visit(uint64_t(e.texture));
   visit(uint64_t(e.geometry));
   for (const Vec3& p : e.polygon) visit(p);
-  if (!has_surface(e.kind)) visit(e.position);
+  if (has_surface(e.kind)) return;
+  visit(e.position);
+  visit(e.direction);
+  visit(e.cos_inner);
+  visit(e.cos_outer);
 }
 
 inline const char* name_of(LightKind k) {
@@ -76,6 +86,10 @@ inline const char* name_of(LightKind k) {
       return "mesh";
     case LightKind::point:
       return "point";
+    case LightKind::spot:
+      return "spot";
+    case LightKind::distant:
+      return "distant";
     case LightKind::environment:
       return "environment";
   }

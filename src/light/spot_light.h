@@ -1,0 +1,43 @@
+// A point that shines within a cone, fading between two angles from its axis.
+// References: [1] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., §12.2.1.
+#pragma once
+
+#include <algorithm>
+
+#include "base/units.h"
+#include "light/no_surface.h"
+
+namespace troffer {
+
+struct SpotLight : NoSurface {
+  // Radiant intensity in a direction at this cosine from the axis, as a share of the largest: a
+  // smooth step in the cosine [1].
+  static float share(const Light& e, float cosine) {
+    if (cosine >= e.cos_inner) return 1;
+    const float t = std::max(cosine - e.cos_outer, 0.0f) / (e.cos_inner - e.cos_outer);
+    return t * t * (3 - 2 * t);
+  }
+
+  static void bound(const Light& e, const Box& /*scene*/, LightPrimitive& p) {
+    set_point(p, e.position);
+    p.mean_radiance = e.radiance;
+    // The step is symmetric: half of the light between the cosines.
+    const float solid_angle = pi_f * ((1 - e.cos_inner) + (1 - e.cos_outer));
+    p.power = solid_angle * luminance(e.radiance);
+    p.tree_power = 4 * pi_f * luminance(e.radiance);
+    // Normals whose hemispheres hold the beam.
+    p.cone_axis = e.direction;
+    p.cos_cone = e.cos_outer >= 0 ? 1 : std::sqrt(std::max(0.0f, 1 - sqr(e.cos_outer)));
+  }
+  static bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec2& /*u*/,
+                     LightSample& out) {
+    const Light& e = scene.lights[p.light];
+    const Vec3 from_light = x - e.position;
+    const float distance = length(from_light);
+    if (!(distance > 0)) return false;
+    return sample_point(e.position, x,
+                        e.radiance * share(e, dot(from_light, e.direction) / distance), out);
+  }
+};
+
+}  // namespace troffer
