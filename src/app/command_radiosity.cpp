@@ -158,6 +158,7 @@ int run_radiosity(const RadiosityCommand& c) {
   const PreparedScene scene(std::move(imported));
   seconds.build = seconds_since(mark);
 
+  warn_of_lights_left_out(scene, c.is_quiet);
   const StopFlag& stop = install_stop_handlers();
   RadiosityResult result;
   {

@@ -94,6 +94,9 @@ void check_method(Method method, Indirect indirect, const std::string& solution)
 // Warns, unless is_quiet, of every option given to `command` that its method does not use.
 void warn_of_unused_options(const CLI::App& command, const std::string& method, bool is_quiet);
 
+// Says what the preprocessing leaves out of a scene.
+void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet);
+
 // What `method` needs beforehand, with a progress bar: the radiosity solution of the file
 // `solution`, or (empty) a new one, and the sources selected. Null for methods that need nothing,
 // and where it was interrupted.

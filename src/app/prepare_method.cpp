@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cstdio>
+
 #include "app/commands.h"
 #include "app/progress.h"
 #include "base/error.h"
@@ -18,6 +20,11 @@ void check_method(Method method, Indirect indirect, const std::string& solution)
                                   : "--solution belongs to --method kj92 and certified");
 }
 
+void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet) {
+  const std::string text = lights_left_out(scene.scene);
+  if (!is_quiet && !text.empty()) fmt::print(stderr, "warning: {}\n", text);
+}
+
 std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method method,
                                             const Kj92Settings& settings, Indirect indirect,
                                             const std::string& solution, int threads, bool is_quiet,
@@ -26,6 +33,7 @@ std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method m
   std::optional<RadiositySolution> loaded;
   if (!solution.empty())
     loaded = load_radiosity(scene, read_file_bytes(solution), solution, nullptr, threads);
+  warn_of_lights_left_out(scene, is_quiet);
   std::unique_ptr<Preparation> made;
   {
     ProgressBar bar("radiosity", is_quiet);

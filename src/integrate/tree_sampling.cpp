@@ -30,6 +30,7 @@ TreeSampler::Task& TreeSampler::new_task() {
   if (task_count_ == tasks_.size()) tasks_.emplace_back();
   Task& t = tasks_[task_count_++];
   t.entry = nullptr;
+  t.is_single = false;
   t.has_exact = t.takes_exact = false;
   t.exact = t.colour = t.sum = Rgb{0};
   t.is_first_round = true;
@@ -49,7 +50,10 @@ TreeLight TreeSampler::run(const TreeReceiver& r, std::span<const TreatedSource>
     rays_.clear();
     for (const size_t i : active_) {
       Task& t = tasks_[i];
-      t.entry == nullptr ? ask_lattice(r, t) : ask_tree(r, t);
+      if (t.is_single)
+        ask_single(r, t);
+      else
+        t.entry == nullptr ? ask_lattice(r, t) : ask_tree(r, t);
     }
     if (is_first) share_allowance(r);
     is_first = false;
@@ -88,8 +92,10 @@ void TreeSampler::begin(const TreeReceiver& r, const TreatedSource& treated) {
   Task& t = new_task();
   t.source = &source;
   t.treated = treated;
+  t.is_single = source.is_delta();
   t.has_exact = has_exact;
   t.exact = exact;
+  if (t.is_single) return;
   if (s.is_lambertian && source.is_constant()) t.colour = s.diffuse.diffuse * source.radiance();
   if (r.neighbours != nullptr && r.record != nullptr &&
       agreed_pattern(*r.neighbours, *r.record, treated.source, t.agreed))
@@ -176,6 +182,15 @@ void TreeSampler::ask_lattice(const TreeReceiver& r, Task& t) {
   }
 }
 
+void TreeSampler::ask_single(const TreeReceiver& r, Task& t) {
+  t.first_ray = rays_.size();
+  t.values.clear();
+  TreeSourceSample s;
+  if (!t.source->sample(scene_, {0.5f, 0.5f}, *r.vertex, *r.scattering, 1, s)) return;
+  rays_.push_back(s.shadow_ray);
+  t.values.push_back(s.value);
+}
+
 void TreeSampler::answer_lattice(Task& t) {
   for (size_t i = 0; i < t.values.size(); ++i)
     if (is_occluded_[t.first_ray + i] == 0) t.sum += t.values[i];
@@ -231,6 +246,7 @@ Rgb TreeSampler::light_of(const TreeReceiver& r, const Task& t) const {
 }
 
 void TreeSampler::add_record(const TreeReceiver& r, const Task& t) const {
+  if (t.is_single) return;  // nothing to agree about
   SourcePattern p;
   p.source = t.treated.source;
   if (t.entry == nullptr) {

@@ -62,7 +62,8 @@ class TreeSampler {
   struct Task {
     const TreeSource* source = nullptr;
     TreatedSource treated;
-    TreePool::Entry* entry = nullptr;  // null: asks the cells of `agreed` that are in doubt
+    TreePool::Entry* entry = nullptr;  // null: asks the cells of `agreed` that are in doubt …
+    bool is_single = false;            // … or one ray, which tells all
     ShadowPattern agreed;
     bool has_exact = false, takes_exact = false;
     Rgb exact;             // unoccluded radiance towards the viewer, where it is known
@@ -70,10 +71,10 @@ class TreeSampler {
     float unoccluded = 0;  // luminance that would enter the picture unoccluded
     size_t first_ray = 0;
     bool is_first_round = true;
-    Rgb sum;  // lattice: what arrives
+    Rgb sum;  // without tree: what arrives
     std::vector<ShadowRayResult> results;
     std::vector<int32_t> ray_of;  // of each result, from first_ray on; -1: nothing can arrive
-    std::vector<Rgb> values;      // lattice
+    std::vector<Rgb> values;      // without tree
   };
 
   Task& new_task();
@@ -82,6 +83,7 @@ class TreeSampler {
   void share_allowance(const TreeReceiver& r);
   void ask_tree(const TreeReceiver& r, Task& t);
   void ask_lattice(const TreeReceiver& r, Task& t);
+  void ask_single(const TreeReceiver& r, Task& t);
   bool answer(Task& t);
   void answer_lattice(Task& t);
   Rgb light_of(const TreeReceiver& r, const Task& t) const;

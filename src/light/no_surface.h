@@ -2,6 +2,7 @@
 // infinity have no position. A kind's file derives from this and says what differs.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "light/light.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/units.h"
 #include "light/no_surface.h"
@@ -14,7 +15,8 @@ struct SpotLight : NoSurface {
   // smooth step in the cosine [1].
   static float share(const Light& e, float cosine) {
     if (cosine >= e.cos_inner) return 1;
-    const float t = std::max(cosine - e.cos_outer, 0.0f) / (e.cos_inner - e.cos_outer);
+    if (cosine <= e.cos_outer) return 0;
+    const float t = (cosine - e.cos_outer) / (e.cos_inner - e.cos_outer);
     return t * t * (3 - 2 * t);
   }
 

@@ -27,6 +27,16 @@ void check(const RadiosityOptions& o) {
     throw UsageError("radiosity: numbers of rays and tolerances must be positive");
 }
 
+std::string lights_left_out(const Scene& scene) {
+  const auto n = std::count_if(scene.lights.begin(), scene.lights.end(),
+                               [](const Light& e) { return !has_surface(e.kind); });
+  if (n == 0) return {};
+  return fmt::format(
+      "radiosity: indirect light is without that of {} light{} that {} no surface (points, spots, "
+      "lights at infinity)",
+      n, n == 1 ? "" : "s", n == 1 ? "has" : "have");
+}
+
 RadiosityResult preprocess(const PreparedScene& scene, const RadiosityOptions& options, int threads,
                            const ProgressCallback& progress, const StopFlag& stop) {
   check(options);

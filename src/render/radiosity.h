@@ -20,6 +20,10 @@ struct RadiosityResult {
 // Throws UsageError for options that make no sense.
 void check(const RadiosityOptions& options);
 
+// Lights of the scene that the preprocessing leaves out, in words for a warning; empty: none. Their
+// direct light is not touched by this, but what surfaces reflect of it is missing.
+std::string lights_left_out(const Scene& scene);
+
 // `progress` gets how far the unshot power is on its way down, by its logarithm, which falls about
 // evenly: it cannot rise. The result does not depend on `threads` (0 = all cores).
 RadiosityResult preprocess(const PreparedScene& scene, const RadiosityOptions& options, int threads,

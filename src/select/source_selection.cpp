@@ -57,11 +57,16 @@ class PatchSelector {
     treated.clear();
     gather_points(sides);
     const bool treats_all = !options_.is_enabled || options_.treats_all_lights;
-    if (treats_all) treat_all_lights(treated);
+    if (treats_all)
+      treat_all_lights(treated);
+    else
+      treat_lights_without_surface(treated);
     if (options_.is_enabled) {
       find_candidates(patch);
       for (const uint32_t source : candidates_) consider(source, treated);
     }
+    std::sort(treated.begin(), treated.end(),
+              [](const TreatedSource& a, const TreatedSource& b) { return a.source < b.source; });
     for (const FragmentSide& s : sides) fill_corners(s, corners);
   }
 
@@ -186,9 +191,21 @@ class PatchSelector {
     }
   }
 
+  bool is_without_surface(uint32_t light) const {
+    const LightPrimitives::Range pieces = lights_.of_light(light);
+    return pieces.first != pieces.last && !lights_[pieces.first].has_surface();
+  }
+
   bool is_asked_for(uint32_t light) const {
-    return !options_.is_restricted ||
+    return !options_.is_restricted || is_without_surface(light) ||
            std::find(options_.only.begin(), options_.only.end(), light) != options_.only.end();
+  }
+
+  // The preprocessing knows nothing of them: nobody else adds their light.
+  void treat_lights_without_surface(std::vector<TreatedSource>& treated) const {
+    for (uint32_t e = 0; e < solution_.light_count; ++e)
+      if (is_without_surface(e))
+        treated.push_back({e, {SourceView::partly, SourceTreatment::sampled, 0, 1, 1}});
   }
 
   void treat_all_lights(std::vector<TreatedSource>& treated) {
