@@ -124,17 +124,23 @@ LightChoice LightTree::choose_below(uint32_t at, const Vec3& x, const Vec3& n, b
   }
 }
 
-// Of the tree and the lights beside it, 1 for each.
-float LightTree::weight_sum(const Vec3& n, bool both_sides) const {
-  float sum = nodes_.empty() ? 0.0f : 1.0f;
+// Of the tree and the lights beside it, 1 for each that may light the point.
+float LightTree::weight_sum(const Vec3& x, const Vec3& n, bool both_sides) const {
+  float sum = 0;
+  if (!nodes_.empty()) {
+    alignas(16) Lanes weight;
+    importances(nodes_[0], x, n, both_sides, weight);
+    sum = (weight[0] + weight[1]) + (weight[2] + weight[3]) > 0 ? 1.0f : 0.0f;
+  }
   for (const Infinite& i : infinite_) sum += i.may_light(n, both_sides) ? 1.0f : 0.0f;
   return sum;
 }
 
 // Picks a light at infinity; false where the tree's turn comes, or nothing's, with what is left of
 // the random number.
-bool LightTree::choose_infinite(const Vec3& n, bool both_sides, LightChoice& choice) const {
-  const float sum = weight_sum(n, both_sides);
+bool LightTree::choose_infinite(const Vec3& x, const Vec3& n, bool both_sides,
+                                LightChoice& choice) const {
+  const float sum = weight_sum(x, n, both_sides);
   float target = choice.u * sum;
   for (const Infinite& i : infinite_) {
     if (!i.may_light(n, both_sides)) continue;
@@ -145,13 +151,13 @@ bool LightTree::choose_infinite(const Vec3& n, bool both_sides, LightChoice& cho
     target -= 1;
   }
   choice.u = std::min(target, one_minus_epsilon);
-  choice.pmf = nodes_.empty() ? 0 : 1 / sum;
+  choice.pmf = sum > 0 ? 1 / sum : 0;
   return false;
 }
 
 LightChoice LightTree::choose(const Vec3& x, const Vec3& n, bool both_sides, float u) const {
   LightChoice c{0, 1, u};
-  if (!infinite_.empty() && choose_infinite(n, both_sides, c)) return c;
+  if (!infinite_.empty() && choose_infinite(x, n, both_sides, c)) return c;
   return nodes_.empty() ? LightChoice{} : choose_below(0, x, n, both_sides, c.pmf, c.u);
 }
 
@@ -176,7 +182,7 @@ void LightTree::choose_many(const LightReceivers& r, LightChoice* out,
     const Lanes weight{scratch[i], scratch[n + i], scratch[2 * n + i], scratch[3 * n + i]};
     const bool both_sides = r.sides[i] != 0;
     LightChoice& c = out[i] = {0, 1, r.u[i]};
-    if (!infinite_.empty() && choose_infinite(r.normal(i), both_sides, c)) continue;
+    if (!infinite_.empty() && choose_infinite(r.position(i), r.normal(i), both_sides, c)) continue;
     const uint32_t k = pick(weight, c.pmf, c.u);
     if (k == width)
       c = {};
@@ -193,9 +199,9 @@ float LightTree::pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t pri
     const bool is_beside = place.slot < infinite_.size() &&
                            infinite_[place.slot].primitive == primitive &&
                            infinite_[place.slot].may_light(n, both_sides);
-    return is_beside ? 1 / weight_sum(n, both_sides) : 0;
+    return is_beside ? 1 / weight_sum(x, n, both_sides) : 0;
   }
-  float pmf = infinite_.empty() ? 1 : 1 / weight_sum(n, both_sides);
+  float pmf = infinite_.empty() ? 1 : 1 / weight_sum(x, n, both_sides);
   for (uint32_t at = place.node, slot = place.slot;;) {
     const Node& node = nodes_[at];
     alignas(16) Lanes weight;

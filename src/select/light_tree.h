@@ -97,8 +97,8 @@ class LightTree {
   };
 
   friend class LightTreeBuilder;
-  float weight_sum(const Vec3& n, bool both_sides) const;
-  bool choose_infinite(const Vec3& n, bool both_sides, LightChoice& choice) const;
+  float weight_sum(const Vec3& x, const Vec3& n, bool both_sides) const;
+  bool choose_infinite(const Vec3& x, const Vec3& n, bool both_sides, LightChoice& choice) const;
   static void importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
                           Lanes& out);
   static uint32_t pick(const Lanes& weight, float& pmf, float& u);
