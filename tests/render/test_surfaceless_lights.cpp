@@ -88,7 +88,7 @@ TEST_CASE("every method measures points, spots and distant lights as their close
       const auto values = measured(scene, points, method, 16);
       for (size_t i = 0; i < points.size(); ++i) {
         CAPTURE(c.name);
-        CAPTURE(int(method));
+        CAPTURE(std::string(method.row().name));
         CAPTURE(i);
         CHECK(double(values[i].irradiance.g) ==
               doctest::Approx(c.irradiance(Vec3d(points[i].position))).epsilon(1e-4));
@@ -109,7 +109,7 @@ TEST_CASE("what stands before a point or a distant light keeps its light away, i
   for (const Method method : all_methods) {
     const auto values = measured(scene, points, method, method == Method::path ? 4096 : 16);
     for (size_t i = 0; i < points.size(); ++i) {
-      CAPTURE(int(method));
+      CAPTURE(std::string(method.row().name));
       CAPTURE(i);
       const double error = values[i].standard_error / luminous_efficacy;
       CHECK(std::abs(double(values[i].irradiance.g) - expected[i]) < 1e-4 + 5 * error);
@@ -126,7 +126,7 @@ TEST_CASE("an open plain under a constant environment gets pi L, by every method
                                            {{1.2f, 0.2f, 0}, {0, 0, 1}}};
   for (const Method method : all_methods)
     for (const Measurement& m : measured(scene, points, method, 4096)) {
-      CAPTURE(int(method));
+      CAPTURE(std::string(method.row().name));
       const double error = m.standard_error / luminous_efficacy;
       CHECK(std::abs(double(m.irradiance.g) - 2 * pi) < 1e-4 + 5 * error);
       CHECK(error < 0.1);
@@ -162,7 +162,7 @@ TEST_CASE("a convex body in a white environment: furnaces, whatever it is made o
       if (c.material.kind == MaterialKind::dielectric && method != Method::path) continue;
       const Ensemble e = render_ensemble(scene, camera, small(method), 24);
       CAPTURE(c.name);
-      CAPTURE(int(method));
+      CAPTURE(std::string(method.row().name));
       CAPTURE(e.mean.mean());
       CAPTURE(e.mean.standard_error());
       // Rays that agree with each other may miss little of a tree's source (kj92).
@@ -185,7 +185,7 @@ TEST_CASE("a viewing ray that misses shows the environment, and nothing without 
     for (const Method method : all_methods) {
       const Image image = render_now(scene, up, small(method)).layers[0].image;
       for (const Rgb& p : image.pixels) {
-        CAPTURE(int(method));
+        CAPTURE(std::string(method.row().name));
         CHECK(p.r == L);
         CHECK(p.g == 2 * L);
         CHECK(p.b == 3 * L);
@@ -224,7 +224,7 @@ TEST_CASE("lights of all kinds together: the same bytes for 1 and 4 threads, the
       o.threads = 4;
       return o;
     }());
-    CAPTURE(int(method));
+    CAPTURE(std::string(method.row().name));
     CHECK(is_identical(a.layers, b.layers));
     // Direct light alone, which all methods agree on but for noise.
     o.aovs = {Aov::direct};
