@@ -190,7 +190,38 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   if (glass > 0) add_glass(b, in, glass, safe01(tint * specular), base);
 }
 
+bool can_be_rough(const Material& m) {
+  return m.roughness.texture >= 0 || m.roughness.value >= 1e-6f;
+}
+
 }  // namespace
+
+TableNeeds table_needs(const Material& m) {
+  const bool is_rough = can_be_rough(m);
+  TableNeeds n;
+  n.has_ggx = is_rough && m.kind != MaterialKind::diffuse;
+  bool is_glass = false;
+  switch (m.kind) {
+    case MaterialKind::diffuse:
+      break;
+    case MaterialKind::coated_diffuse:
+      n.has_coat = is_rough;
+      n.has_dielectric_average = true;
+      break;
+    case MaterialKind::conductor:
+      n.has_conductor_average = true;
+      break;
+    case MaterialKind::dielectric:
+      is_glass = true;
+      break;
+    case MaterialKind::metallic_roughness:
+      is_glass = m.transmission.value > 0;
+      break;
+  }
+  n.has_glass = is_glass && is_rough && !m.is_thin;
+  n.has_dielectric_average |= is_glass;
+  return n;
+}
 
 Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
                const std::vector<Texture>& textures, uint32_t material, const Vec2& uv,

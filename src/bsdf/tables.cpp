@@ -20,10 +20,6 @@ Rgb safe_index(Rgb v) {
   return {safe(v.r), safe(v.g), safe(v.b)};
 }
 
-bool can_be_rough(const Material& m) {
-  return m.roughness.texture >= 0 || m.roughness.value >= 1e-6f;
-}
-
 // Index of the table of this ior, making one while there is room, else of the nearest.
 template <class Table>
 int32_t table_for(std::vector<Table>& tables, float ior, size_t max_tables) {
@@ -49,19 +45,16 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
   for (const Material& m : materials) {
     PreparedMaterial p;
     p.ior = safe_ior(m.ior);
-    const bool may_transmit =
-        m.kind == MaterialKind::metallic_roughness && m.transmission.value > 0;
-    const bool is_glass = m.kind == MaterialKind::dielectric || may_transmit;
-    needs_ggx |= m.kind != MaterialKind::diffuse && can_be_rough(m);
-    if (m.kind == MaterialKind::coated_diffuse && can_be_rough(m))
-      p.coat = table_for(coats_, p.ior, max_iors);
-    if (is_glass && !m.is_thin && can_be_rough(m) && std::abs(p.ior - 1) >= index_matched)
+    const TableNeeds needs = table_needs(m);
+    needs_ggx |= needs.has_ggx;
+    if (needs.has_coat) p.coat = table_for(coats_, p.ior, max_iors);
+    if (needs.has_glass && std::abs(p.ior - 1) >= index_matched)
       p.glass = table_for(glasses_, p.ior, max_iors);
-    if (is_glass || m.kind == MaterialKind::coated_diffuse) {
+    if (needs.has_dielectric_average) {
       p.dielectric_average = fresnel_dielectric_average(p.ior);
       p.plate_average = plate_reflectance_average(p.ior);
     }
-    if (m.kind == MaterialKind::conductor) {
+    if (needs.has_conductor_average) {
       const Rgb eta = safe_index(m.eta), k = safe_index(m.k);
       for (size_t c = 0; c < 3; ++c)
         p.conductor_average[c] = fresnel_conductor_average(eta[c], k[c]);

@@ -24,6 +24,14 @@ struct PreparedMaterial {
   Rgb conductor_average;          // … of the conductor eta, k (not of is_reflectance)
 };
 
+// What make_bsdf asks of the tables for a material, at any hit.
+struct TableNeeds {
+  bool has_ggx = false;                      // tables by GGX width alone
+  bool has_coat = false, has_glass = false;  // tables for its index of refraction
+  bool has_dielectric_average = false, has_conductor_average = false;
+};
+TableNeeds table_needs(const Material& material);  // make_bsdf.cpp
+
 // Immutable once built; Bsdf values point into it, so it must outlive them and stay in place.
 class BsdfTables {
  public:

@@ -108,7 +108,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
 }
 
 bool is_textured(const Material& m) {
-  return m.base_color.texture >= 0 || m.roughness.texture >= 0 || m.normal_texture >= 0 ||
+  return has_textured_input(m) || m.normal_texture >= 0 ||
          (m.is_alpha_masked && m.alpha.texture >= 0);
 }
 

@@ -127,12 +127,6 @@ Vec2 uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t triangle, uin
   return m.uvs[c[0]] * (1 - w1 - w2) + m.uvs[c[1]] * w1 + m.uvs[c[2]] * w2;
 }
 
-bool has_texture(const Material& m) {
-  return m.base_color.texture >= 0 || m.metallic.texture >= 0 || m.specular.texture >= 0 ||
-         m.specular_color.texture >= 0 || m.transmission.texture >= 0 || m.is_alpha_masked ||
-         m.roughness.texture >= 0;
-}
-
 struct ElementSurface {
   Reflectances sides[2];
   float coverage = 1;  // share that is not cut away by an alpha mask
@@ -151,7 +145,7 @@ ElementSurface average_surface(const Scene& scene, const BsdfTables& tables,
       mesh.geometry.surfaces[mesh.geometry.triangles[first_base].surface].material;
   const Material& m = scene.materials[material];
   ElementSurface out;
-  if (!has_texture(m)) {
+  if (!has_textured_input(m) && !m.is_alpha_masked) {
     for (size_t side = 0; side < 2; ++side)
       out.sides[side] = reflectances(tables, scene, material, {}, side == 0);
     return out;

@@ -38,19 +38,6 @@ void add_geometry(Hasher& h, const Scene& scene) {
   }
 }
 
-void add_material(Hasher& h, const Material& m) {
-  h.add(uint64_t(m.kind));
-  h.add(uint64_t(m.roughness_meaning));
-  for (const ColorInput& c : {m.base_color, m.specular_color}) h.add(c);
-  for (const FloatInput& f : {m.roughness, m.metallic, m.specular, m.transmission, m.alpha})
-    h.add(f);
-  h.add(m.ior);
-  h.add(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2);
-  h.add(m.eta);
-  h.add(m.k);
-  h.add(m.alpha_cutoff);
-}
-
 void add_texture(Hasher& h, const Texture& t) {
   h.add(uint64_t(t.kind));
   h.add(t.value);
@@ -74,7 +61,7 @@ uint64_t radiosity_scene_key(const Scene& scene) {
   Hasher h;
   add_geometry(h, scene);
   h.add(scene.materials.size());
-  for (const Material& m : scene.materials) add_material(h, m);
+  for (const Material& m : scene.materials) for_each_value(m, [&](const auto& v) { h.add(v); });
   h.add(scene.textures.size());
   for (const Texture& t : scene.textures) add_texture(h, t);
   h.add(scene.lights.size());

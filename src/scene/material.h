@@ -61,6 +61,35 @@ struct Material {
   float alpha_cutoff = 0.5f;
 };
 
+// Calls visit(input) for every input that says how a material scatters light: what may be textured.
+template <class Visit>
+void for_each_input(const Material& m, const Visit& visit) {
+  for (const ColorInput* c : {&m.base_color, &m.specular_color}) visit(*c);
+  for (const FloatInput* f : {&m.roughness, &m.metallic, &m.specular, &m.transmission}) visit(*f);
+}
+
+// Calls visit(v) for all that says how a material scatters light and where it has holes (bumps and
+// names do neither): inputs, numbers, colours.
+template <class Visit>
+void for_each_value(const Material& m, const Visit& visit) {
+  visit(uint64_t(m.kind));
+  visit(uint64_t(m.roughness_meaning));
+  for_each_input(m, visit);
+  visit(m.alpha);
+  visit(m.ior);
+  visit(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2);
+  visit(m.eta);
+  visit(m.k);
+  visit(m.alpha_cutoff);
+}
+
+// Whether it scatters light differently from place to place.
+inline bool has_textured_input(const Material& m) {
+  bool is_any = false;
+  for_each_input(m, [&](const auto& input) { is_any = is_any || input.texture >= 0; });
+  return is_any;
+}
+
 inline Rgb evaluate(const std::vector<Texture>& textures, const ColorInput& in, const Vec2& uv) {
   return in.texture < 0 ? in.value : in.value * evaluate(textures, uint32_t(in.texture), uv).rgb;
 }
