@@ -31,7 +31,7 @@ struct Closure {
 // powers: what the points received, >= 0; `sum` of them. Up to `most_scale` all points are
 // corrected alike; a larger excess is taken from those that got most, and what is missing beyond it
 // stays missing.
-constexpr double most_closure_scale = 0.05;
+constexpr double most_closure_scale = 0.3;
 Closure close_shot(std::span<const float> powers, double sum, double sent, const OpenShare& open);
 
 }  // namespace troffer

@@ -113,13 +113,6 @@ bool is_whole(const RayBudget& budget, float unoccluded) {
   return budget.whole_rays > 0 && unoccluded > budget.reference * budget.whole_from;
 }
 
-int rays_wanted(const RayBudget& budget, float unoccluded) {
-  const float share = unoccluded / (budget.reference * budget.tolerance);
-  const float n = std::pow(std::max(0.5f * share, 0.0f), 4.0f / 3);
-  const int wanted = n < float(budget.max_rays) ? std::max(1, int(std::ceil(n))) : budget.max_rays;
-  return is_whole(budget, unoccluded) ? std::max(wanted, budget.whole_rays) : wanted;
-}
-
 class Gatherer {
  public:
   Gatherer(const Shooter& shooter, std::span<const ElementPoint> receivers,
@@ -217,6 +210,7 @@ class Gatherer {
     s_.rays.clear();
     s_.weights.clear();
     s_.shares.clear();
+    s_.ends.clear();
     for (TransferScratch::Job& j : s_.jobs) {
       j.ray = s_.rays.size();
       for (int k = j.first; k < j.first + j.count; ++k) {
@@ -225,10 +219,11 @@ class Gatherer {
         s_.rays.push_back(ray_to(shooter_, receiver(j.receiver), end));
         s_.weights.push_back(end.weight);
         s_.shares.push_back(share_at(shooter_, end.point));
+        if (s_.records != nullptr) s_.ends.push_back(end.point);
       }
     }
     s_.is_occluded.resize(s_.rays.size());
-    tracer_.occluded(s_.rays, s_.is_occluded);
+    tracer_.occluded(s_.rays, s_.is_occluded, Coherence::coherent);
     s_.next_jobs.clear();
     for (size_t i = 0; i < s_.jobs.size(); ++i)
       weigh(s_.jobs[i], i + 1 < s_.jobs.size() ? s_.jobs[i + 1].ray : s_.rays.size());
@@ -247,6 +242,8 @@ class Gatherer {
       j.sum_without_shares += weight;
       j.sum += sent;
       if (s_.is_occluded[k] == 0) j.visible += sent;
+      if (s_.records != nullptr)
+        s_.records->push_back({j.receiver, s_.ends[k], s_.weights[k], s_.is_occluded[k] == 0});
     }
     const float v = j.sum > 0 ? float(std::clamp(j.visible / j.sum, 0.0, 1.0)) : 0.0f;
     transfers_[j.receiver].visibility = v;
@@ -275,6 +272,13 @@ class Gatherer {
 };
 
 }  // namespace
+
+int rays_wanted(const RayBudget& budget, float unoccluded) {
+  const float share = unoccluded / (budget.reference * budget.tolerance);
+  const float n = std::pow(std::max(0.5f * share, 0.0f), 4.0f / 3);
+  const int wanted = n < float(budget.max_rays) ? std::max(1, int(std::ceil(n))) : budget.max_rays;
+  return is_whole(budget, unoccluded) ? std::max(wanted, budget.whole_rays) : wanted;
+}
 
 size_t transfer(const Shooter& shooter, std::span<const ElementPoint> receivers,
                 const Tracer& tracer, const RayBudget& budget, uint64_t stream, size_t first_index,

@@ -41,7 +41,17 @@ struct Transfer {
   float share = 1;       // of the parts at the rays' ends, in `unoccluded`
 };
 
+// Rays' ends, for those who want to know where light came from.
+struct RayRecord {
+  uint32_t receiver;
+  Vec3 end;
+  float weight;
+  bool is_visible;
+};
+
 struct TransferScratch {
+  std::vector<RayRecord>* records = nullptr;  // if set, all rays are appended
+  std::vector<Vec3> ends;
   std::vector<Ray> rays;
   std::vector<float> weights, shares;
   std::vector<uint8_t> is_occluded;
@@ -69,5 +79,8 @@ size_t transfer(const Shooter& shooter, std::span<const ElementPoint> receivers,
 size_t transfer_to(const Shooter& shooter, std::span<const ElementPoint> points,
                    std::span<const uint32_t> indices, const Tracer& tracer, const RayBudget& budget,
                    uint64_t stream, std::span<Transfer> transfers, TransferScratch& scratch);
+
+// How many rays a transfer of so much unoccluded luminance gets at most.
+int rays_wanted(const RayBudget& budget, float unoccluded);
 
 }  // namespace troffer

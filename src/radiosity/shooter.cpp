@@ -84,15 +84,20 @@ Vec3 point_on(const LightPrimitive& p, const Vec2& u) {
   return p.centroid;
 }
 
-float share_at(const Shooter& s, const Vec3& point) {
-  float share = 1, nearest = std::numeric_limits<float>::infinity();
-  for (size_t i = 0; i < s.parts.size(); ++i) {
-    const float d = length_squared(s.parts[i].position - point);
+size_t nearest_part(std::span<const ElementPoint> parts, const Vec3& point) {
+  size_t part = 0;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const float d = length_squared(parts[i].position - point);
     if (d >= nearest) continue;
     nearest = d;
-    share = s.share[i];
+    part = i;
   }
-  return share;
+  return part;
+}
+
+float share_at(const Shooter& s, const Vec3& point) {
+  return s.parts.empty() ? 1.0f : s.share[nearest_part(s.parts, point)];
 }
 
 Shooter light_shooter(const LightPrimitives& primitives, uint32_t light) {

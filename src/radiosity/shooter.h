@@ -38,6 +38,8 @@ void set_parts(Shooter& shooter, const RadiosityMesh& mesh, uint32_t patch,
 
 // A point of a piece, uniform by area; round pieces are not meant.
 Vec3 point_on(const LightPrimitive& p, const Vec2& u);
+// The one of the points that is nearest, by number; 0 if there are none.
+size_t nearest_part(std::span<const ElementPoint> parts, const Vec3& point);
 // What the part of the shooter at a point sends, relative to the mean: that of the part whose
 // middle is nearest. 1 where there are no parts.
 float share_at(const Shooter& s, const Vec3& point);

@@ -9,6 +9,7 @@
 #include "base/warp.h"
 #include "radiosity/closure.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/patch_rows.h"
 #include "radiosity/stored_list.h"
 
 namespace troffer {
@@ -16,6 +17,10 @@ namespace troffer {
 namespace {
 
 constexpr uint32_t purpose_open = 3;
+constexpr size_t most_row_bytes = 256u << 20;
+// A patch's row serves all of its shots, which together send more than the first: rays are as many
+// as if it sent so much more.
+constexpr float expected_growth = 1.6f;
 // Of what arrives so much is absorbed at least: between perfect reflectors light would be shot for
 // ever, and no surface reflects everything.
 constexpr float most_reflected = 0.999f;
@@ -69,29 +74,25 @@ OpenShare open_share_of(const Shooter& shooter, const Tracer& tracer, uint32_t r
   return open_share(leaving / rays_wanted, rays_wanted, leaving == 0);
 }
 
-// Whole patches, so that what their points receive is summed up by one thread.
+// Sample points that are dealt with together, and the rays that this took.
 struct Chunk {
-  uint32_t first = 0, last = 0;  // points
+  uint32_t first = 0, last = 0;
   uint64_t rays = 0;
-  double arrived = 0;                 // by the current shot: before closure …
-  double absorbed = 0, specular = 0;  // … and after it
-  Rgb taken;                          // by specular surfaces, after it
 };
 
-std::vector<Chunk> make_chunks(const RadiosityMesh& mesh) {
-  constexpr uint32_t least_points = 512;
+std::vector<Chunk> make_chunks(size_t points) {
+  constexpr uint32_t size = 128;
   std::vector<Chunk> chunks;
-  for (const Patch& p : mesh.patches) {
-    if (chunks.empty() || chunks.back().last - chunks.back().first >= least_points)
-      chunks.push_back({p.first_point, p.first_point, 0, 0, 0, 0, {}});
-    chunks.back().last = p.last_point;
-  }
+  for (uint32_t first = 0; first < points; first += size)
+    chunks.push_back({first, uint32_t(std::min<size_t>(points, first + size)), 0});
   return chunks;
 }
 
 // What of a point's light goes where.
 struct PointSurface {
-  float area = 0;  // 0 where it is not finite
+  float area = 0, per_area = 0;  // 0 where it is not finite
+  uint32_t patch = 0;
+  bool has_specular = false;
   Rgb reflectance, specular;
 };
 
@@ -101,10 +102,13 @@ std::vector<PointSurface> surfaces_of(const RadiosityMesh& mesh) {
   for (const ElementPoint& p : mesh.points) {
     PointSurface s;
     if (p.area < 1e30f) s.area = p.area;
+    if (s.area > 1e-30f) s.per_area = 1 / s.area;
+    s.patch = p.patch;
     for (size_t c = 0; c < 3; ++c) {
       s.reflectance[c] = std::clamp(p.reflectance[c], 0.0f, most_reflected);
       s.specular[c] = std::clamp(p.specular_albedo[c], 0.0f, most_reflected - s.reflectance[c]);
     }
+    s.has_specular = !s.specular.is_black();
     surfaces.push_back(s);
   }
   return surfaces;
@@ -121,7 +125,8 @@ class Solver {
         stop_(stop),
         threads_(threads),
         surfaces_(surfaces_of(solution.mesh)),
-        chunks_(make_chunks(solution.mesh)),
+        chunks_(make_chunks(solution.mesh.points.size())),
+        rows_(solution.mesh, tracer, threads, most_row_bytes),
         scratch_(size_t(thread_count(threads))) {
     const size_t points = s_.mesh.points.size(), patches = s_.mesh.patches.size();
     s_.general.assign(points, Rgb{0});
@@ -133,7 +138,10 @@ class Solver {
     seen_.assign(points, 0);
     has_shot_.assign(patches, 0);
     transfers_.resize(points);
-    powers_.assign(points, 0);
+    shot_.unoccluded.assign(points, 0);
+    shot_.received.assign(points, 0);
+    sources_.assign(s_.stored.size(), no_source);
+    least_.assign(points, 0);
     for (const LightPrimitive& p : primitives.all())
       if (p.has_surface()) s_.balance.emitted += double(p.power);
     for (const Patch& p : s_.mesh.patches) is_closed_ = is_closed_ && p.open == 0;
@@ -164,15 +172,18 @@ class Solver {
 
  private:
   double unshot_power() const {
-    double sum = 0;
-    for (const Rgb& u : unshot_) sum += double(luminance(u));
-    return sum;
+    double sums[4] = {};  // four at a time: the sum is asked for at every shot
+    size_t i = 0;
+    for (; i + 4 <= unshot_.size(); i += 4)
+      for (size_t k = 0; k < 4; ++k) sums[k] += double(luminance(unshot_[i + k]));
+    for (; i < unshot_.size(); ++i) sums[0] += double(luminance(unshot_[i]));
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
   double limit() const { return double(s_.options.unshot_fraction) * direct_; }
   bool is_converged() const { return waiting_ <= 0 && unshot_power() <= limit(); }
 
   uint64_t rays() const {
-    uint64_t sum = 0;
+    uint64_t sum = rows_.rays();
     for (const Chunk& c : chunks_) sum += c.rays;
     return sum;
   }
@@ -189,12 +200,12 @@ class Solver {
       const uint64_t stream = light_stream(s_.options, e);
       OpenShare open = open_share_of(shooter, tracer_, open_rays, stream);
       if (is_closed_) open = {};
-      find_transfers(shooter, e, stream, false);
+      find_light_transfers(shooter, e, stream);
       if (stop_) return;
-      receive(e, power, open);
+      receive_light(e, power, open);
       waiting_ -= power;
       const double done = 1 - std::max(waiting_, 0.0) / s_.balance.emitted;
-      report(progress, lights_progress * done);
+      report(progress, unshot_power(), lights_progress * done);
     }
     waiting_ = 0;  // but for rounding
     direct_ = s_.balance.absorbed + unshot_power();
@@ -202,22 +213,22 @@ class Solver {
 
   void shoot_patches(const RadiosityCallback& progress) {
     const double first = unshot_power();
-    while (!stop_) {
-      const double unshot = unshot_power();
-      if (unshot <= limit()) return;
+    for (double unshot = first; !stop_ && unshot > limit();) {
       if (s_.shots >= s_.options.max_shots) s_.end = RadiosityEnd::out_of_shots;
       if (rays() >= uint64_t(s_.options.max_million_rays) * 1'000'000)
         s_.end = RadiosityEnd::out_of_rays;
       if (s_.end != RadiosityEnd::converged || !shoot_brightest()) return;
-      const double fallen = std::log(first / std::max(unshot_power(), limit()));
+      unshot = unshot_power();
+      const double fallen = std::log(first / std::max(unshot, limit()));
       const double whole = std::log(first / limit());
       const double spent = double(s_.shots) / s_.options.max_shots;
-      report(progress, std::max(lights_progress + (1 - lights_progress) * fallen / whole, spent));
+      report(progress, unshot,
+             std::max(lights_progress + (1 - lights_progress) * fallen / whole, spent));
     }
   }
 
-  void report(const RadiosityCallback& progress, double done) const {
-    const double unshot = unshot_power() + std::max(waiting_, 0.0);
+  void report(const RadiosityCallback& progress, double unshot, double done) const {
+    unshot += std::max(waiting_, 0.0);
     if (progress) progress({s_.shots, unshot / s_.balance.emitted, std::clamp(done, 0.0, 1.0)});
   }
 
@@ -225,108 +236,165 @@ class Solver {
   bool shoot_brightest() {
     uint32_t brightest = 0;
     float most = 0;
-    for (uint32_t i = 0; i < unshot_.size(); ++i)
-      if (luminance(unshot_[i]) > most) most = luminance(unshot_[brightest = i]);
+    for (uint32_t i = 0; i < unshot_.size(); ++i) {
+      const float l = luminance(unshot_[i]);
+      if (l <= most) continue;
+      most = l;
+      brightest = i;
+    }
     const Rgb power = unshot_[brightest];
     Shooter shooter = patch_shooter(s_.mesh, brightest, Rgb{1});
     const Patch& patch = s_.mesh.patches[brightest];
     const auto first = unshot_at_.begin() + patch.first_point;
     const auto last = unshot_at_.begin() + patch.last_point;
+    shot_.blocks.clear();  // and so it stays if it has no place to shoot from
+    Rgb radiance;
+    const uint32_t source = s_.light_count + brightest;
     if (shooter.area() > 0) {
-      const Rgb radiance = power / (pi_f * shooter.area());
-      for (LightPrimitive& p : shooter.pieces) p.mean_radiance = radiance;
+      radiance = power / (pi_f * shooter.area());
       set_parts(shooter, s_.mesh, brightest, {first, last});
-      const uint32_t source = s_.light_count + brightest;
-      find_transfers(shooter, source, hash_of(s_.options.seed, source, s_.shots),
-                     has_shot_[brightest] == 0);
-      if (stop_) return false;
-      s_.shot_radiance[brightest] += radiance;
+      const Rgb all = s_.shot_radiance[brightest] + radiance;
+      if (!rows_.shoot(brightest, shooter, expected_growth * luminance(all), ray_budget(s_, source),
+                       hash_of(s_.options.seed, source, s_.shots), stop_, has_shot_[brightest] == 0,
+                       seen_, shot_))
+        return false;
+      s_.shot_radiance[brightest] = all;
       has_shot_[brightest] = 1;
-    } else {
-      std::fill(transfers_.begin(), transfers_.end(), Transfer{});  // it has no place to shoot from
-      std::fill(powers_.begin(), powers_.end(), 0.0f);
-      for (Chunk& c : chunks_) c.arrived = 0;
     }
     unshot_[brightest] = Rgb{0};
     std::fill(first, last, 0.0f);
-    receive(s_.light_count + brightest, double(luminance(power)),
-            open_share(double(patch.open), patch.open_rays, is_closed_));
+    receive_from_patch(source, radiance, double(luminance(power)),
+                       open_share(double(patch.open), patch.open_rays, is_closed_));
     return true;
   }
 
-  // transfers_ and powers_ of all points.
-  void find_transfers(const Shooter& shooter, uint32_t source, uint64_t stream, bool is_first) {
-    const RayBudget budget = ray_budget(s_, source);
-    const bool is_light = s_.is_light(source);
-    const float luminance_sent = luminance(shooter.pieces[0].mean_radiance);
+  // transfers_ of all points.
+  void find_light_transfers(const Shooter& shooter, uint32_t light, uint64_t stream) {
+    const RayBudget budget = ray_budget(s_, light);
     parallel_for_slots(chunks_.size(), threads_, [&](size_t index, size_t slot) {
       if (stop_.load(std::memory_order_relaxed)) return;
       Chunk& c = chunks_[index];
       const std::span<Transfer> transfers(transfers_.data() + c.first, c.last - c.first);
       c.rays += transfer(shooter, {s_.mesh.points.data() + c.first, transfers.size()}, tracer_,
                          budget, stream, c.first, transfers, scratch_[slot]);
-      c.arrived = 0;
-      for (uint32_t i = c.first; i < c.last; ++i) {
-        Transfer& t = transfers_[i];
+      for (Transfer& t : transfers)
         if (!is_finite(t.unoccluded)) t = {};
-        if (!is_light) limit(i, t, luminance_sent, is_first);
-        powers_[i] = luminance(t.unoccluded) * t.visibility * surfaces_[i].area;
-        c.arrived += double(powers_[i]);
-      }
     });
+  }
+
+  // Stores what a light gave to points, and passes on its power.
+  void receive_light(uint32_t light, double power, const OpenShare& open) {
+    powers_.resize(transfers_.size());
+    double sum = 0;
+    for (size_t i = 0; i < transfers_.size(); ++i) {
+      const Transfer& t = transfers_[i];
+      powers_[i] = luminance(t.unoccluded) * t.visibility * surfaces_[i].area;
+      sum += double(powers_[i]);
+    }
+    const Closure closure = close_shot(powers_, sum, power, open);
+    for (uint32_t i = 0; i < transfers_.size(); ++i) {
+      const Transfer& t = transfers_[i];
+      if (t.unoccluded.is_black()) continue;
+      store(i, {light, t.unoccluded * t.visibility, t.unoccluded});
+      pass_on(i, t.unoccluded * t.visibility, powers_[i], closure);
+    }
+    count(power, open, closure);
+  }
+
+  // The same for a patch that sent `radiance`: shot_ says where to.
+  void receive_from_patch(uint32_t source, const Rgb& radiance, double power,
+                          const OpenShare& open) {
+    powers_.clear();
+    double sum = 0;
+    const float sent = luminance(radiance);
+    for_each_point([&](uint32_t i) {
+      limit(i);
+      powers_.push_back(shot_.received[i] * sent * surfaces_[i].area);
+      sum += double(powers_.back());
+    });
+    const Closure closure = close_shot(powers_, sum, power, open);
+    size_t at = 0;
+    for_each_point([&](uint32_t i) {
+      const float counted = powers_[at++];
+      if (!(shot_.unoccluded[i] > 0)) return;
+      const float important = sent * std::max(shot_.received[i], 0.25f * shot_.unoccluded[i]);
+      const Rgb received = radiance * shot_.received[i];
+      if (important > least_[i] || is_stored(i, source))
+        store(i, {source, received, radiance * shot_.unoccluded[i]});
+      else
+        s_.general[i] += received;
+      pass_on(i, received, counted, closure);
+    });
+    count(power, open, closure);
+  }
+
+  template <class Visit>
+  void for_each_point(const Visit& visit) const {
+    for (const uint32_t b : shot_.blocks) {
+      const ReceiverBlock& block = rows_.blocks()[b];
+      for (uint32_t i = 0; i < block.count; ++i) visit(block.first_point + i);
+    }
   }
 
   // A point sees no more than a hemisphere. Where it does, as before surfaces of several meshes
   // that coincide or nearly do, patches give it so much less.
-  void limit(uint32_t point, Transfer& t, float luminance_sent, bool is_first) {
+  void limit(uint32_t point) {
     constexpr float most = 1.03f;  // an error of form factors is not cut
-    if (is_first && t.share > 0)
-      seen_[point] += luminance(t.unoccluded) / t.share * t.visibility / (pi_f * luminance_sent);
-    if (seen_[point] > most) t.unoccluded *= most / seen_[point];
+    if (seen_[point] <= most) return;
+    shot_.unoccluded[point] *= most / seen_[point];
+    shot_.received[point] *= most / seen_[point];
   }
 
-  // Stores what the current shot gave to points, and passes on its power.
-  void receive(uint32_t source, double power, const OpenShare& open) {
-    double sum = 0;
-    for (const Chunk& c : chunks_) sum += c.arrived;
-    const Closure closure = close_shot(powers_, sum, power, open);
-    for (Chunk& c : chunks_) receive(source, closure, c);
-    ++s_.shots;
-    EnergyBalance& b = s_.balance;
-    b.shot += power;
-    for (const Chunk& c : chunks_) {  // in order: sums do not depend on threads
-      b.absorbed += c.absorbed;
-      b.lost_to_specular += c.specular;
-      lost_ += c.taken;
+  bool is_stored(uint32_t point, uint32_t source) const {
+    const uint32_t* sources = sources_.data() + size_t(point) * s_.stored_per_point;
+    bool is_found = false;
+    for (uint32_t k = 0; k < s_.stored_per_point; ++k) is_found |= sources[k] == source;
+    return is_found;
+  }
+
+  // Into the point's list, and what a quick look at it needs.
+  void store(uint32_t point, const StoredContribution& c) {
+    const size_t first = size_t(point) * s_.stored_per_point;
+    const std::span<StoredContribution> list(s_.stored.data() + first, s_.stored_per_point);
+    keep(list, {s_.general[point], s_.general_direct[point]}, s_.light_count, c);
+    float least = list.empty() ? std::numeric_limits<float>::infinity() : importance(list[0]);
+    for (size_t k = 0; k < list.size(); ++k) {
+      sources_[first + k] = list[k].source;
+      least = std::min(least, list[k].source == no_source ? -1.0f : importance(list[k]));
     }
+    least_[point] = least;
+  }
+
+  // power: of `received` over the point's element, luminance, before closure.
+  void pass_on(uint32_t point, const Rgb& received, float power, const Closure& closure) {
+    if (!(power > 0)) return;
+    const PointSurface& surface = surfaces_[point];
+    const float counted = closure.of(power);
+    const Rgb arrived = received * (counted * surface.area / power);
+    const Rgb reflected = arrived * surface.reflectance;
+    const float passed = luminance(reflected);
+    float rest = std::max(counted - passed, 0.0f);
+    if (surface.has_specular) {
+      const Rgb taken = arrived * surface.specular;
+      s_.balance.lost_to_specular += double(luminance(taken));
+      rest -= luminance(taken);
+      lost_ += taken;
+    }
+    s_.balance.absorbed += double(rest);
+    unshot_[surface.patch] += reflected;
+    unshot_at_[point] += passed * surface.per_area;
+  }
+
+  void count(double power, const OpenShare& open, const Closure& closure) {
+    EnergyBalance& b = s_.balance;
+    ++s_.shots;
+    b.shot += power;
     arrived_ += closure.arrived;
     const double missing = power - closure.arrived;
     const double escaped = std::clamp(missing, power * std::max(0.0, open.share - open.error),
                                       power * std::min(1.0, open.share + open.error));
     b.escaped += escaped;
     b.unaccounted += missing - escaped;
-  }
-
-  void receive(uint32_t source, const Closure& closure, Chunk& c) {
-    c.absorbed = c.specular = 0;
-    c.taken = Rgb{0};
-    for (uint32_t i = c.first; i < c.last; ++i) {
-      const Transfer& t = transfers_[i];
-      if (t.unoccluded.is_black()) continue;
-      const Rgb received = t.unoccluded * t.visibility;
-      keep({s_.stored.data() + size_t(i) * s_.stored_per_point, s_.stored_per_point},
-           {s_.general[i], s_.general_direct[i]}, s_.light_count, {source, received, t.unoccluded});
-      if (!(powers_[i] > 0)) continue;
-      const float counted = closure.of(powers_[i]);
-      const Rgb power = received * (surfaces_[i].area * (counted / powers_[i]));
-      const Rgb reflected = power * surfaces_[i].reflectance;
-      const Rgb taken = power * surfaces_[i].specular;
-      c.specular += double(luminance(taken));
-      c.taken += taken;
-      c.absorbed += double(luminance(power - reflected - taken));
-      unshot_[s_.mesh.points[i].patch] += reflected;
-      unshot_at_[i] += luminance(reflected) / surfaces_[i].area;
-    }
   }
 
   void finish() {
@@ -360,9 +428,13 @@ class Solver {
   std::vector<float> unshot_at_;  // luminance of radiosity, per point
   std::vector<float> seen_;       // sum of form factors to patches that have shot, per point
   std::vector<uint8_t> has_shot_;
-  std::vector<Transfer> transfers_;  // of the current shot, per point
-  std::vector<float> powers_;        // what arrives by it, before closure
+  std::vector<Transfer> transfers_;  // of the current light, per point
+  ShotReceived shot_;                // of the current patch
+  std::vector<float> powers_;        // what arrives by the current shot, before closure
+  std::vector<uint32_t> sources_;    // of s_.stored
+  std::vector<float> least_;         // per point: importance below which nothing new is stored
   std::vector<Chunk> chunks_;
+  PatchRows rows_;
   std::vector<TransferScratch> scratch_;
 };
 

@@ -166,7 +166,7 @@ TEST_CASE("closing a shot") {
     CHECK(close_shot(even, 100, 104, closed).arrived == doctest::Approx(104));
   }
   SUBCASE("what is missing beyond it stays missing") {
-    CHECK(close_shot(even, 100, 200, closed).arrived == doctest::Approx(105));
+    CHECK(close_shot(even, 100, 200, closed).arrived == doctest::Approx(130));
   }
   SUBCASE("an excess is taken from those that got most") {
     std::vector<float> powers = even;
@@ -180,6 +180,7 @@ TEST_CASE("closing a shot") {
     const OpenShare half{0.5, 0.1};
     CHECK(close_shot(even, 100, 200, half).scale == doctest::Approx(1));
     CHECK(close_shot(even, 100, 150, half).arrived == doctest::Approx(90));
+    CHECK(close_shot(even, 100, 400, half).arrived == doctest::Approx(130));
     CHECK(close_shot(even, 100, 170, half).arrived == doctest::Approx(100));
     CHECK(open_share(0, 8, false).error > 0.2);
     CHECK(open_share(0.2, 1000, false).share == 0.2);

@@ -1,0 +1,90 @@
+// What one patch gives to all sample points, found at its first shot and looked up at later ones.
+//
+// A *row* holds, per block of receivers (receivers.h), what hides the patch from it. The block is
+//   - out of sight: behind the patch, or the patch behind it;
+//   - far: the patch is a dozen cells, each a point, whose unoccluded irradiance is cheap enough to
+//     be found anew at each shot, with the radiance that each cell then has; kept is the visible
+//     share: none, all, or one number per point;
+//   - near: the exact unoccluded term and rays (form_factors.h), kept per point and part of the
+//     patch on which rays ended, so that later shots give each part what it then has [1].
+// Rays: as many as form_factors.h wants; where it wants one, points that together get no more
+// than two such transfers' error share one.
+// References: [1] Hanrahan, Salzman & Aupperle, "A Rapid Hierarchical Radiosity Algorithm",
+//   SIGGRAPH 1991 (near pairs at a finer level than far ones).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/parallel.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/receivers.h"
+#include "radiosity/shooter.h"
+
+namespace troffer {
+
+// Irradiance per unit of a shooter's mean radiance. Only points of `blocks` (in their order) got
+// something; the others' numbers are left over from earlier shots.
+struct ShotReceived {
+  std::vector<float> unoccluded, received;  // per point
+  std::vector<uint32_t> blocks;
+};
+
+class PatchRows {
+ public:
+  // Rows are kept while they take less than most_bytes; others are found again at each shot.
+  PatchRows(const RadiosityMesh& mesh, const Tracer& tracer, int threads, size_t most_bytes);
+
+  // shooter: the patch's, with shares set. `expected`: luminance of the radiance that it is
+  // thought to send in all, for numbers of rays. False, with nothing found, once `stop` is set.
+  // With is_first, seen[i] grows by the part of point i's hemisphere that the patch fills.
+  bool shoot(uint32_t patch, const Shooter& shooter, float expected, const RayBudget& budget,
+             uint64_t stream, const StopFlag& stop, bool is_first, std::vector<float>& seen,
+             ShotReceived& out);
+
+  uint64_t rays() const { return rays_; }
+  size_t bytes() const { return bytes_; }
+  size_t rows_not_kept() const { return not_kept_; }
+  const std::vector<ReceiverBlock>& blocks() const { return receivers_.blocks; }
+
+ private:
+  struct NearPart {
+    uint16_t part, all, visible;  // shares of what the point gets, in 65535ths
+  };
+  struct NearPoint {
+    float unoccluded = 0;
+    uint32_t first = 0, last = 0;  // in parts
+  };
+  // Per block of a chunk: how it sees the patch.
+  enum View : uint16_t { none, lit, dark, partly, near };
+  struct RowChunk {
+    std::vector<View> view;
+    std::vector<uint16_t> first;   // partly: in `visible`; near: in `points`
+    std::vector<uint8_t> visible;  // in 255ths
+    std::vector<NearPoint> points;
+    std::vector<NearPart> parts;
+    size_t bytes() const;
+  };
+  using Row = std::vector<RowChunk>;
+  class Maker;
+
+  void apply(const RowChunk& row, size_t chunk, const Shooter& shooter,
+             const std::vector<ShooterCell>& cells, ShotReceived& out) const;
+
+  static constexpr size_t chunk_blocks = 64;
+  const RadiosityMesh& mesh_;
+  const Tracer& tracer_;
+  Receivers receivers_;
+  int threads_;
+  size_t most_bytes_, bytes_ = 0, not_kept_ = 0;
+  uint64_t rays_ = 0;
+  std::vector<Row> rows_;  // per patch; empty: not kept
+  size_t chunks_;
+};
+
+// Flat patches: triangles of about equal size; curved ones: their sample points. Each has the share
+// of the part that is nearest to it, and together they send what the patch does.
+std::vector<ShooterCell> shooter_cells(const RadiosityMesh& mesh, uint32_t patch,
+                                       const Shooter& shooter);
+
+}  // namespace troffer

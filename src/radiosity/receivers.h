@@ -1,0 +1,41 @@
+// The sample points side by side, in blocks of one patch: what loops over many receivers read.
+#pragma once
+
+#include <vector>
+
+#include "radiosity/meshing.h"
+
+namespace troffer {
+
+// Up to 16 consecutive points of one patch.
+struct ReceiverBlock {
+  static constexpr uint32_t most_points = 16;
+  uint32_t first_point = 0, count = 0;
+  uint32_t first_slot = 0;  // in Receivers' arrays
+  Vec3 centre;
+  float radius = 0;
+  Vec3 normal;
+  bool is_flat = false;  // all points in one plane, with this normal
+};
+
+struct Receivers {
+  static constexpr uint32_t lanes = 8;  // blocks are padded to multiples of it by their last point
+  std::vector<ReceiverBlock> blocks;
+  std::vector<float> x, y, z, nx, ny, nz;
+  explicit Receivers(const RadiosityMesh& mesh);
+};
+
+// A piece of a shooter, small against its distance from receivers, as a point.
+struct ShooterCell {
+  Vec3 position, normal;
+  float area = 0;   // m²
+  float share = 1;  // of what it sends, relative to the shooter's mean
+  Vec3 corners[3];  // where rays end; all the same for pieces of curved patches
+};
+
+// irradiance[i] per unit of the mean radiance, of `count` (a multiple of lanes) slots from `first`
+// on; exact where cells are small and far.
+void cells_irradiance(const Receivers& receivers, uint32_t first, uint32_t count,
+                      const std::vector<ShooterCell>& cells, float* irradiance);
+
+}  // namespace troffer
