@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace troffer {
 
@@ -35,7 +36,7 @@ RegionMerger::RegionMerger(size_t most_corners)
 
 // The one simple loop of edges with a piece on the left only; false if there is no such.
 bool RegionMerger::find_boundary(std::vector<uint32_t>& loop) {
-  boundary_next_.assign(points.size(), none);
+  boundary_.next.assign(points.size(), none);
   size_t edges = 0;
   uint32_t start = none;
   for (size_t p = 0; p < pieces.size(); ++p) {
@@ -44,24 +45,24 @@ bool RegionMerger::find_boundary(std::vector<uint32_t>& loop) {
       const uint32_t from = c[i], to = c[i + 1 == c.size() ? 0 : i + 1];
       if (table_.find(from, to) == EdgeTable::many) return false;
       if (table_.find(to, from) != none) continue;
-      if (boundary_next_[from] != none) return false;
-      boundary_next_[from] = start = to;
+      if (boundary_.next[from] != none) return false;
+      boundary_.next[from] = start = to;
       ++edges;
     }
   }
   loop.clear();
   if (start == none) return false;
-  for (uint32_t v = start; loop.size() < edges; v = boundary_next_[v]) {
+  for (uint32_t v = start; loop.size() < edges; v = boundary_.next[v]) {
     if (v == none || (v == start && !loop.empty())) return false;
     loop.push_back(v);
   }
-  return boundary_next_[loop.back()] == start;
+  return boundary_.next[loop.back()] == start;
 }
 
 // Pieces that all turn the same way cover each place as often as their boundary winds around it: a
 // simple convex boundary is covered once, and nothing beyond it.
 bool RegionMerger::merge_all() {
-  std::vector<uint32_t>& loop = loop_;
+  std::vector<uint32_t>& loop = boundary_.loop;
   if (!find_boundary(loop)) return false;
   const size_t n = loop.size();
   const auto at = [&](size_t i) -> const Vec2d& { return points[loop[i % n]]; };
@@ -100,13 +101,13 @@ bool RegionMerger::merge_all() {
 void RegionMerger::start() {
   const size_t n = pieces.size();
   table_.clear(pieces.corners.size());
-  parts_.assign(n, {});
-  next_piece_.assign(n, none);
-  links_.clear();
-  round_ = 0;
-  alive_ = n;
+  now_.parts.assign(n, {});
+  now_.next_piece.assign(n, none);
+  chains_.links.clear();
+  rounds_.number = 0;
+  now_.alive = n;
   for (uint32_t p = 0; p < n; ++p) {
-    Part& part = parts_[p];
+    Part& part = now_.parts[p];
     part.last_piece = p;
     const std::span<const uint32_t> c = pieces[p];
     for (size_t i = 0; i < c.size(); ++i) {
@@ -119,8 +120,8 @@ void RegionMerger::start() {
 }
 
 void RegionMerger::append(Chain& to, uint32_t point) {
-  links_.push_back({point, none});
-  const auto link = uint32_t(links_.size() - 1);
+  chains_.links.push_back({point, none});
+  const auto link = uint32_t(chains_.links.size() - 1);
   append(to, Chain{link, link});
 }
 
@@ -129,15 +130,15 @@ void RegionMerger::append(Chain& to, const Chain& from) {
   if (to.head == none)
     to.head = from.head;
   else
-    links_[to.tail].next = from.head;
+    chains_.links[to.tail].next = from.head;
   to.tail = from.tail;
 }
 
 bool RegionMerger::is_straight(const Vec2d& p, const Vec2d& q, const Chain& chain, double limit) {
-  for (uint32_t i = chain.head; i != none; i = links_[i].next) {
-    if (visits_left_ == 0) return false;
-    --visits_left_;
-    if (!is_on_segment(points[links_[i].point], p, q, limit)) return false;
+  for (uint32_t i = chain.head; i != none; i = chains_.links[i].next) {
+    if (chains_.visits_left == 0) return false;
+    --chains_.visits_left;
+    if (!is_on_segment(points[chains_.links[i].point], p, q, limit)) return false;
   }
   return true;
 }
@@ -183,16 +184,16 @@ bool RegionMerger::simplify(const LongLoop& loop, double area, ShortLoop& out) {
 // Merges part a with what lies across one of its edges. is_blocked is set where that has been
 // merged in this round already.
 bool RegionMerger::try_merge(uint32_t a, uint32_t edge, bool& is_blocked) {
-  const ShortLoop& l = parts_[a].loop;
+  const ShortLoop& l = now_.parts[a].loop;
   const uint32_t from = l.corners[edge], to = l.corners[(edge + 1) % l.count];
   if (table_.find(from, to) != a) return false;
   const uint32_t b = table_.find(to, from);
   if (b >= EdgeTable::many || b == a) return false;
-  if (parts_[b].last_round == round_) {
+  if (now_.parts[b].last_round == rounds_.number) {
     is_blocked = true;
     return false;
   }
-  const ShortLoop& m = parts_[b].loop;
+  const ShortLoop& m = now_.parts[b].loop;
   uint32_t j = 0;
   while (j < m.count && !(m.corners[j] == to && m.corners[(j + 1) % m.count] == from)) ++j;
   if (j == m.count) return false;
@@ -202,22 +203,22 @@ bool RegionMerger::try_merge(uint32_t a, uint32_t edge, bool& is_blocked) {
   for (uint32_t k = 1; k < m.count; ++k)
     loop.add(m.corners[(j + k) % m.count], m.chains[(j + k) % m.count]);
   ShortLoop merged_loop;
-  const double area = parts_[a].area + parts_[b].area;
+  const double area = now_.parts[a].area + now_.parts[b].area;
   if (!simplify(loop, area, merged_loop)) return false;
 
   for (const ShortLoop* old : {&l, &m})
     for (uint32_t i = 0; i < old->count; ++i)
       table_.erase(old->corners[i], old->corners[(i + 1) % old->count]);
   const uint32_t kept = std::min(a, b), lost = std::max(a, b);
-  Part& part = parts_[kept];
+  Part& part = now_.parts[kept];
   part.loop = merged_loop;
   part.area = area;
-  part.last_round = round_;
+  part.last_round = rounds_.number;
   part.is_single = false;
-  next_piece_[part.last_piece] = lost;
-  part.last_piece = parts_[lost].last_piece;
-  parts_[lost].is_alive = parts_[lost].is_single = false;
-  --alive_;
+  now_.next_piece[part.last_piece] = lost;
+  part.last_piece = now_.parts[lost].last_piece;
+  now_.parts[lost].is_alive = now_.parts[lost].is_single = false;
+  --now_.alive;
   for (uint32_t i = 0; i < merged_loop.count; ++i)
     table_.insert(merged_loop.corners[i], merged_loop.corners[(i + 1) % merged_loop.count], kept);
   return true;
@@ -230,61 +231,61 @@ void RegionMerger::merge_halves() {
     uint32_t a, edge, b;
   };
   std::vector<Pair> pairs;
-  for (uint32_t a = 0; a < parts_.size(); ++a) {
-    const ShortLoop& l = parts_[a].loop;
+  for (uint32_t a = 0; a < now_.parts.size(); ++a) {
+    const ShortLoop& l = now_.parts[a].loop;
     if (l.count != 3) continue;
     for (uint32_t e = 0; e < 3; ++e) {
       const uint32_t from = l.corners[e], to = l.corners[(e + 1) % 3];
       const uint32_t b = table_.find(to, from);
-      if (b >= EdgeTable::many || b <= a || parts_[b].loop.count != 3) continue;
+      if (b >= EdgeTable::many || b <= a || now_.parts[b].loop.count != 3) continue;
       const Vec2d d = points[to] - points[from];
       pairs.push_back({dot(d, d), a, e, b});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const Pair& p, const Pair& q) { return p.length2 > q.length2; });
-  round_ = 1;
+  rounds_.number = 1;
   for (const Pair& p : pairs) {
     bool is_blocked = false;
-    if (parts_[p.a].is_single && parts_[p.b].is_single) try_merge(p.a, p.edge, is_blocked);
+    if (now_.parts[p.a].is_single && now_.parts[p.b].is_single) try_merge(p.a, p.edge, is_blocked);
   }
 }
 
 // Merges across edges of a kind until nothing more can be merged; false if nothing was.
 bool RegionMerger::merge_rounds(Edges edges) {
-  const size_t before = alive_;
-  active_.clear();
-  for (uint32_t p = 0; p < parts_.size(); ++p)
-    if (parts_[p].is_alive) active_.push_back(p);
+  const size_t before = now_.alive;
+  rounds_.active.clear();
+  for (uint32_t p = 0; p < now_.parts.size(); ++p)
+    if (now_.parts[p].is_alive) rounds_.active.push_back(p);
   const auto is_meant = [&](const ShortLoop& l, uint32_t i) {
     const Vec2d d = points[l.corners[(i + 1) % l.count]] - points[l.corners[i]];
-    return edges == Edges::all ||
-           (std::abs(dot(d, axis_)) >= std::abs(cross2(d, axis_))) == (edges == Edges::along_x);
+    return edges == Edges::all || (std::abs(dot(d, rounds_.axis)) >=
+                                   std::abs(cross2(d, rounds_.axis))) == (edges == Edges::along_x);
   };
-  while (!active_.empty()) {
-    ++round_;
-    next_active_.clear();
+  while (!rounds_.active.empty()) {
+    ++rounds_.number;
+    rounds_.next_active.clear();
     const auto queue = [&](uint32_t p) {
-      if (parts_[p].last_queued == round_) return;
-      parts_[p].last_queued = round_;
-      next_active_.push_back(p);
+      if (now_.parts[p].last_queued == rounds_.number) return;
+      now_.parts[p].last_queued = rounds_.number;
+      rounds_.next_active.push_back(p);
     };
-    for (const uint32_t a : active_) {
-      if (!parts_[a].is_alive || parts_[a].last_round == round_) continue;
+    for (const uint32_t a : rounds_.active) {
+      if (!now_.parts[a].is_alive || now_.parts[a].last_round == rounds_.number) continue;
       bool is_blocked = false, is_merged = false;
-      for (uint32_t e = 0; e < parts_[a].loop.count && !is_merged; ++e) {
-        if (!is_meant(parts_[a].loop, e)) continue;
-        const uint32_t from = parts_[a].loop.corners[e];
+      for (uint32_t e = 0; e < now_.parts[a].loop.count && !is_merged; ++e) {
+        if (!is_meant(now_.parts[a].loop, e)) continue;
+        const uint32_t from = now_.parts[a].loop.corners[e];
         const uint32_t b =
-            table_.find(parts_[a].loop.corners[(e + 1) % parts_[a].loop.count], from);
+            table_.find(now_.parts[a].loop.corners[(e + 1) % now_.parts[a].loop.count], from);
         is_merged = try_merge(a, e, is_blocked);
         if (is_merged) queue(std::min(a, b));
       }
       if (!is_merged && is_blocked) queue(a);
     }
-    active_.swap(next_active_);
+    rounds_.active.swap(rounds_.next_active);
   }
-  return alive_ < before;
+  return now_.alive < before;
 }
 
 void RegionMerger::merge_rows(bool is_x_first) {
@@ -297,12 +298,37 @@ void RegionMerger::merge_rows(bool is_x_first) {
   merge_rounds(Edges::all);
 }
 
-void RegionMerger::write(const std::vector<Part>& parts, const std::vector<uint32_t>& next_piece) {
+void RegionMerger::write(const Partition& partition) {
+  const std::vector<Part>& parts = partition.parts;
   for (uint32_t p = 0; p < parts.size(); ++p) {
     if (!parts[p].is_alive) continue;
-    for (uint32_t i = p; i != none; i = next_piece[i]) of_piece[i] = uint32_t(merged.size());
+    for (uint32_t i = p; i != none; i = partition.next_piece[i])
+      of_piece[i] = uint32_t(merged.size());
     merged.add({parts[p].loop.corners.data(), parts[p].loop.count});
   }
+}
+
+Vec2d RegionMerger::longest_boundary_edge() const {
+  double longest = 0;
+  Vec2d edge{1, 0};
+  for (size_t p = 0; p < pieces.size(); ++p) {
+    const std::span<const uint32_t> c = pieces[p];
+    for (size_t i = 0; i < c.size(); ++i) {
+      const uint32_t from = c[i], to = c[i + 1 == c.size() ? 0 : i + 1];
+      const Vec2d e = points[to] - points[from];
+      if (table_.find(to, from) != none || dot(e, e) <= longest) continue;
+      longest = dot(e, e);
+      edge = e;
+    }
+  }
+  return edge;
+}
+
+void RegionMerger::merge_in_rows(bool is_x_first) {
+  chains_.visits_left = 64 * pieces.size() + 10000;
+  start();
+  merge_halves();
+  merge_rows(is_x_first);
 }
 
 void RegionMerger::run(double tolerance) {
@@ -324,34 +350,14 @@ void RegionMerger::run(double tolerance) {
     }
     return;
   }
-  // rows along the longest edge of the boundary
-  double longest = 0;
-  axis_ = {1, 0};
-  for (size_t p = 0; p < n; ++p) {
-    const std::span<const uint32_t> c = pieces[p];
-    for (size_t i = 0; i < c.size(); ++i) {
-      const uint32_t from = c[i], to = c[i + 1 == c.size() ? 0 : i + 1];
-      const Vec2d e = points[to] - points[from];
-      if (table_.find(to, from) != none || dot(e, e) <= longest) continue;
-      longest = dot(e, e);
-      axis_ = e;
-    }
+  rounds_.axis = longest_boundary_edge();
+  merge_in_rows(true);
+  if (now_.alive > 2) {
+    std::swap(best_, now_);
+    merge_in_rows(false);
+    if (now_.alive >= best_.alive) return write(best_);
   }
-  visits_left_ = 64 * n + 10000;
-  start();
-  merge_halves();
-  merge_rows(true);
-  if (alive_ > 2) {
-    const size_t alive = alive_;
-    best_parts_.swap(parts_);
-    best_next_piece_.swap(next_piece_);
-    visits_left_ = 64 * n + 10000;
-    start();
-    merge_halves();
-    merge_rows(false);
-    if (alive_ >= alive) return write(best_parts_, best_next_piece_);
-  }
-  write(parts_, next_piece_);
+  write(now_);
 }
 
 }  // namespace troffer

@@ -39,7 +39,7 @@ class RegionMerger {
  private:
   static constexpr uint32_t none = EdgeTable::none;
 
-  // Vertices left out along an edge: a list in links_.
+  // Vertices left out along an edge: a list in chains_.links.
   struct Chain {
     uint32_t head = none, tail = none;
   };
@@ -65,6 +65,11 @@ class RegionMerger {
     uint32_t last_round = 0, last_queued = 0;
     bool is_alive = true, is_single = true;
   };
+  struct Partition {
+    std::vector<Part> parts;
+    std::vector<uint32_t> next_piece;  // of the same part
+    size_t alive = 0;                  // parts
+  };
   enum class Edges : uint8_t { along_x, along_y, all };
 
   bool merge_all();
@@ -78,18 +83,26 @@ class RegionMerger {
   bool is_straight(const Vec2d& p, const Vec2d& q, const Chain& chain, double limit);
   void append(Chain& to, const Chain& from);
   void append(Chain& to, uint32_t point);
-  void write(const std::vector<Part>& parts, const std::vector<uint32_t>& next_piece);
+  void merge_in_rows(bool is_x_first);
+  Vec2d longest_boundary_edge() const;
+  void write(const Partition& partition);
 
   size_t most_corners_;
   double tolerance_ = 0;
   EdgeTable table_;
-  std::vector<Part> parts_, best_parts_;
-  std::vector<uint32_t> next_piece_, best_next_piece_;
-  std::vector<Link> links_;
-  std::vector<uint32_t> active_, next_active_, boundary_next_, loop_;
-  Vec2d axis_;
-  uint32_t round_ = 0;
-  size_t alive_ = 0, visits_left_ = 0;
+  Partition now_, best_;
+  struct Chains {
+    std::vector<Link> links;
+    size_t visits_left = 0;  // of links
+  } chains_;
+  struct Rounds {
+    uint32_t number = 0;
+    std::vector<uint32_t> active, next_active;  // parts
+    Vec2d axis;                                 // of rows
+  } rounds_;
+  struct Boundary {
+    std::vector<uint32_t> next, loop;
+  } boundary_;
 };
 
 }  // namespace troffer
