@@ -55,27 +55,38 @@ class ObjReader {
   TextLines lines_;
   TextureLoader loader_;
 
-  std::vector<Vec3> positions_, normals_;
-  std::vector<Vec2> uvs_;
-  std::string object_, group_, material_;
-  std::vector<std::unique_ptr<Part>> parts_;
-  std::unordered_map<std::string, Part*> part_by_key_;
-  Part* part_ = nullptr;  // where faces go; null after a change of object, group or material
+  struct Vertices {
+    std::vector<Vec3> positions, normals;
+    std::vector<Vec2> uvs;
+  } vertices_;
+  struct Names {
+    std::string object, group, material;
+  } names_;
   // First vertex of the current part at each position, valid where the stamp is the part's.
   struct First {
     uint32_t stamp = 0, vertex = nothing;
   };
-  std::vector<First> firsts_;
-  uint32_t stamp_ = 0;
-  size_t triangles_ = 0, lights_ = 0;
-  size_t colored_vertices_ = 0, points_and_lines_ = 0, short_faces_ = 0, dangling_ = 0;
-  std::vector<Corner> corners_;
-  std::vector<Vec3> points_;
-  std::vector<Triangle> polygon_;
-
-  MtlLibrary library_;
-  std::unordered_map<std::string, MtlConverted> converted_;
-  std::unordered_map<std::string, uint32_t> material_index_;
+  struct Parts {
+    std::vector<std::unique_ptr<Part>> all;
+    std::unordered_map<std::string, Part*> by_key;
+    Part* current = nullptr;  // where faces go; null after a change of names
+    std::vector<First> firsts;
+    uint32_t stamp = 0;
+  } parts_;
+  struct Counts {
+    size_t triangles = 0, lights = 0;
+    size_t colored_vertices = 0, points_and_lines = 0, short_faces = 0, dangling = 0;  // told of
+  } counts_;
+  struct Face {
+    std::vector<Corner> corners;
+    std::vector<Vec3> points;
+    std::vector<Triangle> triangles;
+  } face_;
+  struct Materials {
+    MtlLibrary library;
+    std::unordered_map<std::string, MtlConverted> converted;
+    std::unordered_map<std::string, uint32_t> index;
+  } materials_;
 
   void read_statement(std::string_view keyword);
   void read_vertex();
@@ -106,27 +117,27 @@ void ObjReader::read_statement(std::string_view keyword) {
     read_face();
   } else if (keyword == "vn") {
     const float x = lines_.number(), y = lines_.number();
-    normals_.emplace_back(x, y, lines_.number());
+    vertices_.normals.emplace_back(x, y, lines_.number());
     if (lines_.has_word()) lines_.fail("a normal has three numbers");
   } else if (keyword == "vt") {
     const float u = lines_.number();
-    uvs_.emplace_back(u, lines_.has_word() ? lines_.number() : 0.0f);
+    vertices_.uvs.emplace_back(u, lines_.has_word() ? lines_.number() : 0.0f);
     if (lines_.has_word()) lines_.number();
     if (lines_.has_word()) lines_.fail("texture coordinates have at most three numbers");
   } else if (keyword == "o") {
-    object_ = lines_.rest();
-    group_.clear();
-    part_ = nullptr;
+    names_.object = lines_.rest();
+    names_.group.clear();
+    parts_.current = nullptr;
   } else if (keyword == "g") {
-    group_ = lines_.rest();
-    part_ = nullptr;
+    names_.group = lines_.rest();
+    parts_.current = nullptr;
   } else if (keyword == "usemtl") {
-    material_ = lines_.rest();
-    part_ = nullptr;
+    names_.material = lines_.rest();
+    parts_.current = nullptr;
   } else if (keyword == "mtllib") {
     read_libraries(std::string(lines_.rest()));
   } else if (keyword == "p" || keyword == "l") {
-    ++points_and_lines_;
+    ++counts_.points_and_lines;
   } else if (keyword != "s") {
     for (const char c : keyword)
       if (static_cast<unsigned char>(c) < 32) lines_.fail("this is not a text file");
@@ -138,11 +149,11 @@ void ObjReader::read_statement(std::string_view keyword) {
 // x y z, then nothing, a weight, a colour or both; the latter are left out.
 void ObjReader::read_vertex() {
   const float x = lines_.number(), y = lines_.number();
-  positions_.emplace_back(x, y, lines_.number());
+  vertices_.positions.emplace_back(x, y, lines_.number());
   size_t more = 0;
   for (; lines_.has_word(); ++more) lines_.number();
   if (more == 2 || more > 4) lines_.fail("a vertex has 3, 4, 6 or 7 numbers");
-  if (more >= 3) ++colored_vertices_;
+  if (more >= 3) ++counts_.colored_vertices;
 }
 
 // An index counts from 1, or backwards from -1; the result from 0.
@@ -151,7 +162,7 @@ uint32_t ObjReader::read_index(size_t count, const char* what, bool is_needed) {
   if (!lines_.integer(index)) lines_.fail(std::string("expected the index of a ") + what);
   // Some files name normals or texture coordinates of which they hold none.
   if (count == 0 && !is_needed) {
-    ++dangling_;
+    ++counts_.dangling;
     return nothing;
   }
   const int64_t i = index < 0 ? int64_t(count) + index : int64_t(index) - 1;
@@ -165,78 +176,79 @@ uint32_t ObjReader::read_index(size_t count, const char* what, bool is_needed) {
 bool ObjReader::read_corner() {
   if (!lines_.has_word()) return false;
   Corner corner;
-  corner.position = read_index(positions_.size(), "vertex", true);
+  corner.position = read_index(vertices_.positions.size(), "vertex", true);
   if (lines_.peek() == '/') {
     lines_.take();
-    if (lines_.peek() != '/') corner.uv = read_index(uvs_.size(), "texture coordinate", false);
+    if (lines_.peek() != '/')
+      corner.uv = read_index(vertices_.uvs.size(), "texture coordinate", false);
     if (lines_.peek() == '/') {
       lines_.take();
-      corner.normal = read_index(normals_.size(), "normal", false);
+      corner.normal = read_index(vertices_.normals.size(), "normal", false);
     }
   }
   const char c = lines_.peek();
   if (c != '\0' && c != ' ' && c != '\t') lines_.fail("malformed corner of a face");
-  corners_.push_back(corner);
+  face_.corners.push_back(corner);
   return true;
 }
 
 void ObjReader::select_part() {
-  std::string key = object_;
-  key.append(1, '\0').append(group_).append(1, '\0').append(material_);
-  Part*& part = part_by_key_[key];
+  std::string key = names_.object;
+  key.append(1, '\0').append(names_.group).append(1, '\0').append(names_.material);
+  Part*& part = parts_.by_key[key];
   if (!part) {
-    parts_.push_back(std::make_unique<Part>());
-    part = parts_.back().get();
-    part->material = material_;
-    part->mesh.name = group_.empty() ? object_ : group_;
+    parts_.all.push_back(std::make_unique<Part>());
+    part = parts_.all.back().get();
+    part->material = names_.material;
+    part->mesh.name = names_.group.empty() ? names_.object : names_.group;
   }
-  part_ = part;
-  ++stamp_;
+  parts_.current = part;
+  ++parts_.stamp;
 }
 
 uint32_t ObjReader::vertex_of(const Corner& corner) {
-  Part& part = *part_;
-  First& first = firsts_[corner.position];
-  if (first.stamp != stamp_) first = {stamp_, nothing};
+  Part& part = *parts_.current;
+  First& first = parts_.firsts[corner.position];
+  if (first.stamp != parts_.stamp) first = {parts_.stamp, nothing};
   for (uint32_t v = first.vertex; v != nothing; v = part.made[v].next)
     if (part.made[v].uv == corner.uv && part.made[v].normal == corner.normal) return v;
   const auto vertex = uint32_t(part.made.size());
   part.made.push_back({corner.uv, corner.normal, first.vertex});
   first.vertex = vertex;
-  part.mesh.positions.push_back(positions_[corner.position]);
-  part.mesh.uvs.push_back(corner.uv != nothing ? uvs_[corner.uv] : Vec2{});
-  part.mesh.normals.push_back(corner.normal != nothing ? normals_[corner.normal] : Vec3{});
+  part.mesh.positions.push_back(vertices_.positions[corner.position]);
+  part.mesh.uvs.push_back(corner.uv != nothing ? vertices_.uvs[corner.uv] : Vec2{});
+  part.mesh.normals.push_back(corner.normal != nothing ? vertices_.normals[corner.normal] : Vec3{});
   part.has_uvs = part.has_uvs || corner.uv != nothing;
   part.has_normals = part.has_normals || corner.normal != nothing;
   return vertex;
 }
 
 void ObjReader::read_face() {
-  corners_.clear();
+  face_.corners.clear();
   while (read_corner()) {
   }
-  if (corners_.size() < 3) {
-    if (corners_.empty()) lines_.fail("a face without vertices");
-    ++short_faces_;
+  if (face_.corners.size() < 3) {
+    if (face_.corners.empty()) lines_.fail("a face without vertices");
+    ++counts_.short_faces;
     return;
   }
-  triangles_ += corners_.size() - 2;
-  if (triangles_ > max_triangles)
+  counts_.triangles += face_.corners.size() - 2;
+  if (counts_.triangles > max_triangles)
     lines_.fail("more than " + std::to_string(max_triangles / 1'000'000) + " million triangles");
-  if (!part_) select_part();
-  firsts_.resize(positions_.size());
-  if (corners_.size() == 3) {
-    const uint32_t a = vertex_of(corners_[0]), b = vertex_of(corners_[1]);
-    part_->mesh.triangles.push_back({a, b, vertex_of(corners_[2])});
+  if (!parts_.current) select_part();
+  parts_.firsts.resize(vertices_.positions.size());
+  if (face_.corners.size() == 3) {
+    const uint32_t a = vertex_of(face_.corners[0]), b = vertex_of(face_.corners[1]);
+    parts_.current->mesh.triangles.push_back({a, b, vertex_of(face_.corners[2])});
     return;
   }
-  points_.clear();
-  polygon_.clear();
-  for (const Corner& c : corners_) points_.push_back(positions_[c.position]);
-  triangulate(points_, polygon_);
-  for (Triangle t : polygon_) {
-    for (uint32_t& v : t) v = vertex_of(corners_[v]);
-    part_->mesh.triangles.push_back(t);
+  face_.points.clear();
+  face_.triangles.clear();
+  for (const Corner& c : face_.corners) face_.points.push_back(vertices_.positions[c.position]);
+  triangulate(face_.points, face_.triangles);
+  for (Triangle t : face_.triangles) {
+    for (uint32_t& v : t) v = vertex_of(face_.corners[v]);
+    parts_.current->mesh.triangles.push_back(t);
   }
 }
 
@@ -265,7 +277,7 @@ bool ObjReader::read_library(const std::string& name) {
   const size_t slash = name.rfind('/');
   const std::string subfolder = slash == std::string::npos ? "" : name.substr(0, slash + 1);
   try {
-    read_mtl(path.path, subfolder, library_, scene_.warnings);
+    read_mtl(path.path, subfolder, materials_.library, scene_.warnings);
   } catch (const InputError& error) {
     if (error.line() > 0) throw;  // malformed, not missing
     return false;
@@ -274,20 +286,20 @@ bool ObjReader::read_library(const std::string& name) {
 }
 
 const MtlConverted& ObjReader::material_named(const std::string& name) {
-  const auto known = converted_.find(name);
-  if (known != converted_.end()) return known->second;
+  const auto known = materials_.converted.find(name);
+  if (known != materials_.converted.end()) return known->second;
   MtlConverted made;
-  const auto found = library_.find(name);
-  if (found != library_.end()) {
+  const auto found = materials_.library.find(name);
+  if (found != materials_.library.end()) {
     made = convert_mtl(found->second, folder_, loader_, scene_.warnings);
   } else {
     made.material.name = name.empty() ? "default" : name;
     if (!name.empty())
       scene_.warnings.add("material '" + name.substr(0, 200) + "' is missing: shown grey");
   }
-  material_index_[name] = uint32_t(scene_.materials.size());
+  materials_.index[name] = uint32_t(scene_.materials.size());
   scene_.materials.push_back(made.material);
-  return converted_[name] = std::move(made);
+  return materials_.converted[name] = std::move(made);
 }
 
 void ObjReader::finish_part(Part& part) {
@@ -297,13 +309,13 @@ void ObjReader::finish_part(Part& part) {
   part.made = {};
   clean_mesh(mesh, scene_.warnings);
   const MtlConverted& material = material_named(part.material);
-  mesh.material = material_index_[part.material];
+  mesh.material = materials_.index[part.material];
   const auto index = uint32_t(scene_.meshes.size());
   const bool is_empty = mesh.triangles.empty();
   if (!is_empty) scene_.meshes.push_back(std::move(mesh));
   if (material.emission.is_black()) return;
   // A source without area keeps its number, so that names do not depend on what else is wrong.
-  const std::string name = "emitter" + std::to_string(lights_++);
+  const std::string name = "emitter" + std::to_string(counts_.lights++);
   if (is_empty)
     scene_.warnings.add("area light without area is left out");
   else
@@ -311,20 +323,19 @@ void ObjReader::finish_part(Part& part) {
 }
 
 void ObjReader::finish() {
-  if (colored_vertices_ > 0)
-    scene_.warnings.add("OBJ: vertex colours are left out", colored_vertices_);
-  if (points_and_lines_ > 0)
-    scene_.warnings.add("OBJ: points and lines are left out", points_and_lines_);
-  if (short_faces_ > 0)
-    scene_.warnings.add("OBJ: faces of fewer than three vertices are left out", short_faces_);
-  if (dangling_ > 0)
+  if (counts_.colored_vertices > 0)
+    scene_.warnings.add("OBJ: vertex colours are left out", counts_.colored_vertices);
+  if (counts_.points_and_lines > 0)
+    scene_.warnings.add("OBJ: points and lines are left out", counts_.points_and_lines);
+  if (counts_.short_faces > 0)
+    scene_.warnings.add("OBJ: faces of fewer than three vertices are left out",
+                        counts_.short_faces);
+  if (counts_.dangling > 0)
     scene_.warnings.add("OBJ: faces name normals or texture coordinates, but there are none",
-                        dangling_);
-  positions_ = {};
-  normals_ = {};
-  uvs_ = {};
+                        counts_.dangling);
+  vertices_ = {};
   text_ = {};
-  for (const auto& part : parts_) finish_part(*part);
+  for (const auto& part : parts_.all) finish_part(*part);
 }
 
 }  // namespace

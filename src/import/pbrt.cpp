@@ -12,9 +12,9 @@ void PbrtInterpreter::on_object_begin(const PbrtToken& word, PbrtTokenizer& toke
   const PbrtPlace place = tokens.place(word);
   const std::string name = parse_string(word, tokens);
   if (open_object_) fail_at(place, "ObjectBegin within an object");
-  if (objects_.contains(name)) fail_at(place, "object \"" + name + "\" is defined twice");
+  if (named_.objects.contains(name)) fail_at(place, "object \"" + name + "\" is defined twice");
   push(Block::object, place);
-  open_object_ = &objects_[name];
+  open_object_ = &named_.objects[name];
 }
 
 void PbrtInterpreter::on_object_end(const PbrtToken& word, PbrtTokenizer& tokens) {
@@ -28,8 +28,8 @@ void PbrtInterpreter::on_object_instance(const PbrtToken& word, PbrtTokenizer& t
   const std::string name = parse_string(word, tokens);
   // Objects hold shapes only, so instances cannot contain each other.
   if (open_object_) fail_at(place, "ObjectInstance within an object");
-  const auto found = objects_.find(name);
-  if (found == objects_.end()) fail_at(place, "no object \"" + name + "\" is defined");
+  const auto found = named_.objects.find(name);
+  if (found == named_.objects.end()) fail_at(place, "no object \"" + name + "\" is defined");
   for (const PbrtShape& shape : found->second)
     placer_.place_instance(shape, state_.transform, place);
 }
@@ -50,18 +50,18 @@ void PbrtInterpreter::on_make_named_material(const PbrtToken& word, PbrtTokenize
   if (!material->params.has("type"))
     fail_at(tokens.place(word), "material \"" + material->name + "\" needs a \"string type\"");
   material->type = material->params.get_string("type", "");
-  if (named_materials_.contains(material->name))
+  if (named_.materials.contains(material->name))
     scene_.warnings.add(
         at_place(tokens.place(word), "material \"" + material->name + "\" is defined again"));
-  named_materials_[material->name] = std::move(material);
+  named_.materials[material->name] = std::move(material);
 }
 
 void PbrtInterpreter::on_named_material(const PbrtToken& word, PbrtTokenizer& tokens) {
   need_world(word, tokens);
   const PbrtPlace place = tokens.place(tokens.peek());
   const std::string name = parse_string(word, tokens);
-  const auto found = named_materials_.find(name);
-  if (found == named_materials_.end())
+  const auto found = named_.materials.find(name);
+  if (found == named_.materials.end())
     fail_at(place, "no material \"" + name + "\" is defined before this point");
   state_.material = found->second;
 }

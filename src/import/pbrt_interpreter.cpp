@@ -36,21 +36,21 @@ void PbrtInterpreter::run() {
 
 void PbrtInterpreter::run_file(const std::string& path, const PbrtPlace* included_at) {
   if (included_at) {
-    if (std::find(open_files_.begin(), open_files_.end(), path) != open_files_.end())
+    if (std::find(files_.open.begin(), files_.open.end(), path) != files_.open.end())
       fail_at(*included_at, "'" + path + "' includes itself");
-    if (open_files_.size() > max_include_depth) fail_at(*included_at, "files nest too deeply");
-    if (++files_read_ > max_files) fail_at(*included_at, "too many included files");
+    if (files_.open.size() > max_include_depth) fail_at(*included_at, "files nest too deeply");
+    if (++files_.read > max_files) fail_at(*included_at, "too many included files");
   }
   std::string text;
   try {
-    text = read_text_file(path,
-                          default_max_file_bytes - std::min(bytes_read_, default_max_file_bytes));
+    text = read_text_file(
+        path, default_max_file_bytes - std::min(files_.bytes_read, default_max_file_bytes));
   } catch (const InputError& error) {
     if (!included_at) throw;
     fail_at(*included_at, "cannot read '" + path + "': " + error.reason());
   }
-  bytes_read_ += text.size();
-  open_files_.push_back(path);
+  files_.bytes_read += text.size();
+  files_.open.push_back(path);
   PbrtTokenizer tokens(path, text);
   for (PbrtToken token = tokens.next(); token.kind != PbrtTokenKind::end; token = tokens.next()) {
     if (token.kind != PbrtTokenKind::word)
@@ -58,7 +58,7 @@ void PbrtInterpreter::run_file(const std::string& path, const PbrtPlace* include
               "expected a directive, found '" + std::string(token.text.substr(0, 40)) + "'");
     run_directive(token, tokens);
   }
-  open_files_.pop_back();
+  files_.open.pop_back();
 }
 
 void PbrtInterpreter::run_directive(const PbrtToken& word, PbrtTokenizer& tokens) {
@@ -177,13 +177,13 @@ void PbrtInterpreter::on_attribute(const PbrtToken& word, PbrtTokenizer& tokens)
 }
 
 void PbrtInterpreter::on_coordinate_system(const PbrtToken& word, PbrtTokenizer& tokens) {
-  coordinate_systems_[parse_string(word, tokens)] = state_.transform;
+  named_.coordinate_systems[parse_string(word, tokens)] = state_.transform;
 }
 
 void PbrtInterpreter::on_coordinate_system_transform(const PbrtToken& word, PbrtTokenizer& tokens) {
   const std::string name = parse_string(word, tokens);
-  const auto found = coordinate_systems_.find(name);
-  if (found != coordinate_systems_.end())
+  const auto found = named_.coordinate_systems.find(name);
+  if (found != named_.coordinate_systems.end())
     state_.transform = found->second;
   else
     scene_.warnings.add(
@@ -218,7 +218,7 @@ void PbrtInterpreter::on_camera(const PbrtToken& word, PbrtTokenizer& tokens) {
   camera_->params = parse_typed(word, tokens, type, "camera");
   camera_->camera_from_world = state_.transform;
   if (state_.transform.determinant() != 0)
-    coordinate_systems_["camera"] = inverse(state_.transform);
+    named_.coordinate_systems["camera"] = inverse(state_.transform);
 }
 
 void PbrtInterpreter::on_film(const PbrtToken& word, PbrtTokenizer& tokens) {
@@ -251,7 +251,7 @@ void PbrtInterpreter::on_world_begin(const PbrtToken& word, PbrtTokenizer& token
   is_in_world_ = true;
   state_.transform = Affine();
   state_.is_start_active = state_.is_end_active = true;
-  coordinate_systems_["world"] = Affine();
+  named_.coordinate_systems["world"] = Affine();
   if (!camera_) return;
   scene_.cameras.push_back(read_pbrt_camera(camera_->type, camera_->params,
                                             camera_->camera_from_world, film_, scene_.warnings));

@@ -48,13 +48,17 @@ class PbrtInterpreter {
   State state_;
   std::vector<Saved> saved_;
   bool is_in_world_ = false;
-  std::map<std::string, Affine> coordinate_systems_;
-  std::map<std::string, std::shared_ptr<PbrtMaterial>> named_materials_;
-  std::map<std::string, std::vector<PbrtShape>> objects_;
+  struct ByName {
+    std::map<std::string, Affine> coordinate_systems;
+    std::map<std::string, std::shared_ptr<PbrtMaterial>> materials;
+    std::map<std::string, std::vector<PbrtShape>> objects;
+  } named_;
   std::vector<PbrtShape>* open_object_ = nullptr;
-  std::vector<std::string> open_files_;
-  size_t files_read_ = 0;
-  uint64_t bytes_read_ = 0;
+  struct Files {
+    std::vector<std::string> open;
+    size_t read = 0;
+    uint64_t bytes_read = 0;
+  } files_;
 
   // Read before the world begins; the camera waits for the film.
   PbrtFilm film_;
