@@ -73,30 +73,30 @@ class PatchSelector {
  private:
   // The points that interpolation on the patch uses, sorted, and all that they get as general.
   void gather_points(std::span<const FragmentSide> sides) {
-    points_.clear();
+    points_.ids.clear();
     for (const FragmentSide& s : sides)
       for (size_t k = 0; k < 3; ++k) {
         interpolate_at_corner(solution_.mesh, s.fragment, k, s.side == 1, at_);
-        for (const PointWeight& w : at_.weights()) points_.push_back(w.point);
+        for (const PointWeight& w : at_.weights()) points_.ids.push_back(w.point);
       }
-    std::sort(points_.begin(), points_.end());
-    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
-    general_.resize(points_.size());
-    totals_.resize(points_.size());
-    mean_total_ = 0;
-    for (size_t i = 0; i < points_.size(); ++i) {
-      const uint32_t p = points_[i];
-      GeneralIrradiance& g = general_[i];
+    std::sort(points_.ids.begin(), points_.ids.end());
+    points_.ids.erase(std::unique(points_.ids.begin(), points_.ids.end()), points_.ids.end());
+    points_.general.resize(points_.ids.size());
+    points_.totals.resize(points_.ids.size());
+    points_.mean_total = 0;
+    for (size_t i = 0; i < points_.ids.size(); ++i) {
+      const uint32_t p = points_.ids[i];
+      GeneralIrradiance& g = points_.general[i];
       g.direct = solution_.general_direct[p];
       g.indirect = without(solution_.general[p], g.direct);
       for (const StoredContribution& c : solution_.contributions(p)) {
         if (c.source == no_source) continue;
         (solution_.is_light(c.source) ? g.direct : g.indirect) += c.received;
       }
-      totals_[i] = luminance(g.direct + g.indirect);
+      points_.totals[i] = luminance(g.direct + g.indirect);
       // What is still unshot comes from everywhere: nowhere where nothing else comes either.
-      if (totals_[i] > 0) g.indirect += solution_.ambient;
-      mean_total_ += totals_[i] / float(points_.size());
+      if (points_.totals[i] > 0) g.indirect += solution_.ambient;
+      points_.mean_total += points_.totals[i] / float(points_.ids.size());
     }
   }
 
@@ -122,7 +122,7 @@ class PatchSelector {
     const float least = sqr(options_.nearest_patch * mesh.patch_size);
     const Patch& from = mesh.patches[source];
     for (uint32_t k = from.first_point; k < from.last_point; ++k)
-      for (const uint32_t p : points_)
+      for (const uint32_t p : points_.ids)
         if (length_squared(mesh.points[k].position - mesh.points[p].position) < least) return true;
     return false;
   }
@@ -132,9 +132,9 @@ class PatchSelector {
     const SelectionThresholds& t = options_.thresholds;
     const float near = 0.5f * std::min({t.major_share, t.shadow_edge, t.probe_share});
     candidates_.clear();
-    for (size_t i = 0; i < points_.size(); ++i) {
-      const float whole = std::max(totals_[i], mean_total_);
-      for (const StoredContribution& c : solution_.contributions(points_[i])) {
+    for (size_t i = 0; i < points_.ids.size(); ++i) {
+      const float whole = std::max(points_.totals[i], points_.mean_total);
+      for (const StoredContribution& c : solution_.contributions(points_.ids[i])) {
         if (c.source == no_source || !is_allowed(c.source)) continue;
         if (!solution_.is_light(c.source)) {
           // A patch counts where it is partly hidden; elsewhere interpolation serves it as well.
@@ -153,40 +153,42 @@ class PatchSelector {
 
   // What the source gives to each point: as kept there, or looked up again.
   void look_up(uint32_t source) {
-    received_.assign(points_.size(), {});
-    missing_.clear();
-    missing_points_.clear();
-    for (size_t i = 0; i < points_.size(); ++i) {
+    received_.assign(points_.ids.size(), {});
+    lookup_.missing.clear();
+    lookup_.points.clear();
+    for (size_t i = 0; i < points_.ids.size(); ++i) {
       bool is_kept = false;
-      for (const StoredContribution& c : solution_.contributions(points_[i]))
+      for (const StoredContribution& c : solution_.contributions(points_.ids[i]))
         if (c.source == source) {
           received_[i] = c;
           is_kept = true;
         }
       if (is_kept) continue;
-      missing_.push_back(i);
-      missing_points_.push_back(points_[i]);
+      lookup_.missing.push_back(i);
+      lookup_.points.push_back(points_.ids[i]);
     }
-    if (missing_.empty()) return;
-    completed_.resize(missing_.size());
-    source_contributions(tracer_, lights_, solution_, source, missing_points_, completed_,
-                         scratch_);
-    for (size_t k = 0; k < missing_.size(); ++k) received_[missing_[k]] = completed_[k];
+    if (lookup_.missing.empty()) return;
+    lookup_.completed.resize(lookup_.missing.size());
+    source_contributions(tracer_, lights_, solution_, source, lookup_.points, lookup_.completed,
+                         lookup_.scratch);
+    for (size_t k = 0; k < lookup_.missing.size(); ++k)
+      received_[lookup_.missing[k]] = lookup_.completed[k];
   }
 
   void consider(uint32_t source, std::vector<TreatedSource>& treated) {
     look_up(source);
     at_points_.clear();
-    for (size_t i = 0; i < points_.size(); ++i)
-      at_points_.push_back(
-          {luminance(received_[i].received), luminance(received_[i].unoccluded), totals_[i]});
-    const SourceClass c = classify(at_points_, mean_total_, options_.thresholds);
+    for (size_t i = 0; i < points_.ids.size(); ++i)
+      at_points_.push_back({luminance(received_[i].received), luminance(received_[i].unoccluded),
+                            points_.totals[i]});
+    const SourceClass c = classify(at_points_, points_.mean_total, options_.thresholds);
     const bool is_treated = solution_.is_light(source) ? c.treatment != SourceTreatment::general
                                                        : c.treatment == SourceTreatment::sampled;
     if (!is_treated) return;
     treated.push_back({source, c});
-    for (size_t i = 0; i < points_.size(); ++i) {
-      Rgb& general = solution_.is_light(source) ? general_[i].direct : general_[i].indirect;
+    for (size_t i = 0; i < points_.ids.size(); ++i) {
+      Rgb& general =
+          solution_.is_light(source) ? points_.general[i].direct : points_.general[i].indirect;
       general = without(general, least(received_[i].received, general));
     }
   }
@@ -213,13 +215,13 @@ class PatchSelector {
       if (is_asked_for(e))
         treated.push_back({e, {SourceView::partly, SourceTreatment::sampled, 0, 1, 1}});
     if (!options_.is_restricted) {
-      for (GeneralIrradiance& g : general_) g.direct = Rgb{0};
+      for (GeneralIrradiance& g : points_.general) g.direct = Rgb{0};
       return;
     }
     for (const TreatedSource& t : treated) {
       look_up(t.source);
-      for (size_t i = 0; i < points_.size(); ++i)
-        general_[i].direct = without(general_[i].direct, received_[i].received);
+      for (size_t i = 0; i < points_.ids.size(); ++i)
+        points_.general[i].direct = without(points_.general[i].direct, received_[i].received);
     }
   }
 
@@ -228,8 +230,8 @@ class PatchSelector {
       interpolate_at_corner(solution_.mesh, s.fragment, k, s.side == 1, at_);
       GeneralIrradiance sum;
       for (const PointWeight& w : at_.weights()) {
-        const auto it = std::lower_bound(points_.begin(), points_.end(), w.point);
-        const GeneralIrradiance& g = general_[size_t(it - points_.begin())];
+        const auto it = std::lower_bound(points_.ids.begin(), points_.ids.end(), w.point);
+        const GeneralIrradiance& g = points_.general[size_t(it - points_.ids.begin())];
         sum.direct += g.direct * w.weight;
         sum.indirect += g.indirect * w.weight;
       }
@@ -243,16 +245,21 @@ class PatchSelector {
   const SelectionOptions& options_;
 
   Interpolation at_;
-  std::vector<uint32_t> points_;
-  std::vector<GeneralIrradiance> general_;  // of points_: what is left
-  std::vector<float> totals_;
-  float mean_total_ = 0;
+  struct Points {  // of the patch
+    std::vector<uint32_t> ids;
+    std::vector<GeneralIrradiance> general;  // what is left
+    std::vector<float> totals;
+    float mean_total = 0;
+  } points_;
   std::vector<uint32_t> candidates_;
-  std::vector<StoredContribution> received_, completed_;
-  std::vector<size_t> missing_;
-  std::vector<uint32_t> missing_points_;
+  std::vector<StoredContribution> received_;
   std::vector<SourceAtPoint> at_points_;
-  TransferScratch scratch_;
+  struct Lookup {  // memory of look_up
+    std::vector<size_t> missing;
+    std::vector<uint32_t> points;
+    std::vector<StoredContribution> completed;
+    TransferScratch scratch;
+  } lookup_;
 };
 
 }  // namespace
