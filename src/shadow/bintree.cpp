@@ -37,7 +37,7 @@ Bintree::Bintree(const BintreeOptions& options)
 
 void Bintree::begin(float unoccluded) {
   set_unoccluded(unoccluded);
-  iterations_ = 0;
+  means_.iterations = 0;
   estimate_ = {};
   ask();
 }
@@ -71,7 +71,7 @@ void Bintree::supply(std::span<const ShadowRayResult> results) {
   for (size_t i = 0; i < results.size(); ++i) {
     nodes_.set_result(pending_[i], results[i].is_visible, results[i].kernel);
   }
-  if (iterations_ == 0) {
+  if (means_.iterations == 0) {
     nodes_.propagate_all();
   } else {
     for (const int32_t leaf : pending_) nodes_.propagate_up(leaf);
@@ -79,7 +79,7 @@ void Bintree::supply(std::span<const ShadowRayResult> results) {
   estimate_.rays += uint32_t(results.size());
   estimate_.mean = nodes_[BintreeNodes::root].mean;
   estimate_.variance = nodes_[BintreeNodes::root].variance;
-  means_[iterations_++ % means_.size()] = estimate_.mean;
+  means_.ring[means_.iterations++ % means_.ring.size()] = estimate_.mean;
   pending_.clear();
   estimate_.stop = stop_reason();
   if (estimate_.stop == BintreeStop::none) refine();
@@ -88,23 +88,24 @@ void Bintree::supply(std::span<const ShadowRayResult> results) {
 
 // [rule 2] Strictly under, so that 0 is never met.
 bool Bintree::is_variance_met() const {
-  return estimate_.variance < sqr(options_.allowed_variance * leniency_ * unoccluded_);
+  return estimate_.variance <
+         sqr(options_.allowed_variance * allowed_.leniency * allowed_.unoccluded);
 }
 
 // [rule 5]
 bool Bintree::is_mean_settled() const {
   const size_t wanted = size_t(options_.mean_change_iterations);
   if (options_.mean_change <= 0 || options_.allowed_variance <= 0) return false;
-  if (iterations_ < wanted || estimate_.rays < uint32_t(std::max(options_.enough_rays, 0))) {
+  if (means_.iterations < wanted || estimate_.rays < uint32_t(std::max(options_.enough_rays, 0))) {
     return false;
   }
   float low = estimate_.mean, high = low;
   for (size_t i = 1; i <= wanted; ++i) {
-    const float m = means_[(iterations_ - i) % means_.size()];
+    const float m = means_.ring[(means_.iterations - i) % means_.ring.size()];
     low = std::min(low, m);
     high = std::max(high, m);
   }
-  return high - low <= options_.mean_change * leniency_ * unoccluded_;
+  return high - low <= options_.mean_change * allowed_.leniency * allowed_.unoccluded;
 }
 
 bool Bintree::is_cap_reached() const {

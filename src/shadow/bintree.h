@@ -82,10 +82,7 @@ class Bintree {
   float mean_of_pending(std::span<const ShadowRayResult> results) const;
   // … and what start() or resample() were told is replaced. `leniency` multiplies what the stops
   // allow, for light that is a small part of what is seen.
-  void set_unoccluded(float unoccluded, float leniency = 1) {
-    unoccluded_ = unoccluded;
-    leniency_ = leniency;
-  }
+  void set_unoccluded(float unoccluded, float leniency = 1) { allowed_ = {unoccluded, leniency}; }
 
   // Where the rays end that are wanted now; empty when done. Valid until the next call.
   std::span<const Vec2> pending() const { return pending_uv_; }
@@ -119,11 +116,15 @@ class Bintree {
   BintreePending pending_;
   std::vector<Vec2> pending_uv_;
   std::vector<int32_t> scratch_;
-  std::array<float, 16> means_{};  // of the last iterations, in a ring
-  size_t iterations_ = 0;
+  struct Means {
+    std::array<float, 16> ring{};  // of the last iterations
+    size_t iterations = 0;
+  } means_;
   size_t leaves_ = 1;
   int initial_level_ = 0;
-  float unoccluded_ = 1, leniency_ = 1;
+  struct Allowed {
+    float unoccluded = 1, leniency = 1;
+  } allowed_;  // what errors are measured by
   BintreeEstimate estimate_;
 };
 

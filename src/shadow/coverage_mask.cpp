@@ -120,7 +120,8 @@ void fill_disk(const MaskLattice& lattice, const Vec2& shift, MaskRows& out) {
 
 MaskFrame::MaskFrame(const Parallelogram& source, const MaskLattice& lattice, bool is_mirrored,
                      const Vec3d& centre, std::span<const Vec2> outline, bool is_disk)
-    : lattice_(lattice), centre_(centre), is_disk_(is_disk) {
+    : lattice_(lattice), is_disk_(is_disk) {
+  map_.centre = centre;
   Vec3d origin = source.origin, u = source.u, v = source.v;
   if (is_mirrored) {  // from the next corner the other way round: the canvas is mirrored
     origin = origin + u;
@@ -131,19 +132,19 @@ MaskFrame::MaskFrame(const Parallelogram& source, const MaskLattice& lattice, bo
   const Vec3d normal = cross(u, v);
   const double area2 = length_squared(normal);
   const Vec3d gradient_u = cross(v, normal) / area2, gradient_v = cross(normal, u) / area2;
-  row_k_ = gradient_u * a + gradient_v * b;
-  row_j_ = gradient_v * a - gradient_u * b;
+  map_.k = gradient_u * a + gradient_v * b;
+  map_.j = gradient_v * a - gradient_u * b;
   const double scale = std::sqrt(n / std::sqrt(area2));
-  row_w_ = source.normal * -scale;
-  is_mirroring_ = dot(cross(row_k_, row_j_), row_w_) < 0;
-  step_k_ = (u * a + v * b) / n;
-  step_j_ = (v * a - u * b) / n;
-  first_ = origin - step_j_ * b;  // (u,v) = 0 is canvas (0, b)
-  origin_ = to_canvas(first_);
-  height_ = float(dot(row_w_, source.origin - centre));
+  map_.w = source.normal * -scale;
+  is_mirroring_ = dot(cross(map_.k, map_.j), map_.w) < 0;
+  samples_.step_k = (u * a + v * b) / n;
+  samples_.step_j = (v * a - u * b) / n;
+  samples_.first = origin - samples_.step_j * b;  // (u,v) = 0 is canvas (0, b)
+  origin_ = to_canvas(samples_.first);
+  height_ = float(dot(map_.w, source.origin - centre));
   const auto place = [&](double cu, double cv) {
     if (is_mirrored) cu = 1 - cu;
-    corners_[corner_count_++] = {float(a * cu + b * cv), float(b - b * cu + a * cv)};
+    outline_.corners[outline_.count++] = {float(a * cu + b * cv), float(b - b * cu + a * cv)};
   };
   if (outline.empty()) {
     place(0, 0);
@@ -155,20 +156,20 @@ MaskFrame::MaskFrame(const Parallelogram& source, const MaskLattice& lattice, bo
       place(double(c.x), double(c.y));
   }
   double twice = 0;
-  for (int i = 0; i < corner_count_; ++i) {
-    const Corner &p = corners_[i], &q = corners_[(i + 1) % corner_count_];
+  for (int i = 0; i < outline_.count; ++i) {
+    const Corner &p = outline_.corners[i], &q = outline_.corners[(i + 1) % outline_.count];
     twice += double(p.k) * double(q.j) - double(p.j) * double(q.k);
   }
-  if (twice < 0) std::reverse(corners_, corners_ + corner_count_);
+  if (twice < 0) std::reverse(outline_.corners, outline_.corners + outline_.count);
 }
 
 Vec3 MaskFrame::to_canvas(const Vec3d& world) const {
-  const Vec3d d = world - centre_;
-  return Vec3(Vec3d{dot(row_k_, d), dot(row_j_, d), dot(row_w_, d)});
+  const Vec3d d = world - map_.centre;
+  return Vec3(Vec3d{dot(map_.k, d), dot(map_.j, d), dot(map_.w, d)});
 }
 
 double MaskFrame::stretch() const {
-  return length(row_k_) + length(row_j_) + length(row_w_);
+  return length(map_.k) + length(map_.j) + length(map_.w);
 }
 
 MaskPoint mask_point(const MaskFrame& frame, const Vec3& x, const Vec2& shift) {

@@ -78,25 +78,31 @@ class MaskFrame {
   struct Corner {
     float k, j;
   };
-  const Corner* corners() const { return corners_; }
-  int corner_count() const { return corner_count_; }
-  Vec3d centre() const { return centre_; }
-  Vec3d first_sample() const { return first_; }  // world position of canvas (0,0)
-  Vec3d step_k() const { return step_k_; }
-  Vec3d step_j() const { return step_j_; }
+  const Corner* corners() const { return outline_.corners; }
+  int corner_count() const { return outline_.count; }
+  Vec3d centre() const { return map_.centre; }
+  Vec3d first_sample() const { return samples_.first; }  // world position of canvas (0,0)
+  Vec3d step_k() const { return samples_.step_k; }
+  Vec3d step_j() const { return samples_.step_j; }
   Vec3 canvas_origin() const { return origin_; }
   // Rows of the linear part of to_canvas.
-  const Vec3d& row(int i) const { return i == 0 ? row_k_ : i == 1 ? row_j_ : row_w_; }
+  const Vec3d& row(int i) const { return i == 0 ? map_.k : i == 1 ? map_.j : map_.w; }
 
  private:
   MaskLattice lattice_;
-  Vec3d centre_, row_k_, row_j_, row_w_;
-  Vec3d first_, step_k_, step_j_;
+  struct CanvasFromWorld {
+    Vec3d centre, k, j, w;  // rows of the linear part, from the centre
+  } map_;
+  struct Samples {
+    Vec3d first, step_k, step_j;  // in world space
+  } samples_;
   Vec3 origin_;  // canvas (0,0) of the source, relative to the centre
   float height_ = 0;
   bool is_mirroring_ = false, is_disk_ = false;
-  Corner corners_[most_source_corners];
-  int corner_count_ = 0;
+  struct Outline {
+    Corner corners[most_source_corners];
+    int count = 0;
+  } outline_;
 };
 
 struct FacetFlags;

@@ -29,68 +29,89 @@ struct Crossings {
   alignas(64) int32_t is_relevant[lanes];  // not 0 where the facet may hide something
 };
 
+inline __attribute__((always_inline)) Floats load(const float* from) {
+  Floats f;
+  __builtin_memcpy(&f, from, sizeof f);
+  return f;
+}
+
+inline __attribute__((always_inline)) void store(const Floats& f, float* to) {
+  __builtin_memcpy(to, &f, sizeof f);
+}
+
+// Supporting planes of `width` facets.
+struct Planes {
+  Floats nk, nj, nw, distance, skipped;
+  // Of the receiver, from the planes.
+  inline __attribute__((always_inline)) Floats height(const MaskPoint& p) const {
+    return distance - (nk * p.k + nj * p.j + nw * p.w);
+  }
+};
+
+template <int edges>
+inline __attribute__((always_inline)) Planes planes_of(const FacetBatch<edges>& f, int from) {
+  return {load(f.normal_k + from), load(f.normal_j + from), load(f.normal_w + from),
+          load(f.distance + from), load(f.skipped_side + from)};
+}
+
+// Vertex e of `width` facets.
+struct Vertex {
+  Floats k, j, w;
+};
+
+template <int edges>
+inline __attribute__((always_inline)) Vertex vertex_of(const FacetBatch<edges>& f, int e,
+                                                       int from) {
+  return {load(f.k[e] + from), load(f.j[e] + from), load(f.w[e] + from)};
+}
+
+// Where the line of edge e crosses rows, for facets `from` to from + width; `side` is the
+// receiver's side of them. Not 0 where some of the source lies inside of the edge.
+template <int edges>
+inline __attribute__((always_inline)) Ints set_up_edge(const FacetBatch<edges>& f, int from, int e,
+                                                       const MaskPoint& p, const Floats& side,
+                                                       Crossings<edges>& c) {
+  const Floats zero = {}, one = zero + 1.0f, least = zero + 1e-25f;
+  // inside where side * (a × b) · y >= 0. Of a short edge seen from afar a × b would be a small
+  // difference of large products: (a + b) × (b - a) is twice that, with b - a from the facet's
+  // own coordinates. Facets that share the edge get the same numbers, negated.
+  const Vertex a = vertex_of(f, e, from), b = vertex_of(f, e + 1 == edges ? 0 : e + 1, from);
+  const Floats dk = b.k - a.k, dj = b.j - a.j, dw = b.w - a.w;
+  const Floats mk = (a.k - p.k) + (b.k - p.k), mj = (a.j - p.j) + (b.j - p.j),
+               mw = (a.w - p.w) + (b.w - p.w);
+  const Floats ek = side * (mj * dw - mw * dj);
+  const Floats ej = side * (mw * dk - mk * dw);
+  const Floats ew = side * (mk * dj - mj * dk);
+  const Floats base = ew * p.h;
+  Floats most = ek * p.corner_k[0] + ej * p.corner_j[0];
+  for (int corner = 1; corner < 4; ++corner) {
+    const Floats at = ek * p.corner_k[corner] + ej * p.corner_j[corner];
+    most = most > at ? most : at;
+  }
+  const Ints is_flat = (ek < least) & (ek > -least);
+  const Floats slope = is_flat ? least : ek;
+  const Floats inverse = one / slope;
+  const Floats m = -ej * inverse;
+  const Floats q = (1.0f - p.first_k) - (ej * p.first_j + base) * inverse;
+  const Ints is_lower = slope > zero;
+  store(is_lower ? m : zero, c.lower_m[e] + from);
+  store(is_lower ? q : zero - far_away, c.lower_q[e] + from);
+  store(is_lower ? zero : m, c.upper_m[e] + from);
+  store(is_lower ? zero + far_away : q, c.upper_q[e] + from);
+  return most + base > zero;
+}
+
 // Sets up facets `from` to from + width.
 template <int edges>
 inline __attribute__((always_inline)) void set_up(const FacetBatch<edges>& f, int from,
                                                   const MaskPoint& p, Crossings<edges>& c) {
-  Floats nk, nj, nw, distance, skipped;
-  __builtin_memcpy(&nk, f.normal_k + from, sizeof nk);
-  __builtin_memcpy(&nj, f.normal_j + from, sizeof nj);
-  __builtin_memcpy(&nw, f.normal_w + from, sizeof nw);
-  __builtin_memcpy(&distance, f.distance + from, sizeof distance);
-  __builtin_memcpy(&skipped, f.skipped_side + from, sizeof skipped);
-  const Floats zero = {}, one = zero + 1.0f, least = zero + 1e-25f;
-  const Floats height = distance - (nk * p.k + nj * p.j + nw * p.w);
+  const Planes planes = planes_of(f, from);
+  const Floats zero = {}, one = zero + 1.0f;
+  const Floats height = planes.height(p);
   const Floats below = height < zero ? -one : zero;
   const Floats side = height > zero ? one : below;
-  Ints is_relevant = (side != zero) & (side != skipped);
-  Floats k[edges], j[edges], w[edges];
-  for (int e = 0; e < edges; ++e) {
-    __builtin_memcpy(&k[e], f.k[e] + from, sizeof k[e]);
-    __builtin_memcpy(&j[e], f.j[e] + from, sizeof j[e]);
-    __builtin_memcpy(&w[e], f.w[e] + from, sizeof w[e]);
-    k[e] -= p.k;
-    j[e] -= p.j;
-    w[e] -= p.w;
-  }
-  for (int e = 0; e < edges; ++e) {
-    const int g = e + 1 == edges ? 0 : e + 1;
-    // inside where side * (a × b) · y >= 0. Of a short edge seen from afar a × b would be a small
-    // difference of large products: (a + b) × (b - a) is twice that, with b - a from the facet's
-    // own coordinates. Facets that share the edge get the same numbers, negated.
-    Floats ke, kg, je, jg, we, wg;
-    __builtin_memcpy(&ke, f.k[e] + from, sizeof ke);
-    __builtin_memcpy(&kg, f.k[g] + from, sizeof kg);
-    __builtin_memcpy(&je, f.j[e] + from, sizeof je);
-    __builtin_memcpy(&jg, f.j[g] + from, sizeof jg);
-    __builtin_memcpy(&we, f.w[e] + from, sizeof we);
-    __builtin_memcpy(&wg, f.w[g] + from, sizeof wg);
-    const Floats dk = kg - ke, dj = jg - je, dw = wg - we;
-    const Floats mk = k[e] + k[g], mj = j[e] + j[g], mw = w[e] + w[g];
-    const Floats ek = side * (mj * dw - mw * dj);
-    const Floats ej = side * (mw * dk - mk * dw);
-    const Floats ew = side * (mk * dj - mj * dk);
-    const Floats base = ew * p.h;
-    Floats most = ek * p.corner_k[0] + ej * p.corner_j[0];
-    for (int corner = 1; corner < 4; ++corner) {
-      const Floats at = ek * p.corner_k[corner] + ej * p.corner_j[corner];
-      most = most > at ? most : at;
-    }
-    is_relevant &= most + base > zero;
-    const Ints is_flat = (ek < least) & (ek > -least);
-    const Floats slope = is_flat ? least : ek;
-    const Floats inverse = one / slope;
-    const Floats m = -ej * inverse;
-    const Floats q = (1.0f - p.first_k) - (ej * p.first_j + base) * inverse;
-    const Ints is_lower = slope > zero;
-    const Floats lower_m = is_lower ? m : zero, upper_m = is_lower ? zero : m;
-    const Floats lower_q = is_lower ? q : zero - far_away;
-    const Floats upper_q = is_lower ? zero + far_away : q;
-    __builtin_memcpy(c.lower_m[e] + from, &lower_m, sizeof lower_m);
-    __builtin_memcpy(c.lower_q[e] + from, &lower_q, sizeof lower_q);
-    __builtin_memcpy(c.upper_m[e] + from, &upper_m, sizeof upper_m);
-    __builtin_memcpy(c.upper_q[e] + from, &upper_q, sizeof upper_q);
-  }
+  Ints is_relevant = (side != zero) & (side != planes.skipped);
+  for (int e = 0; e < edges; ++e) is_relevant &= set_up_edge(f, from, e, p, side, c);
   __builtin_memcpy(c.is_relevant + from, &is_relevant, sizeof is_relevant);
 }
 
@@ -153,70 +174,86 @@ bool cover_rows(const MaskPoint& p, int rows, const FacetBatch<4>* quads, size_t
          cover_batches<3, 32>(triangles, triangle_batches, p, open);
 }
 
-// Certificates for facets `from` to from + width, see classify() in coverage_mask.h.
+// Are all receivers strictly on one side of the facets' planes, and the source on which?
+struct Sides {
+  Ints is_before, is_behind, is_source_before, is_source_behind;
+};
+
+inline __attribute__((always_inline)) Sides sides_of(const Planes& planes,
+                                                     const MaskPoint* receivers, int count,
+                                                     float slack) {
+  const Floats zero = {};
+  const Ints all = Ints{} - 1;
+  Sides s{all, all, all, all};
+  const Floats size = planes.distance > zero ? planes.distance : -planes.distance;
+  for (int r = 0; r < count; ++r) {
+    const MaskPoint& p = receivers[r];
+    const Floats height = planes.height(p);
+    const Floats error = 2e-6f * (size + p.receiver_size) + slack;
+    s.is_before &= height > error;
+    s.is_behind &= height < -error;
+    const Floats error_source = error + 2e-6f * p.source_size;
+    for (int corner = 0; corner < 4; ++corner) {
+      const Floats at = height - (planes.nk * p.corner_k[corner] + planes.nj * p.corner_j[corner] +
+                                  planes.nw * p.h);
+      s.is_source_before &= at > error_source;
+      s.is_source_behind &= at < -error_source;
+    }
+  }
+  return s;
+}
+
+// Sum of absolute coordinates.
+inline __attribute__((always_inline)) Floats size_of(const Floats& k, const Floats& j,
+                                                     const Floats& w) {
+  const Floats zero = {};
+  return (k > zero ? k : -k) + (j > zero ? j : -j) + (w > zero ? w : -w);
+}
+
+// Clears is_outside where some of the source may lie inside of the edge from a to b for some
+// receiver, is_inside where some may lie outside.
+inline __attribute__((always_inline)) void classify_edge(const Vertex& a, const Vertex& b,
+                                                         const Floats& side,
+                                                         const MaskPoint* receivers, int count,
+                                                         float slack, Ints& is_outside,
+                                                         Ints& is_inside) {
+  for (int r = 0; r < count; ++r) {
+    const MaskPoint& p = receivers[r];
+    const Floats ak = a.k - p.k, aj = a.j - p.j, aw = a.w - p.w;
+    const Floats bk = b.k - p.k, bj = b.j - p.j, bw = b.w - p.w;
+    const Floats ek = side * (aj * bw - aw * bj);
+    const Floats ej = side * (aw * bk - ak * bw);
+    const Floats ew = side * (ak * bj - aj * bk);
+    const Floats size_a = size_of(ak, aj, aw) + p.receiver_size;
+    const Floats size_b = size_of(bk, bj, bw) + p.receiver_size;
+    const Floats error = (2e-6f * size_a * size_b + 2 * slack * (size_a + size_b)) * p.source_size;
+    const Floats base = ew * p.h;
+    for (int corner = 0; corner < 4; ++corner) {
+      const Floats at = ek * p.corner_k[corner] + ej * p.corner_j[corner] + base;
+      is_outside &= at < -error;
+      is_inside &= at > error;
+    }
+  }
+}
+
+// Certificates for facets `from` to from + width, see classify().
 template <int edges>
 inline __attribute__((always_inline)) void classify_lanes(const FacetBatch<edges>& f, int from,
                                                           const MaskPoint* receivers, int count,
                                                           float slack, int32_t* flags) {
-  Floats nk, nj, nw, distance, skipped;
-  __builtin_memcpy(&nk, f.normal_k + from, sizeof nk);
-  __builtin_memcpy(&nj, f.normal_j + from, sizeof nj);
-  __builtin_memcpy(&nw, f.normal_w + from, sizeof nw);
-  __builtin_memcpy(&distance, f.distance + from, sizeof distance);
-  __builtin_memcpy(&skipped, f.skipped_side + from, sizeof skipped);
+  const Planes planes = planes_of(f, from);
+  const Sides s = sides_of(planes, receivers, count, slack);
   const Floats zero = {}, one = zero + 1.0f;
-  const Ints none = {}, all = none - 1;
-  // Are all receivers strictly on one side of the facet's plane, and the source on which?
-  Ints is_before = all, is_behind = all, is_source_before = all, is_source_behind = all;
-  const Floats size = distance > zero ? distance : -distance;
-  for (int r = 0; r < count; ++r) {
-    const MaskPoint& p = receivers[r];
-    const Floats height = distance - (nk * p.k + nj * p.j + nw * p.w);
-    const Floats error = 2e-6f * (size + p.receiver_size) + slack;
-    is_before &= height > error;
-    is_behind &= height < -error;
-    const Floats error_source = error + 2e-6f * p.source_size;
-    for (int corner = 0; corner < 4; ++corner) {
-      const Floats at = height - (nk * p.corner_k[corner] + nj * p.corner_j[corner] + nw * p.h);
-      is_source_before &= at > error_source;
-      is_source_behind &= at < -error_source;
-    }
-  }
-  const Floats side = is_before ? one : (is_behind ? -one : zero);
-  Ints misses = (is_before & is_source_before) | (is_behind & is_source_behind);
-  misses |= (side == skipped) & (side != zero);
-  Ints covers = is_before | is_behind;
+  const Floats side = s.is_before ? one : (s.is_behind ? -one : zero);
+  Ints misses = (s.is_before & s.is_source_before) | (s.is_behind & s.is_source_behind);
+  misses |= (side == planes.skipped) & (side != zero);
+  Ints covers = s.is_before | s.is_behind;
   for (int e = 0; e < edges; ++e) {
-    const int g = e + 1 == edges ? 0 : e + 1;
-    Ints is_all_outside = is_before | is_behind, is_all_inside = all;
-    Floats ak0, aj0, aw0, bk0, bj0, bw0;
-    __builtin_memcpy(&ak0, f.k[e] + from, sizeof ak0);
-    __builtin_memcpy(&aj0, f.j[e] + from, sizeof aj0);
-    __builtin_memcpy(&aw0, f.w[e] + from, sizeof aw0);
-    __builtin_memcpy(&bk0, f.k[g] + from, sizeof bk0);
-    __builtin_memcpy(&bj0, f.j[g] + from, sizeof bj0);
-    __builtin_memcpy(&bw0, f.w[g] + from, sizeof bw0);
-    for (int r = 0; r < count; ++r) {
-      const MaskPoint& p = receivers[r];
-      const Floats ak = ak0 - p.k, aj = aj0 - p.j, aw = aw0 - p.w;
-      const Floats bk = bk0 - p.k, bj = bj0 - p.j, bw = bw0 - p.w;
-      const Floats ek = side * (aj * bw - aw * bj);
-      const Floats ej = side * (aw * bk - ak * bw);
-      const Floats ew = side * (ak * bj - aj * bk);
-      const Floats a = (ak > zero ? ak : -ak) + (aj > zero ? aj : -aj) + (aw > zero ? aw : -aw) +
-                       p.receiver_size;
-      const Floats b = (bk > zero ? bk : -bk) + (bj > zero ? bj : -bj) + (bw > zero ? bw : -bw) +
-                       p.receiver_size;
-      const Floats error = (2e-6f * a * b + 2 * slack * (a + b)) * p.source_size;
-      const Floats base = ew * p.h;
-      for (int corner = 0; corner < 4; ++corner) {
-        const Floats at = ek * p.corner_k[corner] + ej * p.corner_j[corner] + base;
-        is_all_outside &= at < -error;
-        is_all_inside &= at > error;
-      }
-    }
-    misses |= is_all_outside;
-    covers &= is_all_inside;
+    Ints is_outside = s.is_before | s.is_behind, is_inside = Ints{} - 1;
+    classify_edge(vertex_of(f, e, from), vertex_of(f, e + 1 == edges ? 0 : e + 1, from), side,
+                  receivers, count, slack, is_outside, is_inside);
+    misses |= is_outside;
+    covers &= is_inside;
   }
   const Ints result = (misses & 1) | (covers & ~misses & 2);
   __builtin_memcpy(flags + from, &result, sizeof result);
