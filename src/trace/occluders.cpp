@@ -141,22 +141,8 @@ Box bounds_of(const Quad& q) {
   return b;
 }
 
-}  // namespace
-
-void Occluders::build_tree() {
-  std::vector<RTCBuildPrimitive> primitives;
-  primitives.reserve(facets_.size() + others_.size());
-  for (const Quad& q : facets_)
-    primitives.push_back(build_primitive(bounds_of(q), uint32_t(primitives.size())));
-  for (const Other& o : others_)
-    primitives.push_back(build_primitive(o.bounds, uint32_t(primitives.size())));
-  if (primitives.size() <= leaf_size) {
-    for (uint32_t i = 0; i < primitives.size(); ++i) leaf_items_.push_back(i);
-    root_leaf_count_ = uint32_t(primitives.size());
-    return;
-  }
-
-  Device embree;
+// Embree's tree over the boxes; it lives as long as `embree`.
+const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive>& boxes) {
   if (embree.device == nullptr) throw EnvironmentError("cannot start Embree");
   embree.bvh = rtcNewBVH(embree.device);
   RTCBuildArguments args = rtcDefaultBuildArguments();
@@ -168,63 +154,91 @@ void Occluders::build_tree() {
   args.traversalCost = 1;
   args.intersectionCost = 1;
   args.bvh = embree.bvh;
-  args.primitives = primitives.data();
-  args.primitiveCount = primitives.size();
-  args.primitiveArrayCapacity = primitives.size();
+  args.primitives = boxes.data();
+  args.primitiveCount = boxes.size();
+  args.primitiveArrayCapacity = boxes.size();
   args.createNode = create_node;
   args.setNodeChildren = set_children;
   args.setNodeBounds = set_bounds;
   args.createLeaf = create_leaf;
-  // Embree would take all cores. Lists are cut short in the order of the tree: on one thread nothing
-  // of it can depend on how many there are.
+  // Embree would take all cores. Lists are cut short in the order of the tree: on one thread
+  // nothing of it can depend on how many there are.
   const RawNode* root = nullptr;
   run_on_one_thread([&] { root = static_cast<const RawNode*>(rtcBuildBVH(&args)); });
   if (root == nullptr || rtcGetDeviceError(embree.device) != RTC_ERROR_NONE)
     throw EnvironmentError("cannot build the hierarchy of occluders: out of memory");
+  return *root;
+}
 
-  // Copied depth first: the layout then does not depend on who allocated what.
+// Child i of a node, but for where it is; a place without a child has nothing in it.
+template <class Node>
+void copy_child(const RawNode& raw, uint32_t i, Node& node) {
+  const bool is_used = i < raw.child_count;
+  const RTCBounds& b = raw.bounds[i];
+  const float lower[3] = {b.lower_x, b.lower_y, b.lower_z};
+  const float upper[3] = {b.upper_x, b.upper_y, b.upper_z};
+  for (int a = 0; a < 3; ++a) {
+    node.lower[a][i] = is_used ? lower[a] : 0;
+    node.upper[a][i] = is_used ? upper[a] : 0;
+  }
+  node.child[i] = 0;
+  node.count[i] = is_used ? uint8_t(raw.child[i]->item_count) : 255;
+}
+
+// The first of the leaf's items in the list.
+uint32_t copy_leaf(const RawNode& leaf, std::vector<uint32_t>& items) {
+  const auto first = uint32_t(items.size());
+  items.insert(items.end(), leaf.items, leaf.items + leaf.item_count);
+  return first;
+}
+
+// Copied depth first: the layout then does not depend on who allocated what.
+template <class Node>
+void copy_tree(const RawNode& root, std::vector<Node>& nodes, std::vector<uint32_t>& leaf_items) {
   struct Open {
     const RawNode* raw;
     uint32_t parent, slot;
   };
-  const auto add_leaf = [&](const RawNode& leaf) {
-    const auto first = uint32_t(leaf_items_.size());
-    leaf_items_.insert(leaf_items_.end(), leaf.items, leaf.items + leaf.item_count);
-    return first;
-  };
-  if (root->child_count == 0) {
-    add_leaf(*root);
-    root_leaf_count_ = root->item_count;
-    return;
-  }
-  std::vector<Open> open{{root, 0, 8}};
+  std::vector<Open> open{{&root, 0, 8}};
   while (!open.empty()) {
     const Open o = open.back();
     open.pop_back();
-    const auto index = uint32_t(nodes_.size());
-    if (o.slot < 8) nodes_[o.parent].child[o.slot] = index;
-    nodes_.emplace_back();
-    Node& node = nodes_.back();
+    const auto index = uint32_t(nodes.size());
+    if (o.slot < 8) nodes[o.parent].child[o.slot] = index;
+    Node& node = nodes.emplace_back();
     for (uint32_t i = 0; i < 8; ++i) {
-      const bool is_used = i < o.raw->child_count;
-      const RTCBounds& b = o.raw->bounds[i];
-      const float lower[3] = {b.lower_x, b.lower_y, b.lower_z};
-      const float upper[3] = {b.upper_x, b.upper_y, b.upper_z};
-      for (int a = 0; a < 3; ++a) {
-        node.lower[a][i] = is_used ? lower[a] : 0;
-        node.upper[a][i] = is_used ? upper[a] : 0;
-      }
-      node.child[i] = 0;
-      node.count[i] = 255;
-      if (!is_used) continue;
+      copy_child(*o.raw, i, node);
+      if (i >= o.raw->child_count) continue;
       const RawNode* child = o.raw->child[i];
-      node.count[i] = uint8_t(child->item_count);
       if (child->child_count == 0)
-        node.child[i] = add_leaf(*child);
+        node.child[i] = copy_leaf(*child, leaf_items);
       else
         open.push_back({child, index, i});
     }
   }
+}
+
+}  // namespace
+
+void Occluders::build_tree() {
+  std::vector<RTCBuildPrimitive> boxes;
+  boxes.reserve(facets_.size() + others_.size());
+  for (const Quad& q : facets_)
+    boxes.push_back(build_primitive(bounds_of(q), uint32_t(boxes.size())));
+  for (const Other& o : others_) boxes.push_back(build_primitive(o.bounds, uint32_t(boxes.size())));
+  if (boxes.size() <= leaf_size) {
+    for (uint32_t i = 0; i < boxes.size(); ++i) leaf_items_.push_back(i);
+    root_leaf_count_ = uint32_t(boxes.size());
+    return;
+  }
+  Device embree;
+  const RawNode& root = build_raw_tree(embree, boxes);
+  if (root.child_count == 0) {
+    copy_leaf(root, leaf_items_);
+    root_leaf_count_ = root.item_count;
+    return;
+  }
+  copy_tree(root, nodes_, leaf_items_);
 }
 
 void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found) const {
