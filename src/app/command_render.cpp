@@ -102,6 +102,17 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   return j.dump(2) + "\n";
 }
 
+WriteOptions write_options(const RenderCommand& c, const Camera& camera) {
+  WriteOptions write;
+  write.display = {double(c.exposure), c.tone_map == "none" ? ToneMap::none : ToneMap::filmic};
+  write.threads = c.options.threads;
+  if (c.options.has_crop) {
+    const ImageSize whole = image_size(camera, c.options.width, c.options.height);
+    write.window = {c.options.crop[0], c.options.crop[1], whole.width, whole.height};
+  }
+  return write;
+}
+
 }  // namespace
 
 int run_render(RenderCommand c) {
@@ -144,13 +155,7 @@ int run_render(RenderCommand c) {
   seconds.render_cpu = cpu_seconds() - cpu;
 
   mark = Clock::now();
-  WriteOptions write;
-  write.display = {double(c.exposure), c.tone_map == "none" ? ToneMap::none : ToneMap::filmic};
-  write.threads = c.options.threads;
-  if (c.options.has_crop) {
-    const ImageSize whole = image_size(camera, c.options.width, c.options.height);
-    write.window = {c.options.crop[0], c.options.crop[1], whole.width, whole.height};
-  }
+  const WriteOptions write = write_options(c, camera);
   for (const std::string& path : c.outputs) write_image(path, result.layers, write);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace troffer {
 
@@ -17,6 +18,35 @@ Rgb as_rgb(const Vec3d& v) {
 bool needs_first_hit(Aov a) {
   return a == Aov::albedo || a == Aov::normal || a == Aov::depth || a == Aov::position ||
          a == Aov::shadow_rays || a == Aov::sources;
+}
+
+// Black, with the name and the channels that files have of it.
+Layer empty_layer(Aov aov, const PixelRect& window) {
+  const auto layer = [&](const char* name, std::vector<std::string> channels) {
+    return Layer{name, std::move(channels), Image(window.width(), window.height())};
+  };
+  const std::vector<std::string> rgb{"R", "G", "B"}, xyz{"X", "Y", "Z"};
+  switch (aov) {
+    case Aov::direct:
+      return layer("direct", rgb);
+    case Aov::indirect:
+      return layer("indirect", rgb);
+    case Aov::albedo:
+      return layer("albedo", rgb);
+    case Aov::normal:
+      return layer("normal", xyz);
+    case Aov::position:
+      return layer("position", xyz);
+    case Aov::depth:
+      return layer("depth", {"Z"});
+    case Aov::shadow_rays:
+      return layer("shadow_rays", {"V"});
+    case Aov::sources:
+      return layer("sources", rgb);
+    case Aov::error:
+      return layer("error", {"V"});
+  }
+  return {};
 }
 
 }  // namespace
@@ -82,9 +112,7 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
 }
 
 Layer Film::make_layer(Aov aov) const {
-  Layer layer;
-  layer.image = Image(window_.width(), window_.height());
-  const std::vector<std::string> xyz{"X", "Y", "Z"}, value{"V"};
+  Layer layer = empty_layer(aov, window_);
   const auto per_sample = [&](auto&& sum) {
     for (size_t i = 0; i < pixels_.size(); ++i)
       if (pixels_[i].samples > 0)
@@ -97,51 +125,37 @@ Layer Film::make_layer(Aov aov) const {
   };
   switch (aov) {
     case Aov::direct:
-      layer.name = "direct";
       per_sample([](const Pixel& p) { return p.direct; });
       break;
     case Aov::indirect:
-      layer.name = "indirect";
       per_sample([](const Pixel& p) { return p.indirect; });
       break;
     case Aov::albedo:
-      layer.name = "albedo";
       per_hit([](const FirstHit& f) { return f.albedo; });
       break;
     case Aov::normal:
-      layer.name = "normal";
-      layer.channels = xyz;
       per_hit([](const FirstHit& f) {
         const double l = length(f.normal);
         return l > 0 ? f.normal * (f.hits / l) : f.normal;
       });
       break;
     case Aov::position:
-      layer.name = "position";
-      layer.channels = xyz;
       per_hit([](const FirstHit& f) { return f.position; });
       break;
     case Aov::depth:
-      layer.name = "depth";
-      layer.channels = {"Z"};
       per_hit([](const FirstHit& f) { return Vec3d{f.depth}; });
       break;
     case Aov::shadow_rays:
-      layer.name = "shadow_rays";
-      layer.channels = value;
       for (size_t i = 0; i < pixels_.size(); ++i)
         if (pixels_[i].samples > 0)
           layer.image.pixels[i] = Rgb{float(first_hits_[i].shadow_rays / pixels_[i].samples)};
       break;
     case Aov::sources:
-      layer.name = "sources";
       for (size_t i = 0; i < pixels_.size(); ++i)
         if (pixels_[i].samples > 0)
           layer.image.pixels[i] = as_rgb(first_hits_[i].sources * (1.0 / pixels_[i].samples));
       break;
     case Aov::error:
-      layer.name = "error";
-      layer.channels = value;
       for (size_t i = 0; i < pixels_.size(); ++i)
         layer.image.pixels[i] = Rgb{float(told_error(pixels_[i]))};
       break;

@@ -116,6 +116,17 @@ MeasureResult nothing_measured(size_t points) {
   return result;
 }
 
+MethodSettings settings_of(const MeasureOptions& options) {
+  MethodSettings settings;
+  settings.indirect = options.indirect;
+  settings.shadow_rays = options.method.row().rays_of_measuring_sample;
+  settings.error = options.error;
+  settings.trees = options.kj92.sampling;
+  settings.depth = options.depth;
+  settings.threads = options.threads;
+  return settings;
+}
+
 }  // namespace
 
 int default_samples(Method method) {
@@ -135,13 +146,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     if (!own) return nothing_measured(points.size());
     preparation = own.get();
   }
-  MethodSettings settings;
-  settings.indirect = options.indirect;
-  settings.shadow_rays = row.rays_of_measuring_sample;
-  settings.error = options.error;
-  settings.trees = options.kj92.sampling;
-  settings.depth = options.depth;
-  settings.threads = options.threads;
+  const MethodSettings settings = settings_of(options);
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene, options.method, settings, preparation);
   const double rays_per_sample = row.rays_per_sample(settings, scene.scene.lights.size());
