@@ -104,14 +104,53 @@ SensorBatch sensors(size_t count, float off) {
   return b;
 }
 
+struct Shape {
+  const char* name;
+  float off;  // no points so near to the source
+  std::function<void(Scene&)> build;
+};
+
+void compare_with_exact(const Shape& shape, const Arguments& a) {
+  Scene s;
+  s.materials.resize(1);
+  shape.build(s);
+  const PreparedScene scene(std::move(s));
+  const MethodSettings settings;
+  const std::unique_ptr<Integrator> made = make_integrator(Method::certified, {scene, settings});
+  const Integrator& integrator = *made;
+  const auto scratch = integrator.make_scratch();
+  const SensorBatch points = sensors(20000, shape.off);
+  RadianceBatch out;
+  out.reset(points.size());
+  Counters counters;
+  integrator.irradiance(points, *scratch, out, counters);
+  std::vector<double> exact(points.size());
+  double mean = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    exact[i] =
+        irradiance(scene.primitives, 0, Vec3d(points.positions[i]), Vec3d(points.normals[i]));
+    mean += exact[i] / double(points.size());
+  }
+  double worst = 0, sum = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (exact[i] < 1e-3 * mean) continue;
+    const double e = std::abs(double(luminance(out.direct[i])) / exact[i] - 1);
+    worst = std::max(worst, e);
+    sum += e;
+    ++count;
+  }
+  fmt::print("  {:<24} mean {:.7f} %  largest {:.5f} %  {:.2f} rays a point  ({} points)\n",
+             shape.name, 100 * sum / double(count), 100 * worst,
+             double(counters.shadow_rays) / double(points.size()), count);
+  append_row(a.csv_folder, "shapes.csv", "shape,points,mean_difference,largest_difference,rays",
+             fmt::format("{},{},{:.3g},{:.3g},{:.4g}", shape.name, count, sum / double(count),
+                         worst, double(counters.shadow_rays) / double(points.size())));
+}
+
 }  // namespace
 
 void shapes(const Arguments& a) {
-  struct Shape {
-    const char* name;
-    float off;  // no points so near to the source
-    std::function<void(Scene&)> build;
-  };
   const Shape list[] = {{"rectangle", 0.05f,
                          [](Scene& s) {
                            add_square_light(s, {0, 0, 2}, 1);
@@ -132,43 +171,7 @@ void shapes(const Arguments& a) {
                         {"sphere", 0.35f, add_sphere},
                         {"box of 12 triangles", 0.5f, add_slanted_box},
                         {"ball of 256 triangles", 0.35f, add_glowing_ball}};
-  for (const Shape& shape : list) {
-    Scene s;
-    s.materials.resize(1);
-    shape.build(s);
-    const PreparedScene scene(std::move(s));
-    const MethodSettings settings;
-    const std::unique_ptr<Integrator> made = make_integrator(Method::certified, {scene, settings});
-    const Integrator& integrator = *made;
-    const auto scratch = integrator.make_scratch();
-    const SensorBatch points = sensors(20000, shape.off);
-    RadianceBatch out;
-    out.reset(points.size());
-    Counters counters;
-    integrator.irradiance(points, *scratch, out, counters);
-    std::vector<double> exact(points.size());
-    double mean = 0;
-    for (size_t i = 0; i < points.size(); ++i) {
-      exact[i] =
-          irradiance(scene.primitives, 0, Vec3d(points.positions[i]), Vec3d(points.normals[i]));
-      mean += exact[i] / double(points.size());
-    }
-    double worst = 0, sum = 0;
-    size_t count = 0;
-    for (size_t i = 0; i < points.size(); ++i) {
-      if (exact[i] < 1e-3 * mean) continue;
-      const double e = std::abs(double(luminance(out.direct[i])) / exact[i] - 1);
-      worst = std::max(worst, e);
-      sum += e;
-      ++count;
-    }
-    fmt::print("  {:<24} mean {:.7f} %  largest {:.5f} %  {:.2f} rays a point  ({} points)\n",
-               shape.name, 100 * sum / double(count), 100 * worst,
-               double(counters.shadow_rays) / double(points.size()), count);
-    append_row(a.csv_folder, "shapes.csv", "shape,points,mean_difference,largest_difference,rays",
-               fmt::format("{},{},{:.3g},{:.3g},{:.4g}", shape.name, count, sum / double(count),
-                           worst, double(counters.shadow_rays) / double(points.size())));
-  }
+  for (const Shape& shape : list) compare_with_exact(shape, a);
 }
 
 }  // namespace troffer::bench
