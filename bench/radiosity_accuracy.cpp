@@ -118,7 +118,7 @@ std::vector<Place> surface_places(const PreparedScene& scene, int count) {
 std::vector<double> reference(const PreparedScene& scene, std::vector<Place>& places, int spp,
                               double& noise) {
   std::vector<MeasuringPoint> points;
-  for (const Place& p : places) points.push_back({p.position, p.normal});
+  for (const Place& p : places) points.push_back({Vec3d(p.position), p.normal});
   MeasureOptions options;
   options.method = Method::path;
   options.spp = spp;

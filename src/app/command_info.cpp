@@ -32,7 +32,7 @@ Json info_json(const Scene& scene) {
   for (const Light& e : scene.lights) j["lights"].push_back(e.name);
   j["cameras"] = Json::array();
   for (const Camera& c : scene.cameras) j["cameras"].push_back(c.name);
-  const Box box = bounds(scene);
+  const Boxd box = bounds_in_file(scene);
   if (box.is_empty())
     j["bounds"] = nullptr;
   else
@@ -61,10 +61,13 @@ void print_text(const Scene& scene, const Json& j) {
   fmt::print("scene      {}\n", scene.file);
   for (const char* key : {"triangles", "meshes", "materials", "textures", "spheres", "disks"})
     fmt::print("{:<10} {}\n", key, j[key].get<size_t>());
-  const Box box = bounds(scene);
+  const Boxd box = bounds_in_file(scene);
+  // Of a scene far from its file's origin the millimetres too.
+  const int digits = scene.origin == Vec3d{} ? 6 : 9;
   if (!box.is_empty())
-    fmt::print("bounds     {:g} {:g} {:g}  to  {:g} {:g} {:g}\n", box.lower.x, box.lower.y,
-               box.lower.z, box.upper.x, box.upper.y, box.upper.z);
+    fmt::print("bounds     {:.{}g} {:.{}g} {:.{}g}  to  {:.{}g} {:.{}g} {:.{}g}\n", box.lower.x,
+               digits, box.lower.y, digits, box.lower.z, digits, box.upper.x, digits, box.upper.y,
+               digits, box.upper.z, digits);
   fmt::print("cameras    {}\n", scene.cameras.size());
   for (const Camera& c : scene.cameras) {
     fmt::print("  {}", c.name);

@@ -19,14 +19,14 @@ namespace troffer {
 
 namespace {
 
-Vec3 parse_vector(const std::string& text, const char* option) {
-  Vec3 v;
+Vec3d parse_vector(const std::string& text, const char* option) {
+  Vec3d v;
   const char* p = text.c_str();
   for (size_t a = 0; a < 3; ++a) {
     char* end = nullptr;
-    v[a] = std::strtof(p, &end);
+    v[a] = std::strtod(p, &end);
     const bool is_last = a == 2;
-    if (end == p || *end != (is_last ? '\0' : ',') || !(std::abs(v[a]) <= 1e9f))
+    if (end == p || *end != (is_last ? '\0' : ',') || !(std::abs(v[a]) <= 1e9))
       throw UsageError(fmt::format("{}: cannot read '{}' as x,y,z", option, text));
     p = end + 1;
   }
@@ -43,11 +43,14 @@ Vec3 guess_up(const Scene& scene) {
 }
 
 Camera choose_camera(const Scene& scene, const RenderCommand& c) {
-  const Vec3 up = c.up.empty() ? guess_up(scene) : parse_vector(c.up, "--up");
+  const Vec3 up = c.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.up, "--up"));
   if (!c.eye.empty() || !c.target.empty()) {
     if (c.eye.empty() || c.target.empty()) throw UsageError("--eye and --target go together");
     if (!c.camera.empty()) throw UsageError("--camera and --eye exclude each other");
-    return look_at(parse_vector(c.eye, "--eye"), parse_vector(c.target, "--target"), up, c.fov_deg);
+    const auto place = [&](const std::string& text, const char* option) {
+      return Vec3(parse_vector(text, option) - scene.origin);
+    };
+    return look_at(place(c.eye, "--eye"), place(c.target, "--target"), up, c.fov_deg);
   }
   if (!c.camera.empty()) {
     for (const Camera& camera : scene.cameras)

@@ -80,7 +80,7 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
       has_header = true;
       continue;
     }
-    std::array<float, 6> v{};
+    std::array<double, 6> v{};
     for (size_t n = 0; n < names.size(); ++n) {
       if (where[n] >= fields.size())
         throw InputError(path, line_number, int(line.size()) + 1,
@@ -93,9 +93,9 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
         throw InputError(path, line_number, f.column,
                          fmt::format("'{}' is not a number", f.text.substr(0, 40)));
     }
-    const MeasuringPoint p{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-    constexpr float farthest = 1e9f;  // metres, as for the triangles of a scene
-    const Vec3 reach = abs(p.position);
+    const MeasuringPoint p{{v[0], v[1], v[2]}, Vec3(Vec3d{v[3], v[4], v[5]})};
+    constexpr double farthest = 1e9;  // metres, as for the triangles of a scene
+    const Vec3d reach = abs(p.position);
     if (std::max(reach.x, std::max(reach.y, reach.z)) > farthest)
       throw InputError(path, line_number, fields[where[0]].column,
                        "the point lies more than 1e9 from the origin");

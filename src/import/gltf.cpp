@@ -12,6 +12,7 @@
 #include "import/gltf_mesh.h"
 #include "import/gltf_nodes.h"
 #include "import/gltf_schema.h"
+#include "import/recentre.h"
 
 namespace troffer {
 
@@ -22,12 +23,17 @@ constexpr uint64_t max_triangles = 60'000'000;
 
 class Importer {
  public:
-  Importer(const JsonNode& root, GltfFile& file, Scene& scene)
-      : root_(root), scene_(scene), buffers_(root, file), materials_(root_, buffers_, scene) {}
+  Importer(const JsonNode& root, GltfFile& file, Scene& scene, PlacedBounds& bounds)
+      : root_(root),
+        scene_(scene),
+        bounds_(bounds),
+        buffers_(root, file),
+        materials_(root_, buffers_, scene) {}
 
   void run() {
     read_primitives();
-    const std::vector<GltfNode> nodes = gltf_nodes(root_, scene_.warnings);
+    std::vector<GltfNode> nodes = gltf_nodes(root_, scene_.warnings);
+    for (GltfNode& node : nodes) node.world_from_node.translation -= scene_.origin;
     check_triangle_count(nodes);
     for (const GltfNode& node : nodes) add_node(node);
     if (scene_.meshes.empty()) scene_.warnings.add("the scene shows no triangles");
@@ -85,7 +91,7 @@ class Importer {
   void add_mesh(const GltfPrimitive& p, const Affine& world_from_node, const std::string& name,
                 const std::string& node_name) {
     const GltfMaterial& material = materials_.get(p.material);
-    Mesh mesh = make_gltf_mesh(p, world_from_node, material.uv_set, scene_.warnings);
+    Mesh mesh = make_gltf_mesh(p, world_from_node, material.uv_set, scene_.warnings, bounds_);
     mesh.name = name;
     mesh.material = material.material;
     const bool is_empty = mesh.triangles.empty();
@@ -117,6 +123,7 @@ class Importer {
 
   const JsonNode root_;
   Scene& scene_;
+  PlacedBounds& bounds_;
   GltfBuffers buffers_;
   GltfMaterials materials_;
   std::vector<std::vector<GltfPrimitive>> primitives_;  // by mesh
@@ -126,15 +133,15 @@ class Importer {
 }  // namespace
 
 Scene import_gltf(const std::string& path) {
-  GltfFile file = read_gltf_file(path);
-  const JsonDocument document(path, std::move(file.json_text));
-  Scene scene;
-  scene.file = path;
-  scene.is_photometric = true;
-  check_gltf_document(document.root(), scene.warnings);
-  check_gltf_extensions(document.root(), scene.warnings);
-  Importer(document.root(), file, scene).run();
-  return scene;
+  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
+    GltfFile file = read_gltf_file(path);
+    const JsonDocument document(path, std::move(file.json_text));
+    scene.file = path;
+    scene.is_photometric = true;
+    check_gltf_document(document.root(), scene.warnings);
+    check_gltf_extensions(document.root(), scene.warnings);
+    Importer(document.root(), file, scene, bounds).run();
+  });
 }
 
 }  // namespace troffer

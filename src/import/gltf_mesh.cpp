@@ -112,11 +112,11 @@ class TriangleReader {
  public:
   TriangleReader(const GltfPrimitive& p, const Affine& world) : p_(p), world_(world) {}
 
-  Vec3 world_position(uint32_t vertex) const {
-    return Vec3(world_.point(vec3_of(p_.positions.read(vertex))));
+  Vec3d world_position(uint32_t vertex) const {
+    return world_.point(vec3_of(p_.positions.read(vertex)));
   }
 
-  std::vector<Triangle> read(WarningLog& warnings) const {
+  std::vector<Triangle> read(WarningLog& warnings, PlacedBounds& bounds) const {
     std::vector<Triangle> triangles;
     const uint64_t n = p_.triangle_count();
     TriangleCheck check;
@@ -127,8 +127,9 @@ class TriangleReader {
       std::transform(corners.begin(), corners.end(), t.begin(),
                      [&](uint64_t c) { return vertex_at(c); });
       if (is_mirrored) std::swap(t[1], t[2]);
-      if (check.is_good(world_position(t[0]), world_position(t[1]), world_position(t[2])))
-        triangles.push_back(t);
+      const Vec3d a = world_position(t[0]), b = world_position(t[1]), c = world_position(t[2]);
+      bounds.add_triangle(a, b, c);
+      if (check.is_good(Vec3(a), Vec3(b), Vec3(c))) triangles.push_back(t);
     }
     check.report(warnings);
     return triangles;
@@ -217,13 +218,14 @@ std::optional<GltfPrimitive> read_gltf_primitive(const JsonNode& primitive, Gltf
   return p;
 }
 
-Mesh make_gltf_mesh(const GltfPrimitive& p, const Affine& world, int uv_set, WarningLog& warnings) {
+Mesh make_gltf_mesh(const GltfPrimitive& p, const Affine& world, int uv_set, WarningLog& warnings,
+                    PlacedBounds& bounds) {
   const TriangleReader reader(p, world);
   Mesh mesh;
-  mesh.triangles = reader.read(warnings);
+  mesh.triangles = reader.read(warnings, bounds);
   const std::vector<uint32_t> used = compact(mesh.triangles, p.positions.count);
   mesh.positions.reserve(used.size());
-  for (const uint32_t v : used) mesh.positions.push_back(reader.world_position(v));
+  for (const uint32_t v : used) mesh.positions.emplace_back(reader.world_position(v));
   if (p.normals) read_normals(p, world, used, mesh);
   const auto uvs = p.uvs.find(uv_set);
   if (uvs != p.uvs.end()) read_uvs(uvs->second, used, mesh);

@@ -10,6 +10,7 @@
 #include "base/transform.h"
 #include "import/gltf_accessor.h"
 #include "import/gltf_json.h"
+#include "import/recentre.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -37,8 +38,8 @@ std::optional<GltfPrimitive> read_gltf_primitive(const JsonNode& primitive, Gltf
 // or with vertices that are not finite are left out, with a warning. Under a mirroring transform
 // triangles are turned round, so that the front stays the front [1] §3.7.4; a mesh all of whose
 // normals contradict its winding is wound by them, with a warning. `uv_set`: which TEXCOORD_n
-// becomes Mesh::uvs (none if it is not there).
+// becomes Mesh::uvs (none if it is not there). Counts its triangles into `bounds`.
 Mesh make_gltf_mesh(const GltfPrimitive& primitive, const Affine& world_from_node, int uv_set,
-                    WarningLog& warnings);
+                    WarningLog& warnings, PlacedBounds& bounds);
 
 }  // namespace troffer

@@ -11,6 +11,7 @@
 #include "import/mesh_clean.h"
 #include "import/mtl.h"
 #include "import/polygon.h"
+#include "import/recentre.h"
 #include "import/text_lines.h"
 
 namespace troffer {
@@ -39,13 +40,15 @@ struct Part {
 
 class ObjReader {
  public:
-  ObjReader(const std::string& path, Scene& scene)
+  ObjReader(const std::string& path, Scene& scene, PlacedBounds& bounds)
       : path_(path),
         folder_(folder_of(path)),
         scene_(scene),
         text_(read_text_file(path)),
         lines_(path_, text_),
-        loader_(scene) {}
+        loader_(scene) {
+    vertices_.bounds = &bounds;
+  }
   void read();
 
  private:
@@ -56,7 +59,9 @@ class ObjReader {
   TextureLoader loader_;
 
   struct Vertices {
-    std::vector<Vec3> positions, normals;
+    PlacedBounds* bounds = nullptr;  // of those in triangles
+    std::vector<Vec3d> positions;    // from the scene's origin
+    std::vector<Vec3> normals;
     std::vector<Vec2> uvs;
   } vertices_;
   struct Names {
@@ -91,6 +96,7 @@ class ObjReader {
   void read_statement(std::string_view keyword);
   void read_vertex();
   void read_face();
+  void add_triangle(const Triangle& corners);
   uint32_t read_index(size_t count, const char* what, bool is_needed);
   bool read_corner();
   void select_part();
@@ -148,8 +154,8 @@ void ObjReader::read_statement(std::string_view keyword) {
 
 // x y z, then nothing, a weight, a colour or both; the latter are left out.
 void ObjReader::read_vertex() {
-  const float x = lines_.number(), y = lines_.number();
-  vertices_.positions.emplace_back(x, y, lines_.number());
+  const double x = lines_.precise_number(), y = lines_.precise_number();
+  vertices_.positions.push_back(Vec3d{x, y, lines_.precise_number()} - scene_.origin);
   size_t more = 0;
   for (; lines_.has_word(); ++more) lines_.number();
   if (more == 2 || more > 4) lines_.fail("a vertex has 3, 4, 6 or 7 numbers");
@@ -215,7 +221,7 @@ uint32_t ObjReader::vertex_of(const Corner& corner) {
   const auto vertex = uint32_t(part.made.size());
   part.made.push_back({corner.uv, corner.normal, first.vertex});
   first.vertex = vertex;
-  part.mesh.positions.push_back(vertices_.positions[corner.position]);
+  part.mesh.positions.emplace_back(vertices_.positions[corner.position]);
   part.mesh.uvs.push_back(corner.uv != nothing ? vertices_.uvs[corner.uv] : Vec2{});
   part.mesh.normals.push_back(corner.normal != nothing ? vertices_.normals[corner.normal] : Vec3{});
   part.has_uvs = part.has_uvs || corner.uv != nothing;
@@ -238,18 +244,25 @@ void ObjReader::read_face() {
   if (!parts_.current) select_part();
   parts_.firsts.resize(vertices_.positions.size());
   if (face_.corners.size() == 3) {
-    const uint32_t a = vertex_of(face_.corners[0]), b = vertex_of(face_.corners[1]);
-    parts_.current->mesh.triangles.push_back({a, b, vertex_of(face_.corners[2])});
+    add_triangle({0, 1, 2});
     return;
   }
   face_.points.clear();
   face_.triangles.clear();
-  for (const Corner& c : face_.corners) face_.points.push_back(vertices_.positions[c.position]);
+  for (const Corner& c : face_.corners) face_.points.emplace_back(vertices_.positions[c.position]);
   triangulate(face_.points, face_.triangles);
-  for (Triangle t : face_.triangles) {
-    for (uint32_t& v : t) v = vertex_of(face_.corners[v]);
-    parts_.current->mesh.triangles.push_back(t);
-  }
+  for (const Triangle& t : face_.triangles) add_triangle(t);
+}
+
+// Of three corners of the face.
+void ObjReader::add_triangle(const Triangle& corners) {
+  const auto position = [&](size_t k) {
+    return vertices_.positions[face_.corners[corners[k]].position];
+  };
+  vertices_.bounds->add_triangle(position(0), position(1), position(2));
+  Triangle t;
+  for (size_t k = 0; k < 3; ++k) t[k] = vertex_of(face_.corners[corners[k]]);
+  parts_.current->mesh.triangles.push_back(t);
 }
 
 // Names of libraries may contain blanks, and several may follow each other: first the whole line
@@ -341,10 +354,10 @@ void ObjReader::finish() {
 }  // namespace
 
 Scene import_obj(const std::string& path) {
-  Scene scene;
-  scene.file = path;
-  ObjReader(path, scene).read();
-  return scene;
+  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
+    scene.file = path;
+    ObjReader(path, scene, bounds).read();
+  });
 }
 
 }  // namespace troffer

@@ -192,10 +192,10 @@ const std::map<std::string_view, PbrtInterpreter::Handler>& PbrtInterpreter::han
 }
 
 Scene import_pbrt(const std::string& path) {
-  Scene scene;
-  scene.file = path;
-  PbrtInterpreter(scene, path).run();
-  return scene;
+  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
+    scene.file = path;
+    PbrtInterpreter(scene, path, bounds).run();
+  });
 }
 
 }  // namespace troffer

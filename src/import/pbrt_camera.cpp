@@ -16,9 +16,22 @@ int resolution(const PbrtParams& params, const char* name, int fallback) {
   return n;
 }
 
+// A position from `origin`, far from which it went through the transform and back: what is left of
+// that in the last digits of the doubles is taken off, so that a camera on a plane of its scene's
+// coordinates stays there.
+Vec3d from_origin(const Vec3d& p, const Vec3d& origin) {
+  if (origin == Vec3d{}) return p;
+  const Vec3d reach = abs(origin);
+  const int digits = 47 - std::ilogb(std::max({reach.x, reach.y, reach.z}));
+  Vec3d out = p - origin;
+  for (size_t a = 0; a < 3; ++a)
+    out[a] = std::ldexp(std::round(std::ldexp(out[a], digits)), -digits) + 0.0;
+  return out;
+}
+
 // Position and axes; returns the uniform part of the scale, in metres per unit of camera space.
-double set_frame(Camera& camera, const Affine& camera_from_world, const PbrtParams& params,
-                 WarningLog& warnings) {
+double set_frame(Camera& camera, const Affine& camera_from_world, const Vec3d& origin,
+                 const PbrtParams& params, WarningLog& warnings) {
   const double determinant = camera_from_world.determinant();
   if (!(std::abs(determinant) > 0) || !std::isfinite(determinant))
     fail_at(params.place, "the transform at the camera has no inverse");
@@ -38,7 +51,7 @@ double set_frame(Camera& camera, const Affine& camera_from_world, const PbrtPara
   const Vec3d f = forward / sz;
   const Vec3d r = normalize(right - f * dot(right, f));
   const Vec3d u = cross(f, r);
-  camera.position = Vec3(world.translation);
+  camera.position = Vec3(from_origin(world.translation, origin));
   camera.forward = Vec3(f);
   camera.right = Vec3(r);
   camera.up = Vec3(dot(u, up) < 0 ? -u : u);
@@ -91,14 +104,14 @@ PbrtFilm read_pbrt_film(const std::string& type, const PbrtParams& params, Warni
 }
 
 Camera read_pbrt_camera(const std::string& type, const PbrtParams& params,
-                        const Affine& camera_from_world, const PbrtFilm& film,
+                        const Affine& camera_from_world, const Vec3d& origin, const PbrtFilm& film,
                         WarningLog& warnings) {
   Camera camera;
   camera.name = "camera";
   const bool is_known = type == "perspective" || type == "orthographic";
   if (!is_known) warnings.add("camera \"" + type + "\" is not supported: shown as perspective");
   camera.kind = type == "orthographic" ? CameraKind::orthographic : CameraKind::perspective;
-  const double scale = set_frame(camera, camera_from_world, params, warnings);
+  const double scale = set_frame(camera, camera_from_world, origin, params, warnings);
   camera.fov_is_vertical = false;
   if (camera.kind == CameraKind::perspective) {
     const double fov_deg = params.get_float("fov", 90);

@@ -20,9 +20,10 @@ PbrtFilm read_pbrt_film(const std::string& type, const PbrtParams& params, Warni
 
 // The camera that pbrt has under that transform: it looks along +z with +y up and +x to the right
 // of the image. Types other than perspective and orthographic are shown as perspective, with a
-// warning. InputError: a transform without inverse, angles and lenses that cannot be.
+// warning. Its position counts from `origin`. InputError: a transform without inverse, angles and
+// lenses that cannot be.
 Camera read_pbrt_camera(const std::string& type, const PbrtParams& params,
-                        const Affine& camera_from_world, const PbrtFilm& film,
+                        const Affine& camera_from_world, const Vec3d& origin, const PbrtFilm& film,
                         WarningLog& warnings);
 
 }  // namespace troffer

@@ -17,8 +17,11 @@ constexpr size_t max_open_blocks = 100'000;
 
 }  // namespace
 
-PbrtInterpreter::PbrtInterpreter(Scene& scene, const std::string& path)
-    : scene_(scene), path_(path), materials_(scene, folder_of(path)), placer_(scene, materials_) {
+PbrtInterpreter::PbrtInterpreter(Scene& scene, const std::string& path, PlacedBounds& bounds)
+    : scene_(scene),
+      path_(path),
+      materials_(scene, folder_of(path)),
+      placer_(scene, materials_, bounds) {
   state_.material = std::make_shared<PbrtMaterial>();
   state_.material->type = "diffuse";
   state_.material->name = "default";
@@ -254,7 +257,8 @@ void PbrtInterpreter::on_world_begin(const PbrtToken& word, PbrtTokenizer& token
   named_.coordinate_systems["world"] = Affine();
   if (!camera_) return;
   scene_.cameras.push_back(read_pbrt_camera(camera_->type, camera_->params,
-                                            camera_->camera_from_world, film_, scene_.warnings));
+                                            camera_->camera_from_world, scene_.origin, film_,
+                                            scene_.warnings));
   camera_.reset();
 }
 

@@ -18,7 +18,7 @@ namespace troffer {
 
 class PbrtInterpreter {
  public:
-  PbrtInterpreter(Scene& scene, const std::string& path);
+  PbrtInterpreter(Scene& scene, const std::string& path, PlacedBounds& bounds);
   // The whole file and what it includes. InputError as import_pbrt.
   void run();
 

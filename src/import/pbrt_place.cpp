@@ -72,7 +72,7 @@ void PbrtPlacer::spend(size_t triangles, const PbrtPlace& place) {
 }
 
 void PbrtPlacer::count_waiting(const PbrtShape& shape, const PbrtPlace& at) {
-  spend(shape.mesh ? cost_of(*shape.mesh) : 1, at);
+  spend(shape.mesh ? cost_of(shape.mesh->mesh) : 1, at);
 }
 
 void PbrtPlacer::place(const PbrtShape& shape, const PbrtPlace& at) {
@@ -86,7 +86,8 @@ void PbrtPlacer::place_instance(const PbrtShape& shape, const Affine& world_from
   place({shape, world_from_instance * shape.world_from_object, is_flipped, false, at});
 }
 
-void PbrtPlacer::place(const Placing& placing) {
+void PbrtPlacer::place(Placing placing) {
+  placing.world_from_object.translation -= scene_.origin;
   if (placing.shape.material->is_interface()) {
     scene_.warnings.add("shape with the interface material is left out");
     if (placing.is_emitting) skip_light();
@@ -100,12 +101,12 @@ void PbrtPlacer::place(const Placing& placing) {
     if (is_similarity(placing.world_from_object))
       place_sphere(placing);
     else
-      place_mesh(placing, tessellate_sphere(shape.radius, -shape.radius, shape.radius, 2 * pi),
-                 true);
+      place_mesh(placing,
+                 {tessellate_sphere(shape.radius, -shape.radius, shape.radius, 2 * pi), {}}, true);
   } else if (is_similar(columns[0], columns[1])) {
     place_disk(placing);
   } else {
-    place_mesh(placing, tessellate_disk(shape.height, shape.radius, 0, 2 * pi), true);
+    place_mesh(placing, {tessellate_disk(shape.height, shape.radius, 0, 2 * pi), {}}, true);
   }
 }
 
@@ -136,6 +137,7 @@ void PbrtPlacer::place_sphere(const Placing& placing) {
   Sphere sphere;
   sphere.centre = Vec3(placing.world_from_object.translation);
   const double r = placing.shape.radius * length(placing.world_from_object.columns[0]);
+  bounds_.add_ball(placing.world_from_object.translation, r);
   sphere.radius = float(r);
   sphere.is_inside_out = placing.is_flipped_quadric;
   if (!is_finite(sphere.centre) || !(sphere.radius > 0) || !std::isfinite(sphere.radius)) {
@@ -165,8 +167,10 @@ void PbrtPlacer::place_disk(const Placing& placing) {
   spend(1, placing.place);
   const Affine& t = placing.world_from_object;
   Disk disk;
-  disk.centre = Vec3(t.point({0, 0, placing.shape.height}));
+  const Vec3d centre = t.point({0, 0, placing.shape.height});
+  disk.centre = Vec3(centre);
   const double r = placing.shape.radius * length(t.columns[0]);
+  bounds_.add_ball(centre, r);
   disk.radius = float(r);
   // The axes of its plane are not parallel, so their cross product has a length.
   const Vec3d axis = normalize(cross(t.columns[0], t.columns[1]));
@@ -196,20 +200,24 @@ void PbrtPlacer::place_disk(const Placing& placing) {
   scene_.disks.push_back(disk);
 }
 
-void PbrtPlacer::place_mesh(const Placing& placing, const Mesh& local, bool is_quadric) {
-  spend(cost_of(local), placing.place);
+void PbrtPlacer::place_mesh(const Placing& placing, const AnchoredMesh& local, bool is_quadric) {
+  spend(cost_of(local.mesh), placing.place);
   const Affine& t = placing.world_from_object;
   const PbrtShape& shape = placing.shape;
-  Mesh mesh = local;
-  for (Vec3& p : mesh.positions) p = Vec3(t.point(Vec3d(p)));
+  Mesh mesh = local.mesh;
+  const auto world = [&](const Vec3& p) { return t.point(local.anchor + Vec3d(p)); };
+  for (const Triangle& v : mesh.triangles)
+    bounds_.add_triangle(world(mesh.positions[v[0]]), world(mesh.positions[v[1]]),
+                         world(mesh.positions[v[2]]));
+  for (Vec3& p : mesh.positions) p = Vec3(world(p));
   // A mesh's own normals turn with ReverseOrientation; computed ones, of quadrics, also with a
   // transform that mirrors.
   const bool is_turned = is_quadric ? placing.is_flipped_quadric : shape.is_reversed;
   for (Vec3& n : mesh.normals) {
-    const Vec3d world = covector(t, Vec3d(n));
+    const Vec3d turned = covector(t, Vec3d(n));
     // Normalised here, so that small scales do not underflow in float.
-    const double size = length(world);
-    n = size > 0 && std::isfinite(size) ? Vec3(world * ((is_turned ? -1 : 1) / size)) : Vec3{};
+    const double size = length(turned);
+    n = size > 0 && std::isfinite(size) ? Vec3(turned * ((is_turned ? -1 : 1) / size)) : Vec3{};
   }
   orient(mesh, shape.is_reversed != t.swaps_handedness());
   clean_mesh(mesh, scene_.warnings);

@@ -7,7 +7,8 @@ namespace troffer {
 
 class PbrtPlacer {
  public:
-  PbrtPlacer(Scene& scene, PbrtMaterials& materials) : scene_(scene), materials_(materials) {}
+  PbrtPlacer(Scene& scene, PbrtMaterials& materials, PlacedBounds& bounds)
+      : scene_(scene), materials_(materials), bounds_(bounds) {}
 
   // Adds the shape, emission included.
   void place(const PbrtShape& shape, const PbrtPlace& place);
@@ -23,7 +24,7 @@ class PbrtPlacer {
   // A shape on its way into the scene.
   struct Placing {
     const PbrtShape& shape;
-    Affine world_from_object;
+    Affine world_from_object;         // its translation from the scene's origin
     bool is_flipped_quadric = false;  // normals of quadrics point the other way
     bool is_emitting = false;
     PbrtPlace place;
@@ -31,13 +32,14 @@ class PbrtPlacer {
 
   Scene& scene_;
   PbrtMaterials& materials_;
+  PlacedBounds& bounds_;
   size_t lights_ = 0;
   size_t cost_ = 0;  // triangles so far; small shapes count as a few
 
-  void place(const Placing& placing);
+  void place(Placing placing);
   void place_sphere(const Placing& placing);
   void place_disk(const Placing& placing);
-  void place_mesh(const Placing& placing, const Mesh& local, bool is_quadric);
+  void place_mesh(const Placing& placing, const AnchoredMesh& local, bool is_quadric);
   uint32_t material_of(const Placing& placing);
   // Emission of the next light, whose area (m²) turns power into radiance.
   Light next_light(const PbrtAreaLight& light, double area);

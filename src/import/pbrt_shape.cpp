@@ -12,11 +12,12 @@ namespace {
 
 constexpr int curved_patch_cells = 16;
 
-std::vector<Vec3> vectors_of(const std::vector<double>& numbers) {
-  std::vector<Vec3> out;
+template <class Vector>
+std::vector<Vector> vectors_of(const std::vector<double>& numbers) {
+  std::vector<Vector> out;
   out.reserve(numbers.size() / 3);
   for (size_t i = 0; i + 2 < numbers.size(); i += 3)
-    out.emplace_back(float(numbers[i]), float(numbers[i + 1]), float(numbers[i + 2]));
+    out.emplace_back(Vec3d{numbers[i], numbers[i + 1], numbers[i + 2]});
   return out;
 }
 
@@ -45,21 +46,21 @@ void check_length(std::vector<T>& values, size_t vertices, const char* name,
 }
 
 struct VertexData {
-  std::vector<Vec3> positions, normals;
-  std::vector<Vec2> uvs;
+  AnchoredMesh vertices;  // no triangles yet
   std::vector<uint32_t> indices;
 };
 
 // P, N, uv and indices of a mesh whose faces have `corners` vertices.
 VertexData read_vertices(const PbrtParams& params, size_t corners, WarningLog& warnings) {
   VertexData data;
-  data.positions = vectors_of(params.numbers("P", PbrtType::point3));
-  const size_t n = data.positions.size();
+  set_positions(data.vertices, vectors_of<Vec3d>(params.numbers("P", PbrtType::point3)));
+  Mesh& mesh = data.vertices.mesh;
+  const size_t n = mesh.positions.size();
   if (n == 0) fail_at(params.place, params.owner + " needs \"point3 P\"");
-  data.normals = vectors_of(params.numbers("N", PbrtType::normal));
-  data.uvs = read_uvs(params, warnings);
-  check_length(data.normals, n, "N", params, warnings);
-  check_length(data.uvs, n, "uv", params, warnings);
+  mesh.normals = vectors_of<Vec3>(params.numbers("N", PbrtType::normal));
+  mesh.uvs = read_uvs(params, warnings);
+  check_length(mesh.normals, n, "N", params, warnings);
+  check_length(mesh.uvs, n, "uv", params, warnings);
   params.ignore({"S", "faceIndices"});
   const PbrtParam* indices = params.find("indices");
   if (!indices) {
@@ -81,61 +82,57 @@ VertexData read_vertices(const PbrtParams& params, size_t corners, WarningLog& w
   return data;
 }
 
-Mesh read_triangle_mesh(const PbrtParams& params, WarningLog& warnings) {
+AnchoredMesh read_triangle_mesh(const PbrtParams& params, WarningLog& warnings) {
   VertexData data = read_vertices(params, 3, warnings);
-  Mesh mesh;
-  mesh.positions = std::move(data.positions);
-  mesh.normals = std::move(data.normals);
-  mesh.uvs = std::move(data.uvs);
+  Mesh& mesh = data.vertices.mesh;
   mesh.triangles.reserve(data.indices.size() / 3);
   for (size_t i = 0; i < data.indices.size(); i += 3)
     mesh.triangles.push_back({data.indices[i], data.indices[i + 1], data.indices[i + 2]});
-  return mesh;
+  return std::move(data.vertices);
 }
 
 // Planar patches become two triangles each, which share the vertices of the file; where one is
 // curved, every patch is cut into cells, so that neighbours meet.
-Mesh read_bilinear_mesh(const PbrtParams& params, WarningLog& warnings) {
-  const VertexData data = read_vertices(params, 4, warnings);
+AnchoredMesh read_bilinear_mesh(const PbrtParams& params, WarningLog& warnings) {
+  VertexData data = read_vertices(params, 4, warnings);
+  Mesh& vertices = data.vertices.mesh;
   std::vector<BilinearPatch> patches;
   bool is_flat = true;
   for (size_t i = 0; i < data.indices.size(); i += 4) {
     BilinearPatch patch;
-    patch.is_smooth = !data.normals.empty();
+    patch.is_smooth = !vertices.normals.empty();
     for (size_t k = 0; k < 4; ++k) {
       const uint32_t v = data.indices[i + k];
-      patch.corners[k] = data.positions[v];
-      if (!data.normals.empty()) patch.normals[k] = data.normals[v];
-      if (!data.uvs.empty()) patch.uvs[k] = data.uvs[v];
+      patch.corners[k] = vertices.positions[v];
+      if (!vertices.normals.empty()) patch.normals[k] = vertices.normals[v];
+      if (!vertices.uvs.empty()) patch.uvs[k] = vertices.uvs[v];
     }
     is_flat = is_flat && is_planar(patch);
     patches.push_back(patch);
   }
-  Mesh mesh;
-  const bool shares_vertices = is_flat && (!data.uvs.empty() || patches.size() == 1);
+  const bool shares_vertices = is_flat && (!vertices.uvs.empty() || patches.size() == 1);
   if (!shares_vertices) {
     const size_t cells = is_flat ? 1 : curved_patch_cells;
     if (patches.size() > max_scene_triangles / (2 * cells * cells))
       fail_at(params.place, "too many triangles");
-    for (const BilinearPatch& patch : patches) append_patch(mesh, patch, int(cells));
-    return mesh;
+    AnchoredMesh cut{{}, data.vertices.anchor};
+    for (const BilinearPatch& patch : patches) append_patch(cut.mesh, patch, int(cells));
+    return cut;
   }
-  mesh.positions = data.positions;
-  mesh.normals = data.normals;
-  mesh.uvs = data.uvs;
-  if (data.uvs.empty()) {
-    mesh.uvs.resize(data.positions.size());
-    for (size_t k = 0; k < 4; ++k) mesh.uvs[data.indices[k]] = BilinearPatch().uvs[k];
+  if (vertices.uvs.empty()) {
+    vertices.uvs.resize(vertices.positions.size());
+    for (size_t k = 0; k < 4; ++k) vertices.uvs[data.indices[k]] = BilinearPatch().uvs[k];
   }
   for (size_t i = 0; i < data.indices.size(); i += 4) {
     const uint32_t* q = &data.indices[i];  // 00, 10, 01, 11
-    mesh.triangles.push_back({q[0], q[1], q[3]});
-    mesh.triangles.push_back({q[0], q[3], q[2]});
+    vertices.triangles.push_back({q[0], q[1], q[3]});
+    vertices.triangles.push_back({q[0], q[3], q[2]});
   }
-  return mesh;
+  return std::move(data.vertices);
 }
 
-Mesh read_ply_mesh(const PbrtParams& params, const std::string& folder, WarningLog& warnings) {
+AnchoredMesh read_ply_mesh(const PbrtParams& params, const std::string& folder,
+                           WarningLog& warnings) {
   const PbrtParam* file = params.find("filename");
   if (!file) fail_at(params.place, params.owner + " needs a \"string filename\"");
   const std::string name = params.get_string("filename", "");
@@ -161,8 +158,8 @@ bool read_sphere(const PbrtParams& params, PbrtShape& shape) {
     shape.radius = r;
   } else {
     shape.is_quadric = true;
-    shape.mesh = std::make_shared<const Mesh>(
-        tessellate_sphere(r, z_min, z_max, rad_from_deg(std::min(phi_deg, 360.0))));
+    shape.mesh = std::make_shared<const AnchoredMesh>(AnchoredMesh{
+        tessellate_sphere(r, z_min, z_max, rad_from_deg(std::min(phi_deg, 360.0))), {}});
   }
   return true;
 }
@@ -178,8 +175,9 @@ bool read_disk(const PbrtParams& params, PbrtShape& shape) {
     shape.height = height;
   } else {
     shape.is_quadric = true;
-    shape.mesh = std::make_shared<const Mesh>(
-        tessellate_disk(height, r, std::max(inner, 0.0), rad_from_deg(std::min(phi_deg, 360.0))));
+    shape.mesh = std::make_shared<const AnchoredMesh>(AnchoredMesh{
+        tessellate_disk(height, r, std::max(inner, 0.0), rad_from_deg(std::min(phi_deg, 360.0))),
+        {}});
   }
   return true;
 }
@@ -207,11 +205,12 @@ bool read_pbrt_shape(const std::string& type, const PbrtParams& params, PbrtText
   shape.type = type;
   bool has_area = true;
   if (type == "trianglemesh") {
-    shape.mesh = std::make_shared<const Mesh>(read_triangle_mesh(params, warnings));
+    shape.mesh = std::make_shared<const AnchoredMesh>(read_triangle_mesh(params, warnings));
   } else if (type == "plymesh") {
-    shape.mesh = std::make_shared<const Mesh>(read_ply_mesh(params, textures.folder(), warnings));
+    shape.mesh =
+        std::make_shared<const AnchoredMesh>(read_ply_mesh(params, textures.folder(), warnings));
   } else if (type == "bilinearmesh") {
-    shape.mesh = std::make_shared<const Mesh>(read_bilinear_mesh(params, warnings));
+    shape.mesh = std::make_shared<const AnchoredMesh>(read_bilinear_mesh(params, warnings));
   } else if (type == "sphere") {
     has_area = read_sphere(params, shape);
   } else if (type == "disk") {

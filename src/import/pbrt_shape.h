@@ -9,6 +9,7 @@
 
 #include "base/transform.h"
 #include "import/pbrt_material.h"
+#include "import/recentre.h"
 
 namespace troffer {
 
@@ -28,10 +29,10 @@ enum class PbrtShapeKind { mesh, sphere, disk };
 struct PbrtShape {
   std::string type;  // for messages
   PbrtShapeKind kind = PbrtShapeKind::mesh;
-  double radius = 1, height = 0;     // whole spheres and disks
-  std::shared_ptr<const Mesh> mesh;  // everything else
-  bool is_quadric = false;           // normals of the mesh follow the rule of quadrics
-  std::optional<FloatInput> alpha;   // texture that cuts holes
+  double radius = 1, height = 0;             // whole spheres and disks
+  std::shared_ptr<const AnchoredMesh> mesh;  // everything else
+  bool is_quadric = false;                   // normals of the mesh follow the rule of quadrics
+  std::optional<FloatInput> alpha;           // texture that cuts holes
   Affine world_from_object;
   bool is_reversed = false;  // ReverseOrientation
   std::shared_ptr<PbrtMaterial> material;

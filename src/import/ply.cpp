@@ -137,7 +137,7 @@ class PlyReader {
         body_(text, header_, file),
         warnings_(warnings),
         max_triangles_(max_triangles) {}
-  Mesh read();
+  AnchoredMesh read();
 
  private:
   const std::string& file_;
@@ -145,7 +145,8 @@ class PlyReader {
   BodyReader body_;
   WarningLog& warnings_;
   size_t max_triangles_;
-  Mesh mesh_;
+  AnchoredMesh anchored_;
+  Mesh& mesh_ = anchored_.mesh;
   bool has_vertices_ = false;
   size_t short_faces_ = 0;
 
@@ -207,21 +208,22 @@ void PlyReader::read_vertices(const PlyElement& element) {
   if (element.count > std::numeric_limits<uint32_t>::max())
     throw InputError(file_, 0, 0, "too many vertices");
   const auto n = size_t(element.count);
-  mesh_.positions.resize(n);
+  std::vector<Vec3d> positions(n);
   if (has_normals) mesh_.normals.resize(n);
   if (has_uvs) mesh_.uvs.resize(n);
-  std::array<float, slot_count + 1> row{};
+  std::array<double, slot_count + 1> row{};
   for (size_t i = 0; i < n; ++i) {
     for (size_t k = 0; k < slots.size(); ++k) {
       if (element.properties[k].is_list)
         skip(element.properties[k]);
       else
-        row[size_t(slots[k])] = float(body_.next(element.properties[k].type));
+        row[size_t(slots[k])] = body_.next(element.properties[k].type);
     }
-    mesh_.positions[i] = {row[0], row[1], row[2]};
-    if (has_normals) mesh_.normals[i] = {row[3], row[4], row[5]};
-    if (has_uvs) mesh_.uvs[i] = {row[slot_u], row[slot_v]};
+    positions[i] = {row[0], row[1], row[2]};
+    if (has_normals) mesh_.normals[i] = Vec3(Vec3d{row[3], row[4], row[5]});
+    if (has_uvs) mesh_.uvs[i] = Vec2(Vec2d{row[slot_u], row[slot_v]});
   }
+  set_positions(anchored_, positions);
 }
 
 void PlyReader::read_face(const PlyProperty& property, std::vector<uint32_t>& polygon) {
@@ -276,7 +278,7 @@ void PlyReader::check_indices() const {
         throw InputError(file_, 0, 0, "vertex index " + std::to_string(v) + " out of range");
 }
 
-Mesh PlyReader::read() {
+AnchoredMesh PlyReader::read() {
   bool has_faces = false;
   for (const PlyElement& element : header_.elements) {
     check_count(element);
@@ -294,12 +296,12 @@ Mesh PlyReader::read() {
   if (short_faces_ > 0)
     warnings_.add(file_ + ": face with fewer than three vertices, left out", short_faces_);
   if (mesh_.triangles.empty()) warnings_.add(file_ + ": no triangles in this file");
-  return std::move(mesh_);
+  return std::move(anchored_);
 }
 
 }  // namespace
 
-Mesh read_ply(const std::string& path, WarningLog& warnings, size_t max_triangles) {
+AnchoredMesh read_ply(const std::string& path, WarningLog& warnings, size_t max_triangles) {
   const std::string text = read_text_file(path);
   return PlyReader(path, text, warnings, max_triangles).read();
 }

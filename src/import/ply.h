@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/log.h"
-#include "scene/scene.h"
+#include "import/recentre.h"
 
 namespace troffer {
 
@@ -18,7 +18,7 @@ namespace troffer {
 // InputError: malformed or truncated files (line and column of the header or of an ascii body, 0
 // in a binary body), no x y z, indices out of range, more than max_triangles triangles.
 // Memory stays in proportion to the size of the file whatever its counts say.
-Mesh read_ply(const std::string& path, WarningLog& warnings,
-              size_t max_triangles = size_t(200'000'000));
+AnchoredMesh read_ply(const std::string& path, WarningLog& warnings,
+                      size_t max_triangles = size_t(200'000'000));
 
 }  // namespace troffer

@@ -82,25 +82,34 @@ std::string_view TextLines::rest() {
   return {word_, size_t(last - word_)};
 }
 
-float TextLines::number() {
+template <class Real>
+Real TextLines::read_number() {
   skip_blanks();
   const char* begin = at_;
   if (begin < end_ && *begin == '+' && begin + 1 < end_ && begin[1] != '-') ++begin;
-  float value = 0;
+  Real value = 0;
   const auto result = std::from_chars(begin, end_, value);
   const bool is_whole = result.ptr == end_ || is_blank(*result.ptr);
   if (result.ec == std::errc::invalid_argument || !is_whole) {
     const std::string_view found = word();
     // What some C libraries print for NaN and infinity: 1.#IND, -1.#INF.
     if (found.substr(0, 4).find("1.#") != std::string_view::npos)
-      return std::numeric_limits<float>::quiet_NaN();
+      return std::numeric_limits<Real>::quiet_NaN();
     fail(found.empty() ? "a number is missing"
                        : "'" + std::string(found.substr(0, 40)) + "' is not a number");
   }
   if (result.ec == std::errc::result_out_of_range)
-    value = std::strtof(std::string(begin, result.ptr).c_str(), nullptr);
+    value = Real(std::strtod(std::string(begin, result.ptr).c_str(), nullptr));
   at_ = result.ptr;
   return value;
+}
+
+float TextLines::number() {
+  return read_number<float>();
+}
+
+double TextLines::precise_number() {
+  return read_number<double>();
 }
 
 bool TextLines::integer(int& value) {

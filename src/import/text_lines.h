@@ -25,6 +25,7 @@ class TextLines {
 
   // A number: InputError where there is none. May be NaN or infinite.
   float number();
+  double precise_number();  // the same, not rounded to float
   // An integer, read up to the first other character; false where there is none or it does not
   // fit 32 bits.
   bool integer(int& value);
@@ -47,6 +48,8 @@ class TextLines {
 
   std::string_view take_physical_line();
   void skip_blanks();
+  template <class Real>
+  Real read_number();
 };
 
 }  // namespace troffer

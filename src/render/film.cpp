@@ -58,8 +58,11 @@ double Film::bytes(double pixels, const std::vector<Aov>& aovs) {
                          sizeof(Rgb) * (1 + aovs.size()));
 }
 
-Film::Film(const PixelRect& window, const std::vector<Aov>& aovs)
-    : window_(window), aovs_(aovs), pixels_(size_t(window.width()) * size_t(window.height())) {
+Film::Film(const PixelRect& window, const std::vector<Aov>& aovs, const Vec3d& origin)
+    : window_(window),
+      aovs_(aovs),
+      origin_(origin),
+      pixels_(size_t(window.width()) * size_t(window.height())) {
   if (std::any_of(aovs.begin(), aovs.end(), needs_first_hit)) first_hits_.resize(pixels_.size());
 }
 
@@ -140,7 +143,7 @@ Layer Film::make_layer(Aov aov) const {
       });
       break;
     case Aov::position:
-      per_hit([](const FirstHit& f) { return f.position; });
+      per_hit([this](const FirstHit& f) { return f.position + origin_ * f.hits; });
       break;
     case Aov::depth:
       per_hit([](const FirstHit& f) { return Vec3d{f.depth}; });

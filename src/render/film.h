@@ -28,8 +28,9 @@ class Film {
   // Bytes that a film of this many pixels takes.
   static double bytes(double pixels, const std::vector<Aov>& aovs);
 
-  // `window`: the pixels kept, in coordinates of the whole image.
-  Film(const PixelRect& window, const std::vector<Aov>& aovs);
+  // `window`: the pixels kept, in coordinates of the whole image. `origin`: the scene's, added to
+  // positions that are shown.
+  Film(const PixelRect& window, const std::vector<Aov>& aovs, const Vec3d& origin = {});
 
   // Adds sample i of a batch to pixel (x, y). Different pixels may be added to concurrently; one
   // pixel's samples must come in a fixed order for the sums to be reproducible. Samples that are
@@ -61,6 +62,7 @@ class Film {
 
   PixelRect window_;
   std::vector<Aov> aovs_;
+  Vec3d origin_;
   std::vector<Pixel> pixels_;
   std::vector<FirstHit> first_hits_;  // empty if no AOV needs it
 };

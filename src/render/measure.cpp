@@ -40,6 +40,7 @@ struct Sums {
 
 struct Worker {
   size_t point = 0;     // its number in the list
+  Vec3 position;        // from the scene's origin
   SensorBatch sensors;  // of this point
   RadianceBatch out;
   std::unique_ptr<IntegratorScratch> scratch;
@@ -59,7 +60,7 @@ Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point,
   for (int first = 0; first < samples; first += w.samples_per_batch) {
     if (stop.load(std::memory_order_relaxed)) break;
     const auto count = size_t(std::min(w.samples_per_batch, samples - first));
-    w.sensors.positions.assign(count, point.position);
+    w.sensors.positions.assign(count, w.position);
     w.sensors.normals.assign(count, n);
     w.sensors.streams.assign(count, stream);
     w.sensors.samples.resize(count);
@@ -170,7 +171,8 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     if (stop.load(std::memory_order_relaxed)) return;
     Worker& w = workers[slot];
     if (!w.scratch) w.scratch = integrator->make_scratch();
-    const Vec3 p = abs(points[i].position);
+    w.position = Vec3(points[i].position - scene.scene.origin);
+    const Vec3 p = abs(w.position);
     w.sensors.offset = std::max(ray_offset(std::max({p.x, p.y, p.z})), least_offset);
     w.samples_per_batch = samples_per_batch;
     w.point = i;

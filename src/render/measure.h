@@ -12,8 +12,8 @@
 namespace troffer {
 
 struct MeasuringPoint {
-  Vec3 position;  // scene units, world space
-  Vec3 normal;    // the side that is lit; any length but zero
+  Vec3d position;  // scene units, in the file's coordinates (Scene::origin)
+  Vec3 normal;     // the side that is lit; any length but zero
 };
 
 struct Measurement {

@@ -234,14 +234,21 @@ std::string base64(const std::vector<uint8_t>& bytes) {
 
 // Node property that turns the scene's world into glTF's; empty where they are the same.
 std::string world_matrix(const Scene& scene) {
-  if (scene.is_photometric || scene.cameras.empty()) return "";
+  const Vec3d& o = scene.origin;
+  const auto translation = [&](const Vec3d& t) {
+    return o == Vec3d{} ? "" : fmt::format(",\"translation\":[{},{},{}]", t.x, t.y, t.z);
+  };
+  if (scene.is_photometric || scene.cameras.empty()) return translation(o);
   const Camera& c = scene.cameras[0];
   const bool is_left_handed = dot(cross(c.right, c.up), c.forward) > 0;
   const bool is_z_up = std::abs(c.up.z) > std::abs(c.up.y);
   if (is_z_up)
-    return is_left_handed ? ",\"matrix\":[1,0,0,0, 0,0,1,0, 0,1,0,0, 0,0,0,1]"
-                          : ",\"matrix\":[1,0,0,0, 0,0,-1,0, 0,1,0,0, 0,0,0,1]";
-  return is_left_handed ? ",\"scale\":[1,1,-1]" : "";
+    return is_left_handed
+               ? fmt::format(",\"matrix\":[1,0,0,0, 0,0,1,0, 0,1,0,0, {},{},{},1]", o.x, o.z, o.y)
+               : fmt::format(",\"matrix\":[1,0,0,0, 0,0,-1,0, 0,1,0,0, {},{},{},1]", o.x, o.z,
+                             0.0 - o.y);
+  return is_left_handed ? ",\"scale\":[1,1,-1]" + translation({o.x, o.y, 0.0 - o.z})
+                        : translation(o);
 }
 
 std::string mesh_json(Buffer& buffer, const Drawing& drawing, const char* name, int mode,

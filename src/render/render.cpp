@@ -120,6 +120,7 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   const bool has_whole_tiles = row.is_same_in_crops && (row.has_noise_of_batch || is_refined);
   const int side = tile_side(options.method, settings, scene.scene.lights.size());
   Rendering rendering(ViewingCamera(camera, size.width, size.height), *integrator, options,
+                      scene.scene.origin,
                       plan_tiles(image, window, side, has_whole_tiles, is_refined), progress, stop);
   result.is_complete = rendering.run();
   result.layers = rendering.layers();

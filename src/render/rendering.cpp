@@ -16,13 +16,13 @@ int passes_of(int samples) {
 }  // namespace
 
 Rendering::Rendering(const ViewingCamera& camera, const Integrator& integrator,
-                     const RenderOptions& options, TilePlan plan, const ProgressCallback& progress,
-                     const StopFlag& stop)
+                     const RenderOptions& options, const Vec3d& origin, TilePlan plan,
+                     const ProgressCallback& progress, const StopFlag& stop)
     : camera_(camera),
       integrator_(integrator),
       options_(options),
       plan_(std::move(plan)),
-      film_(plan_.region, options.aovs),
+      film_(plan_.region, options.aovs, origin),
       work_(size_t(thread_count(options.threads))),
       report_(progress),
       stop_(stop) {

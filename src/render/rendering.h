@@ -25,9 +25,10 @@ constexpr int samples_per_batch = 4;
 
 class Rendering {
  public:
-  // All but the plan must outlive it.
+  // `origin`: the scene's. All but it and the plan must outlive this.
   Rendering(const ViewingCamera& camera, const Integrator& integrator, const RenderOptions& options,
-            TilePlan plan, const ProgressCallback& progress, const StopFlag& stop);
+            const Vec3d& origin, TilePlan plan, const ProgressCallback& progress,
+            const StopFlag& stop);
 
   // False where a stop was requested.
   bool run();

@@ -32,6 +32,11 @@ Box bounds(const Scene& scene) {
   return box;
 }
 
+Boxd bounds_in_file(const Scene& scene) {
+  const Box box = bounds(scene);
+  return {Vec3d(box.lower) + scene.origin, Vec3d(box.upper) + scene.origin};
+}
+
 Scene with_only_lights(Scene scene, const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (std::none_of(scene.lights.begin(), scene.lights.end(),

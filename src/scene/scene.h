@@ -1,4 +1,5 @@
-// A scene: immutable data once built, in world space, with no algorithms of its own.
+// A scene: immutable data once built, with no algorithms of its own. Positions are in world space,
+// counted from Scene::origin.
 #pragma once
 
 #include <array>
@@ -70,6 +71,9 @@ struct Camera {
 
 struct Scene {
   std::string file;  // as given on the command line
+  // Where the file has what is (0,0,0) here: zero, unless the scene lies far from the file's
+  // origin, where floats are coarse. Whoever takes positions from users or shows them adds it.
+  Vec3d origin;
   std::vector<Mesh> meshes;
   std::vector<Sphere> spheres;
   std::vector<Disk> disks;
@@ -82,7 +86,8 @@ struct Scene {
 };
 
 size_t triangle_count(const Scene& scene);
-Box bounds(const Scene& scene);
+Box bounds(const Scene& scene);           // from the scene's origin
+Boxd bounds_in_file(const Scene& scene);  // in the file's coordinates
 
 // A copy of which only lights named in `names` emit; UsageError names one that does not exist.
 Scene with_only_lights(Scene scene, const std::vector<std::string>& names);

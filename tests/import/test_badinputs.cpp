@@ -41,7 +41,7 @@ enum class Outcome { loads, error, other };
 Scene import_any(const std::string& path, const std::string& format) {
   if (format != "ply") return import_scene(path);
   Scene scene;
-  scene.meshes.push_back(read_ply(path, scene.warnings));
+  scene.meshes.push_back(read_ply(path, scene.warnings).mesh);
   clean_mesh(scene.meshes[0], scene.warnings);
   scene.materials.emplace_back();
   return scene;

@@ -17,7 +17,7 @@ namespace {
 Mesh read_text(const std::string& text, WarningLog* log = nullptr) {
   const TempFolder folder;
   WarningLog ignored;
-  return read_ply(folder.write("m.ply", text), log ? *log : ignored);
+  return read_ply(folder.write("m.ply", text), log ? *log : ignored).mesh;
 }
 
 // Bytes of a scalar in either order.
@@ -211,7 +211,7 @@ TEST_CASE("damaged PLY files load or fail cleanly") {
         damaged[random.next_u32() % damaged.size()] = char(random.next_u32());
       try {
         WarningLog log;
-        const Mesh mesh = read_ply(folder.write("m.ply", damaged), log);
+        const Mesh mesh = read_ply(folder.write("m.ply", damaged), log).mesh;
         for (const Triangle& t : mesh.triangles)
           for (const uint32_t v : t) REQUIRE(v < mesh.positions.size());
       } catch (const InputError&) {

@@ -71,7 +71,7 @@ TEST_CASE("kj92room: irradiance is the path tracer's, direct and in all") {
   const std::vector<uint32_t> chosen = choose_points(s, 200);
   std::vector<MeasuringPoint> points;
   for (const uint32_t i : chosen)
-    points.push_back({s.mesh.points[i].position, s.mesh.points[i].normal});
+    points.push_back({Vec3d(s.mesh.points[i].position), s.mesh.points[i].normal});
   MeasureOptions o;
   o.method = Method::path;
   o.threads = 2;

@@ -1,0 +1,100 @@
+#include "import/recentre.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace troffer {
+
+namespace {
+
+constexpr double largest_coordinate = 1e9;  // as for triangles (triangle_check.h)
+constexpr double usual_step = 100;
+constexpr double anchor_step = 1000;
+// Short of twice the box, and beside the half of a step: boxes and places in round numbers are
+// common, and must not fall to one side or the other by the rounding of doubles.
+constexpr double steps_per_box = 1.9, half_step = 0.501;
+constexpr double coarse_resolution = 1e-3;
+
+bool is_usable(const Vec3d& p) {
+  const Vec3d reach = abs(p);  // false for NaN:
+  return reach.x <= largest_coordinate && reach.y <= largest_coordinate &&
+         reach.z <= largest_coordinate;
+}
+
+double longest_side(const Boxd& box) {
+  const Vec3d e = box.extent();
+  return std::max({e.x, e.y, e.z});
+}
+
+// The distance of floats at the ends of the box.
+double resolution(const Boxd& box) {
+  const Vec3d reach = max(abs(box.lower), abs(box.upper));
+  const auto end = float(std::max({reach.x, reach.y, reach.z}));
+  return double(std::nextafter(end, std::numeric_limits<float>::infinity()) - end);
+}
+
+}  // namespace
+
+void PlacedBounds::add_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  if (!is_usable(a) || !is_usable(b) || !is_usable(c)) return;
+  if (!(length_squared(cross(b - a, c - a)) > 0)) return;
+  box_.grow(a);
+  box_.grow(b);
+  box_.grow(c);
+}
+
+void PlacedBounds::add_ball(const Vec3d& centre, double radius) {
+  if (!is_usable(centre - Vec3d{radius}) || !is_usable(centre + Vec3d{radius})) return;
+  box_.grow(centre - Vec3d{radius});
+  box_.grow(centre + Vec3d{radius});
+}
+
+Vec3d rounded_middle(const Boxd& box, double least_step) {
+  if (box.is_empty()) return {};
+  const double least = std::max(least_step, steps_per_box * longest_side(box));
+  double step = 1;
+  for (bool is_five = false; step < least; is_five = !is_five) step *= is_five ? 2 : 5;
+  const Vec3d middle = box.centre();
+  Vec3d rounded;
+  for (size_t a = 0; a < 3; ++a) rounded[a] = std::floor(middle[a] / step + half_step) * step + 0.0;
+  return rounded;
+}
+
+Vec3d choose_origin(const Boxd& box) {
+  return rounded_middle(box, usual_step * std::min(1.0, longest_side(box)));
+}
+
+Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import) {
+  Scene scene;
+  PlacedBounds bounds;
+  import(scene, bounds);
+  const Vec3d origin = choose_origin(bounds.box());
+  if (origin != Vec3d{}) {
+    scene = Scene();
+    scene.origin = origin;
+    bounds = PlacedBounds();
+    import(scene, bounds);
+  }
+  if (bounds.box().is_empty()) return scene;
+  const double coarse = resolution(bounds.box());
+  if (coarse > coarse_resolution)
+    scene.warnings.add(
+        fmt::format("the scene is {:.0f} across, too large for single precision: positions at its "
+                    "ends are rounded to steps of {:.2g}",
+                    longest_side(bounds.box()), coarse));
+  return scene;
+}
+
+void set_positions(AnchoredMesh& mesh, const std::vector<Vec3d>& positions) {
+  Boxd box;
+  for (const Vec3d& p : positions)
+    if (is_usable(p)) box.grow(p);
+  mesh.anchor = rounded_middle(box, anchor_step);
+  mesh.mesh.positions.clear();
+  mesh.mesh.positions.reserve(positions.size());
+  for (const Vec3d& p : positions) mesh.mesh.positions.emplace_back(p - mesh.anchor);
+}
+
+}  // namespace troffer
