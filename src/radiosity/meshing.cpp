@@ -89,6 +89,8 @@ RadiosityMesh mesh_for_radiosity(const Scene& scene, const Tracer& tracer, const
   mesh.geometry = base_geometry(scene);
   mesh.same_as = find_duplicates(mesh.geometry);
   const JoinPlan plan = plan_joining(mesh.geometry, mesh.same_as, options);
+  mesh.left_out = mesh.geometry.left_out;
+  mesh.coarsened = plan.coarsened;
   mesh.element_size = plan.element_size;
   mesh.patch_size = plan.patch_size;
   mesh.join_angle_deg = plan.join_angle_deg;

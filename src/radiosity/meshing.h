@@ -35,6 +35,8 @@ struct MeshingOptions {
 
 struct RadiosityMesh {
   float element_size = 0, patch_size = 0, join_angle_deg = 0;  // what was used in the end
+  float coarsened = 1;    // elements are so many times as long as wanted, to keep the bounds
+  uint32_t left_out = 0;  // triangles, spheres and disks beyond farthest_surface
   uint32_t element_count = 0;
 
   std::vector<ElementPoint> points;  // by patch

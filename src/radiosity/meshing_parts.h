@@ -10,6 +10,7 @@ namespace troffer {
 // which the bounds hold.
 struct JoinPlan {
   float element_size = 0, patch_size = 0, join_angle_deg = 0;
+  float coarsened = 1;  // element_size over what was wanted
   Clusters sheets, elements;
 };
 JoinPlan plan_joining(const BaseGeometry& geometry, const std::vector<uint32_t>& same_as,

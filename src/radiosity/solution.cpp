@@ -13,6 +13,26 @@ size_t RadiositySolution::memory_bytes() const {
          stored.capacity() * sizeof(StoredContribution);
 }
 
+namespace {
+
+// Where the mesh gave up accuracy, or surfaces, to keep its bounds.
+void add_mesh_warnings(const RadiositySolution& s, std::vector<std::string>& out) {
+  const RadiosityMesh& mesh = s.mesh;
+  const MeshingOptions& wanted = s.options.meshing;
+  if (mesh.left_out > 0)
+    out.push_back(fmt::format(
+        "radiosity: {} surface{} beyond {:g} m from the origin left out: they reflect nothing",
+        mesh.left_out, mesh.left_out == 1 ? " is" : "s are", double(farthest_surface)));
+  if (mesh.coarsened > 1.01f || mesh.join_angle_deg > 1.01f * wanted.join_angle_deg)
+    out.push_back(fmt::format(
+        "radiosity: with at most {} elements and {} sheets, elements are {:.2g} times as long as "
+        "wanted, and small triangles are joined whose directions differ by up to {:.0f} degrees",
+        wanted.max_elements, wanted.max_sheets, double(mesh.coarsened),
+        double(mesh.join_angle_deg)));
+}
+
+}  // namespace
+
 std::vector<std::string> radiosity_warnings(const RadiositySolution& s) {
   constexpr double allowed = 0.01;  // of the emitted power
   const EnergyBalance& b = s.balance;
@@ -25,6 +45,7 @@ std::vector<std::string> radiosity_warnings(const RadiositySolution& s) {
         "elements of {:.3g} m are too coarse for this scene; --element-size makes them smaller",
         percent(b.unaccounted), percent(b.absorbed), percent(b.lost_to_specular),
         percent(b.escaped), percent(b.unshot), s.mesh.element_size));
+  add_mesh_warnings(s, out);
   if (s.end == RadiosityEnd::out_of_shots || s.end == RadiosityEnd::out_of_rays)
     out.push_back(
         fmt::format("radiosity: ended after {} shots and {:.0f} million rays with {:.1f} % of the "

@@ -27,6 +27,11 @@ bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   return float(twice_area) > 0 && twice_area > 1e-9 * longest;
 }
 
+bool is_too_far(const Vec3& p, float radius = 0) {
+  const Vec3 a = abs(p);
+  return !(std::max({a.x, a.y, a.z}) + radius < farthest_surface);
+}
+
 void add_mesh(const Scene& scene, uint32_t index, BaseGeometry& g) {
   const Mesh& mesh = scene.meshes[index];
   BaseSurface s;
@@ -41,7 +46,9 @@ void add_mesh(const Scene& scene, uint32_t index, BaseGeometry& g) {
     out.light = mesh.lights.empty() ? no_light : mesh.lights[t];
     std::array<Vec3, 3> p;
     for (size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[t][k]];
-    out.is_degenerate = !has_area(p[0], p[1], p[2]);
+    const bool is_far = is_too_far(p[0]) || is_too_far(p[1]) || is_too_far(p[2]);
+    g.left_out += is_far ? 1 : 0;
+    out.is_degenerate = is_far || !has_area(p[0], p[1], p[2]);
     for (size_t k = 0; k < 3 && !out.is_degenerate; ++k) {
       const auto [it, is_new] = welded.try_emplace(p[k], uint32_t(g.positions.size()));
       if (is_new) g.positions.push_back(p[k]);
@@ -55,7 +62,8 @@ void add_mesh(const Scene& scene, uint32_t index, BaseGeometry& g) {
 
 // Octants 0 … 7 by the signs of x, y, z (bits 0, 1, 2 set where negative); disks have four.
 void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t material, int32_t light,
-               bool is_inside_out, BaseGeometry& g) {
+               bool is_inside_out, bool is_far, BaseGeometry& g) {
+  g.left_out += is_far ? 1 : 0;
   BaseSurface s;
   s.bulge = bulge;
   s.index = index;
@@ -74,6 +82,7 @@ void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t materia
     BaseTriangle t;
     t.surface = uint32_t(g.surfaces.size());
     t.light = light;
+    t.is_degenerate = is_far;
     t.vertices = {first + (octant & 1), first + 2 + (octant >> 1 & 1), first + 4 + (octant >> 2)};
     // x, y, z run counterclockwise seen from outside where no or two signs are negative
     const bool is_odd = (std::popcount(octant) & 1) != 0;
@@ -90,10 +99,13 @@ BaseGeometry base_geometry(const Scene& scene) {
   for (uint32_t i = 0; i < scene.meshes.size(); ++i) add_mesh(scene, i, g);
   for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
-    add_round(scene, Bulge::sphere, i, s.material, s.light, s.is_inside_out, g);
+    add_round(scene, Bulge::sphere, i, s.material, s.light, s.is_inside_out,
+              is_too_far(s.centre, s.radius), g);
   }
-  for (uint32_t i = 0; i < scene.disks.size(); ++i)
-    add_round(scene, Bulge::disk, i, scene.disks[i].material, scene.disks[i].light, false, g);
+  for (uint32_t i = 0; i < scene.disks.size(); ++i) {
+    const Disk& d = scene.disks[i];
+    add_round(scene, Bulge::disk, i, d.material, d.light, false, is_too_far(d.centre, d.radius), g);
+  }
   return g;
 }
 

@@ -34,12 +34,17 @@ struct BaseTriangle {
 };
 
 // All surfaces of a scene as triangles over welded vertices.
+// Metres from the origin. Farther surfaces are left out: products of their sizes do not fit a
+// float.
+constexpr float farthest_surface = 1e10f;
+
 struct BaseGeometry {
   std::vector<BaseSurface> surfaces;  // meshes, then spheres, then disks
   std::vector<BaseTriangle> triangles;
   std::vector<Vec3> positions;  // world
   std::vector<Vec3> flat;       // the same before bulging, in the sphere's or disk's own frame;
                                 // equal to the position for meshes
+  uint32_t left_out = 0;        // triangles, spheres and disks that reach beyond farthest_surface
 };
 BaseGeometry base_geometry(const Scene& scene);
 
