@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "base/error.h"
@@ -80,6 +81,7 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
       has_header = true;
       continue;
     }
+    constexpr double largest = std::numeric_limits<float>::max();
     std::array<double, 6> v{};
     for (size_t n = 0; n < names.size(); ++n) {
       if (where[n] >= fields.size())
@@ -89,7 +91,7 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
       const char* const last = f.text.data() + f.text.size();
       const bool has_plus = f.text.size() > 1 && f.text[0] == '+' && f.text[1] != '-';
       const auto [stop, error] = std::from_chars(f.text.data() + has_plus, last, v[n]);
-      if (error != std::errc() || stop != last || !std::isfinite(v[n]))
+      if (error != std::errc() || stop != last || !(std::abs(v[n]) <= largest))
         throw InputError(path, line_number, f.column,
                          fmt::format("'{}' is not a number", f.text.substr(0, 40)));
     }
