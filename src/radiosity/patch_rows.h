@@ -18,8 +18,7 @@
 
 #include "base/parallel.h"
 #include "radiosity/form_factors.h"
-#include "radiosity/receivers.h"
-#include "radiosity/shooter.h"
+#include "radiosity/patch_row.h"
 
 namespace troffer {
 
@@ -48,30 +47,11 @@ class PatchRows {
   const std::vector<ReceiverBlock>& blocks() const { return receivers_.blocks; }
 
  private:
-  struct NearPart {
-    uint16_t part, all, visible;  // shares of what the point gets, in 65535ths
-  };
-  struct NearPoint {
-    float unoccluded = 0;
-    uint32_t first = 0, last = 0;  // in parts
-  };
-  // Per block of a chunk: how it sees the patch.
-  enum View : uint16_t { none, lit, dark, partly, near };
-  struct RowChunk {
-    std::vector<View> view;
-    std::vector<uint16_t> first;   // partly: in `visible`; near: in `points`
-    std::vector<uint8_t> visible;  // in 255ths
-    std::vector<NearPoint> points;
-    std::vector<NearPart> parts;
-    size_t bytes() const;
-  };
   using Row = std::vector<RowChunk>;
-  class Maker;
 
   void apply(const RowChunk& row, size_t chunk, const Shooter& shooter,
              const std::vector<ShooterCell>& cells, ShotReceived& out) const;
 
-  static constexpr size_t chunk_blocks = 64;
   const RadiosityMesh& mesh_;
   const Tracer& tracer_;
   Receivers receivers_;
@@ -81,10 +61,5 @@ class PatchRows {
   std::vector<Row> rows_;  // per patch; empty: not kept
   size_t chunks_;
 };
-
-// Flat patches: triangles of about equal size; curved ones: their sample points. Each has the share
-// of the part that is nearest to it, and together they send what the patch does.
-std::vector<ShooterCell> shooter_cells(const RadiosityMesh& mesh, uint32_t patch,
-                                       const Shooter& shooter);
 
 }  // namespace troffer

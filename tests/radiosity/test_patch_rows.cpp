@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "radiosity/patch_rows.h"
 #include "radiosity/rooms.h"
+#include "radiosity/shooter_cells.h"
 
 using namespace troffer;
 using namespace troffer::test;

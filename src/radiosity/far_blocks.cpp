@@ -1,0 +1,179 @@
+#include "radiosity/far_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "base/units.h"
+#include "base/warp.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr uint32_t purpose_far = 4;
+// Points that together get no more than this, in tolerances of one transfer, share a ray.
+constexpr float rays_share = 1;
+constexpr int unanimous_rays = 8;  // of a block: then it is settled
+
+// Neighbouring points are spread over the cells: steps of the golden ratio.
+double first_number(uint64_t stream, uint32_t point) {
+  const uint64_t phase = mix64(stream) + uint64_t(point) * 0x9e3779b97f4a7c15ull;
+  return double(phase >> 11) * 0x1p-53;
+}
+
+// By a number in [0,1), of which what is left, in [0,1) again, comes back.
+size_t choose_cell(const std::vector<double>& sent, double& x) {
+  x *= sent.back();
+  const size_t i = std::min(size_t(std::upper_bound(sent.begin(), sent.end(), x) - sent.begin()),
+                            sent.size() - 1);
+  const double before = i > 0 ? sent[i - 1] : 0.0, width = sent[i] - before;
+  x = width > 0 ? std::clamp((x - before) / width, 0.0, double(one_minus_epsilon)) : 0.0;
+  return i;
+}
+
+}  // namespace
+
+void FarBlocks::start(size_t block) {
+  const ReceiverBlock& b = row_.receivers.blocks[block];
+  Block f;
+  f.block = uint32_t(block);
+  const uint32_t padded = (b.count + Receivers::lanes - 1) / Receivers::lanes * Receivers::lanes;
+  cells_irradiance(row_.receivers, b.first_slot, padded, row_.shooter.cells, f.irradiance);
+  float most = 0;
+  for (uint32_t i = 0; i < b.count; ++i) {
+    if (!std::isfinite(f.irradiance[i])) f.irradiance[i] = 0;
+    f.irradiance[i] *= row_.shooter.expected;
+    most = std::max(most, f.irradiance[i]);
+  }
+  if (!(most > 0)) return;
+  f.wanted = rays_wanted(row_.budget, most);
+  blocks_.push_back(f);
+  const auto index = uint32_t(blocks_.size() - 1);
+  if (f.wanted > 1) {
+    const int first = std::max(1, f.wanted / 4);
+    for (uint8_t i = 0; i < b.count; ++i)
+      for (int k = 0; k < first; ++k) add_ray(index, i, uint8_t(i + 1), k);
+    return;
+  }
+  const float limit = rays_share * row_.budget.tolerance * row_.budget.reference;
+  float sum = 0;
+  uint8_t first = 0;
+  for (uint8_t i = 0; i < b.count; ++i) {
+    sum += f.irradiance[i];
+    if (i + 1u < b.count && sum + f.irradiance[i + 1u] <= limit) continue;
+    add_ray(index, first, uint8_t(i + 1), 0);
+    first = uint8_t(i + 1);
+    sum = 0;
+  }
+}
+
+// To a cell chosen by what it sends now, so that what is seen is the light, not the area: before
+// the dark end of a patch that something hides there, its bright end is whole.
+void FarBlocks::add_ray(uint32_t index, uint8_t first, uint8_t last, int k) {
+  const ReceiverBlock& b = row_.receivers.blocks[blocks_[index].block];
+  const uint64_t h =
+      mix64(row_.shooter.stream + (uint64_t(b.first_point + first) << 20) + uint64_t(k));
+  const uint8_t i = uint8_t(first + (h >> 48) % uint64_t(last - first));
+  if (!(blocks_[index].irradiance[i] > 0)) return;
+  const ElementPoint& r = row_.mesh.points[b.first_point + i];
+  Vec2 u{float(h & 0xffffff) * 0x1p-24f, float(h >> 24 & 0xffffff) * 0x1p-24f};
+  double x = first_number(row_.shooter.stream, b.first_point + first);
+  if (blocks_[index].wanted > 1) {  // a point's own rays are stratified
+    u = SobolGroup(row_.shooter.stream + mix64(b.first_point + i), purpose_far, uint32_t(k)).get2();
+    x = double(u.x);
+  }
+  const size_t n = row_.shooter.cells.size(), start = choose_cell(row_.shooter.sent, x);
+  if (blocks_[index].wanted > 1) u.x = float(x);
+  const Vec2 w = triangle_from_square(u);
+  for (size_t step = 0; step < n; ++step) {
+    const ShooterCell& c = row_.shooter.cells[(start + step) % n];
+    const Vec3 end =
+        c.corners[0] + (c.corners[1] - c.corners[0]) * w.x + (c.corners[2] - c.corners[0]) * w.y;
+    const Vec3 d = end - r.position;
+    const float along = dot(d, r.normal), facing = -dot(d, c.normal), d2 = length_squared(d);
+    if (!(along > r.offset && facing > row_.shooter.even.offset)) continue;
+    Ray ray;
+    ray.origin = r.position + r.normal * r.offset;
+    ray.direction = end + c.normal * row_.shooter.even.offset - ray.origin;
+    ray.t_max = 1;
+    ray_list_.push_back(ray);
+    purposes_.push_back({index, first, last, along * facing / (d2 * d2)});
+    return;
+  }
+}
+
+void FarBlocks::trace() {
+  occluded_.resize(ray_list_.size());
+  row_.tracer.occluded(ray_list_, occluded_, Coherence::coherent);
+  rays_ += ray_list_.size();
+  for (size_t k = 0; k < purposes_.size(); ++k) {
+    Block& f = blocks_[purposes_[k].block];
+    for (uint8_t i = purposes_[k].first; i < purposes_[k].last; ++i) {
+      f.all[i] += purposes_[k].weight;
+      if (occluded_[k] == 0) f.visible[i] += purposes_[k].weight;
+    }
+  }
+  ray_list_.clear();
+  purposes_.clear();
+}
+
+bool FarBlocks::is_unanimous(const Block& f, uint32_t count, bool& is_lit) {
+  bool is_any_lit = false, is_any_dark = false;
+  for (uint32_t i = 0; i < count; ++i) {
+    if (!(f.all[i] > 0)) continue;
+    is_any_lit = is_any_lit || f.visible[i] > 0;
+    is_any_dark = is_any_dark || f.visible[i] < f.all[i];
+  }
+  is_lit = is_any_lit;
+  return is_any_lit != is_any_dark;
+}
+
+void FarBlocks::finish(size_t first_block, RowChunk& out) {
+  trace();
+  for (uint32_t index = 0; index < blocks_.size(); ++index) {
+    Block& f = blocks_[index];
+    const uint32_t count = row_.receivers.blocks[f.block].count;
+    const int first = std::max(1, f.wanted / 4);
+    bool is_lit = false;
+    if (f.wanted == 1 || (is_unanimous(f, count, is_lit) && first * int(count) >= unanimous_rays))
+      continue;
+    for (uint8_t i = 0; i < count; ++i)
+      for (int k = first; k < f.wanted; ++k) add_ray(index, i, uint8_t(i + 1), k);
+  }
+  trace();
+  for (const Block& f : blocks_) settle(f, first_block, out);
+  blocks_.clear();
+}
+
+void FarBlocks::settle(const Block& f, size_t first_block, RowChunk& out) const {
+  const ReceiverBlock& b = row_.receivers.blocks[f.block];
+  bool is_lit = false;
+  BlockView& view = out.view[f.block - first_block];
+  if (is_unanimous(f, b.count, is_lit)) {
+    view = is_lit ? BlockView::lit : BlockView::dark;
+    for (uint32_t i = 0; is_lit && i < b.count; ++i) note_seen(f, i, 1);
+    return;
+  }
+  float all = 0, visible = 0;
+  for (uint32_t i = 0; i < b.count; ++i) {
+    all += f.all[i];
+    visible += f.visible[i];
+  }
+  if (!(all > 0)) return;  // no place on the patch and above the horizon was found
+  view = BlockView::partly;
+  out.first[f.block - first_block] = uint16_t(out.visible.size());
+  for (uint32_t i = 0; i < b.count; ++i) {
+    const float share = f.all[i] > 0 ? f.visible[i] / f.all[i] : visible / all;
+    out.visible.push_back(uint8_t(std::lround(std::clamp(share, 0.0f, 1.0f) * 255)));
+    note_seen(f, i, share);
+  }
+}
+
+void FarBlocks::note_seen(const Block& f, uint32_t i, float share) const {
+  if (row_.seen == nullptr) return;
+  const uint32_t point = row_.receivers.blocks[f.block].first_point + i;
+  row_.seen[point] += f.irradiance[i] / (pi_f * row_.shooter.expected) * share;
+}
+
+}  // namespace troffer

@@ -1,0 +1,74 @@
+#include "radiosity/near_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace troffer {
+
+namespace {
+
+uint16_t in_65535ths(double x) {
+  return uint16_t(std::lround(std::clamp(x, 0.0, 1.0) * 65535));
+}
+
+}  // namespace
+
+void NearBlocks::find(size_t block, size_t k, RowChunk& out) {
+  const ReceiverBlock& b = row_.receivers.blocks[block];
+  records_.clear();
+  scratch_.records = &records_;
+  transfers_.assign(b.count, {});
+  rays_ +=
+      transfer(row_.shooter.even, {row_.mesh.points.data() + b.first_point, b.count}, row_.tracer,
+               row_.budget, row_.shooter.stream, b.first_point, transfers_, scratch_);
+  std::stable_sort(records_.begin(), records_.end(),
+                   [](const RayRecord& x, const RayRecord& y) { return x.receiver < y.receiver; });
+  const size_t first_point = out.points.size();
+  bool is_any = false;
+  size_t record = 0;
+  for (uint32_t i = 0; i < b.count; ++i) {
+    NearPoint p;
+    const float u = luminance(transfers_[i].unoccluded);
+    const size_t first = record;
+    while (record < records_.size() && records_[record].receiver == i) ++record;
+    p.first = p.last = uint32_t(out.parts.size());
+    if (std::isfinite(u) && u > 0) {
+      is_any = true;
+      p.unoccluded = u / row_.shooter.expected;
+      const float visible = add_parts({records_.data() + first, record - first}, out);
+      p.last = uint32_t(out.parts.size());
+      if (row_.seen != nullptr) row_.seen[b.first_point + i] += p.unoccluded / pi_f * visible;
+    }
+    out.points.push_back(p);
+  }
+  if (!is_any) {
+    out.points.resize(first_point);
+    return;
+  }
+  out.view[k] = BlockView::near;
+  out.first[k] = uint16_t(first_point);
+}
+
+float NearBlocks::add_parts(std::span<const RayRecord> records, RowChunk& out) {
+  all_.assign(std::max<size_t>(1, row_.shooter.parts.size()), 0);
+  visible_ = all_;
+  double sum = 0, visible = 0;
+  for (const RayRecord& r : records) {
+    const size_t part = nearest_part(row_.shooter.parts, r.end);
+    all_[part] += double(r.weight);
+    sum += double(r.weight);
+    if (!r.is_visible) continue;
+    visible_[part] += double(r.weight);
+    visible += double(r.weight);
+  }
+  if (!(sum > 0)) return 0;
+  for (size_t part = 0; part < all_.size(); ++part)
+    if (all_[part] > 0)
+      out.parts.push_back(
+          {uint16_t(part), in_65535ths(all_[part] / sum), in_65535ths(visible_[part] / sum)});
+  return float(visible / sum);
+}
+
+}  // namespace troffer

@@ -1,0 +1,134 @@
+#include "radiosity/shooter_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t flat_cells = 10;
+constexpr size_t most_curved_cells = 48;
+
+float area_of(const Vec3 (&c)[3]) {
+  return 0.5f * length(cross(c[1] - c[0], c[2] - c[0]));
+}
+
+// Halves the largest, again and again.
+std::vector<ShooterCell> flat_shooter_cells(const Shooter& shooter) {
+  std::vector<ShooterCell> cells;
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
+    ShooterCell cell;
+    cell.corners[0] = a;
+    cell.corners[1] = b;
+    cell.corners[2] = c;
+    cell.normal = normal;
+    cell.area = area_of(cell.corners);
+    if (cell.area > 0) cells.push_back(cell);
+  };
+  for (const LightPrimitive& p : shooter.pieces)
+    for (uint32_t i = 1; i + 1 < p.vertex_count; ++i)
+      add(p.vertex(0), p.vertex(i), p.vertex(i + 1), Vec3(p.normal));
+  while (!cells.empty() && cells.size() < flat_cells) {
+    const auto largest = std::max_element(
+        cells.begin(), cells.end(),
+        [](const ShooterCell& a, const ShooterCell& b) { return a.area < b.area; });
+    const ShooterCell c = *largest;
+    cells.erase(largest);
+    size_t edge = 0;
+    float longest = -1;
+    for (size_t k = 0; k < 3; ++k) {
+      const float l = length_squared(c.corners[(k + 1) % 3] - c.corners[k]);
+      if (l > longest) {
+        longest = l;
+        edge = k;
+      }
+    }
+    const Vec3 a = c.corners[edge], b = c.corners[(edge + 1) % 3], d = c.corners[(edge + 2) % 3];
+    const Vec3 m = a * 0.5f + b * 0.5f;
+    const size_t before = cells.size();
+    add(a, m, d, c.normal);
+    add(m, b, d, c.normal);
+    if (cells.size() == before) break;  // too small to be halved
+  }
+  for (ShooterCell& c : cells) c.position = (c.corners[0] + c.corners[1] + c.corners[2]) / 3.0f;
+  return cells;
+}
+
+std::vector<ShooterCell> curved_shooter_cells(const RadiosityMesh& mesh, uint32_t patch) {
+  const Patch& p = mesh.patches[patch];
+  const uint32_t count = p.last_point - p.first_point;
+  const auto step = uint32_t((count + most_curved_cells - 1) / most_curved_cells);
+  std::vector<ShooterCell> cells;
+  for (uint32_t i = p.first_point; i < p.last_point; i += step) {
+    const ElementPoint& e = mesh.points[i];
+    cells.push_back({e.position, e.normal, e.area, 1, {e.position, e.position, e.position}});
+  }
+  return cells;
+}
+
+bool is_plain(const Shooter& s) {
+  return s.is_exact && !(s.round_radius > 0);
+}
+
+// How far a disc reaches out of its plane along a direction.
+float reach(float radius, const Vec3& normal, const Vec3& along) {
+  const float c = dot(normal, along);
+  return radius * std::sqrt(std::max(0.0f, 1 - c * c));
+}
+
+}  // namespace
+
+std::vector<ShooterCell> shooter_cells(const RadiosityMesh& mesh, uint32_t patch,
+                                       const Shooter& shooter) {
+  std::vector<ShooterCell> cells =
+      is_plain(shooter) ? flat_shooter_cells(shooter) : curved_shooter_cells(mesh, patch);
+  double area = 0, sent = 0;
+  for (ShooterCell& c : cells) {
+    c.share = share_at(shooter, c.position);
+    area += double(c.area);
+    sent += double(c.area) * double(c.share);
+  }
+  if (!(area > 0) || !(sent > 0)) return {};
+  const auto scale = float(double(shooter.area()) / area), level = float(area / sent);
+  for (ShooterCell& c : cells) {
+    c.area *= scale;
+    c.share *= level;
+  }
+  return cells;
+}
+
+ShooterBounds::ShooterBounds(const std::vector<ShooterCell>& cells, const Shooter& shooter) {
+  float area = 0;
+  for (const ShooterCell& c : cells) {
+    centre += c.position * c.area;
+    area += c.area;
+  }
+  centre = centre / area;
+  normal = cells[0].normal;
+  for (const ShooterCell& c : cells) {
+    is_flat = is_flat && length_squared(c.normal - normal) < 1e-10f;
+    float r = is_plain(shooter) ? 0.0f : 1.5f * std::sqrt(c.area / pi_f);
+    for (const Vec3& v : c.corners) r = std::max(r, length(v - c.position));
+    cell_radius = std::max(cell_radius, r);
+    radius = std::max(radius, length(c.position - centre) + r);
+  }
+}
+
+bool is_out_of_sight(const ShooterBounds& s, const ReceiverBlock& b) {
+  const Vec3 d = b.centre - s.centre;
+  const float slack = 1e-5f * (s.radius + b.radius + length(d));
+  if (s.is_flat) {
+    const float out = b.is_flat ? reach(b.radius, b.normal, s.normal) : b.radius;
+    if (dot(d, s.normal) + out <= slack) return true;
+  }
+  if (b.is_flat) {
+    const float out = s.is_flat ? reach(s.radius, s.normal, b.normal) : s.radius;
+    if (-dot(d, b.normal) + out <= slack) return true;
+  }
+  return false;
+}
+
+}  // namespace troffer
