@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "base/random.h"
-#include "radiosity/solver.h"
+#include "radiosity/source_contributions.h"
 
 namespace troffer {
 

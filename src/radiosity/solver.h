@@ -14,7 +14,6 @@
 
 #include "base/parallel.h"
 #include "light/light_primitive.h"
-#include "radiosity/form_factors.h"
 #include "radiosity/solution.h"
 
 namespace troffer {
@@ -34,18 +33,5 @@ RadiositySolution solve_radiosity(const Scene& scene, const Tracer& tracer,
                                   const BsdfTables& tables, const LightPrimitives& primitives,
                                   const RadiosityOptions& options, int threads,
                                   const RadiosityCallback& progress, const StopFlag& stop);
-
-// All that a patch shot, its parts in the proportions of what they received in all; points into the
-// solution's mesh.
-Shooter whole_patch_shooter(const RadiositySolution& solution, uint32_t patch);
-
-// What one source gave to any sample points, whether it is in their lists or not. A light's
-// values are those of its shot, bit for bit. A patch's are computed anew, in one transfer of all
-// the radiance that it shot: they differ from the sum over its shots by noise. out[i] is for
-// points[i]; points that the source cannot reach get zeros. Each thread needs a scratch of its own.
-void source_contributions(const Tracer& tracer, const LightPrimitives& primitives,
-                          const RadiositySolution& solution, uint32_t source,
-                          std::span<const uint32_t> points, std::span<StoredContribution> out,
-                          TransferScratch& scratch);
 
 }  // namespace troffer

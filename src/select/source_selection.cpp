@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "radiosity/interpolation.h"
-#include "radiosity/solver.h"
+#include "radiosity/source_contributions.h"
 
 namespace troffer {
 

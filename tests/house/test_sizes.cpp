@@ -11,7 +11,6 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 const fs::path root = TROFFER_SOURCE_DIR;
-// Rooms that only keep the limit of functions so far.
-const std::set<std::string> partly_kept{"radiosity"};
 constexpr size_t most_function_lines = 60, most_members = 12, most_file_lines = 400;
 
 struct Function {
@@ -362,14 +359,12 @@ TEST_CASE("functions, classes and files of src/ are of a size to be read") {
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     const Sizes sizes = sizes_of(text);
     const std::string name = fs::relative(file, root).generic_string();
-    const bool is_kept = partly_kept.count(file.parent_path().filename().string()) == 0;
     CHECK_MESSAGE(sizes.is_balanced, name);
     ++files;
     functions += sizes.functions.size();
     classes += sizes.classes.size();
     for (const Function& f : sizes.functions)
       CHECK_MESSAGE(f.lines <= most_function_lines, name, ":", f.line, ": ", f.head);
-    if (!is_kept) continue;
     CHECK_MESSAGE(std::count(text.begin(), text.end(), '\n') <= most_file_lines, name);
     for (const Class& c : sizes.classes)
       if (!c.is_data && c.comment.find("members") == std::string::npos)

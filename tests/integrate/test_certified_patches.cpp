@@ -9,6 +9,7 @@
 
 #include "probe.h"
 #include "radiosity/solver.h"
+#include "radiosity/source_contributions.h"
 
 using namespace troffer;
 using namespace troffer::test;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "radiosity/rooms.h"
+#include "radiosity/source_contributions.h"
 
 using namespace troffer;
 using namespace troffer::test;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "radiosity/rooms.h"
+#include "radiosity/source_contributions.h"
 #include "support/light_scenes.h"
 
 using namespace troffer;

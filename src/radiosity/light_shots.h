@@ -1,0 +1,49 @@
+// What one light gives to all sample points, and how much of its light leaves the scene.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "radiosity/closure.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/solution.h"
+
+namespace troffer {
+
+struct LightShot {
+  double power = 0;
+  OpenShare open;  // not of scenes that no ray leaves
+  bool has_surface = false;
+};
+
+class LightShots {
+ public:
+  // Makes shots for a solution with its mesh, options and mean irradiance.
+  LightShots(const Tracer& tracer, const LightPrimitives& primitives,
+             const RadiositySolution& solution, int threads);
+
+  // Nothing is found for a light without a surface, or once `stop` is set.
+  LightShot shoot(uint32_t light, bool is_closed, const StopFlag& stop);
+  std::span<const Transfer> transfers() const { return transfers_; }  // of the last, per point
+  uint64_t rays() const;
+
+ private:
+  // Sample points that are dealt with together, and the rays that this took.
+  struct Chunk {
+    uint32_t first = 0, last = 0;
+    uint64_t rays = 0;
+  };
+  void find_transfers(const Shooter& shooter, uint32_t light, uint64_t stream,
+                      const StopFlag& stop);
+
+  const Tracer& tracer_;
+  const LightPrimitives& lights_;
+  const RadiositySolution& solution_;
+  int threads_;
+  std::vector<Chunk> chunks_;
+  std::vector<Transfer> transfers_;
+  std::vector<TransferScratch> scratch_;
+};
+
+}  // namespace troffer

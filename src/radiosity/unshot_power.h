@@ -1,0 +1,67 @@
+// The power of patches that waits to be shot, and where the rest of what arrives goes.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "radiosity/closure.h"
+#include "radiosity/point_surfaces.h"
+#include "radiosity/solution.h"
+
+namespace troffer {
+
+class UnshotPower {
+ public:
+  UnshotPower(const RadiosityMesh& mesh, const std::vector<PointSurface>& surfaces,
+              EnergyBalance& balance);
+
+  // power: of `received` over the point's element, luminance, before closure.
+  void pass_on(uint32_t point, const Rgb& received, float power, const Closure& closure);
+  // Of a shot that sent so much: what left the scene, and what is not accounted for.
+  void count(double power, const OpenShare& open, const Closure& closure);
+
+  double sum() const;  // luminance
+  uint32_t brightest_patch() const;
+  const Rgb& of(uint32_t patch) const { return unshot_[patch]; }
+  // Luminance of radiosity, in any unit, per point of the patch.
+  std::span<const float> at_points_of(const Patch& patch) const {
+    return {unshot_at_.data() + patch.first_point, patch.last_point - patch.first_point};
+  }
+  void clear(uint32_t patch, const Patch& its_points);
+
+  // [1] of solver.h, §3: what is unshot spreads over all surfaces, again and again. So does what
+  // mirrors, glass and gloss took: they do not shoot, but their light is somewhere. Of both a part
+  // leaves an open scene at every bounce, as it did of what was shot.
+  Rgb ambient(const MeanSurface& mean) const;
+
+ private:
+  const std::vector<PointSurface>& surfaces_;
+  EnergyBalance& balance_;
+  std::vector<Rgb> unshot_;       // power, per patch
+  std::vector<float> unshot_at_;  // luminance of radiosity, per point
+  Rgb lost_;                      // power that specular surfaces took
+  double arrived_ = 0;
+};
+
+inline void UnshotPower::pass_on(uint32_t point, const Rgb& received, float power,
+                                 const Closure& closure) {
+  if (!(power > 0)) return;
+  const PointSurface& surface = surfaces_[point];
+  const float counted = closure.of(power);
+  const Rgb arrived = received * (counted * surface.area / power);
+  const Rgb reflected = arrived * surface.reflectance;
+  const float passed = luminance(reflected);
+  float rest = std::max(counted - passed, 0.0f);
+  if (surface.has_specular) {
+    const Rgb taken = arrived * surface.specular;
+    balance_.lost_to_specular += double(luminance(taken));
+    rest -= luminance(taken);
+    lost_ += taken;
+  }
+  balance_.absorbed += double(rest);
+  unshot_[surface.patch] += reflected;
+  unshot_at_[point] += passed * surface.per_area;
+}
+
+}  // namespace troffer
