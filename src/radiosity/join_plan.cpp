@@ -99,10 +99,7 @@ JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_a
     if (cut_elements > max_elements) element *= 1.3;
     if (round < strict_rounds) --round;  // sizes alone: no reason to loosen the rules
   }
-  plan.coarsened = float(element / first_element);
-  plan.element_size = float(element);
-  plan.patch_size = float(patch);
-  plan.join_angle_deg = float(angle);
+  plan.set_sizes(element, patch, angle, element / first_element);
   return plan;
 }
 

@@ -11,6 +11,12 @@ namespace troffer {
 struct JoinPlan {
   float element_size = 0, patch_size = 0, join_angle_deg = 0;
   float coarsened = 1;  // element_size over what was wanted
+  void set_sizes(double element, double patch, double angle_deg, double coarser) {
+    element_size = float(element);
+    patch_size = float(patch);
+    join_angle_deg = float(angle_deg);
+    coarsened = float(coarser);
+  }
   Clusters sheets, elements;
 };
 JoinPlan plan_joining(const BaseGeometry& geometry, const std::vector<uint32_t>& same_as,
