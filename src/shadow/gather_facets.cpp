@@ -12,17 +12,47 @@ SourcePart& SourceParts::add() {
   return parts_[count_++];
 }
 
-void gather_facets(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
-                   size_t most, uint64_t own, ShadowScene& scene, ShadowCandidates& out,
-                   CertifiedCounters& counters) {
-  const Shaft shaft = make_shaft(hull, outline, normal, scene.magnitude());
-  Box receivers, source;
-  for (int i = 0; i < hull.count; ++i) receivers.grow(Vec3(hull.corners[size_t(i)]));
-  for (const Vec3d& c : outline) source.grow(Vec3(c));
-  scene.candidates(shaft.all(), receivers, source, most, own, out);
+namespace {
+
+// Bounds of points up to `pad` off, for comparison with bounds in single precision.
+Box padded_bounds(std::span<const Vec3d> points, double pad) {
+  Boxd box;
+  for (const Vec3d& p : points) box.grow(p);
+  const Vec3d margin =
+      Vec3d(pad) + max(max(box.upper, -box.upper), max(box.lower, -box.lower)) * 1.2e-7;
+  return {Vec3(box.lower - margin), Vec3(box.upper + margin)};
+}
+
+struct Shot {
+  const ReceiverHull& hull;
+  const Shaft& shaft;
+  const Box& source;
+  uint64_t own;
+};
+
+void gather(const Shot& s, size_t most, ShadowScene& scene, ShadowCandidates& out,
+            CertifiedCounters& counters) {
+  const Box receivers = padded_bounds({s.hull.corners.data(), size_t(s.hull.count)}, s.hull.slack);
+  scene.candidates(s.shaft.all(), receivers, s.source, most, s.own, out);
   ++counters.gathers;
   counters.candidates += out.facets.size();
   counters.incomplete += out.is_complete ? 0 : 1;
+}
+
+}  // namespace
+
+void gather_facets(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
+                   size_t most, ShadowScene& scene, ShadowCandidates& out,
+                   CertifiedCounters& counters) {
+  const Shaft shaft = make_shaft(hull, outline, normal, scene.magnitude());
+  gather({hull, shaft, padded_bounds(outline, 0), no_round_source}, most, scene, out, counters);
+}
+
+void gather_facets(const ReceiverHull& hull, const SphereSource& sphere, size_t most,
+                   ShadowScene& scene, ShadowCandidates& out, CertifiedCounters& counters) {
+  const Shaft shaft = make_shaft(hull, sphere.centre, sphere.radius, scene.magnitude());
+  const Box ball = padded_bounds({&sphere.centre, 1}, sphere.radius);
+  gather({hull, shaft, ball, sphere.own}, most, scene, out, counters);
 }
 
 namespace {
@@ -106,8 +136,8 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
                     bool is_whole, int halvings) {
   const bool is_last = is_last_try(halvings);
   const FlatSource& source = *task.request.flat;
-  gather_facets(hull, cell.all_corners(), source.plane.normal, most_facets(is_last),
-                no_round_source, scene, memory.candidates, counters);
+  gather_facets(hull, cell.all_corners(), source.plane.normal, most_facets(is_last), scene,
+                memory.candidates, counters);
   if (is_last && memory.candidates.is_too_long) cut_list(hull.centre);
   if (is_last || !memory.candidates.is_too_long) {
     SourcePart& part = add_part(members, hull);
@@ -133,16 +163,15 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
 void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int halvings) {
   const bool is_last = is_last_try(halvings);
   const SphereSource& source = *task.request.sphere;
-  const SphereSquare square = square_about(source, hull);
+  const bool is_too_near = is_near(source, hull);
   ShadowCandidates& c = memory.candidates;
-  if (square.is_near) {  // nothing is known, and rays decide
+  if (is_too_near) {  // nothing is known, and rays decide
     c.facets.clear();
     c.is_too_long = c.is_complete = false;
   } else {
-    gather_facets(hull, square.corners, square.normal, most_facets(is_last), source.own, scene, c,
-                  counters);
+    gather_facets(hull, source, most_facets(is_last), scene, c, counters);
   }
-  if ((square.is_near || c.is_too_long) && !is_last && members.size() >= 2) {
+  if ((is_too_near || c.is_too_long) && !is_last && members.size() >= 2) {
     const size_t half = halve_members(task.cluster, members);
     for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
       sphere(side, hull_of(task.cluster, side), halvings - 1);

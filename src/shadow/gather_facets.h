@@ -40,10 +40,12 @@ struct GatherMemory {
   SourceParts parts;
 };
 
-// Sets memory.candidates to the facets in the shaft between a hull and a flat outline.
+// Sets `out` to the facets in the shaft between a hull and a flat outline, or a sphere.
 void gather_facets(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
-                   size_t most, uint64_t own, ShadowScene& scene, ShadowCandidates& out,
+                   size_t most, ShadowScene& scene, ShadowCandidates& out,
                    CertifiedCounters& counters);
+void gather_facets(const ReceiverHull& hull, const SphereSource& sphere, size_t most,
+                   ShadowScene& scene, ShadowCandidates& out, CertifiedCounters& counters);
 
 // Adds the facets that rays have met, and keeps the `most` that hide most, these first.
 void shorten_candidates(const FoundFacets& found, const Vec3d& centre, size_t most,

@@ -123,7 +123,7 @@ Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const
                  double scene_magnitude) {
   Shaft shaft;
   // Planes are tested in single precision against coordinates up to scene_magnitude.
-  const double margin = 5e-7 * std::max(scene_magnitude, hull.magnitude);
+  const double margin = shaft_margin * std::max(scene_magnitude, hull.magnitude);
   const std::span<const Vec3d> corners(hull.corners.data(), size_t(hull.count));
   double lowest = dot(normal, outline[0]);
   for (const Vec3d& v : outline) lowest = std::min(lowest, dot(normal, v));

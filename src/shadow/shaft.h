@@ -40,4 +40,16 @@ struct Shaft {
 Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
                  double scene_magnitude);
 
+// The shaft from receivers to what they see of a sphere: it holds the convex hull of receivers and
+// sphere, but for what lies deeper than the caps that any of them sees and behind their common
+// horizon. All receivers lie outside the sphere.
+Shaft make_shaft(const ReceiverHull& hull, const Vec3d& centre, double radius,
+                 double scene_magnitude);
+
+// How far planes are pushed outwards, as a share of the largest coordinate M, for their rounding
+// and that of the test in single precision, u = 2^-24: the normal's components round by u each and
+// the test's three products by 3 u, together 4 u (|nx| + |ny| + |nz|) M <= 4 sqrt(3) u M, and the
+// distance, at most sqrt(3) M, by u of itself: 5 sqrt(3) u = 5.2e-7.
+constexpr double shaft_margin = 6e-7;
+
 }  // namespace troffer

@@ -7,26 +7,11 @@
 
 namespace troffer {
 
-SphereSquare square_about(const SphereSource& s, const ReceiverHull& hull) {
+bool is_near(const SphereSource& s, const ReceiverHull& hull) {
   double reach = hull.slack;
   for (int i = 0; i < hull.count; ++i)
     reach = std::max(reach, hull.slack + length(hull.corners[size_t(i)] - hull.centre));
-  SphereSquare square;
-  const Vec3d axis = s.centre - hull.centre;
-  const double distance = length(axis);
-  square.is_near = !(distance > reach + 1.05 * s.radius);
-  if (square.is_near) return square;
-  // Receivers lie in the ball of radius `reach` about the hull's centre: seen from the most unlucky
-  // one the centre is off the axis by `off`, and a tangent of the sphere by `half` more.
-  const double off = std::asin(reach / distance), half = std::asin(s.radius / (distance - reach));
-  square.is_near = off + half > 1.2;
-  if (square.is_near) return square;
-  const double size = 1.0001 * (distance + reach) * (std::tan(off + half) - std::tan(off));
-  const Framed frame(axis / distance);
-  square.normal = -frame.normal;
-  const Vec3d u = frame.tangent * size, v = frame.bitangent * size;
-  square.corners = {s.centre - u - v, s.centre + u - v, s.centre + u + v, s.centre - u + v};
-  return square;
+  return !(length(s.centre - hull.centre) > reach + 1.05 * s.radius);
 }
 
 // The disk that the sphere's outline spans from x, as its bounding square.

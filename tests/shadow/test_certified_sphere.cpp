@@ -8,6 +8,7 @@
 #include "base/warp.h"
 #include "brute_force.h"
 #include "light/irradiance.h"
+#include "shadow/sphere_outline.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -86,6 +87,58 @@ TEST_CASE("spheres: exact where nothing hides them, shares by the disk that they
   CHECK(std::abs(mean / pairs) < 0.001);
   CHECK(error2 < 1.2 * predicted2);
   CHECK(predicted2 < 9 * error2);
+}
+
+TEST_CASE("a shaft to a sphere holds every segment to what receivers see of it") {
+  size_t tested = 0;
+  for (uint64_t seed = 0; seed < 4000; ++seed) {
+    Random r(seed + 2000000);
+    const SphereSource sphere = random_sphere(r);
+    const std::vector<ShadowReceiver> receivers = random_receivers(r, 12);
+    std::vector<Vec3> origins, normals;
+    for (const ShadowReceiver& x : receivers) {
+      origins.push_back(x.origin);
+      normals.push_back(x.normal);
+    }
+    const ReceiverHull hull = bound_receivers(origins, normals);
+    if (is_near(sphere, hull)) continue;
+    const Shaft shaft = make_shaft(hull, sphere.centre, sphere.radius, 10);
+    for (int k = 0; k < 20; ++k) {
+      const ShadowReceiver& x = receivers[size_t(r.next_float() * 12)];
+      const Vec3d from(x.origin), out = normalize(Vec3d(random_vector(r, 1)));
+      const Vec3d to = sphere.centre + out * sphere.radius;
+      if (dot(from - to, out) <= 0) continue;
+      const Vec3d p = from + (to - from) * (1 - sqr(r.next_double()));
+      if (dot(p - from, Vec3d(x.normal)) <= 0) continue;
+      ++tested;
+      for (const Plane& plane : shaft.all())
+        CHECK(dot(Vec3d(plane.normal), p) <= double(plane.distance));
+    }
+  }
+  CHECK(tested > 20000);
+}
+
+TEST_CASE("a wide cluster sees past the plane through a sphere's centre: a plate there hides") {
+  const SphereSource source{{0, 0, 2.5}, 0.1};
+  for (const float size : {0.3f, 1.0f, 2.5f, 6.0f}) {
+    BruteForceScene scene;  // 5 mm over the centre, about the sphere
+    scene.facets = {parallelogram_facet({-0.3f, -0.3f, 2.505f}, {0.6f, 0, 0}, {0, 0.6f, 0})};
+    std::vector<ShadowReceiver> receivers;
+    for (int i = 0; i < 64; ++i) {
+      const Vec3 p{size * (float(i % 8) / 7 - 0.2f), size * (float(i / 8) / 7 - 0.2f), 0};
+      receivers.push_back({p, {0, 0, 1}, {0, 0, 1}, p + Vec3{0, 0, 4e-6f}, uint64_t(i)});
+    }
+    std::vector<SourceVisibility> out(receivers.size());
+    FoundFacets found;
+    evaluate_alone({}, source, receivers, scene, found, out);
+    for (size_t i = 0; i < out.size(); ++i) {
+      const double expected = reference_share(scene, source, receivers[i], 100);
+      CAPTURE(size);
+      CAPTURE(i);
+      CAPTURE(expected);
+      if (out[i].answer == ShadowAnswer::lit) CHECK(expected == 1);
+    }
+  }
 }
 
 TEST_CASE("a sphere is not hidden by what is stuck into it") {
