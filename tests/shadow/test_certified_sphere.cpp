@@ -125,7 +125,7 @@ TEST_CASE("a wide cluster sees past the plane through a sphere's centre: a plate
     scene.facets = {parallelogram_facet({-0.3f, -0.3f, 2.505f}, {0.6f, 0, 0}, {0, 0.6f, 0})};
     std::vector<ShadowReceiver> receivers;
     for (int i = 0; i < 64; ++i) {
-      const Vec3 p{size * (float(i % 8) / 7 - 0.2f), size * (float(i / 8) / 7 - 0.2f), 0};
+      const Vec3 p{size * (float(i % 8) / 7 - 0.5f), size * (float(i / 8) / 7 - 0.5f), 0};
       receivers.push_back({p, {0, 0, 1}, {0, 0, 1}, p + Vec3{0, 0, 4e-6f}, uint64_t(i)});
     }
     std::vector<SourceVisibility> out(receivers.size());
@@ -136,7 +136,7 @@ TEST_CASE("a wide cluster sees past the plane through a sphere's centre: a plate
       CAPTURE(size);
       CAPTURE(i);
       CAPTURE(expected);
-      if (out[i].answer == ShadowAnswer::lit) CHECK(expected == 1);
+      CHECK((expected == 1 || out[i].answer != ShadowAnswer::lit));
     }
   }
 }
