@@ -11,7 +11,7 @@
 
 namespace troffer {
 
-// Angle of (x, y), y >= 0, in [0, pi]; relative error under 2e-7 in float, 1e-13 in double. (0,0)
+// Angle of (x, y), y >= 0, in [0, pi]; relative error under 2e-7 in float, 1e-15 in double. (0,0)
 // gives 0. After folding the plane to |t| <= tan(pi/8), atan(t)/t is a polynomial in t²: Chebyshev
 // interpolation, degrees chosen for the type's rounding.
 template <class T>
@@ -32,13 +32,19 @@ TROFFER_ALWAYS_INLINE T upper_angle(T y, T x) {
   } else {
     const double zz = z * z;  // even and odd powers apart: shorter chains
     const double even =
-        (((0.030662440370424447 * zz + 0.075637035519151921) * zz + 0.11110385046148014) * zz +
-         0.19999999604891977) *
+        ((((0.037965257453865936 * zz + 0.058468782973308725) * zz + 0.076920453309022250) * zz +
+          0.11111110744919658) *
+             zz +
+         0.19999999999940891) *
             zz +
-        0.99999999999997324;
+        1;
     const double odd =
-        ((0.058745056213078309 * zz + 0.090783920729434239) * zz + 0.14285690423839287) * zz +
-        0.33333333330803444;
+        ((((0.017805397205419445 * zz + 0.050351024566015518) * zz + 0.066629518136291901) * zz +
+          0.090908968090640270) *
+             zz +
+         0.14285714279250245) *
+            zz +
+        0.33333333333333121;
     p = even - z * odd;
   }
   const T swaps = T(y > ax), is_left = T(x < 0);

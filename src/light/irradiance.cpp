@@ -93,13 +93,13 @@ double irradiance(const LightPrimitives& primitives, uint32_t light, const Vec3d
 namespace {
 
 // Gauss–Legendre of order 3 × 3 over a cell that is small against its distance and clear of the
-// horizon. corner: the cell's first corner from x; gu, gv: its sides. At 12 half diagonals the
-// relative error is under 1e-6.
-float quadrature_irradiance(const Vec3& corner, const Vec3& gu, const Vec3& gv, const Vec3& n,
-                            float height) {
+// horizon. corner: the cell's first corner from x; gu, gv: its sides; n0, nu, nv: these times the
+// normal, which cancel low over the horizon; area and height (of x over the cell's plane) likewise.
+// At 12 half diagonals the relative error is under 1e-6.
+float quadrature_irradiance(const Vec3& corner, const Vec3& gu, const Vec3& gv, float n0, float nu,
+                            float nv, float area_and_height) {
   constexpr float nodes[3] = {0.11270166538f, 0.5f, 0.88729833462f};
   constexpr float weights[3] = {5.0f / 18, 8.0f / 18, 5.0f / 18};
-  const float n0 = dot(corner, n), nu = dot(gu, n), nv = dot(gv, n);
   const float q0 = dot(corner, corner), qu = 2 * dot(corner, gu), qv = 2 * dot(corner, gv);
   const float uu = dot(gu, gu), uv = 2 * dot(gu, gv), vv = dot(gv, gv);
   float sum = 0;
@@ -112,7 +112,7 @@ float quadrature_irradiance(const Vec3& corner, const Vec3& gu, const Vec3& gv, 
       sum += weights[i] * weights[j] * cosine / (square * square);
     }
   }
-  return sum * height * length(cross(gu, gv));
+  return sum * area_and_height;
 }
 
 }  // namespace
@@ -137,7 +137,9 @@ float cell_irradiance(const Parallelogram& source, const SourceCell& cell, const
   const Vec3d middle = p0 + (gu + gv) * 0.5;
   const double half_diagonal2 = 0.25 * std::max(length_squared(gu + gv), length_squared(gu - gv));
   if (lowest >= 0 && length_squared(middle) > 144 * half_diagonal2)
-    return quadrature_irradiance(Vec3(p0), Vec3(gu), Vec3(gv), n, float(std::abs(height)));
+    return quadrature_irradiance(Vec3(p0), Vec3(gu), Vec3(gv), float(dot(normal, p0)),
+                                 float(dot(normal, gu)), float(dot(normal, gv)),
+                                 float(std::abs(height) * length(cross(gu, gv))));
   const auto vertex = [&](size_t i) { return corners[i]; };
   return float(irradiance_from_sum(lambert_sum(4, vertex, normal), height > 0));
 }

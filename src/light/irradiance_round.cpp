@@ -7,13 +7,17 @@
 
 namespace troffer {
 
-double sphere_irradiance(const Vec3d& centre, double radius, const Vec3d& x, const Vec3d& n,
+// Normals come rounded to single precision, and closed forms are differences of terms of which not
+// all have the normal's length: low over the horizon 1e-7 of it would be 1e-3 of the result.
+
+double sphere_irradiance(const Vec3d& centre, double radius, const Vec3d& x, const Vec3d& normal,
                          Sides sides, bool is_inside_out) {
   const Vec3d to_centre = centre - x;
   const double d = length(to_centre);
   const bool is_inside = d < radius;
   if (sides == Sides::front && is_inside != is_inside_out) return 0;
   if (is_inside) return pi;
+  const Vec3d n = normalize(normal);
   const double cos_theta = dot(n, to_centre) / d;
   const double q = sqr(radius / d);
   // METHOD: wholly above (or below) the horizon where cos² > q; in terms of x² = 1/q - 1
@@ -80,11 +84,11 @@ struct Rim {
 }  // namespace
 
 double disk_irradiance(const Vec3d& centre, const Vec3d& m, double radius, const Vec3d& x,
-                       const Vec3d& n, Sides sides) {
+                       const Vec3d& normal, Sides sides) {
   const Vec3d from_centre = x - centre;
   const double signed_height = dot(m, from_centre);
   if (!(signed_height > 0 || (sides == Sides::both && signed_height < 0))) return 0;
-  const Vec3d up = signed_height > 0 ? m : -m;
+  const Vec3d up = signed_height > 0 ? m : -m, n = normalize(normal);
   const Vec3d foot = from_centre - m * signed_height;
   const double foot_length = length(foot);
   const Vec3d a = foot_length > 1e-12 * radius ? foot / foot_length : Framed(up).tangent;

@@ -17,79 +17,87 @@ namespace {
 
 constexpr size_t block = 16;
 
-// Lambert's sum of a polygon that stands above the horizon [1], from receivers relative to its
-// first corner; least: the lowest corner's height.
+// What a block of receivers sees of a polygon that stands above their horizons.
 template <class T>
-TROFFER_ALWAYS_INLINE void add_lambert_edges(const T* __restrict corners, int n,
-                                             const T* __restrict x, const T* __restrict y,
-                                             const T* __restrict z, const T* __restrict nx,
-                                             const T* __restrict ny, const T* __restrict nz,
-                                             T* __restrict sum, T* __restrict least) {
+struct alignas(64) BlockSums {
+  T sum[block];     // Lambert's [1]
+  T least[block];   // the lowest corner's height
+  T angles[block];  // sum of the edges' lengths times angle / |v × e|: see is_exact
+};
+
+// Receivers relative to the polygon's first corner.
+template <class T>
+struct alignas(64) BlockReceivers {
+  T x[block], y[block], z[block], nx[block], ny[block], nz[block];
+};
+
+template <class T>
+TROFFER_ALWAYS_INLINE void add_lambert_edges(const T* __restrict corners, const T* __restrict sizes,
+                                             int n, const BlockReceivers<T>& __restrict r,
+                                             BlockSums<T>& __restrict out) {
   for (size_t i = 0; i < block; ++i) {
-    sum[i] = 0;
-    least[i] = std::numeric_limits<T>::max();
+    out.sum[i] = out.angles[i] = 0;
+    out.least[i] = std::numeric_limits<T>::max();
   }
   for (int e = 0; e < n; ++e) {
     const T* a = corners + 3 * e;
     const T* b = corners + 3 * (e + 1 == n ? 0 : e + 1);
     const T ex = b[0] - a[0], ey = b[1] - a[1], ez = b[2] - a[2];
-    const T ax = a[0], ay = a[1], az = a[2];
+    const T ax = a[0], ay = a[1], az = a[2], size = sizes[e];
     for (size_t i = 0; i < block; ++i) {
-      const T vx = ax - x[i], vy = ay - y[i], vz = az - z[i];
+      const T vx = ax - r.x[i], vy = ay - r.y[i], vz = az - r.z[i];
       // with the edge, not with the other end: accurate where both are nearly parallel
       const T cx = vy * ez - vz * ey, cy = vz * ex - vx * ez, cz = vx * ey - vy * ex;
       const T sine = std::sqrt(cx * cx + cy * cy + cz * cz);
       const T cosine = vx * (vx + ex) + vy * (vy + ey) + vz * (vz + ez);
-      const T along = nx[i] * cx + ny[i] * cy + nz[i] * cz;
+      const T along = r.nx[i] * cx + r.ny[i] * cy + r.nz[i] * cz;
       const T safe = sine > T(1e-30) ? sine : T(1e-30);
-      sum[i] += along * (upper_angle(sine, cosine) / safe);
-      const T height = nx[i] * vx + ny[i] * vy + nz[i] * vz;
-      least[i] = least[i] < height ? least[i] : height;
+      const T ratio = upper_angle(sine, cosine) / safe;
+      out.sum[i] += along * ratio;
+      out.angles[i] += size * ratio;
+      const T height = r.nx[i] * vx + r.ny[i] * vy + r.nz[i] * vz;
+      out.least[i] = out.least[i] < height ? out.least[i] : height;
     }
   }
 }
 
 TROFFER_MULTIVERSION
-void lambert_double(const double* __restrict corners, int n, const double* __restrict x,
-                    const double* __restrict y, const double* __restrict z,
-                    const double* __restrict nx, const double* __restrict ny,
-                    const double* __restrict nz, double* __restrict sum, double* __restrict least) {
-  add_lambert_edges(corners, n, x, y, z, nx, ny, nz, sum, least);
+void lambert_double(const double* __restrict corners, const double* __restrict sizes, int n,
+                    const BlockReceivers<double>& __restrict r, BlockSums<double>& __restrict out) {
+  add_lambert_edges(corners, sizes, n, r, out);
 }
 
 TROFFER_MULTIVERSION
-void lambert_float(const float* __restrict corners, int n, const float* __restrict x,
-                   const float* __restrict y, const float* __restrict z, const float* __restrict nx,
-                   const float* __restrict ny, const float* __restrict nz, float* __restrict sum,
-                   float* __restrict least) {
-  add_lambert_edges(corners, n, x, y, z, nx, ny, nz, sum, least);
+void lambert_float(const float* __restrict corners, const float* __restrict sizes, int n,
+                   const BlockReceivers<float>& __restrict r, BlockSums<float>& __restrict out) {
+  add_lambert_edges(corners, sizes, n, r, out);
 }
 
-// A block in single precision. Differences that cancel are taken in double.
-struct FloatBlock {
-  alignas(64) float x[block], y[block], z[block], nx[block], ny[block], nz[block];
-  alignas(64) float sum[block], least[block];
-};
-
+// Differences that cancel are taken in double.
 TROFFER_MULTIVERSION
 void to_floats(const double* __restrict from, double origin, float* __restrict to) {
   for (size_t i = 0; i < block; ++i) to[i] = float(from[i] - origin);
 }
+TROFFER_MULTIVERSION
+void to_doubles(const double* __restrict from, double origin, double* __restrict to) {
+  for (size_t i = 0; i < block; ++i) to[i] = from[i] - origin;
+}
 
 constexpr size_t most_corners = 16;
 
-// Clipped to the horizon of unit normal h through x first.
+// Clipped to the horizon of unit normal h through x first. Relative to x, as crossings far from the
+// origin would lose digits.
 double clipped_irradiance(std::span<const Vec3d> outline, const Vec3d& x, const Vec3d& n,
                           const Vec3d& h) {
   std::array<Vec3d, 2 * most_corners> kept;
   size_t count = 0;
   for (size_t i = 0; i < outline.size(); ++i) {
-    const Vec3d &p = outline[i], &q = outline[(i + 1) % outline.size()];
-    const double hp = dot(h, p - x), hq = dot(h, q - x);
+    const Vec3d p = outline[i] - x, q = outline[(i + 1) % outline.size()] - x;
+    const double hp = dot(h, p), hq = dot(h, q);
     if (hp >= 0) kept[count++] = p;
     if ((hp < 0) != (hq < 0)) kept[count++] = p + (q - p) * (hp / (hp - hq));
   }
-  return polygon_irradiance({kept.data(), count}, x, n, Sides::both);
+  return polygon_irradiance({kept.data(), count}, Vec3d(), n, Sides::both);
 }
 
 double lowest_corner(std::span<const Vec3d> outline, const Vec3d& x, const Vec3d& h) {
@@ -122,56 +130,98 @@ void ReceiverArrays::set(size_t i, const Vec3& p, const Vec3& n) {
 
 namespace {
 
-// What is common to all receivers of a call.
-struct PolygonSums {
-  std::span<const Vec3d> outline;
-  double corners[3 * most_corners];  // relative to the first one
-  float float_corners[3 * most_corners];
-  double near2 = 0;  // square of the distance from which on sums are taken in double
+// The polygon and a block of receivers in one precision.
+template <class T>
+struct Lambert {
+  T corners[3 * most_corners];  // relative to the first one
+  T sizes[most_corners];        // of edges
+  BlockReceivers<T> receivers;
+  BlockSums<T> sums;
 
-  explicit PolygonSums(std::span<const Vec3d> polygon) : outline(polygon) {
-    double diameter2 = 0;
+  void set_polygon(std::span<const Vec3d> outline) {
     for (size_t i = 0; i < outline.size(); ++i) {
       const Vec3d d = outline[i] - outline[0];
-      diameter2 = std::max(diameter2, length_squared(d));
-      for (size_t a = 0; a < 3; ++a) {
-        corners[3 * i + a] = d[a];
-        float_corners[3 * i + a] = float(d[a]);
-      }
+      sizes[i] = T(length(outline[i + 1 == outline.size() ? 0 : i + 1] - outline[i]));
+      for (size_t a = 0; a < 3; ++a) corners[3 * i + a] = T(d[a]);
     }
-    near2 = 100 * diameter2;
+  }
+  void set_receivers(void (*convert)(const double*, double, T*), const ReceiverArrays& from,
+                     size_t first, const Vec3d& origin) {
+    convert(from.position[0].data() + first, origin.x, receivers.x);
+    convert(from.position[1].data() + first, origin.y, receivers.y);
+    convert(from.position[2].data() + first, origin.z, receivers.z);
+    convert(from.normal[0].data() + first, 0, receivers.nx);
+    convert(from.normal[1].data() + first, 0, receivers.ny);
+    convert(from.normal[2].data() + first, 0, receivers.nz);
+  }
+};
+
+// Lambert's sums of one polygon, block by block.
+class PolygonSums {
+ public:
+  explicit PolygonSums(std::span<const Vec3d> outline) : outline_(outline) {
+    double diameter2 = 0;
+    for (const Vec3d& c : outline) diameter2 = std::max(diameter2, length_squared(c - outline[0]));
+    diameter_ = std::sqrt(diameter2);
+    single_.set_polygon(outline);
+    double_.set_polygon(outline);
   }
 
-  // sum, least: of the block that starts at `first`.
-  void block_sums(const ReceiverArrays& r, size_t first, double* sum, double* least) const {
-    const Vec3d& o = outline[0];
-    const int n = int(outline.size());
-    const auto& p = r.position;
-    const auto& nn = r.normal;
+  // In single precision where that may be exact enough.
+  void begin_block(const ReceiverArrays& receivers, size_t first) {
+    receivers_ = &receivers;
+    first_ = first;
+    is_double_ = false;
     // Terms of the size of the polygon's angle d add up to its square: from single precision
     // remains a relative error of about 1e-6 / d.
-    if (length_squared(r.position_at(first) - o) < near2 &&
-        length_squared(r.position_at(first + block - 1) - o) < near2) {
-      FloatBlock b;
-      to_floats(p[0].data() + first, o.x, b.x);
-      to_floats(p[1].data() + first, o.y, b.y);
-      to_floats(p[2].data() + first, o.z, b.z);
-      to_floats(nn[0].data() + first, 0, b.nx);
-      to_floats(nn[1].data() + first, 0, b.ny);
-      to_floats(nn[2].data() + first, 0, b.nz);
-      lambert_float(float_corners, n, b.x, b.y, b.z, b.nx, b.ny, b.nz, b.sum, b.least);
-      for (size_t i = 0; i < block; ++i) {
-        sum[i] = double(b.sum[i]);
-        least[i] = double(b.least[i]);
-      }
-      return;
-    }
-    alignas(64) double at[3][block];
-    for (size_t a = 0; a < 3; ++a)
-      for (size_t i = 0; i < block; ++i) at[a][i] = p[a][first + i] - o[a];
-    lambert_double(corners, n, at[0], at[1], at[2], nn[0].data() + first, nn[1].data() + first,
-                   nn[2].data() + first, sum, least);
+    const double near2 = 100 * sqr(diameter_);
+    if (!(length_squared(receivers.position_at(first) - outline_[0]) < near2 &&
+          length_squared(receivers.position_at(first + block - 1) - outline_[0]) < near2))
+      return to_double();
+    single_.set_receivers(to_floats, receivers, first, outline_[0]);
+    lambert_float(single_.corners, single_.sizes, int(outline_.size()), single_.receivers,
+                  single_.sums);
   }
+
+  bool is_cut(size_t i) const {
+    return is_double_ ? double_.sums.least[i] <= 0 : single_.sums.least[i] <= 0;
+  }
+
+  // Lambert's sum for receiver i of the block.
+  double sum(size_t i) {
+    if (!is_double_) {
+      if (is_exact(i)) return double(single_.sums.sum[i]);
+      to_double();
+    }
+    return double_.sums.sum[i];
+  }
+
+ private:
+  // An edge e seen from v errs by some roundings of its angle and of v × e, by u |v| |e| of |v × e|
+  // (u = 2^-24), together by a few u |v| |e| angle / |v × e|: never less than u times its angle.
+  // Moving a receiver that lies h over the polygon's plane by a rounding u |v| changes the whole by
+  // u |v| / h, which these sums are large against the result for, too. Where Lambert's sum is under
+  // 1e-3 of them, errors may come to 1e-4 of it.
+  bool is_exact(size_t i) const {
+    const BlockReceivers<float>& r = single_.receivers;
+    const float distance = std::sqrt(sqr(r.x[i]) + sqr(r.y[i]) + sqr(r.z[i])) + float(diameter_);
+    return std::abs(single_.sums.sum[i]) > 1e-3f * distance * single_.sums.angles[i];
+  }
+
+  void to_double() {
+    is_double_ = true;
+    double_.set_receivers(to_doubles, *receivers_, first_, outline_[0]);
+    lambert_double(double_.corners, double_.sizes, int(outline_.size()), double_.receivers,
+                   double_.sums);
+  }
+
+  std::span<const Vec3d> outline_;
+  double diameter_ = 0;
+  const ReceiverArrays* receivers_ = nullptr;
+  size_t first_ = 0;
+  bool is_double_ = false;
+  Lambert<float> single_;
+  Lambert<double> double_;
 };
 
 }  // namespace
@@ -179,11 +229,10 @@ struct PolygonSums {
 void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& plane_normal,
                            const ReceiverArrays& receivers, float* out) {
   outline = outline.first(std::min(outline.size(), most_corners));
-  const PolygonSums sums(outline);
-  alignas(64) double sum[block], least[block];
+  PolygonSums sums(outline);
   const double level = dot(plane_normal, outline[0]);
   for (size_t first = 0; first < receivers.size; first += block) {
-    sums.block_sums(receivers, first, sum, least);
+    sums.begin_block(receivers, first);
     const size_t count = std::min(block, receivers.size - first);
     for (size_t i = 0; i < count; ++i) {
       const Vec3d x = receivers.position_at(first + i);
@@ -193,10 +242,10 @@ void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& plane_no
             lowest_corner(outline, x, Vec3d(receivers.horizons[first + i])) < 0)
           value = clipped_irradiance(outline, x, receivers.normal_at(first + i),
                                      Vec3d(receivers.horizons[first + i]));
-        else if (least[i] <= 0)
+        else if (sums.is_cut(i))
           value = polygon_irradiance(outline, x, receivers.normal_at(first + i), Sides::both);
         else
-          value = std::min(0.5 * std::abs(sum[i]), pi);
+          value = std::min(0.5 * std::abs(sums.sum(i)), pi);
       }
       out[first + i] = float(value);
     }

@@ -21,7 +21,7 @@ TEST_CASE("upper_angle is atan2 for y >= 0") {
         std::max(worst_float,
                  std::abs(double(upper_angle(yf, xf)) / std::atan2(double(yf), double(xf)) - 1));
   }
-  CHECK(worst_double < 1e-13);
+  CHECK(worst_double < 6e-16);
   CHECK(worst_float < 3e-7);
   CHECK(upper_angle(0.0, 1.0) == 0);
   CHECK(upper_angle(0.0, -1.0) == doctest::Approx(pi));
