@@ -21,8 +21,8 @@ int run_measure(const MeasureCommand& c) {
   options.indirect = c.indirect;
   options.threads = c.threads;
   options.seed = c.seed;
-  if (options.method == Method::fixed && options.indirect != Indirect::none && !c.is_quiet)
-    fmt::print(stderr, "warning: --method fixed measures direct light only\n");
+  if (options.method.row().is_direct_only && options.indirect != Indirect::none && !c.is_quiet)
+    fmt::print(stderr, "warning: --method {} measures direct light only\n", c.method);
   const std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
   const std::vector<MeasuringPoint> points = read_points(c.points);
   const PreparedScene scene(load_scene(c.scene, c.lights, c.is_quiet));

@@ -11,13 +11,12 @@
 namespace troffer {
 
 void check_method(Method method, Indirect indirect, const std::string& solution) {
-  if (method == Method::kj92) return;
-  const bool is_certified = method == Method::certified;
-  if (indirect == Indirect::radiosity && !is_certified)
+  if (indirect == Indirect::radiosity && !method.row().has_choice_of_indirect)
     throw UsageError("--indirect radiosity belongs to --method kj92 and certified");
   if (!solution.empty() && !needs_radiosity(method, indirect))
-    throw UsageError(is_certified ? "--solution and --indirect none exclude each other"
-                                  : "--solution belongs to --method kj92 and certified");
+    throw UsageError(needs_radiosity(method, Indirect::automatic)
+                         ? "--solution and --indirect none exclude each other"
+                         : "--solution belongs to --method kj92 and certified");
 }
 
 void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet) {

@@ -109,6 +109,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .name = "fixed",
         .make = make_fixed,
         .rays_per_sample = fixed_rays,
+        .is_direct_only = true,
         .most_rays_per_tile = most_rays_of_tile,
         .rays_of_measuring_sample = 16,  // a set of shadow rays to every source
     },
@@ -147,7 +148,10 @@ const IndirectRow& Indirect::row() const {
 }
 
 Indirect chosen_indirect(Method method, Indirect indirect) {
-  return indirect == Indirect::automatic ? method.row().usual_indirect : indirect;
+  const MethodRow& row = method.row();
+  if (indirect == Indirect::none) return indirect;
+  const bool is_usual = indirect == Indirect::automatic || !row.has_choice_of_indirect;
+  return is_usual ? row.usual_indirect : indirect;
 }
 
 bool needs_radiosity(Method method, Indirect indirect) {

@@ -85,6 +85,8 @@ struct MethodRow {
   Indirect usual_indirect = Indirect::none;
   // Takes other ways of computing indirect light too.
   bool has_choice_of_indirect = false;
+  // Knows no light that was reflected before.
+  bool is_direct_only = false;
   // Needs the radiosity preprocessing even where no indirect light is asked for.
   bool always_needs_radiosity = false;
   // What it wants of the selection of sources where this was asked for; null: just that.
@@ -107,7 +109,7 @@ struct IndirectRow {
   bool needs_radiosity = false;
 };
 
-// Indirect light as `method` computes it: `indirect`, or what `automatic` stands for.
+// Indirect light as `method` computes it: none, `indirect` where it has a choice, else the usual.
 Indirect chosen_indirect(Method method, Indirect indirect);
 // The radiosity preprocessing is needed first.
 bool needs_radiosity(Method method, Indirect indirect);

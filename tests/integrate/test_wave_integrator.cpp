@@ -197,6 +197,7 @@ TEST_CASE("methods are found by their names, and know what they are made of") {
   CHECK(!needs_radiosity(Method::certified, Indirect::none));
   CHECK(needs_radiosity(Method::kj92, Indirect::none));
   CHECK(!needs_radiosity(Method::path, Indirect::automatic));
+  CHECK(!needs_radiosity(Method::path, Indirect::radiosity));  // it has no choice
 }
 
 TEST_CASE("light-tree sampling and fixed rays are the same light") {
