@@ -155,7 +155,8 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->capture_default_str();
   r->add_option(
        "--indirect", raw.indirect,
-       "auto; radiosity: interpolated (certified, kj92); none: only light straight from sources")
+       "auto; cells: gathered (certified); radiosity: interpolated (certified, kj92); none: only "
+       "light straight from sources")
       ->capture_default_str();
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
       ->check(CLI::Range(0, 1 << 20));

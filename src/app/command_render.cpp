@@ -96,6 +96,16 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
                   {"preprocess_cpu", t.preprocess_cpu},
                   {"render_cpu", t.render_cpu},
                   {"total_cpu", cpu_seconds()}};
+  if (s.cells.cells > 0)
+    j["cells"] = {{"count", s.cells.cells},
+                  {"size", s.cells.size},
+                  {"rays", s.cells.rays},
+                  {"entries", s.cells.entries},
+                  {"rounds", s.cells.rounds},
+                  {"iterations", s.cells.iterations},
+                  {"unresolved", s.cells.unresolved},
+                  {"memory_mb", s.cells.bytes / 1e6},
+                  {"seconds", s.cells.seconds}};
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
   j["spp"] = c.options.spp;

@@ -13,6 +13,8 @@ namespace troffer {
 void check_method(Method method, Indirect indirect, const std::string& solution) {
   if (indirect == Indirect::radiosity && !method.row().has_choice_of_indirect)
     throw UsageError("--indirect radiosity belongs to --method kj92 and certified");
+  if (indirect == Indirect::cells && !method.row().takes_cells)
+    throw UsageError("--indirect cells belongs to --method certified");
   if (!solution.empty() && !needs_radiosity(method, indirect))
     throw UsageError(needs_radiosity(method, Indirect::automatic)
                          ? "--solution and --indirect none exclude each other"

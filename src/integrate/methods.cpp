@@ -1,9 +1,11 @@
 #include "integrate/methods.h"
 
+#include <algorithm>
 #include <array>
 
 #include "base/error.h"
 #include "integrate/bintree_direct.h"
+#include "integrate/cells_indirect.h"
 #include "integrate/certified_direct.h"
 #include "integrate/fixed_direct.h"
 #include "integrate/path.h"
@@ -14,12 +16,31 @@ namespace troffer {
 
 namespace {
 
+// Cells are lit as points are, but for an error that their number makes small.
+std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
+                                                   std::shared_ptr<const Occluders> occluders) {
+  TROFFER_CHECK(in.cells != nullptr);
+  constexpr double least_error = 0.02;
+  const CertifiedDirect direct(
+      in.scene, std::move(occluders),
+      certified_settings(std::max(in.settings.error, least_error), in.scene.scene.lights.size()));
+  std::unique_ptr<Cells> cells =
+      make_cells(in.scene, direct, in.cells->pilot, {in.settings.threads, in.cells->seed},
+                 in.cells->progress, in.cells->stop, in.cells->counters);
+  if (!cells) return nullptr;
+  in.cells->statistics = cells->statistics();
+  return std::make_unique<CellsIndirect>(std::move(cells));
+}
+
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   const CertifiedSettings settings =
       certified_settings(in.settings.error, in.scene.scene.lights.size());
   const auto occluders = std::make_shared<const Occluders>(in.scene.scene);
   std::unique_ptr<IndirectLight> indirect;
-  if (in.radiosity != nullptr && !in.settings.is_direct_only())
+  if (needs_cells(Method::certified, in.settings.indirect)) {
+    indirect = make_cells_indirect(in, occluders);
+    if (!indirect) return nullptr;
+  } else if (in.radiosity != nullptr && !in.settings.is_direct_only())
     indirect =
         std::make_unique<RadiosityIndirect>(in.scene, *in.radiosity, occluders, settings.estimator);
   return std::make_unique<WaveIntegrator>(
@@ -66,7 +87,7 @@ double path_rays(const MethodSettings&, size_t) {
 // In the order of the constants of Method and Indirect.
 struct MethodTable {
   static const std::array<MethodRow, 4> methods;
-  static const std::array<IndirectRow, 3> indirects;
+  static const std::array<IndirectRow, 4> indirects;
 
   template <class Kind, class Rows>
   static std::optional<Kind> find(const Rows& rows, std::string_view name) {
@@ -88,6 +109,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .rays_per_sample = certified_rays,
         .usual_indirect = Indirect::radiosity,
         .has_choice_of_indirect = true,
+        .takes_cells = true,
         .selection = [](const SelectionOptions& o) { return certified_selection(o.is_enabled); },
         .widest_tile = 8,  // clusters of hits should be small in space
         .most_rays_per_tile = most_certified_rays_of_tile,
@@ -120,10 +142,11 @@ const std::array<MethodRow, 4> MethodTable::methods{{
     },
 }};
 
-const std::array<IndirectRow, 3> MethodTable::indirects{{
+const std::array<IndirectRow, 4> MethodTable::indirects{{
     {.name = "auto"},
     {.name = "none"},
     {.name = "radiosity", .needs_radiosity = true},
+    {.name = "cells", .needs_cells = true},
 }};
 
 std::optional<Method> Method::find(std::string_view name) {
@@ -150,13 +173,18 @@ const IndirectRow& Indirect::row() const {
 Indirect chosen_indirect(Method method, Indirect indirect) {
   const MethodRow& row = method.row();
   if (indirect == Indirect::none) return indirect;
-  const bool is_usual = indirect == Indirect::automatic || !row.has_choice_of_indirect;
+  const bool is_usual = indirect == Indirect::automatic || !row.has_choice_of_indirect ||
+                        (indirect.row().needs_cells && !row.takes_cells);
   return is_usual ? row.usual_indirect : indirect;
 }
 
 bool needs_radiosity(Method method, Indirect indirect) {
   return method.row().always_needs_radiosity ||
          chosen_indirect(method, indirect).row().needs_radiosity;
+}
+
+bool needs_cells(Method method, Indirect indirect) {
+  return chosen_indirect(method, indirect).row().needs_cells;
 }
 
 std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "integrate/cell_builder.h"
 #include "integrate/integrator.h"
 #include "integrate/radiosity_light.h"
 #include "integrate/tree_sampling.h"
@@ -42,7 +43,7 @@ inline constexpr Method Method::certified{0}, Method::kj92{1}, Method::fixed{2},
 // How light that was reflected before is computed, likewise. automatic: as suits the method.
 class Indirect {
  public:
-  static const Indirect automatic, none, radiosity;
+  static const Indirect automatic, none, radiosity, cells;
 
   static std::optional<Indirect> find(std::string_view name);
 
@@ -54,7 +55,8 @@ class Indirect {
   constexpr explicit Indirect(uint8_t row) : row_(row) {}
   uint8_t row_;
 };
-inline constexpr Indirect Indirect::automatic{0}, Indirect::none{1}, Indirect::radiosity{2};
+inline constexpr Indirect Indirect::automatic{0}, Indirect::none{1}, Indirect::radiosity{2},
+    Indirect::cells{3};
 
 // What users may choose about a method; each takes what it knows.
 struct MethodSettings {
@@ -68,11 +70,22 @@ struct MethodSettings {
   bool is_direct_only() const { return indirect == Indirect::none; }
 };
 
-// What a method is made from. radiosity: null where there is none; it is copied.
+// What cells are made from, where a method takes them, and what is told of them.
+struct CellInput {
+  CellPilot pilot;
+  uint64_t seed = 0;
+  std::function<void(double)> progress;  // 0 to 1; may be empty
+  const StopFlag& stop;
+  Counters counters;
+  CellStatistics statistics;
+};
+
+// What a method is made from. radiosity, cells: null where there is none; radiosity is copied.
 struct MethodInput {
   const PreparedScene& scene;
   const MethodSettings& settings;
   const RadiosityLight* radiosity = nullptr;
+  CellInput* cells = nullptr;
 };
 
 struct MethodRow {
@@ -85,6 +98,8 @@ struct MethodRow {
   Indirect usual_indirect = Indirect::none;
   // Takes other ways of computing indirect light too.
   bool has_choice_of_indirect = false;
+  // … cells too.
+  bool takes_cells = false;
   // Knows no light that was reflected before.
   bool is_direct_only = false;
   // Needs the radiosity preprocessing even where no indirect light is asked for.
@@ -107,6 +122,7 @@ struct MethodRow {
 struct IndirectRow {
   std::string_view name;
   bool needs_radiosity = false;
+  bool needs_cells = false;
 };
 
 // Indirect light as `method` computes it: none, `indirect` where it has a choice, else the usual.
@@ -114,7 +130,10 @@ Indirect chosen_indirect(Method method, Indirect indirect);
 // The radiosity preprocessing is needed first.
 bool needs_radiosity(Method method, Indirect indirect);
 
-// Throws EnvironmentError if memory runs out.
+// Cells are made with the method: it needs CellInput.
+bool needs_cells(Method method, Indirect indirect);
+
+// Throws EnvironmentError if memory runs out. Null where CellInput::stop was set meanwhile.
 std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input);
 
 }  // namespace troffer

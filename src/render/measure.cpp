@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
-#include "trace/surface.h"
+#include "render/cell_pilot.h"
 
 namespace troffer {
 
@@ -148,17 +148,15 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     preparation = own.get();
   }
   const MethodSettings settings = settings_of(options);
+  CellInput cells{points_pilot(scene, points), options.seed, nullptr, stop, {}, {}};
   const std::unique_ptr<Integrator> integrator =
-      make_integrator(scene, options.method, settings, preparation);
+      make_integrator(scene, options.method, settings, preparation, &cells);
+  if (!integrator) return nothing_measured(points.size());
   const double rays_per_sample = row.rays_per_sample(settings, scene.scene.lights.size());
   const int samples_per_batch =
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 
-  // Points are often given on the very surface they measure, rounded to a few digits: rays start
-  // some rounding errors of their coordinates off it, and never less than a hundredth of a
-  // millimetre (or a millionth of a scene smaller than ten metres).
   const Box box = bounds(scene.scene);
-  const float least_offset = std::min(1e-5f, 1e-6f * box.diagonal());
 
   MeasureResult result;
   result.values.resize(points.size());
@@ -172,8 +170,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     Worker& w = workers[slot];
     if (!w.scratch) w.scratch = integrator->make_scratch();
     w.position = Vec3(points[i].position - scene.scene.origin);
-    const Vec3 p = abs(w.position);
-    w.sensors.offset = std::max(ray_offset(std::max({p.x, p.y, p.z})), least_offset);
+    w.sensors.offset = offset_of_point(w.position, box);
     w.samples_per_batch = samples_per_batch;
     w.point = i;
     result.values[i] = measure_point(*integrator, points[i], hash_of(options.seed, i), spp,

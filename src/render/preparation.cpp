@@ -33,10 +33,10 @@ std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
 
 std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, Method method,
                                             const MethodSettings& settings,
-                                            const Preparation* preparation) {
-  if (preparation == nullptr) return make_integrator(method, {scene, settings});
+                                            const Preparation* preparation, CellInput* cells) {
+  if (preparation == nullptr) return make_integrator(method, {scene, settings, nullptr, cells});
   const RadiosityLight radiosity(scene, preparation->solution, preparation->selection);
-  return make_integrator(method, {scene, settings, &radiosity});
+  return make_integrator(method, {scene, settings, &radiosity, cells});
 }
 
 std::vector<uint32_t> lights_named(const Scene& scene, const std::vector<std::string>& names) {

@@ -36,10 +36,11 @@ std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
                                      std::optional<RadiositySolution> solution, int threads,
                                      const ProgressCallback& progress, const StopFlag& stop);
 
-// preparation: may be null where the method needs none; must outlive the integrator, as must scene.
+// preparation, cells: may be null where the method needs none (needs_radiosity, needs_cells); the
+// preparation must outlive the integrator, as must scene. Null where CellInput::stop was set.
 std::unique_ptr<Integrator> make_integrator(const PreparedScene& scene, Method method,
                                             const MethodSettings& settings,
-                                            const Preparation* preparation);
+                                            const Preparation* preparation, CellInput* cells);
 
 // Numbers of the scene's lights that have one of these names, for SelectionOptions::only.
 // UsageError names one that does not exist.

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "render/camera.h"
+#include "render/cell_pilot.h"
 #include "render/film.h"
 #include "render/rendering.h"
 #include "render/tile.h"
@@ -50,6 +51,14 @@ int tile_side(Method method, const MethodSettings& settings, size_t lights) {
   int side = row.widest_tile;
   while (side > 1 && per_pixel * side * side > row.most_rays_per_tile) side /= 2;
   return side;
+}
+
+// Stopped before there was anything to show.
+RenderResult nothing_rendered(const PixelRect& window, const RenderOptions& options,
+                              RenderResult result) {
+  result.is_complete = false;
+  result.layers = Film(window, options.aovs).layers();
+  return result;
 }
 
 double film_bytes(const PixelRect& window, const RenderOptions& o) {
@@ -105,16 +114,22 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
     preparation = own.get();
   }
   if (is_prepared && preparation == nullptr) {  // stopped: nothing to show
-    result.is_complete = false;
-    result.layers = Film(window, options.aovs).layers();
-    return result;
+    return nothing_rendered(window, options, result);
   }
   if (preparation != nullptr) result.statistics.preprocess_seconds = preparation->seconds;
 
   const auto start = std::chrono::steady_clock::now();
   const MethodSettings settings = method_settings(options);
+  CellInput cells{picture_pilot(ViewingCamera(camera, size.width, size.height), size, options.seed),
+                  options.seed,
+                  progress,
+                  stop,
+                  {},
+                  {}};
   const std::unique_ptr<Integrator> integrator =
-      make_integrator(scene, options.method, settings, preparation);
+      make_integrator(scene, options.method, settings, preparation, &cells);
+  if (!integrator) return nothing_rendered(window, options, result);
+  result.statistics.cells = cells.statistics;
   const MethodRow& row = options.method.row();
   const bool is_refined = most_viewing_rays(options) > options.spp;
   const bool has_whole_tiles = row.is_same_in_crops && (row.has_noise_of_batch || is_refined);

@@ -59,6 +59,7 @@ struct RenderStatistics {
   Counters counters;
   double preprocess_seconds = 0;  // of the preparation, whoever made it
   double render_seconds = 0;      // of what came after
+  CellStatistics cells;           // none where the method makes none
 };
 
 // layers[0] is the picture; then the AOVs in the order asked for. Where a stop was requested,

@@ -193,6 +193,9 @@ TEST_CASE("methods are found by their names, and know what they are made of") {
   CHECK(Indirect::find("auto") == Indirect::automatic);
   CHECK(Indirect::find("none") == Indirect::none);
   CHECK(Indirect::find("radiosity") == Indirect::radiosity);
+  CHECK(Indirect::find("cells") == Indirect::cells);
+  CHECK(needs_cells(Method::certified, Indirect::cells));
+  CHECK(!needs_cells(Method::kj92, Indirect::cells));
   CHECK(needs_radiosity(Method::certified, Indirect::automatic));
   CHECK(!needs_radiosity(Method::certified, Indirect::none));
   CHECK(needs_radiosity(Method::kj92, Indirect::none));

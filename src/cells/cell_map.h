@@ -1,0 +1,87 @@
+// Cells: small parts of surfaces, made where rays hit, that share one value of irradiance.
+//
+// A hit belongs to the cell of its voxel (of the scene's cell size, or half of it where the ray
+// came from near), of the side of space that its normal points to, and, among several of the same
+// voxel, to the first that it is compatible with: in one plane with it or on one curved surface,
+// and, where something stands in the voxel, seen from it. So neither the two sides of a thin wall
+// share a cell, nor the boards of a shelf, nor two rooms that stand on one floor.
+//
+// Cells are made one after the other in the order of add(), and never change: the same cells for
+// any number of threads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cells/cell_hit.h"
+#include "trace/tracer.h"
+
+namespace troffer {
+
+constexpr uint32_t no_cell = 0xffffffffu;
+// Hits of a cell that are kept: those from which its rays start and at which it is lit.
+constexpr size_t hits_per_cell = 8;
+
+class CellMap {
+ public:
+  // size: of voxels, metres. The tracer must outlive it.
+  CellMap(const Tracer& tracer, float size);
+
+  float size_of_cells() const { return size_; }
+  // Light from nearer than this comes from half cells.
+  float near() const { return 2 * size_; }
+  size_t size() const { return anchors_.size(); }
+  size_t bytes() const;
+
+  // The cell of what a ray of this length has hit, or no_cell. Any number of threads may call it
+  // while nothing is added.
+  uint32_t find(const CellHit& hit, float distance) const;
+  // The same, made if there is none.
+  uint32_t add(const CellHit& hit, float distance);
+
+  // Of one cell; empty after forget_hits().
+  std::span<const CellHit> hits(size_t cell) const {
+    return hits_.empty() ? std::span<const CellHit>{}
+                         : std::span(hits_[cell].hits.data(), size_t(hits_[cell].count));
+  }
+  const Vec3& position(size_t cell) const { return anchors_[cell].position; }
+  void forget_hits() { hits_ = {}; }
+
+ private:
+  struct Anchor {
+    Vec3 position, normal;
+    uint32_t next = no_cell;  // of the same voxel
+    float size = 0;
+    bool is_divided = false;  // something stands in the voxel: sight decides
+  };
+  struct Hits {
+    std::array<CellHit, hits_per_cell> hits;
+    uint32_t count = 0;
+  };
+  struct Slot {
+    uint64_t key = 0;
+    uint32_t first = no_cell;
+  };
+  // Where a search ended.
+  struct Found {
+    uint32_t cell = no_cell, last = no_cell;
+  };
+
+  size_t slot_of(uint64_t key) const;
+  Found search(uint32_t first, const CellHit& hit) const;
+  bool sees(const Anchor& a, const CellHit& hit) const;
+  bool is_divided(const CellHit& hit, float size) const;
+  uint32_t make(const CellHit& hit, float size);
+  void grow();
+
+  const Tracer& tracer_;
+  float size_;
+  std::vector<Anchor> anchors_;
+  std::vector<Hits> hits_;
+  std::vector<Slot> slots_;  // open addressing; a power of two of them
+  size_t used_ = 0;
+};
+
+}  // namespace troffer

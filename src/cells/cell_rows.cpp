@@ -1,0 +1,133 @@
+#include "cells/cell_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/vec.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t cells_at_a_time = 1024;
+constexpr int most_iterations = 400;
+constexpr double smallest_change = 1e-6;  // of the sum of all light
+
+// Σ D and Σ (E - W E) per channel, over all cells: E times their quotient gives and takes as much
+// light in all. It is the slowest mode of a bright room that this removes.
+void scale_to_balance(const std::vector<Rgb>& direct, const std::vector<Rgb>& e,
+                      std::vector<Rgb>& next) {
+  for (size_t c = 0; c < 3; ++c) {
+    double given = 0, kept = 0;
+    for (size_t i = 0; i < e.size(); ++i) {
+      given += double(direct[i][c]);
+      kept += double(e[i][c]) - (double(next[i][c]) - double(direct[i][c]));
+    }
+    if (!(kept > 1e-3 * given)) continue;
+    const auto factor = float(std::clamp(given / kept, 0.25, 4.0));
+    for (size_t i = 0; i < e.size(); ++i)
+      next[i][c] = direct[i][c] + (next[i][c] - direct[i][c]) * factor;
+  }
+}
+
+}  // namespace
+
+void CellRows::add(const RowPart& part, std::span<const RowEntry> entries) {
+  first_entry_.push_back(entries_.size());
+  parts_.push_back(part);
+  parts_.back().entries = uint32_t(entries.size());
+  entries_.insert(entries_.end(), entries.begin(), entries.end());
+  rays_in_all_ += part.rays;
+}
+
+void CellRows::finish(size_t cells) {
+  rays_.assign(cells, 0);
+  begin_.assign(cells + 1, 0);
+  for (const RowPart& p : parts_) {
+    rays_[p.cell] += p.rays;
+    ++begin_[p.cell + 1];
+  }
+  for (size_t i = 0; i < cells; ++i) begin_[i + 1] += begin_[i];
+  order_.resize(parts_.size());
+  std::vector<size_t> next(begin_.begin(), begin_.end() - 1);
+  for (uint32_t p = 0; p < parts_.size(); ++p) order_[next[parts_[p].cell]++] = p;
+}
+
+// out = D + W e
+void CellRows::apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half,
+                     int threads, std::vector<Rgb>& out) const {
+  const size_t n = direct.size();
+  out.resize(n);
+  parallel_for((n + cells_at_a_time - 1) / cells_at_a_time, threads, [&](size_t chunk) {
+    const size_t end = std::min(n, (chunk + 1) * cells_at_a_time);
+    for (size_t i = chunk * cells_at_a_time; i < end; ++i) {
+      Rgb sum;
+      uint32_t rays = 0;
+      for (size_t o = begin_[i]; o < begin_[i + 1]; ++o) {
+        const RowPart& p = parts_[order_[o]];
+        if (half != Half::both && p.is_second_half != (half == Half::second)) continue;
+        sum += p.emission;
+        rays += p.rays;
+        const RowEntry* k = &entries_[first_entry_[order_[o]]];
+        for (uint32_t t = 0; t < p.entries; ++t) sum += k[t].weight * e[k[t].cell];
+      }
+      out[i] = rays > 0 ? direct[i] + sum / float(rays) : direct[i];
+    }
+  });
+}
+
+CellLight CellRows::solve(const std::vector<Rgb>& direct, int threads) const {
+  CellLight light;
+  std::vector<Rgb> e = direct, next;
+  double before = 0;
+  while (light.iterations < most_iterations) {
+    apply(direct, e, Half::both, threads, next);
+    ++light.iterations;
+    if (light.iterations % 4 == 0) scale_to_balance(direct, e, next);
+    double sum = 0, change = 0;
+    for (size_t i = 0; i < e.size(); ++i) {
+      sum += double(luminance(next[i]));
+      change += std::abs(double(luminance(next[i])) - double(luminance(e[i])));
+    }
+    e.swap(next);
+    // what is still to come is a geometric series of the changes
+    const double ratio = before > 0 ? std::min(change / before, 0.99) : 0.99;
+    before = change;
+    if (light.iterations % 4 != 0 && change / (1 - ratio) <= smallest_change * sum) break;
+  }
+  light.half_difference.resize(e.size());
+  for (const Half half : {Half::first, Half::second}) {
+    apply(direct, e, half, threads, next);
+    const float sign = half == Half::first ? 0.5f : -0.5f;
+    for (size_t i = 0; i < e.size(); ++i) light.half_difference[i] += sign * luminance(next[i]);
+  }
+  light.irradiance = std::move(e);
+  return light;
+}
+
+std::vector<float> CellRows::importance(const std::vector<float>& asked, int iterations) const {
+  std::vector<float> y = asked, wave = asked, next(asked.size());
+  for (int it = 0; it < iterations; ++it) {
+    std::fill(next.begin(), next.end(), 0.0f);
+    for (size_t p = 0; p < parts_.size(); ++p) {
+      const float given = wave[parts_[p].cell];
+      if (given == 0) continue;
+      const float each = given / float(rays_[parts_[p].cell]);
+      const RowEntry* k = &entries_[first_entry_[p]];
+      for (uint32_t t = 0; t < parts_[p].entries; ++t)
+        next[k[t].cell] += each * luminance(k[t].weight);
+    }
+    wave.swap(next);
+    double sum = 0, all = 0;
+    for (size_t i = 0; i < y.size(); ++i) {
+      y[i] += wave[i];
+      sum += double(wave[i]);
+      all += double(y[i]);
+    }
+    if (sum <= 1e-4 * all) break;
+  }
+  return y;
+}
+
+}  // namespace troffer

@@ -1,0 +1,70 @@
+// How cells light each other: rows of a sparse matrix, by rays.
+//
+//     E_i = D_i + 1/M_i Σ_k w_k E_j(k)
+//
+// where the M_i rays of row i, distributed by cosine, see cells j(k), and w_k is the reflectance
+// there times what mirrors and glass on the way leave of the light.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/rgb.h"
+
+namespace troffer {
+
+struct RowEntry {
+  uint32_t cell = 0;
+  Rgb weight;
+};
+
+// Rays of one cell, traced at one time.
+struct RowPart {
+  uint32_t cell = 0;
+  uint32_t rays = 0;
+  uint32_t entries = 0;
+  bool is_second_half = false;  // which half of all rays it belongs to
+  Rgb emission;                 // irradiance times rays, of sources that were run into
+};
+
+struct CellLight {
+  std::vector<Rgb> irradiance;
+  // From either half of the rays alone: how far they differ says how much noise there is.
+  std::vector<float> half_difference;  // luminance
+  int iterations = 0;
+};
+
+class CellRows {
+ public:
+  // Entries of `part`, in their order.
+  void add(const RowPart& part, std::span<const RowEntry> entries);
+  // Call before all that follow; cells: how many there are.
+  void finish(size_t cells);
+
+  size_t entry_count() const { return entries_.size(); }
+  uint64_t ray_count() const { return rays_in_all_; }
+  bool has_row(size_t cell) const { return cell < rays_.size() && rays_[cell] > 0; }
+  uint32_t rays(size_t cell) const { return rays_[cell]; }
+
+  // Solves for E; direct: D, per cell.
+  CellLight solve(const std::vector<Rgb>& direct, int threads) const;
+  // How much of what is asked for each cell's light is, all bounces counted: y = c + Wᵀ y. Not more
+  // than `iterations` bounces.
+  std::vector<float> importance(const std::vector<float>& asked, int iterations) const;
+
+ private:
+  enum class Half { both, first, second };
+  void apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half, int threads,
+             std::vector<Rgb>& out) const;
+
+  std::vector<RowPart> parts_;
+  std::vector<size_t> first_entry_;  // of each part
+  std::vector<RowEntry> entries_;
+  std::vector<uint32_t> rays_;   // per cell
+  std::vector<uint32_t> order_;  // parts by cell
+  std::vector<size_t> begin_;    // of each cell in order_, and the end
+  uint64_t rays_in_all_ = 0;
+};
+
+}  // namespace troffer

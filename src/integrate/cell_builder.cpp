@@ -1,0 +1,252 @@
+#include "integrate/cell_builder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "integrate/cell_direct.h"
+#include "integrate/cell_rays.h"
+
+namespace troffer {
+
+namespace {
+
+// All measured: docs/cells.md.
+constexpr float size_of_median = 0.06f;  // of a cell, of the median length of gather rays
+constexpr size_t pilot_rays = 1 << 17;   // gather rays from what the pilot sees
+constexpr uint32_t rays_of_row = 16;     // first ones of every cell
+constexpr uint32_t rays_of_step = 8;     // further ones come in so many
+constexpr uint32_t most_rays_of_row = 4096;
+constexpr double most_unresolved = 1e-5;  // of the light asked for
+constexpr int most_rounds = 12;
+constexpr size_t most_cells = 1 << 21;
+constexpr size_t tasks_at_a_time = 1 << 14;
+constexpr int bounces_of_importance = 24;
+
+using Clock = std::chrono::steady_clock;
+
+// Some of the viewing rays' walks ended here.
+struct Place {
+  CellHit hit;
+  float weight = 0;
+  float distance = 0;     // of the last stretch
+  bool is_gloss = false;  // seen by way of gloss: its cell itself is asked
+};
+
+class Builder {
+ public:
+  Builder(const PreparedScene& scene, const CellBuilderOptions& options, const StopFlag& stop,
+          Counters& counters)
+      : scene_(scene), walks_(scene), options_(options), stop_(stop), counters_(counters) {}
+
+  void ask(const CellPilot& pilot);
+  // False once stopped.
+  bool make_rows(const std::function<void(double)>& progress);
+  std::unique_ptr<Cells> finish(const DirectLight& direct, Clock::time_point start);
+
+ private:
+  std::vector<Place> places_of(const CellPilot& pilot);
+  void note(const std::vector<CellTask>& tasks, CellsSeen& seen);
+  bool run(const std::vector<CellTask>& tasks);
+  CellTask task_of(uint32_t cell, uint32_t first, uint32_t count) const;
+  std::vector<uint32_t> cells_to_resolve();
+  std::vector<CellTask> further_tasks();
+
+  const PreparedScene& scene_;
+  GatherWalks walks_;
+  CellBuilderOptions options_;
+  const StopFlag& stop_;
+  Counters& counters_;
+  std::unique_ptr<CellMap> map_;
+  CellRows rows_;
+  std::vector<float> asked_;  // per cell
+  CellStatistics statistics_;
+};
+
+// The matte surfaces that the pilot sees.
+std::vector<Place> Builder::places_of(const CellPilot& pilot) {
+  std::vector<Place> places;
+  for (const CellHit& p : pilot.places) places.push_back({p, 1, 0, false});
+  GatherScratch s;
+  start_walks(pilot.viewing, s.walks);
+  const CheckContext context(&s, pilot.viewing.size(), [](const void*, size_t i) {
+    return "pilot ray " + std::to_string(i);
+  });
+  walks_.follow(pilot.viewing.size(), Coherence::none, s, counters_);
+  for (const GatherArrival& a : s.arrivals)
+    places.push_back({a.hit, luminance(a.walk.throughput), a.distance, a.walk.scatterings > 0});
+  return places;
+}
+
+void Builder::ask(const CellPilot& pilot) {
+  const std::vector<Place> places = places_of(pilot);
+  std::vector<CellTask> tasks;
+  const auto rays = uint32_t(
+      std::clamp<size_t>(pilot_rays / std::max<size_t>(places.size(), 1), rays_of_row, 2048));
+  for (uint32_t i = 0; i < places.size(); ++i) {
+    if (places[i].is_gloss) continue;
+    CellTask& t = tasks.emplace_back();
+    t.count = rays;
+    t.stream = hash_of(options_.seed, i, uint64_t{0x7069'6c6f});
+    t.weight = places[i].weight / float(rays);
+    t.from = {&places[i].hit, 1};
+  }
+  CellsSeen seen;
+  trace_cell_rays(walks_, nullptr, tasks, options_.threads, seen, counters_);
+  for (const Place& p : places) {
+    if (!p.is_gloss) continue;
+    seen.seen.push_back({uint32_t(tasks.size()), no_cell, p.distance, Rgb{1}, p.hit});
+    tasks.emplace_back().weight = p.weight;
+  }
+  std::vector<float> lengths;
+  for (const CellSeen& c : seen.seen) lengths.push_back(c.distance);
+  const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
+  if (!lengths.empty()) std::nth_element(lengths.begin(), middle, lengths.end());
+  const float median = lengths.empty() ? 0 : *middle;
+  // Finer than this, voxels would be no larger than the rounding of positions.
+  const Box box = bounds(scene_.scene);
+  const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), 1e-6f);
+  map_ = std::make_unique<CellMap>(scene_.tracer, std::max(size_of_median * median, least));
+  for (const CellSeen& c : seen.seen) {
+    const uint32_t cell = map_->add(c.hit, c.distance);
+    asked_.resize(map_->size(), 0);
+    asked_[cell] += tasks[c.task].weight * luminance(c.weight);
+  }
+  rows_.finish(map_->size());
+}
+
+CellTask Builder::task_of(uint32_t cell, uint32_t first, uint32_t count) const {
+  CellTask t;
+  t.cell = cell;
+  t.first = first;
+  t.count = count;
+  t.stream = hash_of(options_.seed, cell, uint64_t{0x726f'7773});
+  return t;
+}
+
+// New cells where there were none, and the rows.
+void Builder::note(const std::vector<CellTask>& tasks, CellsSeen& seen) {
+  std::vector<RowEntry> entries;
+  size_t at = 0;
+  for (uint32_t t = 0; t < tasks.size(); ++t) {
+    entries.clear();
+    for (; at < seen.seen.size() && seen.seen[at].task == t; ++at) {
+      CellSeen& c = seen.seen[at];
+      if (c.cell == no_cell) c.cell = map_->add(c.hit, c.distance);
+      entries.push_back({c.cell, c.weight});
+    }
+    rows_.add({tasks[t].cell, tasks[t].count, 0, tasks[t].first / rays_of_step % 2 == 1,
+               seen.emission[t]},
+              entries);
+  }
+  TROFFER_CHECK(at == seen.seen.size());
+}
+
+bool Builder::run(const std::vector<CellTask>& tasks) {
+  CellsSeen seen;
+  std::vector<CellTask> some;
+  for (size_t first = 0; first < tasks.size(); first += tasks_at_a_time) {
+    if (stop_.load(std::memory_order_relaxed)) return false;
+    some.assign(tasks.begin() + std::ptrdiff_t(first),
+                tasks.begin() + std::ptrdiff_t(std::min(first + tasks_at_a_time, tasks.size())));
+    for (CellTask& t : some) t.from = map_->hits(t.cell);
+    trace_cell_rays(walks_, map_.get(), some, options_.threads, seen, counters_);
+    note(some, seen);
+  }
+  asked_.resize(map_->size(), 0);
+  rows_.finish(map_->size());
+  return true;
+}
+
+// Cells without a row, the most important first, but for those that hardly matter.
+std::vector<uint32_t> Builder::cells_to_resolve() {
+  const std::vector<float> y = rows_.importance(asked_, bounces_of_importance);
+  double all = 0, open = 0;
+  std::vector<uint32_t> cells;
+  for (uint32_t c = 0; c < y.size(); ++c) {
+    all += double(y[c]);
+    if (rows_.has_row(c)) continue;
+    open += double(y[c]);
+    cells.push_back(c);
+  }
+  statistics_.unresolved = all > 0 ? open / all : 0;
+  if (statistics_.unresolved <= most_unresolved || map_->size() > most_cells) return {};
+  std::sort(cells.begin(), cells.end(),
+            [&](uint32_t a, uint32_t b) { return y[a] != y[b] ? y[a] > y[b] : a < b; });
+  double left = open;
+  size_t kept = 0;
+  while (kept < cells.size() && left > 0.5 * most_unresolved * all)
+    left -= double(y[cells[kept++]]);
+  cells.resize(kept);
+  return cells;
+}
+
+// As many rays again, in proportion to what is asked of cells.
+std::vector<CellTask> Builder::further_tasks() {
+  const std::vector<float> y = rows_.importance(asked_, bounces_of_importance);
+  const double all = std::accumulate(y.begin(), y.end(), 0.0);
+  std::vector<CellTask> tasks;
+  if (!(all > 0)) return tasks;
+  const double steps = double(rows_.ray_count()) / rays_of_step;
+  for (uint32_t c = 0; c < y.size(); ++c) {
+    if (!rows_.has_row(c)) continue;
+    const double wanted =
+        std::min(steps * double(y[c]) / all, double(most_rays_of_row / rays_of_step));
+    for (int step = 0; step < int(wanted + 0.5); ++step)
+      tasks.push_back(task_of(c, rays_of_row + uint32_t(step) * rays_of_step, rays_of_step));
+  }
+  return tasks;
+}
+
+bool Builder::make_rows(const std::function<void(double)>& progress) {
+  for (bool is_further : {false, true}) {
+    for (int round = 0; round < most_rounds; ++round) {
+      std::vector<CellTask> tasks;
+      if (is_further && round == 0)
+        tasks = further_tasks();
+      else
+        for (const uint32_t c : cells_to_resolve())
+          for (uint32_t first = 0; first < rays_of_row; first += rays_of_step)
+            tasks.push_back(task_of(c, first, rays_of_step));
+      if (tasks.empty()) break;
+      if (!run(tasks)) return false;
+      ++statistics_.rounds;
+      if (progress) progress(1 - 1 / (1.0 + 0.5 * statistics_.rounds));
+    }
+  }
+  return !stop_.load();
+}
+
+std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_point start) {
+  std::vector<Rgb> lit = direct_light_of(*map_, direct, options_.threads, stop_, counters_);
+  if (stop_.load()) return nullptr;
+  CellLight light = rows_.solve(lit, options_.threads);
+  statistics_.cells = map_->size();
+  statistics_.entries = rows_.entry_count();
+  statistics_.rays = rows_.ray_count();
+  statistics_.iterations = light.iterations;
+  statistics_.size = double(map_->size_of_cells());
+  statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry);
+  map_->forget_hits();
+  statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit),
+                                 std::move(light.irradiance), std::move(light.half_difference),
+                                 statistics_);
+}
+
+}  // namespace
+
+std::unique_ptr<Cells> make_cells(const PreparedScene& scene, const DirectLight& direct,
+                                  const CellPilot& pilot, const CellBuilderOptions& options,
+                                  const std::function<void(double)>& progress, const StopFlag& stop,
+                                  Counters& counters) {
+  const Clock::time_point start = Clock::now();
+  Builder builder(scene, options, stop, counters);
+  builder.ask(pilot);
+  if (!builder.make_rows(progress)) return nullptr;
+  return builder.finish(direct, start);
+}
+
+}  // namespace troffer

@@ -1,0 +1,114 @@
+#include "integrate/cell_direct.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "integrate/gather_walks.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t cells_of_group = 32;
+constexpr size_t hits_at_a_time = 64;
+
+struct Worker {
+  std::unique_ptr<DirectLightScratch> direct;
+  WaveHits wave;
+  RadianceBatch out;
+  Counters counters;
+};
+
+uint64_t spread_bits(uint64_t x) {  // 21 bits, each third
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffull;
+  x = (x | x << 16) & 0x1f0000ff0000ffull;
+  x = (x | x << 8) & 0x100f00f00f00f00full;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ull;
+  return (x | x << 2) & 0x1249249249249249ull;
+}
+
+// Cells along a space-filling curve.
+std::vector<uint32_t> cells_in_order(const CellMap& map) {
+  std::vector<std::pair<uint64_t, uint32_t>> keys(map.size());
+  for (uint32_t c = 0; c < map.size(); ++c) {
+    uint64_t key = 0;
+    for (size_t a = 0; a < 3; ++a) {
+      const double voxel = double(map.position(c)[a]) / double(map.size_of_cells());
+      key |= spread_bits(uint64_t(std::clamp(voxel + 0x1p20, 0.0, 0x1p21 - 1))) << a;
+    }
+    keys[c] = {key, c};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<uint32_t> order;
+  order.reserve(keys.size());
+  for (const auto& k : keys) order.push_back(k.second);
+  return order;
+}
+
+std::string name_of_hit(const void*, size_t i) {
+  return "cell hit " + std::to_string(i);
+}
+
+void light_group(const CellMap& map, const DirectLight& direct, std::span<const uint32_t> cells,
+                 Worker& w, std::vector<Rgb>& irradiance) {
+  if (!w.direct) w.direct = direct.make_scratch();
+  direct.begin(*w.direct);
+  size_t hits = 0;
+  for (const uint32_t c : cells) hits += map.hits(c).size();
+  w.out.reset(hits);
+  const CheckContext context(&w, hits, name_of_hit);
+  uint32_t index = 0;
+  w.wave.clear();
+  const auto send = [&] {
+    if (w.wave.size() > 0) direct.queue(w.wave, *w.direct, w.out, w.counters);
+    w.wave.clear();
+  };
+  for (const uint32_t c : cells)
+    for (const CellHit& hit : map.hits(c)) {
+      Walk walk;
+      walk.index = index;
+      walk.sample = 0;
+      walk.stream = hash_of(uint64_t(c), index, uint64_t{0x6365'6c6c});
+      ++index;
+      w.wave.walks.push_back(walk);
+      w.wave.vertices.push_back(vertex_of(hit));
+      w.wave.scatterings.emplace_back(sensor_bsdf());
+      if (w.wave.size() == hits_at_a_time) send();
+    }
+  send();
+  direct.flush(*w.direct, w.out, w.counters);
+  index = 0;
+  for (const uint32_t c : cells) {
+    const size_t n = map.hits(c).size();
+    Rgb sum;
+    for (size_t i = 0; i < n; ++i, ++index) {
+      const Rgb e = w.out.direct[index] + w.out.indirect[index];
+      if (is_finite(e)) sum += e;
+    }
+    irradiance[c] = n > 0 ? sum / float(n) : Rgb{0};
+  }
+}
+
+}  // namespace
+
+std::vector<Rgb> direct_light_of(const CellMap& map, const DirectLight& direct, int threads,
+                                 const StopFlag& stop, Counters& counters) {
+  const std::vector<uint32_t> order = cells_in_order(map);
+  std::vector<Rgb> irradiance(map.size());
+  std::vector<Worker> workers(size_t(thread_count(threads)));
+  const size_t groups = (order.size() + cells_of_group - 1) / cells_of_group;
+  parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
+    if (stop.load(std::memory_order_relaxed)) return;
+    const size_t first = g * cells_of_group;
+    light_group(map, direct,
+                std::span(order).subspan(first, std::min(cells_of_group, order.size() - first)),
+                workers[slot], irradiance);
+  });
+  for (const Worker& w : workers) counters += w.counters;
+  return irradiance;
+}
+
+}  // namespace troffer

@@ -1,0 +1,17 @@
+// Light straight from sources at cells, by a method's own direct light.
+#pragma once
+
+#include <vector>
+
+#include "base/parallel.h"
+#include "cells/cell_map.h"
+#include "integrate/direct_light.h"
+
+namespace troffer {
+
+// Irradiance of each cell, the mean over its hits. Cells near each other are lit together, in the
+// same groups for any number of threads.
+std::vector<Rgb> direct_light_of(const CellMap& map, const DirectLight& direct, int threads,
+                                 const StopFlag& stop, Counters& counters);
+
+}  // namespace troffer

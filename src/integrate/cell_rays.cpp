@@ -1,0 +1,90 @@
+#include "integrate/cell_rays.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t rays_at_a_time = 1024;
+
+struct Worker {
+  GatherScratch gather;
+  std::vector<uint32_t> tasks;  // of each ray
+  Counters counters;
+};
+
+struct Chunk {
+  size_t first = 0, last = 0;  // tasks
+  std::vector<CellSeen> seen;
+};
+
+std::vector<Chunk> chunks_of(std::span<const CellTask> tasks) {
+  std::vector<Chunk> chunks;
+  size_t rays = rays_at_a_time;
+  for (size_t t = 0; t < tasks.size(); ++t) {
+    if (rays >= rays_at_a_time) {
+      chunks.emplace_back().first = t;
+      rays = 0;
+    }
+    rays += tasks[t].count;
+    chunks.back().last = t + 1;
+  }
+  return chunks;
+}
+
+std::string name_of_ray(const void* worker, size_t i) {
+  return "ray of cell task " + std::to_string(static_cast<const Worker*>(worker)->tasks[i]);
+}
+
+void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
+                 Chunk& chunk, std::vector<Rgb>& emission, Worker& w) {
+  GatherScratch& g = w.gather;
+  g.walks.clear();
+  w.tasks.clear();
+  for (size_t t = chunk.first; t < chunk.last; ++t)
+    for (uint32_t k = 0; k < tasks[t].count; ++k) {
+      Walk walk;
+      walk.index = uint32_t(w.tasks.size());
+      walk.stream = tasks[t].stream;
+      walk.sample = tasks[t].first + k;
+      w.tasks.push_back(uint32_t(t));
+      set_out(tasks[t].from[walk.sample % tasks[t].from.size()], direction_number(walk), walk);
+      if (!walk.throughput.is_black()) g.walks.push_back(walk);
+    }
+  const CheckContext context(&w, w.tasks.size(), name_of_ray);
+  walks.follow(w.tasks.size(), Coherence::none, g, w.counters);
+  chunk.seen.reserve(g.arrivals.size());
+  for (const GatherArrival& a : g.arrivals) {
+    CellSeen& seen = chunk.seen.emplace_back();
+    seen.task = w.tasks[a.walk.index];
+    seen.weight = a.walk.throughput;
+    seen.distance = a.distance;
+    seen.hit = a.hit;
+    if (map != nullptr) seen.cell = map->find(a.hit, a.distance);
+  }
+  // What was seen by way of mirrors came later.
+  std::stable_sort(chunk.seen.begin(), chunk.seen.end(),
+                   [](const CellSeen& a, const CellSeen& b) { return a.task < b.task; });
+  for (size_t i = 0; i < w.tasks.size(); ++i)
+    emission[w.tasks[i]] += (g.light.direct[i] + g.light.indirect[i]) * pi_f;
+}
+
+}  // namespace
+
+void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
+                     int threads, CellsSeen& out, Counters& counters) {
+  out.seen.clear();
+  out.emission.assign(tasks.size(), Rgb{0});
+  std::vector<Chunk> chunks = chunks_of(tasks);
+  std::vector<Worker> workers(size_t(thread_count(threads)));
+  parallel_for_slots(chunks.size(), threads, [&](size_t c, size_t slot) {
+    trace_chunk(walks, map, tasks, chunks[c], out.emission, workers[slot]);
+  });
+  for (const Worker& w : workers) counters += w.counters;
+  for (const Chunk& c : chunks) out.seen.insert(out.seen.end(), c.seen.begin(), c.seen.end());
+}
+
+}  // namespace troffer

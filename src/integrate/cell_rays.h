@@ -1,0 +1,38 @@
+// Rays from cells, and from the places at which a picture asks: which cells they see.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "integrate/cells.h"
+
+namespace troffer {
+
+// Rays `first` … first + count - 1 of a sequence, dealt to some hits in turn.
+struct CellTask {
+  uint32_t cell = no_cell;  // whose rays they are, or none's
+  uint32_t first = 0, count = 0;
+  uint64_t stream = 0;
+  float weight = 1;
+  std::span<const CellHit> from;
+};
+
+// What one of them sees.
+struct CellSeen {
+  uint32_t task = 0, cell = no_cell;
+  float distance = 0;
+  Rgb weight;
+  CellHit hit;
+};
+
+struct CellsSeen {
+  std::vector<CellSeen> seen;  // by tasks
+  std::vector<Rgb> emission;   // of each task: irradiance times rays, of sources run into
+};
+
+// map: may be null; else cells that it has are found.
+void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
+                     int threads, CellsSeen& out, Counters& counters);
+
+}  // namespace troffer

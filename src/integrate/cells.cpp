@@ -1,0 +1,59 @@
+#include "integrate/cells.h"
+
+namespace troffer {
+
+namespace {
+
+// Of rays that find no cell, or one that is too near, one after the other.
+constexpr int most_bounces = 16;
+
+}  // namespace
+
+bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance) const {
+  if (distance < map_->near()) return false;
+  const uint32_t cell = map_->find(hit, distance);
+  if (cell == no_cell) return false;
+  irradiance = irradiance_[cell] - direct_[cell];
+  return true;
+}
+
+// What one arrival sees: the cell's irradiance, or its direct part where what is behind it is
+// looked at more closely; false where there is no cell.
+bool Cells::look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const {
+  const uint32_t cell = map_->find(a.hit, a.distance);
+  if (cell == no_cell) return false;
+  const uint32_t ray = a.walk.index;
+  if (a.distance < map_->near() && !is_last) {
+    s.light.irradiance[ray] += a.walk.throughput * direct_[cell];
+    s.again.push_back(a);
+    return true;
+  }
+  s.light.irradiance[ray] += a.walk.throughput * irradiance_[cell];
+  s.light.half_difference[ray] += luminance(a.walk.throughput) * half_difference_[cell];
+  return true;
+}
+
+void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
+  s.light.irradiance.assign(rays, Rgb{0});
+  s.light.half_difference.assign(rays, 0);
+  s.light.distance.assign(rays, 0);
+  for (int bounce = 0; bounce < most_bounces && !s.gather.walks.empty(); ++bounce) {
+    walks_.follow(rays, Coherence::none, s.gather, counters);
+    s.arrivals.swap(s.gather.arrivals);
+    s.again.clear();
+    size_t missed = 0;
+    for (GatherArrival& a : s.arrivals) {
+      if (bounce == 0 && s.light.distance[a.walk.index] == 0)
+        s.light.distance[a.walk.index] = a.distance;
+      if (!look_up(a, bounce > 0, s)) s.arrivals[missed++] = a;
+    }
+    s.arrivals.resize(missed);
+    if (missed > 0) walks_.light_up(s.arrivals, s.gather, counters);
+    for (size_t i = 0; i < rays; ++i)
+      s.light.irradiance[i] += (s.gather.light.direct[i] + s.gather.light.indirect[i]) * pi_f;
+    s.again.insert(s.again.end(), s.arrivals.begin(), s.arrivals.end());
+    walks_.bounce(s.again, s.gather);
+  }
+}
+
+}  // namespace troffer

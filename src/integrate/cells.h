@@ -1,0 +1,68 @@
+// Light between surfaces, solved on cells (cells/cell_map.h, docs/cells.md): what is left of it
+// once they are made, and how places around look it up.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cells/cell_map.h"
+#include "integrate/gather_walks.h"
+
+namespace troffer {
+
+// What making the cells took, and how well it came out.
+struct CellStatistics {
+  uint64_t cells = 0, entries = 0, rays = 0;
+  int rounds = 0, iterations = 0;
+  double size = 0;        // of a cell, metres
+  double unresolved = 0;  // share of the light asked for that cells without a row would bring
+  double bytes = 0;
+  double seconds = 0;
+};
+
+// What lookups bring a ray: irradiance over π would be radiance.
+struct GatheredLight {
+  std::vector<Rgb> irradiance;         // of each ray: π × radiance
+  std::vector<float> half_difference;  // by the noise of cells: luminance (CellLight)
+  std::vector<float> distance;         // to the first matte surface; 0: none
+};
+
+struct CellsScratch {
+  GatherScratch gather;
+  std::vector<GatherArrival> arrivals, again;
+  GatheredLight light;
+};
+
+class Cells {
+ public:
+  Cells(const PreparedScene& scene, std::unique_ptr<CellMap> map, std::vector<Rgb> direct,
+        std::vector<Rgb> irradiance, std::vector<float> half_difference,
+        const CellStatistics& statistics)
+      : map_(std::move(map)),
+        direct_(std::move(direct)),
+        irradiance_(std::move(irradiance)),
+        half_difference_(std::move(half_difference)),
+        statistics_(statistics),
+        walks_(scene) {}
+
+  const CellStatistics& statistics() const { return statistics_; }
+  const GatherWalks& walks() const { return walks_; }
+
+  // Follows s.gather.walks, of indices below `rays`, and gathers what they see: s.light.
+  void gather(size_t rays, CellsScratch& s, Counters& counters) const;
+  // Irradiance at a place seen from this far, but for what comes straight from sources; false where
+  // there is no cell that is good enough.
+  bool indirect_at(const CellHit& hit, float distance, Rgb& irradiance) const;
+
+ private:
+  bool look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const;
+
+  std::unique_ptr<CellMap> map_;
+  std::vector<Rgb> direct_, irradiance_;
+  std::vector<float> half_difference_;
+  CellStatistics statistics_;
+  GatherWalks walks_;
+};
+
+}  // namespace troffer

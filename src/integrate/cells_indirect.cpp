@@ -1,0 +1,89 @@
+#include "integrate/cells_indirect.h"
+
+#include "base/error.h"
+
+namespace troffer {
+
+namespace {
+
+// Gather rays from what a viewing ray hits; four viewing rays a pixel make 16.
+constexpr uint32_t rays_of_hit = 4;
+
+}  // namespace
+
+struct CellsIndirect::Scratch final : IndirectLightScratch {
+  CellsScratch cells;
+  // Per hit whose rays are in cells.gather.walks: of which viewing ray, and reflectance / π times
+  // what the walk carries.
+  std::vector<uint32_t> indices;
+  std::vector<Rgb> weights;
+
+  void clear() {
+    cells.gather.walks.clear();
+    indices.clear();
+    weights.clear();
+  }
+};
+
+std::unique_ptr<IndirectLightScratch> CellsIndirect::make_scratch() const {
+  return std::make_unique<Scratch>();
+}
+
+void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
+                          Counters&) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  CheckItems items;
+  for (size_t i = 0; i < wave.size(); ++i) {
+    const SurfaceScattering& scattering = wave.scatterings[i];
+    if (!scattering.has_diffuse) continue;
+    const Walk& at = wave.walks[i];
+    items.at(at.index);
+    const Vertex& v = wave.vertices[i];
+    const Rgb weight = at.throughput * albedo(scattering.diffuse, v.wo.z) * inv_pi_f;
+    const CellHit hit = cell_hit_of(v);
+    Rgb irradiance;
+    if (at.scatterings > 0 &&
+        cells_->indirect_at(hit, wave.hits[i].t * length(at.ray.direction), irradiance)) {
+      out.indirect[at.index] += weight * irradiance;
+      continue;
+    }
+    for (uint32_t k = 0; k < rays_of_hit; ++k) {
+      Walk walk = at;
+      walk.throughput = Rgb{1};
+      walk.index = uint32_t(s.indices.size()) * rays_of_hit + k;
+      walk.sample = at.sample * rays_of_hit + k;
+      set_out(hit, direction_number(walk), walk);
+      if (!walk.throughput.is_black()) s.cells.gather.walks.push_back(walk);
+    }
+    s.indices.push_back(at.index);
+    s.weights.push_back(weight);
+  }
+}
+
+void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
+                          Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  cells_->gather(s.indices.size() * rays_of_hit, s.cells, counters);
+  for (size_t i = 0; i < s.indices.size(); ++i) {
+    Rgb sum;
+    for (size_t k = 0; k < rays_of_hit; ++k) sum += s.cells.light.irradiance[i * rays_of_hit + k];
+    out.indirect[s.indices[i]] += s.weights[i] * sum * (1.0f / float(rays_of_hit));
+  }
+  s.clear();
+}
+
+void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scratch,
+                           RadianceBatch& out, Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  s.clear();
+  for (uint32_t i = 0; i < sensors.size(); ++i) {
+    Walk walk = sensor_walk(sensors, i);
+    set_out({sensors.positions[i], sensors.normals[i], sensors.normals[i], sensors.offset},
+            direction_number(walk), walk);
+    s.cells.gather.walks.push_back(walk);
+  }
+  cells_->gather(sensors.size(), s.cells, counters);
+  for (uint32_t i = 0; i < sensors.size(); ++i) out.indirect[i] += s.cells.light.irradiance[i];
+}
+
+}  // namespace troffer

@@ -1,0 +1,29 @@
+// Indirect light by rays that gather what cells reflect (docs/cells.md).
+#pragma once
+
+#include <memory>
+
+#include "integrate/cells.h"
+#include "integrate/indirect_light.h"
+
+namespace troffer {
+
+class CellsIndirect final : public IndirectLight {
+ public:
+  explicit CellsIndirect(std::unique_ptr<const Cells> cells) : cells_(std::move(cells)) {}
+
+  std::unique_ptr<IndirectLightScratch> make_scratch() const override;
+  void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
+             Counters& counters) const override;
+  void flush(IndirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
+  // By one ray per sample.
+  void gather(const SensorBatch& sensors, IndirectLightScratch& scratch, RadianceBatch& out,
+              Counters& counters) const override;
+
+ private:
+  struct Scratch;
+
+  std::unique_ptr<const Cells> cells_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,140 @@
+#include "integrate/gather_walks.h"
+
+#include "base/error.h"
+#include "base/warp.h"
+
+namespace troffer {
+
+namespace {
+
+// Surfaces that a ray is followed to.
+constexpr uint32_t longest_walk = 24;
+// A walk's note about where it comes from: what shines on a matte surface is not for it to say.
+constexpr uint32_t from_matte = 1;
+
+}  // namespace
+
+CellHit cell_hit_of(const Vertex& v) {
+  return {v.surface.position, v.frame.normal, v.geometric_normal, v.surface.offset};
+}
+
+Vertex vertex_of(const CellHit& hit) {
+  Vertex v = make_sensor_vertex(hit.position, hit.horizon, hit.offset);
+  v.frame = Frame(hit.normal);
+  return v;
+}
+
+void set_out(const CellHit& from, const Vec2& number, Walk& walk) {
+  const Vec3 local = cosine_hemisphere_from_square(number);
+  Vec3 wi = Frame(from.normal).to_world(local);
+  // Below the surface, where the shading normal leans: no light comes from there.
+  const bool is_above = dot(wi, from.horizon) > 0;
+  if (!is_above) walk.throughput = Rgb{0};
+  walk.ray = {};
+  walk.ray.origin = from.position + from.horizon * (is_above ? from.offset : -from.offset);
+  walk.ray.direction = wi;
+  walk.pdf = local.z * inv_pi_f;
+  walk.last_position = from.position;
+  walk.last_normal = from.horizon;
+  walk.last_both_sides = false;
+  walk.last_place = from_matte;
+  ++walk.vertex;
+  ++walk.scatterings;
+}
+
+void GatherWalks::follow(size_t rays, Coherence coherence, GatherScratch& s,
+                         Counters& counters) const {
+  s.arrivals.clear();
+  s.light.direct.assign(rays, Rgb{0});
+  s.light.indirect.assign(rays, Rgb{0});
+  s.light.shadow_rays.assign(rays, 0);
+  CheckItems items;
+  for (; !s.walks.empty(); coherence = Coherence::none) {
+    trace_walks(scene_.tracer, s.walks, coherence, s.trace, counters);
+    s.next.clear();
+    s.rough.clear();
+    for (size_t i = 0; i < s.walks.size(); ++i) {
+      items.at(s.walks[i].index);
+      arrive(s.walks[i], s.trace.hits[i], s);
+    }
+    if (s.rough.size() > 0) {
+      tree_.queue(s.rough, s.tree, s.light, counters);
+      tree_.flush(s.tree, s.light, counters);
+    }
+    s.walks.swap(s.next);
+  }
+}
+
+void GatherWalks::see(const Walk& walk, Rgb radiance, float weight, GatherScratch& s) const {
+  s.light.direct[walk.index] += walk.throughput * radiance * weight;
+}
+
+void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) const {
+  const bool counts = walk.last_place != from_matte;
+  if (!hit.is_valid()) {
+    if (!counts) return;
+    for (const uint32_t p : scene_.primitives.at_infinity())
+      see(walk, radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction),
+          walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, s);
+    return;
+  }
+  Vertex v;
+  make_vertex(scene_.scene, walk.ray, hit, v);
+  if (counts && v.surface.light >= 0)
+    see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
+  const Bsdf bsdf =
+      make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+  Rgb reflectance = bsdf.diffuse;
+  const bool is_matte = is_lambertian(bsdf, nullptr);
+  if (!is_matte) {
+    const SurfaceScattering scattering(bsdf);
+    reflectance = scattering.has_diffuse ? albedo(scattering.diffuse, v.wo.z) : Rgb{0};
+    if (scattering.has_specular && walk.vertex < longest_walk) {
+      if (scattering.has_rough) {
+        s.rough.walks.push_back(walk);
+        s.rough.vertices.push_back(v);
+        s.rough.bsdfs.push_back(scattering.specular);
+      }
+      Walk next = walk;
+      next.last_place = 0;
+      if (step(next, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
+          survives_spawning(next))
+        s.next.push_back(next);
+    }
+  }
+  if (reflectance.is_black()) return;
+  GatherArrival& a = s.arrivals.emplace_back();
+  a.walk = walk;
+  a.walk.throughput *= reflectance;
+  a.hit = cell_hit_of(v);
+  a.distance = hit.t * length(walk.ray.direction);
+}
+
+void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const {
+  s.walks.clear();
+  for (GatherArrival& a : arrivals) {
+    const Vec2 number = direction_number(a.walk);
+    set_out(a.hit, number, a.walk);
+    if (!a.walk.throughput.is_black()) s.walks.push_back(a.walk);
+  }
+}
+
+void GatherWalks::light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
+                           Counters& counters) const {
+  Bsdf white = sensor_bsdf();
+  white.diffuse = Rgb{1};
+  // in groups of as many vertices behind them
+  for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
+    s.rough.clear();
+    while (end < arrivals.size() && arrivals[end].walk.vertex == arrivals[first].walk.vertex) {
+      s.rough.walks.push_back(arrivals[end].walk);
+      s.rough.vertices.push_back(vertex_of(arrivals[end].hit));
+      s.rough.bsdfs.push_back(white);
+      ++end;
+    }
+    tree_.queue(s.rough, s.tree, s.light, counters);
+    tree_.flush(s.tree, s.light, counters);
+  }
+}
+
+}  // namespace troffer

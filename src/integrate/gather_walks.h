@@ -1,0 +1,62 @@
+// Rays that ask surfaces around for the light they reflect: what they see of matte surfaces, by way
+// of mirrors, glass and gloss too, and what light reaches them along the way.
+//
+// Emission that a ray runs into first is not counted: light straight from sources is somebody
+// else's. Behind a mirror, glass or gloss it is, in competition with one sample of the light tree
+// at the gloss, as in path tracing.
+#pragma once
+
+#include <vector>
+
+#include "cells/cell_hit.h"
+#include "integrate/light_tree_direct.h"
+#include "integrate/walk.h"
+
+namespace troffer {
+
+// A matte surface seen by a ray.
+struct GatherArrival {
+  Walk walk;           // throughput: times the surface's reflectance towards the ray
+  CellHit hit;         // where
+  float distance = 0;  // from where the ray last left a surface
+};
+
+struct GatherScratch {
+  std::vector<Walk> walks, next;
+  std::vector<GatherArrival> arrivals;  // the result …
+  RadianceBatch light;                  // … and radiance from sources: direct + indirect
+  WalkScratch trace;
+  WaveHits rough;
+  LightTreeDirectScratch tree;
+};
+
+class GatherWalks {
+ public:
+  explicit GatherWalks(const PreparedScene& scene) : scene_(scene), tree_(scene) {}
+
+  // Follows s.walks, whose indices are below `rays`, to the end.
+  void follow(size_t rays, Coherence coherence, GatherScratch& s, Counters& counters) const;
+  // One ray of each arrival by cosine, in s.walks; the walks have left the arrivals' surfaces.
+  void bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const;
+  // Light straight from sources at arrivals, as irradiance times the walks' throughput, over π, in
+  // `light`: one sample each.
+  void light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
+                Counters& counters) const;
+
+ private:
+  void arrive(const Walk& walk, const Hit& hit, GatherScratch& s) const;
+  void see(const Walk& walk, Rgb radiance, float weight, GatherScratch& s) const;
+
+  const PreparedScene& scene_;
+  LightTreeDirect tree_;
+};
+
+// Where a ray has hit a surface, as cells want it.
+CellHit cell_hit_of(const Vertex& v);
+// … and back, as a surface seen from straight above.
+Vertex vertex_of(const CellHit& hit);
+
+// Sends a walk on from a place, by cosine.
+void set_out(const CellHit& from, const Vec2& number, Walk& walk);
+
+}  // namespace troffer

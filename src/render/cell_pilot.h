@@ -1,0 +1,22 @@
+// From where a picture, or measuring points, will ask for light: what cells are made for.
+#pragma once
+
+#include <vector>
+
+#include "integrate/cell_builder.h"
+#include "render/camera.h"
+#include "render/measure.h"
+
+namespace troffer {
+
+// Viewing rays all over the picture, the same for every crop of it.
+CellPilot picture_pilot(const ViewingCamera& camera, const ImageSize& size, uint64_t seed);
+
+CellPilot points_pilot(const PreparedScene& scene, const std::vector<MeasuringPoint>& points);
+
+// Points are often given on the very surface they measure, rounded to a few digits: rays start
+// some rounding errors of their coordinates off it, and never less than a hundredth of a millimetre
+// (or a millionth of a scene smaller than ten metres).
+float offset_of_point(const Vec3& position, const Box& scene);
+
+}  // namespace troffer

@@ -1,0 +1,105 @@
+#include <doctest/doctest.h>
+
+#include "base/random.h"
+#include "base/warp.h"
+#include "cells/cell_map.h"
+#include "support/scenes.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+CellHit on_floor(float x, float y) {
+  return {{x, y, 0}, {0, 0, 1}, {0, 0, 1}, 1e-5f};
+}
+
+// A floor of 4 × 4 m; half of it behind a wall without thickness at x = 0.33.
+Scene parted_floor() {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.5f});
+  add_quad(s, grey, {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  add_quad(s, grey, {Vec3{0.33f, -2, 0}, {0.33f, 2, 0}, {0.33f, 2, 2}, {0.33f, -2, 2}});
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("hits in one voxel share a cell, those of another side, plane or distance do not") {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  const Tracer tracer(s);
+  CellMap map(tracer, 1);
+  CHECK(map.find(on_floor(0.1f, 0.1f), 5) == no_cell);
+  const uint32_t cell = map.add(on_floor(0.1f, 0.1f), 5);
+  CHECK(map.add(on_floor(0.2f, 0.3f), 5) == cell);
+  CHECK(map.find(on_floor(0.3f, 0.2f), 5) == cell);
+  CHECK(map.hits(cell).size() == 2);
+  CHECK(map.find(on_floor(1.5f, 0.1f), 5) == no_cell);
+  CHECK(map.find(on_floor(0.1f, 0.1f), 1) == no_cell);  // from near: half cells
+  CellHit below = on_floor(0.1f, 0.1f);
+  below.normal = below.horizon = {0, 0, -1};
+  CHECK(map.find(below, 5) == no_cell);
+  CellHit shelf = on_floor(0.1f, 0.1f);
+  shelf.position.z = 0.1f;
+  CHECK(map.find(shelf, 5) == no_cell);
+  CHECK(map.add(shelf, 5) != cell);
+  CHECK(map.find(on_floor(0.3f, 0.2f), 5) == cell);
+}
+
+TEST_CASE("a wall parts the cells of the floor that it stands on, wherever it crosses them") {
+  const Scene scene = parted_floor();
+  const Tracer tracer(scene);
+  for (const float size : {0.05f, 0.17f, 0.4f, 1.0f}) {
+    CellMap map(tracer, size);
+    Random random(3);
+    std::vector<int> sides;
+    size_t shared = 0, hits = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const float x = 0.33f + size * (2 * random.next_float() - 1);
+      const uint32_t cell = map.add(on_floor(x, 3 * random.next_float() - 1.5f), 5);
+      sides.resize(map.size(), 0);
+      const int side = x < 0.33f ? 1 : -1;
+      if (sides[cell] == 0) sides[cell] = side;
+      shared += sides[cell] != side ? 1 : 0;
+      ++hits;
+    }
+    CAPTURE(size);
+    CHECK(shared == 0);
+    CHECK(map.size() < 60 / size);  // and not one for each hit
+  }
+}
+
+TEST_CASE("cells of a sphere: few, and with normals that are near each other") {
+  Scene s;
+  s.spheres.push_back({{0, 0, 0}, 1, false, add_diffuse(s, Rgb{0.5f}), no_light});
+  const Tracer tracer(s);
+  CellMap map(tracer, 0.2f);
+  Random random(5);
+  for (int i = 0; i < 50000; ++i) {
+    const Vec3 n = sphere_from_square(random.next_vec2());
+    const uint32_t cell = map.add({n, n, n, 1e-5f}, 5);
+    CHECK(dot(n, map.hits(cell)[0].normal) > 0.86f);
+  }
+  CHECK(map.size() > 200);
+  CHECK(map.size() < 2000);
+  CHECK(map.bytes() > map.size() * sizeof(CellHit));
+}
+
+TEST_CASE("voxels full of leaves do not make a cell of every leaf") {
+  Scene s;
+  add_diffuse(s, Rgb{0.5f});
+  const Tracer tracer(s);
+  CellMap map(tracer, 1);
+  Random random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 n = sphere_from_square(random.next_vec2());
+    const Vec3 p{0.5f * random.next_float(), 0.5f * random.next_float(),
+                 0.5f * random.next_float()};
+    const CellHit leaf{p, n, n, 1e-5f};
+    const uint32_t cell = map.add(leaf, 5);
+    CHECK(cell != no_cell);
+    CHECK(map.find(leaf, 5) == cell);
+  }
+  CHECK(map.size() < 500);
+}

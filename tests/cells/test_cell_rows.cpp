@@ -1,0 +1,92 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "cells/cell_rows.h"
+
+using namespace troffer;
+
+namespace {
+
+// Cells that see each other at random, and lose some of the light.
+CellRows random_rows(size_t cells, float reflectance) {
+  CellRows rows;
+  Random random(11);
+  for (uint32_t i = 0; i < cells; ++i)
+    for (const bool half : {false, true}) {
+      std::vector<RowEntry> entries(8);
+      for (RowEntry& e : entries)
+        e = {uint32_t(random.next_float() * float(cells)),
+             Rgb{reflectance, reflectance * random.next_float(), 0}};
+      rows.add({i, 8, 0, half, Rgb{0}}, entries);
+    }
+  rows.finish(cells);
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("two cells that see half of each other") {
+  CellRows rows;
+  const std::vector<RowEntry> to_one{{1, Rgb{0.5f}}};
+  rows.add({0, 2, 0, false, Rgb{0}}, to_one);
+  rows.add({1, 4, 0, false, Rgb{4, 0, 0}}, std::vector<RowEntry>{{0, Rgb{0.8f}}, {0, Rgb{0.8f}}});
+  rows.finish(2);
+  // E0 = 1 + E1 / 4, E1 = 1 (red) + .4 E0
+  const CellLight light = rows.solve({Rgb{1}, Rgb{0}}, 1);
+  const double red = (1 + 0.25) / (1 - 0.25 * 0.4), green = 1 / (1 - 0.25 * 0.4);
+  CHECK(double(light.irradiance[0].r) == doctest::Approx(red).epsilon(1e-5));
+  CHECK(double(light.irradiance[0].g) == doctest::Approx(green).epsilon(1e-5));
+  CHECK(double(light.irradiance[1].r) == doctest::Approx(1 + 0.4 * red).epsilon(1e-5));
+}
+
+TEST_CASE("a room of reflectance .95 and more keeps its light, and is solved in few rounds") {
+  for (const float rho : {0.5f, 0.95f, 0.99f}) {
+    const CellRows rows = random_rows(2000, rho);
+    const std::vector<Rgb> direct(2000, Rgb{1});
+    const CellLight light = rows.solve(direct, 2);
+    CAPTURE(rho);
+    for (const Rgb& e : light.irradiance)
+      CHECK(double(e.r) == doctest::Approx(1 / (1 - double(rho))).epsilon(2e-4));
+    CHECK(light.iterations < 100);
+  }
+}
+
+TEST_CASE("importance is the adjoint of light") {
+  const size_t n = 500;
+  Random random(5);
+  std::vector<Rgb> direct(n);
+  std::vector<float> asked(n);
+  for (size_t i = 0; i < n; ++i) {
+    direct[i] = Rgb{random.next_float()};
+    asked[i] = random.next_float();
+  }
+  // grey light, so that luminances of weights are the weights
+  CellRows grey;
+  Random again(11);
+  for (uint32_t i = 0; i < n; ++i) {
+    std::vector<RowEntry> entries(16);
+    for (RowEntry& e : entries)
+      e = {uint32_t(again.next_float() * float(n)), Rgb{0.8f * again.next_float()}};
+    grey.add({i, 16, 0, i % 2 == 0, Rgb{0}}, entries);
+  }
+  grey.finish(n);
+  const CellLight light = grey.solve(direct, 1);
+  const std::vector<float> y = grey.importance(asked, 200);
+  double forward = 0, backward = 0;
+  for (size_t i = 0; i < n; ++i) {
+    forward += double(asked[i]) * double(light.irradiance[i].g);
+    backward += double(y[i]) * double(direct[i].g);
+  }
+  CHECK(forward == doctest::Approx(backward).epsilon(1e-3));
+  CHECK(std::isfinite(forward));
+}
+
+TEST_CASE("the same light for any number of threads") {
+  const CellRows rows = random_rows(5000, 0.8f);
+  const std::vector<Rgb> direct(5000, Rgb{1, 2, 3});
+  const CellLight one = rows.solve(direct, 1), many = rows.solve(direct, 5);
+  CHECK(one.irradiance == many.irradiance);
+  CHECK(one.half_difference == many.half_difference);
+}

@@ -1,0 +1,122 @@
+// Pictures and points by cells: closed forms, walls without thickness, threads and crops.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "render/measure.h"
+#include "render/pictures.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+MeasureOptions by_cells(int spp) {
+  MeasureOptions o;
+  o.indirect = Indirect::cells;
+  o.spp = spp;
+  o.threads = 2;
+  return o;
+}
+
+// Points all over the inside of a box, as many on every square metre, facing inwards.
+std::vector<MeasuringPoint> points_inside(const Vec3d& a, const Vec3d& b, int along) {
+  std::vector<MeasuringPoint> points;
+  Random random(9);
+  for (size_t axis = 0; axis < 3; ++axis)
+    for (const bool is_far : {false, true})
+      for (int i = 0; i < along; ++i)
+        for (int j = 0; j < along; ++j) {
+          MeasuringPoint& p = points.emplace_back();
+          const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+          p.position[axis] = is_far ? b[axis] : a[axis];
+          p.position[u] = a[u] + (b[u] - a[u]) * (i + random.next_double()) / along;
+          p.position[v] = a[v] + (b[v] - a[v]) * (j + random.next_double()) / along;
+          p.normal[axis] = is_far ? -1.0f : 1.0f;
+        }
+  return points;
+}
+
+double mean_irradiance(const MeasureResult& r, size_t first, size_t last) {
+  double sum = 0;
+  for (size_t i = first; i < last; ++i) sum += double(r.values[i].irradiance.g);
+  return sum / double(last - first);
+}
+
+RenderOptions picture_by_cells() {
+  RenderOptions o;
+  o.indirect = Indirect::cells;
+  o.width = 48;
+  o.height = 36;
+  o.threads = 2;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("cells: a closed cube lit by its ceiling keeps all light, whatever it reflects") {
+  for (const float rho : {0.05f, 0.5f, 0.8f, 0.95f}) {
+    Scene s;
+    const auto walls = add_box_inside(s, add_diffuse(s, Rgb{rho}), {-1, -1, -1}, {1, 1, 1});
+    make_light(s, walls[1], Rgb{1});
+    const PreparedScene scene(std::move(s));
+    const MeasureResult r =
+        measure(scene, points_inside({-1, -1, -1}, {1, 1, 1}, 12), by_cells(64), {}, never_stopped);
+    const double expected = pi * 4 / (24 * (1 - double(rho)));
+    CAPTURE(rho);
+    CHECK(mean_irradiance(r, 0, r.values.size()) == doctest::Approx(expected).epsilon(0.002));
+  }
+}
+
+TEST_CASE("cells: of two rooms on one floor the dark one stays dark") {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.7f});
+  add_box_inside(s, grey, {-4, -2, 0}, {4.1f, 2, 3});
+  add_quad(s, grey, {Vec3{0.03f, -2, 0}, {0.03f, 2, 0}, {0.03f, 2, 3}, {0.03f, -2, 3}});
+  make_light(s,
+             add_quad(s, grey, {Vec3{-3, -1, 2.9f}, {-3, 1, 2.9f}, {-1, 1, 2.9f}, {-1, -1, 2.9f}}),
+             Rgb{10});
+  const PreparedScene scene(std::move(s));
+  std::vector<MeasuringPoint> points = points_inside({-4, -2, 0}, {0.03, 2, 3}, 6);
+  const size_t lit = points.size();
+  for (const MeasuringPoint& p : points_inside({0.03, -2, 0}, {4.1, 2, 3}, 6)) points.push_back(p);
+  const MeasureResult r = measure(scene, points, by_cells(1024), {}, never_stopped);
+  const double light = mean_irradiance(r, 0, lit), dark = mean_irradiance(r, lit, points.size());
+  CHECK(light > 1);
+  CHECK(dark <= 1e-4 * light);
+}
+
+TEST_CASE("cells: byte-identical for any number of threads, and crops are parts of the picture") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions o = picture_by_cells();
+  o.aovs = {Aov::direct, Aov::indirect, Aov::error};
+  o.threads = 1;
+  const RenderResult one = render_now(scene, mixed_room_camera(), o);
+  CHECK(one.statistics.cells.cells > 100);
+  CHECK(one.statistics.cells.unresolved <= 1e-5);
+  CHECK(one.statistics.counters.nan_samples == 0);
+  for (const int threads : {2, 5}) {
+    o.threads = threads;
+    CHECK(is_identical(one.layers, render_now(scene, mixed_room_camera(), o).layers));
+  }
+  o.has_crop = true;
+  o.crop = {5, 3, 29, 31};
+  CHECK(pixels_off_crop(one, render_now(scene, mixed_room_camera(), o), o.crop) == 0);
+}
+
+TEST_CASE("cells: a room with mirror, glass, gloss is as bright as by paths") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions o = picture_by_cells();
+  o.width = 24;
+  o.height = 18;
+  const Ensemble mine = render_ensemble(scene, mixed_room_camera(), o, 8);
+  o.method = Method::path;
+  o.indirect = Indirect::automatic;
+  o.spp = 1024;
+  const Ensemble paths = render_ensemble(scene, mixed_room_camera(), o, 8);
+  CAPTURE(mine.mean.mean());
+  CAPTURE(paths.mean.mean());
+  CAPTURE(paths.mean.standard_error());
+  CHECK(mine.mean.mean() == doctest::Approx(paths.mean.mean()).epsilon(0.005));
+}
