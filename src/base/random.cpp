@@ -1,5 +1,8 @@
 #include "base/random.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "base/simd.h"
 
 namespace troffer {
@@ -73,6 +76,58 @@ void sobol_groups(const uint64_t* streams, const uint32_t* samples, size_t n, ui
       out[2 * n + i] = v.x;
       out[3 * n + i] = v.y;
     }
+}
+
+namespace {
+
+// Bits of two words, the first 16 from the top of each, in turn.
+uint32_t morton_code(uint32_t x, uint32_t y) {
+  uint32_t code = 0;
+  for (int b = 31; b >= 16; --b) code = (code << 2) | (((x >> b) & 1u) << 1) | ((y >> b) & 1u);
+  return code;
+}
+
+TROFFER_MULTIVERSION
+void draw_pair(const uint32_t* order, uint32_t n, uint32_t high, uint32_t scramble_x,
+               uint32_t scramble_y, float* __restrict x, float* __restrict y) {
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint32_t index = high | order[i];
+    x[i] = unit_float(reverse_bits(owen_hash_reversed(sobol_reversed(index, 0), scramble_x)));
+    y[i] = unit_float(reverse_bits(owen_hash_reversed(sobol_reversed(index, 1), scramble_y)));
+  }
+}
+
+}  // namespace
+
+SobolBlocks::SobolBlocks(uint32_t n) : order_(n) {
+  std::iota(order_.begin(), order_.end(), 0u);
+  if (!std::has_single_bit(n)) return;
+  const auto place = [](uint32_t i) {
+    return morton_code(reverse_bits(sobol_reversed(i, 0)), reverse_bits(sobol_reversed(i, 1)));
+  };
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](uint32_t a, uint32_t b) { return place(a) < place(b); });
+}
+
+void SobolBlocks::draw(uint64_t stream, uint32_t purpose, uint32_t block, int dimensions,
+                       float* out) const {
+  const uint32_t n = size(), first = block * n;
+  SobolGroup group(stream, purpose, first);
+  if (!std::has_single_bit(n)) {
+    for (uint32_t i = 0; i < n; ++i) {
+      group.index_ = nested_uniform_scramble(first + i, uint32_t(group.seed_));
+      for (int d = 0; d < dimensions; ++d) out[uint32_t(d) * n + i] = group.get(d);
+    }
+    return;
+  }
+  // Shuffling moves the block as a whole, and within it changes the order alone.
+  const uint32_t high = group.index_ & ~(n - 1);
+  const uint64_t scrambles = group.scrambles_of(0);
+  draw_pair(order_.data(), n, high, uint32_t(scrambles), uint32_t(scrambles >> 32), out, out + n);
+  for (uint32_t i = 0; dimensions > 2 && i < n; ++i) {
+    group.index_ = high | order_[i];
+    out[2 * n + i] = group.get(2);
+  }
 }
 
 const std::array<std::array<uint32_t, 32>, sobol_dimensions>& sobol_matrices_reversed() {

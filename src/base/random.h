@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "base/units.h"
 #include "base/vec.h"
@@ -129,6 +130,7 @@ class SobolGroup {
   }
 
  private:
+  friend class SobolBlocks;
   static constexpr uint64_t golden = 0x9e3779b97f4a7c15ull;
   // Two 32-bit scrambles for a pair of dimensions.
   uint64_t scrambles_of(int pair) const { return mix64(seed_ + uint64_t(pair + 1) * golden); }
@@ -139,6 +141,22 @@ class SobolGroup {
 
   uint64_t seed_;
   uint32_t index_;
+};
+
+// Blocks of n consecutive samples of such groups, for n a power of two in an order of their own:
+// every 2^k of them, counted from the first, fill one elementary interval of the first two
+// dimensions, so that points which lie together come together. (The order is that of the
+// unscrambled points along a Morton curve: scrambling moves elementary intervals as wholes.)
+class SobolBlocks {
+ public:
+  explicit SobolBlocks(uint32_t n = 1);
+  uint32_t size() const { return uint32_t(order_.size()); }
+  // The first `dimensions` (2 or 3) values of samples [block * n, block * n + n) of SobolGroup(
+  // stream, purpose, ·): out[d * n + i] is dimension d of the i-th of them.
+  void draw(uint64_t stream, uint32_t purpose, uint32_t block, int dimensions, float* out) const;
+
+ private:
+  std::vector<uint32_t> order_;
 };
 
 // The first `dimensions` (2 … 4) values of SobolGroup(streams[i], purpose, samples[i]) for all i of

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "base/random.h"
+#include "integrate/matte_rays.h"
 #include "integrate/walk.h"
 
 namespace troffer {
@@ -11,15 +13,19 @@ namespace troffer {
 // Shadow rays that wait to be traced, and memory for the samples of one source from one vertex.
 struct SourceSamplerScratch {
   ShadowBatch shadows;
-  std::vector<uint64_t> streams;
-  std::vector<uint32_t> samples, primitives;
+  SobolBlocks blocks, single;
+  std::vector<uint32_t> primitives, order;
+  std::vector<LightChoice> choices;
   std::vector<float> numbers, pmfs, u, v;
   std::vector<Vec3> receivers;
   std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
   LightSampleScratch lights;
+  MatteRays matte;  // those of matte surfaces
+  LightPoints matte_points;
 
   void resize(size_t n);
+  const SobolBlocks& blocks_of(uint32_t n);
 };
 
 // A vertex and what of its surface the rays light.
@@ -56,12 +62,20 @@ class SourceSampler {
   }
 
  private:
+  bool is_matte(const SampledVertex& at, uint32_t light) const;
+  void sample_matte(const SampledVertex& at, uint32_t light, uint32_t n,
+                    SourceSamplerScratch& s) const;
+  bool choose_matte_points(const SampledVertex& at, uint32_t light, uint32_t n,
+                           SourceSamplerScratch& s) const;
+  uint32_t choose_pieces(const SampledVertex& at, uint32_t light, uint32_t n,
+                         SourceSamplerScratch& s) const;
   uint32_t choose_points(const SampledVertex& at, uint32_t light, uint32_t n,
                          SourceSamplerScratch& s) const;
 
   const PreparedScene& scene_;
   std::vector<LightTree> trees_;  // per light, over its primitives
   std::vector<bool> is_delta_;    // per light
+  std::vector<bool> is_even_;     // per light: surfaces of one radiance
 };
 
 }  // namespace troffer

@@ -161,6 +161,41 @@ LightChoice LightTree::choose(const Vec3& x, const Vec3& n, bool both_sides, flo
   return nodes_.empty() ? LightChoice{} : choose_below(0, x, n, both_sides, c.pmf, c.u);
 }
 
+// out: probability and number of each so far; children take runs of them, since numbers increase.
+void LightTree::choose_sorted_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides,
+                                    size_t count, LightChoice* out) const {
+  const Node& node = nodes_[at];
+  alignas(16) Lanes weight;
+  importances(node, x, n, both_sides, weight);
+  for (size_t i = 0; i < count;) {
+    const uint32_t k = pick(weight, out[i].pmf, out[i].u);
+    const size_t first = i++;
+    if (k == width) {
+      out[first] = {};
+      continue;
+    }
+    while (i < count) {
+      LightChoice next = out[i];
+      if (pick(weight, next.pmf, next.u) != k) break;
+      out[i++] = next;
+    }
+    if (!node.is_leaf[k])
+      choose_sorted_below(node.child[k], x, n, both_sides, i - first, out + first);
+    else
+      for (size_t j = first; j < i; ++j) out[j].primitive = node.child[k];
+  }
+}
+
+void LightTree::choose_sorted(const Vec3& x, const Vec3& n, bool both_sides, const float* u,
+                              size_t count, LightChoice* out) const {
+  for (size_t i = 0; i < count; ++i)
+    out[i] = infinite_.empty() ? LightChoice{0, 1, u[i]} : choose(x, n, both_sides, u[i]);
+  if (infinite_.empty() && !nodes_.empty())
+    choose_sorted_below(0, x, n, both_sides, count, out);
+  else if (nodes_.empty() && infinite_.empty())
+    std::fill_n(out, count, LightChoice{});
+}
+
 void LightTree::choose_many(const LightReceivers& r, LightChoice* out,
                             std::vector<float>& scratch) const {
   const size_t n = r.size();

@@ -62,6 +62,10 @@ class LightTree {
   // choose() for every receiver, with the same results: out[i] for receiver i.
   void choose_many(const LightReceivers& receivers, LightChoice* out,
                    std::vector<float>& scratch) const;
+  // choose() for one point and n numbers in increasing order, with the same results: out[i] for
+  // u[i]. A node is weighed once for all numbers that come by it.
+  void choose_sorted(const Vec3& x, const Vec3& n, bool both_sides, const float* u, size_t count,
+                     LightChoice* out) const;
   // The probability with which choose() picks the primitive, which must be one of the tree's.
   float pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const;
 
@@ -102,6 +106,8 @@ class LightTree {
   static void importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
                           Lanes& out);
   static uint32_t pick(const Lanes& weight, float& pmf, float& u);
+  void choose_sorted_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides, size_t count,
+                           LightChoice* out) const;
   LightChoice choose_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides, float pmf,
                            float u) const;
 

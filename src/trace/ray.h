@@ -1,8 +1,11 @@
 // Rays and what they hit.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "base/vec.h"
 
@@ -14,6 +17,29 @@ struct Ray {
   float t_min = 0;
   Vec3 direction;
   float t_max = std::numeric_limits<float>::infinity();
+};
+
+// Rays with t in [0, 1], as plain arrays: those that ask whether two points see each other. Only
+// the first size() entries of the arrays count.
+class Segments {
+ public:
+  static constexpr size_t coordinates = 6;  // of the origin, then of the direction
+
+  size_t size() const { return size_; }
+  const float* coordinate(size_t c) const { return arrays_[c].data(); }
+  // Room for n more after the last, for the caller to write them to end(c)[0 … n - 1] …
+  void make_room(size_t n) {
+    if (arrays_[0].size() >= size_ + n) return;
+    for (auto& a : arrays_) a.resize(2 * (size_ + n));
+  }
+  float* end(size_t c) { return arrays_[c].data() + size_; }
+  // … of which the first n now count.
+  void grow(size_t n) { size_ += n; }
+  void clear() { size_ = 0; }
+
+ private:
+  std::array<std::vector<float>, coordinates> arrays_;
+  size_t size_ = 0;
 };
 
 constexpr uint32_t no_geometry = 0xffffffffu;

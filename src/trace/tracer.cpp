@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -231,6 +232,8 @@ void closest_packets(RTCScene scene, RTCIntersectContext& context, std::span<con
   }
 }
 
+// Not told that they are coherent: Embree's frusta of rays pay in scenes of few large triangles (a
+// tenth), and cost up to twice the time behind wires and leaves.
 void occluded_packets(RTCScene scene, RTCIntersectContext& context, std::span<const Ray> rays,
                       std::span<uint8_t> is_occluded) {
   alignas(64) std::array<int, packet_size> valid{};
@@ -241,6 +244,45 @@ void occluded_packets(RTCScene scene, RTCIntersectContext& context, std::span<co
     rtcOccluded16(valid.data(), scene, &context, &p);
     for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
   }
+}
+
+// 16 segments from `first` on; lanes without one, and untraceable ones, as in the fill above.
+void fill(RTCRay16& p, const Segments& s, size_t first, std::array<int, packet_size>& valid) {
+  const size_t n = std::min(packet_size, s.size() - first);
+  const std::array<float*, Segments::coordinates> lanes{p.org_x, p.org_y, p.org_z,
+                                                        p.dir_x, p.dir_y, p.dir_z};
+  std::array<float, packet_size> reach{};
+  for (size_t c = 0; c < lanes.size(); ++c) {
+    const float* from = s.coordinate(c) + first;
+    for (size_t i = 0; i < n; ++i) lanes[c][i] = from[i];
+    for (size_t i = n; i < packet_size; ++i) lanes[c][i] = 1;
+    for (size_t i = 0; i < packet_size; ++i) reach[i] += std::abs(lanes[c][i]);
+  }
+  bool are_fine = true;
+  for (size_t i = 0; i < packet_size; ++i) {
+    const bool is_fine = reach[i] < 1e18f;
+    are_fine &= is_fine;
+    valid[i] = is_fine && i < n ? -1 : 0;
+    p.tnear[i] = 0;
+    p.tfar[i] = 1;
+    p.time[i] = 0;
+    p.mask[i] = 0xffffffffu;
+    p.id[i] = 0;
+    p.flags[i] = 0;
+  }
+  if (are_fine) return;
+  for (float* lane : lanes)
+    for (size_t i = 0; i < packet_size; ++i)
+      if (!(reach[i] < 1e18f)) lane[i] = 1;
+}
+
+void append(RayLog& log, const Segments& s) {
+  log.batches.push_back({log.rays.size(), s.size(), Coherence::coherent, true});
+  for (size_t i = 0; i < s.size(); ++i)
+    log.rays.push_back({{s.coordinate(0)[i], s.coordinate(1)[i], s.coordinate(2)[i]},
+                        0,
+                        {s.coordinate(3)[i], s.coordinate(4)[i], s.coordinate(5)[i]},
+                        1});
 }
 
 }  // namespace
@@ -281,7 +323,6 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   if (coherence == Coherence::coherent) {
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     occluded_packets(embree_->scene, context, rays, is_occluded);
     return;
   }
@@ -292,6 +333,20 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
     fill(r, rays[i]);
     rtcOccluded1(embree_->scene, &context, &r);
     is_occluded[i] = r.tfar < 0 ? 1 : 0;
+  }
+}
+
+void Tracer::occluded(const Segments& segments, std::span<uint8_t> is_occluded) const {
+  if (log_ != nullptr) append(*log_, segments);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  alignas(64) std::array<int, packet_size> valid{};
+  RTCRay16 p;
+  for (size_t first = 0; first < segments.size(); first += packet_size) {
+    fill(p, segments, first, valid);
+    rtcOccluded16(valid.data(), embree_->scene, &context, &p);
+    const size_t n = std::min(packet_size, segments.size() - first);
+    for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
   }
 }
 

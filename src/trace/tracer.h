@@ -43,6 +43,9 @@ class Tracer {
   void occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
                 Coherence coherence = Coherence::none) const;
 
+  // The same, coherent, for segments.
+  void occluded(const Segments& segments, std::span<uint8_t> is_occluded) const;
+
   // From now on also writes all rays into `log` (null: no more). Not while other threads trace.
   void set_log(RayLog* log) { log_ = log; }
 

@@ -1,6 +1,8 @@
 // Owen-scrambled Sobol groups: stratification, uniformity, independence of streams.
 #include <doctest/doctest.h>
 
+#include <array>
+#include <bit>
 #include <set>
 #include <vector>
 
@@ -185,5 +187,34 @@ TEST_CASE("groups drawn at a stroke are those drawn one by one, bit for bit") {
       for (int d = 0; d < dimensions; ++d)
         different += out[size_t(d) * n + i] != SobolGroup(streams[i], 9, samples[i]).get(d);
     CHECK(different == 0);
+  }
+}
+
+TEST_CASE("blocks hold the points of their samples, those close to each other together") {
+  for (const uint32_t n : {1u, 16u, 64u, 512u, 48u}) {
+    const SobolBlocks blocks(n);
+    REQUIRE(blocks.size() == n);
+    for (uint32_t block = 0; block < 5; ++block) {
+      std::vector<float> drawn(3 * n);
+      blocks.draw(99 + block, 4, block, 3, drawn.data());
+      std::set<std::array<float, 3>> of_blocks, of_groups;
+      for (uint32_t i = 0; i < n; ++i) {
+        of_blocks.insert({drawn[i], drawn[n + i], drawn[2 * n + i]});
+        const SobolGroup g(99 + block, 4, block * n + i);
+        of_groups.insert({g.get(0), g.get(1), g.get(2)});
+      }
+      CHECK(of_blocks == of_groups);
+      if (n < 32 || n == 48) continue;
+      // Every 16 of them lie in one of n / 16 parts, as wide as high or twice as wide.
+      const uint32_t bits = uint32_t(std::countr_zero(n / 16));
+      const uint32_t columns = 1u << ((bits + 1) / 2), rows = 1u << (bits / 2);
+      size_t strays = 0;
+      for (uint32_t i = 0; i < n; ++i) {
+        const uint32_t first = i / 16 * 16;
+        strays += uint32_t(drawn[i] * float(columns)) != uint32_t(drawn[first] * float(columns)) ||
+                  uint32_t(drawn[n + i] * float(rows)) != uint32_t(drawn[n + first] * float(rows));
+      }
+      CHECK(strays == 0);
+    }
   }
 }

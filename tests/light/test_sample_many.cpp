@@ -1,10 +1,12 @@
 // sample_many against sample: the same points and densities, whatever shares the batch.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "base/random.h"
 #include "base/warp.h"
+#include "light/light_points.h"
 #include "light/light_sample.h"
 #include "support/scenes.h"
 
@@ -71,4 +73,57 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
     CHECK(alone.point == many[i].point);
     CHECK(alone.pdf_solid_angle == many[i].pdf_solid_angle);
   }
+}
+
+TEST_CASE("points for one receiver are those chosen one by one") {
+  Scene s;
+  const uint32_t black = test::add_diffuse(s, Rgb{0});
+  test::add_ceiling_light(s, 1, 2, Rgb{1});
+  test::make_light(
+      s, test::add_quad(s, black, {Vec3{0, 0, 3}, {1, 0.5f, 3}, {1.2f, 1.5f, 3}, {0.2f, 1, 3}}),
+      Rgb{1}, true);
+  s.spheres.push_back({{2, 0, 1}, 0.3f, false, black, int32_t(s.lights.size())});
+  Light sphere;
+  sphere.kind = LightKind::sphere;
+  sphere.radiance = Rgb{1};
+  s.lights.push_back(sphere);
+  const LightPrimitives lights(s);
+  Random random(31);
+  constexpr size_t n = 32;
+  size_t faced = 0, turned = 0;
+  for (int at = 0; at < 600; ++at) {
+    const LightPrimitive& p = lights[random.next_u32() % 3];
+    const float r = at % 5 == 0 ? 100 : 4;  // points by area, by solid angle
+    const Vec3 x =
+        sphere_from_square(random.next_vec2()) * (r * random.next_float()) + Vec3{0, 0, 2};
+    std::vector<float> u(n), v(n);
+    for (size_t i = 0; i < n; ++i) {
+      u[i] = random.next_float();
+      v[i] = random.next_float();
+    }
+    LightPoints points;
+    const bool is_any = sample_points(p, x, n, u.data(), v.data(), points);
+    const Vec3 normal = sphere_from_square(random.next_vec2());
+    float highest = -1;
+    for (size_t i = 0; i < n; ++i) {
+      LightSample one;
+      if (!sample(p, x, {u[i], v[i]}, one)) {
+        CHECK((!is_any || points.inverse_pdf[i] == 0));
+        continue;
+      }
+      ++faced;
+      REQUIRE(is_any);
+      const Vec3 d{points.x[i], points.y[i], points.z[i]};
+      CHECK(length(d - one.wi * one.distance) <= 1e-4f * p.radius + 1e-6f * one.distance);
+      CHECK(length(Vec3{points.nx[i], points.ny[i], points.nz[i]} - one.normal) <= 1e-5f);
+      CHECK(points.inverse_pdf[i] * one.pdf_solid_angle == doctest::Approx(1).epsilon(2e-4));
+      highest = std::max(highest, dot(one.wi, normal));
+    }
+    if (is_below_horizon(p, x, normal)) {
+      ++turned;
+      CHECK(highest <= 1e-4f);
+    }
+  }
+  CHECK(faced > 5000);
+  CHECK(turned > 50);
 }

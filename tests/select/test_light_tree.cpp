@@ -320,3 +320,33 @@ TEST_CASE("choosing for many points is choosing for each") {
     CHECK(different == 0);
   }
 }
+
+TEST_CASE("choosing by increasing numbers for one point is choosing by each") {
+  Random random(29);
+  for (const size_t sources : {1u, 3u, 40u, 700u}) {
+    Scene s;
+    for (size_t i = 0; i < sources; ++i)
+      test::add_ceiling_light(s, 0.1f + random.next_float(), 1 + 3 * random.next_float(),
+                              Rgb{random.next_float() + 0.1f});
+    const LightPrimitives lights(s);
+    const LightTree tree(lights);
+    size_t different = 0, without = 0;
+    for (int at = 0; at < 50; ++at) {
+      const Vec3 x = sphere_from_square(random.next_vec2()) * (4 * random.next_float());
+      const Vec3 n = sphere_from_square(random.next_vec2());
+      std::vector<float> u(64);
+      for (float& v : u) v = random.next_float();
+      std::sort(u.begin(), u.end());
+      std::vector<LightChoice> sorted(u.size());
+      tree.choose_sorted(x, n, at % 3 == 0, u.data(), u.size(), sorted.data());
+      for (size_t i = 0; i < u.size(); ++i) {
+        const LightChoice one = tree.choose(x, n, at % 3 == 0, u[i]);
+        without += one.pmf == 0;
+        different += one.pmf != sorted[i].pmf || one.u != sorted[i].u ||
+                     (one.pmf > 0 && one.primitive != sorted[i].primitive);
+      }
+    }
+    CHECK(different == 0);
+    CHECK(without < 50 * 64);
+  }
+}

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "base/random.h"
@@ -130,6 +132,31 @@ TEST_CASE("occlusion agrees with closest hits, in both modes and within the give
   }
   CHECK(occluded > 500);
   CHECK(occluded < rays.size() - 500);
+}
+
+TEST_CASE("segments are rays that end at t = 1") {
+  const Scene scene = box_scene();
+  const Tracer tracer(scene);
+  std::vector<Ray> rays = random_rays(1003);  // the last packet has places to spare
+  Segments segments;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    Ray& r = rays[i];
+    r.t_max = 1;
+    r.direction = r.direction * 0.4f;
+    if (i % 100 == 99) r.direction.x = std::numeric_limits<float>::quiet_NaN();
+    segments.make_room(1);
+    for (size_t a = 0; a < 3; ++a) {
+      segments.end(a)[0] = r.origin[a];
+      segments.end(3 + a)[0] = r.direction[a];
+    }
+    segments.grow(1);
+  }
+  std::vector<uint8_t> single(rays.size()), packet(rays.size());
+  tracer.occluded(rays, single);
+  tracer.occluded(segments, packet);
+  CHECK(single == packet);
+  CHECK(std::count(single.begin(), single.end(), 1) > 200);
+  CHECK(std::count(single.begin(), single.end(), 0) > 200);
 }
 
 TEST_CASE("alpha masks let rays through") {
