@@ -18,7 +18,7 @@ constexpr double quarters_below = 0.002, sixteenths_below = 0.0007;
 
 }  // namespace
 
-CertifiedSettings certified_settings(double error, size_t lights) {
+CertifiedSettings certified_settings(double error, size_t lights, int viewing_rays) {
   // Half in shadow, the error of n Owen-Sobol rays is near 1/2 n^-3/4. Those of equal, independent
   // sources average out. Powers of two are stratified best.
   const auto rays_for = [](double e) {
@@ -30,6 +30,7 @@ CertifiedSettings certified_settings(double error, size_t lights) {
   s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
   s.estimator.cells.most_share = error < sixteenths_below ? 0.1 : error < quarters_below ? 0.4 : 1;
   s.error = error;
+  s.viewing_rays = viewing_rays;
   s.estimator.residual_error = float(error);
   s.estimator.rays.pair_error = float(2 * error);
   // Who asks for less than the default error may wait for it.
@@ -51,8 +52,15 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
     : scene_(scene),
       occluders_(std::move(occluders)),
       settings_(settings),
-      lights_(scene, settings.error),
-      sampler_(scene) {}
+      lights_(scene, {float(settings.error), float(settings.viewing_rays)}),
+      sampler_(scene) {
+  for (uint32_t light = 0; light < sampler_.lights(); ++light) {
+    if (sampler_.is_empty(light)) continue;
+    at_transmitting_.push_back(light);
+    if (!lights_.has(light)) at_glossy_.push_back(light);
+    if (!lights_.has_at_matte(light)) at_matte_.push_back(light);
+  }
+}
 
 std::unique_ptr<DirectLightScratch> CertifiedDirect::make_scratch() const {
   return std::make_unique<Scratch>(settings_.estimator,
@@ -102,8 +110,10 @@ void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, Radi
                          scattering.has_rough ? &scattering.specular : nullptr,
                          scattering.whole.has_transmission,
                          is_direct};
-  for (uint32_t light = 0; light < sampler_.lights(); ++light) {
-    if (sampler_.is_empty(light) || (is_certified && lights_.has(light))) continue;
+  const std::vector<uint32_t>& lights = !is_certified              ? at_transmitting_
+                                        : scattering.is_lambertian ? at_matte_
+                                                                   : at_glossy_;
+  for (const uint32_t light : lights) {
     sampler_.sample(at, light, uint32_t(settings_.shadow_rays), s.rays, out, counters);
     ++counters.mixed;
     if (walk.vertex == 0) out.sources[walk.index] += Rgb{1, 0, 0};

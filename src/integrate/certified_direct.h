@@ -3,10 +3,9 @@
 //
 // Hits of a batch are treated together for every source (certified_lights.h), without rays but
 // where no list of facets is complete. A fixed number of shadow rays (source_sampler.h) does what
-// has no certificates: finely meshed curved sources, and rough surfaces that transmit. Unbiased.
-// Hits are clustered, and found occluders are remembered within a batch: the noise of the result,
-// though not its mean, depends on what is in the batch.
-// References: docs/certified.md.
+// has no certificates: gloss lit by finely meshed curved sources, rough surfaces that transmit.
+// Unbiased. Hits are clustered, and found occluders are remembered within a batch: the noise of the
+// result, though not its mean, depends on what is in the batch. References: docs/certified.md.
 #pragma once
 
 #include <memory>
@@ -22,11 +21,13 @@ struct CertifiedSettings {
   double error = 0.01;     // allowed, relative to unoccluded light
   int shadow_rays = 64;    // per source and viewing ray where there are no certificates
   int gloss_samples = 32;  // points of a source at which gloss and textures are looked at
+  int viewing_rays = 1;    // of a pixel, which share what is drawn
 };
 
 // Settings for an allowed standard error of a viewing ray's direct light, relative to what its
-// sources would send unoccluded, in a scene of so many lights.
-CertifiedSettings certified_settings(double error, size_t lights);
+// sources would send unoccluded, in a scene of so many lights. Points drawn from many lights err by
+// so much for all viewing rays of a pixel together.
+CertifiedSettings certified_settings(double error, size_t lights, int viewing_rays = 1);
 
 class CertifiedDirect final : public DirectLight {
  public:
@@ -55,6 +56,8 @@ class CertifiedDirect final : public DirectLight {
   CertifiedSettings settings_;
   CertifiedLights lights_;
   SourceSampler sampler_;
+  // Lights that get rays of their own: at matte hits, at glossy ones, where light goes through.
+  std::vector<uint32_t> at_matte_, at_glossy_, at_transmitting_;
 };
 
 }  // namespace troffer

@@ -18,12 +18,15 @@ constexpr float reach_of_diagonal = 0.1f;
 
 }  // namespace
 
-CertifiedLights::CertifiedLights(const PreparedScene& scene, double error)
-    : source_of_front_(scene.primitives.size(), -1),
+CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget)
+    : scene_(scene),
+      source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      error_(float(error)) {
+      budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
+  add_drawn_lights(scene);
+  groups_.finish();
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }
@@ -75,6 +78,7 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
   if (merge_sources(scene.primitives, light, merged)) return add_flat_light(scene, light, merged);
   if (pieces.last - pieces.first > most_pieces) return false;
   std::vector<CertifiedSource> added;
+  std::vector<uint32_t> ends;  // of each piece's sources in `added`
   for (uint32_t p = pieces.first; p < pieces.last; ++p) {
     const LightPrimitive& piece = scene.primitives[p];
     CertifiedSource source;
@@ -88,6 +92,7 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
                        Occluders::key(meshes, scene.scene.lights[light].geometry)};
       source.stream = hash_of(p, 0u);
       added.push_back(source);
+      ends.push_back(uint32_t(added.size()));
       continue;
     }
     for (const bool is_back : {false, true}) {
@@ -97,8 +102,12 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
       source.stream = hash_of(p, is_back ? 1u : 0u);
       added.push_back(source);
     }
+    ends.push_back(uint32_t(added.size()));
   }
+  const auto first = uint32_t(sources_.size());
   for (const CertifiedSource& source : added) add_source(source, {&source.primitive, 1});
+  for (uint32_t p = pieces.first, begin = 0; p < pieces.last; begin = ends[p - pieces.first], ++p)
+    groups_.add(scene.primitives, {&p, 1}, first + begin, first + ends[p - pieces.first]);
   return true;
 }
 
@@ -106,7 +115,9 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
 bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
                                      const std::vector<SourcePiece>& pieces) {
   if (pieces.size() > most_pieces) return false;
-  for (const SourcePiece& piece : pieces) {
+  auto first = uint32_t(sources_.size());
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const SourcePiece& piece = pieces[i];
     CertifiedSource source;
     source.flat = piece.shape;
     source.primitive = piece.primitives[0];
@@ -118,8 +129,37 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
       source.stream = hash_of(sources_.size(), 2u);  // parts of a polygon share a primitive
       add_source(source, piece.primitives);
     }
+    // … and are one group
+    if (i + 1 < pieces.size() && pieces[i + 1].primitives == piece.primitives) continue;
+    groups_.add(scene.primitives, piece.primitives, first, uint32_t(sources_.size()));
+    first = uint32_t(sources_.size());
   }
   return true;
+}
+
+// What has no certificates but a surface: a few neighbours at a time, where triangles are many.
+void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
+  constexpr uint32_t most_groups = 4096;
+  const auto lights = uint32_t(scene.scene.lights.size());
+  is_drawn_.assign(lights, false);
+  uint32_t pieces = 0;
+  for (uint32_t e = 0; e < lights; ++e) {
+    const LightPrimitives::Range range = scene.primitives.of_light(e);
+    if (has_light_[e] || range.first == range.last) continue;
+    is_drawn_[e] = scene.primitives[range.first].has_surface();
+    if (is_drawn_[e]) pieces += range.last - range.first;
+  }
+  const uint32_t together = (pieces + most_groups - 1) / most_groups;
+  std::vector<uint32_t> some;
+  for (uint32_t e = 0; e < lights; ++e) {
+    if (!is_drawn_[e]) continue;
+    const LightPrimitives::Range range = scene.primitives.of_light(e);
+    for (uint32_t p = range.first; p < range.last; p += together) {
+      some.clear();
+      for (uint32_t i = p; i < std::min(p + together, range.last); ++i) some.push_back(i);
+      groups_.add(scene.primitives, some, 0, 0);
+    }
+  }
 }
 
 void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
@@ -128,6 +168,7 @@ void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
   cluster_receivers(s.hits.positions, s.hits.horizons, reach_, s.clusters);
   for (size_t c = 0; c < s.clusters.size(); ++c)
     illuminate_cluster(s.clusters.members(c), s, out, counters);
+  resolve_draws(scene_, s.hits, s.drawn, out, counters);
   s.hits.clear();
 }
 
@@ -136,87 +177,59 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
                                          Counters& counters) const {
   s.cluster.receivers.clear();
   s.integrand.hits().clear();
+  bool is_matte = true;
   for (const uint32_t m : members) {
     s.cluster.receivers.push_back(s.hits.receivers[m]);
     const int32_t g = s.hits.glossy[m];
+    is_matte = is_matte && g < 0;
     s.integrand.hits().push_back(
         {s.hits.positions[m], g < 0 ? nullptr : &s.hits.glossy_hits[size_t(g)]});
   }
-  s.cluster.shadow.set(s.cluster.receivers);
-  choose(members, s);
+  choose_lights(groups_, ball_about(s.hits, members), members.size(), is_matte, budget_, s.chosen);
+  draw(members, s, out, counters);
   set_requests(s);
-  s.drawn_sums.assign(members.size(), 0);
-  s.drawn_squares.assign(members.size(), 0);
-  for (const uint32_t weak : s.weak.weak) add_unoccluded(sources_[weak], members, s, out);
+  if (s.cluster.requests.empty()) return;
+  s.cluster.shadow.set(s.cluster.receivers);
   certified_light(s.cluster.shadow, s.cluster.requests, &s.integrand, s.world, s.options,
                   s.cluster.memory,
                   [&](uint32_t request, std::span<const SourceVisibility> answers) {
                     add_answers(request, members, answers, s, out, counters);
                   });
-  add_drawing_variance(members, s, out);
+}
+
+void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
+                           RadianceBatch& out, Counters& counters) const {
+  s.matte.clear();
+  for (const uint32_t m : members)
+    if (s.hits.glossy[m] < 0) s.matte.push_back(m);
+  draw_lights(scene_, groups_, s.hits, s.matte, s.chosen, s.drawn, out, counters);
 }
 
 void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
   s.cluster.requests.clear();
+  s.requested.clear();
   s.integrand.sources().clear();
-  for (const ChosenSource& chosen : s.weak.chosen) {
-    const CertifiedSource& source = sources_[chosen.source];
-    LightRequest& r = s.cluster.requests.emplace_back();
-    if (source.is_round)
-      r.sphere = &source.sphere;
-    else
-      r.flat = &source.flat;
-    r.stream = source.stream;
-    r.brightness = luminance(source.radiance) * chosen.weight;
-    r.found = &s.found[chosen.source];
-    s.integrand.sources().push_back(&source);
-  }
-}
-
-// The sources to treat: all of them where a surface may pick the light of a weak one out.
-void CertifiedLights::choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const {
-  Box box;
-  ClusterBall ball;
-  ball.normal = s.cluster.receivers[0].normal;
-  bool is_matte = true;
-  for (size_t i = 0; i < members.size(); ++i) {
-    const ShadowReceiver& r = s.cluster.receivers[i];
-    box.grow(r.position);
-    is_matte = is_matte && s.hits.glossy[members[i]] < 0;
-    if (length_squared(r.normal - s.cluster.receivers[0].normal) > 1e-10f ||
-        length_squared(r.horizon - s.cluster.receivers[0].normal) > 1e-10f)
-      ball.normal = {};
-  }
-  ball.centre = (box.lower + box.upper) * 0.5f;
-  ball.radius = 0.5f * box.diagonal();
-  // those of a normal in common need not lie in one plane
-  for (const ShadowReceiver& r : s.cluster.receivers)
-    ball.depth = std::max(ball.depth, dot(ball.normal, ball.centre - r.position));
-  choose_sources(sources_, ball, is_matte ? 0.5f * error_ : 0.0f,
-                 hash_combine(s.cluster.receivers[0].stream, members.size()), s.weak);
-}
-
-void CertifiedLights::add_unoccluded(const CertifiedSource& source,
-                                     std::span<const uint32_t> members, CertifiedLightsScratch& s,
-                                     RadianceBatch& out) const {
-  if (source.is_round)
-    unoccluded_light(s.cluster.shadow, source.sphere, s.unoccluded);
-  else
-    unoccluded_light(s.cluster.shadow, source.flat, s.unoccluded);
-  for (uint32_t i = 0; i < members.size(); ++i) {
-    if (!(s.unoccluded[i] > 0)) continue;
-    const uint32_t m = members[i];
-    out.add(s.hits.indices[m], s.hits.is_direct[m] != 0,
-            s.hits.weights[m] * source.radiance * s.unoccluded[i], 0);
-  }
+  for (const uint32_t g : s.chosen.certified)
+    for (uint32_t i = groups_[g].first_source; i < groups_[g].last_source; ++i) {
+      const CertifiedSource& source = sources_[i];
+      LightRequest& r = s.cluster.requests.emplace_back();
+      if (source.is_round)
+        r.sphere = &source.sphere;
+      else
+        r.flat = &source.flat;
+      r.stream = source.stream;
+      r.brightness = luminance(source.radiance);
+      r.found = &s.found[i];
+      s.requested.push_back(i);
+      s.integrand.sources().push_back(&source);
+    }
 }
 
 void CertifiedLights::add_answers(uint32_t request, std::span<const uint32_t> members,
                                   std::span<const SourceVisibility> answers,
                                   CertifiedLightsScratch& s, RadianceBatch& out,
                                   Counters& counters) const {
-  const ChosenSource& chosen = s.weak.chosen[request];
-  const CertifiedSource& source = sources_[chosen.source];
+  const CertifiedSource& source = sources_[s.requested[request]];
   for (uint32_t i = 0; i < members.size(); ++i) {
     const SourceVisibility& a = answers[i];
     if (a.answer == ShadowAnswer::below) continue;
@@ -227,40 +240,13 @@ void CertifiedLights::add_answers(uint32_t request, std::span<const uint32_t> me
     if (s.hits.is_first[m] != 0)
       out.sources[index] +=
           Rgb{is_lit || is_dark ? 0.0f : 1.0f, is_lit ? 1.0f : 0.0f, is_dark ? 1.0f : 0.0f};
-    if (is_dark && !chosen.is_drawn()) continue;
-    const bool is_direct = s.hits.is_direct[m] != 0;
-    if (chosen.is_drawn()) {  // of matte receivers
-      const Rgb missing =
-          s.hits.weights[m] * source.radiance * (chosen.weight * a.unoccluded * (1 - a.visible));
-      out.add(index, is_direct, missing * -1.0f, 0);
-      s.drawn_sums[i] += is_direct ? luminance(missing) : 0.0f;
-      s.drawn_squares[i] += is_direct ? sqr(luminance(missing)) / float(chosen.draws) : 0.0f;
-      continue;
-    }
+    if (is_dark) continue;
     const bool has_value = s.integrand.is_wanted(request, i);
     const Rgb factor = has_value ? s.hits.weights[m] : s.hits.weights[m] * source.radiance;
-    out.add(index, is_direct, has_value ? factor * a.value : factor * (a.unoccluded * a.visible),
+    out.add(index, s.hits.is_direct[m] != 0,
+            has_value ? factor * a.value : factor * (a.unoccluded * a.visible),
             has_value ? sqr(luminance(factor)) * a.value_variance
                       : sqr(luminance(factor) * a.unoccluded) * a.variance);
-  }
-}
-
-// What drawing some of the weak sources adds, from the spread of what is missing of them. Hits of
-// one pixel, which stand side by side, share the draw, so that their errors add up.
-void CertifiedLights::add_drawing_variance(std::span<const uint32_t> members,
-                                           const CertifiedLightsScratch& s,
-                                           RadianceBatch& out) const {
-  float drawn = 0;
-  for (const ChosenSource& c : s.weak.chosen) drawn += float(c.draws);
-  if (drawn < 2 || out.direct_variance.empty()) return;
-  const auto pixel = [&](size_t i) { return s.hits.pixels[members[i]]; };
-  for (size_t first = 0, end = 0; first < members.size(); first = end) {
-    while (end < members.size() && pixel(end) == pixel(first)) ++end;
-    for (size_t i = first; i < end; ++i) {
-      const float spread = std::max(s.drawn_squares[i] - sqr(s.drawn_sums[i]) / drawn, 0.0f);
-      out.direct_variance[s.hits.indices[members[i]]] +=
-          spread * drawn / (drawn - 1) * float(end - first);
-    }
   }
 }
 

@@ -4,18 +4,19 @@
 //
 // Hits are clustered; for each cluster and source, reflectance / pi × radiance × unoccluded
 // projected solid angle × visible share is added at matte hits, and an integral over the visible
-// part elsewhere. Of many sources the weak ones are represented by a few (weak_sources.h).
-// Unbiased.
+// part elsewhere. Of many lights most are drawn at random instead, and so are those without
+// certificates at matte hits (drawn_lights.h). Unbiased.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "integrate/drawn_lights.h"
+#include "integrate/light_groups.h"
 #include "integrate/shadow_world.h"
 #include "integrate/source_integrand.h"
 #include "integrate/waiting_hits.h"
-#include "integrate/weak_sources.h"
 #include "shadow/certified_light.h"
 #include "shadow/receiver_clusters.h"
 #include "shadow/source_pieces.h"
@@ -33,21 +34,22 @@ struct CertifiedLightsScratch {
   std::vector<FoundFacets> found;  // per source: what this batch has learnt
   ReceiverClusters clusters;
   CertifiedCluster cluster;
-  WeakSourcesScratch weak;  // chosen for the cluster: its requests
-  std::vector<float> unoccluded;
-  std::vector<float> drawn_sums, drawn_squares;  // per receiver: luminance by drawn sources
+  LightsOfCluster chosen;
+  std::vector<uint32_t> requested;  // sources of the cluster's requests
+  std::vector<uint32_t> matte;      // hits of the cluster
+  DrawnLightsScratch drawn;
 };
 
 class CertifiedLights {
  public:
-  // error: allowed standard error of a hit's light by not looking at all of many sources, relative
-  // to what they would send unoccluded.
-  CertifiedLights(const PreparedScene& scene, double error);
+  CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget);
 
   // The light is dealt with here, whole. Others are meshes of too many pieces that lie in no
-  // common plane, or have no certificate shape (light.h).
+  // common plane, or have no certificate shape (light.h) …
   bool has(uint32_t light) const { return has_light_[light]; }
-  bool is_empty() const { return sources_.empty(); }
+  // … of which those with a surface are dealt with here at matte hits.
+  bool has_at_matte(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
+  bool is_empty() const { return groups_.size() == 0; }
   // The source that a point on a piece of a light belongs to, seen from its front or its back;
   // null if none.
   const CertifiedSource* source_of(uint32_t primitive, bool is_back, const Vec3& point) const;
@@ -63,24 +65,24 @@ class CertifiedLights {
   bool add_light(const PreparedScene& scene, uint32_t light);
   bool add_flat_light(const PreparedScene& scene, uint32_t light,
                       const std::vector<SourcePiece>& pieces);
+  void add_drawn_lights(const PreparedScene& scene);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
-  void choose(std::span<const uint32_t> members, CertifiedLightsScratch& s) const;
   void set_requests(CertifiedLightsScratch& s) const;
-  void add_unoccluded(const CertifiedSource& source, std::span<const uint32_t> members,
-                      CertifiedLightsScratch& s, RadianceBatch& out) const;
+  void draw(std::span<const uint32_t> members, CertifiedLightsScratch& s, RadianceBatch& out,
+            Counters& counters) const;
   void add_answers(uint32_t request, std::span<const uint32_t> members,
                    std::span<const SourceVisibility> answers, CertifiedLightsScratch& s,
                    RadianceBatch& out, Counters& counters) const;
-  void add_drawing_variance(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
-                            RadianceBatch& out) const;
 
+  const PreparedScene& scene_;
   std::vector<CertifiedSource> sources_;
-  std::vector<bool> has_light_;
+  LightGroups groups_;
+  std::vector<bool> has_light_, is_drawn_;
   // Per primitive, the last source that covers some of it; per source, one before that covers some
   // of the same primitive; -1: none.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;
-  float error_;
+  DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart
 };
 

@@ -34,7 +34,7 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
 
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   const CertifiedSettings settings =
-      certified_settings(in.settings.error, in.scene.scene.lights.size());
+      certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
   const auto occluders = std::make_shared<const Occluders>(in.scene.scene);
   std::unique_ptr<IndirectLight> indirect;
   if (needs_cells(Method::certified, in.settings.indirect)) {

@@ -63,6 +63,7 @@ struct MethodSettings {
   Indirect indirect = Indirect::automatic;
   int shadow_rays = 64;       // fixed: per source and viewing ray
   double error = 0.01;        // certified: see certified_settings
+  int viewing_rays = 1;       // certified: of a pixel, or estimates of a measuring point
   TreeSamplingOptions trees;  // kj92
   int depth = -1;             // path: most bounces; -1 = unlimited
   int threads = 0;            // for what is built; 0 = all cores

@@ -1,5 +1,8 @@
 #include "integrate/waiting_hits.h"
 
+#include "base/random.h"
+#include "integrate/purposes.h"
+
 namespace troffer {
 
 void WaitingHits::clear() {
@@ -9,6 +12,8 @@ void WaitingHits::clear() {
   weights.clear();
   indices.clear();
   pixels.clear();
+  samples.clear();
+  draw_streams.clear();
   glossy.clear();
   is_direct.clear();
   is_first.clear();
@@ -25,6 +30,8 @@ void WaitingHits::add(const Walk& walk, const Vertex& v, const Rgb& weight, bool
   weights.push_back(weight);
   indices.push_back(walk.index);
   pixels.push_back(walk.stream);
+  samples.push_back(walk.sample);
+  draw_streams.push_back(hash_combine(walk.stream, purpose_light(walk.vertex)));
   glossy.push_back(-1);
   is_direct.push_back(direct ? 1 : 0);
   is_first.push_back(walk.vertex == 0 ? 1 : 0);

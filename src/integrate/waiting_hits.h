@@ -18,6 +18,8 @@ struct WaitingHits {
   std::vector<Rgb> weights;               // throughput, times reflectance / pi of matte surfaces
   std::vector<uint32_t> indices;          // of the viewing rays
   std::vector<uint64_t> pixels;           // names of their pixels
+  std::vector<uint32_t> samples;          // … and which of its viewing rays
+  std::vector<uint64_t> draw_streams;     // of the random numbers that choose lights
   std::vector<int32_t> glossy;            // index into glossy_hits, or -1: matte
   std::vector<uint8_t> is_direct;         // the light counts as direct
   std::vector<uint8_t> is_first;          // the viewing ray's first surface

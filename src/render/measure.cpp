@@ -122,6 +122,7 @@ MethodSettings settings_of(const MeasureOptions& options) {
   settings.indirect = options.indirect;
   settings.shadow_rays = options.method.row().rays_of_measuring_sample;
   settings.error = options.error;
+  settings.viewing_rays = options.spp > 0 ? options.spp : default_samples(options.method);
   settings.trees = options.kj92.sampling;
   settings.depth = options.depth;
   settings.threads = options.threads;

@@ -79,6 +79,7 @@ MethodSettings method_settings(const RenderOptions& o) {
   s.indirect = o.indirect;
   s.shadow_rays = o.shadow_rays;
   s.error = o.error;
+  s.viewing_rays = o.spp;
   s.trees = o.kj92.sampling;
   s.depth = o.depth;
   s.threads = o.threads;

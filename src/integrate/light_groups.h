@@ -1,0 +1,67 @@
+// The lights of a scene in pieces as they are chosen for a cluster of hits: a source of certified
+// visibility (both sides of it, or several that share a primitive) is one group, and so are a few
+// neighbouring triangles of a light that has no certificates.
+//
+// What each group may send to a cluster is estimated for all of them at a stroke, a few nanoseconds
+// for each: cheaper than any tree as long as there are some thousands.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "light/light_primitive.h"
+
+namespace troffer {
+
+// A ball that holds a cluster's receivers; `normal`: the common one, or zero; `depth`: metres by
+// which, where there is one, they lie below the centre at most.
+struct ClusterBall {
+  Vec3 centre;
+  float radius = 0;
+  Vec3 normal;
+  float depth = 0;
+};
+
+// What of a source counts: its primitives, and the sources of certified visibility that cover them,
+// [first, last) in the caller's numbering; none where first == last.
+struct LightGroup {
+  uint32_t first_source = 0, last_source = 0;
+  uint32_t first_primitive = 0, last_primitive = 0;  // in LightGroups::primitives
+};
+
+class LightGroups {
+ public:
+  // Primitives of one light, all with a surface, and which sources are made of them.
+  void add(const LightPrimitives& all, std::span<const uint32_t> primitives, uint32_t first_source,
+           uint32_t last_source);
+  // After the last one: neighbours in space become neighbours in the order.
+  void finish();
+
+  uint32_t size() const { return uint32_t(groups_.size()); }
+  const LightGroup& operator[](uint32_t group) const { return groups_[group]; }
+  // Of the group, in proportion to area by u in [0,1), which becomes uniform again; `pmf`: the
+  // probability of the choice.
+  uint32_t choose_primitive(uint32_t group, float& u, float& pmf) const;
+
+  // values[g]: about what group g sends to receivers in the ball, nothing hidden, luminance × sr; 0
+  // only where none of them can get any light. near[g]: the same where the ball is wider than half
+  // its distance from the group, else 0.
+  void estimate(const ClusterBall& ball, std::vector<float>& values,
+                std::vector<float>& near) const;
+
+ private:
+  struct Arrays {
+    std::vector<float> x, y, z, radius;  // of a ball about the group
+    std::vector<float> nx, ny, nz;       // common normal, or zero
+    std::vector<float> two_sided;        // 1: shines both ways along its normal; else 0
+    std::vector<float> strength;  // luminance × area of one side, of a sphere that of its disk
+  };
+  Arrays arrays_;
+  std::vector<LightGroup> groups_;
+  std::vector<uint32_t> primitives_;
+  std::vector<float> areas_;  // per entry of primitives_: sum over the group up to and with it
+};
+
+}  // namespace troffer
