@@ -52,7 +52,8 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
     : scene_(scene),
       occluders_(std::move(occluders)),
       settings_(settings),
-      lights_(scene, {float(settings.error), float(settings.viewing_rays)}),
+      lights_(scene, {float(settings.error), float(settings.viewing_rays)},
+              uint32_t(settings.gloss_samples)),
       sampler_(scene) {
   for (uint32_t light = 0; light < sampler_.lights(); ++light) {
     if (sampler_.is_empty(light)) continue;
@@ -63,9 +64,9 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
 }
 
 std::unique_ptr<DirectLightScratch> CertifiedDirect::make_scratch() const {
-  return std::make_unique<Scratch>(settings_.estimator,
-                                   ShadowWorld(scene_.scene, *occluders_, scene_.tracer),
-                                   SourceIntegrand(scene_, uint32_t(settings_.gloss_samples)));
+  return std::make_unique<Scratch>(
+      settings_.estimator, ShadowWorld(scene_.scene, *occluders_, scene_.tracer),
+      SourceIntegrand(scene_, uint32_t(settings_.gloss_samples), lights_.competition()));
 }
 
 void CertifiedDirect::begin(DirectLightScratch& scratch) const {
@@ -137,9 +138,9 @@ float CertifiedDirect::weight_of(const Walk& walk, const Vertex& v) const {
       primitive < 0 ? nullptr
                     : lights_.source_of(uint32_t(primitive), !v.is_front, v.surface.position);
   if (source == nullptr) return 1;
-  return power_heuristic(walk.pdf, float(settings_.gloss_samples) *
-                                       nominal_density(*source, walk.last_position,
-                                                       walk.last_normal, walk.ray.direction));
+  return power_heuristic(
+      walk.pdf, lights_.competition().density(*source, walk.last_position, walk.last_normal,
+                                              walk.ray.direction));
 }
 
 }  // namespace troffer

@@ -18,8 +18,10 @@ constexpr float reach_of_diagonal = 0.1f;
 
 }  // namespace
 
-CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget)
+CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget,
+                                 uint32_t gloss_points)
     : scene_(scene),
+      competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
       budget_(budget) {
@@ -27,6 +29,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
     has_light_.push_back(add_light(scene, e));
   add_drawn_lights(scene);
   groups_.finish();
+  competition_ = LobeCompetition(scene, gloss_points, groups_.are_many());
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }
@@ -177,15 +180,13 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
                                          Counters& counters) const {
   s.cluster.receivers.clear();
   s.integrand.hits().clear();
-  bool is_matte = true;
   for (const uint32_t m : members) {
     s.cluster.receivers.push_back(s.hits.receivers[m]);
     const int32_t g = s.hits.glossy[m];
-    is_matte = is_matte && g < 0;
     s.integrand.hits().push_back(
         {s.hits.positions[m], g < 0 ? nullptr : &s.hits.glossy_hits[size_t(g)]});
   }
-  choose_lights(groups_, ball_about(s.hits, members), members.size(), is_matte, budget_, s.chosen);
+  choose_lights(groups_, ball_about(s.hits, members), members.size(), budget_, s.chosen);
   draw(members, s, out, counters);
   set_requests(s);
   if (s.cluster.requests.empty()) return;
@@ -199,10 +200,11 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
 
 void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                            RadianceBatch& out, Counters& counters) const {
-  s.matte.clear();
+  s.drawing.clear();
   for (const uint32_t m : members)
-    if (s.hits.glossy[m] < 0) s.matte.push_back(m);
-  draw_lights(scene_, groups_, s.hits, s.matte, s.chosen, s.drawn, out, counters);
+    if (s.hits.glossy[m] < 0 || groups_.are_many()) s.drawing.push_back(m);
+  draw_lights({scene_, groups_, sources_, competition_}, s.hits, s.drawing, s.chosen, s.drawn, out,
+              counters);
 }
 
 void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {

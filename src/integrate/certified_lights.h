@@ -36,13 +36,14 @@ struct CertifiedLightsScratch {
   CertifiedCluster cluster;
   LightsOfCluster chosen;
   std::vector<uint32_t> requested;  // sources of the cluster's requests
-  std::vector<uint32_t> matte;      // hits of the cluster
+  std::vector<uint32_t> drawing;    // hits of the cluster
   DrawnLightsScratch drawn;
 };
 
 class CertifiedLights {
  public:
-  CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget);
+  // gloss_points: of each source at which gloss and textures are looked at.
+  CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget, uint32_t gloss_points);
 
   // The light is dealt with here, whole. Others are meshes of too many pieces that lie in no
   // common plane, or have no certificate shape (light.h) …
@@ -50,6 +51,7 @@ class CertifiedLights {
   // … of which those with a surface are dealt with here at matte hits.
   bool has_at_matte(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
   bool is_empty() const { return groups_.size() == 0; }
+  const LobeCompetition& competition() const { return competition_; }
   // The source that a point on a piece of a light belongs to, seen from its front or its back;
   // null if none.
   const CertifiedSource* source_of(uint32_t primitive, bool is_back, const Vec3& point) const;
@@ -78,6 +80,7 @@ class CertifiedLights {
   const PreparedScene& scene_;
   std::vector<CertifiedSource> sources_;
   LightGroups groups_;
+  LobeCompetition competition_;
   std::vector<bool> has_light_, is_drawn_;
   // Per primitive, the last source that covers some of it; per source, one before that covers some
   // of the same primitive; -1: none.

@@ -11,8 +11,6 @@ namespace troffer {
 
 namespace {
 
-// With fewer certified groups there is nothing to gain.
-constexpr uint32_t fewest_groups = 24;
 // N points of an Owen-Sobol sequence over lights of which many are hidden err by about this much
 // times N^-3/4, relative to the light that they stand for (docs/certified.md).
 constexpr float error_of_one = 0.5f;
@@ -28,19 +26,15 @@ float points_of_pixel(float share, float error) {
 
 // Greedily from the strongest on, by what each saves: of the N ~ r^4/3 points that stand for a
 // share r of the light, dN/dr s for a light of share s.
-void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits, bool is_matte,
+void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
                    const DrawingBudget& budget, LightsOfCluster& out) {
   const uint32_t n = groups.size();
   groups.estimate(ball, out.estimates, out.near);
   out.is_certified.assign(n, 0);
   out.order.clear();
   double total = 0;
-  uint32_t with_sources = 0;
-  for (uint32_t g = 0; g < n; ++g) {
-    total += double(out.estimates[g]);
-    with_sources += groups[g].first_source < groups[g].last_source ? 1 : 0;
-  }
-  const bool are_all = !is_matte || with_sources < fewest_groups;
+  for (uint32_t g = 0; g < n; ++g) total += double(out.estimates[g]);
+  const bool are_all = !groups.are_many();
   const float points = points_of_pixel(1, budget.error);
   const float cost = cost_of_hit + cost_of_cluster / float(hits);
   const float least = 0.75f * cost * budget.viewing_rays / points;  // share, where r is 1
@@ -94,7 +88,7 @@ ClusterBall ball_about(const WaitingHits& hits, std::span<const uint32_t> member
 void DrawnLightsScratch::resize(size_t n) {
   numbers.resize(3 * n);
   for (auto* a : {&u, &v, &pmfs, &places}) a->resize(n);
-  for (auto* a : {&samples, &primitives, &hits}) a->resize(n);
+  for (auto* a : {&samples, &primitives, &hits, &chosen}) a->resize(n);
   streams.resize(n);
   receivers.resize(n);
   points.resize(n);
@@ -107,7 +101,7 @@ namespace {
 constexpr size_t block = 1024, most_waiting = 16384;
 
 struct Drawing {
-  const PreparedScene& scene;
+  const DrawnLights& world;
   const LightGroups& groups;
   const WaitingHits& hits;
   const LightsOfCluster& lights;
@@ -118,6 +112,7 @@ struct Drawing {
   bool set_sums(const std::vector<float>& estimates, const std::vector<float>& near);
   void choose(std::span<const uint32_t> members);
   void connect(size_t n);
+  Rgb value(uint32_t draw) const;
 };
 
 // The distribution over the groups that are drawn. False where near ones matter so much that the
@@ -158,6 +153,7 @@ void Drawing::choose(std::span<const uint32_t> members) {
     const float before = k == 0 ? 0.0f : s.sums[k - 1], own = s.sums[k] - before;
     float left = std::clamp((target - before) / own, 0.0f, one_minus_epsilon), pmf = 1;
     s.places[i] = place;
+    s.chosen[i] = s.groups[k];
     s.primitives[i] = groups.choose_primitive(s.groups[k], left, pmf);
     s.pmfs[i] = pmf * (own / all);
     s.u[i] = s.numbers[i];
@@ -178,7 +174,26 @@ Ray ray_between(const ShadowReceiver& r, const LightSample& light) {
   return ray;
 }
 
+// BRDF × cosine, of what does not compete or wins.
+Rgb Drawing::value(uint32_t i) const {
+  const uint32_t m = s.hits[i];
+  const LightSample& light = s.points[i];
+  const ShadowReceiver& r = hits.receivers[m];
+  const float cosine = dot(light.wi, r.normal);
+  if (!(cosine > 0) || !(dot(light.wi, r.horizon) > 0)) return {};
+  if (hits.glossy[m] < 0) return Rgb{cosine};
+  const LightGroup& g = groups[s.chosen[i]];
+  for (uint32_t k = g.first_source; k < g.last_source; ++k)
+    if (world.sources[k].is_back != light.is_front) {
+      const GlossyHit& hit = hits.glossy_hits[size_t(hits.glossy[m])];
+      const float density = world.competition.density_of(world.sources[k], r.position, r.horizon);
+      return glossy_value(hit, light.wi, density);
+    }
+  return {};
+}
+
 void Drawing::connect(size_t n) {
+  const PreparedScene& scene = world.scene;
   sample_many(scene.scene, scene.primitives, n, s.primitives.data(), s.receivers.data(), s.u.data(),
               s.v.data(), s.points.data(), s.is_valid.data(), s.light_samples);
   for (size_t i = 0; i < n; ++i) {
@@ -187,14 +202,11 @@ void Drawing::connect(size_t n) {
     d = {m, s.places[i], {}, -1};
     if (s.is_valid[i] == 0) continue;
     const LightSample& light = s.points[i];
-    const ShadowReceiver& r = hits.receivers[m];
-    const float cosine = dot(light.wi, r.normal);
-    if (!(cosine > 0) || !(dot(light.wi, r.horizon) > 0)) continue;
-    const float scale = cosine / (light.pdf_solid_angle * s.pmfs[i] * float(lights.draws));
-    d.light = hits.weights[m] * light.radiance * scale;
+    const float density = light.pdf_solid_angle * s.pmfs[i] * float(lights.draws);
+    d.light = hits.weights[m] * light.radiance * value(uint32_t(i)) * (1 / density);
     if (d.light.is_black()) continue;
     d.ray = int32_t(s.rays.size());
-    s.rays.push_back(ray_between(r, light));
+    s.rays.push_back(ray_between(hits.receivers[m], light));
   }
 }
 
@@ -256,17 +268,17 @@ void tell_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::
 
 }  // namespace
 
-void draw_lights(const PreparedScene& scene, const LightGroups& groups, const WaitingHits& hits,
-                 std::span<uint32_t> members, const LightsOfCluster& lights, DrawnLightsScratch& s,
-                 RadianceBatch& out, Counters& counters) {
+void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<uint32_t> members,
+                 const LightsOfCluster& lights, DrawnLightsScratch& s, RadianceBatch& out,
+                 Counters& counters) {
   if (lights.draws == 0 || members.empty()) return;
-  Drawing drawing{scene, groups, hits, lights, s};
+  Drawing drawing{world, world.groups, hits, lights, s};
   drawing.of_members(members, lights.estimates, lights.near);
   for (const uint32_t m : members) {
     ++counters.mixed;
     if (hits.is_first[m] != 0) out.sources[hits.indices[m]] += Rgb{1, 0, 0};
   }
-  if (s.rays.size() >= most_waiting) resolve_draws(scene, hits, s, out, counters);
+  if (s.rays.size() >= most_waiting) resolve_draws(world.scene, hits, s, out, counters);
 }
 
 void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLightsScratch& s,

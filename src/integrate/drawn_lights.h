@@ -34,9 +34,8 @@ struct LightsOfCluster {
   std::vector<uint32_t> order;         // memory
 };
 
-// Groups without sources are drawn in any case. is_matte: others may be, too; they are not where a
-// surface may pick the light of a weak one out, and where there are few. hits: in the ball.
-void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits, bool is_matte,
+// Groups without sources are drawn in any case, others where they are many. hits: in the ball.
+void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
                    const DrawingBudget& budget, LightsOfCluster& out);
 
 // A ball about the hits' receivers.
@@ -59,7 +58,7 @@ struct DrawnLightsScratch {
   std::vector<uint32_t> groups;
   // of a block of draws
   std::vector<uint64_t> streams;
-  std::vector<uint32_t> samples, primitives, hits;
+  std::vector<uint32_t> samples, primitives, hits, chosen;  // `chosen`: groups
   std::vector<float> numbers, u, v, pmfs, places;
   std::vector<Vec3> receivers;
   std::vector<LightSample> points;
@@ -71,12 +70,20 @@ struct DrawnLightsScratch {
   void resize(size_t n);
 };
 
-// Draws lights.draws points from each of `members`, matte hits, of the groups that are not
-// certified; `members` is reordered. Rays are cast, and light is added to `out`, once many wait
-// and by resolve_draws(), before which `hits` must stay.
-void draw_lights(const PreparedScene& scene, const LightGroups& groups, const WaitingHits& hits,
-                 std::span<uint32_t> members, const LightsOfCluster& lights,
-                 DrawnLightsScratch& scratch, RadianceBatch& out, Counters& counters);
+// What draws are made from: the scene's groups, and the sources that they name.
+struct DrawnLights {
+  const PreparedScene& scene;
+  const LightGroups& groups;
+  std::span<const CertifiedSource> sources;
+  const LobeCompetition& competition;
+};
+
+// Draws lights.draws points from each of `members`, of the groups that are not certified: glossy
+// hits are sent the light of groups with sources only. `members` is reordered. Rays are cast, and
+// light is added to `out`, once many wait and by resolve_draws(), before which `hits` must stay.
+void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<uint32_t> members,
+                 const LightsOfCluster& lights, DrawnLightsScratch& scratch, RadianceBatch& out,
+                 Counters& counters);
 void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLightsScratch& scratch,
                    RadianceBatch& out, Counters& counters);
 

@@ -30,6 +30,7 @@ void LightGroups::add(const LightPrimitives& all, std::span<const uint32_t> prim
   }
   g.last_primitive = uint32_t(primitives_.size());
   groups_.push_back(g);
+  with_sources_ += first_source < last_source ? 1 : 0;
   const Vec3 centre = box.centre(), n(normal);
   arrays_.x.push_back(centre.x);
   arrays_.y.push_back(centre.y);

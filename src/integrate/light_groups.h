@@ -40,6 +40,8 @@ class LightGroups {
   void finish();
 
   uint32_t size() const { return uint32_t(groups_.size()); }
+  // So many have certificates that not all of them should be asked for.
+  bool are_many() const { return with_sources_ >= fewest_of_many; }
   const LightGroup& operator[](uint32_t group) const { return groups_[group]; }
   // Of the group, in proportion to area by u in [0,1), which becomes uniform again; `pmf`: the
   // probability of the choice.
@@ -52,6 +54,7 @@ class LightGroups {
                 std::vector<float>& near) const;
 
  private:
+  static constexpr uint32_t fewest_of_many = 24;
   struct Arrays {
     std::vector<float> x, y, z, radius;  // of a ball about the group
     std::vector<float> nx, ny, nz;       // common normal, or zero
@@ -60,6 +63,7 @@ class LightGroups {
   };
   Arrays arrays_;
   std::vector<LightGroup> groups_;
+  uint32_t with_sources_ = 0;
   std::vector<uint32_t> primitives_;
   std::vector<float> areas_;  // per entry of primitives_: sum over the group up to and with it
 };

@@ -15,11 +15,33 @@ double CertifiedSource::unoccluded(const Vec3d& x, const Vec3d& n) const {
   return polygon_irradiance(flat.corners(), x, n, Sides::both);
 }
 
-float nominal_density(const CertifiedSource& source, const Vec3& x, const Vec3& n, const Vec3& wi) {
-  const float cosine = dot(n, wi);
-  if (!(cosine > 0)) return 0;
+float LobeCompetition::density_of(const CertifiedSource& source, const Vec3& x,
+                                  const Vec3& n) const {
   const auto unoccluded = float(source.unoccluded(Vec3d(x), Vec3d(n)));
-  return unoccluded > 0 ? cosine / unoccluded : 0;
+  if (!(unoccluded > 0)) return 0;
+  constexpr float shared = 8;
+  const float points =
+      are_many_ ? shared * scene_->light_tree.pmf(x, n, false, source.primitive) : float(points_);
+  return points / unoccluded;
+}
+
+float LobeCompetition::density(const CertifiedSource& source, const Vec3& x, const Vec3& n,
+                               const Vec3& wi) const {
+  const float cosine = dot(n, wi);
+  return cosine > 0 ? density_of(source, x, n) * cosine : 0;
+}
+
+Rgb glossy_value(const GlossyHit& g, const Vec3& world, float density) {
+  const Vec3 wi = g.frame.to_local(world);
+  const float cosine = dot(world, g.geometric_normal);
+  Rgb f_cos;
+  if (!(cosine > 0) || !(wi.z > 0)) return f_cos;
+  if (g.has_diffuse) f_cos += troffer::evaluate(g.diffuse, g.wo, wi);
+  if (g.has_rough && density > 0) {
+    const BsdfValue rough = evaluate_with_pdf(g.rough, g.wo, wi);
+    f_cos += rough.f_cos * power_heuristic(density * cosine, rough.pdf);
+  }
+  return f_cos;
 }
 
 Rgb SourceIntegrand::radiance_at(const CertifiedSource& source, const Vec3& point,
@@ -45,21 +67,15 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
     return;
   }
   const GlossyHit& g = *hit.glossy;
-  const auto unoccluded =
-      g.has_rough ? float(source.unoccluded(Vec3d(hit.position), Vec3d(g.geometric_normal))) : 0;
+  const float density =
+      g.has_rough ? competition_.density_of(source, hit.position, g.geometric_normal) : 0;
   for (size_t i = 0; i < points.size(); ++i) {
+    const Vec3 wi = normalize(points[i] - hit.position);
+    const float cosine = dot(wi, g.frame.normal);
     values[i] = {};
-    const Vec3 world = normalize(points[i] - hit.position);
-    const Vec3 wi = g.frame.to_local(world);
-    const float cosine = dot(world, g.geometric_normal);
-    if (!(cosine > 0) || !(wi.z > 0)) continue;
-    Rgb f_cos;
-    if (g.has_diffuse) f_cos += troffer::evaluate(g.diffuse, g.wo, wi);
-    if (g.has_rough && unoccluded > 0) {
-      const BsdfValue rough = evaluate_with_pdf(g.rough, g.wo, wi);
-      f_cos += rough.f_cos * power_heuristic(float(points_) * cosine / unoccluded, rough.pdf);
-    }
-    values[i] = f_cos * (1 / wi.z) * radiance_at(source, points[i], hit.position);
+    if (cosine > 0)
+      values[i] = glossy_value(g, wi, density) * (1 / cosine) *
+                  radiance_at(source, points[i], hit.position);
   }
 }
 

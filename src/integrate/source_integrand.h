@@ -29,11 +29,6 @@ struct CertifiedSource {
   double unoccluded(const Vec3d& x, const Vec3d& n) const;
 };
 
-// A density of directions, per sr, in which points on the source are chosen for a surface at x with
-// unit geometric normal n: close to what is done, and the same whoever asks, which is all that
-// multiple importance sampling needs.
-float nominal_density(const CertifiedSource& source, const Vec3& x, const Vec3& n, const Vec3& wi);
-
 // A hit on a surface that is not matte.
 struct GlossyHit {
   Frame frame;
@@ -41,6 +36,29 @@ struct GlossyHit {
   Bsdf diffuse, rough;  // the second competes with spawned rays
   bool has_diffuse = false, has_rough = false;
 };
+
+// Rough lobes send rays of their own, which compete with points of sources: a density of
+// directions, per sr, in which the latter are taken to be chosen. Close to what is done, and the
+// same whoever asks, which is all that multiple importance sampling needs.
+class LobeCompetition {
+ public:
+  // points: at how many points each source is looked at. are_many: lights are mostly drawn; some
+  // points are taken to be shared by all, as the scene's light tree would share them.
+  LobeCompetition(const PreparedScene& scene, uint32_t points, bool are_many)
+      : scene_(&scene), points_(points), are_many_(are_many) {}
+  // For a surface at x of unit geometric normal n, in the unit direction wi: density_of() × n · wi.
+  float density_of(const CertifiedSource& source, const Vec3& x, const Vec3& n) const;
+  float density(const CertifiedSource& source, const Vec3& x, const Vec3& n, const Vec3& wi) const;
+
+ private:
+  const PreparedScene* scene_;
+  uint32_t points_;
+  bool are_many_;
+};
+
+// BRDF × cosine towards the unit direction wi in the world: the diffuse part, and the share of the
+// rough one that is left to points of a source, `density` being LobeCompetition::density_of().
+Rgb glossy_value(const GlossyHit& hit, const Vec3& wi, float density);
 
 // Hits of the cluster as the integrand sees them.
 struct IntegrandHit {
@@ -51,7 +69,8 @@ struct IntegrandHit {
 class SourceIntegrand final : public ShadowIntegrand {
  public:
   // points: at how many points a source is looked at.
-  SourceIntegrand(const PreparedScene& scene, uint32_t points) : scene_(scene), points_(points) {}
+  SourceIntegrand(const PreparedScene& scene, uint32_t points, const LobeCompetition& competition)
+      : scene_(scene), points_(points), competition_(competition) {}
 
   // The cluster at hand: its hits, and its requests' sources, which must stay where they are.
   std::vector<IntegrandHit>& hits() { return hits_; }
@@ -71,6 +90,7 @@ class SourceIntegrand final : public ShadowIntegrand {
 
   const PreparedScene& scene_;
   uint32_t points_;
+  LobeCompetition competition_;
   std::vector<IntegrandHit> hits_;
   std::vector<const CertifiedSource*> sources_;
 };

@@ -197,6 +197,29 @@ TEST_CASE("many lights: what a hit costs hardly grows with their number") {
   CHECK(many < 30);
 }
 
+TEST_CASE(
+    "many lights: coats and gloss, sharp and dull, get their light once, and at no greater cost") {
+  for (const float roughness : {0.05f, 0.3f}) {
+    Scene s = room_of_lights(12);
+    Material& m = s.materials[0];
+    m.kind = MaterialKind::coated_diffuse;
+    m.roughness.value = roughness;
+    const PreparedScene scene(std::move(s));
+    const WaveIntegrator fixed = fixed_integrator(scene, 4);
+    constexpr uint32_t samples = 16;
+    const WaveIntegrator drawn = certified_of_pixel(scene, 0.02, samples);
+    for (const Vec3& point : floor_points) {
+      const Ray ray = ray_to(point);
+      const Probed reference = probe(fixed, ray, 16, 24, 3);
+      const Probed got = probe(drawn, ray, samples, 200, 5);
+      CAPTURE(roughness);
+      CAPTURE(point.x);
+      CHECK(p_of_difference(got.direct, reference.direct) > 1e-4);
+      CHECK(told_by(drawn, ray, samples, 10).rays < 40);
+    }
+  }
+}
+
 TEST_CASE("many lights: curved meshes at matte hits take few rays, without bias") {
   Scene s = room_of_lights(0);
   for (int i = 0; i < 4; ++i)
