@@ -11,11 +11,16 @@
 
 namespace troffer {
 
+struct PixelAt {
+  int32_t x = 0, y = 0;
+};
+
 // n viewing rays, those of a pixel side by side.
 struct ViewingRays {
   std::vector<Ray> rays;
   std::vector<uint64_t> streams;  // names the random numbers of the ray's pixel
   std::vector<uint32_t> samples;  // which sample of that pixel
+  std::vector<PixelAt> pixels;    // where in the picture; empty: no picture is known
   // Empty, or for each ray what is known of the rays around it (methods that compare patterns).
   std::vector<NeighbourRecords> neighbours;
 
@@ -24,6 +29,7 @@ struct ViewingRays {
     rays.clear();
     streams.clear();
     samples.clear();
+    pixels.clear();
     neighbours.clear();
   }
 };

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/units.h"
 #include "integrate/cell_direct.h"
 #include "integrate/cell_rays.h"
 
@@ -62,6 +63,7 @@ class Builder {
   std::unique_ptr<CellMap> map_;
   CellRows rows_;
   std::vector<float> asked_;  // per cell
+  size_t askers_ = 0;         // viewing rays, and points
   CellStatistics statistics_;
 };
 
@@ -82,6 +84,7 @@ std::vector<Place> Builder::places_of(const CellPilot& pilot) {
 
 void Builder::ask(const CellPilot& pilot) {
   const std::vector<Place> places = places_of(pilot);
+  askers_ = pilot.viewing.size() + pilot.places.size();
   std::vector<CellTask> tasks;
   const auto rays = uint32_t(
       std::clamp<size_t>(pilot_rays / std::max<size_t>(places.size(), 1), rays_of_row, 2048));
@@ -224,6 +227,10 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_po
   if (stop_.load()) return nullptr;
   CellLight light = rows_.solve(lit, options_.threads);
   statistics_.cells = map_->size();
+  double sum = 0;
+  for (size_t c = 0; c < asked_.size(); ++c)
+    sum += double(asked_[c]) * double(luminance(light.irradiance[c]));
+  statistics_.typical = sum / pi / double(std::max<size_t>(askers_, 1));
   statistics_.entries = rows_.entry_count();
   statistics_.rays = rows_.ray_count();
   statistics_.iterations = light.iterations;

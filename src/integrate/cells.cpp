@@ -44,7 +44,7 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
     size_t missed = 0;
     for (GatherArrival& a : s.arrivals) {
       if (bounce == 0 && s.light.distance[a.walk.index] == 0)
-        s.light.distance[a.walk.index] = a.distance;
+        s.light.distance[a.walk.index] = a.length;
       if (!look_up(a, bounce > 0, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);

@@ -16,6 +16,7 @@ struct CellStatistics {
   uint64_t cells = 0, entries = 0, rays = 0;
   int rounds = 0, iterations = 0;
   double size = 0;        // of a cell, metres
+  double typical = 0;     // luminance of indirect light in the picture
   double unresolved = 0;  // share of the light asked for that cells without a row would bring
   double bytes = 0;
   double seconds = 0;
@@ -25,7 +26,7 @@ struct CellStatistics {
 struct GatheredLight {
   std::vector<Rgb> irradiance;         // of each ray: π × radiance
   std::vector<float> half_difference;  // by the noise of cells: luminance (CellLight)
-  std::vector<float> distance;         // to the first matte surface; 0: none
+  std::vector<float> distance;         // to the first matte surface, all the way; 0: none
 };
 
 struct CellsScratch {

@@ -47,6 +47,14 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       out.indirect[at.index] += weight * irradiance;
       continue;
     }
+    FittedRecord fitted;
+    if (at.scatterings == 0 && records_ && !wave.viewing->pixels.empty()) {
+      const PixelAt& pixel = wave.viewing->pixels[at.index];
+      if (records_->irradiance_at(pixel.x, pixel.y, hit, fitted)) {
+        out.indirect[at.index] += weight * fitted.irradiance;
+        continue;
+      }
+    }
     for (uint32_t k = 0; k < rays_of_hit; ++k) {
       Walk walk = at;
       walk.throughput = Rgb{1};

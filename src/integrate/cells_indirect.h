@@ -3,14 +3,16 @@
 
 #include <memory>
 
-#include "integrate/cells.h"
+#include "integrate/gather_records.h"
 #include "integrate/indirect_light.h"
 
 namespace troffer {
 
 class CellsIndirect final : public IndirectLight {
  public:
-  explicit CellsIndirect(std::unique_ptr<const Cells> cells) : cells_(std::move(cells)) {}
+  // records: of the picture; null: there is none.
+  CellsIndirect(std::unique_ptr<const Cells> cells, std::unique_ptr<const GatherRecords> records)
+      : cells_(std::move(cells)), records_(std::move(records)) {}
 
   std::unique_ptr<IndirectLightScratch> make_scratch() const override;
   void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
@@ -24,6 +26,7 @@ class CellsIndirect final : public IndirectLight {
   struct Scratch;
 
   std::unique_ptr<const Cells> cells_;
+  std::unique_ptr<const GatherRecords> records_;
 };
 
 }  // namespace troffer

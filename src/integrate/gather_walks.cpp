@@ -84,6 +84,7 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
     see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
   const Bsdf bsdf =
       make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+  const float distance = hit.t * length(walk.ray.direction);
   Rgb reflectance = bsdf.diffuse;
   const bool is_matte = is_lambertian(bsdf, nullptr);
   if (!is_matte) {
@@ -97,6 +98,7 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
       }
       Walk next = walk;
       next.last_place = 0;
+      next.length += distance;
       if (step(next, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
           survives_spawning(next))
         s.next.push_back(next);
@@ -107,7 +109,8 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
   a.walk = walk;
   a.walk.throughput *= reflectance;
   a.hit = cell_hit_of(v);
-  a.distance = hit.t * length(walk.ray.direction);
+  a.distance = distance;
+  a.length = walk.length + distance;
 }
 
 void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const {

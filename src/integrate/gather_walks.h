@@ -19,6 +19,7 @@ struct GatherArrival {
   Walk walk;           // throughput: times the surface's reflectance towards the ray
   CellHit hit;         // where
   float distance = 0;  // from where the ray last left a surface
+  float length = 0;    // … from where it set out
 };
 
 struct GatherScratch {

@@ -20,7 +20,7 @@ namespace {
 std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
                                                    std::shared_ptr<const Occluders> occluders) {
   TROFFER_CHECK(in.cells != nullptr);
-  constexpr double least_error = 0.02;
+  constexpr double least_error = 0.1;
   const CertifiedDirect direct(
       in.scene, std::move(occluders),
       certified_settings(std::max(in.settings.error, least_error), in.scene.scene.lights.size()));
@@ -29,7 +29,15 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
                  in.cells->progress, in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
-  return std::make_unique<CellsIndirect>(std::move(cells));
+  std::unique_ptr<GatherRecords> records;
+  if (in.cells->view != nullptr) {
+    const GatherOptions options{in.settings.error, cells->statistics().typical,
+                                in.settings.threads, in.cells->seed};
+    records = GatherRecords::make(*cells, *in.cells->view, options, in.cells->progress,
+                                  in.cells->stop, in.cells->counters);
+    if (!records) return nullptr;
+  }
+  return std::make_unique<CellsIndirect>(std::move(cells), std::move(records));
 }
 
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {

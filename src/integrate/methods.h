@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "integrate/cell_builder.h"
+#include "integrate/gather_records.h"
 #include "integrate/integrator.h"
 #include "integrate/radiosity_light.h"
 #include "integrate/tree_sampling.h"
@@ -74,6 +75,7 @@ struct MethodSettings {
 // What cells are made from, where a method takes them, and what is told of them.
 struct CellInput {
   CellPilot pilot;
+  const PictureView* view = nullptr;  // null: no picture is made
   uint64_t seed = 0;
   std::function<void(double)> progress;  // 0 to 1; may be empty
   const StopFlag& stop;

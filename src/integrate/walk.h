@@ -23,6 +23,7 @@ struct Walk {
   float eta_squared = 1;     // by which refraction has scaled radiance so far, inverted
   uint32_t index = 0;        // of the viewing ray in its batch
   uint32_t sample = 0;       // of the pixel
+  float length = 0;          // metres that it came before its last vertex, where somebody counts
   uint32_t last_place = 0;   // the integrator's own note about the vertex it comes from
   uint64_t stream = 0;
 };

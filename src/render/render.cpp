@@ -53,6 +53,10 @@ int tile_side(Method method, const MethodSettings& settings, size_t lights) {
   return side;
 }
 
+PixelWindow pixels_of(const PixelRect& r) {
+  return {r.x0, r.y0, r.x1, r.y1};
+}
+
 // Stopped before there was anything to show.
 RenderResult nothing_rendered(const PixelRect& window, const RenderOptions& options,
                               RenderResult result) {
@@ -121,23 +125,22 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
 
   const auto start = std::chrono::steady_clock::now();
   const MethodSettings settings = method_settings(options);
-  CellInput cells{picture_pilot(ViewingCamera(camera, size.width, size.height), size, options.seed),
-                  options.seed,
-                  progress,
-                  stop,
-                  {},
-                  {}};
-  const std::unique_ptr<Integrator> integrator =
-      make_integrator(scene, options.method, settings, preparation, &cells);
-  if (!integrator) return nothing_rendered(window, options, result);
-  result.statistics.cells = cells.statistics;
   const MethodRow& row = options.method.row();
   const bool is_refined = most_viewing_rays(options) > options.spp;
   const bool has_whole_tiles = row.is_same_in_crops && (row.has_noise_of_batch || is_refined);
   const int side = tile_side(options.method, settings, scene.scene.lights.size());
-  Rendering rendering(ViewingCamera(camera, size.width, size.height), *integrator, options,
-                      scene.scene.origin,
-                      plan_tiles(image, window, side, has_whole_tiles, is_refined), progress, stop);
+  const TilePlan plan = plan_tiles(image, window, side, has_whole_tiles, is_refined);
+  const ViewingCamera viewing(camera, size.width, size.height);
+  const PictureView view{pixels_of(image), pixels_of(plan.region), [&](float x, float y) {
+                           return viewing.ray({x, y}, {0.5f, 0.5f});
+                         }};
+  CellInput cells{
+      picture_pilot(viewing, size, options.seed), &view, options.seed, progress, stop, {}, {}};
+  const std::unique_ptr<Integrator> integrator =
+      make_integrator(scene, options.method, settings, preparation, &cells);
+  if (!integrator) return nothing_rendered(window, options, result);
+  result.statistics.cells = cells.statistics;
+  Rendering rendering(viewing, *integrator, options, scene.scene.origin, plan, progress, stop);
   result.is_complete = rendering.run();
   result.layers = rendering.layers();
   result.statistics.counters = rendering.counters();

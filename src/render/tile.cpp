@@ -58,6 +58,7 @@ void add_viewing_rays(const ViewingCamera& camera, const Pixel2& pixel, uint32_t
     rays.rays.push_back(camera.ray(raster, random.get2(2)));
     rays.streams.push_back(stream);
     rays.samples.push_back(s);
+    rays.pixels.push_back({pixel.x, pixel.y});
   }
 }
 

@@ -1,0 +1,63 @@
+// How records are made (gather_records.h): gathers, further rays, fits; each over all the picture
+// before the next.
+#pragma once
+
+#include <vector>
+
+#include "cells/linear_fit.h"
+#include "integrate/gather_records.h"
+
+namespace troffer {
+
+class GatherPass {
+ public:
+  static constexpr int most_pixels = 16;  // radius of a fit
+
+  GatherPass(const Cells& cells, const PictureView& view, const GatherOptions& options,
+             const StopFlag& stop, GatherRecords& out);
+  bool run(const std::function<void(double)>& progress, Counters& counters);
+
+ private:
+  struct Tile {
+    PixelWindow pixels;                 // within the window
+    int x = 0, y = 0;                   // its first pixel in the picture's own tiling
+    std::vector<GatherRecord> records;  // by pixels, row by row; until they are joined
+    std::vector<uint16_t> counts;       // of each pixel
+  };
+  struct Worker {
+    GatherScratch viewing;
+    CellsScratch cells;
+    Counters counters;
+  };
+  // What is known of a record's surroundings.
+  struct Surroundings {
+    float nearness = 0;  // mean of 1 / distance
+    float variance = 0;  // of one gather of 16 rays, by the spread of its rays
+  };
+
+  void see(Tile& tile, Worker& w) const;
+  Ray ray_of(int x, int y, float& spread) const;
+  void gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
+              const Tile& tile, const std::vector<uint32_t>& places, bool is_further,
+              Worker& w) const;
+  void join(std::vector<Tile>& tiles);
+  Surroundings around(int x, int y, uint32_t r) const;
+  LinearFit fit(int x, int y, uint32_t r, float radius, int along) const;
+  static FittedLight solved(const LinearFit& fit, const Surroundings& s);
+  float allowed_error(const GatherRecord& r) const;
+  uint32_t further_rays(int x, int y, uint32_t r) const;
+  FittedRecord fitted(int x, int y, uint32_t r) const;
+  void gather_further(const Tile& tile, Worker& w);
+  template <class Do>
+  bool over_tiles(std::vector<Tile>& tiles, Counters& counters, const Do& act);
+
+  const Cells& cells_;
+  const PictureView& view_;
+  const GatherOptions& options_;
+  const StopFlag& stop_;
+  GatherRecords& out_;
+  std::vector<Worker> workers_;
+  std::vector<uint32_t> wanted_;  // further rays of each record
+};
+
+}  // namespace troffer

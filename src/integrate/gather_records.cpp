@@ -1,0 +1,57 @@
+#include "integrate/gather_records.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/gather_pass.h"
+
+namespace troffer {
+
+bool is_one_surface(const CellHit& a, const CellHit& b, float spacing) {
+  constexpr float least_cosine = 0.94f;  // 20°
+  constexpr float flatness = 0.1f;       // of a pixel
+  if (dot(a.normal, b.normal) < least_cosine) return false;
+  const Vec3 d = b.position - a.position;
+  const float bend = length(a.horizon - b.horizon) * length(d);
+  const float most = flatness * spacing + bend;
+  return std::abs(dot(d, a.horizon)) <= most && std::abs(dot(d, b.horizon)) <= most;
+}
+
+std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const PictureView& view,
+                                                   const GatherOptions& options,
+                                                   const std::function<void(double)>& progress,
+                                                   const StopFlag& stop, Counters& counters) {
+  // A pixel looks at its neighbours' fits, these at gathers, whose rays others asked for.
+  constexpr int border = 2 * GatherPass::most_pixels + 4;
+  PixelWindow w = view.window;
+  w = {std::max(w.x0 - border, view.image.x0), std::max(w.y0 - border, view.image.y0),
+       std::min(w.x1 + border, view.image.x1), std::min(w.y1 + border, view.image.y1)};
+  std::unique_ptr<GatherRecords> records(new GatherRecords(w));
+  GatherPass pass(cells, view, options, stop, *records);
+  if (!pass.run(progress, counters)) return nullptr;
+  return records;
+}
+
+bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, FittedRecord& out) const {
+  float weights = 0;
+  out = {};
+  for (int j = y - 1; j <= y + 1; ++j)
+    for (int i = x - 1; i <= x + 1; ++i)
+      of_pixel(i, j, [&](uint32_t r) {
+        const GatherRecord& record = records_[r];
+        const float d2 = length_squared(record.hit.position - hit.position);
+        // As far as pixels are apart where one looks along a surface, and no farther.
+        if (d2 > sqr(16 * record.spacing) || !is_one_surface(record.hit, hit, record.spacing))
+          return;
+        const float w = 1 / (d2 + 0.1f * sqr(record.spacing));
+        out.irradiance += fitted_[r].irradiance * w;
+        out.error += fitted_[r].error * w;
+        weights += w;
+      });
+  if (weights == 0) return false;
+  out.irradiance *= 1 / weights;
+  out.error /= weights;
+  return true;
+}
+
+}  // namespace troffer
