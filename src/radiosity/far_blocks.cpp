@@ -34,20 +34,42 @@ size_t choose_cell(const std::vector<double>& sent, double& x) {
 
 }  // namespace
 
-void FarBlocks::start(size_t block) {
-  const ReceiverBlock& b = row_.receivers.blocks[block];
-  Block f;
-  f.block = uint32_t(block);
-  const uint32_t padded = (b.count + Receivers::lanes - 1) / Receivers::lanes * Receivers::lanes;
-  cells_irradiance(row_.receivers, b.first_slot, padded, row_.shooter.cells, f.irradiance);
+float FarBlocks::find_irradiance(Block& f) const {
+  const ReceiverBlock& b = row_.receivers.blocks[f.block];
+  cells_irradiance(row_.receivers, b.first_slot, slots_of(b), row_.shooter.levels.for_block(b),
+                   f.irradiance);
   float most = 0;
   for (uint32_t i = 0; i < b.count; ++i) {
     if (!std::isfinite(f.irradiance[i])) f.irradiance[i] = 0;
     f.irradiance[i] *= row_.shooter.expected;
     most = std::max(most, f.irradiance[i]);
   }
+  return most;
+}
+
+void FarBlocks::start(size_t block) {
+  Block f;
+  f.block = uint32_t(block);
+  const float most = find_irradiance(f);
   if (!(most > 0)) return;
   f.wanted = rays_wanted(row_.budget, most);
+  add(f);
+}
+
+bool FarBlocks::start_weak(size_t block) {
+  constexpr float cells_may_err = 2;  // by this factor, from one of their radii on
+  const ReceiverBlock& b = row_.receivers.blocks[block];
+  if (is_near(row_.shooter, b, 1)) return false;
+  Block f;
+  f.block = uint32_t(block);
+  const float most = find_irradiance(f);
+  if (rays_wanted(row_.budget, cells_may_err * most) > 1) return false;
+  if (most > 0) add(f);
+  return true;
+}
+
+void FarBlocks::add(const Block& f) {
+  const ReceiverBlock& b = row_.receivers.blocks[f.block];
   blocks_.push_back(f);
   const auto index = uint32_t(blocks_.size() - 1);
   if (f.wanted > 1) {
@@ -83,11 +105,12 @@ void FarBlocks::add_ray(uint32_t index, uint8_t first, uint8_t last, int k) {
     u = SobolGroup(row_.shooter.stream + mix64(b.first_point + i), purpose_far, uint32_t(k)).get2();
     x = double(u.x);
   }
-  const size_t n = row_.shooter.cells.size(), start = choose_cell(row_.shooter.sent, x);
+  const size_t n = row_.shooter.cells.size();
+  size_t cell = choose_cell(row_.shooter.sent, x);
   if (blocks_[index].wanted > 1) u.x = float(x);
   const Vec2 w = triangle_from_square(u);
-  for (size_t step = 0; step < n; ++step) {
-    const ShooterCell& c = row_.shooter.cells[(start + step) % n];
+  for (size_t step = 0; step < n; ++step, cell = cell + 1 < n ? cell + 1 : 0) {
+    const ShooterCell& c = row_.shooter.cells[cell];
     const Vec3 end =
         c.corners[0] + (c.corners[1] - c.corners[0]) * w.x + (c.corners[2] - c.corners[0]) * w.y;
     const Vec3 d = end - r.position;
@@ -152,6 +175,10 @@ void FarBlocks::settle(const Block& f, size_t first_block, RowChunk& out) const 
   BlockView& view = out.view[f.block - first_block];
   if (is_unanimous(f, b.count, is_lit)) {
     view = is_lit ? BlockView::lit : BlockView::dark;
+    if (!is_lit) {
+      const float most = *std::max_element(f.irradiance, f.irradiance + b.count);
+      out.first[f.block - first_block] = dark_bits(most / row_.shooter.expected);
+    }
     for (uint32_t i = 0; is_lit && i < b.count; ++i) note_seen(f, i, 1);
     return;
   }
@@ -172,8 +199,8 @@ void FarBlocks::settle(const Block& f, size_t first_block, RowChunk& out) const 
 
 void FarBlocks::note_seen(const Block& f, uint32_t i, float share) const {
   if (row_.seen == nullptr) return;
-  const uint32_t point = row_.receivers.blocks[f.block].first_point + i;
-  row_.seen[point] += f.irradiance[i] / (pi_f * row_.shooter.expected) * share;
+  row_.seen[row_.receivers.blocks[f.block].first_slot + i] +=
+      f.irradiance[i] / (pi_f * row_.shooter.expected) * share;
 }
 
 }  // namespace troffer

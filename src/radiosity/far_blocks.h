@@ -10,6 +10,9 @@ class FarBlocks {
  public:
   explicit FarBlocks(const RowContext& row) : row_(row) {}
   void start(size_t block);
+  // The same for a block near to the patch; false, with nothing done, where it is so near that
+  // cells say little, or gets so much that their error would show.
+  bool start_weak(size_t block);
   // Of all blocks that were started. first_block: the chunk's.
   void finish(size_t first_block, RowChunk& out);
   uint64_t rays() const { return rays_; }
@@ -27,6 +30,9 @@ class FarBlocks {
     uint8_t first, last;
     float weight;
   };
+  // What the points of the block get; returns the most.
+  float find_irradiance(Block& f) const;
+  void add(const Block& f);
   static bool is_unanimous(const Block& f, uint32_t count, bool& is_lit);
   void add_ray(uint32_t index, uint8_t first, uint8_t last, int k);
   void trace();

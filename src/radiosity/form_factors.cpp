@@ -15,6 +15,7 @@ namespace troffer {
 namespace {
 
 constexpr float far_in_piece_radii = 12;
+constexpr float by_area_from_radii = 2;
 constexpr int least_disc_points = 8;
 constexpr uint32_t purpose_visibility = 1;
 
@@ -76,17 +77,37 @@ bool disc_end(const Shooter& s, const ElementPoint& r, Vec2 u, int count, RayEnd
   return true;
 }
 
+// A point of a flat piece by area, where the receiver is so far that this is about by solid angle.
+bool end_by_area(const LightPrimitive& p, const ElementPoint& r, Vec2 u, double sent, RayEnd& out) {
+  out.point = point_on(p, u);
+  out.normal = Vec3(p.normal);
+  const Vec3 d = out.point - r.position;
+  float facing = -dot(d, out.normal);
+  if (p.is_two_sided && facing < 0) {
+    facing = -facing;
+    out.normal = -out.normal;
+  }
+  const float along = dot(d, r.normal), d2 = length_squared(d);
+  if (!(along > 0 && facing > 0)) return false;
+  out.weight = luminance(p.mean_radiance) * along * facing * p.area / (d2 * d2 * float(sent));
+  return std::isfinite(out.weight);
+}
+
 // Exact shooters: a piece by what it sends, a point of it by solid angle.
 bool exact_end(const Shooter& s, const ElementPoint& r, Vec2 u, std::span<const double> sums,
                RayEnd& out) {
   double x = double(u.x) * sums.back();
   out.piece = choose(sums, x);
   const LightPrimitive& p = s.pieces[out.piece];
+  const double sent = sums[out.piece] - (out.piece > 0 ? sums[out.piece - 1] : 0.0);
+  if (!(sent > 0)) return false;
+  if (p.vertex_count > 0 &&
+      length_squared(p.centroid - r.position) > sqr(by_area_from_radii * p.radius))
+    return end_by_area(p, r, {float(x), u.y}, sent, out);
   LightSample sample_of;
   if (!sample(p, r.position, {float(x), u.y}, sample_of)) return false;
-  const double sent = sums[out.piece] - (out.piece > 0 ? sums[out.piece - 1] : 0.0);
   const float cosine = dot(sample_of.wi, r.normal);
-  if (!(cosine > 0) || !(sent > 0)) return false;
+  if (!(cosine > 0)) return false;
   out.point = sample_of.point;
   out.normal = sample_of.normal;
   // luminance × cosine / (p(piece) p(direction))

@@ -39,7 +39,7 @@ void NearBlocks::find(size_t block, size_t k, RowChunk& out) {
       p.unoccluded = u / row_.shooter.expected;
       const float visible = add_parts({records_.data() + first, record - first}, out);
       p.last = uint32_t(out.parts.size());
-      if (row_.seen != nullptr) row_.seen[b.first_point + i] += p.unoccluded / pi_f * visible;
+      if (row_.seen != nullptr) row_.seen[b.first_slot + i] += p.unoccluded / pi_f * visible;
     }
     out.points.push_back(p);
   }

@@ -1,6 +1,35 @@
 #include "radiosity/patch_row.h"
 
+#include <bit>
+
+#include "base/units.h"
+
 namespace troffer {
+
+uint16_t dark_bits(float most) {
+  return uint16_t((std::bit_cast<uint32_t>(most) >> 16) + 1);
+}
+
+float dark_most(uint16_t bits) {
+  return std::bit_cast<float>(uint32_t(bits) << 16);
+}
+
+namespace {
+
+std::vector<ShooterCell> make_even(std::vector<ShooterCell> cells) {
+  for (ShooterCell& c : cells) c.share = 1;
+  return cells;
+}
+
+}  // namespace
+
+bool is_near(const RowShooter& s, const ReceiverBlock& b, float cell_radii) {
+  const float cell = cell_radii * s.bounds.cell_radius + b.radius;
+  if (length_squared(b.centre - s.bounds.centre) >= sqr(s.bounds.radius + cell)) return false;
+  for (const ShooterCell& c : s.cells)
+    if (length_squared(c.position - b.centre) < sqr(cell)) return true;
+  return false;
+}
 
 size_t RowChunk::bytes() const {
   return sizeof(*this) + view.capacity() * sizeof(BlockView) + first.capacity() * sizeof(uint16_t) +
@@ -13,6 +42,7 @@ RowShooter::RowShooter(const RadiosityMesh& mesh, uint32_t patch, const Shooter&
                        uint64_t random_stream)
     : cells(patch_cells),
       bounds(cells, shooter),
+      levels(make_even(cells), bounds),
       even(shooter),
       expected(luminance),
       stream(random_stream) {

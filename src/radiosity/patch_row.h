@@ -12,7 +12,12 @@
 namespace troffer {
 
 // How a block of receivers sees the patch.
-enum class BlockView : uint16_t { none, lit, dark, partly, near };
+// listed: dark, and in somebody's list of contributions.
+enum class BlockView : uint16_t { none, lit, dark, listed, partly, near };
+
+// Above what any point of a dark block would get unoccluded, in 16 bits.
+uint16_t dark_bits(float most);
+float dark_most(uint16_t bits);
 
 struct NearPart {
   uint16_t part, all, visible;  // shares of what the point gets, in 65535ths
@@ -27,7 +32,7 @@ struct NearPoint {
 struct RowChunk {
   static constexpr size_t most_blocks = 64;
   std::vector<BlockView> view;   // per block
-  std::vector<uint16_t> first;   // per block. partly: in `visible`; near: in `points`
+  std::vector<uint16_t> first;   // per block. partly: in `visible`; near: in `points`; dark: bits
   std::vector<uint8_t> visible;  // in 255ths
   std::vector<NearPoint> points;
   std::vector<NearPart> parts;
@@ -39,6 +44,7 @@ struct RowChunk {
 struct RowShooter {
   std::vector<ShooterCell> cells;  // with share 1
   ShooterBounds bounds;
+  CellLevels levels;
   std::vector<double> sent;  // running sums of what cells send now
   Shooter even;              // sends `expected`, the same everywhere
   std::span<const ElementPoint> parts;
@@ -49,13 +55,17 @@ struct RowShooter {
              const std::vector<ShooterCell>& cells, float expected, uint64_t stream);
 };
 
+// Whether some cell is nearer to some point of the block than so many radii of cells.
+bool is_near(const RowShooter& s, const ReceiverBlock& b, float cell_radii);
+
 struct RowContext {
   const RadiosityMesh& mesh;
   const Receivers& receivers;
   const Tracer& tracer;
   const RayBudget& budget;
   const RowShooter& shooter;
-  float* seen;  // per point: grows by the part of its hemisphere that the patch fills; or nullptr
+  float* seen;  // per slot: grows by the part of the point's hemisphere that the patch fills; or
+                // nullptr
 };
 
 }  // namespace troffer

@@ -11,15 +11,10 @@ namespace troffer {
 
 namespace {
 
-// A cell counts as a point from so many of its radii on, beyond the shooter's own: its error falls
-// with the square of the distance.
+// A cell counts as a point from so many of its radii on: its error falls with the square of the
+// distance.
 float near_in_cell_radii(const RayBudget& budget) {
-  return std::clamp(std::sqrt(0.003f / budget.tolerance), 1.0f, 6.0f);
-}
-
-bool is_near(const ShooterBounds& s, const ReceiverBlock& b, const RayBudget& budget) {
-  return length(b.centre - s.centre) - b.radius <
-         s.radius + near_in_cell_radii(budget) * s.cell_radius;
+  return 1 + std::clamp(std::sqrt(0.003f / budget.tolerance), 1.0f, 6.0f);
 }
 
 // Returns the number of rays.
@@ -28,15 +23,18 @@ uint64_t make_chunk(const RowContext& row, size_t first_block, RowChunk& out) {
   const size_t count = std::min(blocks.size() - first_block, RowChunk::most_blocks);
   out.view.assign(count, BlockView::none);
   out.first.assign(count, 0);
+  const float cell_radii = near_in_cell_radii(row.budget);
   NearBlocks near(row);
   FarBlocks far(row);
   for (size_t k = 0; k < count; ++k) {
     const ReceiverBlock& block = blocks[first_block + k];
     if (is_out_of_sight(row.shooter.bounds, block)) continue;
-    if (is_near(row.shooter.bounds, block, row.budget))
+    if (is_near(row.shooter, block, cell_radii)) {
+      if (far.start_weak(first_block + k)) continue;
       near.find(first_block + k, k, out);
-    else
+    } else {
       far.start(first_block + k);
+    }
   }
   far.finish(first_block, out);
   out.visible.shrink_to_fit();
@@ -78,7 +76,7 @@ PatchRows::PatchRows(const RadiosityMesh& mesh, const Tracer& tracer, int thread
 
 bool PatchRows::shoot(uint32_t patch, const Shooter& shooter, float expected,
                       const RayBudget& budget, uint64_t stream, const StopFlag& stop, bool is_first,
-                      std::vector<float>& seen, ShotReceived& out) {
+                      const DarkLimit& dark, std::vector<float>& seen, ShotReceived& out) {
   out.blocks.clear();
   const std::vector<ShooterCell> cells = shooter_cells(mesh_, patch, shooter);
   if (cells.empty() || !(expected > 0)) return true;
@@ -98,8 +96,15 @@ bool PatchRows::shoot(uint32_t patch, const Shooter& shooter, float expected,
     if (stop) return false;
     for (const uint64_t r : rays) rays_ += r;
   }
-  const Row& row = is_new ? made : kept;
-  for (size_t chunk = 0; chunk < row.size(); ++chunk) apply(row[chunk], chunk, shooter, cells, out);
+  Row& row = is_new ? made : kept;
+  // What is listed is remembered in the row: without it, all dark blocks may be.
+  DarkLimit limit = is_new && !is_first ? DarkLimit{} : dark;
+  float most_share = 0;
+  for (const ShooterCell& c : cells) most_share = std::max(most_share, c.share);
+  limit.scale *= most_share;
+  const CellLevels levels(cells, ShooterBounds(cells, shooter));
+  for (size_t chunk = 0; chunk < row.size(); ++chunk)
+    apply(row[chunk], chunk, shooter, levels, limit, out);
   if (!is_new) return true;
   size_t bytes = 0;
   for (const RowChunk& c : made) bytes += c.bytes();
@@ -112,29 +117,31 @@ bool PatchRows::shoot(uint32_t patch, const Shooter& shooter, float expected,
   return true;
 }
 
-void PatchRows::apply(const RowChunk& row, size_t chunk, const Shooter& shooter,
-                      const std::vector<ShooterCell>& cells, ShotReceived& out) const {
+void PatchRows::apply(RowChunk& row, size_t chunk, const Shooter& shooter, const CellLevels& cells,
+                      const DarkLimit& dark, ShotReceived& out) const {
   for (size_t k = 0; k < row.view.size(); ++k) {
     const BlockView view = row.view[k];
     if (view == BlockView::none) continue;
     const auto block = uint32_t(chunk * RowChunk::most_blocks + k);
+    if (view == BlockView::dark) {
+      if (!dark.least.empty() && dark_most(row.first[k]) * dark.scale < dark.least[block]) continue;
+      row.view[k] = BlockView::listed;
+    }
     const ReceiverBlock& b = receivers_.blocks[block];
     out.blocks.push_back(block);
-    float* const unoccluded = out.unoccluded.data() + b.first_point;
-    float* const received = out.received.data() + b.first_point;
+    float* const unoccluded = out.unoccluded.data() + b.first_slot;
+    float* const received = out.received.data() + b.first_slot;
     if (view == BlockView::near) {
       apply_near(row, k, b.count, shooter, unoccluded, received);
       continue;
     }
-    alignas(64) float values[ReceiverBlock::most_points];
-    const uint32_t padded = (b.count + Receivers::lanes - 1) / Receivers::lanes * Receivers::lanes;
-    cells_irradiance(receivers_, b.first_slot, padded, cells, values);
+    cells_irradiance(receivers_, b.first_slot, slots_of(b), cells.for_block(b), unoccluded);
     for (uint32_t i = 0; i < b.count; ++i) {
-      unoccluded[i] = std::isfinite(values[i]) ? values[i] : 0.0f;
-      received[i] = view == BlockView::lit    ? unoccluded[i]
-                    : view == BlockView::dark ? 0.0f
-                                              : unoccluded[i] * (1 / 255.0f) *
-                                                    float(row.visible[size_t(row.first[k]) + i]);
+      if (!std::isfinite(unoccluded[i])) unoccluded[i] = 0;
+      received[i] = view == BlockView::lit      ? unoccluded[i]
+                    : view == BlockView::partly ? unoccluded[i] * (1 / 255.0f) *
+                                                      float(row.visible[size_t(row.first[k]) + i])
+                                                : 0.0f;
     }
   }
 }

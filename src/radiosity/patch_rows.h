@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -25,8 +26,15 @@ namespace troffer {
 // Irradiance per unit of a shooter's mean radiance. Only points of `blocks` (in their order) got
 // something; the others' numbers are left over from earlier shots.
 struct ShotReceived {
-  std::vector<float> unoccluded, received;  // per point
+  std::vector<float> unoccluded, received;  // per slot (receivers.h)
   std::vector<uint32_t> blocks;
+};
+
+// Blocks that a patch cannot reach matter only to lists of what is important though hidden: those
+// that would get less than `least` (per block), of irradiance times `scale`, are left out.
+struct DarkLimit {
+  std::span<const float> least;  // empty: none are left out
+  float scale = 1;
 };
 
 class PatchRows {
@@ -36,21 +44,22 @@ class PatchRows {
 
   // shooter: the patch's, with shares set. `expected`: luminance of the radiance that it is
   // thought to send in all, for numbers of rays. False, with nothing found, once `stop` is set.
-  // With is_first, seen[i] grows by the part of point i's hemisphere that the patch fills.
+  // With is_first, `seen` (per slot) grows by the part of a point's hemisphere that the patch
+  // fills.
   bool shoot(uint32_t patch, const Shooter& shooter, float expected, const RayBudget& budget,
-             uint64_t stream, const StopFlag& stop, bool is_first, std::vector<float>& seen,
-             ShotReceived& out);
+             uint64_t stream, const StopFlag& stop, bool is_first, const DarkLimit& dark,
+             std::vector<float>& seen, ShotReceived& out);
 
   uint64_t rays() const { return rays_; }
   size_t bytes() const { return bytes_; }
   size_t rows_not_kept() const { return not_kept_; }
-  const std::vector<ReceiverBlock>& blocks() const { return receivers_.blocks; }
+  const Receivers& receivers() const { return receivers_; }
 
  private:
   using Row = std::vector<RowChunk>;
 
-  void apply(const RowChunk& row, size_t chunk, const Shooter& shooter,
-             const std::vector<ShooterCell>& cells, ShotReceived& out) const;
+  void apply(RowChunk& row, size_t chunk, const Shooter& shooter, const CellLevels& cells,
+             const DarkLimit& dark, ShotReceived& out) const;
 
   const RadiosityMesh& mesh_;
   const Tracer& tracer_;

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "radiosity/source_contributions.h"
+#include "radiosity/stored_list.h"
 
 namespace troffer {
 
@@ -18,14 +19,14 @@ constexpr float expected_growth = 1.6f;
 PatchShots::PatchShots(const Tracer& tracer, RadiositySolution& solution, int threads)
     : solution_(solution),
       rows_(solution.mesh, tracer, threads, most_row_bytes),
-      seen_(solution.mesh.points.size(), 0.0f),
+      seen_(rows_.receivers().slots(), 0.0f),
       has_shot_(solution.mesh.patches.size(), 0) {
   shot_.unoccluded.assign(seen_.size(), 0);
   shot_.received.assign(seen_.size(), 0);
 }
 
 bool PatchShots::shoot(uint32_t patch, const Rgb& power, std::span<const float> unshot_at,
-                       const StopFlag& stop, Rgb& radiance) {
+                       std::span<const float> least_listed, const StopFlag& stop, Rgb& radiance) {
   RadiositySolution& s = solution_;
   shot_.blocks.clear();
   radiance = {};
@@ -36,12 +37,27 @@ bool PatchShots::shoot(uint32_t patch, const Rgb& power, std::span<const float> 
   const uint32_t source = s.light_count + patch;
   const Rgb all = s.shot_radiance[patch] + radiance;
   if (!rows_.shoot(patch, shooter, expected_growth * luminance(all), ray_budget(s, source),
-                   hash_of(s.options.seed, source, s.shots), stop, has_shot_[patch] == 0, seen_,
-                   shot_))
+                   hash_of(s.options.seed, source, s.shots), stop, has_shot_[patch] == 0,
+                   {least_listed, hidden_importance * luminance(radiance)}, seen_, shot_))
     return false;
+  limit();
   s.shot_radiance[patch] = all;
   has_shot_[patch] = 1;
   return true;
+}
+
+// A point sees no more than a hemisphere. Where it does, as before surfaces of several meshes that
+// coincide or nearly do, patches give it so much less.
+void PatchShots::limit() {
+  constexpr float most = 1.03f;  // an error of form factors is not cut
+  for (const uint32_t index : shot_.blocks) {
+    const ReceiverBlock& b = rows_.receivers().blocks[index];
+    for (uint32_t slot = b.first_slot; slot < b.first_slot + b.count; ++slot) {
+      if (seen_[slot] <= most) continue;
+      shot_.unoccluded[slot] *= most / seen_[slot];
+      shot_.received[slot] *= most / seen_[slot];
+    }
+  }
 }
 
 }  // namespace troffer

@@ -17,35 +17,23 @@ class PatchShots {
   PatchShots(const Tracer& tracer, RadiositySolution& solution, int threads);
 
   // `power`, in proportion to unshot_at (per point of the patch); `radiance` is what it then sends,
-  // and counted in the solution. False, with nothing done, once `stop` is set. A patch without a
-  // place to shoot from gives nothing to no point.
+  // and counted in the solution. least_listed, per block: what is hidden and would not bring that
+  // much importance (stored_list.h) is left out. False, with nothing done, once `stop` is set. A
+  // patch without a place to shoot from gives nothing to no point.
   bool shoot(uint32_t patch, const Rgb& power, std::span<const float> unshot_at,
-             const StopFlag& stop, Rgb& radiance);
+             std::span<const float> least_listed, const StopFlag& stop, Rgb& radiance);
+  const Receivers& receivers() const { return rows_.receivers(); }
 
-  // Of the last shot, per point and unit of radiance; only of points that are visited.
-  float unoccluded(uint32_t point) const { return shot_.unoccluded[point]; }
-  float received(uint32_t point) const { return shot_.received[point]; }
-  template <class Visit>
-  void for_each_point(const Visit& visit) const {
-    for (const uint32_t b : shot_.blocks) {
-      const ReceiverBlock& block = rows_.blocks()[b];
-      for (uint32_t i = 0; i < block.count; ++i) visit(block.first_point + i);
-    }
-  }
-  // A point sees no more than a hemisphere. Where it does, as before surfaces of several meshes
-  // that coincide or nearly do, patches give it so much less. Once for each point of a shot.
-  void limit(uint32_t point) {
-    constexpr float most = 1.03f;  // an error of form factors is not cut
-    if (seen_[point] <= most) return;
-    shot_.unoccluded[point] *= most / seen_[point];
-    shot_.received[point] *= most / seen_[point];
-  }
+  // Of the last shot, per unit of radiance.
+  const ShotReceived& received() const { return shot_; }
   uint64_t rays() const { return rows_.rays(); }
 
  private:
+  void limit();
+
   RadiositySolution& solution_;
   PatchRows rows_;
-  std::vector<float> seen_;  // sum of form factors to patches that have shot, per point
+  std::vector<float> seen_;  // sum of form factors to patches that have shot, per slot
   std::vector<uint8_t> has_shot_;
   ShotReceived shot_;
 };

@@ -34,10 +34,11 @@ Receivers::Receivers(const RadiosityMesh& mesh) {
          first += ReceiverBlock::most_points) {
       ReceiverBlock b;
       b.first_point = first;
+      b.patch = mesh.points[first].patch;
       b.count = std::min(ReceiverBlock::most_points, patch.last_point - first);
       b.first_slot = uint32_t(x.size());
       bound(mesh, b);
-      for (uint32_t i = 0; i < (b.count + lanes - 1) / lanes * lanes; ++i) {
+      for (uint32_t i = 0; i < slots_of(b); ++i) {
         const ElementPoint& p = mesh.points[first + std::min(i, b.count - 1)];
         x.push_back(p.position.x);
         y.push_back(p.position.y);

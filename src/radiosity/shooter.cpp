@@ -70,6 +70,12 @@ Vec3 point_on(const LightPrimitive& p, const Vec2& u) {
     const Vec2 d = disk_from_square(u) * p.radius;
     return p.centroid + p.axis_x * d.x + Vec3(cross(p.normal, Vec3d(p.axis_x))) * d.y;
   }
+  if (p.shape == PrimitiveShape::rectangle)
+    return p.centroid + p.axis_x * ((u.x - 0.5f) * p.size_x) + p.axis_y * ((u.y - 0.5f) * p.size_y);
+  if (p.vertex_count == 3) {
+    const Vec2 w = triangle_from_square(u);
+    return p.vertex(0) + (p.vertex(1) - p.vertex(0)) * w.x + (p.vertex(2) - p.vertex(0)) * w.y;
+  }
   // fan about vertex 0; these are triangles and quadrilaterals, so a scan is short
   float x = u.x * p.area;
   for (uint32_t i = 1; i + 1 < p.vertex_count; ++i) {

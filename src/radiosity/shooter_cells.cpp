@@ -10,7 +10,11 @@ namespace troffer {
 namespace {
 
 constexpr size_t flat_cells = 10;
+constexpr size_t flat_groups = 3;
 constexpr size_t most_curved_cells = 48;
+// From so many radii of the shooter on, groups count as points, and all of it: the error of a point
+// falls with the square of the distance.
+constexpr float groups_from = 3.5f, one_from = 8;
 
 float area_of(const Vec3 (&c)[3]) {
   return 0.5f * length(cross(c[1] - c[0], c[2] - c[0]));
@@ -31,6 +35,10 @@ std::vector<ShooterCell> flat_shooter_cells(const Shooter& shooter) {
   for (const LightPrimitive& p : shooter.pieces)
     for (uint32_t i = 1; i + 1 < p.vertex_count; ++i)
       add(p.vertex(0), p.vertex(i), p.vertex(i + 1), Vec3(p.normal));
+  const auto make_groups = [&] {
+    for (size_t i = 0; i < cells.size(); ++i) cells[i].group = uint32_t(i);
+  };
+  make_groups();
   while (!cells.empty() && cells.size() < flat_cells) {
     const auto largest = std::max_element(
         cells.begin(), cells.end(),
@@ -52,6 +60,8 @@ std::vector<ShooterCell> flat_shooter_cells(const Shooter& shooter) {
     add(a, m, d, c.normal);
     add(m, b, d, c.normal);
     if (cells.size() == before) break;  // too small to be halved
+    for (size_t k = before; k < cells.size(); ++k) cells[k].group = c.group;
+    if (cells.size() <= flat_groups) make_groups();
   }
   for (ShooterCell& c : cells) c.position = (c.corners[0] + c.corners[1] + c.corners[2]) / 3.0f;
   return cells;
@@ -64,7 +74,8 @@ std::vector<ShooterCell> curved_shooter_cells(const RadiosityMesh& mesh, uint32_
   std::vector<ShooterCell> cells;
   for (uint32_t i = p.first_point; i < p.last_point; i += step) {
     const ElementPoint& e = mesh.points[i];
-    cells.push_back({e.position, e.normal, e.area, 1, {e.position, e.position, e.position}});
+    const auto group = uint32_t(cells.size());
+    cells.push_back({e.position, e.normal, e.area, 1, {e.position, e.position, e.position}, group});
   }
   return cells;
 }
@@ -115,6 +126,47 @@ ShooterBounds::ShooterBounds(const std::vector<ShooterCell>& cells, const Shoote
     cell_radius = std::max(cell_radius, r);
     radius = std::max(radius, length(c.position - centre) + r);
   }
+}
+
+namespace {
+
+// Cells of equal numbers as one, in the middle of what they send.
+std::vector<ShooterCell> joined(const std::vector<ShooterCell>& cells,
+                                uint32_t (*number)(const ShooterCell&)) {
+  std::vector<ShooterCell> out;
+  std::vector<float> sent;
+  for (const ShooterCell& c : cells) {
+    const size_t i = number(c);
+    while (out.size() <= i) {
+      out.push_back({{}, c.normal, 0, 1, {}, uint32_t(out.size())});
+      sent.push_back(0);
+    }
+    out[i].position += c.position * (c.area * c.share);
+    out[i].area += c.area;
+    sent[i] += c.area * c.share;
+  }
+  for (size_t i = 0; i < out.size(); ++i) {
+    out[i].position = out[i].position / std::max(sent[i], 1e-30f);
+    out[i].share = sent[i] / std::max(out[i].area, 1e-30f);
+  }
+  std::erase_if(out, [](const ShooterCell& c) { return !(c.share > 0); });
+  return out;
+}
+
+}  // namespace
+
+CellLevels::CellLevels(const std::vector<ShooterCell>& cells, const ShooterBounds& bounds)
+    : centre_(bounds.centre), radius_(bounds.radius), all_(cells) {
+  if (!bounds.is_flat) return;
+  groups_ = joined(cells, [](const ShooterCell& c) { return c.group; });
+  one_ = joined(cells, [](const ShooterCell&) { return 0u; });
+}
+
+const std::vector<ShooterCell>& CellLevels::for_block(const ReceiverBlock& b) const {
+  const float distance = length(b.centre - centre_) - b.radius;
+  if (distance > one_from * radius_ && !one_.empty()) return one_;
+  if (distance > groups_from * radius_ && !groups_.empty()) return groups_;
+  return all_;
 }
 
 bool is_out_of_sight(const ShooterBounds& s, const ReceiverBlock& b) {

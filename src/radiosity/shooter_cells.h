@@ -21,6 +21,18 @@ struct ShooterBounds {
   ShooterBounds(const std::vector<ShooterCell>& cells, const Shooter& shooter);
 };
 
+// Fewer cells for receivers that are farther away.
+class CellLevels {
+ public:
+  CellLevels(const std::vector<ShooterCell>& cells, const ShooterBounds& bounds);
+  const std::vector<ShooterCell>& for_block(const ReceiverBlock& b) const;
+
+ private:
+  Vec3 centre_;
+  float radius_;
+  std::vector<ShooterCell> all_, groups_, one_;  // without corners; empty: as all_
+};
+
 // What hardly rises over a plane gets nothing from it: surfaces in contact, and all in one plane.
 bool is_out_of_sight(const ShooterBounds& s, const ReceiverBlock& b);
 

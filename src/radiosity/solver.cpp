@@ -5,6 +5,7 @@
 
 #include "radiosity/light_shots.h"
 #include "radiosity/patch_shots.h"
+#include "radiosity/point_lanes.h"
 #include "radiosity/point_surfaces.h"
 #include "radiosity/stored_lists.h"
 #include "radiosity/unshot_power.h"
@@ -28,7 +29,8 @@ void begin(RadiositySolution& s, const LightPrimitives& primitives, const MeanSu
   s.mean_irradiance = float(std::min(s.balance.emitted / (mean.area * (1 - mean.diffuse)), 1e30));
 }
 
-// Brings a solution that has begun to its end.
+// Brings a solution that has begun to its end. Its members: the solution, what each step keeps from
+// shot to shot, and the power on its way.
 class Solver {
  public:
   Solver(const Tracer& tracer, const LightPrimitives& primitives,
@@ -37,10 +39,12 @@ class Solver {
       : s_(solution),
         stop_(stop),
         surfaces_(surfaces),
-        unshot_(solution.mesh, surfaces, solution.balance),
-        lists_(solution),
         light_shots_(tracer, primitives, solution, threads),
-        patch_shots_(tracer, solution, threads) {
+        patch_shots_(tracer, solution, threads),
+        unshot_(solution.mesh, patch_shots_.receivers(), surfaces, solution.balance),
+        lists_(solution, patch_shots_.receivers()),
+        lanes_(patch_shots_.receivers(), surfaces) {
+    for (std::vector<float>& g : general_) g.assign(patch_shots_.receivers().slots(), 0.0f);
     for (const Patch& p : s_.mesh.patches) is_closed_ = is_closed_ && p.open == 0;
   }
 
@@ -51,6 +55,7 @@ class Solver {
       shoot_lights(progress);
       if (!stop_) shoot_patches(progress);
     }
+    add_up_general();
     if (stop_ && !is_converged()) s_.end = RadiosityEnd::stopped;
     s_.is_complete = s_.end == RadiosityEnd::converged;
     s_.balance.unshot = unshot_.sum() + std::max(waiting_, 0.0);
@@ -104,7 +109,8 @@ class Solver {
     const Patch& patch = s_.mesh.patches[brightest];
     const Rgb power = unshot_.of(brightest);
     Rgb radiance;
-    if (!patch_shots_.shoot(brightest, power, unshot_.at_points_of(patch), stop_, radiance))
+    if (!patch_shots_.shoot(brightest, power, unshot_.at_points_of(patch), lists_.least_in_block(),
+                            stop_, radiance))
       return false;
     unshot_.clear(brightest, patch);
     receive_from_patch(s_.light_count + brightest, radiance, double(luminance(power)),
@@ -136,40 +142,81 @@ class Solver {
   // The same for a patch that sent `radiance`: patch_shots_ says where to.
   void receive_from_patch(uint32_t source, const Rgb& radiance, double power,
                           const OpenShare& open) {
-    powers_.clear();
-    double sum = 0;
+    const ShotReceived& shot = patch_shots_.received();
+    const std::vector<ReceiverBlock>& blocks = patch_shots_.receivers().blocks;
     const float sent = luminance(radiance);
-    patch_shots_.for_each_point([&](uint32_t i) {
-      patch_shots_.limit(i);
-      powers_.push_back(patch_shots_.received(i) * sent * surfaces_[i].area);
-      sum += double(powers_.back());
-    });
-    const Closure closure = close_shot(powers_, sum, power, open);
+    if (!(sent > 0)) return;
+    size_t slots = 0;
+    for (const uint32_t b : shot.blocks) slots += slots_of(blocks[b]);
+    powers_.resize(slots);
+    double sum = 0;
     size_t at = 0;
-    patch_shots_.for_each_point([&](uint32_t i) {
-      const float counted = powers_[at++];
-      const float per_unit = patch_shots_.received(i), unoccluded = patch_shots_.unoccluded(i);
-      if (!(unoccluded > 0)) return;
-      const Rgb received = radiance * per_unit;
-      if (lists_.takes(i, source, sent * std::max(per_unit, 0.25f * unoccluded)))
-        lists_.add(i, {source, received, radiance * unoccluded});
-      else
-        s_.general[i] += received;
-      unshot_.pass_on(i, received, counted, closure);
-    });
+    for (const uint32_t index : shot.blocks) {
+      const ReceiverBlock& b = blocks[index];
+      sum += double(block_powers(shot.received.data() + b.first_slot,
+                                 lanes_.area.data() + b.first_slot, sent, slots_of(b),
+                                 powers_.data() + at));
+      at += slots_of(b);
+    }
+    const Closure closure = close_shot(powers_, sum, power, open);
+    const BlockLight light{radiance / sent, float(closure.cap), float(closure.scale)};
+    at = 0;
+    for (const uint32_t index : shot.blocks) {
+      const ReceiverBlock& b = blocks[index];
+      keep_light(index, source, radiance, shot);
+      unshot_.pass_on(b,
+                      arrive(lanes_, b.first_slot, slots_of(b), powers_.data() + at, light,
+                             unshot_.radiosity(b)),
+                      light.tint);
+      at += slots_of(b);
+    }
     ++s_.shots;
     unshot_.count(power, open, closure);
+  }
+
+  // In the lists of a block's points, or in their general values.
+  void keep_light(uint32_t block, uint32_t source, const Rgb& radiance, const ShotReceived& shot) {
+    const ReceiverBlock& b = patch_shots_.receivers().blocks[block];
+    const float sent = luminance(radiance);
+    const float* const received = shot.received.data() + b.first_slot;
+    const float* const unoccluded = shot.unoccluded.data() + b.first_slot;
+    float most = 0;
+    for (uint32_t i = 0; i < b.count; ++i)
+      most = std::max(most, std::max(received[i], hidden_importance * unoccluded[i]));
+    if (!lists_.may_take(block, source, sent * most)) {
+      float* const sums[3] = {general_[0].data() + b.first_slot, general_[1].data() + b.first_slot,
+                              general_[2].data() + b.first_slot};
+      add_irradiance(received, slots_of(b), radiance, sums);
+      return;
+    }
+    for (uint32_t i = 0; i < b.count; ++i) {
+      if (!(unoccluded[i] > 0)) continue;
+      const float rank = sent * std::max(received[i], hidden_importance * unoccluded[i]);
+      if (lists_.takes(b.first_slot + i, source, rank))
+        lists_.add(b.first_point + i, {source, radiance * received[i], radiance * unoccluded[i]});
+      else
+        for (size_t c = 0; c < 3; ++c) general_[c][b.first_slot + i] += radiance[c] * received[i];
+    }
+  }
+
+  void add_up_general() {
+    for (const ReceiverBlock& b : patch_shots_.receivers().blocks)
+      for (uint32_t i = 0; i < b.count; ++i)
+        for (size_t c = 0; c < 3; ++c)
+          s_.general[b.first_point + i][c] += general_[c][b.first_slot + i];
   }
 
   RadiositySolution& s_;
   const StopFlag& stop_;
   const std::vector<PointSurface>& surfaces_;
-  UnshotPower unshot_;
-  StoredLists lists_;
   LightShots light_shots_;
   PatchShots patch_shots_;
-  bool is_closed_ = true;      // no ray left the scene
-  double waiting_ = 0;         // power of lights that have not shot
+  UnshotPower unshot_;
+  StoredLists lists_;
+  PointLanes lanes_;
+  std::array<std::vector<float>, 3> general_;  // what goes from patches to general values, by slot
+  bool is_closed_ = true;                      // no ray left the scene
+  double waiting_ = 0;                         // power of lights that have not shot
   double direct_ = 0;          // power that came to diffuse surfaces straight from lights
   std::vector<float> powers_;  // what arrives by the current shot, before closure
 };

@@ -8,10 +8,12 @@
 
 namespace troffer {
 
+constexpr float hidden_importance = 0.25f;
+
 // By which contributions are ranked: what arrives, but a strong source that is hidden here counts
 // for a quarter of what it would send, since its shadow's edge may be near.
 inline float importance(const StoredContribution& c) {
-  return std::max(luminance(c.received), 0.25f * luminance(c.unoccluded));
+  return std::max(luminance(c.received), hidden_importance * luminance(c.unoccluded));
 }
 
 // What is not kept at a point.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "radiosity/receivers.h"
 #include "radiosity/stored_list.h"
 
 namespace troffer {
@@ -11,40 +12,74 @@ namespace troffer {
 class StoredLists {
  public:
   // Into the solution's lists and general values, which must have their sizes.
-  explicit StoredLists(RadiositySolution& solution)
+  StoredLists(RadiositySolution& solution, const Receivers& receivers)
       : solution_(solution),
-        sources_(solution.stored.size(), no_source),
-        least_(solution.mesh.points.size(), 0.0f) {}
+        blocks_(receivers.blocks),
+        slots_(receivers.slots()),
+        sources_(slots_ * solution.stored_per_point, no_source),
+        least_(slots_, 0.0f),
+        block_(solution.mesh.points.size(), 0),
+        least_in_block_(blocks_.size(), 0.0f),
+        may_hold_(blocks_.size(), 0) {
+    for (uint32_t b = 0; b < blocks_.size(); ++b)
+      for (uint32_t i = 0; i < blocks_[b].count; ++i) block_[blocks_[b].first_point + i] = b;
+  }
+
+  // Per block: importance below which nothing new is stored at any of its points.
+  std::span<const float> least_in_block() const { return least_in_block_; }
 
   // rank: its importance. False: what the source gives goes to the general value.
-  bool takes(uint32_t point, uint32_t source, float rank) const {
-    return rank > least_[point] || is_stored(point, source);
+  bool takes(uint32_t slot, uint32_t source, float rank) const {
+    if (rank > least_[slot]) return true;
+    bool is_stored = false;
+    for (uint32_t k = 0; k < solution_.stored_per_point; ++k)
+      is_stored |= sources_[k * slots_ + slot] == source;
+    return is_stored;
+  }
+  // False: no point of a block takes what a source gives it; `most`: the highest rank. A quick
+  // look, since blocks are many and far apart in memory.
+  bool may_take(uint32_t block, uint32_t source, float most) const {
+    return most > least_in_block_[block] || (may_hold_[block] & bit_of(source)) != 0;
   }
 
   void add(uint32_t point, const StoredContribution& c) {
     RadiositySolution& s = solution_;
     const size_t first = size_t(point) * s.stored_per_point;
     const std::span<StoredContribution> list(s.stored.data() + first, s.stored_per_point);
+    const uint32_t block = block_[point];
+    const uint32_t slot = blocks_[block].first_slot + (point - blocks_[block].first_point);
     keep(list, {s.general[point], s.general_direct[point]}, s.light_count, c);
     float least = list.empty() ? std::numeric_limits<float>::infinity() : importance(list[0]);
     for (size_t k = 0; k < list.size(); ++k) {
-      sources_[first + k] = list[k].source;
+      sources_[k * slots_ + slot] = list[k].source;
       least = std::min(least, list[k].source == no_source ? -1.0f : importance(list[k]));
     }
-    least_[point] = least;
+    least_[slot] = least;
+    look_over(block);
   }
 
  private:
-  bool is_stored(uint32_t point, uint32_t source) const {
-    const uint32_t* sources = sources_.data() + size_t(point) * solution_.stored_per_point;
-    bool is_found = false;
-    for (uint32_t k = 0; k < solution_.stored_per_point; ++k) is_found |= sources[k] == source;
-    return is_found;
+  static uint64_t bit_of(uint32_t source) { return uint64_t(1) << (source & 63); }
+
+  void look_over(uint32_t block) {
+    const ReceiverBlock& b = blocks_[block];
+    const auto first = least_.begin() + b.first_slot;
+    least_in_block_[block] = *std::min_element(first, first + b.count);
+    uint64_t held = 0;
+    for (uint32_t k = 0; k < solution_.stored_per_point; ++k)
+      for (uint32_t i = 0; i < b.count; ++i)
+        held |= bit_of(sources_[k * slots_ + b.first_slot + i]);
+    may_hold_[block] = held;
   }
 
   RadiositySolution& solution_;
-  std::vector<uint32_t> sources_;  // of solution_.stored
-  std::vector<float> least_;       // per point: importance below which nothing new is stored
+  const std::vector<ReceiverBlock>& blocks_;
+  size_t slots_;
+  std::vector<uint32_t> sources_;  // of solution_.stored: all first ones by slot, all second ones …
+  std::vector<float> least_;       // per slot: importance below which nothing new is stored
+  std::vector<uint32_t> block_;    // per point
+  std::vector<float> least_in_block_;
+  std::vector<uint64_t> may_hold_;  // per block: bit_of each source in its lists
 };
 
 }  // namespace troffer

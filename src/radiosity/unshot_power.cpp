@@ -2,12 +2,16 @@
 
 namespace troffer {
 
-UnshotPower::UnshotPower(const RadiosityMesh& mesh, const std::vector<PointSurface>& surfaces,
-                         EnergyBalance& balance)
+UnshotPower::UnshotPower(const RadiosityMesh& mesh, const Receivers& receivers,
+                         const std::vector<PointSurface>& surfaces, EnergyBalance& balance)
     : surfaces_(surfaces),
       balance_(balance),
       unshot_(mesh.patches.size(), Rgb{0}),
-      unshot_at_(mesh.points.size(), 0.0f) {}
+      slot_(mesh.points.size(), 0),
+      unshot_at_(receivers.slots(), 0.0f) {
+  for (const ReceiverBlock& b : receivers.blocks)
+    for (uint32_t i = 0; i < b.count; ++i) slot_[b.first_point + i] = b.first_slot + i;
+}
 
 void UnshotPower::count(double power, const OpenShare& open, const Closure& closure) {
   balance_.shot += power;
@@ -42,8 +46,8 @@ uint32_t UnshotPower::brightest_patch() const {
 
 void UnshotPower::clear(uint32_t patch, const Patch& its_points) {
   unshot_[patch] = Rgb{0};
-  std::fill(unshot_at_.begin() + its_points.first_point, unshot_at_.begin() + its_points.last_point,
-            0.0f);
+  const auto first = unshot_at_.begin() + slot_[its_points.first_point];
+  std::fill(first, first + (its_points.last_point - its_points.first_point), 0.0f);
 }
 
 Rgb UnshotPower::ambient(const MeanSurface& mean) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "radiosity/closure.h"
+#include "radiosity/point_lanes.h"
 #include "radiosity/point_surfaces.h"
 #include "radiosity/solution.h"
 
@@ -13,11 +14,14 @@ namespace troffer {
 
 class UnshotPower {
  public:
-  UnshotPower(const RadiosityMesh& mesh, const std::vector<PointSurface>& surfaces,
-              EnergyBalance& balance);
+  UnshotPower(const RadiosityMesh& mesh, const Receivers& receivers,
+              const std::vector<PointSurface>& surfaces, EnergyBalance& balance);
 
   // power: of `received` over the point's element, luminance, before closure.
   void pass_on(uint32_t point, const Rgb& received, float power, const Closure& closure);
+  // The same for points of one block, whose `radiosity` has been added to.
+  void pass_on(const ReceiverBlock& block, const BlockArrival& arrival, const Rgb& tint);
+  float* radiosity(const ReceiverBlock& block) { return unshot_at_.data() + block.first_slot; }
   // Of a shot that sent so much: what left the scene, and what is not accounted for.
   void count(double power, const OpenShare& open, const Closure& closure);
 
@@ -26,7 +30,7 @@ class UnshotPower {
   const Rgb& of(uint32_t patch) const { return unshot_[patch]; }
   // Luminance of radiosity, in any unit, per point of the patch.
   std::span<const float> at_points_of(const Patch& patch) const {
-    return {unshot_at_.data() + patch.first_point, patch.last_point - patch.first_point};
+    return {unshot_at_.data() + slot_[patch.first_point], patch.last_point - patch.first_point};
   }
   void clear(uint32_t patch, const Patch& its_points);
 
@@ -39,7 +43,8 @@ class UnshotPower {
   const std::vector<PointSurface>& surfaces_;
   EnergyBalance& balance_;
   std::vector<Rgb> unshot_;       // power, per patch
-  std::vector<float> unshot_at_;  // luminance of radiosity, per point
+  std::vector<uint32_t> slot_;    // per point
+  std::vector<float> unshot_at_;  // luminance of radiosity, per slot
   Rgb lost_;                      // power that specular surfaces took
   double arrived_ = 0;
 };
@@ -61,7 +66,17 @@ inline void UnshotPower::pass_on(uint32_t point, const Rgb& received, float powe
   }
   balance_.absorbed += double(rest);
   unshot_[surface.patch] += reflected;
-  unshot_at_[point] += passed * surface.per_area;
+  unshot_at_[slot_[point]] += passed * surface.per_area;
+}
+
+inline void UnshotPower::pass_on(const ReceiverBlock& block, const BlockArrival& arrival,
+                                 const Rgb& tint) {
+  const Rgb reflected = tint * arrival.reflected, taken = tint * arrival.specular;
+  balance_.lost_to_specular += double(luminance(taken));
+  lost_ += taken;
+  balance_.absorbed +=
+      double(std::max(arrival.counted - luminance(reflected) - luminance(taken), 0.0f));
+  unshot_[block.patch] += reflected;
 }
 
 }  // namespace troffer

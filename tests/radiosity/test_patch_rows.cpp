@@ -33,10 +33,12 @@ struct Rows {
       : ready(room_with_block()),
         mesh(ready.mesh(sizes(0.3f, 0.9f))),
         rows(mesh, ready.tracer, 2, most_bytes) {
-    out.unoccluded.resize(mesh.points.size());
-    out.received.resize(mesh.points.size());
-    seen.resize(mesh.points.size());
+    out.unoccluded.resize(rows.receivers().slots());
+    out.received.resize(rows.receivers().slots());
+    seen.resize(rows.receivers().slots());
   }
+
+  const ReceiverBlock& block(uint32_t b) const { return rows.receivers().blocks[b]; }
 
   // Per point what a patch of the given shares gives, irradiance per unit of mean radiance.
   std::vector<float> shoot(uint32_t patch, const std::vector<float>& shares = {}) {
@@ -45,13 +47,13 @@ struct Rows {
     RayBudget budget;
     budget.reference = pi_f;
     const StopFlag never = false;
-    REQUIRE(rows.shoot(patch, shooter, 1, budget, 5, never, true, seen, out));
+    REQUIRE(rows.shoot(patch, shooter, 1, budget, 5, never, true, {}, seen, out));
     std::vector<float> received(mesh.points.size(), 0.0f);
     for (const uint32_t b : out.blocks)
-      for (uint32_t i = 0; i < rows.blocks()[b].count; ++i) {
-        const uint32_t point = rows.blocks()[b].first_point + i;
-        received[point] = out.received[point];
-        CHECK(out.received[point] <= out.unoccluded[point] * 1.0001f);
+      for (uint32_t i = 0; i < block(b).count; ++i) {
+        const uint32_t slot = block(b).first_slot + i;
+        received[block(b).first_point + i] = out.received[slot];
+        CHECK(out.received[slot] <= out.unoccluded[slot] * 1.0001f);
       }
     return received;
   }
@@ -101,8 +103,10 @@ TEST_CASE("rows give what many rays give") {
   MESSAGE("row sums: mean " << mean << ", largest error " << worst);
   CHECK(mean == doctest::Approx(1).epsilon(0.005));
   CHECK(worst < 0.06);
-  for (size_t i = 0; i < sums.size(); ++i)
-    CHECK(double(r.seen[i]) == doctest::Approx(sums[i]).epsilon(0.02));
+  for (const ReceiverBlock& b : r.rows.receivers().blocks)
+    for (uint32_t i = 0; i < b.count; ++i)
+      CHECK(double(r.seen[b.first_slot + i]) ==
+            doctest::Approx(sums[b.first_point + i]).epsilon(0.02));
 }
 
 TEST_CASE("later shots are looked up; what is not kept is found again, alike") {
