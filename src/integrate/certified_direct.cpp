@@ -58,8 +58,7 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
   for (uint32_t light = 0; light < sampler_.lights(); ++light) {
     if (sampler_.is_empty(light)) continue;
     at_transmitting_.push_back(light);
-    if (!lights_.has(light)) at_glossy_.push_back(light);
-    if (!lights_.has_at_matte(light)) at_matte_.push_back(light);
+    if (!lights_.has(light)) at_opaque_.push_back(light);
   }
 }
 
@@ -111,10 +110,7 @@ void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, Radi
                          scattering.has_rough ? &scattering.specular : nullptr,
                          scattering.whole.has_transmission,
                          is_direct};
-  const std::vector<uint32_t>& lights = !is_certified              ? at_transmitting_
-                                        : scattering.is_lambertian ? at_matte_
-                                                                   : at_glossy_;
-  for (const uint32_t light : lights) {
+  for (const uint32_t light : is_certified ? at_opaque_ : at_transmitting_) {
     sampler_.sample(at, light, uint32_t(settings_.shadow_rays), s.rays, out, counters);
     ++counters.mixed;
     if (walk.vertex == 0) out.sources[walk.index] += Rgb{1, 0, 0};
@@ -134,6 +130,13 @@ float CertifiedDirect::weight_of(const Walk& walk, const Vertex& v) const {
   const bool is_sampled = walk.last_both_sides || !lights_.has(uint32_t(v.surface.light));
   if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
   const int32_t primitive = primitive_at(scene_, v.surface);
+  if (primitive >= 0 && lights_.is_drawn(uint32_t(v.surface.light))) {
+    const float pdf = pdf_of_hit(scene_, scene_.primitives[size_t(primitive)], walk.last_position,
+                                 walk.ray.direction, v);
+    return power_heuristic(walk.pdf,
+                           lights_.competition().density(uint32_t(primitive), walk.last_position,
+                                                         walk.last_normal, pdf));
+  }
   const CertifiedSource* source =
       primitive < 0 ? nullptr
                     : lights_.source_of(uint32_t(primitive), !v.is_front, v.surface.position);

@@ -3,7 +3,7 @@
 //
 // Hits of a batch are treated together for every source (certified_lights.h), without rays but
 // where no list of facets is complete. A fixed number of shadow rays (source_sampler.h) does what
-// has no certificates: gloss lit by finely meshed curved sources, rough surfaces that transmit.
+// has no surface, and rough surfaces that transmit.
 // Unbiased. Hits are clustered, and found occluders are remembered within a batch: the noise of the
 // result, though not its mean, depends on what is in the batch. References: docs/certified.md.
 #pragma once
@@ -56,8 +56,8 @@ class CertifiedDirect final : public DirectLight {
   CertifiedSettings settings_;
   CertifiedLights lights_;
   SourceSampler sampler_;
-  // Lights that get rays of their own: at matte hits, at glossy ones, where light goes through.
-  std::vector<uint32_t> at_matte_, at_glossy_, at_transmitting_;
+  // Lights that get rays of their own: on opaque surfaces, and where light goes through.
+  std::vector<uint32_t> at_opaque_, at_transmitting_;
 };
 
 }  // namespace troffer

@@ -142,7 +142,7 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
 
 // What has no certificates but a surface: a few neighbours at a time, where triangles are many.
 void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
-  constexpr uint32_t most_groups = 4096;
+  constexpr uint32_t most_groups = 8192;
   const auto lights = uint32_t(scene.scene.lights.size());
   is_drawn_.assign(lights, false);
   uint32_t pieces = 0;
@@ -200,9 +200,7 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
 
 void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                            RadianceBatch& out, Counters& counters) const {
-  s.drawing.clear();
-  for (const uint32_t m : members)
-    if (s.hits.glossy[m] < 0 || groups_.are_many()) s.drawing.push_back(m);
+  s.drawing.assign(members.begin(), members.end());
   draw_lights({scene_, groups_, sources_, competition_}, s.hits, s.drawing, s.chosen, s.drawn, out,
               counters);
 }

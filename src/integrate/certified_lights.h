@@ -45,11 +45,10 @@ class CertifiedLights {
   // gloss_points: of each source at which gloss and textures are looked at.
   CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget, uint32_t gloss_points);
 
-  // The light is dealt with here, whole. Others are meshes of too many pieces that lie in no
-  // common plane, or have no certificate shape (light.h) …
-  bool has(uint32_t light) const { return has_light_[light]; }
-  // … of which those with a surface are dealt with here at matte hits.
-  bool has_at_matte(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
+  // The light is dealt with here, whole, by certificates or because it is drawn. The latter are
+  // meshes of too many pieces that lie in no common plane, or have no certificate shape (light.h).
+  bool has(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
+  bool is_drawn(uint32_t light) const { return is_drawn_[light]; }
   bool is_empty() const { return groups_.size() == 0; }
   const LobeCompetition& competition() const { return competition_; }
   // The source that a point on a piece of a light belongs to, seen from its front or its back;

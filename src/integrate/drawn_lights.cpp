@@ -182,13 +182,17 @@ Rgb Drawing::value(uint32_t i) const {
   const float cosine = dot(light.wi, r.normal);
   if (!(cosine > 0) || !(dot(light.wi, r.horizon) > 0)) return {};
   if (hits.glossy[m] < 0) return Rgb{cosine};
+  const GlossyHit& hit = hits.glossy_hits[size_t(hits.glossy[m])];
+  const LobeCompetition& rival = world.competition;
   const LightGroup& g = groups[s.chosen[i]];
+  if (g.first_source == g.last_source)
+    return glossy_value(
+        hit, light.wi,
+        rival.density(s.primitives[i], r.position, r.horizon, light.pdf_solid_angle));
   for (uint32_t k = g.first_source; k < g.last_source; ++k)
-    if (world.sources[k].is_back != light.is_front) {
-      const GlossyHit& hit = hits.glossy_hits[size_t(hits.glossy[m])];
-      const float density = world.competition.density_of(world.sources[k], r.position, r.horizon);
-      return glossy_value(hit, light.wi, density);
-    }
+    if (world.sources[k].is_back != light.is_front)
+      return glossy_value(hit, light.wi,
+                          rival.density(world.sources[k], r.position, r.horizon, light.wi));
   return {};
 }
 

@@ -78,9 +78,9 @@ struct DrawnLights {
   const LobeCompetition& competition;
 };
 
-// Draws lights.draws points from each of `members`, of the groups that are not certified: glossy
-// hits are sent the light of groups with sources only. `members` is reordered. Rays are cast, and
-// light is added to `out`, once many wait and by resolve_draws(), before which `hits` must stay.
+// Draws lights.draws points from each of `members`, which is reordered, of the groups that are not
+// certified. Rays are cast, and light is added to `out`, once many wait and by resolve_draws(),
+// before which `hits` must stay.
 void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<uint32_t> members,
                  const LightsOfCluster& lights, DrawnLightsScratch& scratch, RadianceBatch& out,
                  Counters& counters);

@@ -10,17 +10,32 @@
 
 namespace troffer {
 
+namespace {
+
+// The sine of the largest angle between a normal and the unit vector `mean`, rounded up; 0 where
+// there is none, 1 where that is a right one.
+float spread_about(const LightPrimitives& all, std::span<const uint32_t> primitives,
+                   const Vec3d& mean) {
+  double least = 1;
+  for (const uint32_t i : primitives) least = std::min(least, dot(all[i].normal, mean));
+  if (!(least > 0)) return 1;
+  const double sine = std::sqrt(std::max(1 - least * least, 0.0));
+  return sine < 1e-5 ? 0.0f : float(sine) + 1e-5f;
+}
+
+}  // namespace
+
 void LightGroups::add(const LightPrimitives& all, std::span<const uint32_t> primitives,
                       uint32_t first_source, uint32_t last_source) {
   LightGroup g{first_source, last_source, uint32_t(primitives_.size()), 0};
   Box box;
-  Vec3d normal = all[primitives[0]].normal;
+  Vec3d normal;
   bool is_two_sided = false;
   float area = 0, strength = 0;
   for (const uint32_t i : primitives) {
     const LightPrimitive& p = all[i];
     box.grow(p.bounds);
-    if (length_squared(p.normal - normal) > 1e-10) normal = {};
+    normal = normal + p.normal * double(p.area);
     is_two_sided = is_two_sided || p.is_two_sided;
     area += p.area;
     const float seen = p.shape == PrimitiveShape::sphere ? 0.25f * p.area : p.area;
@@ -31,6 +46,9 @@ void LightGroups::add(const LightPrimitives& all, std::span<const uint32_t> prim
   g.last_primitive = uint32_t(primitives_.size());
   groups_.push_back(g);
   with_sources_ += first_source < last_source ? 1 : 0;
+  normal = length(normal) > 1e-6 * double(area) ? normalize(normal) : Vec3d();
+  const float spread = spread_about(all, primitives, normal);
+  if (!(spread < 1) || (is_two_sided && spread > 0)) normal = {};
   const Vec3 centre = box.centre(), n(normal);
   arrays_.x.push_back(centre.x);
   arrays_.y.push_back(centre.y);
@@ -39,6 +57,7 @@ void LightGroups::add(const LightPrimitives& all, std::span<const uint32_t> prim
   arrays_.nx.push_back(n.x);
   arrays_.ny.push_back(n.y);
   arrays_.nz.push_back(n.z);
+  arrays_.spread.push_back(spread);
   arrays_.two_sided.push_back(is_two_sided ? 1.0f : 0.0f);
   arrays_.strength.push_back(strength);
 }
@@ -80,7 +99,7 @@ void LightGroups::finish() {
             [&](uint32_t a, uint32_t b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
   permute(order, groups_);
   for (auto* a : {&arrays_.x, &arrays_.y, &arrays_.z, &arrays_.radius, &arrays_.nx, &arrays_.ny,
-                  &arrays_.nz, &arrays_.two_sided, &arrays_.strength})
+                  &arrays_.nz, &arrays_.spread, &arrays_.two_sided, &arrays_.strength})
     permute(order, *a);
 }
 
@@ -110,9 +129,9 @@ TROFFER_MULTIVERSION
 void estimate_all(size_t n, const float* __restrict x, const float* __restrict y,
                   const float* __restrict z, const float* __restrict radius,
                   const float* __restrict nx, const float* __restrict ny,
-                  const float* __restrict nz, const float* __restrict two_sided,
-                  const float* __restrict strength, const ClusterBall& ball,
-                  float* __restrict values, float* __restrict near) {
+                  const float* __restrict nz, const float* __restrict spread,
+                  const float* __restrict two_sided, const float* __restrict strength,
+                  const ClusterBall& ball, float* __restrict values, float* __restrict near) {
   const float cx = ball.centre.x, cy = ball.centre.y, cz = ball.centre.z, r = ball.radius;
   const float bx = ball.normal.x, by = ball.normal.y, bz = ball.normal.z;
   const float is_flat = bx * bx + by * by + bz * bz > 0 ? 1.0f : 0.0f;
@@ -131,13 +150,16 @@ void estimate_all(size_t n, const float* __restrict x, const float* __restrict y
     const float turned = two_sided[i] > 0 ? std::abs(along) : along;
     const float has_normal = nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i];
     const float over = has_normal > 0 ? turned : distance;
-    const float far = over + r + slack;
+    // normals are at most `spread` off their mean, and points of the group then `radius` higher
+    const float sine = spread[i], cosine = std::sqrt(std::max(1 - sine * sine, 0.0f));
+    const float rounded = sine > 0 ? sine * distance + radius[i] : 0.0f;
+    const float far = over * cosine + rounded + r + slack;
     const float at_receiver = std::max(rise, least_of_cosine * top) / distance;
     const float at_source = std::max(over, least_of_cosine * far) / distance;
     const float cosines = std::min(at_receiver, 1.0f) * std::min(at_source, 1.0f);
     const float value = top > 0 && far > 0 ? strength[i] * cosines / wide2 : 0.0f;
     values[i] = value;
-    near[i] = d2 < 4 * r * r ? value : 0.0f;
+    near[i] = d2 < 16 * r * r ? value : 0.0f;
   }
 }
 
@@ -149,8 +171,8 @@ void LightGroups::estimate(const ClusterBall& ball, std::vector<float>& values,
   near.resize(size());
   const Arrays& a = arrays_;
   estimate_all(size(), a.x.data(), a.y.data(), a.z.data(), a.radius.data(), a.nx.data(),
-               a.ny.data(), a.nz.data(), a.two_sided.data(), a.strength.data(), ball, values.data(),
-               near.data());
+               a.ny.data(), a.nz.data(), a.spread.data(), a.two_sided.data(), a.strength.data(),
+               ball, values.data(), near.data());
 }
 
 }  // namespace troffer

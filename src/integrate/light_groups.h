@@ -48,8 +48,8 @@ class LightGroups {
   uint32_t choose_primitive(uint32_t group, float& u, float& pmf) const;
 
   // values[g]: about what group g sends to receivers in the ball, nothing hidden, luminance × sr; 0
-  // only where none of them can get any light. near[g]: the same where the ball is wider than half
-  // its distance from the group, else 0.
+  // only where none of them can get any light. near[g]: the same where the group is nearer than
+  // four radii of the ball, else 0.
   void estimate(const ClusterBall& ball, std::vector<float>& values,
                 std::vector<float>& near) const;
 
@@ -57,7 +57,8 @@ class LightGroups {
   static constexpr uint32_t fewest_of_many = 24;
   struct Arrays {
     std::vector<float> x, y, z, radius;  // of a ball about the group
-    std::vector<float> nx, ny, nz;       // common normal, or zero
+    std::vector<float> nx, ny, nz;       // unit mean of the normals, or zero …
+    std::vector<float> spread;           // … and the sine of the angle within which they differ
     std::vector<float> two_sided;        // 1: shines both ways along its normal; else 0
     std::vector<float> strength;  // luminance × area of one side, of a sphere that of its disk
   };

@@ -15,13 +15,20 @@ double CertifiedSource::unoccluded(const Vec3d& x, const Vec3d& n) const {
   return polygon_irradiance(flat.corners(), x, n, Sides::both);
 }
 
+namespace {
+
+// Points that lights which are drawn are taken to share.
+constexpr float shared_points = 8;
+
+}  // namespace
+
 float LobeCompetition::density_of(const CertifiedSource& source, const Vec3& x,
                                   const Vec3& n) const {
   const auto unoccluded = float(source.unoccluded(Vec3d(x), Vec3d(n)));
   if (!(unoccluded > 0)) return 0;
-  constexpr float shared = 8;
-  const float points =
-      are_many_ ? shared * scene_->light_tree.pmf(x, n, false, source.primitive) : float(points_);
+  const float points = are_many_
+                           ? shared_points * scene_->light_tree.pmf(x, n, false, source.primitive)
+                           : float(points_);
   return points / unoccluded;
 }
 
@@ -29,6 +36,11 @@ float LobeCompetition::density(const CertifiedSource& source, const Vec3& x, con
                                const Vec3& wi) const {
   const float cosine = dot(n, wi);
   return cosine > 0 ? density_of(source, x, n) * cosine : 0;
+}
+
+float LobeCompetition::density(uint32_t primitive, const Vec3& x, const Vec3& n,
+                               float pdf_solid_angle) const {
+  return shared_points * scene_->light_tree.pmf(x, n, false, primitive) * pdf_solid_angle;
 }
 
 Rgb glossy_value(const GlossyHit& g, const Vec3& world, float density) {
@@ -39,7 +51,7 @@ Rgb glossy_value(const GlossyHit& g, const Vec3& world, float density) {
   if (g.has_diffuse) f_cos += troffer::evaluate(g.diffuse, g.wo, wi);
   if (g.has_rough && density > 0) {
     const BsdfValue rough = evaluate_with_pdf(g.rough, g.wo, wi);
-    f_cos += rough.f_cos * power_heuristic(density * cosine, rough.pdf);
+    f_cos += rough.f_cos * power_heuristic(density, rough.pdf);
   }
   return f_cos;
 }
@@ -74,7 +86,7 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
     const float cosine = dot(wi, g.frame.normal);
     values[i] = {};
     if (cosine > 0)
-      values[i] = glossy_value(g, wi, density) * (1 / cosine) *
+      values[i] = glossy_value(g, wi, density * dot(wi, g.geometric_normal)) * (1 / cosine) *
                   radiance_at(source, points[i], hit.position);
   }
 }

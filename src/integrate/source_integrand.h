@@ -49,6 +49,8 @@ class LobeCompetition {
   // For a surface at x of unit geometric normal n, in the unit direction wi: density_of() × n · wi.
   float density_of(const CertifiedSource& source, const Vec3& x, const Vec3& n) const;
   float density(const CertifiedSource& source, const Vec3& x, const Vec3& n, const Vec3& wi) const;
+  // Of points of a primitive of no source, chosen with this density per sr once it is given.
+  float density(uint32_t primitive, const Vec3& x, const Vec3& n, float pdf_solid_angle) const;
 
  private:
   const PreparedScene* scene_;
@@ -57,7 +59,7 @@ class LobeCompetition {
 };
 
 // BRDF × cosine towards the unit direction wi in the world: the diffuse part, and the share of the
-// rough one that is left to points of a source, `density` being LobeCompetition::density_of().
+// rough one that is left to points of a source, `density` being LobeCompetition::density().
 Rgb glossy_value(const GlossyHit& hit, const Vec3& wi, float density);
 
 // Hits of the cluster as the integrand sees them.
