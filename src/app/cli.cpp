@@ -15,10 +15,16 @@ namespace troffer {
 
 namespace {
 
-const std::map<std::string, Aov> aov_names{
-    {"albedo", Aov::albedo},           {"normal", Aov::normal},   {"depth", Aov::depth},
-    {"position", Aov::position},       {"direct", Aov::direct},   {"indirect", Aov::indirect},
-    {"shadow_rays", Aov::shadow_rays}, {"sources", Aov::sources}, {"error", Aov::error}};
+const std::map<std::string, Aov> aov_names{{"albedo", Aov::albedo},
+                                           {"normal", Aov::normal},
+                                           {"depth", Aov::depth},
+                                           {"position", Aov::position},
+                                           {"direct", Aov::direct},
+                                           {"indirect", Aov::indirect},
+                                           {"shadow_rays", Aov::shadow_rays},
+                                           {"sources", Aov::sources},
+                                           {"error", Aov::error},
+                                           {"viewing_error", Aov::viewing_error}};
 
 // Values as typed; turned into options after parsing, where errors become UsageError.
 struct RawOptions {

@@ -87,6 +87,8 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["masked"] = n.masked;
   j["mixed"] = n.mixed;
   j["nan_samples"] = n.nan_samples;
+  j["viewing_error"] = {{"relative_rms", s.viewing_errors.relative_rms},
+                        {"share_above_1_percent", s.viewing_errors.share_above}};
   j["seconds"] = {{"import", t.import},
                   {"build", t.build},
                   {"preprocess", s.preprocess_seconds},

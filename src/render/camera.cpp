@@ -50,6 +50,16 @@ Ray ViewingCamera::ray(const Vec2& raster, const Vec2& lens) const {
   return r;
 }
 
+bool ViewingCamera::raster_of(const Vec3& p, Vec2& raster) const {
+  const Vec3 d = p - camera_.position;
+  const float along = dot(d, camera_.forward);
+  if (!(along > 1e-6f * length(d))) return false;
+  const float scale = is_perspective() ? 1 / along : 1;
+  const Vec2 on_plane = Vec2{dot(d, camera_.right), dot(d, camera_.up)} * scale;
+  raster = {(on_plane.x - corner_.x) / step_.x, (on_plane.y - corner_.y) / step_.y};
+  return true;
+}
+
 ImageSize image_size(const Camera& camera, int asked_width, int asked_height) {
   if (asked_width > 0 && asked_height > 0) return {asked_width, asked_height};
   if (camera.width > 0 && camera.height > 0) return {camera.width, camera.height};

@@ -16,6 +16,16 @@ class ViewingCamera {
   // The ray through raster position (x, y), in pixels from the top left corner, whose direction is
   // unit. lens in [0,1]² picks the point on the lens.
   Ray ray(const Vec2& raster, const Vec2& lens) const;
+  // Where a point is seen through the middle of the lens: the inverse of ray(). False where it is
+  // not before the camera.
+  bool raster_of(const Vec3& p, Vec2& raster) const;
+  bool is_perspective() const { return camera_.kind == CameraKind::perspective; }
+  // Unit, from a point to where it is seen from.
+  Vec3 towards_eye(const Vec3& p) const {
+    return is_perspective() ? normalize(camera_.position - p) : -camera_.forward;
+  }
+  // From the camera's position.
+  float distance(const Vec3& p) const { return length(p - camera_.position); }
   // Distance of a point along the viewing axis, metres.
   float depth(const Vec3& p) const { return dot(p - camera_.position, camera_.forward); }
 

@@ -45,6 +45,8 @@ Layer empty_layer(Aov aov, const PixelRect& window) {
       return layer("sources", rgb);
     case Aov::error:
       return layer("error", {"V"});
+    case Aov::viewing_error:
+      return layer("viewing_error", {"V"});
   }
   return {};
 }
@@ -161,6 +163,10 @@ Layer Film::make_layer(Aov aov) const {
     case Aov::error:
       for (size_t i = 0; i < pixels_.size(); ++i)
         layer.image.pixels[i] = Rgb{float(told_error(pixels_[i]))};
+      break;
+    case Aov::viewing_error:
+      for (size_t i = 0; i < pixels_.size(); ++i)
+        layer.image.pixels[i] = Rgb{float(standard_error(pixels_[i]))};
       break;
   }
   return layer;

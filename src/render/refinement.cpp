@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/units.h"
+
 namespace troffer {
 
 namespace {
@@ -33,26 +35,66 @@ NeighbourRecords PixelRecords::around(int x, int y) const {
   return r;
 }
 
-bool needs_refinement(const Film& film, const PixelRecords& records, int x, int y, double mean,
-                      const RefinementOptions& options) {
-  if (records.has_edge[records.index(x, y)] != 0) return true;
-  const ShadowRecord& here = records.records[records.index(x, y)];
-  const double l = film.estimate(x, y).luminance;
-  for (const auto& [dx, dy] : neighbours) {
-    if (!is_inside(records.window, x + dx, y + dy)) continue;
-    const ShadowRecord& there = records.records[records.index(x + dx, y + dy)];
-    if (!is_same_surface(here, there)) return true;
-    const double other = film.estimate(x + dx, y + dy).luminance;
-    if (std::abs(l - other) > double(options.contrast) * std::max(l + other, mean)) return true;
-    if (double(pattern_contrast(here, there)) >
-        double(options.pattern_contrast) * std::max({l, other, mean}))
-      return true;
-  }
-  return false;
+namespace {
+
+// What the first pass saw around a pixel, its own samples left out.
+struct Surroundings {
+  double mean = 0, low = 0, high = 0;  // of the neighbours' luminances
+  double sample_variance = 0;          // the largest among theirs, of one sample
+  bool has_contrast = false;           // between neighbours at opposite sides
+  // A neighbour's rays have met different surfaces where no corner of it shows an edge.
+  bool has_thin_things = false;
+};
+
+bool differ(const RefinementView& v, int ax, int ay, int bx, int by,
+            const RefinementOptions& options) {
+  const double a = v.film.estimate(ax, ay).luminance, b = v.film.estimate(bx, by).luminance;
+  if (std::abs(a - b) > double(options.contrast) * std::max(a + b, v.typical)) return true;
+  const ShadowRecord &p = v.records.records[v.records.index(ax, ay)],
+                     &q = v.records.records[v.records.index(bx, by)];
+  return is_same_surface(p, q) &&
+         double(pattern_contrast(p, q)) >
+             double(options.pattern_contrast) * std::max({a, b, v.typical});
 }
 
-bool needs_more(const PixelEstimate& pixel, double mean, const RefinementOptions& options) {
-  return pixel.standard_error > double(options.error) * std::max(pixel.luminance, mean);
+Surroundings look_around(const RefinementView& v, int x, int y, const RefinementOptions& options) {
+  const PixelRect& w = v.records.window;
+  Surroundings s;
+  int count = 0;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      if ((dx == 0 && dy == 0) || !is_inside(w, x + dx, y + dy)) continue;
+      const PixelEstimate e = v.film.estimate(x + dx, y + dy);
+      s.low = count > 0 ? std::min(s.low, e.luminance) : e.luminance;
+      s.high = std::max(s.high, e.luminance);
+      s.mean += e.luminance;
+      s.sample_variance = std::max(s.sample_variance, sqr(e.standard_error) * e.samples);
+      s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
+                           !v.edges.has_surface_edge(x + dx, y + dy);
+      ++count;
+      const bool is_first_of_pair = dx + dy == -1;  // the left one, the upper one
+      if (is_first_of_pair && is_inside(w, x - dx, y - dy))
+        s.has_contrast |= differ(v, x + dx, y + dy, x - dx, y - dy, options);
+    }
+  s.mean /= std::max(count, 1);
+  return s;
+}
+
+}  // namespace
+
+int samples_wanted(const RefinementView& v, int x, int y, int first, int most,
+                   const RefinementOptions& options) {
+  if (v.edges.has_light_edge(x, y)) return most;
+  const Surroundings s = look_around(v, x, y, options);
+  const bool has_edge = v.edges.has_surface_edge(x, y);
+  if (!has_edge && !s.has_contrast && !s.has_thin_things) return first;
+  double variance = s.sample_variance;
+  // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
+  if (has_edge) variance = std::max(variance, sqr(s.high - s.low) / 4);
+  const double allowed = double(options.error) * std::max(s.mean, v.typical);
+  // As of independent samples. (Nothing to see by: no light is allowed, none varies.)
+  const double wanted = variance > 0 ? variance / sqr(allowed) : 0;
+  return wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most;
 }
 
 }  // namespace troffer

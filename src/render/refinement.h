@@ -1,26 +1,32 @@
-// Adaptive refinement of the image: which pixels deserve further viewing rays.
+// Adaptive refinement of the image: which pixels deserve further viewing rays, and how many.
 //
-// After a first pass with the same number of rays in every pixel, a pixel is refined where its
-// colour, the object seen, or the pattern in which it sees a source differ from a neighbour's; and
-// on, until the standard error of its mean is small.
+// The first pass gives every pixel the same number of rays. How many more a pixel gets is decided
+// once, by what its own samples have no part in: its neighbours' samples of the first pass, and an
+// EdgeMap. (A pixel that is refined because its own rays differ has met something bright more often
+// than not; those whose rays have missed it stay as they are, and the picture comes out too dark.)
+// So the mean of every pixel stays that of its samples: unbiased where they are.
 // References: [1] Painter & Sloan, "Antialiased Ray Tracing by Adaptive Progressive Refinement",
-//   SIGGRAPH 1989. [2] Kok & Jansen, Eurographics '92, §5.
+//   SIGGRAPH 1989. [2] Kok & Jansen, Eurographics '92, §5. [3] Kirk & Arvo, "Unbiased Sampling
+//   Techniques for Image Synthesis", SIGGRAPH 1991 (the bias of samples that decide about
+//   themselves).
 #pragma once
 
 #include <vector>
 
 #include "integrate/shadow_record.h"
+#include "render/edge_map.h"
 #include "render/film.h"
 
 namespace troffer {
 
 struct RefinementOptions {
-  // Differences of luminance over the sum of both, or over the image's mean where that is more.
+  // Difference of luminance between the two neighbours at opposite sides, over the sum of both, or
+  // over the image's mean where that is more.
   float contrast = 0.05f;
   // Light about which two patterns disagree, over the pixel's luminance.
   float pattern_contrast = 0.05f;
-  // Standard error of the mean at which a refined pixel is left alone, over the larger of its
-  // luminance and the image's mean.
+  // Standard error of the mean that is to be reached, over the larger of the luminance around and
+  // the image's mean.
   float error = 0.01f;
 };
 
@@ -41,10 +47,16 @@ struct PixelRecords {
   NeighbourRecords around(int x, int y) const;
 };
 
-// Whether the first pass calls for more rays in a pixel. mean: luminance of the image.
-bool needs_refinement(const Film& film, const PixelRecords& records, int x, int y, double mean,
-                      const RefinementOptions& options);
-// Whether a pixel that is being refined needs still more.
-bool needs_more(const PixelEstimate& pixel, double mean, const RefinementOptions& options);
+// What the decision about a pixel looks at.
+struct RefinementView {
+  const Film& film;
+  const PixelRecords& records;
+  const EdgeMap& edges;
+  double typical = 0;  // luminance of the image
+};
+
+// How many viewing rays a pixel should have, between `first` (what it has) and `most`.
+int samples_wanted(const RefinementView& view, int x, int y, int first, int most,
+                   const RefinementOptions& options);
 
 }  // namespace troffer

@@ -67,7 +67,8 @@ RenderResult nothing_rendered(const PixelRect& window, const RenderOptions& opti
 
 double film_bytes(const PixelRect& window, const RenderOptions& o) {
   const double pixels = double(window.width()) * window.height();
-  constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern);
+  constexpr double corner = 32;  // EdgeMap
+  constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern) + corner + sizeof(int);
   return Film::bytes(pixels, o.aovs) + (most_viewing_rays(o) > o.spp ? pixels * record : 0);
 }
 
@@ -140,10 +141,11 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
       make_integrator(scene, options.method, settings, preparation, &cells);
   if (!integrator) return nothing_rendered(window, options, result);
   result.statistics.cells = cells.statistics;
-  Rendering rendering(viewing, *integrator, options, scene.scene.origin, plan, progress, stop);
+  Rendering rendering(scene, viewing, *integrator, options, plan, progress, stop);
   result.is_complete = rendering.run();
   result.layers = rendering.layers();
   result.statistics.counters = rendering.counters();
+  result.statistics.viewing_errors = rendering.viewing_errors();
   result.statistics.render_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

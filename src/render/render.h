@@ -20,7 +20,19 @@ namespace troffer {
 // AOVs that an image can carry besides the picture.
 // sources: how many sources were sampled by shadow rays; probed and found visible; probed and found
 // hidden (kj92). certified: neither proved lit nor dark; proved lit; proved dark.
-enum class Aov { albedo, normal, depth, position, direct, indirect, shadow_rays, sources, error };
+// viewing_error: by the spread of the pixel's viewing rays, where `error` may stand for less.
+enum class Aov {
+  albedo,
+  normal,
+  depth,
+  position,
+  direct,
+  indirect,
+  shadow_rays,
+  sources,
+  error,
+  viewing_error
+};
 
 struct RenderOptions {
   Method method = Method::certified;
@@ -54,9 +66,18 @@ MethodSettings method_settings(const RenderOptions& options);
 // numbers overflow: what render() would throw, before any work is done.
 void check_options(const PreparedScene& scene, const Camera& camera, const RenderOptions& options);
 
+// What the spread of the viewing rays says about the pixels' luminances, as of independent samples.
+struct ViewingErrors {
+  double relative_rms = 0;  // standard error of a pixel, over the picture's mean luminance
+  // Of the pixels: with a standard error over 1 % of their luminance, or of the mean if that is
+  // more.
+  double share_above = 0;
+};
+
 struct RenderStatistics {
   int width = 0, height = 0;
   Counters counters;
+  ViewingErrors viewing_errors;
   double preprocess_seconds = 0;  // of the preparation, whoever made it
   double render_seconds = 0;      // of what came after
   CellStatistics cells;           // none where the method makes none

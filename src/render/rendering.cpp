@@ -1,9 +1,12 @@
 #include "render/rendering.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/error.h"
+#include "base/random.h"
+#include "base/units.h"
 
 namespace troffer {
 
@@ -15,14 +18,15 @@ int passes_of(int samples) {
 
 }  // namespace
 
-Rendering::Rendering(const ViewingCamera& camera, const Integrator& integrator,
-                     const RenderOptions& options, const Vec3d& origin, TilePlan plan,
+Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
+                     const Integrator& integrator, const RenderOptions& options, TilePlan plan,
                      const ProgressCallback& progress, const StopFlag& stop)
-    : camera_(camera),
+    : scene_(scene),
+      camera_(camera),
       integrator_(integrator),
       options_(options),
       plan_(std::move(plan)),
-      film_(plan_.region, options.aovs, origin),
+      film_(plan_.region, options.aovs, scene.scene.origin),
       work_(size_t(thread_count(options.threads))),
       report_(progress),
       stop_(stop) {
@@ -47,6 +51,23 @@ std::vector<Layer> Rendering::layers() const {
   std::vector<Layer> layers = film_.layers();
   for (Layer& l : layers) l.image = part_of(l.image, plan_.region, plan_.window);
   return layers;
+}
+
+ViewingErrors Rendering::viewing_errors() const {
+  const PixelRect& w = plan_.window;
+  ViewingErrors e;
+  const double mean = mean_luminance();
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x) {
+      const PixelEstimate p = film_.estimate(x, y);
+      e.relative_rms += sqr(p.standard_error);
+      const double allowed = double(refining_.options.error) * std::max(p.luminance, mean);
+      e.share_above += p.standard_error > allowed ? 1 : 0;
+    }
+  const double pixels = double(w.width()) * w.height();
+  e.relative_rms = mean > 0 ? std::sqrt(e.relative_rms / pixels) / mean : 0;
+  e.share_above /= pixels;
+  return e;
 }
 
 Counters Rendering::counters() const {
@@ -107,39 +128,40 @@ void Rendering::trace(Work& w) {
   }
 }
 
-// Rounds of further rays; each looks at what there was before it, in all of the picture.
+// Further rays, as many as the first pass has called for, in passes that fit a batch.
 void Rendering::refine() {
   const bool is_same_in_crops = options_.method.row().is_same_in_crops;
   const double typical = is_same_in_crops ? typical_luminance() : mean_luminance();
-  const std::vector<uint8_t> is_wanted = pixels_to_refine(typical);
+  const std::vector<int> wanted = samples_of_pixels(typical);
   const PixelRecords& records = *refining_.records;
   refining_.has_begun = true;
   for (int first = options_.spp; first < refining_.max_spp && !was_stopped_;
        first += samples_per_batch) {
-    const auto count = uint32_t(std::min(samples_per_batch, refining_.max_spp - first));
     pass([&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) {
-        if (is_wanted[records.index(p.x, p.y)] == 0) continue;
-        const PixelEstimate e = film_.estimate(p.x, p.y);
-        // A spread is only worth believing from several samples.
-        if (first > options_.spp && e.samples >= 4 && !needs_more(e, typical, refining_.options))
-          continue;
-        add_rays(p, count, w);
+        const int count = std::min(samples_per_batch, wanted[records.index(p.x, p.y)] - first);
+        if (count <= 0) continue;
+        add_rays(p, uint32_t(count), w);
         w.rays.neighbours.resize(w.rays.size(), records.around(p.x, p.y));
       }
     });
   }
 }
 
-// For each pixel of the region, whether what the first pass saw calls for more.
-std::vector<uint8_t> Rendering::pixels_to_refine(double typical) const {
+// For each pixel of the region, how many samples it is to have.
+std::vector<int> Rendering::samples_of_pixels(double typical) const {
   const PixelRecords& records = *refining_.records;
-  std::vector<uint8_t> is_wanted(records.records.size());
-  for (int y = plan_.inner.y0; y < plan_.inner.y1; ++y)
-    for (int x = plan_.inner.x0; x < plan_.inner.x1; ++x)
-      is_wanted[records.index(x, y)] =
-          needs_refinement(film_, records, x, y, typical, refining_.options) ? 1 : 0;
-  return is_wanted;
+  const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
+  const RefinementView view{film_, records, edges, typical};
+  std::vector<int> wanted(records.records.size(), options_.spp);
+  const PixelRect& r = plan_.inner;
+  parallel_for(size_t(r.height()), options_.threads, [&](size_t row) {
+    const int y = r.y0 + int(row);
+    for (int x = r.x0; x < r.x1; ++x)
+      wanted[records.index(x, y)] =
+          samples_wanted(view, x, y, options_.spp, refining_.max_spp, refining_.options);
+  });
+  return wanted;
 }
 
 // Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,
@@ -150,12 +172,13 @@ double Rendering::typical_luminance() {
   if (!w.scratch) w.scratch = integrator_.make_scratch();
   w.rays.clear();
   w.pixels.clear();
+  const uint64_t seed = hash_of(options_.seed, uint64_t{0x7479'7069});  // not the picture's own
   const int width = plan_.image.width(), height = plan_.image.height();
   const int nx = std::min(most, width), ny = std::min(most, height);
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i) {
       w.pixels.push_back({i * width / nx, j * height / ny});
-      add_viewing_rays(camera_, w.pixels.back(), 0, 1, options_.seed, w.rays);
+      add_viewing_rays(camera_, w.pixels.back(), 0, 1, seed, w.rays);
     }
   const CheckContext context(&w, w.rays.size(), name_of_ray);
   w.radiance.reset(w.rays.size());

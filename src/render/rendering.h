@@ -25,9 +25,9 @@ constexpr int samples_per_batch = 4;
 
 class Rendering {
  public:
-  // `origin`: the scene's. All but it and the plan must outlive this.
-  Rendering(const ViewingCamera& camera, const Integrator& integrator, const RenderOptions& options,
-            const Vec3d& origin, TilePlan plan, const ProgressCallback& progress,
+  // All but camera and plan must outlive this.
+  Rendering(const PreparedScene& scene, const ViewingCamera& camera, const Integrator& integrator,
+            const RenderOptions& options, TilePlan plan, const ProgressCallback& progress,
             const StopFlag& stop);
 
   // False where a stop was requested.
@@ -36,6 +36,7 @@ class Rendering {
   // Of the window.
   std::vector<Layer> layers() const;
   Counters counters() const;
+  ViewingErrors viewing_errors() const;
 
  private:
   // Memory of one thread.
@@ -65,11 +66,12 @@ class Rendering {
   void add_rays(const Pixel2& p, uint32_t count, Work& w) const;
   void trace(Work& w);
   void refine();
-  std::vector<uint8_t> pixels_to_refine(double typical) const;
+  std::vector<int> samples_of_pixels(double typical) const;
   double typical_luminance();
   double mean_luminance() const;
   void tell_progress();
 
+  const PreparedScene& scene_;
   const ViewingCamera camera_;
   const Integrator& integrator_;
   const RenderOptions& options_;

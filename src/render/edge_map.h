@@ -1,0 +1,35 @@
+// Where edges run through pixels, found without any of the samples that the picture is made of:
+// refinement that goes by it keeps the mean of every pixel.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "integrate/prepared_scene.h"
+#include "render/camera.h"
+#include "render/tile.h"
+
+namespace troffer {
+
+class EdgeMap {
+ public:
+  // One ray through each corner of a pixel, and the outlines of lights.
+  EdgeMap(const PreparedScene& scene, const ViewingCamera& camera, const PixelRect& region,
+          int threads);
+
+  // The corners of the pixel see different surfaces.
+  bool has_surface_edge(int x, int y) const { return (edges_[index(x, y)] & surface_edge) != 0; }
+  // The outline of a light goes through it.
+  bool has_light_edge(int x, int y) const { return (edges_[index(x, y)] & light_edge) != 0; }
+
+ private:
+  static constexpr uint8_t surface_edge = 1, light_edge = 2;
+  size_t index(int x, int y) const {
+    return size_t(y - region_.y0) * size_t(region_.width()) + size_t(x - region_.x0);
+  }
+
+  PixelRect region_;
+  std::vector<uint8_t> edges_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,148 @@
+// Refinement keeps the mean of the picture, whatever small and bright things its rays meet.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "pictures.h"
+#include "render/edge_map.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// A grey room with 100 lights under its ceiling, of the same power whatever their size.
+Scene room_of_small_lights(uint32_t floor_material, float side, Scene s) {
+  const uint32_t grey = add_diffuse(s, Rgb{0.5f});
+  const uint32_t black = add_diffuse(s, Rgb{0});
+  const auto quads = add_box_inside(s, grey, {0, 0, 0}, {4, 4, 3});
+  s.meshes[quads[0]].material = floor_material;
+  for (int i = 0; i < 100; ++i) {
+    const float x = 0.25f + 0.37f * float(i % 10), y = 0.25f + 0.37f * float(i / 10), r = side / 2;
+    const std::array<Vec3, 4> corners{Vec3{x - r, y - r, 2.95f},
+                                      {x - r, y + r, 2.95f},
+                                      {x + r, y + r, 2.95f},
+                                      {x + r, y - r, 2.95f}};
+    make_light(s, add_quad(s, black, corners), Rgb{0.16f / (side * side)});
+  }
+  return s;
+}
+Scene matte_room() {
+  Scene s;
+  const uint32_t floor = add_diffuse(s, Rgb{0.6f});
+  return room_of_small_lights(floor, 0.02f, s);
+}
+// Its floor shows the lights once more.
+Scene mirror_room() {
+  Scene s;
+  Material mirror;
+  mirror.kind = MaterialKind::conductor;
+  mirror.is_reflectance = true;
+  mirror.base_color.value = Rgb{0.9f};
+  const uint32_t floor = add_material(s, mirror);
+  return room_of_small_lights(floor, 0.06f, s);
+}
+
+// Means of whole pictures, each with other random numbers.
+Moments means_of(const PreparedScene& scene, const Camera& camera, RenderOptions o, int pictures) {
+  o.seed = 1000 * uint64_t(o.spp);
+  return render_ensemble(scene, camera, o, pictures).mean;
+}
+
+void check_mean(const PreparedScene& scene, const Camera& camera, RenderOptions o, int pictures) {
+  o.width = o.height = 48;
+  o.spp = 4;
+  o.max_spp = 16;
+  const Moments refined = means_of(scene, camera, o, pictures);
+  o.spp = o.max_spp = 128;
+  const Moments right = means_of(scene, camera, o, 12);
+  const double spread = std::sqrt(refined.variance_of_mean() + right.variance_of_mean());
+  CAPTURE(refined.mean());
+  CAPTURE(right.mean());
+  CAPTURE(spread);
+  CHECK(spread < 0.02 * right.mean());  // it could see a bias
+  CHECK(std::abs(refined.mean() - right.mean()) < 3.3 * spread);
+}
+
+}  // namespace
+
+TEST_CASE("refinement keeps the mean of a picture with many small lights") {
+  const PreparedScene scene(matte_room());
+  RenderOptions o;
+  o.method = Method::path;
+  o.depth = 1;
+  check_mean(scene, look_at({0.3f, 0.3f, 1.6f}, {3, 3, 2.2f}, {0, 0, 1}, 70), o, 40);
+}
+
+TEST_CASE("refinement keeps the mean where small lights are seen in a mirror") {
+  const PreparedScene scene(mirror_room());
+  RenderOptions o;
+  o.method = Method::path;
+  o.depth = 1;
+  check_mean(scene, look_at({0.3f, 0.3f, 1.6f}, {3, 3, 0}, {0, 0, 1}, 60), o, 100);
+}
+
+TEST_CASE("the edge map finds borders of objects, and every pixel that a small light touches") {
+  const PreparedScene scene(matte_room());
+  const Camera camera = look_at({0.3f, 0.3f, 1.6f}, {3, 3, 2.2f}, {0, 0, 1}, 70);
+  constexpr int side = 64;
+  const ViewingCamera viewing(camera, side, side);
+  const EdgeMap map(scene, viewing, {0, 0, side, side}, 1);
+  // By brute force: many rays in each pixel.
+  size_t with_light = 0, missed = 0, marked = 0;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      bool has_light = false;
+      constexpr int n = 8;
+      std::vector<Ray> rays;
+      for (int i = 0; i < n * n; ++i)
+        rays.push_back(viewing.ray(
+            {float(x) + (float(i % n) + 0.5f) / n, float(y) + (float(i / n) + 0.5f) / n},
+            {0.5f, 0.5f}));
+      std::vector<Hit> hits(rays.size());
+      scene.tracer.closest(rays, hits);
+      size_t on_light = 0;
+      for (const Hit& h : hits)
+        on_light += h.is_valid() && !scene.scene.meshes[h.geometry].lights.empty() ? 1 : 0;
+      has_light = on_light > 0;
+      with_light += has_light ? 1 : 0;
+      missed += on_light > 0 && on_light < n * n && !map.has_light_edge(x, y) ? 1 : 0;
+      marked += map.has_light_edge(x, y) ? 1 : 0;
+    }
+  CHECK(with_light > 60);
+  CHECK(missed == 0);
+  CHECK(marked < 2 * with_light);
+  // What the camera sees a point at is where its ray goes.
+  for (const Vec2 r : {Vec2{3.25f, 7.5f}, Vec2{50, 60.75f}}) {
+    const Ray ray = viewing.ray(r, {0.5f, 0.5f});
+    Vec2 back;
+    REQUIRE(viewing.raster_of(ray.origin + ray.direction * 3, back));
+    CHECK(std::abs(back.x - r.x) < 1e-3f);
+    CHECK(std::abs(back.y - r.y) < 1e-3f);
+    CHECK_FALSE(viewing.raster_of(ray.origin - ray.direction, back));
+  }
+}
+
+TEST_CASE("the layer viewing_error is the spread of a pixel's rays, and the statistics sum it up") {
+  const PreparedScene scene(matte_room());
+  RenderOptions o;
+  o.method = Method::certified;
+  o.indirect = Indirect::none;
+  o.width = o.height = 32;
+  o.spp = o.max_spp = 4;
+  o.aovs = {Aov::viewing_error, Aov::error};
+  const Camera camera = look_at({0.3f, 0.3f, 1.6f}, {3, 3, 2.2f}, {0, 0, 1}, 70);
+  const RenderResult r = render_now(scene, camera, o);
+  double squares = 0, mean = 0, told = 0;
+  for (size_t i = 0; i < r.layers[0].image.pixels.size(); ++i) {
+    squares += double(sqr(r.layers[1].image.pixels[i].r));
+    told += double(sqr(r.layers[2].image.pixels[i].r));
+    mean += double(luminance(r.layers[0].image.pixels[i]));
+  }
+  const double n = 32 * 32;
+  const ViewingErrors& e = r.statistics.viewing_errors;
+  CHECK(e.relative_rms == doctest::Approx(std::sqrt(squares / n) / (mean / n)).epsilon(1e-4));
+  CHECK(squares > 100 * told);  // lights as edges, of which the sampling of sources knows nothing
+  CHECK(e.share_above > 0.05);
+  CHECK(e.share_above < 1);
+}
