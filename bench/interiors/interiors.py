@@ -8,6 +8,7 @@ setting of troffer was chosen on them.
 import math
 import random
 
+from dense import DENSE, furniture, room
 from mesh import Mesh, Scene, facing_down
 
 
@@ -189,30 +190,6 @@ def gallery():
     return s
 
 
-def furniture():
-    rng = random.Random(7)
-    s = Scene((0.6, 0.6, 1.5), (3, 3, 0.8), 65)
-    s.room((0, 0, 0), (5, 4, 2.8))
-    s.matte((0.5, 0.3, 0.2))
-    m = Mesh()
-    m.box((1.8, 1.4, 0.7), (3.6, 2.6, 0.75))
-    for x in (1.85, 3.5):
-        for y in (1.45, 2.5):
-            m.box((x, y, 0), (x + 0.06, y + 0.06, 0.7))
-    s.add(m)
-    s.matte((0.5, 0.5, 0.55))
-    m = Mesh()
-    for _ in range(25):
-        x, y = 0.4 + 4.2 * rng.random(), 0.4 + 3.2 * rng.random()
-        a = 0.1 + 0.15 * rng.random()
-        m.box((x - a, y - a, 0), (x + a, y + a, 0.1 + 0.8 * rng.random()), turn=rng.random())
-    for _ in range(8):
-        m.ball((0.5 + 4 * rng.random(), 0.5 + 3 * rng.random(), 1 + rng.random()), 0.12, 10)
-    s.add(m)
-    s.light(facing_down(2.5, 2, 2.78, 1.2, 0.8), (12, 12, 12))
-    return s
-
-
 def gloss():
     s = Scene((0.6, 0.6, 1.5), (3, 3, 0.8), 65)
     s.room((0, 0, 0), (5, 4, 2.8))
@@ -242,8 +219,9 @@ INTERIORS = {
     "bathroom": bathroom,
     "ajar": ajar,
     "gallery": gallery,
-    "furniture": furniture,
+    "furniture": lambda: room(furniture),
     "gloss": gloss,
+    **DENSE,
 }
 
 
