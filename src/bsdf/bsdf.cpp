@@ -5,6 +5,7 @@
 
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
+#include "bsdf/lobes.h"
 
 namespace troffer {
 
@@ -303,6 +304,12 @@ bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, 
   out.is_transmission = out.wi.z < 0;
   if (out.is_transmission && !b.is_thin) out.eta = b.eta;
   return is_finite(out.weight) && !out.weight.is_black();
+}
+
+LobeConstants lobe_constants(const Bsdf& b, float cos_o) {
+  const Gains g = b.has_separable ? gains_at(b, cos_o) : Gains{};
+  const Choice c = choice_at(b, g, cos_o);
+  return {c.glossy, c.cosine, c.uniform, g.diffuse, g.metal};
 }
 
 Bsdf diffuse_part(const Bsdf& b) {

@@ -1,5 +1,7 @@
 #include "integrate/source_integrand.h"
 
+#include "base/simd.h"
+#include "bsdf/evaluate_many.h"
 #include "integrate/connect.h"
 #include "light/irradiance.h"
 #include "light/polygon.h"
@@ -89,6 +91,79 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
       values[i] = glossy_value(g, wi, density * dot(wi, g.geometric_normal)) * (1 / cosine) *
                   radiance_at(source, points[i], hit.position);
   }
+}
+
+namespace {
+
+TROFFER_MULTIVERSION
+void to_local(const Frame& f, const Vec3& geometric, size_t n, const float* __restrict px,
+              const float* __restrict py, const float* __restrict pz, float* __restrict x,
+              float* __restrict y, float* __restrict z, float* __restrict above) {
+  const Vec3 t = f.tangent, b = f.bitangent, m = f.normal;
+  for (size_t i = 0; i < n; ++i) {
+    const float s = 1 / std::sqrt(px[i] * px[i] + py[i] * py[i] + pz[i] * pz[i]);
+    const float dx = px[i] * s, dy = py[i] * s, dz = pz[i] * s;
+    x[i] = dx * t.x + dy * t.y + dz * t.z;
+    y[i] = dx * b.x + dy * b.y + dz * b.z;
+    z[i] = dx * m.x + dy * m.y + dz * m.z;
+    above[i] = dx * geometric.x + dy * geometric.y + dz * geometric.z;
+  }
+}
+
+// Adds the rough part's share that is left to points of a source: power_heuristic().
+TROFFER_MULTIVERSION
+void add_rough(float density, size_t n, const float* __restrict above, const float* __restrict pdf,
+               const float* __restrict r, const float* __restrict g, const float* __restrict b,
+               float* __restrict to_r, float* __restrict to_g, float* __restrict to_b) {
+  for (size_t i = 0; i < n; ++i) {
+    const float own = density * above[i];
+    const float ratio = pdf[i] / std::max(own, 1e-30f);
+    const float weight = own > 0 ? 1 / (1 + ratio * ratio) : 0.0f;
+    to_r[i] += r[i] * weight;
+    to_g[i] += g[i] * weight;
+    to_b[i] += b[i] * weight;
+  }
+}
+
+// Times radiance, over the cosine; 0 below either horizon.
+TROFFER_MULTIVERSION
+void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
+               const float* __restrict above, float* __restrict r, float* __restrict g,
+               float* __restrict b) {
+  for (size_t i = 0; i < n; ++i) {
+    const float s = z[i] > 0 && above[i] > 0 ? 1 / std::max(z[i], 1e-30f) : 0.0f;
+    r[i] *= radiance.r * s;
+    g[i] *= radiance.g * s;
+    b[i] *= radiance.b * s;
+  }
+}
+
+}  // namespace
+
+void SourceIntegrand::evaluate_many(uint32_t request, uint32_t member, PointArrays& p) {
+  const CertifiedSource& source = *sources_[request];
+  const IntegrandHit& hit = hits_[member];
+  const GlossyHit& g = *hit.glossy;
+  const size_t n = p.size();
+  lanes_.resize(n);
+  GlossyLanes& l = lanes_;
+  for (auto* a : {&p.r, &p.g, &p.b}) a->assign(n, 0);
+  to_local(g.frame, g.geometric_normal, n, p.x.data(), p.y.data(), p.z.data(), l.x.data(),
+           l.y.data(), l.z.data(), l.above.data());
+  if (g.has_diffuse)
+    troffer::evaluate_many(
+        g.diffuse, g.wo, n,
+        {l.x.data(), l.y.data(), l.z.data(), p.r.data(), p.g.data(), p.b.data(), l.pdf.data()});
+  const float density =
+      g.has_rough ? competition_.density_of(source, hit.position, g.geometric_normal) : 0;
+  if (density > 0) {
+    troffer::evaluate_many(
+        g.rough, g.wo, n,
+        {l.x.data(), l.y.data(), l.z.data(), l.r.data(), l.g.data(), l.b.data(), l.pdf.data()});
+    add_rough(density, n, l.above.data(), l.pdf.data(), l.r.data(), l.g.data(), l.b.data(),
+              p.r.data(), p.g.data(), p.b.data());
+  }
+  scale_all(source.radiance, n, l.z.data(), l.above.data(), p.r.data(), p.g.data(), p.b.data());
 }
 
 }  // namespace troffer

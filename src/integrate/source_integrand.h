@@ -68,6 +68,16 @@ struct IntegrandHit {
   const GlossyHit* glossy = nullptr;  // null: matte, and the value is the radiance alone
 };
 
+// Memory for many directions at a glossy hit.
+struct GlossyLanes {
+  std::vector<float> x, y, z;       // local, unit
+  std::vector<float> above;         // cosine with the geometric normal
+  std::vector<float> r, g, b, pdf;  // of the rough part
+  void resize(size_t n) {
+    for (auto* a : {&x, &y, &z, &above, &r, &g, &b, &pdf}) a->resize(n);
+  }
+};
+
 class SourceIntegrand final : public ShadowIntegrand {
  public:
   // points: at how many points a source is looked at.
@@ -86,6 +96,10 @@ class SourceIntegrand final : public ShadowIntegrand {
   }
   void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
                 std::span<Rgb> values) override;
+  bool is_smooth(uint32_t request, uint32_t member) const override {
+    return hits_[member].glossy != nullptr && !sources_[request]->is_textured;
+  }
+  void evaluate_many(uint32_t request, uint32_t member, PointArrays& points) override;
 
  private:
   Rgb radiance_at(const CertifiedSource& source, const Vec3& point, const Vec3& receiver) const;
@@ -95,6 +109,7 @@ class SourceIntegrand final : public ShadowIntegrand {
   LobeCompetition competition_;
   std::vector<IntegrandHit> hits_;
   std::vector<const CertifiedSource*> sources_;
+  GlossyLanes lanes_;
 };
 
 }  // namespace troffer

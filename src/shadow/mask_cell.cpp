@@ -95,6 +95,10 @@ void add_integral(const CellTask& cell, uint32_t member, float light, float shar
   const float share = cell.unoccluded[member] / source.unoccluded[member];
   const auto wanted = float(source.wanted_points[member]);
   const auto n = uint32_t(std::ceil(std::max(wanted * share, std::min(wanted, 4.0f))));
+  if (source.integrand->is_smooth(source.number, member))
+    return add_lattice_integral(cell, member, memory.samples, light, share_variance, n,
+                                numbers_of(cell, member, 0, purpose_points), memory.lattice,
+                                results);
   memory.points.clear();
   draw_points(cell.frame, memory.samples, n, numbers_of(cell, member, 0, purpose_points),
               memory.points);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shadow/cell_task.h"
+#include "shadow/lattice_integral.h"
 #include "shadow/mask_points.h"
 
 namespace troffer {
@@ -16,6 +17,7 @@ struct MaskMemory {
   OpenSamples samples;  // of the receiver looked at last
   std::vector<Vec3> points;
   std::vector<Rgb> values;
+  LatticeMemory lattice;
 };
 
 // What a receiver sees of the cell, and what that may err by; share < 0: no sample stands above the

@@ -71,7 +71,7 @@ void plan_rays(const RayQueue& queue, std::span<const float> allowed, const RayL
   }
   for (const RayQueue::PointPair& p : queue.by_points) {
     plan.groups.push_back({p.member, p.source, uint32_t(plan.segments.size()), p.count, 0, 1, true,
-                           p.first, p.light});
+                           p.first, p.light, p.is_difference});
     add_segments(p.origin, queue.sources[p.source],
                  std::span(queue.points).subspan(p.first, p.count), plan.segments);
   }

@@ -23,7 +23,8 @@ struct RayGroup {
   uint32_t frame, passes;  // of open samples
   bool has_values;         // those of `first_value` and the following belong to the rays
   uint32_t first_value;
-  float light;  // what all of them stand for, sr
+  float light;                 // what all of them stand for, sr
+  bool is_difference = false;  // as in RayQueue::PointPair
 };
 
 struct RayPlan {

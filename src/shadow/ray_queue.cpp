@@ -18,9 +18,9 @@ void RayQueue::add(uint32_t member, const Vec3& origin, const OpenSamples& sampl
 }
 
 void RayQueue::add(uint32_t member, const Vec3& origin, std::span<const Vec3> at,
-                   std::span<const Rgb> values_there, float light) {
+                   std::span<const Rgb> values_there, float light, bool is_difference) {
   by_points.push_back({member, uint32_t(sources.size() - 1), uint32_t(points.size()),
-                       uint32_t(at.size()), origin, light});
+                       uint32_t(at.size()), origin, light, is_difference});
   points.insert(points.end(), at.begin(), at.end());
   values.insert(values.end(), values_there.begin(), values_there.end());
 }

@@ -45,6 +45,8 @@ struct RayQueue {
     uint32_t member, source, first, count;
     Vec3 origin;
     float light;
+    bool is_difference;  // of a sum that has been added already: what is hidden varies, not what
+                         // is free
   };
 
   std::vector<RaySource> sources;  // all of the cluster, those without rays too
@@ -62,7 +64,7 @@ struct RayQueue {
   void add(uint32_t member, const Vec3& origin, const OpenSamples& samples, float light,
            float unoccluded, uint64_t random, uint32_t passes = 1);
   void add(uint32_t member, const Vec3& origin, std::span<const Vec3> at,
-           std::span<const Rgb> values_there, float light);
+           std::span<const Rgb> values_there, float light, bool is_difference = false);
 };
 
 }  // namespace troffer

@@ -28,15 +28,17 @@ void add_value(const RayGroup& g, std::span<const Rgb> values, const TracedRays&
                RayAnswer& a) {
   const auto n = float(g.count);
   Rgb sum;
-  float squares = 0;
+  float varying = 0, squares = 0;  // luminances of what is free, or of what is hidden
   for (uint32_t i = 0; i < g.count; ++i) {
-    if (traced.is_free[g.first + i] == 0) continue;
     const Rgb& value = values[g.first_value + i];
-    sum += value;
+    const bool is_free = traced.is_free[g.first + i] != 0;
+    if (is_free) sum += value;
+    if (is_free == g.is_difference) continue;
+    varying += luminance(value);
     squares += sqr(luminance(value));
   }
   a.value = sum * (g.light / n);
-  const float spread = std::max(squares - sqr(luminance(sum)) / n, 0.0f);
+  const float spread = std::max(squares - sqr(varying) / n, 0.0f);
   a.value_variance = sqr(g.light) * spread / (n * std::max(n - 1, 1.0f));
 }
 

@@ -16,6 +16,20 @@
 
 namespace troffer {
 
+// Points of a source, as seen from a receiver, and what is sent on from there, coordinate by
+// coordinate.
+struct PointArrays {
+  std::vector<float> x, y, z;  // from the receiver, metres
+  std::vector<float> r, g, b;
+
+  size_t size() const { return x.size(); }
+  void clear() {
+    x.clear();
+    y.clear();
+    z.clear();
+  }
+};
+
 // What is sent on to a receiver through points of a source, per unit of projected solid angle:
 // radiance × BRDF, where either varies. request: the source's number in the cluster's list.
 class ShadowIntegrand {
@@ -25,6 +39,10 @@ class ShadowIntegrand {
   virtual uint32_t points(uint32_t request, uint32_t member) = 0;
   virtual void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
                         std::span<Rgb> values) = 0;
+  // Whether the receiver's points of this source are better looked at all at a stroke: then as many
+  // as the mask has.
+  virtual bool is_smooth(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
+  virtual void evaluate_many(uint32_t /*request*/, uint32_t /*member*/, PointArrays& /*points*/) {}
 };
 
 // A source whose light a cluster wants: one of the two shapes.

@@ -1,0 +1,113 @@
+#include "shadow/lattice_integral.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/random.h"
+
+namespace troffer {
+
+namespace {
+
+// Lattices of more samples are looked at in every other row and column: which, is random, so that
+// each sample is as probable as any other.
+constexpr int most_samples = 256;
+
+// Sets points, weights and places to the open samples of every stride-th row and column.
+void set_points(const CellTask& cell, uint32_t member, const OpenSamples& s, int stride,
+                uint64_t random, LatticeMemory& m) {
+  const MaskFrame& frame = cell.frame;
+  const Vec3d step_k = frame.step_k(), step_j = frame.step_j();
+  const Vec3d from = frame.first_sample() + step_k * double(s.shift.x) +
+                     step_j * double(s.shift.y) - Vec3d(cell.receiver(member).position);
+  const Vec3 first(from), k_step(step_k), j_step(step_j);
+  m.points.clear();
+  m.weights.clear();
+  m.places.clear();
+  const int row_of = stride == 1 ? 0 : int(random & 1);
+  const uint32_t columns = stride == 1 ? ~0u : (random & 2) != 0 ? 0xaaaaaaaau : 0x55555555u;
+  for (int j = row_of; j < frame.lattice().rows; j += stride) {
+    const Vec3 row = first + j_step * float(j);
+    for (uint32_t bits = s.rows.row[j] & columns; bits != 0; bits &= bits - 1) {
+      const int k = std::countr_zero(bits);
+      const float weight = weight_of(s.weights, k, j);
+      if (!(weight > 0)) continue;
+      m.points.x.push_back(row.x + k_step.x * float(k));
+      m.points.y.push_back(row.y + k_step.y * float(k));
+      m.points.z.push_back(row.z + k_step.z * float(k));
+      m.weights.push_back(weight);
+      m.places.push_back(uint16_t(j * 32 + k));
+    }
+  }
+}
+
+struct LatticeSum {
+  double weight = 0, r = 0, g = 0, b = 0;
+  double squares = 0;  // of weight × what a value differs from the line through its neighbours
+  Rgb mean() const { return Rgb{float(r), float(g), float(b)} * float(1 / weight); }
+};
+
+LatticeSum sum_of(const LatticeMemory& m) {
+  LatticeSum s;
+  const PointArrays& p = m.points;
+  const auto value = [&](size_t i) { return luminance(Rgb{p.r[i], p.g[i], p.b[i]}); };
+  for (size_t i = 0; i < p.size(); ++i) {
+    const auto w = double(m.weights[i]);
+    s.weight += w;
+    s.r += w * double(p.r[i]);
+    s.g += w * double(p.g[i]);
+    s.b += w * double(p.b[i]);
+    if (i == 0 || i + 1 == p.size() || m.places[i + 1] / 32 != m.places[i - 1] / 32) continue;
+    s.squares += sqr(w * double(value(i - 1) - 2 * value(i) + value(i + 1)));
+  }
+  return s;
+}
+
+// Points drawn in proportion to weight, one of each of n equal parts; their places in memory.drawn
+// and values. Returns the mean of the values.
+Rgb draw(const CellTask& cell, const OpenSamples& s, const LatticeSum& sum, uint32_t n,
+         uint64_t random, LatticeMemory& m) {
+  const MaskFrame& frame = cell.frame;
+  const Vec3d first = frame.first_sample() + frame.step_k() * double(s.shift.x) +
+                      frame.step_j() * double(s.shift.y);
+  m.drawn.clear();
+  m.values.clear();
+  Rgb total;
+  double passed = double(m.weights[0]);
+  size_t at = 0;
+  for (uint32_t i = 0; i < n; ++i) {
+    const double u = double(unit_float(uint32_t(mix64(random + i) >> 32)));
+    const double target = (double(i) + u) / n * sum.weight;
+    while (passed <= target && at + 1 < m.weights.size()) passed += double(m.weights[++at]);
+    const int j = m.places[at] / 32, k = m.places[at] % 32;
+    m.drawn.emplace_back(first + frame.step_k() * double(k) + frame.step_j() * double(j));
+    m.values.push_back({m.points.r[at], m.points.g[at], m.points.b[at]});
+    total += m.values.back();
+  }
+  return total * (1 / float(n));
+}
+
+}  // namespace
+
+void add_lattice_integral(const CellTask& cell, uint32_t member, const OpenSamples& samples,
+                          float light, float share_variance, uint32_t rays, uint64_t random,
+                          LatticeMemory& m, SourceResults& results) {
+  const int stride = cell.frame.lattice().samples() > most_samples ? 2 : 1;
+  set_points(cell, member, samples, stride, random, m);
+  if (m.weights.empty()) set_points(cell, member, samples, 1, random, m);
+  if (m.weights.empty()) return;
+  cell.source.integrand->evaluate_many(cell.source.number, member, m.points);
+  const LatticeSum sum = sum_of(m);
+  const Rgb mean = sum.mean();
+  CellSum& o = results.sums[member];
+  o.value += mean * light;
+  // of noise about a line, second differences have six times the variance
+  o.value_variance += share_variance * sqr(cell.unoccluded[member] * luminance(mean)) +
+                      sqr(light) * float(sum.squares / (6 * sqr(sum.weight)));
+  if (cell.is_complete) return;
+  o.value += draw(cell, samples, sum, rays, mix64(random), m) * -light;
+  results.rays.add(member, cell.receiver(member).origin, m.drawn, m.values, light, true);
+}
+
+}  // namespace troffer

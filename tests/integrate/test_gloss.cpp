@@ -1,0 +1,69 @@
+// Gloss by certified visibility: the integrand at all of a mask's samples, and rays that tell only
+// what is hidden of it.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "integrate/probe.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// A rough floor under a panel; `ball`: beside the panel's shadow, so that lists are not complete.
+Scene glossy_room(MaterialKind kind, float roughness, bool has_ball) {
+  Scene s;
+  Material m;
+  m.kind = kind;
+  m.base_color.value = Rgb{0.7f};
+  m.roughness.value = roughness;
+  m.is_reflectance = true;
+  const uint32_t floor = add_material(s, m);
+  add_quad(s, floor, {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
+  add_ceiling_light(s, 1.0f, 2, Rgb{5});
+  if (has_ball) s.spheres.push_back({{0.2f, 0.1f, 1}, 0.2f, false, floor, -1});
+  return s;
+}
+
+double deviation(const Moments& m, int sets) {
+  return std::sqrt(m.variance_of_mean() * sets);
+}
+
+constexpr Vec3 seen{0.9f, 0.4f, 0};
+constexpr Vec3 eye{2.2f, 1.0f, 1.6f};
+
+}  // namespace
+
+TEST_CASE("gloss: an open source is hardly noisy over rough metal and coats") {
+  for (const MaterialKind kind : {MaterialKind::conductor, MaterialKind::coated_diffuse})
+    for (const float roughness : {0.3f, 0.6f}) {
+      const PreparedScene scene(glossy_room(kind, roughness, false));
+      const Ray ray = ray_towards(eye, seen);
+      const Probed got = probe(certified_integrator(scene), ray, 1, 2000, 5);
+      const Probed reference = probe(fixed_integrator(scene, 64), ray, 16, 64, 3);
+      CAPTURE(int(kind));
+      CAPTURE(roughness);
+      CHECK(p_of_difference(got.direct, reference.direct, 1e-3 * reference.direct.mean()) > 1e-4);
+      MESSAGE(int(kind), ", ", roughness, ": deviation of a viewing ray ",
+              deviation(got.direct, 2000) / got.direct.mean());
+      // 32 points drawn from the mask: up to .028
+      CHECK(deviation(got.direct, 2000) < 0.006 * got.direct.mean());
+    }
+}
+
+TEST_CASE("gloss: where rays decide, they tell what is hidden, without bias") {
+  for (const MaterialKind kind : {MaterialKind::conductor, MaterialKind::coated_diffuse})
+    for (const Vec3& point : {seen, Vec3{0.3f, 0.2f, 0}, Vec3{0.1f, -0.9f, 0}}) {
+      const PreparedScene scene(glossy_room(kind, 0.3f, true));
+      const Ray ray = ray_towards(eye, point);
+      const Probed got = probe(certified_integrator(scene), ray, 4, 600, 5);
+      const Probed reference = probe(fixed_integrator(scene, 64), ray, 16, 64, 3);
+      CAPTURE(int(kind));
+      CAPTURE(point.x);
+      CHECK(p_of_difference(got.direct, reference.direct, 1e-3 * reference.direct.mean()) > 1e-4);
+      MESSAGE(int(kind), ", x = ", point.x, ": deviation of 4 viewing rays ",
+              deviation(got.direct, 600) / got.direct.mean());
+      if (point.y < 0) CHECK(deviation(got.direct, 600) < 0.003 * got.direct.mean());  // open
+    }
+}
