@@ -288,7 +288,7 @@ void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<ui
 void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLightsScratch& s,
                    RadianceBatch& out, Counters& counters) {
   s.is_occluded.resize(s.rays.size());
-  scene.tracer.occluded(s.rays, s.is_occluded, Coherence::none);
+  scene.tracer.occluded(s.rays, s.is_occluded, Coherence::coherent);
   for (const auto& d : s.draws) {
     if (d.ray < 0) continue;
     const uint32_t index = hits.indices[d.hit];

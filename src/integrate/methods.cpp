@@ -31,8 +31,8 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
   in.cells->statistics = cells->statistics();
   std::unique_ptr<GatherRecords> records;
   if (in.cells->view != nullptr) {
-    const GatherOptions options{in.settings.error, cells->statistics().typical,
-                                in.settings.threads, in.cells->seed};
+    const GatherOptions options{in.settings.error, cells->statistics().typical, in.settings.threads,
+                                in.cells->seed};
     records = GatherRecords::make(*cells, *in.cells->view, options, in.cells->progress,
                                   in.cells->stop, in.cells->counters);
     if (!records) return nullptr;
@@ -77,8 +77,10 @@ std::unique_ptr<Integrator> make_path(const MethodInput& in) {
       in.scene, PathOptions{in.settings.depth, in.settings.is_direct_only()});
 }
 
+// Of many lights most are drawn.
 double certified_rays(const MethodSettings& s, size_t lights) {
-  return double(certified_settings(s.error, lights).shadow_rays) * double(lights);
+  constexpr size_t most = 256;
+  return double(certified_settings(s.error, lights).shadow_rays) * double(std::min(lights, most));
 }
 double kj92_rays(const MethodSettings& s, size_t lights) {
   return double(s.trees.tree.most_rays) * double(lights);
