@@ -84,7 +84,7 @@ void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
 
 void LightTreeDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
                             Counters& counters) const {
-  static_cast<LightTreeDirectScratch&>(scratch).shadows.resolve(scene_.tracer, Coherence::none, out,
+  static_cast<LightTreeDirectScratch&>(scratch).shadows.resolve(scene_.tracer, Coherence::coherent, out,
                                                                 counters);
 }
 
