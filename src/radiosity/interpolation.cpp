@@ -41,6 +41,28 @@ void add_corner(const RadiosityMesh& mesh, uint32_t fragment, size_t corner, boo
     out.add(around[i].point, weight * around[i].area / sum);
 }
 
+// Whether the sample point lies in the middle of the fragment, which then is all of its element.
+bool is_in_the_middle(const RadiosityMesh& mesh, uint32_t fragment, uint32_t point) {
+  const auto& c = mesh.fragments[fragment].vertices;
+  const std::vector<Vec3>& p = mesh.geometry.positions;
+  const Vec3 middle = (p[c[0]] + p[c[1]] + p[c[2]]) / 3.0f;
+  // that of a round surface lies above it
+  const float close = 0.1f * std::min({length(p[c[0]] - middle), length(p[c[1]] - middle),
+                                       length(p[c[2]] - middle)});
+  return length(mesh.points[point].position - middle) <= close;
+}
+
+void add_knot(const RadiosityMesh& mesh, uint32_t fragment, size_t knot, bool is_back, uint32_t own,
+              float weight, Interpolation& out) {
+  if (knot < 3) {
+    add_corner(mesh, fragment, knot, is_back, own, weight, out);
+  } else if (is_in_the_middle(mesh, fragment, own)) {
+    out.add(own, weight);
+  } else {
+    for (size_t k = 0; k < 3; ++k) add_corner(mesh, fragment, k, is_back, own, weight / 3, out);
+  }
+}
+
 }  // namespace
 
 void Interpolation::add(uint32_t point, float weight) {
@@ -62,15 +84,17 @@ void interpolate(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometr
   if (at == no_fragment) return;
   const uint32_t own = mesh.element_points[mesh.fragments[at].element][is_back ? 1 : 0];
   if (own == no_point) return;
-  for (size_t k = 0; k < 3; ++k)
-    add_corner(mesh, at, k, is_back, own, std::clamp(corner_weights[k], 0.0f, 1.0f), out);
+  for (size_t k = 0; k < 3; ++k) corner_weights[k] = std::clamp(corner_weights[k], 0.0f, 1.0f);
+  const auto weights = knot_weights(corner_weights);
+  for (size_t k = 0; k < knots_per_fragment; ++k)
+    if (weights[k] > 0) add_knot(mesh, at, k, is_back, own, weights[k], out);
 }
 
-void interpolate_at_corner(const RadiosityMesh& mesh, uint32_t fragment, size_t corner,
-                           bool is_back, Interpolation& out) {
+void interpolate_at_knot(const RadiosityMesh& mesh, uint32_t fragment, size_t knot, bool is_back,
+                         Interpolation& out) {
   out.clear();
   const uint32_t own = mesh.element_points[mesh.fragments[fragment].element][is_back ? 1 : 0];
-  if (own != no_point) add_corner(mesh, fragment, corner, is_back, own, 1, out);
+  if (own != no_point) add_knot(mesh, fragment, knot, is_back, own, 1, out);
 }
 
 }  // namespace troffer

@@ -1,9 +1,15 @@
 // Weights of sample points at a place, for any quantity that points carry.
 //
-// Within a fragment they are linear between its corners; at a corner, they are the mean over the
-// elements around it on the same side whose normals differ by less than 30 degrees, by area.
+// A fragment has four knots: its corners, and its middle. Weights are linear over the three
+// triangles between two corners and the middle. At a corner they are the mean over the elements
+// around it on the same side whose normals differ by less than 30 degrees, by area. In the middle
+// of a fragment that is an element of its own they are that of its sample point, which lies there:
+// a mean of means would flatten what rises steeply. Where several fragments are one element, the
+// mean of the corners.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,8 +40,15 @@ void interpolate(const Scene& scene, const RadiosityMesh& mesh, uint32_t geometr
                  uint32_t primitive, float u, float v, const Vec3& position, bool is_back,
                  Interpolation& out);
 
-// The same at corner 0 … 2 of a fragment, on its front or back.
-void interpolate_at_corner(const RadiosityMesh& mesh, uint32_t fragment, size_t corner,
-                           bool is_back, Interpolation& out);
+constexpr size_t knots_per_fragment = 4;
+// The same at a knot of a fragment, on its front or back: a corner, 0 … 2, or the middle, 3.
+void interpolate_at_knot(const RadiosityMesh& mesh, uint32_t fragment, size_t knot, bool is_back,
+                         Interpolation& out);
+
+// Weights of the knots at weights of the corners, which sum to 1.
+inline std::array<float, knots_per_fragment> knot_weights(const Vec3& corners) {
+  const float least = std::max(std::min({corners.x, corners.y, corners.z}), 0.0f);
+  return {corners.x - least, corners.y - least, corners.z - least, 3 * least};
+}
 
 }  // namespace troffer

@@ -127,7 +127,7 @@ Drawing draw_light(const Scene& scene, const RadiositySolution& s, float exposur
       for (size_t k = 0; k < 3; ++k) {
         const size_t corner = side == 1 ? 2 - k : k;
         at.clear();
-        interpolate_at_corner(s.mesh, f, corner, side == 1, at);
+        interpolate_at_knot(s.mesh, f, corner, side == 1, at);
         Rgb e;
         for (const PointWeight& w : at.weights()) e += display_irradiance(s, w.point) * w.weight;
         const Rgb b = s.mesh.points[point].reflectance * e + emitted;

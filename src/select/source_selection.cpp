@@ -53,7 +53,7 @@ class PatchSelector {
       : solution_(solution), tracer_(tracer), lights_(primitives), options_(options) {}
 
   void run(uint32_t patch, std::span<const FragmentSide> sides, std::vector<TreatedSource>& treated,
-           std::vector<GeneralIrradiance>& corners) {
+           std::vector<GeneralIrradiance>& knots) {
     treated.clear();
     gather_points(sides);
     const bool treats_all = !options_.is_enabled || options_.treats_all_lights;
@@ -67,7 +67,7 @@ class PatchSelector {
     }
     std::sort(treated.begin(), treated.end(),
               [](const TreatedSource& a, const TreatedSource& b) { return a.source < b.source; });
-    for (const FragmentSide& s : sides) fill_corners(s, corners);
+    for (const FragmentSide& s : sides) fill_knots(s, knots);
   }
 
  private:
@@ -75,8 +75,8 @@ class PatchSelector {
   void gather_points(std::span<const FragmentSide> sides) {
     points_.ids.clear();
     for (const FragmentSide& s : sides)
-      for (size_t k = 0; k < 3; ++k) {
-        interpolate_at_corner(solution_.mesh, s.fragment, k, s.side == 1, at_);
+      for (size_t k = 0; k < knots_per_fragment; ++k) {
+        interpolate_at_knot(solution_.mesh, s.fragment, k, s.side == 1, at_);
         for (const PointWeight& w : at_.weights()) points_.ids.push_back(w.point);
       }
     std::sort(points_.ids.begin(), points_.ids.end());
@@ -225,9 +225,9 @@ class PatchSelector {
     }
   }
 
-  void fill_corners(const FragmentSide& s, std::vector<GeneralIrradiance>& corners) {
-    for (size_t k = 0; k < 3; ++k) {
-      interpolate_at_corner(solution_.mesh, s.fragment, k, s.side == 1, at_);
+  void fill_knots(const FragmentSide& s, std::vector<GeneralIrradiance>& knots) {
+    for (size_t k = 0; k < knots_per_fragment; ++k) {
+      interpolate_at_knot(solution_.mesh, s.fragment, k, s.side == 1, at_);
       GeneralIrradiance sum;
       for (const PointWeight& w : at_.weights()) {
         const auto it = std::lower_bound(points_.ids.begin(), points_.ids.end(), w.point);
@@ -235,7 +235,7 @@ class PatchSelector {
         sum.direct += g.direct * w.weight;
         sum.indirect += g.indirect * w.weight;
       }
-      corners[3 * (2 * size_t(s.fragment) + s.side) + k] = sum;
+      knots[knots_per_fragment * (2 * size_t(s.fragment) + s.side) + k] = sum;
     }
   }
 
@@ -270,7 +270,7 @@ SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer
   const RadiosityMesh& mesh = solution.mesh;
   const PatchFragments fragments(mesh);
   const size_t patches = mesh.patches.size();
-  corners_.assign(6 * mesh.fragments.size(), {});
+  knots_.assign(2 * knots_per_fragment * mesh.fragments.size(), {});
   std::vector<std::vector<TreatedSource>> treated(patches);
   std::vector<PatchSelector> selectors(size_t(thread_count(threads)),
                                        PatchSelector(solution, tracer, primitives, options));
@@ -278,7 +278,7 @@ SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer
     if (stop.load(std::memory_order_relaxed)) return;
     const std::span sides(fragments.sides.data() + fragments.first[patch],
                           fragments.first[patch + 1] - fragments.first[patch]);
-    selectors[slot].run(uint32_t(patch), sides, treated[patch], corners_);
+    selectors[slot].run(uint32_t(patch), sides, treated[patch], knots_);
   });
   first_.push_back(0);
   for (const auto& list : treated) {
@@ -289,7 +289,7 @@ SourceSelection::SourceSelection(const RadiositySolution& solution, const Tracer
 
 size_t SourceSelection::memory_bytes() const {
   return sources_.capacity() * sizeof(TreatedSource) + first_.capacity() * sizeof(size_t) +
-         corners_.capacity() * sizeof(GeneralIrradiance);
+         knots_.capacity() * sizeof(GeneralIrradiance);
 }
 
 }  // namespace troffer

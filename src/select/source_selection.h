@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "base/rgb.h"
 #include "light/light_primitive.h"
+#include "radiosity/interpolation.h"
 #include "radiosity/solution.h"
 #include "select/source_class.h"
 #include "trace/tracer.h"
@@ -69,17 +70,23 @@ class SourceSelection {
   // weights: of the fragment's corners (fragment_at). With the ambient estimate for light that is
   // still unshot.
   GeneralIrradiance general(uint32_t fragment, bool is_back, const Vec3& weights) const {
-    const GeneralIrradiance* c = corners_.data() + 3 * (2 * size_t(fragment) + (is_back ? 1 : 0));
-    return {c[0].direct * weights.x + c[1].direct * weights.y + c[2].direct * weights.z,
-            c[0].indirect * weights.x + c[1].indirect * weights.y + c[2].indirect * weights.z};
+    const GeneralIrradiance* const at_knots =
+        knots_.data() + knots_per_fragment * (2 * size_t(fragment) + (is_back ? 1 : 0));
+    const auto weight = knot_weights(weights);
+    GeneralIrradiance sum;
+    for (size_t k = 0; k < knots_per_fragment; ++k) {
+      sum.direct += at_knots[k].direct * weight[k];
+      sum.indirect += at_knots[k].indirect * weight[k];
+    }
+    return sum;
   }
 
   size_t memory_bytes() const;
 
  private:
   std::vector<TreatedSource> sources_;
-  std::vector<size_t> first_;               // per patch, into sources_; one more at the end
-  std::vector<GeneralIrradiance> corners_;  // fragment × side × corner
+  std::vector<size_t> first_;             // per patch, into sources_; one more at the end
+  std::vector<GeneralIrradiance> knots_;  // fragment × side × knot (interpolation.h)
 };
 
 }  // namespace troffer

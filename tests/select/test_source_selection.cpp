@@ -115,7 +115,7 @@ struct Sums {
   uint32_t corners = 0, treated = 0, patches = 0, inexact = 0;
 };
 
-// Every corner of every fragment's side: general value + what treated sources gave = all there was.
+// Every knot of every fragment's side: general value + what treated sources gave = all there was.
 Sums check_sums(const Selected& s, const SourceSelection& selection) {
   Sums sums;
   const RadiosityMesh& mesh = s.solution.mesh;
@@ -123,13 +123,13 @@ Sums check_sums(const Selected& s, const SourceSelection& selection) {
     for (const bool is_back : {false, true}) {
       const uint32_t own = mesh.element_points[mesh.fragments[f].element][is_back];
       if (own == no_point) continue;
-      for (size_t k = 0; k < 3; ++k) {
+      for (size_t k = 0; k < knots_per_fragment; ++k) {
         Interpolation at;
-        interpolate_at_corner(mesh, f, k, is_back, at);
+        interpolate_at_knot(mesh, f, k, is_back, at);
         REQUIRE(!at.weights().empty());
-        Vec3 corner;
-        corner[k] = 1;
-        const GeneralIrradiance general = selection.general(f, is_back, corner);
+        Vec3 corners{1.0f / 3};
+        if (k < 3) corners = {k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f};
+        const GeneralIrradiance general = selection.general(f, is_back, corners);
         Rgb sum = general.direct + general.indirect, wanted;
         bool is_exact = true;
         for (const PointWeight& w : at.weights()) {
