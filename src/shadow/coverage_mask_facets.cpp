@@ -90,12 +90,11 @@ void FacetList::add(const MaskFrame& frame, const Quad& quad, bool is_front_only
   if (kept < 3) return;
   const float back = frame.is_mirroring() ? -1 : 1;
   const float side = is_front_only ? back : 0;
-  if (kept == 5) {
-    add_polygon(out, 4, side);
-    const Vec3 rest[3] = {out[0], out[3], out[4]};
-    add_polygon(rest, 3, side);
-  } else {
-    add_polygon(out, kept, side);
+  // Rounding may let a sliver cross the plane more than twice: then more than five corners are
+  // left.
+  for (int i = 1; i + 1 < kept; i += 2) {
+    const Vec3 part[4] = {out[0], out[i], out[i + 1], out[std::min(i + 2, kept - 1)]};
+    add_polygon(part, i + 2 < kept ? 4 : 3, side);
   }
 }
 

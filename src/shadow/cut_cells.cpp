@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/irradiance.h"
+
 namespace troffer {
 
 namespace {
@@ -78,13 +80,125 @@ FlatCell cell_of(const Parallelogram& plane, const Polygon& p) {
   return cell;
 }
 
-// The unoccluded term for x and a source point, but for what depends on x alone.
-double term(const ReceiverHull& hull, const Vec3d& x, const Vec3d& y) {
-  const Vec3d d = y - x;
-  const double square = length_squared(d);
-  if (!(square > 0)) return 1e300;
-  const double cosine = hull.is_flat ? std::max(0.0, dot(hull.normal, d)) : std::sqrt(square);
-  return cosine / (square * square);
+// The unoccluded term (over pi) as a function of the point y in the source's plane, for a receiver
+// of a flat hull cos cos / r² = h n·d / r⁴, for one that may face anywhere h / r³; d = y - x, h the
+// receiver's height over the plane.
+class Term {
+ public:
+  Term(const ReceiverHull& hull, const Vec3d& x, const Vec3d& plane_normal, const Vec3d& in_plane)
+      : x_(x),
+        normal_(hull.normal),
+        plane_(plane_normal),
+        height_(dot(plane_normal, x - in_plane)),
+        is_flat_(hull.is_flat) {}
+
+  bool is_lit() const { return height_ > 0; }
+  double at(const Vec3d& y) const {
+    const Vec3d d = y - x_;
+    const double square = length_squared(d);
+    if (!(square > 0)) return 0;
+    if (!is_flat_) return height_ / (square * std::sqrt(square));
+    return height_ * std::max(0.0, dot(normal_, d)) / (square * square);
+  }
+  // The point of the plane where it is largest: along the slope of n·d = c + m s from the foot of
+  // the receiver, (c + m s) / (s² + h²)² is stationary at 3 m s² + 4 c s = m h².
+  Vec3d peak() const {
+    const Vec3d foot = x_ - plane_ * height_;
+    if (!is_flat_) return foot;
+    const Vec3d slope = normal_ - plane_ * dot(normal_, plane_);
+    const double m = length(slope), c = dot(normal_, foot - x_);
+    const double root = std::sqrt(4 * c * c + 3 * m * m * height_ * height_);
+    // the greater root, without a difference of like numbers
+    const double below = c > 0 ? 2 * c + root : 0;
+    const double s = c > 0 ? m * height_ * height_ / below : (m > 0 ? (root - 2 * c) / (3 * m) : 0);
+    return m > 0 ? foot + slope * (s / m) : foot;
+  }
+  // Its largest value on the segment from p to q. With n·d = a s + b and |d|² = A s² + B s + C it
+  // is stationary at 3 a A s² + (a B + 4 b A) s = a C - 2 b B.
+  double most_along(const Vec3d& p, const Vec3d& q) const {
+    const Vec3d e = q - p, d = p - x_;
+    const double A = length_squared(e), B = 2 * dot(d, e), C = length_squared(d);
+    double most = std::max(at(p), at(q));
+    const auto look = [&](double s) {
+      if (s > 0 && s < 1) most = std::max(most, at(p + e * s));
+    };
+    if (!is_flat_) {
+      look(-B / (2 * A));
+      return most;
+    }
+    const double a = dot(normal_, e), b = dot(normal_, d);
+    const double two = 3 * a * A, one = a * B + 4 * b * A, zero = 2 * b * B - a * C;
+    const double root = std::sqrt(std::max(one * one - 4 * two * zero, 0.0));
+    const double large = -0.5 * (one + std::copysign(root, one));
+    look(large / two);
+    look(zero / large);
+    return most;
+  }
+
+ private:
+  Vec3d x_, normal_, plane_;
+  double height_;
+  bool is_flat_;
+};
+
+// Solid angle of a convex polygon as seen from x.
+double solid_angle(std::span<const Vec3d> corners, const Vec3d& x) {
+  double sum = 0;
+  const Vec3d a = corners[0] - x;
+  const double ra = length(a);
+  for (size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Vec3d b = corners[i] - x, c = corners[i + 1] - x;
+    const double rb = length(b), rc = length(c);
+    const double volume = std::abs(dot(a, cross(b - a, c - a)));
+    sum += 2 * std::atan2(volume, ra * rb * rc + dot(a, b) * rc + dot(a, c) * rb + dot(b, c) * ra);
+  }
+  return sum;
+}
+
+// Whether a point of the plane lies in the cell, which is convex.
+bool holds(const FlatCell& cell, const Vec3d& y) {
+  int left = 0, right = 0;
+  const std::span<const Vec3d> c = cell.all_corners();
+  for (size_t i = 0; i < c.size(); ++i) {
+    const double side = dot(cell.plane.normal, cross(c[(i + 1) % c.size()] - c[i], y - c[i]));
+    left += side > 0;
+    right += side < 0;
+  }
+  return left == 0 || right == 0;
+}
+
+double area_of(std::span<const Vec3d> corners) {
+  Vec3d twice;
+  for (size_t i = 1; i + 1 < corners.size(); ++i)
+    twice += cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
+  return length(twice) / 2;
+}
+
+// How the term varies over a cell, for some receivers: the hull's corners and its centre.
+struct Terms {
+  double variation = 1;          // largest value by mean, for the worst of them
+  std::array<double, 9> gain{};  // the exact form factor of the cell
+};
+
+Terms terms_of(const FlatCell& cell, const ReceiverHull& hull) {
+  Terms terms;
+  const std::span<const Vec3d> corners = cell.all_corners();
+  const double area = area_of(corners);
+  for (int r = 0; r <= hull.count; ++r) {
+    const Vec3d& x = r < hull.count ? hull.corners[size_t(r)] : hull.centre;
+    const Term term(hull, x, cell.plane.normal, cell.plane.origin);
+    if (!term.is_lit()) continue;
+    const double gain = hull.is_flat ? polygon_irradiance(corners, x, hull.normal, Sides::both)
+                                     : solid_angle(corners, x);
+    terms.gain[size_t(r)] = gain;
+    if (!(gain > 0)) continue;
+    const Vec3d peak = term.peak();
+    double most = holds(cell, peak) ? term.at(peak) : 0;
+    for (size_t i = 0; i < corners.size(); ++i)
+      most = std::max(most, term.most_along(corners[i], corners[(i + 1) % corners.size()]));
+    terms.variation = std::max(terms.variation, most * area / gain);
+  }
+  return terms;
 }
 
 // The point of the cell's parallelogram nearest to x; exact where its sides are orthogonal.
@@ -93,32 +207,6 @@ Vec3d nearest_point(const Parallelogram& p, const Vec3d& x) {
   const double u = std::clamp(dot(d, p.u) / length_squared(p.u), 0.0, 1.0);
   const double v = std::clamp(dot(d - p.u * u, p.v) / length_squared(p.v), 0.0, 1.0);
   return p.origin + p.u * u + p.v * v;
-}
-
-// How the term varies over a cell, for some receivers: the hull's corners and its centre.
-struct Terms {
-  double variation = 1;          // largest value by mean, for the worst of them
-  std::array<double, 9> gain{};  // mean times area
-};
-
-Terms terms_of(const FlatCell& cell, const ReceiverHull& hull) {
-  const Parallelogram& p = cell.plane;
-  Terms terms;
-  const double area = length(cross(p.u, p.v));
-  for (int r = 0; r <= hull.count; ++r) {
-    const Vec3d& x = r < hull.count ? hull.corners[size_t(r)] : hull.centre;
-    double most = term(hull, x, nearest_point(p, x)), sum = 0;
-    for (const Vec3d& y : cell.all_corners()) most = std::max(most, term(hull, x, y));
-    for (const double u : {1.0 / 6, 3.0 / 6, 5.0 / 6})
-      for (const double v : {1.0 / 6, 3.0 / 6, 5.0 / 6}) {
-        const double t = term(hull, x, p.origin + p.u * u + p.v * v);
-        sum += t;
-        most = std::max(most, t);
-      }
-    terms.variation = std::max(terms.variation, sum > 0 ? 9 * most / sum : 1e30);
-    terms.gain[size_t(r)] = sum / 9 * area;
-  }
-  return terms;
 }
 
 // So far from the receivers that its term varies little.
@@ -148,7 +236,9 @@ FlatCell visible_part(const FlatSource& source, const ReceiverHull& hull) {
     p = clipped(p, dot(hull.normal, s.u), dot(hull.normal, s.v),
                 dot(hull.normal, s.origin) - lowest);
   }
-  return cell_of(source.plane, p);
+  FlatCell cell = cell_of(source.plane, p);
+  cell.is_disk = source.is_disk;
+  return cell;
 }
 
 bool halve(const FlatCell& cell, FlatCell& first, FlatCell& second) {
@@ -160,36 +250,74 @@ bool halve(const FlatCell& cell, FlatCell& first, FlatCell& second) {
   return first.corner_count > 0 && second.corner_count > 0;
 }
 
+namespace {
+
+// A quarter of a disk: its middle and an arc of chords. Corners lie so far out that the area is the
+// quarter's.
+FlatCell quarter(const FlatCell& disk, int which) {
+  constexpr int chords = 9;
+  constexpr double step = 0.5 * pi / chords;
+  const double radius = 0.5 * std::sqrt(step / std::sin(step));
+  Polygon p;
+  p.v[0] = {0.5, 0.5};
+  for (int i = 0; i <= chords; ++i) {
+    const double angle = 0.5 * pi * which + step * i;
+    p.v[size_t(i) + 1] = Vec2d{0.5, 0.5} + Vec2d{std::cos(angle), std::sin(angle)} * radius;
+  }
+  p.count = chords + 2;
+  return cell_of(disk.plane, p);
+}
+
+struct Leaf {
+  FlatCell cell;
+  Terms terms;
+  bool is_final = false;  // cannot be halved
+};
+
+// Puts the parts of `leaf` in its place and behind the others.
+void split(size_t leaf, const ReceiverHull& hull, std::vector<Leaf>& leaves) {
+  const FlatCell whole = leaves[leaf].cell;
+  if (whole.is_disk) {
+    for (int i = 0; i < 4; ++i) {
+      const FlatCell part = quarter(whole, i);
+      const Leaf l{part, terms_of(part, hull)};
+      if (i == 0)
+        leaves[leaf] = l;
+      else
+        leaves.push_back(l);
+    }
+    return;
+  }
+  FlatCell first, second;
+  if (!halve(whole, first, second)) {
+    leaves[leaf].is_final = true;
+    return;
+  }
+  leaves[leaf] = {first, terms_of(first, hull)};
+  leaves.push_back({second, terms_of(second, hull)});
+}
+
+}  // namespace
+
 void cut_cells(const FlatCell& cell, const ReceiverHull& hull, const CellLimits& limits,
                std::vector<FlatCell>& out) {
-  struct Open {
-    FlatCell cell;
-    Terms terms;
-  };
-  std::vector<Open> open{{cell, {}}};
-  if (limits.most_share < 1 || !is_far(cell, hull)) open[0].terms = terms_of(cell, hull);
-  while (open.size() < limits.most_cells) {
-    std::array<double, 9> total{};
-    for (const Open& o : open)
-      for (size_t r = 0; r < total.size(); ++r) total[r] += o.terms.gain[r];
-    // Of the cells that are too large or vary too much, the one that gives most to some receiver.
-    double largest = limits.least_share;
-    Open* chosen = nullptr;
-    for (Open& o : open) {
-      double share = 0;
-      for (size_t r = 0; r < total.size(); ++r)
-        share = std::max(share, total[r] > 0 ? o.terms.gain[r] / total[r] : 0);
-      if (o.terms.variation <= limits.variation && share <= limits.most_share) continue;
-      if (share <= largest) continue;
-      largest = share;
-      chosen = &o;
-    }
-    FlatCell first, second;
-    if (chosen == nullptr || !halve(chosen->cell, first, second)) break;
-    *chosen = {first, terms_of(first, hull)};
-    open.push_back({second, terms_of(second, hull)});
+  if (limits.most_share >= 1 && is_far(cell, hull)) {
+    out.push_back(cell);
+    return;
   }
-  for (const Open& o : open) out.push_back(o.cell);
+  std::vector<Leaf> leaves{{cell, terms_of(cell, hull)}};
+  const Terms whole = leaves[0].terms;
+  const auto is_too_large = [&](const Leaf& l) {
+    double share = 0;
+    for (size_t r = 0; r < whole.gain.size(); ++r)
+      share = std::max(share, whole.gain[r] > 0 ? l.terms.gain[r] / whole.gain[r] : 0);
+    return share > limits.most_share ||
+           (l.terms.variation > limits.variation && share > limits.least_share);
+  };
+  // What is halved gives more than a given share of what is exact and adds up: the loop ends.
+  for (size_t i = 0; i < leaves.size(); ++i)
+    while (!leaves[i].is_final && is_too_large(leaves[i])) split(i, hull, leaves);
+  for (const Leaf& l : leaves) out.push_back(l.cell);
 }
 
 }  // namespace troffer

@@ -21,6 +21,7 @@ struct FlatCell {
   int count = 0;                                   // 0: all of the parallelogram
   std::array<Vec3d, most_source_corners> corners;  // in space
   int corner_count = 0;
+  bool is_disk = false;  // the whole disk inscribed in the parallelogram, whose corners these are
 
   std::span<const Vec2> all_outline() const { return {outline.data(), size_t(count)}; }
   std::span<const Vec3d> all_corners() const { return {corners.data(), size_t(corner_count)}; }
@@ -28,12 +29,12 @@ struct FlatCell {
 
 // A cell is halved while, for some corner of the receivers' hull, the unoccluded term's largest
 // value over it exceeds its mean by more than the factor `variation`, and the cell gives more than
-// `least_share` of all that the source gives; or while it gives more than `most_share`.
+// `least_share` of all that the source gives; or while it gives more than `most_share`. Shares are
+// those of exact form factors, so that there are no more than about 9 / least_share cells.
 struct CellLimits {
   double variation = 3;
   double least_share = 0.02;
   double most_share = 1;
-  size_t most_cells = 128;
 };
 
 // The part of the source above the horizon of flat receivers (all of it for others), as one cell;
@@ -43,7 +44,8 @@ FlatCell visible_part(const FlatSource& source, const ReceiverHull& hull);
 // Halves `cell` along its longer side. False where a half would have no area.
 bool halve(const FlatCell& cell, FlatCell& first, FlatCell& second);
 
-// Appends the leaves of the bintree over `cell`. A disk stays whole.
+// Appends the leaves of the bintree over `cell`. A disk that does not stay whole is cut into
+// quarters first: polygons whose arcs are strings of chords about them, with the arcs' areas.
 void cut_cells(const FlatCell& cell, const ReceiverHull& hull, const CellLimits& limits,
                std::vector<FlatCell>& out);
 

@@ -76,19 +76,22 @@ float apparent_size(const Quad& q, const Vec3& x) {
 
 void shorten_candidates(const FoundFacets& found, const Vec3d& centre, size_t most,
                         const ShadowScene& scene, std::vector<FacetToAdd>& facets) {
-  for (const FoundFacets::Entry& e : found.entries()) {
-    const bool is_known =
-        std::any_of(facets.begin(), facets.end(), [&](const auto& f) { return f.id == e.id; });
-    if (!is_known) facets.push_back({scene.facet(e.id), e.id, false});
-  }
+  std::vector<uint32_t> met;
+  for (const FoundFacets::Entry& e : found.entries()) met.push_back(e.id);
+  std::sort(met.begin(), met.end());
+  const auto is_met = [&](uint32_t id) { return std::binary_search(met.begin(), met.end(), id); };
+  std::vector<uint32_t> gathered;
+  for (const FacetToAdd& f : facets)
+    if (is_met(f.id)) gathered.push_back(f.id);
+  std::sort(gathered.begin(), gathered.end());
+  for (const uint32_t id : met)
+    if (!std::binary_search(gathered.begin(), gathered.end(), id))
+      facets.push_back({scene.facet(id), id, false});
   if (facets.size() <= most) return;
   const Vec3 x(centre);
   std::vector<std::pair<float, uint32_t>> order;
-  for (uint32_t i = 0; i < facets.size(); ++i) {
-    const bool is_found = std::any_of(found.entries().begin(), found.entries().end(),
-                                      [&](const auto& e) { return e.id == facets[i].id; });
-    order.emplace_back(is_found ? -1e30f : -apparent_size(facets[i].quad, x), i);
-  }
+  for (uint32_t i = 0; i < facets.size(); ++i)
+    order.emplace_back(is_met(facets[i].id) ? -1e30f : -apparent_size(facets[i].quad, x), i);
   std::nth_element(order.begin(), order.begin() + std::ptrdiff_t(most), order.end());
   std::vector<FacetToAdd> kept;
   for (size_t i = 0; i < most; ++i) kept.push_back(facets[order[i].second]);
@@ -152,7 +155,7 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
     const size_t half = halve_members(task.cluster, members);
     for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
       flat(side, hull_of(task.cluster, side), cell, is_whole, halvings - 1);
-  } else if (!source.is_disk && halve(cell, first, second)) {
+  } else if (!cell.is_disk && halve(cell, first, second)) {
     flat(members, hull, first, false, halvings - 1);
     flat(members, hull, second, false, halvings - 1);
   } else {

@@ -21,7 +21,7 @@ void set_list(const MaskFrame& frame, std::span<const FacetToAdd> facets, FacetL
 // The whole source's light, or that of the cell alone, set in `memory`.
 std::span<const float> unoccluded_of(const SourceTask& task, const SourcePart& part,
                                      const FlatCell& cell, PartMemory& memory) {
-  const bool is_all = task.is_disk() || (part.is_whole && memory.cells.size() == 1);
+  const bool is_all = memory.cells.size() == 1 && (part.is_whole || cell.is_disk);
   if (is_all) return task.unoccluded;
   unoccluded_light(task.cluster, *task.request.flat, cell.all_corners(), memory.unoccluded);
   return memory.unoccluded;
@@ -32,10 +32,7 @@ std::span<const float> unoccluded_of(const SourceTask& task, const SourcePart& p
 void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
                       PartMemory& memory, SourceResults& results) {
   memory.cells.clear();
-  if (task.is_disk())
-    memory.cells.push_back(part.cell);
-  else
-    cut_cells(part.cell, part.hull, task.options.cells, memory.cells);
+  cut_cells(part.cell, part.hull, task.options.cells, memory.cells);
   for (const FlatCell& cell : memory.cells) {
     ++results.counters.cells;
     stream = hash_of(stream, 1u);
@@ -46,7 +43,7 @@ void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& 
     if (memory.members.empty()) continue;
     const MaskFrame frame(cell.plane, task.options.lattice,
                           is_mirrored(stream + task.request.stream, task, part.members[0]),
-                          part.hull.centre, cell.all_outline(), task.is_disk());
+                          part.hull.centre, cell.all_outline(), cell.is_disk);
     if (!part.is_complete) results.rays.frames.push_back(frame);
     set_list(frame, part.facets, memory.settle.lists[0]);
     const bool is_all = memory.members.size() == part.members.size();

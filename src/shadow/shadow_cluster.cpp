@@ -56,9 +56,19 @@ size_t halve_members(const ShadowCluster& cluster, std::span<uint32_t> members) 
 void unoccluded_light(const ShadowCluster& cluster, const FlatSource& source,
                       std::span<const Vec3d> outline, std::vector<float>& values) {
   values.resize(cluster.size());
+  const Vec3d& normal = source.plane.normal;
+  if (!source.is_disk || cluster.arrays.horizons.empty())
+    return unoccluded_irradiance(outline, normal, cluster.arrays, values.data());
+  ReceiverArrays without = cluster.arrays;
+  without.horizons.clear();
+  unoccluded_irradiance(outline, normal, without, values.data());
+}
+
+void unoccluded_light(const ShadowCluster& cluster, const FlatSource& source,
+                      std::vector<float>& values) {
+  if (!source.is_disk) return unoccluded_light(cluster, source, source.corners(), values);
+  values.resize(cluster.size());
   const Parallelogram& p = source.plane;
-  if (!source.is_disk)
-    return unoccluded_irradiance(outline, p.normal, cluster.arrays, values.data());
   const Vec3d centre = p.origin + (p.u + p.v) * 0.5;
   const double radius = 0.5 * length(p.u);
   for (size_t i = 0; i < cluster.size(); ++i) {
@@ -68,11 +78,6 @@ void unoccluded_light(const ShadowCluster& cluster, const FlatSource& source,
         is_before ? float(disk_irradiance(centre, p.normal, radius, x, cluster.arrays.normal_at(i)))
                   : 0;
   }
-}
-
-void unoccluded_light(const ShadowCluster& cluster, const FlatSource& source,
-                      std::vector<float>& values) {
-  unoccluded_light(cluster, source, source.corners(), values);
 }
 
 void unoccluded_light(const ShadowCluster& cluster, const SphereSource& source,

@@ -40,7 +40,8 @@ ReceiverHull hull_of(const ShadowCluster& cluster, std::span<const uint32_t> mem
 size_t halve_members(const ShadowCluster& cluster, std::span<uint32_t> members);
 
 // values[i]: projected solid angle of a source from receiver i, nothing hidden, sr. `outline`: the
-// part of the source that counts; a disk counts whole.
+// part of the source that counts, a polygon. Round sources do not know horizons other than that of
+// the normal, nor do polygons that are parts of a disk.
 void unoccluded_light(const ShadowCluster& cluster, const FlatSource& source,
                       std::span<const Vec3d> outline, std::vector<float>& values);
 void unoccluded_light(const ShadowCluster& cluster, const FlatSource& source,
