@@ -13,8 +13,6 @@ namespace {
 // From this error on the coarse lattice does, whose own error is up to .005 (docs/certified.md);
 // specks and wires that fall between its samples would show below.
 constexpr double coarse_from = 0.02;
-// Below these, the fine lattice lies over quarters and sixteenths of sources.
-constexpr double quarters_below = 0.002, sixteenths_below = 0.0007;
 
 }  // namespace
 
@@ -28,7 +26,8 @@ CertifiedSettings certified_settings(double error, size_t lights, int viewing_ra
   CertifiedSettings s;
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(lights, 1))));
   s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
-  s.estimator.cells.most_share = error < sixteenths_below ? 0.1 : error < quarters_below ? 0.4 : 1;
+  // The errors of a pixel's viewing rays are independent.
+  s.estimator.mask_error = float(error * std::sqrt(std::clamp(viewing_rays, 1, 4)));
   s.error = error;
   s.viewing_rays = viewing_rays;
   s.estimator.residual_error = float(error);

@@ -57,9 +57,18 @@ void ShadowWorld::set_rays(std::span<const ShadowSegment> segments) {
 
 void ShadowWorld::occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
                            std::span<uint8_t> is_hidden) {
-  set_rays(segments);
-  for (size_t i = 0; i < segments.size(); ++i) rays_[i].t_max = before[i];
-  tracer_.occluded(rays_, is_hidden, Coherence::coherent);
+  segments_.clear();
+  segments_.make_room(segments.size());
+  for (size_t a = 0; a < 3; ++a) {
+    float* from = segments_.end(a);
+    float* way = segments_.end(a + 3);
+    for (size_t i = 0; i < segments.size(); ++i) {
+      from[i] = segments[i].from[a];
+      way[i] = (segments[i].to[a] - segments[i].from[a]) * before[i];
+    }
+  }
+  segments_.grow(segments.size());
+  tracer_.occluded(segments_, is_hidden);
 }
 
 void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) {

@@ -35,6 +35,7 @@ class ShadowWorld final : public ShadowScene {
   uint64_t visited_nodes_ = 0;
   Occluders::Found found_;
   std::vector<Ray> rays_;
+  Segments segments_;
   std::vector<Hit> hits_;
 };
 

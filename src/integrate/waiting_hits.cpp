@@ -24,7 +24,8 @@ void WaitingHits::add(const Walk& walk, const Vertex& v, const Rgb& weight, bool
   const Vec3& horizon = v.geometric_normal;
   receivers.push_back({v.surface.position, horizon, v.frame.normal,
                        offset_origin(v.surface, horizon),
-                       hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1)});
+                       hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1),
+                       hash_combine(walk.stream, walk.vertex), walk.sample});
   positions.push_back(v.surface.position);
   horizons.push_back(horizon);
   weights.push_back(weight);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace troffer {
 
@@ -16,7 +17,6 @@ bool begin_source(const SourceTask& task, CertifiedMemory& m) {
   for (uint32_t i = 0; i < n; ++i) {
     if (!(m.unoccluded[i] > 0)) continue;
     m.members.push_back(i);
-    m.allowed[i] += task.request.brightness * m.unoccluded[i];
     m.wanted_points[i] = task.integrand == nullptr ? 0 : task.integrand->points(task.number, i);
   }
   return !m.members.empty();
@@ -55,15 +55,15 @@ void settle_flat(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m)
   m.queue.sources.push_back(target);
   const size_t first_ray = m.queue.open.size();
   divide_flat(task, m.members, hull, whole, scene, m.gather, m.counters);
-  SourceResults results{m.sums, m.queue, m.counters};
-  uint64_t stream = task.request.stream;
-  for (const SourcePart& part : m.gather.parts.all())
-    settle_flat_part(task, part, stream, m.part, results);
   FoundFacets& found = *task.request.found;
-  if (found.is_hopeless && found.rim == FoundFacets::Rim::unknown)
+  if (found.is_hopeless() && found.rim == FoundFacets::Rim::unknown)
     found.rim = has_rim(source, target.tolerance, task.options.most_found, scene)
                     ? FoundFacets::Rim::some
                     : FoundFacets::Rim::none;
+  SourceResults results{m.sums, m.queue, m.counters};
+  uint64_t stream = task.request.stream;
+  for (const SourcePart& part : m.gather.parts.all())
+    settle_flat_part(task, part, stream, scene, m.part, results);
   scale_rays(first_ray, m.sums, m.unoccluded, m.queue);
 }
 
@@ -86,11 +86,26 @@ struct Waiting {
   uint32_t request, source;  // `source`: in the queue
   size_t first;              // of its answers in CertifiedMemory::waiting
 };
+// When so many pairs wait, their rays are cast.
+constexpr size_t most_waiting = 1 << 16;
+
+// What rays of the pairs at hand may err by, of all that a receiver's rays may: by their share of
+// its unoccluded light.
+void set_allowed(const CertifiedOptions& options, CertifiedMemory& m) {
+  m.allowed.assign(m.total.size(), 0);
+  for (const RayQueue::OpenPair& p : m.queue.open)
+    m.allowed[p.member] += m.queue.sources[p.source].brightness * p.light;
+  for (size_t i = 0; i < m.allowed.size(); ++i) {
+    const float share = m.total[i] > 0 ? std::min(m.allowed[i] / m.total[i], 1.0f) : 1;
+    m.allowed[i] =
+        options.residual_error * m.total[i] * (m.is_cast_in_parts ? std::sqrt(share) : 1);
+  }
+}
 
 // 6. What rays find completes the answers that wait.
-void finish_by_rays(std::span<const Waiting> waiting, size_t receivers, ShadowScene& scene,
+void finish_by_rays(std::vector<Waiting>& waiting, size_t receivers, ShadowScene& scene,
                     const CertifiedOptions& options, CertifiedMemory& m, const TakeAnswers& take) {
-  for (float& e : m.allowed) e *= options.residual_error;
+  set_allowed(options, m);
   std::vector<size_t> first_of_source(m.queue.sources.size(), 0);
   for (const Waiting& w : waiting) first_of_source[w.source] = w.first;
   for (const RayAnswer& a :
@@ -98,6 +113,65 @@ void finish_by_rays(std::span<const Waiting> waiting, size_t receivers, ShadowSc
     add_rays(a, m.waiting[first_of_source[a.source] + a.member]);
   for (const Waiting& w : waiting)
     take(w.request, std::span(m.waiting).subspan(w.first, receivers));
+  waiting.clear();
+  m.queue.clear();
+  m.waiting.clear();
+}
+
+// Sets what all requests would send, and their order: the strongest first.
+void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest> requests,
+                     CertifiedMemory& m) {
+  m.all_unoccluded.clear();
+  m.total.assign(cluster.size(), 0);
+  std::vector<double> strength;
+  for (const LightRequest& request : requests) {
+    if (request.flat != nullptr)
+      unoccluded_light(cluster, *request.flat, m.unoccluded);
+    else
+      unoccluded_light(cluster, *request.sphere, m.unoccluded);
+    m.all_unoccluded.insert(m.all_unoccluded.end(), m.unoccluded.begin(), m.unoccluded.end());
+    double sum = 0;
+    for (size_t i = 0; i < cluster.size(); ++i) {
+      const float light = request.brightness * m.unoccluded[i];
+      m.total[i] += light;
+      sum += double(light);
+    }
+    strength.push_back(sum);
+  }
+  m.order.resize(requests.size());
+  std::iota(m.order.begin(), m.order.end(), 0u);
+  std::stable_sort(m.order.begin(), m.order.end(),
+                   [&](uint32_t a, uint32_t b) { return strength[a] > strength[b]; });
+}
+
+// A ray costs about as much as a dozen facets in a mask. At an error E, a source that gives the
+// share s of the light is worth s / 4 E² rays at most, each with a variance of up to ¼: more facets
+// than that are not worth a mask.
+Promise promise_of(const LightRequest& request, const CertifiedOptions& options,
+                   CertifiedMemory& m) {
+  constexpr double facets_per_ray = 12, least_budget = 512;
+  Promise p;
+  p.error = options.mask_error;
+  if (!(p.error > 0)) return p;
+  double own = 0, total = 0;
+  m.seen.assign(m.total.size(), 0);
+  m.rest.assign(m.total.size(), 0);
+  m.floor.assign(m.total.size(), 0);
+  const float inverse = request.brightness > 0 ? 1 / request.brightness : 0;
+  for (size_t i = 0; i < m.total.size(); ++i) {
+    own += double(request.brightness * m.unoccluded[i]);
+    total += double(m.total[i]);
+    m.done[i] += request.brightness * m.unoccluded[i];
+    m.seen[i] = m.light[i] * inverse;
+    m.rest[i] = std::max(m.total[i] - m.done[i], 0.0f) * inverse;
+  }
+  const double share = total > 0 ? own / total : 1;
+  p.budget = std::max(share * facets_per_ray / (4 * sqr(double(p.error))), least_budget);
+  p.seen = m.seen;
+  p.rest = m.rest;
+  p.floor = m.floor;
+  p.sources = double(m.order.size());
+  return p;
 }
 
 }  // namespace
@@ -107,19 +181,22 @@ void certified_light(const ShadowCluster& cluster, std::span<const LightRequest>
                      const CertifiedOptions& options, CertifiedMemory& m, const TakeAnswers& take) {
   const size_t n = cluster.size();
   if (n == 0) return;
-  m.allowed.assign(n, 0);
+  find_unoccluded(cluster, requests, m);
+  m.light.assign(n, 0);
+  m.done.assign(n, 0);
+  m.is_cast_in_parts = false;
   m.queue.clear();
   m.waiting.clear();
   m.wanted_points.resize(n);
   m.answers.resize(n);
   std::vector<Waiting> waiting;
-  for (uint32_t r = 0; r < requests.size(); ++r) {
+  for (const uint32_t r : m.order) {
     const LightRequest& request = requests[r];
-    if (request.flat != nullptr)
-      unoccluded_light(cluster, *request.flat, m.unoccluded);
-    else
-      unoccluded_light(cluster, *request.sphere, m.unoccluded);
-    const SourceTask task{options, cluster, request, r, m.unoccluded, integrand, m.wanted_points};
+    const auto first = m.all_unoccluded.begin() + std::ptrdiff_t(r * n);
+    m.unoccluded.assign(first, first + std::ptrdiff_t(n));
+    const SourceTask task{
+        options,      cluster,   request,         r,
+        m.unoccluded, integrand, m.wanted_points, promise_of(request, options, m)};
     const size_t queued = m.queue.size();
     if (begin_source(task, m)) {
       if (request.flat != nullptr)
@@ -127,13 +204,19 @@ void certified_light(const ShadowCluster& cluster, std::span<const LightRequest>
       else
         settle_sphere(task, scene, m);
     }
-    for (size_t i = 0; i < n; ++i) set_answer(m.sums[i], m.unoccluded[i], m.answers[i]);
+    for (size_t i = 0; i < n; ++i) {
+      set_answer(m.sums[i], m.unoccluded[i], m.answers[i]);
+      m.light[i] += request.brightness * m.answers[i].visible * m.answers[i].unoccluded;
+    }
     if (m.queue.size() == queued) {
       take(r, m.answers);
       continue;
     }
     waiting.push_back({r, uint32_t(m.queue.sources.size() - 1), m.waiting.size()});
     m.waiting.insert(m.waiting.end(), m.answers.begin(), m.answers.end());
+    if (m.queue.size() <= most_waiting) continue;
+    m.is_cast_in_parts = true;
+    finish_by_rays(waiting, n, scene, options, m, take);
   }
   finish_by_rays(waiting, n, scene, options, m, take);
 }

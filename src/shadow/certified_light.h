@@ -30,13 +30,20 @@ namespace troffer {
 // Memory alone, one for each thread, and what has been counted: nothing that a call leaves here
 // changes the next one's answers.
 struct CertifiedMemory {
-  std::vector<float> unoccluded;        // per receiver, of the source at hand
-  std::vector<uint32_t> wanted_points;  // per receiver
-  std::vector<uint32_t> members;        // whom the source lights
-  std::vector<CellSum> sums;            // per receiver
+  std::vector<float> unoccluded;         // per receiver, of the source at hand
+  std::vector<float> all_unoccluded;     // … of all requests, one after the other
+  std::vector<uint32_t> order;           // of requests
+  std::vector<float> light;              // per receiver: brightness × what has been seen so far
+  std::vector<float> done;               // … what has been asked for so far, nothing hidden
+  std::vector<float> seen, rest, floor;  // per receiver: of the promise at hand
+  std::vector<uint32_t> wanted_points;   // per receiver
+  std::vector<uint32_t> members;         // whom the source lights
+  std::vector<CellSum> sums;             // per receiver
   GatherMemory gather;
   PartMemory part;
-  std::vector<float> allowed;  // per receiver: error allowed to its rays
+  std::vector<float> total;       // per receiver: brightness × unoccluded light of all requests
+  std::vector<float> allowed;     // per receiver: error allowed to its rays
+  bool is_cast_in_parts = false;  // the rays of the cluster, some sources after the others
   RayQueue queue;
   RayMemory rays;
   std::vector<SourceVisibility> answers;  // of the source at hand, or of all that wait for rays
@@ -48,8 +55,8 @@ struct CertifiedMemory {
 using TakeAnswers =
     std::function<void(uint32_t request, std::span<const SourceVisibility> answers)>;
 
-// Answers each request once: in their order those that need no ray, then in their order those that
-// wait for rays, which are cast for all of them together. integrand: null if all receivers want
+// Answers each request once, the strongest first: those that need no ray, then those that wait for
+// rays, which are cast for many of them together. integrand: null if all receivers want
 // visibility alone. Deterministic in the cluster, the requests and what these have found, which is
 // read first and added to at the end.
 void certified_light(const ShadowCluster& cluster, std::span<const LightRequest> requests,

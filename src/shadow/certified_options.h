@@ -18,11 +18,15 @@ struct RayLimits {
 
 struct CertifiedOptions {
   MaskLattice lattice = coarse_lattice;
-  size_t longest_list = 1024;  // facets gathered for a cluster
+  size_t longest_list = 16384;  // facets gathered for a cluster, and no more than their masks are
+                                // worth by `mask_error`
   int most_halvings = 3;       // of cluster or source, one within the other, where lists are longer
   size_t split_above = 24;     // facets in a list that make halving a cluster worth while
   size_t smallest_cluster = 16;  // receivers
   CellLimits cells;
+  // Standard error allowed to the masks of a receiver, relative to the light that arrives; 0: what
+  // comes of `lattice` and `cells`. Kept unless it takes more facets than rays would be cheaper.
+  float mask_error = 0;
   // Standard error allowed to rays of a receiver, relative to what all sources of the cluster would
   // send unoccluded: kept unless that takes more rays than the limits allow.
   float residual_error = 0.01f;

@@ -21,6 +21,12 @@ void FoundFacets::add(std::vector<uint32_t>& ids) {
   }
 }
 
+bool FoundFacets::is_hopeless_at(const Vec3d& centre, double radius) const {
+  return std::any_of(hopeless_.begin(), hopeless_.end(), [&](const Place& p) {
+    return length(p.centre - centre) <= 2 * (p.radius + radius);
+  });
+}
+
 void FoundFacets::trim(size_t most) {
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& a, const Entry& b) { return a.hits > b.hits; });

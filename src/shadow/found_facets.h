@@ -2,9 +2,12 @@
 // long.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "base/vec.h"
 
 namespace troffer {
 
@@ -20,13 +23,45 @@ class FoundFacets {
   // Keeps the `most` most hit, and halves the counts.
   void trim(size_t most);
   const std::vector<Entry>& entries() const { return entries_; }
-  bool is_hopeless = false;  // a cluster's lists stayed too long
+
+  // A cluster about `centre` within `radius` had lists that stayed too long; and whether one has,
+  // that close.
+  void note_hopeless(const Vec3d& centre, double radius) { hopeless_.push_back({centre, radius}); }
+  bool is_hopeless_at(const Vec3d& centre, double radius) const;
+  bool is_hopeless() const { return !hopeless_.empty(); }
+
+  // What rays straight to the source have found: halved with each cluster, so that it is that of
+  // the last few.
+  class Dense {
+   public:
+    void note(double light, double unoccluded, double variance, double random_variance) {
+      light_ = 0.5 * light_ + light;
+      unoccluded_ = 0.5 * unoccluded_ + unoccluded;
+      variance_ = 0.5 * variance_ + variance;
+      random_variance_ = 0.5 * random_variance_ + random_variance;
+    }
+    float open_share() const { return unoccluded_ > 0 ? float(light_ / unoccluded_) : 0.5f; }
+    // Their variance over that of as many independent ones.
+    float gain() const {
+      return random_variance_ > 0 ? std::clamp(float(variance_ / random_variance_), 0.1f, 1.0f)
+                                  : 0.5f;
+    }
+
+   private:
+    double light_ = 0, unoccluded_ = 0, variance_ = 0, random_variance_ = 0;
+  };
+  Dense dense;
   // Whether anything that rises over the source's plane comes within rounding of the source: rays
   // must then look at it to its end.
   enum class Rim : uint8_t { unknown, none, some };
   Rim rim = Rim::unknown;
 
  private:
+  struct Place {
+    Vec3d centre;
+    double radius;
+  };
+  std::vector<Place> hopeless_;
   std::vector<Entry> entries_;
 };
 

@@ -100,6 +100,10 @@ void shorten_candidates(const FoundFacets& found, const Vec3d& centre, size_t mo
 
 namespace {
 
+double radius_of(const ReceiverHull& hull) {
+  return 0.5 * diameter({hull.corners.data(), size_t(hull.count)});
+}
+
 // What a division carries along.
 struct Division {
   const SourceTask& task;
@@ -107,15 +111,19 @@ struct Division {
   GatherMemory& memory;
   CertifiedCounters& counters;
 
-  bool is_last_try(int halvings) const { return halvings == 0 || task.request.found->is_hopeless; }
+  bool is_last_try(int halvings, const ReceiverHull& hull) const {
+    return halvings == 0 || task.request.found->is_hopeless_at(hull.centre, radius_of(hull));
+  }
   // A last try keeps few, for what it finds stays incomplete.
   size_t most_facets(bool is_last) const {
     const CertifiedOptions& o = task.options;
-    return is_last ? std::min(o.longest_list, 4 * o.most_found) : o.longest_list;
+    size_t most = o.longest_list;
+    if (task.promise.error > 0) most = std::min(most, size_t(2 * task.promise.budget));
+    return is_last ? std::min(most, 4 * o.most_found) : most;
   }
-  void cut_list(const Vec3d& centre) {
-    task.request.found->is_hopeless = true;
-    shorten_candidates(*task.request.found, centre, task.options.most_found, scene,
+  void cut_list(const ReceiverHull& hull) {
+    task.request.found->note_hopeless(hull.centre, radius_of(hull));
+    shorten_candidates(*task.request.found, hull.centre, task.options.most_found, scene,
                        memory.candidates.facets);
   }
   // What has been gathered is a part's list.
@@ -125,7 +133,7 @@ struct Division {
     part.hull = hull;
     part.facets.swap(memory.candidates.facets);
     part.is_complete = memory.candidates.is_complete;
-    part.is_hopeless = task.request.found->is_hopeless;
+    part.is_hopeless = memory.candidates.is_too_long;
     return part;
   }
 
@@ -137,11 +145,11 @@ struct Division {
 // Where there are too many facets, halves the larger of the two, receivers or source.
 void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
                     bool is_whole, int halvings) {
-  const bool is_last = is_last_try(halvings);
+  const bool is_last = is_last_try(halvings, hull);
   const FlatSource& source = *task.request.flat;
   gather_facets(hull, cell.all_corners(), source.plane.normal, most_facets(is_last), scene,
                 memory.candidates, counters);
-  if (is_last && memory.candidates.is_too_long) cut_list(hull.centre);
+  if (is_last && memory.candidates.is_too_long) cut_list(hull);
   if (is_last || !memory.candidates.is_too_long) {
     SourcePart& part = add_part(members, hull);
     part.cell = cell;
@@ -164,7 +172,7 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
 }
 
 void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int halvings) {
-  const bool is_last = is_last_try(halvings);
+  const bool is_last = is_last_try(halvings, hull);
   const SphereSource& source = *task.request.sphere;
   const bool is_too_near = is_near(source, hull);
   ShadowCandidates& c = memory.candidates;
@@ -180,7 +188,7 @@ void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int
       sphere(side, hull_of(task.cluster, side), halvings - 1);
     return;
   }
-  if (c.is_too_long) cut_list(hull.centre);
+  if (c.is_too_long) cut_list(hull);
   add_part(members, hull);
 }
 

@@ -18,7 +18,7 @@ struct SourcePart {
   bool is_whole = true;  // it is all of the source that stands above a common horizon
   std::vector<FacetToAdd> facets;
   bool is_complete = true;   // nothing else can hide anything
-  bool is_hopeless = false;  // lists of this source have stayed too long, here or before
+  bool is_hopeless = false;  // the list was too long and has been cut
 };
 
 // The parts that one source comes to; keeps their memory from source to source.

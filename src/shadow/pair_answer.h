@@ -36,6 +36,7 @@ struct CellSum {
   Rgb value;
   float value_variance = 0;
   uint8_t kinds = 0;  // a bit for each answer of a cell
+  uint32_t rays = 0;  // cast already
 
   void add(float cell_unoccluded, float share, float share_variance, ShadowAnswer kind) {
     light += cell_unoccluded * share;
@@ -53,6 +54,7 @@ inline void set_answer(const CellSum& sum, float unoccluded, SourceVisibility& a
   a.unoccluded = unoccluded;
   a.value = sum.value;
   a.value_variance = sum.value_variance;
+  a.rays = sum.rays;
   if (sum.kinds == 0 || !(sum.unoccluded > 0)) return;
   if (sum.kinds == answer_bit(ShadowAnswer::lit)) {
     a.visible = 1;
@@ -61,7 +63,8 @@ inline void set_answer(const CellSum& sum, float unoccluded, SourceVisibility& a
     a.answer = ShadowAnswer::dark;
   } else {
     const float square = sum.unoccluded * sum.unoccluded;
-    a.visible = std::min(sum.light / sum.unoccluded, 1.0f);
+    a.visible = sum.light / sum.unoccluded;
+    if (sum.rays == 0) a.visible = std::min(a.visible, 1.0f);  // of rays the mean would suffer
     a.variance = square > 0 ? sum.variance / square : 0;  // squares of tiny lights are none
     a.answer = (sum.kinds & answer_bit(ShadowAnswer::mixed)) != 0 ? ShadowAnswer::mixed
                                                                   : ShadowAnswer::masked;

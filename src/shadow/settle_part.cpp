@@ -1,5 +1,7 @@
 #include "shadow/settle_part.h"
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "shadow/sphere_outline.h"
 
@@ -27,13 +29,11 @@ std::span<const float> unoccluded_of(const SourceTask& task, const SourcePart& p
   return memory.unoccluded;
 }
 
-}  // namespace
-
-void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
-                      PartMemory& memory, SourceResults& results) {
-  memory.cells.clear();
-  cut_cells(part.cell, part.hull, task.options.cells, memory.cells);
-  for (const FlatCell& cell : memory.cells) {
+void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& stream,
+                     PartMemory& memory, SourceResults& results) {
+  plan_cells(task, part, hash_of(stream, task.request.stream, part.members[0]), memory.pilots,
+             memory.settle, memory.cells);
+  for (const auto& [cell, lattice] : memory.cells) {
     ++results.counters.cells;
     stream = hash_of(stream, 1u);
     const std::span<const float> unoccluded = unoccluded_of(task, part, cell, memory);
@@ -41,7 +41,7 @@ void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& 
     for (const uint32_t m : part.members)
       if (unoccluded[m] > 0) memory.members.push_back(m);
     if (memory.members.empty()) continue;
-    const MaskFrame frame(cell.plane, task.options.lattice,
+    const MaskFrame frame(cell.plane, lattice,
                           is_mirrored(stream + task.request.stream, task, part.members[0]),
                           part.hull.centre, cell.all_outline(), cell.is_disk);
     if (!part.is_complete) results.rays.frames.push_back(frame);
@@ -51,6 +51,32 @@ void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& 
                 memory.members, is_all ? part.hull : hull_of(task.cluster, memory.members),
                 memory.settle, results);
   }
+}
+
+// Whether one of the facets hides all of the part from all of its members.
+bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memory) {
+  const MaskFrame frame(part.cell.plane, coarse_lattice, false, part.hull.centre,
+                        part.cell.all_outline(), part.cell.is_disk);
+  set_list(frame, part.facets, memory.lists[0]);
+  return certify({task, frame, task.unoccluded, 0, false, true}, part.hull, memory.lists[0],
+                 memory.flags, memory.lists[1]) == Certificate::dark;
+}
+
+}  // namespace
+
+void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
+                      ShadowScene& scene, PartMemory& memory, SourceResults& results) {
+  if (!part.is_hopeless || is_dark(task, part, memory.settle))
+    return settle_by_masks(task, part, stream, memory, results);
+  // An integrand wants to know which points are open.
+  SourcePart others = part;
+  const auto with_values =
+      std::stable_partition(others.members.begin(), others.members.end(),
+                            [&](uint32_t m) { return task.wanted_points[m] == 0; });
+  const std::vector<uint32_t> members(others.members.begin(), with_values);
+  others.members.erase(others.members.begin(), with_values);
+  cast_direct_rays(task, part, members, scene, memory.rays, results);
+  if (!others.members.empty()) settle_by_masks(task, others, stream, memory, results);
 }
 
 void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& memory,

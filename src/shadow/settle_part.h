@@ -7,21 +7,24 @@
 #include <span>
 #include <vector>
 
-#include "shadow/gather_facets.h"
-#include "shadow/settle_cell.h"
+#include "shadow/direct_rays.h"
+#include "shadow/plan_cells.h"
 
 namespace troffer {
 
 struct PartMemory {
-  std::vector<FlatCell> cells;
+  std::vector<PlannedCell> cells;
+  PilotMemory pilots;
   std::vector<float> unoccluded;  // per receiver, of a cell
   std::vector<uint32_t> members;  // whom the cell lights
   SettleMemory settle;
+  DirectRayMemory rays;
 };
 
-// stream: hash that each cell of the source takes on.
+// stream: hash that each cell of the source takes on. Of parts whose lists were too long, one facet
+// may prove that all is dark; else rays are cast now.
 void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
-                      PartMemory& memory, SourceResults& results);
+                      ShadowScene& scene, PartMemory& memory, SourceResults& results);
 // Facets that may enter the sphere leave the part's list, which is then not complete.
 void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& memory,
                         SourceResults& results);

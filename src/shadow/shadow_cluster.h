@@ -19,6 +19,9 @@ struct ShadowReceiver {
   Vec3 normal;      // unit; of the cosine
   Vec3 origin;      // where rays start: position, moved off its surface along the horizon's normal
   uint64_t stream;  // hash of pixel and sample
+  // The name of the sequence that the samples of a pixel share, and which of them this is; 0: none.
+  uint64_t pixel = 0;
+  uint32_t sample = 0;
 };
 
 struct ShadowCluster {

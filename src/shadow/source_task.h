@@ -54,6 +54,19 @@ struct LightRequest {
   FoundFacets* found = nullptr;  // what earlier clusters have learnt; this one adds to it
 };
 
+// What the masks of one of n sources may err by, and may cost. Where receivers see the light `seen`
+// of sources that came before, in sr of this one, and o of this one, together s, the variance may
+// be error² s max(o, s / 2n), or error² floor² where that is more: over all sources, in any
+// order, 1.5 times error² of the square of all light at most.
+struct Promise {
+  float error = 0;                // relative to the light that arrives; 0: nothing is asked
+  double budget = 0;              // facets over which a receiver's masks may go
+  std::span<const float> seen{};  // per receiver
+  std::span<const float> rest{};  // … and what those that come after would send, nothing hidden
+  std::span<const float> floor{};
+  double sources = 1;  // n
+};
+
 struct SourceTask {
   const CertifiedOptions& options;
   const ShadowCluster& cluster;
@@ -62,6 +75,7 @@ struct SourceTask {
   std::span<const float> unoccluded;        // per receiver, of the whole source, sr
   ShadowIntegrand* integrand;               // null: nobody has one
   std::span<const uint32_t> wanted_points;  // per receiver, of the integrand
+  Promise promise{};
 
   bool is_disk() const { return request.flat != nullptr && request.flat->is_disk; }
   // Unoccluded light of polygons knows every horizon, that of round shapes that of the normal only:

@@ -2,8 +2,6 @@
 
 namespace troffer {
 
-namespace {
-
 // What lies in the source's plane hides nothing of it: the source itself, and what it is set into.
 // The shaft and the masks draw the line at the same height.
 bool is_free(const RaySource& source, const ShadowSegment& segment, const ShadowHit& hit,
@@ -17,6 +15,8 @@ bool is_free(const RaySource& source, const ShadowSegment& segment, const Shadow
   return true;
 }
 
+namespace {
+
 // Any occluder will do where nobody wants to know which one it was: rays that end just before the
 // source. Those that are free go the rest of the way if there is anything in it.
 void trace_without_names(std::span<const RaySource> sources, RayPlan& plan, ShadowScene& scene,
@@ -27,7 +27,7 @@ void trace_without_names(std::span<const RaySource> sources, RayPlan& plan, Shad
   t.picked_segments.clear();
   for (const RayGroup& g : plan.groups) {
     const RaySource& s = sources[g.source];
-    if (!s.found->is_hopeless || s.is_round) continue;
+    if (!s.found->is_hopeless() || s.is_round) continue;
     for (uint32_t i = g.first; i < g.first + g.count; ++i) {
       const double height = dot(s.normal, Vec3d(plan.segments[i].from) - s.point);
       const double end = 1 - 1.25 * s.tolerance / height;

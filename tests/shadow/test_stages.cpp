@@ -143,7 +143,7 @@ TEST_CASE("gathering: too long lists divide receivers and source; each pair stay
     // close together there is nothing to gain by halving receivers: the source is
     if (spacing < 0.1f) CHECK_FALSE(is_any_whole);
     for (const double a : area) CHECK(a == doctest::Approx(1));
-    CHECK_FALSE(one.found.is_hopeless);
+    CHECK_FALSE(one.found.is_hopeless());
   }
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("gathering: hopeless lists are cut, keep what rays have met, and are r
     CHECK(std::any_of(kept.begin(), kept.end(), [&](const auto& f) { return f.id == id; }));
   CHECK_FALSE(memory.parts.all()[0].is_complete);
   CHECK(memory.parts.all()[0].is_hopeless);
-  CHECK(one.found.is_hopeless);
+  CHECK(one.found.is_hopeless());
   // the next time nobody tries to halve
   one.options.most_halvings = 3;
   one.counters = {};
@@ -193,7 +193,7 @@ TEST_CASE("gathering: next to a sphere there is no list, and receivers are halve
   CHECK(members == 64);
   CHECK(memory.parts.all().size() > 1);
   CHECK(has_complete);
-  CHECK_FALSE(one.found.is_hopeless);
+  CHECK_FALSE(one.found.is_hopeless());
 }
 
 TEST_CASE("a rim is what rises out of the source's slab within its outline") {

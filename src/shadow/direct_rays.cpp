@@ -1,0 +1,250 @@
+#include "shadow/direct_rays.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "shadow/trace_rays.h"
+
+namespace troffer {
+
+namespace {
+
+// Rays are traced when so many have gathered.
+constexpr size_t batch = 4096;
+constexpr uint32_t fewest_rays = 4;
+constexpr uint32_t purpose_direct = 0x64697265u;
+
+// Points of a cell, evenly by area.
+class CellPoints {
+ public:
+  explicit CellPoints(const FlatCell& cell) : cell_(cell) {
+    const auto corners = cell.all_corners();
+    if (cell.is_disk || cell.count == 0) {
+      area_ = length(cross(cell.plane.u, cell.plane.v)) * (cell.is_disk ? 0.25 * pi : 1);
+      return;
+    }
+    for (size_t i = 1; i + 1 < corners.size(); ++i) {
+      area_ += 0.5 * length(cross(corners[i] - corners[0], corners[i + 1] - corners[0]));
+      ends_[i] = float(area_);
+    }
+  }
+  double area() const { return area_; }
+  Vec3d at(float u, float v) const {
+    const Parallelogram& p = cell_.plane;
+    if (cell_.is_disk) {
+      const double radius = 0.5 * std::sqrt(double(u)), angle = 2 * pi * double(v);
+      return p.origin + p.u * (0.5 + radius * std::cos(angle)) +
+             p.v * (0.5 + radius * std::sin(angle));
+    }
+    if (cell_.count == 0) return p.origin + p.u * double(u) + p.v * double(v);
+    const auto c = cell_.all_corners();
+    const float wanted = u * float(area_);
+    size_t i = 1;
+    while (i + 2 < c.size() && wanted >= ends_[i]) ++i;
+    const float first = i > 1 ? ends_[i - 1] : 0;
+    const double along =
+        double(std::clamp((wanted - first) / std::max(ends_[i] - first, 1e-30f), 0.0f, 1.0f));
+    const double out = std::sqrt(double(v));
+    return c[0] + ((c[i] - c[0]) * (1 - along) + (c[i + 1] - c[0]) * along) * out;
+  }
+
+ private:
+  const FlatCell& cell_;
+  double area_ = 0;
+  std::array<float, most_source_corners> ends_{};  // of the fan's triangles, in area
+};
+
+class Caster {
+ public:
+  Caster(const SourceTask& task, const SourcePart& part, std::span<const uint32_t> members,
+         ShadowScene& scene, DirectRayMemory& memory, SourceResults& results)
+      : task_(task),
+        found_(*task.request.found),
+        source_(results.rays.sources.back()),
+        members_(members),
+        scene_(scene),
+        m_(memory),
+        sums_of_(results.sums) {
+    m_.cells.clear();
+    cut_cells(part.cell, part.hull, task.options.cells, m_.cells);
+    for (const FlatCell& c : m_.cells) points_.emplace_back(c);
+    set_unoccluded(part);
+    rays_ = rays_for_error();
+    if (m_.blocks.size() != rays_) m_.blocks = SobolBlocks(rays_);
+    m_.numbers.resize(2 * size_t(rays_));
+    control_ = std::clamp(found_.dense.open_share(), 0.0f, 1.0f);
+  }
+
+  void run() {
+    for (size_t first = 0, end = 0; first < members_.size(); first = end) {
+      m_.segments.clear();
+      m_.before.clear();
+      m_.weights.clear();
+      for (; end < members_.size() && m_.segments.size() < batch; ++end) add_rays(members_[end]);
+      trace();
+      for (size_t i = first, ray = 0; i < end; ++i, ray += rays_) add_answer(members_[i], ray);
+    }
+    found_.dense.note(sums_.light, sums_.unoccluded, sums_.variance, sums_.random_variance);
+  }
+
+ private:
+  void set_unoccluded(const SourcePart& part) {
+    const size_t n = task_.cluster.size();
+    m_.unoccluded.resize(m_.cells.size() * n);
+    for (size_t c = 0; c < m_.cells.size(); ++c) {
+      const bool is_all = m_.cells.size() == 1 && (part.is_whole || m_.cells[c].is_disk);
+      if (!is_all)
+        unoccluded_light(task_.cluster, *task_.request.flat, m_.cells[c].all_corners(), m_.values);
+      const std::span<const float> of_cell = is_all ? task_.unoccluded : std::span(m_.values);
+      std::copy_n(of_cell.begin(), n, m_.unoccluded.begin() + std::ptrdiff_t(c * n));
+    }
+  }
+  float unoccluded(size_t cell, uint32_t member) const {
+    return m_.unoccluded[cell * task_.cluster.size() + member];
+  }
+
+  // Of the source's rays a part of it gets its share. As many as make the variance k p (1 - p) U² /
+  // n what the masks' may be (Promise), for the mean share p that is open and the mean gain k over
+  // random numbers, a power of two.
+  uint32_t rays_for_error() const {
+    const auto most = double(task_.options.rays.most_rays);
+    const Promise& promise = task_.promise;
+    if (!(promise.error > 0)) return uint32_t(std::bit_floor(unsigned(most)));
+    double seen = 0, own = 0, part = 0;
+    for (const uint32_t m : members_) {
+      seen += double(promise.seen[m]);
+      own += double(task_.unoccluded[m]);
+      for (size_t c = 0; c < m_.cells.size(); ++c) part += double(unoccluded(c, m));
+    }
+    const double p = std::max(double(found_.dense.open_share()), 0.02);
+    const double wanted = double(found_.dense.gain()) * (1 - std::min(p, 0.98)) /
+                          (sqr(double(promise.error)) * (seen / std::max(own, 1e-300) + p));
+    const double n = std::clamp(wanted, double(fewest_rays), most) * (own > 0 ? part / own : 1);
+    return uint32_t(std::bit_floor(unsigned(std::max(n * std::sqrt(2.0), 4.0))));
+  }
+
+  // Where a ray goes: which cell, and where on it.
+  struct Choice {
+    size_t cell;
+    double inverse_density;  // m²
+    float u;
+  };
+  Choice choose(uint32_t member, float all, float u) const {
+    if (m_.cells.size() == 1) return {0, points_[0].area(), u};
+    float wanted = u * all, own = 0;
+    size_t c = 0;
+    for (;; ++c) {
+      own = unoccluded(c, member);
+      if (wanted < own || c + 1 == m_.cells.size()) break;
+      wanted -= own;
+    }
+    if (!(own > 0)) return {c, 0, 0};
+    return {c, points_[c].area() * double(all / own), std::min(wanted / own, 0.99999994f)};
+  }
+
+  void add_rays(uint32_t member) {
+    const ShadowReceiver& r = task_.cluster.receivers[member];
+    m_.blocks.draw(hash_combine(r.pixel != 0 ? r.pixel : r.stream, task_.request.stream),
+                   purpose_direct, r.pixel != 0 ? r.sample : 0, 2, m_.numbers.data());
+    const Vec3d x(r.position), normal(r.normal), horizon(r.horizon);
+    const double height = dot(source_.normal, x - source_.point);
+    // as trace_rays.cpp has it
+    const double origin_height = dot(source_.normal, Vec3d(r.origin) - source_.point);
+    const double end = std::max(1 - 1.25 * source_.tolerance / origin_height, 1e-3);
+    float all = 0;
+    for (size_t c = 0; c < m_.cells.size(); ++c) all += unoccluded(c, member);
+    const size_t first = m_.segments.size();
+    m_.segments.resize(first + rays_);
+    m_.weights.resize(first + rays_);
+    m_.before.resize(first + rays_, float(end));
+    for (uint32_t i = 0; i < rays_; ++i) {
+      const Choice choice = choose(member, all, m_.numbers[i]);
+      const Vec3d y = points_[choice.cell].at(choice.u, m_.numbers[rays_ + i]), d = y - x;
+      const double f =
+          height * std::max(dot(normal, d), 0.0) / sqr(length_squared(d)) * choice.inverse_density;
+      // A horizon of the receiver's own hides what round sources have below it: so they are told.
+      const bool is_below = dot(horizon, d) <= 0;
+      m_.weights[first + i] = !is_below ? float(f) : task_.does_horizon_hide() ? -float(f) : 0;
+      m_.segments[first + i] = {r.origin, Vec3(y), no_round_source};
+    }
+  }
+
+  // m_.is_hidden of all segments.
+  void trace() {
+    m_.is_hidden.resize(m_.segments.size());
+    scene_.occluded(m_.segments, m_.before, m_.is_hidden);
+    if (found_.rim == FoundFacets::Rim::none) return;
+    m_.rest.clear();
+    m_.rest_of.clear();
+    for (uint32_t i = 0; i < m_.segments.size(); ++i) {
+      if (m_.is_hidden[i] != 0 || !(m_.weights[i] > 0)) continue;
+      m_.rest.push_back(m_.segments[i]);
+      m_.rest.back().first = m_.before[i];
+      m_.rest_of.push_back(i);
+    }
+    m_.hits.resize(m_.rest.size());
+    scene_.trace(m_.rest, m_.hits);
+    for (size_t k = 0; k < m_.rest.size(); ++k)
+      m_.is_hidden[m_.rest_of[k]] = is_free(source_, m_.rest[k], m_.hits[k], scene_) ? 0 : 1;
+  }
+
+  void add_answer(uint32_t member, size_t first) {
+    double sum = 0, seen = 0, squares = 0, changes = 0, last = 0, weights = 0;
+    for (size_t i = first; i < first + rays_; ++i) {
+      const double f = double(std::abs(m_.weights[i]));
+      const double free = m_.weights[i] > 0 && m_.is_hidden[i] == 0 ? f : 0;
+      const double value = free - double(control_) * f;
+      sum += value;
+      seen += free;
+      squares += f * f;
+      weights += f;
+      if (i > first) changes += sqr(value - last);
+      last = value;
+    }
+    double all = 0;
+    for (size_t c = 0; c < m_.cells.size(); ++c) all += double(unoccluded(c, member));
+    if (!(all > 0)) return;
+    const auto n = double(rays_);
+    const double light = sum / n + double(control_) * all;
+    // Neighbours on the source differ by what their strata leave to chance; and the variance of one
+    // more ray, for pairs that saw no change.
+    const double p = weights > 0 ? std::clamp(seen / weights, 0.5 / n, 1 - 0.5 / n) : 0.5;
+    const double random = squares / n * p * (1 - p) / n;
+    // The sequence gains by what the strata have in order.
+    const double neighbours = changes / (2 * n * n);
+    const double order = random > 0 ? std::min(neighbours / random, 1.0) : 1;
+    const double variance = neighbours * (0.45 + 0.55 * order) + random / n;
+    CellSum& s = sums_of_[member];
+    s.add(float(all), float(light / all), float(variance / (all * all)), ShadowAnswer::mixed);
+    s.rays += rays_;
+    sums_.light += light;
+    sums_.unoccluded += all;
+    sums_.variance += variance;
+    sums_.random_variance += random;
+  }
+
+  const SourceTask& task_;
+  FoundFacets& found_;
+  const RaySource source_;
+  std::span<const uint32_t> members_;
+  ShadowScene& scene_;
+  DirectRayMemory& m_;
+  std::span<CellSum> sums_of_;  // per receiver
+  std::vector<CellPoints> points_;
+  uint32_t rays_ = 0;
+  float control_ = 0;
+  struct Sums {
+    double light = 0, unoccluded = 0, variance = 0, random_variance = 0;
+  } sums_;
+};
+
+}  // namespace
+
+void cast_direct_rays(const SourceTask& task, const SourcePart& part,
+                      std::span<const uint32_t> members, ShadowScene& scene,
+                      DirectRayMemory& memory, SourceResults& results) {
+  if (!members.empty()) Caster(task, part, members, scene, memory, results).run();
+}
+
+}  // namespace troffer

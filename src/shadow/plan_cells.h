@@ -1,0 +1,37 @@
+// Cells and lattices with which the masks of a part keep the error that is asked for: where a mask
+// is too coarse for what is open, the source is cut finer there.
+//
+// A few receivers of the part, the pilots, are looked at first, by masks of their own whose answers
+// are then thrown away: what is found with the cells does not depend on what they were chosen by,
+// and stays unbiased. How much they may err by: Promise, in source_task.h.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shadow/gather_facets.h"
+#include "shadow/settle_cell.h"
+
+namespace troffer {
+
+struct PlannedCell {
+  FlatCell cell;
+  MaskLattice lattice;
+};
+
+struct PilotMemory {
+  std::vector<uint32_t> pilots;
+  struct Seen {
+    double light = 0, variance = 0;  // sr, sr²; by masks of the fine lattice
+  };
+  std::vector<Seen> seen;      // per cell and pilot
+  std::vector<size_t> facets;  // per cell: in its list
+  std::vector<FlatCell> cells;
+};
+
+// Sets `out` to the cells of a flat part. stream: hash of the part's own.
+void plan_cells(const SourceTask& task, const SourcePart& part, uint64_t stream,
+                PilotMemory& memory, SettleMemory& settle, std::vector<PlannedCell>& out);
+
+}  // namespace troffer
