@@ -214,7 +214,7 @@ class Caster {
     // The sequence gains by what the strata have in order.
     const double neighbours = changes / (2 * n * n);
     const double order = random > 0 ? std::min(neighbours / random, 1.0) : 1;
-    const double variance = neighbours * (0.45 + 0.55 * order) + random / n;
+    const double variance = neighbours * (0.25 + 0.75 * order) + random / n;
     CellSum& s = sums_of_[member];
     s.add(float(all), float(light / all), float(variance / (all * all)), ShadowAnswer::mixed);
     s.rays += rays_;
