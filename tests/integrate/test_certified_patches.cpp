@@ -161,7 +161,7 @@ TEST_CASE("certified patches: the shadow of a table in light from the ceiling, a
           mean_general, ", ", mean_promoted);
   CHECK(wanted.back() < 0.5 * wanted.front());  // there is a shadow
   CHECK(error < 0.03);
-  CHECK(error < 0.4 * error_general);
+  CHECK(error < 0.6 * error_general);  // which the middles of elements keep near
 }
 
 TEST_CASE("certified patches: a patch sends what its elements hold") {
