@@ -16,7 +16,7 @@ constexpr uint32_t most_rays = 256;
 // Radii in harmonic mean distances: within the first, light is nearly linear; beyond the second the
 // fit's own error is more than it saves.
 constexpr float near_radius = 0.06f, far_radius = 0.12f;
-constexpr float least_pixels = 2;
+constexpr float least_pixels = 1.5f;
 // Neighbours on either side that a fit looks at, of those within its radius.
 constexpr int few_along = 4, many_along = 8;
 

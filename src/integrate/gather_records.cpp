@@ -43,7 +43,8 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, FittedRecord
         // As far as pixels are apart where one looks along a surface, and no farther.
         if (d2 > sqr(16 * record.spacing) || !is_one_surface(record.hit, hit, record.spacing))
           return;
-        const float w = 1 / (d2 + 0.1f * sqr(record.spacing));
+        // The own pixel's, but for where it goes over into the next one's.
+        const float w = 1 / sqr(d2 / sqr(record.spacing) + 0.03f);
         out.irradiance += fitted_[r].irradiance * w;
         out.error += fitted_[r].error * w;
         weights += w;
