@@ -126,7 +126,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
               "kj92: trees give the visible share of the exact unoccluded light");
   r->add_option("--selection", raw.selection,
                 "kj92: choose sources by the preprocessing, on or off (all emitters, everywhere); "
-                "certified: bright patches as sources, on or off")
+                "certified --indirect radiosity: bright patches as sources, on or off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   r->add_option("--select", c.selected_lights,

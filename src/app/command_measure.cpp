@@ -14,11 +14,11 @@ namespace troffer {
 int run_measure(const MeasureCommand& c) {
   MeasureOptions options;
   options.method = parse_method(c.method);
-  check_method(options.method, c.indirect, c.solution);
+  options.indirect = indirect_with(c.solution, options.method, c.indirect);
+  check_method(options.method, options.indirect, c.solution);
   options.spp = c.spp;
   options.depth = c.depth;
   options.error = c.error;
-  options.indirect = c.indirect;
   options.threads = c.threads;
   options.seed = c.seed;
   if (options.method.row().is_direct_only && options.indirect != Indirect::none && !c.is_quiet)

@@ -133,6 +133,7 @@ WriteOptions write_options(const RenderCommand& c, const Camera& camera) {
 int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
   c.options.method = parse_method(c.method);
+  c.options.indirect = indirect_with(c.solution, c.options.method, c.options.indirect);
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs)
     image_format(path);  // a wrong ending is a usage error before any work is done

@@ -89,6 +89,8 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& lights
 Method parse_method(const std::string& name);
 
 // UsageError where options belong to another method.
+// `automatic` where a radiosity solution is given: what takes it.
+Indirect indirect_with(const std::string& solution, Method method, Indirect indirect);
 void check_method(Method method, Indirect indirect, const std::string& solution);
 
 // Warns, unless is_quiet, of every option given to `command` that its method does not use.

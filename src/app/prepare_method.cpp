@@ -10,14 +10,19 @@
 
 namespace troffer {
 
+Indirect indirect_with(const std::string& solution, Method method, Indirect indirect) {
+  const bool is_free = indirect == Indirect::automatic && method.row().has_choice_of_indirect;
+  return is_free && !solution.empty() ? Indirect::radiosity : indirect;
+}
+
 void check_method(Method method, Indirect indirect, const std::string& solution) {
   if (indirect == Indirect::radiosity && !method.row().has_choice_of_indirect)
     throw UsageError("--indirect radiosity belongs to --method kj92 and certified");
   if (indirect == Indirect::cells && !method.row().takes_cells)
     throw UsageError("--indirect cells belongs to --method certified");
   if (!solution.empty() && !needs_radiosity(method, indirect))
-    throw UsageError(needs_radiosity(method, Indirect::automatic)
-                         ? "--solution and --indirect none exclude each other"
+    throw UsageError(method.row().has_choice_of_indirect
+                         ? "--solution goes with --indirect radiosity"
                          : "--solution belongs to --method kj92 and certified");
 }
 

@@ -53,6 +53,9 @@ struct RadianceBatch {
   // Variance of the luminance of `direct` by the sampling of sources; empty where the method does
   // not tell.
   std::vector<float> direct_variance;
+  // What the luminance of `indirect` may be off by and all samples of a pixel or a point share:
+  // standard errors; of points, signed. Empty where the method does not tell.
+  std::vector<float> shared_error;
   // The first surface hit; zero where nothing is.
   std::vector<Rgb> albedo;
   std::vector<Vec3> normal, position;
@@ -68,6 +71,7 @@ struct RadianceBatch {
     indirect.assign(n, Rgb{0});
     shadow_rays.assign(n, 0);
     direct_variance.clear();
+    shared_error.clear();
     albedo.assign(n, Rgb{0});
     normal.assign(n, Vec3{});
     position.assign(n, Vec3{});
@@ -76,6 +80,7 @@ struct RadianceBatch {
     records.clear();
   }
   // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
+  void tell_shared_error() { shared_error.resize(direct.size(), 0); }
   void tell_variance() { direct_variance.assign(direct.size(), 0); }
   void add(size_t i, bool is_direct, Rgb light, float variance) {
     (is_direct ? direct : indirect)[i] += light;

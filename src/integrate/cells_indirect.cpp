@@ -1,5 +1,7 @@
 #include "integrate/cells_indirect.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 
 namespace troffer {
@@ -32,6 +34,7 @@ std::unique_ptr<IndirectLightScratch> CellsIndirect::make_scratch() const {
 void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
                           Counters&) const {
   auto& s = static_cast<Scratch&>(scratch);
+  out.tell_shared_error();
   CheckItems items;
   for (size_t i = 0; i < wave.size(); ++i) {
     const SurfaceScattering& scattering = wave.scatterings[i];
@@ -52,6 +55,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       const PixelAt& pixel = wave.viewing->pixels[at.index];
       if (records_->irradiance_at(pixel.x, pixel.y, hit, fitted)) {
         out.indirect[at.index] += weight * fitted.irradiance;
+        out.shared_error[at.index] += luminance(weight) * fitted.error;
         continue;
       }
     }
@@ -74,8 +78,16 @@ void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
   cells_->gather(s.indices.size() * rays_of_hit, s.cells, counters);
   for (size_t i = 0; i < s.indices.size(); ++i) {
     Rgb sum;
-    for (size_t k = 0; k < rays_of_hit; ++k) sum += s.cells.light.irradiance[i * rays_of_hit + k];
-    out.indirect[s.indices[i]] += s.weights[i] * sum * (1.0f / float(rays_of_hit));
+    float squares = 0;
+    for (size_t k = i * rays_of_hit; k < (i + 1) * rays_of_hit; ++k) {
+      sum += s.cells.light.irradiance[k];
+      squares += sqr(luminance(s.cells.light.irradiance[k]));
+    }
+    constexpr float n = float(rays_of_hit);
+    out.indirect[s.indices[i]] += s.weights[i] * sum * (1 / n);
+    if (out.direct_variance.empty()) continue;
+    const float variance = std::max(squares / n - sqr(luminance(sum) / n), 0.0f) / (n - 1);
+    out.direct_variance[s.indices[i]] += sqr(luminance(s.weights[i])) * variance;
   }
   s.clear();
 }
@@ -91,7 +103,11 @@ void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scr
     s.cells.gather.walks.push_back(walk);
   }
   cells_->gather(sensors.size(), s.cells, counters);
-  for (uint32_t i = 0; i < sensors.size(); ++i) out.indirect[i] += s.cells.light.irradiance[i];
+  out.tell_shared_error();
+  for (uint32_t i = 0; i < sensors.size(); ++i) {
+    out.indirect[i] += s.cells.light.irradiance[i];
+    out.shared_error[i] += s.cells.light.half_difference[i];
+  }
 }
 
 }  // namespace troffer

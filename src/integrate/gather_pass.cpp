@@ -296,9 +296,13 @@ FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
   radius = std::clamp(radius, least, std::clamp(far_radius * distance, least, most));
   const FittedLight fine = solved(fit(x, y, r, radius, many_along), s);
   const double noise = fine.spread / std::max(fine.neighbours, 1.0);
-  const double bend = 0.5 * sqr(double(radius) / double(distance)) * double(luminance(fine.value));
+  // What is bent shows in a narrower fit, if its noise lets it: the error goes with the radius²
+  const FittedLight narrow = solved(fit(x, y, r, 0.5f * radius, few_along), s);
+  const double apart = double(luminance(narrow.value)) - double(luminance(fine.value));
+  const double chance = 2 * narrow.spread / std::max(narrow.neighbours, 1.0);
+  const double bend2 = std::max(apart * apart - chance, 0.0) * 16 / 9;
   const double half = double(at.half) / double(at.rays);
-  return {fine.value, float(std::sqrt(noise + bend * bend + half * half))};
+  return {fine.value, float(std::sqrt(noise + bend2 + half * half))};
 }
 
 }  // namespace troffer

@@ -117,7 +117,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .name = "certified",
         .make = make_certified,
         .rays_per_sample = certified_rays,
-        .usual_indirect = Indirect::radiosity,
+        .usual_indirect = Indirect::cells,
         .has_choice_of_indirect = true,
         .takes_cells = true,
         .selection = [](const SelectionOptions& o) { return certified_selection(o.is_enabled); },

@@ -75,9 +75,11 @@ double Film::standard_error(const Pixel& p) {
   return std::sqrt(std::max(0.0, p.sum_luminance_squared / n - mean * mean) / (n - 1));
 }
 
-// What the method tells of its sampling of sources, where it does; else the spread of the samples.
+// What the method tells of its sampling, where it does: samples' errors that are independent add up
+// by their squares, those that they share add up. Else the spread of the samples.
 double Film::told_error(const Pixel& p) {
-  return p.has_source_variance ? std::sqrt(p.source_variance) / p.samples : standard_error(p);
+  if (!p.has_source_variance) return standard_error(p);
+  return std::sqrt(p.source_variance + p.shared_error * p.shared_error) / p.samples;
 }
 
 PixelEstimate Film::estimate(int x, int y) const {
@@ -113,6 +115,7 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
     p.source_variance += double(batch.direct_variance[i]);
     p.has_source_variance = true;
   }
+  if (!batch.shared_error.empty()) p.shared_error += double(batch.shared_error[i]);
   return true;
 }
 

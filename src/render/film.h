@@ -48,6 +48,7 @@ class Film {
     Vec3d direct, indirect;
     double sum_luminance = 0, sum_luminance_squared = 0;
     double source_variance = 0;  // of the samples' direct light, as far as the method tells it
+    double shared_error = 0;     // … of their indirect light, likewise
     uint32_t samples = 0;
     bool has_source_variance = false;
   };

@@ -36,6 +36,7 @@ double t_quantile_95(int n) {
 struct Sums {
   Vec3d irradiance;
   double luminance = 0;
+  double shared_error = 0;  // as RadianceBatch has it
 };
 
 struct Worker {
@@ -43,6 +44,7 @@ struct Worker {
   Vec3 position;        // from the scene's origin
   SensorBatch sensors;  // of this point
   RadianceBatch out;
+  double shared_error = 0;  // of the point's mean
   std::unique_ptr<IntegratorScratch> scratch;
   int samples_per_batch = largest_batch;
 };
@@ -76,6 +78,7 @@ Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point,
       }
       sums.irradiance += Vec3d{double(e.r), double(e.g), double(e.b)};
       sums.luminance += double(luminance(e));
+      if (!w.out.shared_error.empty()) sums.shared_error += double(w.out.shared_error[i]);
     }
   }
   return sums;
@@ -88,11 +91,13 @@ Measurement measure_point(const Integrator& integrator, const MeasuringPoint& po
   const int samples = (spp + replicates - 1) / replicates;
   Vec3d irradiance;
   double mean = 0, sum_squares = 0;
+  w.shared_error = 0;
   for (int r = 0; r < replicates; ++r) {
     const Sums s = sum_of_replicate(integrator, point, hash_combine(stream, uint64_t(r)),
                                     std::max(1, samples / samples_per_estimate), stop, w, counters);
     const double weight = 1.0 / std::max(1, samples / samples_per_estimate);
     irradiance += s.irradiance * (weight / replicates);
+    w.shared_error += s.shared_error * (weight / replicates);
     const double value = s.luminance * weight, before = value - mean;
     mean += before / (r + 1);
     sum_squares += before * (value - mean);
@@ -107,6 +112,24 @@ Measurement measure_point(const Integrator& integrator, const MeasuringPoint& po
         std::sqrt(variance_of_mean) * lx_per_unit * (t_quantile_95(replicates - 1) / 1.959964);
   }
   return m;
+}
+
+// What the method knows of errors that no spread of its samples shows: half the difference between
+// two halves of what it has learnt is one draw of that error. Relative to the light it is much the
+// same at all points.
+void add_shared_errors(const std::vector<double>& of_luminance, double lx_per_unit,
+                       std::vector<Measurement>& values) {
+  double squares = 0;
+  int points = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i].illuminance_lx > 0)) continue;
+    squares += sqr(of_luminance[i] * lx_per_unit / values[i].illuminance_lx);
+    ++points;
+  }
+  if (!(squares > 0)) return;
+  const double relative = std::sqrt(squares / points) * t_quantile_95(points) / 1.959964;
+  for (Measurement& m : values)
+    m.standard_error = std::hypot(m.standard_error, relative * m.illuminance_lx);
 }
 
 MeasureResult nothing_measured(size_t points) {
@@ -163,6 +186,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   result.values.resize(points.size());
   std::vector<uint8_t> is_measured(points.size(), 0);
   std::vector<Counters> counters(points.size());
+  std::vector<double> shared_errors(points.size(), 0);
   std::vector<Worker> workers(size_t(thread_count(options.threads)));
   std::mutex progress_mutex;
   size_t done = 0;
@@ -177,12 +201,15 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     result.values[i] = measure_point(*integrator, points[i], hash_of(options.seed, i), spp,
                                      row.rays_of_measuring_sample, scene.scene.is_photometric, stop,
                                      w, counters[i]);
+    shared_errors[i] = w.shared_error;
     if (stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
     is_measured[i] = 1;
     const std::lock_guard lock(progress_mutex);
     ++done;
     if (progress) progress(double(done) / double(points.size()));
   });
+  add_shared_errors(shared_errors, scene.scene.is_photometric ? 1.0 : luminous_efficacy,
+                    result.values);
   for (const Counters& c : counters) result.counters += c;
   result.is_measured.assign(is_measured.begin(), is_measured.end());
   result.is_complete = done == points.size();

@@ -196,7 +196,9 @@ TEST_CASE("methods are found by their names, and know what they are made of") {
   CHECK(Indirect::find("cells") == Indirect::cells);
   CHECK(needs_cells(Method::certified, Indirect::cells));
   CHECK(!needs_cells(Method::kj92, Indirect::cells));
-  CHECK(needs_radiosity(Method::certified, Indirect::automatic));
+  CHECK(!needs_radiosity(Method::certified, Indirect::automatic));
+  CHECK(needs_radiosity(Method::certified, Indirect::radiosity));
+  CHECK(needs_cells(Method::certified, Indirect::automatic));
   CHECK(!needs_radiosity(Method::certified, Indirect::none));
   CHECK(needs_radiosity(Method::kj92, Indirect::none));
   CHECK(!needs_radiosity(Method::path, Indirect::automatic));

@@ -105,6 +105,87 @@ TEST_CASE("cells: byte-identical for any number of threads, and crops are parts 
   CHECK(pixels_off_crop(one, render_now(scene, mixed_room_camera(), o), o.crop) == 0);
 }
 
+// A room without light of its own beyond a pane; behind the viewer of the first a mirror.
+Scene room_behind_glass() {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
+  const auto walls = add_box_inside(s, grey, {-4, -2, 0}, {4, 2, 3});
+  Material mirror;
+  mirror.kind = MaterialKind::conductor;
+  mirror.is_reflectance = true;
+  mirror.base_color.value = Rgb{0.9f};
+  s.meshes[walls[4]].material = add_material(s, mirror);
+  Material pane;
+  pane.kind = MaterialKind::dielectric;
+  pane.is_thin = true;
+  pane.base_color.value = Rgb{1};
+  add_quad(s, add_material(s, pane), {Vec3{0, -2, 0}, {0, 2, 0}, {0, 2, 3}, {0, -2, 3}});
+  // large, so that paths find it through the pane
+  make_light(s, add_quad(s, grey, {Vec3{1, -2, 2.9f}, {1, 2, 2.9f}, {4, 2, 2.9f}, {4, -2, 2.9f}}),
+             Rgb{10});
+  return s;
+}
+
+TEST_CASE("cells: light through a pane and by way of a mirror arrives, and intervals hold it") {
+  const PreparedScene scene(room_behind_glass());
+  std::vector<MeasuringPoint> points;
+  Random random(3);
+  for (int i = 0; i < 40; ++i) {
+    MeasuringPoint& p = points.emplace_back();
+    p.position = {-3.9 + 3.8 * random.next_double(), -1.9 + 3.8 * random.next_double(), 0.8};
+    p.normal = {random.next_float() - 0.5f, random.next_float() - 0.5f, 1};
+  }
+  const MeasureResult mine = measure(scene, points, by_cells(4096), {}, never_stopped);
+  MeasureOptions o = by_cells(1 << 16);
+  o.method = Method::path;
+  o.indirect = Indirect::automatic;
+  const MeasureResult paths = measure(scene, points, o, {}, never_stopped);
+  double sum = 0, expected = 0;
+  int inside = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Measurement &a = mine.values[i], &b = paths.values[i];
+    sum += a.illuminance_lx;
+    expected += b.illuminance_lx;
+    const double off = std::abs(a.illuminance_lx - b.illuminance_lx);
+    inside += off <= 1.96 * std::hypot(a.standard_error, b.standard_error) ? 1 : 0;
+  }
+  CHECK(sum == doctest::Approx(expected).epsilon(0.005));
+  CHECK(inside >= 34);
+}
+
+TEST_CASE("cells: the error that is told is about the one that is made") {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.7f, 0.6f, 0.5f}), {-2, -2, 0}, {2, 2, 2.5f});
+  const uint32_t dark = add_diffuse(s, Rgb{0.3f});
+  s.spheres.push_back({{0.5f, 0.5f, 0.5f}, 0.5f, false, dark, no_light});
+  add_ceiling_light(s, 1, 2.4f, Rgb{10});
+  const PreparedScene scene(std::move(s));
+  RenderOptions o = picture_by_cells();
+  o.width = 24;
+  o.height = 18;
+  o.aovs = {Aov::indirect, Aov::error};
+  RenderOptions path = o;
+  path.method = Method::path;
+  path.spp = 4096;
+  const RenderResult mine = render_now(scene, mixed_room_camera(), o),
+                     paths = render_now(scene, mixed_room_camera(), path);
+  double made = 0, told = 0, noise = 0, mean = 0;
+  const Image &a = mine.layers[1].image, &b = paths.layers[1].image;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    const double off = double(luminance(a.pixels[i])) - double(luminance(b.pixels[i]));
+    made += off * off;
+    told += double(mine.layers[2].image.pixels[i].r) * double(mine.layers[2].image.pixels[i].r);
+    noise += double(paths.layers[2].image.pixels[i].r) * double(paths.layers[2].image.pixels[i].r);
+    mean += double(luminance(b.pixels[i]));
+  }
+  const auto n = double(a.pixels.size());
+  CAPTURE(std::sqrt(made / n) / (mean / n));
+  CAPTURE(std::sqrt(noise / n) / (mean / n));
+  CAPTURE(std::sqrt(told / n) / (mean / n));
+  CHECK(std::sqrt(told) > 0.5 * std::sqrt(made));
+  CHECK(std::sqrt(told) < 2 * std::sqrt(made));
+}
+
 TEST_CASE("cells: a room with mirror, glass, gloss is as bright as by paths") {
   const PreparedScene scene(mixed_room());
   RenderOptions o = picture_by_cells();
