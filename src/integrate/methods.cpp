@@ -20,21 +20,25 @@ namespace {
 std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
                                                    std::shared_ptr<const Occluders> occluders) {
   TROFFER_CHECK(in.cells != nullptr);
+  const auto part = [&](double first, double last) -> std::function<void(double)> {
+    if (!in.cells->progress) return nullptr;
+    return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
+  };
   constexpr double least_error = 0.1;
   const CertifiedDirect direct(
       in.scene, std::move(occluders),
       certified_settings(std::max(in.settings.error, least_error), in.scene.scene.lights.size()));
   std::unique_ptr<Cells> cells =
       make_cells(in.scene, direct, in.cells->pilot, {in.settings.threads, in.cells->seed},
-                 in.cells->progress, in.cells->stop, in.cells->counters);
+                 part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
   std::unique_ptr<GatherRecords> records;
   if (in.cells->view != nullptr) {
     const GatherOptions options{in.settings.error, cells->statistics().typical, in.settings.threads,
                                 in.cells->seed};
-    records = GatherRecords::make(*cells, *in.cells->view, options, in.cells->progress,
-                                  in.cells->stop, in.cells->counters);
+    records = GatherRecords::make(*cells, *in.cells->view, options, part(0.4, 1), in.cells->stop,
+                                  in.cells->counters);
     if (!records) return nullptr;
   }
   return std::make_unique<CellsIndirect>(std::move(cells), std::move(records));

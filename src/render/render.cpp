@@ -53,6 +53,12 @@ int tile_side(Method method, const MethodSettings& settings, size_t lights) {
   return side;
 }
 
+// Progress from `first` to `last` of the whole.
+ProgressCallback part_of_progress(const ProgressCallback& progress, double first, double last) {
+  if (!progress) return nullptr;
+  return [&progress, first, last](double f) { progress(first + (last - first) * f); };
+}
+
 PixelWindow pixels_of(const PixelRect& r) {
   return {r.x0, r.y0, r.x1, r.y1};
 }
@@ -135,13 +141,17 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   const PictureView view{pixels_of(image), pixels_of(plan.region), [&](float x, float y) {
                            return viewing.ray({x, y}, {0.5f, 0.5f});
                          }};
+  // Cells and their gathers take about as long as what follows.
+  const double share = needs_cells(options.method, options.indirect) ? 0.5 : 0.0;
+  const ProgressCallback of_cells = part_of_progress(progress, 0, share),
+                         of_tiles = part_of_progress(progress, share, 1);
   CellInput cells{
-      picture_pilot(viewing, size, options.seed), &view, options.seed, progress, stop, {}, {}};
+      picture_pilot(viewing, size, options.seed), &view, options.seed, of_cells, stop, {}, {}};
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene, options.method, settings, preparation, &cells);
   if (!integrator) return nothing_rendered(window, options, result);
   result.statistics.cells = cells.statistics;
-  Rendering rendering(scene, viewing, *integrator, options, plan, progress, stop);
+  Rendering rendering(scene, viewing, *integrator, options, plan, of_tiles, stop);
   result.is_complete = rendering.run();
   result.layers = rendering.layers();
   result.statistics.counters = rendering.counters();
