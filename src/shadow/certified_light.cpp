@@ -149,7 +149,7 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
 // than that are not worth a mask.
 Promise promise_of(const LightRequest& request, const CertifiedOptions& options,
                    CertifiedMemory& m) {
-  constexpr double facets_per_ray = 12, least_budget = 512;
+  constexpr double facets_per_ray = 12, least_budget = 512, most_budget = 65536;
   Promise p;
   p.error = options.mask_error;
   if (!(p.error > 0)) return p;
@@ -166,7 +166,9 @@ Promise promise_of(const LightRequest& request, const CertifiedOptions& options,
     m.rest[i] = std::max(m.total[i] - m.done[i], 0.0f) * inverse;
   }
   const double share = total > 0 ? own / total : 1;
-  p.budget = std::max(share * facets_per_ray / (4 * sqr(double(p.error))), least_budget);
+  // Beyond the most, an error that is too large is told: planning takes the square of the cells.
+  p.budget =
+      std::clamp(share * facets_per_ray / (4 * sqr(double(p.error))), least_budget, most_budget);
   p.seen = m.seen;
   p.rest = m.rest;
   p.floor = m.floor;
