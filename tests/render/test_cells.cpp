@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "render/furnace.h"
 #include "render/measure.h"
 #include "render/pictures.h"
 
@@ -67,6 +68,26 @@ TEST_CASE("cells: a closed cube lit by its ceiling keeps all light, whatever it 
     CAPTURE(rho);
     CHECK(mean_irradiance(r, 0, r.values.size()) == doctest::Approx(expected).epsilon(0.002));
   }
+}
+
+TEST_CASE("cells: in a furnace pixels are as bright as all others, within half of what is asked") {
+  const PreparedScene scene(uneven_furnace());
+  RenderOptions o = picture_by_cells();
+  o.width = 32;
+  o.height = 24;
+  o.error = 0.01;
+  const Image image = render_now(scene, furnace_camera(), o).layers[0].image;
+  double squares = 0;
+  int off = 0;
+  for (const Rgb& p : image.pixels) {
+    squares += sqr(double(p.g) / double(L0) - 1);
+    off += std::abs(double(p.g) / double(L0) - 1) > 0.005 ? 1 : 0;
+  }
+  const auto n = double(image.pixels.size());
+  CHECK(mean_green(image) == doctest::Approx(double(L0)).epsilon(0.001));
+  CHECK(std::sqrt(squares / n) < 0.005);
+  CAPTURE(off);
+  CHECK(off < 0.12 * n);
 }
 
 TEST_CASE("cells: of two rooms on one floor the dark one stays dark") {
@@ -200,4 +221,61 @@ TEST_CASE("cells: a room with mirror, glass, gloss is as bright as by paths") {
   CAPTURE(paths.mean.mean());
   CAPTURE(paths.mean.standard_error());
   CHECK(mine.mean.mean() == doctest::Approx(paths.mean.mean()).epsilon(0.005));
+}
+
+// A room whose floor has white and dark tiles of half a decimetre.
+Scene tiled_room() {
+  Scene s;
+  const auto walls = add_box_inside(s, add_diffuse(s, Rgb{0.6f}), {-1, -1, 0}, {1, 1, 2});
+  Texture tiles;
+  tiles.kind = TextureKind::image;
+  tiles.width = tiles.height = 2;
+  tiles.channels = 1;
+  tiles.texels_float = {0.9f, 0.1f, 0.1f, 0.9f};
+  tiles.is_srgb = tiles.is_filtered = false;
+  tiles.uv_scale = {20, 20};
+  s.textures.push_back(tiles);
+  Mesh& floor = s.meshes[walls[0]];
+  floor.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  Material m;
+  m.base_color.value = Rgb{1};
+  m.base_color.texture = 0;
+  floor.material = add_material(s, m);
+  add_ceiling_light(s, 0.8f, 1.9f, Rgb{10});
+  return s;
+}
+
+TEST_CASE("cells: light on a floor of tiles is smooth, and the tiles stay sharp") {
+  const PreparedScene scene(tiled_room());
+  const Camera camera = look_at({0, -0.9f, 1.6f}, {0, 0.3f, 0}, {0, 0, 1}, 50);
+  RenderOptions o = picture_by_cells();
+  o.width = 32;
+  o.height = 24;
+  o.aovs = {Aov::indirect, Aov::albedo};
+  // Light by what the same viewing rays have seen of the tiles: few of them show few tiles.
+  const auto irradiance = [&](const RenderResult& r) {
+    Image image = r.layers[1].image;
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+      image.pixels[i] = image.pixels[i] / r.layers[2].image.pixels[i].g;
+    return image;
+  };
+  const Image mine = irradiance(render_now(scene, camera, o));
+  o.method = Method::path;
+  o.indirect = Indirect::automatic;
+  o.spp = 2048;
+  o.aovs.push_back(Aov::error);
+  const RenderResult result = render_now(scene, camera, o);
+  const Image paths = irradiance(result);
+  double squares = 0, noise = 0;
+  for (size_t i = 0; i < mine.pixels.size(); ++i) {
+    const double relative =
+        double(result.layers[3].image.pixels[i].g) / double(result.layers[1].image.pixels[i].g);
+    noise += sqr(relative);
+    squares += sqr(double(mine.pixels[i].g) / double(paths.pixels[i].g) - 1);
+  }
+  const auto n = double(mine.pixels.size());
+  CAPTURE(std::sqrt(noise / n));
+  CAPTURE(std::sqrt(squares / n));
+  CHECK(mean_green(mine) == doctest::Approx(mean_green(paths)).epsilon(0.005));
+  CHECK(std::sqrt(squares / n) < 0.025);  // the noise of paths is in it
 }
