@@ -8,7 +8,8 @@ namespace troffer {
 
 class FarBlocks {
  public:
-  explicit FarBlocks(const RowContext& row) : row_(row) {}
+  // For a patch's row; its memory serves one after the other.
+  void begin(const RowContext& row);
   void start(size_t block);
   // The same for a block near to the patch; false, with nothing done, where it is so near that
   // cells say little, or gets so much that their error would show.
@@ -27,7 +28,10 @@ class FarBlocks {
   // What a ray is cast for: the points [first, last) of a block.
   struct Purpose {
     uint32_t block;
-    uint8_t first, last;
+    uint8_t first, last, point, k;  // of its block: whose place it starts from; a point's k-th
+    uint32_t cell;                  // to which …
+    Vec2 u;                         // … and to where on it
+    uint64_t hash;
     float weight;
   };
   // What the points of the block get; returns the most.
@@ -35,11 +39,14 @@ class FarBlocks {
   void add(const Block& f);
   static bool is_unanimous(const Block& f, uint32_t count, bool& is_lit);
   void add_ray(uint32_t index, uint8_t first, uint8_t last, int k);
+  void aim(Purpose& p) const;
+  bool find_ray(Purpose& p);
   void trace();
   void settle(const Block& f, size_t first_block, RowChunk& out) const;
   void note_seen(const Block& f, uint32_t i, float share) const;
 
-  const RowContext& row_;
+  const RowContext* row_ = nullptr;
+  uint64_t phase_ = 0;  // where numbers that are spread over neighbouring points start
   uint64_t rays_ = 0;
   std::vector<Block> blocks_;
   std::vector<Ray> ray_list_;

@@ -15,7 +15,7 @@ namespace troffer {
 namespace {
 
 constexpr float far_in_piece_radii = 12;
-constexpr float by_area_from_radii = 2;
+constexpr float by_area_from_radii = 1.4f;
 constexpr int least_disc_points = 8;
 constexpr uint32_t purpose_visibility = 1;
 
@@ -115,7 +115,7 @@ bool exact_end(const Shooter& s, const ElementPoint& r, Vec2 u, std::span<const 
   return std::isfinite(out.weight);
 }
 
-Ray ray_to(const Shooter& s, const ElementPoint& r, const RayEnd& end) {
+void aim(const Shooter& s, const ElementPoint& r, const RayEnd& end, Ray& ray) {
   Vec3 target = end.point, normal = end.normal;
   if (s.round_radius > 0) {  // out to the sphere, on the side that shoots
     const Vec3 from_centre = normalize(target - s.round_centre);
@@ -123,11 +123,9 @@ Ray ray_to(const Shooter& s, const ElementPoint& r, const RayEnd& end) {
     target = s.round_centre + from_centre * s.round_radius;
   }
   target += normal * s.offset;
-  Ray ray;
   ray.origin = r.position + r.normal * r.offset;
   ray.direction = target - ray.origin;
   ray.t_max = 1;
-  return ray;
 }
 
 bool is_whole(const RayBudget& budget, float unoccluded) {
@@ -217,12 +215,27 @@ class Gatherer {
         .get2();
   }
 
-  bool ray_end(uint32_t i, int k, int wanted, RayEnd& end) const {
+  // What `random` gives for all rays of the jobs, in their order.
+  void draw_numbers() {
+    s_.streams.clear();
+    s_.samples.clear();
+    for (const TransferScratch::Job& j : s_.jobs) {
+      const uint64_t stream = stream_ + mix64(first_index_ + indices_[j.receiver]);
+      for (int k = j.first; k < j.first + j.count; ++k) {
+        s_.streams.push_back(stream);
+        s_.samples.push_back(uint32_t(k));
+      }
+    }
+    s_.numbers.resize(2 * s_.samples.size());
+    sobol_groups(s_.streams.data(), s_.samples.data(), s_.samples.size(), purpose_visibility, 2,
+                 s_.numbers.data());
+  }
+
+  bool ray_end(uint32_t i, const Vec2& u, int wanted, RayEnd& end) const {
     const ElementPoint& r = receiver(i);
     if (shooter_.is_exact)
-      return exact_end(shooter_, r, random(i, k),
-                       {s_.piece_irradiance.data() + i * pieces_, pieces_}, end);
-    if (!disc_end(shooter_, r, random(i, k), wanted, end)) return false;
+      return exact_end(shooter_, r, u, {s_.piece_irradiance.data() + i * pieces_, pieces_}, end);
+    if (!disc_end(shooter_, r, u, wanted, end)) return false;
     end.weight *= luminance(shooter_.pieces[end.piece].mean_radiance);
     return true;
   }
@@ -232,12 +245,16 @@ class Gatherer {
     s_.weights.clear();
     s_.shares.clear();
     s_.ends.clear();
+    draw_numbers();
+    const size_t numbers = s_.samples.size();
+    size_t at = 0;
     for (TransferScratch::Job& j : s_.jobs) {
       j.ray = s_.rays.size();
-      for (int k = j.first; k < j.first + j.count; ++k) {
+      for (const size_t last = at + size_t(j.count); at < last; ++at) {
         RayEnd end;
-        if (!ray_end(j.receiver, k, j.wanted, end) || !(end.weight > 0)) continue;
-        s_.rays.push_back(ray_to(shooter_, receiver(j.receiver), end));
+        const Vec2 u{s_.numbers[at], s_.numbers[numbers + at]};
+        if (!ray_end(j.receiver, u, j.wanted, end) || !(end.weight > 0)) continue;
+        aim(shooter_, receiver(j.receiver), end, s_.rays.emplace_back());
         s_.weights.push_back(end.weight);
         s_.shares.push_back(share_at(shooter_, end.point));
         if (s_.records != nullptr) s_.ends.push_back(end.point);
@@ -295,9 +312,12 @@ class Gatherer {
 }  // namespace
 
 int rays_wanted(const RayBudget& budget, float unoccluded) {
-  const float share = unoccluded / (budget.reference * budget.tolerance);
-  const float n = std::pow(std::max(0.5f * share, 0.0f), 4.0f / 3);
-  const int wanted = n < float(budget.max_rays) ? std::max(1, int(std::ceil(n))) : budget.max_rays;
+  const float share = 0.5f * unoccluded / (budget.reference * budget.tolerance);
+  int wanted = 1;
+  if (share > 1) {  // of most transfers it is less
+    const float n = std::pow(share, 4.0f / 3);
+    wanted = n < float(budget.max_rays) ? int(std::ceil(n)) : budget.max_rays;
+  }
   return is_whole(budget, unoccluded) ? std::max(wanted, budget.whole_rays) : wanted;
 }
 

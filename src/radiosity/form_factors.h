@@ -53,6 +53,9 @@ struct TransferScratch {
   std::vector<RayRecord>* records = nullptr;  // if set, all rays are appended
   std::vector<Vec3> ends;
   std::vector<Ray> rays;
+  std::vector<uint64_t> streams;
+  std::vector<uint32_t> samples;
+  std::vector<float> numbers;
   std::vector<float> weights, shares;
   std::vector<uint8_t> is_occluded;
   std::vector<double> piece_irradiance;

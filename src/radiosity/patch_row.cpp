@@ -31,15 +31,23 @@ bool is_near(const RowShooter& s, const ReceiverBlock& b, float cell_radii) {
   return false;
 }
 
+void RowChunk::clear(size_t blocks) {
+  view.assign(blocks, BlockView::none);
+  first.assign(blocks, 0);
+  visible.clear();
+  points.clear();
+  parts.clear();
+}
+
 size_t RowChunk::bytes() const {
   return sizeof(*this) + view.capacity() * sizeof(BlockView) + first.capacity() * sizeof(uint16_t) +
          visible.capacity() + points.capacity() * sizeof(NearPoint) +
          parts.capacity() * sizeof(NearPart);
 }
 
-RowShooter::RowShooter(const RadiosityMesh& mesh, uint32_t patch, const Shooter& shooter,
-                       const std::vector<ShooterCell>& patch_cells, float luminance,
-                       uint64_t random_stream)
+RowShooter::RowShooter(const RadiosityMesh& mesh, const Receivers& receivers, uint32_t patch,
+                       const Shooter& shooter, const std::vector<ShooterCell>& patch_cells,
+                       float luminance, uint64_t random_stream)
     : cells(patch_cells),
       bounds(cells, shooter),
       levels(make_even(cells), bounds),
@@ -56,8 +64,10 @@ RowShooter::RowShooter(const RadiosityMesh& mesh, uint32_t patch, const Shooter&
   even.parts = {};
   for (LightPrimitive& p : even.pieces) p.mean_radiance = Rgb{expected};
   const Patch& p = mesh.patches[patch];
-  if (shooter.is_exact && p.last_point - p.first_point <= most_parts)
+  if (shooter.is_exact && p.last_point - p.first_point <= most_parts) {
+    first_slot = receivers.first_slot[patch];
     parts = {mesh.points.data() + p.first_point, p.last_point - p.first_point};
+  }
 }
 
 }  // namespace troffer

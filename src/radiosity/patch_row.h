@@ -37,6 +37,7 @@ struct RowChunk {
   std::vector<NearPoint> points;
   std::vector<NearPart> parts;
   size_t bytes() const;
+  void clear(size_t blocks);  // so many, out of sight
 };
 
 // The patch whose row it is. Rows are found for its light as if it were the same everywhere: what
@@ -48,11 +49,13 @@ struct RowShooter {
   std::vector<double> sent;  // running sums of what cells send now
   Shooter even;              // sends `expected`, the same everywhere
   std::span<const ElementPoint> parts;
-  float expected;  // luminance of radiance
+  uint32_t first_slot = 0;  // of parts (receivers.h)
+  float expected;           // luminance of radiance
   uint64_t stream;
 
-  RowShooter(const RadiosityMesh& mesh, uint32_t patch, const Shooter& shooter,
-             const std::vector<ShooterCell>& cells, float expected, uint64_t stream);
+  RowShooter(const RadiosityMesh& mesh, const Receivers& receivers, uint32_t patch,
+             const Shooter& shooter, const std::vector<ShooterCell>& cells, float expected,
+             uint64_t stream);
 };
 
 // Whether some cell is nearer to some point of the block than so many radii of cells.

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "radiosity/far_blocks.h"
-#include "radiosity/near_blocks.h"
-#include "radiosity/patch_row.h"
+#include <limits>
 
 namespace troffer {
 
@@ -18,29 +15,26 @@ float near_in_cell_radii(const RayBudget& budget) {
 }
 
 // Returns the number of rays.
-uint64_t make_chunk(const RowContext& row, size_t first_block, RowChunk& out) {
+uint64_t make_chunk(const RowContext& row, size_t first_block, RowScratch& s, RowChunk& out) {
   const std::vector<ReceiverBlock>& blocks = row.receivers.blocks;
   const size_t count = std::min(blocks.size() - first_block, RowChunk::most_blocks);
-  out.view.assign(count, BlockView::none);
-  out.first.assign(count, 0);
+  s.chunk.clear(count);
   const float cell_radii = near_in_cell_radii(row.budget);
-  NearBlocks near(row);
-  FarBlocks far(row);
+  s.near.begin(row);
+  s.far.begin(row);
   for (size_t k = 0; k < count; ++k) {
     const ReceiverBlock& block = blocks[first_block + k];
     if (is_out_of_sight(row.shooter.bounds, block)) continue;
     if (is_near(row.shooter, block, cell_radii)) {
-      if (far.start_weak(first_block + k)) continue;
-      near.find(first_block + k, k, out);
+      if (s.far.start_weak(first_block + k)) continue;
+      s.near.find(first_block + k, k, s.chunk);
     } else {
-      far.start(first_block + k);
+      s.far.start(first_block + k);
     }
   }
-  far.finish(first_block, out);
-  out.visible.shrink_to_fit();
-  out.points.shrink_to_fit();
-  out.parts.shrink_to_fit();
-  return near.rays() + far.rays();
+  s.far.finish(first_block, s.chunk);
+  out = s.chunk;  // takes no more memory than it needs
+  return s.near.rays() + s.far.rays();
 }
 
 // What a near block gets now.
@@ -60,6 +54,20 @@ void apply_near(const RowChunk& row, size_t k, uint32_t count, const Shooter& sh
     unoccluded[i] = p.unoccluded * all * (1 / 65535.0f);
     received[i] = p.unoccluded * visible * (1 / 65535.0f);
   }
+}
+
+// What far points receive of what would come unoccluded: the share of `all`, or that in 255ths of
+// each. Numbers that are not finite count as none.
+void share_out(float* unoccluded, uint32_t count, float all, const uint8_t* visible,
+               float* received) {
+  for (uint32_t i = 0; i < count; ++i)
+    unoccluded[i] =
+        std::abs(unoccluded[i]) < std::numeric_limits<float>::infinity() ? unoccluded[i] : 0.0f;
+  if (visible == nullptr)
+    for (uint32_t i = 0; i < count; ++i) received[i] = unoccluded[i] * all;
+  else
+    for (uint32_t i = 0; i < count; ++i)
+      received[i] = unoccluded[i] * (1 / 255.0f) * float(visible[i]);
 }
 
 }  // namespace
@@ -86,12 +94,14 @@ bool PatchRows::shoot(uint32_t patch, const Shooter& shooter, float expected,
   if (is_new) {
     made.resize(chunks_);
     std::vector<uint64_t> rays(made.size(), 0);
-    const RowShooter row_shooter(mesh_, patch, shooter, cells, expected, stream);
+    const RowShooter row_shooter(mesh_, receivers_, patch, shooter, cells, expected, stream);
     const RowContext row_context{mesh_,  receivers_,  tracer_,
                                  budget, row_shooter, is_first ? seen.data() : nullptr};
-    parallel_for(made.size(), threads_, [&](size_t chunk) {
+    scratch_.resize(size_t(thread_count(threads_)));
+    parallel_for_slots(made.size(), threads_, [&](size_t chunk, size_t slot) {
       if (stop.load(std::memory_order_relaxed)) return;
-      rays[chunk] = make_chunk(row_context, chunk * RowChunk::most_blocks, made[chunk]);
+      rays[chunk] =
+          make_chunk(row_context, chunk * RowChunk::most_blocks, scratch_[slot], made[chunk]);
     });
     if (stop) return false;
     for (const uint64_t r : rays) rays_ += r;
@@ -136,13 +146,9 @@ void PatchRows::apply(RowChunk& row, size_t chunk, const Shooter& shooter, const
       continue;
     }
     cells_irradiance(receivers_, b.first_slot, slots_of(b), cells.for_block(b), unoccluded);
-    for (uint32_t i = 0; i < b.count; ++i) {
-      if (!std::isfinite(unoccluded[i])) unoccluded[i] = 0;
-      received[i] = view == BlockView::lit      ? unoccluded[i]
-                    : view == BlockView::partly ? unoccluded[i] * (1 / 255.0f) *
-                                                      float(row.visible[size_t(row.first[k]) + i])
-                                                : 0.0f;
-    }
+    const uint8_t* const visible =
+        view == BlockView::partly ? row.visible.data() + row.first[k] : nullptr;
+    share_out(unoccluded, b.count, view == BlockView::lit ? 1.0f : 0.0f, visible, received);
   }
 }
 

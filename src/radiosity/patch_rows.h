@@ -18,7 +18,9 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "radiosity/far_blocks.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/near_blocks.h"
 #include "radiosity/patch_row.h"
 
 namespace troffer {
@@ -35,6 +37,13 @@ struct ShotReceived {
 struct DarkLimit {
   std::span<const float> least;  // empty: none are left out
   float scale = 1;
+};
+
+// What one thread needs to make a row.
+struct RowScratch {
+  NearBlocks near;
+  FarBlocks far;
+  RowChunk chunk;
 };
 
 class PatchRows {
@@ -69,6 +78,7 @@ class PatchRows {
   uint64_t rays_ = 0;
   std::vector<Row> rows_;  // per patch; empty: not kept
   size_t chunks_;
+  std::vector<RowScratch> scratch_;  // per thread
 };
 
 }  // namespace troffer

@@ -1,5 +1,7 @@
 #include "radiosity/patch_shots.h"
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "base/units.h"
 #include "radiosity/source_contributions.h"
@@ -52,6 +54,10 @@ void PatchShots::limit() {
   constexpr float most = 1.03f;  // an error of form factors is not cut
   for (const uint32_t index : shot_.blocks) {
     const ReceiverBlock& b = rows_.receivers().blocks[index];
+    float most_seen = 0;  // with the slots that pad, which see nothing
+    for (uint32_t i = 0; i < slots_of(b); ++i)
+      most_seen = std::max(most_seen, seen_[b.first_slot + i]);
+    if (most_seen <= most) continue;
     for (uint32_t slot = b.first_slot; slot < b.first_slot + b.count; ++slot) {
       if (seen_[slot] <= most) continue;
       shot_.unoccluded[slot] *= most / seen_[slot];

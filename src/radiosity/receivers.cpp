@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/simd.h"
+#include "base/units.h"
 
 namespace troffer {
 
@@ -29,7 +31,8 @@ void bound(const RadiosityMesh& mesh, ReceiverBlock& b) {
 }  // namespace
 
 Receivers::Receivers(const RadiosityMesh& mesh) {
-  for (const Patch& patch : mesh.patches)
+  for (const Patch& patch : mesh.patches) {
+    first_slot.push_back(uint32_t(x.size()));
     for (uint32_t first = patch.first_point; first < patch.last_point;
          first += ReceiverBlock::most_points) {
       ReceiverBlock b;
@@ -46,9 +49,33 @@ Receivers::Receivers(const RadiosityMesh& mesh) {
         nx.push_back(p.normal.x);
         ny.push_back(p.normal.y);
         nz.push_back(p.normal.z);
+        offset.push_back(p.offset);
       }
       blocks.push_back(b);
     }
+  }
+}
+
+// Distances of some at a stroke, then the least: neither has branches.
+TROFFER_MULTIVERSION
+uint32_t nearest_slot(const Receivers& r, uint32_t first, uint32_t count, const Vec3& place) {
+  constexpr uint32_t most = 32;
+  float squares[most];
+  uint32_t nearest = 0;
+  float least = std::numeric_limits<float>::infinity();
+  for (uint32_t at = 0; at < count; at += most) {
+    const uint32_t n = std::min(most, count - at);
+    const float* const x = r.x.data() + first + at;
+    const float* const y = r.y.data() + first + at;
+    const float* const z = r.z.data() + first + at;
+    for (uint32_t i = 0; i < n; ++i)
+      squares[i] = sqr(x[i] - place.x) + sqr(y[i] - place.y) + sqr(z[i] - place.z);
+    for (uint32_t i = 0; i < n; ++i) {
+      nearest = squares[i] < least ? at + i : nearest;
+      least = std::min(least, squares[i]);
+    }
+  }
+  return nearest;
 }
 
 TROFFER_MULTIVERSION

@@ -23,9 +23,12 @@ struct ReceiverBlock {
 struct Receivers {
   static constexpr uint32_t lanes = 8;
   std::vector<ReceiverBlock> blocks;
-  std::vector<float> x, y, z, nx, ny, nz;
+  std::vector<float> x, y, z, nx, ny, nz, offset;
+  std::vector<uint32_t> first_slot;  // per patch
   explicit Receivers(const RadiosityMesh& mesh);
   size_t slots() const { return x.size(); }
+  Vec3 position(size_t slot) const { return {x[slot], y[slot], z[slot]}; }
+  Vec3 normal(size_t slot) const { return {nx[slot], ny[slot], nz[slot]}; }
 };
 inline uint32_t slots_of(const ReceiverBlock& b) {
   return (b.count + Receivers::lanes - 1) / Receivers::lanes * Receivers::lanes;
@@ -40,6 +43,11 @@ struct ShooterCell {
   Vec3 corners[3];     // where rays end; all the same for pieces of curved patches
   uint32_t group = 0;  // cells of one group lie side by side in one plane
 };
+
+// The one of `count` consecutive slots from `first` on whose point is nearest, by number from
+// `first` on; the first of several.
+uint32_t nearest_slot(const Receivers& receivers, uint32_t first, uint32_t count,
+                      const Vec3& place);
 
 // irradiance[i] per unit of the mean radiance, of `count` (a multiple of lanes) slots from `first`
 // on; exact where cells are small and far.

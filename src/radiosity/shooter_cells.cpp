@@ -163,9 +163,9 @@ CellLevels::CellLevels(const std::vector<ShooterCell>& cells, const ShooterBound
 }
 
 const std::vector<ShooterCell>& CellLevels::for_block(const ReceiverBlock& b) const {
-  const float distance = length(b.centre - centre_) - b.radius;
-  if (distance > one_from * radius_ && !one_.empty()) return one_;
-  if (distance > groups_from * radius_ && !groups_.empty()) return groups_;
+  const float square = length_squared(b.centre - centre_);
+  if (square > sqr(one_from * radius_ + b.radius) && !one_.empty()) return one_;
+  if (square > sqr(groups_from * radius_ + b.radius) && !groups_.empty()) return groups_;
   return all_;
 }
 

@@ -78,6 +78,7 @@ class Solver {
       const double done = 1 - std::max(waiting_, 0.0) / s_.balance.emitted;
       report(progress, unshot_.sum(), lights_progress * done);
     }
+    for (uint32_t b = 0; b < patch_shots_.receivers().blocks.size(); ++b) lists_.look_over(b);
     waiting_ = 0;  // but for rounding
     direct_ = s_.balance.absorbed + unshot_.sum();
   }
@@ -197,6 +198,7 @@ class Solver {
       else
         for (size_t c = 0; c < 3; ++c) general_[c][b.first_slot + i] += radiance[c] * received[i];
     }
+    lists_.look_over(block);
   }
 
   void add_up_general() {

@@ -1,6 +1,7 @@
 // The stored contributions of all sample points on their way, with what a quick look at them needs.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -20,7 +21,7 @@ class StoredLists {
         least_(slots_, 0.0f),
         block_(solution.mesh.points.size(), 0),
         least_in_block_(blocks_.size(), 0.0f),
-        may_hold_(blocks_.size(), 0) {
+        may_hold_(blocks_.size(), Sources{}) {
     for (uint32_t b = 0; b < blocks_.size(); ++b)
       for (uint32_t i = 0; i < blocks_[b].count; ++i) block_[blocks_[b].first_point + i] = b;
   }
@@ -39,9 +40,11 @@ class StoredLists {
   // False: no point of a block takes what a source gives it; `most`: the highest rank. A quick
   // look, since blocks are many and far apart in memory.
   bool may_take(uint32_t block, uint32_t source, float most) const {
-    return most > least_in_block_[block] || (may_hold_[block] & bit_of(source)) != 0;
+    return most > least_in_block_[block] ||
+           (may_hold_[block][word_of(source)] & bit_of(source)) != 0;
   }
 
+  // look_over() must follow for its block, before may_take() is asked again.
   void add(uint32_t point, const StoredContribution& c) {
     RadiositySolution& s = solution_;
     const size_t first = size_t(point) * s.stored_per_point;
@@ -55,22 +58,25 @@ class StoredLists {
       least = std::min(least, list[k].source == no_source ? -1.0f : importance(list[k]));
     }
     least_[slot] = least;
-    look_over(block);
   }
-
- private:
-  static uint64_t bit_of(uint32_t source) { return uint64_t(1) << (source & 63); }
 
   void look_over(uint32_t block) {
     const ReceiverBlock& b = blocks_[block];
     const auto first = least_.begin() + b.first_slot;
     least_in_block_[block] = *std::min_element(first, first + b.count);
-    uint64_t held = 0;
+    Sources held{};
     for (uint32_t k = 0; k < solution_.stored_per_point; ++k)
-      for (uint32_t i = 0; i < b.count; ++i)
-        held |= bit_of(sources_[k * slots_ + b.first_slot + i]);
+      for (uint32_t i = 0; i < b.count; ++i) {
+        const uint32_t source = sources_[k * slots_ + b.first_slot + i];
+        held[word_of(source)] |= bit_of(source);
+      }
     may_hold_[block] = held;
   }
+
+ private:
+  using Sources = std::array<uint64_t, 4>;  // a bit for each, and for others whose bit is the same
+  static uint64_t bit_of(uint32_t source) { return uint64_t(1) << (source & 63); }
+  static size_t word_of(uint32_t source) { return (source >> 6) & 3; }
 
   RadiositySolution& solution_;
   const std::vector<ReceiverBlock>& blocks_;
@@ -79,7 +85,7 @@ class StoredLists {
   std::vector<float> least_;       // per slot: importance below which nothing new is stored
   std::vector<uint32_t> block_;    // per point
   std::vector<float> least_in_block_;
-  std::vector<uint64_t> may_hold_;  // per block: bit_of each source in its lists
+  std::vector<Sources> may_hold_;  // per block: what is in its lists
 };
 
 }  // namespace troffer
