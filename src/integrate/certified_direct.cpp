@@ -32,8 +32,8 @@ CertifiedSettings certified_settings(double error, size_t lights, int viewing_ra
   s.viewing_rays = viewing_rays;
   s.estimator.residual_error = float(error);
   s.estimator.rays.pair_error = float(2 * error);
-  // Who asks for less than the default error may wait for it.
-  s.estimator.rays.most_rays = uint32_t(256 * std::clamp(0.01 / error, 1.0, 16.0));
+  s.estimator.rays.most_rays =
+      uint32_t(std::clamp(2.56 / error, 256.0, double(most_rays_of_receiver)));
   s.estimator.rays.most_share_rays = 2 * s.estimator.rays.most_rays;
   return s;
 }

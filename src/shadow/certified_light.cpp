@@ -149,7 +149,8 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
 // than that are not worth a mask.
 Promise promise_of(const LightRequest& request, const CertifiedOptions& options,
                    CertifiedMemory& m) {
-  constexpr double facets_per_ray = 12, least_budget = 512, most_budget = 65536;
+  constexpr double facets_per_ray = 12, least_budget = 512,
+                   most_budget = facets_per_ray * most_rays_of_receiver;
   Promise p;
   p.error = options.mask_error;
   if (!(p.error > 0)) return p;
@@ -166,7 +167,7 @@ Promise promise_of(const LightRequest& request, const CertifiedOptions& options,
     m.rest[i] = std::max(m.total[i] - m.done[i], 0.0f) * inverse;
   }
   const double share = total > 0 ? own / total : 1;
-  // Beyond the most, an error that is too large is told: planning takes the square of the cells.
+  // Masks may cost what rays may. Beyond that an error that is too large is told.
   p.budget =
       std::clamp(share * facets_per_ray / (4 * sqr(double(p.error))), least_budget, most_budget);
   p.seen = m.seen;

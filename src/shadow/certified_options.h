@@ -9,6 +9,9 @@
 
 namespace troffer {
 
+// Who asks for less than the default error may wait for it: a receiver's rays, at the most.
+constexpr uint32_t most_rays_of_receiver = 4096;
+
 struct RayLimits {
   uint32_t most_rays = 256;        // of a receiver, for its allowed error
   float pair_error = 0.02f;        // allowed standard error of each source's visible share …
@@ -20,8 +23,8 @@ struct CertifiedOptions {
   MaskLattice lattice = coarse_lattice;
   size_t longest_list = 16384;  // facets gathered for a cluster, and no more than their masks are
                                 // worth by `mask_error`
-  int most_halvings = 3;       // of cluster or source, one within the other, where lists are longer
-  size_t split_above = 24;     // facets in a list that make halving a cluster worth while
+  int most_halvings = 3;   // of cluster or source, one within the other, where lists are longer
+  size_t split_above = 1;  // facets in a list that make halving a cluster worth while
   size_t smallest_cluster = 16;  // receivers
   CellLimits cells;
   // Standard error allowed to the masks of a receiver, relative to the light that arrives; 0: what

@@ -10,13 +10,15 @@ namespace troffer {
 namespace {
 
 // Variance of a count of lattice samples behind an edge, in samples squared per pair of neighbours
-// that the edge parts: large for edges that run along rows or columns of the lattice, least for
-// those along the sides of the source (docs/certified.md). Along diagonals it is large too, but as
-// many pairs in rows as in columns mostly mean edges along both sides.
+// that the edge parts. The numbers of pairs in rows and in columns tell the edge's direction; it is
+// large along rows or columns of the lattice, and larger than elsewhere along lines through every
+// second sample (measured: docs/certified.md). Along diagonals it is large too, but as many pairs
+// in rows as in columns mostly mean edges along both sides of the source.
 float edge_variance(float least_pairs, float most_pairs) {
+  if (most_pairs < 6) return 0.12f;  // a few pairs do not tell a direction
   const float ratio = least_pairs / most_pairs;
-  // A few pairs do not tell a direction.
-  return most_pairs < 6 || ratio > 0.05f ? 0.065f : 0.3f;
+  if (ratio < 0.04f) return 0.5f;
+  return ratio < 0.08f || std::abs(ratio - 0.5f) < 0.06f || ratio > 0.9f ? 0.065f : 0.04f;
 }
 
 // Expected variance of a mask's share. Where samples differ from their neighbours as often as if
@@ -56,6 +58,12 @@ void add_answer(const CellTask& cell, uint32_t member, const MaskShare& share, S
   results.sums[member].add(cell.unoccluded[member], share.share, share.variance, kind);
 }
 
+// Whether all samples are.
+bool is_above_horizon(const MaskFrame& frame, const MaskWeights& w) {
+  const auto last = float(frame.lattice().rows);
+  return w.cosine + std::min(w.cosine_j, 0.0f) * last + std::min(w.cosine_k, 0.0f) * last > 0;
+}
+
 // Hardly any light can come from where no sample stands above the horizon.
 constexpr MaskShare unknown_share{0.5f, 0.25f};
 
@@ -80,6 +88,11 @@ MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& f
   }
   samples.rows = mask.open;
   samples.weights = mask_weights(frame, x, r.normal, samples.shift);
+  // Where nobody wants to know where the samples are, weights do not matter if all are open.
+  const bool is_answer = cell.is_complete && cell.source.wanted_points[member] == 0;
+  if (is_answer && is_above_horizon(frame, samples.weights) &&
+      std::equal(mask.open.row, mask.open.row + most_mask_rows, mask.inside.row))
+    return {1, 0};
   const MaskWeight sums = weigh(frame, mask, samples.weights, samples.open_by_row);
   if (!(sums.all > 0)) return {-1, 0};
   samples.open = sums.open;

@@ -19,62 +19,62 @@ constexpr uint64_t first_pilot_pass = 1000;
 // Variance of the coarse lattice over that of the fine one: (661 / 178)^1.5.
 constexpr double coarse_variance = 7.2;
 // Masks err by less than they tell, by a third and more as a rule.
-constexpr double told_over_made = 1.4;
+constexpr double told_over_made = 1.2;
 // What a mask costs, in facets of the fine lattice: itself, and each of them by the coarse one.
 constexpr double cost_of_mask = 10, coarse_cost = 0.6;
 
-// The plan as it grows: entries of `cells`, which coarse lattices lie over.
+// The plan as it grows: entries of `cells`, which coarse lattices lie over. Sums go along with it.
 class Plan {
  public:
   Plan(const SourceTask& task, const SourcePart& part, uint64_t stream, PilotMemory& memory,
        SettleMemory& settle)
       : task_(task), part_(part), stream_(stream), m_(memory), settle_(settle) {
-    m_.pilots.clear();
-    m_.seen.clear();
-    m_.facets.clear();
     const size_t members = part.members.size();
     const size_t n =
         std::min(members, std::clamp(members / receivers_per_pilot, fewest_pilots, most_pilots));
+    m_.pilots.assign(n, {});
     for (size_t k = 0; k < n; ++k)
-      m_.pilots.push_back(part.members[(2 * k + 1) * members / (2 * n)]);
-    is_coarse_.assign(m_.cells.size(), task.options.lattice.rows < fine_lattice.rows);
-    for (size_t c = 0; c < m_.cells.size(); ++c) look(c);
-    most_dark_ = m_.cells.size() + cells_of_search;
+      m_.pilots[k].member = part.members[(2 * k + 1) * members / (2 * n)];
+    m_.costs.clear();
+    m_.is_coarse.clear();
+    const size_t first = m_.cells.size();
+    const bool is_coarse = task.options.lattice.rows < fine_lattice.rows;
+    for (size_t c = 0; c < first; ++c) look(c, is_coarse);
+    most_dark_ = first + cells_of_search;
   }
 
   // Makes the worst cell finer; false where all is well, or more would cost too much.
   bool refine() {
     const size_t cell = worst();
-    if (cell == m_.cells.size() || cost() > task_.promise.budget) return false;
-    if (is_coarse_[cell]) {
-      is_coarse_[cell] = false;
+    if (cell == m_.cells.size() || cost_ > task_.promise.budget) return false;
+    if (m_.is_coarse[cell] != 0) {
+      count(cell, -1);
+      m_.is_coarse[cell] = 0;
+      count(cell, 1);
       return true;
     }
     FlatCell first, second;
     if (m_.cells[cell].is_disk || !halve(m_.cells[cell], first, second)) return false;
+    count(cell, -1);
     m_.cells[cell] = first;
-    look(cell);
+    look(cell, false);
     m_.cells.push_back(second);
-    is_coarse_.push_back(false);
-    look(m_.cells.size() - 1);
+    look(m_.cells.size() - 1, false);
     return true;
   }
 
-  bool is_coarse(size_t cell) const { return is_coarse_[cell]; }
-
  private:
-  size_t pilots() const { return m_.pilots.size(); }
-
-  double variance(size_t cell, size_t pilot) const {
-    return m_.seen[cell * pilots() + pilot].variance * (is_coarse_[cell] ? coarse_variance : 1);
+  double variance(const PilotMemory::Pilot& pilot, size_t cell) const {
+    return pilot.variance[cell] * (m_.is_coarse[cell] != 0 ? coarse_variance : 1);
   }
 
-  double cost() const {
-    double sum = 0;
-    for (size_t c = 0; c < m_.cells.size(); ++c)
-      if (m_.facets[c] > 0)
-        sum += cost_of_mask + double(m_.facets[c]) * (is_coarse_[c] ? coarse_cost : 1);
-    return sum;
+  // Adds the cell to all sums, or takes it off them.
+  void count(size_t cell, double sign) {
+    cost_ += sign * m_.costs[cell] * (m_.is_coarse[cell] != 0 ? coarse_cost : 1);
+    for (PilotMemory::Pilot& p : m_.pilots) {
+      p.all_light += sign * p.light[cell];
+      p.all_variance += sign * variance(p, cell);
+    }
   }
 
   // Of the pilot whose error is too large by the largest factor, the cell that adds most; the
@@ -82,25 +82,21 @@ class Plan {
   size_t worst() const {
     const size_t n = m_.cells.size();
     double largest = 1;
-    size_t pilot = pilots();
-    for (size_t k = 0; k < pilots(); ++k) {
-      double light = 0, sum = 0;
-      for (size_t c = 0; c < n; ++c) {
-        light += m_.seen[c * pilots() + k].light;
-        sum += variance(c, k);
-      }
+    const PilotMemory::Pilot* pilot = nullptr;
+    for (const PilotMemory::Pilot& p : m_.pilots) {
+      const double light = std::max(p.all_light, 0.0);
       if (light == 0 && n >= most_dark_) continue;
-      const double allowed = allowed_variance(m_.pilots[k], light);
-      if (sum > allowed * largest) {
-        largest = allowed > 0 ? sum / allowed : 1e300;
-        pilot = k;
+      const double allowed = allowed_variance(p.member, light);
+      if (p.all_variance > allowed * largest) {
+        largest = allowed > 0 ? p.all_variance / allowed : 1e300;
+        pilot = &p;
       }
     }
-    if (pilot == pilots()) return n;
+    if (pilot == nullptr) return n;
     size_t cell = 0;
     for (size_t c = 1; c < n; ++c)
-      if (variance(c, pilot) > variance(cell, pilot)) cell = c;
-    return cell;
+      if (variance(*pilot, c) > variance(*pilot, cell)) cell = c;
+    return variance(*pilot, cell) > 0 ? cell : n;
   }
 
   double allowed_variance(uint32_t member, double light) const {
@@ -114,22 +110,23 @@ class Plan {
            std::max(all * std::max(light, all / (2 * p.sources)), least * least);
   }
 
-  // What pilots see of a cell.
-  void look(size_t cell);
+  // Adds what pilots see of a cell.
+  void look(size_t cell, bool is_coarse);
 
   const SourceTask& task_;
   const SourcePart& part_;
   uint64_t stream_;
   PilotMemory& m_;
   SettleMemory& settle_;
-  std::vector<bool> is_coarse_;
+  double cost_ = 0;
   size_t most_dark_ = 0;
 };
 
-void Plan::look(size_t c) {
+void Plan::look(size_t c, bool is_coarse) {
   const FlatCell& cell = m_.cells[c];
-  m_.seen.resize(m_.cells.size() * pilots());
-  m_.facets.resize(m_.cells.size());
+  m_.costs.resize(m_.cells.size());
+  m_.is_coarse.resize(m_.cells.size());
+  m_.is_coarse[c] = is_coarse ? 1 : 0;
   const uint64_t stream = hash_of(stream_, m_.cells.size(), c);
   const MaskFrame frame(cell.plane, fine_lattice, (stream & 1) != 0, part_.hull.centre,
                         cell.all_outline(), cell.is_disk);
@@ -140,27 +137,29 @@ void Plan::look(size_t c) {
   const CellTask task{task_, frame, task_.unoccluded, stream, part_.is_complete, false};
   FacetList& left = settle_.lists[1];
   const Certificate certificate = certify(task, part_.hull, list, settle_.flags, left);
-  m_.facets[c] = certificate == Certificate::none ? left.size() : 0;
-  for (size_t k = 0; k < pilots(); ++k) {
-    PilotMemory::Seen& s = m_.seen[c * pilots() + k];
-    s = {};
+  m_.costs[c] = certificate == Certificate::none ? cost_of_mask + double(left.size()) : 0;
+  for (size_t k = 0; k < m_.pilots.size(); ++k) {
+    PilotMemory::Pilot& p = m_.pilots[k];
+    p.light.resize(m_.cells.size());
+    p.variance.resize(m_.cells.size());
+    p.light[c] = p.variance[c] = 0;
     if (certificate == Certificate::dark) continue;
-    const uint32_t member = m_.pilots[k];
-    const ShadowReceiver& r = task_.cluster.receivers[member];
-    const double all = cell.is_disk ? double(task_.unoccluded[member])
+    const ShadowReceiver& r = task_.cluster.receivers[p.member];
+    const double all = cell.is_disk ? double(task_.unoccluded[p.member])
                                     : polygon_irradiance(cell.all_corners(), Vec3d(r.position),
                                                          Vec3d(r.normal), Sides::both);
     const MaskShare share =
         certificate == Certificate::lit
             ? MaskShare{1, 0}
-            : look_at_cell(task, member, left, first_pilot_pass + k, settle_.masks);
+            : look_at_cell(task, p.member, left, first_pilot_pass + k, settle_.masks);
     if (share.share < 0) continue;  // hardly any light
-    s.light = all * double(share.share);
-    s.variance = all * all * double(share.variance);
+    p.light[c] = all * double(share.share);
+    p.variance[c] = all * all * double(share.variance);
     // Between samples that are all dark there may be light, of a sample or so.
     if (certificate == Certificate::none && share.share == 0)
-      s.variance = sqr(all / fine_lattice.samples());
+      p.variance[c] = sqr(all / fine_lattice.samples());
   }
+  count(c, 1);
 }
 
 }  // namespace
@@ -179,7 +178,7 @@ void plan_cells(const SourceTask& task, const SourcePart& part, uint64_t stream,
   while (plan.refine()) {
   }
   for (size_t c = 0; c < memory.cells.size(); ++c)
-    out.push_back({memory.cells[c], plan.is_coarse(c) ? coarse_lattice : fine_lattice});
+    out.push_back({memory.cells[c], memory.is_coarse[c] != 0 ? coarse_lattice : fine_lattice});
 }
 
 }  // namespace troffer

@@ -21,12 +21,15 @@ struct PlannedCell {
 };
 
 struct PilotMemory {
-  std::vector<uint32_t> pilots;
-  struct Seen {
-    double light = 0, variance = 0;  // sr, sr²; by masks of the fine lattice
+  struct Pilot {
+    uint32_t member = 0;
+    // Per cell, by masks of the fine lattice, sr and sr²; and over all cells, by their lattices.
+    std::vector<double> light, variance;
+    double all_light = 0, all_variance = 0;
   };
-  std::vector<Seen> seen;      // per cell and pilot
-  std::vector<size_t> facets;  // per cell: in its list
+  std::vector<Pilot> pilots;
+  std::vector<double> costs;  // per cell: of its masks by the fine lattice, in facets
+  std::vector<uint8_t> is_coarse;
   std::vector<FlatCell> cells;
 };
 

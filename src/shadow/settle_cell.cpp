@@ -25,10 +25,11 @@ Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetL
 
 namespace {
 
-void settle(const CellTask& cell, std::span<uint32_t> members, const ReceiverHull& hull,
-            size_t depth, SettleMemory& memory, SourceResults& results) {
+void settle(const CellTask& cell, ReceiverTree& tree, uint32_t node, size_t depth,
+            SettleMemory& memory, SourceResults& results) {
   FacetList& left = memory.lists[depth + 1];
-  switch (certify(cell, hull, memory.lists[depth], memory.flags, left)) {
+  const std::span<const uint32_t> members = tree.members(node);
+  switch (certify(cell, tree.hull(node), memory.lists[depth], memory.flags, left)) {
     case Certificate::lit:
       for (const uint32_t m : members) add_lit(cell, m, memory.masks, results);
       return;
@@ -43,17 +44,16 @@ void settle(const CellTask& cell, std::span<uint32_t> members, const ReceiverHul
   if (left.size() < o.split_above || members.size() < 2 * o.smallest_cluster ||
       depth >= SettleMemory::most_depth)
     return mask_cell(cell, members, left, memory.masks, results);
-  const ShadowCluster& cluster = cell.source.cluster;
-  const size_t half = halve_members(cluster, members);
-  for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
-    settle(cell, side, hull_of(cluster, side), depth + 1, memory, results);
+  const uint32_t halves = tree.halves_of(node);
+  for (const uint32_t half : {halves, halves + 1})
+    settle(cell, tree, half, depth + 1, memory, results);
 }
 
 }  // namespace
 
-void settle_cell(const CellTask& cell, std::span<uint32_t> members, const ReceiverHull& hull,
-                 SettleMemory& memory, SourceResults& results) {
-  settle(cell, members, hull, 0, memory, results);
+void settle_cell(const CellTask& cell, ReceiverTree& receivers, SettleMemory& memory,
+                 SourceResults& results) {
+  settle(cell, receivers, 0, 0, memory, results);
 }
 
 }  // namespace troffer

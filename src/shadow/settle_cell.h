@@ -7,6 +7,7 @@
 #include <span>
 
 #include "shadow/mask_cell.h"
+#include "shadow/receiver_tree.h"
 
 namespace troffer {
 
@@ -23,8 +24,8 @@ enum class Certificate : uint8_t { none, lit, dark };
 Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetList& facets,
                     FacetFlags& flags, FacetList& left);
 
-// Answers the members, which it reorders, by memory.lists[0].
-void settle_cell(const CellTask& cell, std::span<uint32_t> members, const ReceiverHull& hull,
-                 SettleMemory& memory, SourceResults& results);
+// Answers the receivers by memory.lists[0].
+void settle_cell(const CellTask& cell, ReceiverTree& receivers, SettleMemory& memory,
+                 SourceResults& results);
 
 }  // namespace troffer

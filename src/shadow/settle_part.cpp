@@ -33,6 +33,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
                      PartMemory& memory, SourceResults& results) {
   plan_cells(task, part, hash_of(stream, task.request.stream, part.members[0]), memory.pilots,
              memory.settle, memory.cells);
+  memory.receivers.set(task.cluster, part.members, part.hull);
   for (const auto& [cell, lattice] : memory.cells) {
     ++results.counters.cells;
     stream = hash_of(stream, 1u);
@@ -47,9 +48,11 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
     if (!part.is_complete) results.rays.frames.push_back(frame);
     set_list(frame, part.facets, memory.settle.lists[0]);
     const bool is_all = memory.members.size() == part.members.size();
+    if (!is_all)
+      memory.some_receivers.set(task.cluster, memory.members,
+                                hull_of(task.cluster, memory.members));
     settle_cell({task, frame, unoccluded, stream, part.is_complete, part.is_hopeless},
-                memory.members, is_all ? part.hull : hull_of(task.cluster, memory.members),
-                memory.settle, results);
+                is_all ? memory.receivers : memory.some_receivers, memory.settle, results);
   }
 }
 

@@ -264,13 +264,68 @@ TEST_CASE("certificates: a cluster is halved while its list is long, and every m
   SettleMemory memory;
   memory.lists[0] = one.list_of(frame, crumbs(8, 0.2f));
   SourceResults results = one.results();
-  settle_cell(cell, one.members, one.cluster.hull, memory, results);
+  ReceiverTree tree;
+  tree.set(one.cluster, one.members, one.cluster.hull);
+  settle_cell(cell, tree, memory, results);
   for (size_t i = 0; i < one.receivers.size(); ++i)
     CHECK(one.sums[i].unoccluded == one.unoccluded[i]);
   CHECK(one.queue.is_empty());
   CHECK(one.counters.masks > 0);
   // halves have shorter lists than all together
   CHECK(one.counters.mask_facets < one.counters.masks * 64 / 2);
+}
+
+TEST_CASE("certificates: where only some of a cluster see a shadow's edge, only they get masks") {
+  OneSource one(receivers_on_floor(16, 0.1f));
+  const MaskFrame frame = one.frame();
+  const SourceTask task = one.task();
+  const CellTask cell{task, frame, one.unoccluded, 1, true, false};
+  SettleMemory memory;
+  memory.lists[0] = one.list_of(frame, {plate(-5, 5, 0.7f, 5, 0.02f)});
+  SourceResults results = one.results();
+  ReceiverTree tree;
+  tree.set(one.cluster, one.members, one.cluster.hull);
+  settle_cell(cell, tree, memory, results);
+  size_t lit = 0, dark = 0;
+  for (const CellSum& s : one.sums) {
+    lit += s.kinds == answer_bit(ShadowAnswer::lit);
+    dark += s.kinds == answer_bit(ShadowAnswer::dark);
+  }
+  CHECK(lit >= 64);
+  CHECK(dark >= 64);
+  CHECK(one.counters.masks <= 64);
+  CHECK(one.counters.masks + lit + dark == 256);
+}
+
+TEST_CASE("receivers in a tree: halves hold what their parent holds, each once") {
+  OneSource one(receivers_on_floor(6, 0.1f));
+  ReceiverTree tree;
+  tree.set(one.cluster, one.members, one.cluster.hull);
+  std::vector<uint32_t> nodes{0}, seen;
+  while (!nodes.empty()) {
+    const uint32_t node = nodes.back();
+    nodes.pop_back();
+    const std::vector<uint32_t> members(tree.members(node).begin(), tree.members(node).end());
+    for (const uint32_t m : members) {
+      const Vec3d p(one.receivers[m].origin), d = p - tree.hull(node).centre;
+      double farthest = 0;
+      for (int i = 0; i < tree.hull(node).count; ++i)
+        farthest =
+            std::max(farthest, length(tree.hull(node).corners[size_t(i)] - tree.hull(node).centre));
+      CHECK(length(d) <= farthest * 1.001 + 1e-6);
+    }
+    if (members.size() < 2) {
+      seen.push_back(members[0]);
+      continue;
+    }
+    const uint32_t halves = tree.halves_of(node);
+    CHECK(tree.halves_of(node) == halves);  // not halved again
+    CHECK(tree.members(halves).size() + tree.members(halves + 1).size() == members.size());
+    nodes.push_back(halves);
+    nodes.push_back(halves + 1);
+  }
+  std::sort(seen.begin(), seen.end());
+  CHECK(seen == one.members);
 }
 
 TEST_CASE("masks: of a complete list they are the answer") {
