@@ -65,6 +65,9 @@ struct RadianceBatch {
   std::vector<Rgb> sources;
   // Empty unless asked for by resizing it to n (methods that compare patterns).
   std::vector<ShadowRecord> records;
+  // Set by the caller and kept: luminance that is usual in the picture; 0: not known. What is far
+  // below it may err by more (methods that keep an error).
+  float typical = 0;
 
   void reset(size_t n) {
     direct.assign(n, Rgb{0});

@@ -128,6 +128,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .widest_tile = 8,  // clusters of hits should be small in space
         .most_rays_per_tile = most_certified_rays_of_tile,
         .has_noise_of_batch = true,
+        .wants_typical = true,
         .refinement = 4,
     },
     {

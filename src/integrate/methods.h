@@ -115,6 +115,8 @@ struct MethodRow {
   // The noise of a pixel, though not its mean, depends on what else is in its batch: it is the same
   // in a crop only if batches are.
   bool has_noise_of_batch = false;
+  // Errors are compared with what is usual in the picture where less light arrives.
+  bool wants_typical = false;
   // Pixels of a crop are to have the values that they have in the whole picture.
   bool is_same_in_crops = true;
   int refinement = 1;                  // most viewing rays of a pixel, in --spp, by default

@@ -37,6 +37,9 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
 }
 
 bool Rendering::run() {
+  const bool wants_typical = options_.method.row().wants_typical;
+  const auto typical = wants_typical ? float(typical_luminance()) : 0;
+  for (Work& w : work_) w.radiance.typical = typical;
   for (int first = 0; first < options_.spp && !was_stopped_; first += samples_per_batch) {
     const auto count = uint32_t(std::min(samples_per_batch, options_.spp - first));
     pass([&](const PixelRect& tile, Work& w) {
@@ -167,6 +170,7 @@ std::vector<int> Rendering::samples_of_pixels(double typical) const {
 // Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,
 // which are no part of the picture and of its statistics.
 double Rendering::typical_luminance() {
+  if (typical_) return *typical_;
   constexpr int most = 32;  // rays along each side
   Work& w = work_[0];
   if (!w.scratch) w.scratch = integrator_.make_scratch();
@@ -191,7 +195,8 @@ double Rendering::typical_luminance() {
   }
   std::sort(values.begin(), values.end());
   values.resize(values.size() - values.size() / 20);
-  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+  typical_ = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+  return *typical_;
 }
 
 double Rendering::mean_luminance() const {

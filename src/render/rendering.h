@@ -67,7 +67,7 @@ class Rendering {
   void trace(Work& w);
   void refine();
   std::vector<int> samples_of_pixels(double typical) const;
-  double typical_luminance();
+  double typical_luminance();  // looked at once
   double mean_luminance() const;
   void tell_progress();
 
@@ -79,6 +79,7 @@ class Rendering {
   Film film_;
   std::vector<Work> work_;  // per thread
   Refining refining_;
+  std::optional<double> typical_;
   const ProgressCallback& report_;
   Progress progress_;
   const StopFlag& stop_;

@@ -147,8 +147,8 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
 // A ray costs about as much as a dozen facets in a mask. At an error E, a source that gives the
 // share s of the light is worth s / 4 E² rays at most, each with a variance of up to ¼: more facets
 // than that are not worth a mask.
-Promise promise_of(const LightRequest& request, const CertifiedOptions& options,
-                   CertifiedMemory& m) {
+Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
+                   const CertifiedOptions& options, CertifiedMemory& m) {
   constexpr double facets_per_ray = 12, least_budget = 512,
                    most_budget = facets_per_ray * most_rays_of_receiver;
   Promise p;
@@ -165,6 +165,7 @@ Promise promise_of(const LightRequest& request, const CertifiedOptions& options,
     m.done[i] += request.brightness * m.unoccluded[i];
     m.seen[i] = m.light[i] * inverse;
     m.rest[i] = std::max(m.total[i] - m.done[i], 0.0f) * inverse;
+    m.floor[i] = cluster.receivers[i].floor * inverse / std::sqrt(float(m.order.size()));
   }
   const double share = total > 0 ? own / total : 1;
   // Masks may cost what rays may. Beyond that an error that is too large is told.
@@ -199,7 +200,7 @@ void certified_light(const ShadowCluster& cluster, std::span<const LightRequest>
     m.unoccluded.assign(first, first + std::ptrdiff_t(n));
     const SourceTask task{
         options,      cluster,   request,         r,
-        m.unoccluded, integrand, m.wanted_points, promise_of(request, options, m)};
+        m.unoccluded, integrand, m.wanted_points, promise_of(cluster, request, options, m)};
     const size_t queued = m.queue.size();
     if (begin_source(task, m)) {
       if (request.flat != nullptr)

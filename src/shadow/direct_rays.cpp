@@ -111,15 +111,18 @@ class Caster {
     const auto most = double(task_.options.rays.most_rays);
     const Promise& promise = task_.promise;
     if (!(promise.error > 0)) return uint32_t(std::bit_floor(unsigned(most)));
-    double seen = 0, own = 0, part = 0;
+    double seen = 0, own = 0, part = 0, floor = 0;
     for (const uint32_t m : members_) {
       seen += double(promise.seen[m]);
       own += double(task_.unoccluded[m]);
+      floor += double(promise.floor[m]);
       for (size_t c = 0; c < m_.cells.size(); ++c) part += double(unoccluded(c, m));
     }
     const double p = std::max(double(found_.dense.open_share()), 0.02);
-    const double wanted = double(found_.dense.gain()) * (1 - std::min(p, 0.98)) /
-                          (sqr(double(promise.error)) * (seen / std::max(own, 1e-300) + p));
+    const double all = std::max(own, 1e-300);
+    const double allowed = std::max((seen / all + p) * p, sqr(floor / all));
+    const double wanted = double(found_.dense.gain()) * p * (1 - std::min(p, 0.98)) /
+                          (sqr(double(promise.error)) * allowed);
     const double n = std::clamp(wanted, double(fewest_rays), most) * (own > 0 ? part / own : 1);
     return uint32_t(std::bit_floor(unsigned(std::max(n * std::sqrt(2.0), 4.0))));
   }

@@ -22,6 +22,7 @@ struct ShadowReceiver {
   // The name of the sequence that the samples of a pixel share, and which of them this is; 0: none.
   uint64_t pixel = 0;
   uint32_t sample = 0;
+  float floor = 0;  // brightness × sr: where less light arrives errors are compared with this
 };
 
 struct ShadowCluster {

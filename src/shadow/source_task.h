@@ -59,12 +59,12 @@ struct LightRequest {
 // be error² s max(o, s / 2n), or error² floor² where that is more: over all sources, in any
 // order, 1.5 times error² of the square of all light at most.
 struct Promise {
-  float error = 0;                // relative to the light that arrives; 0: nothing is asked
-  double budget = 0;              // facets over which a receiver's masks may go
-  std::span<const float> seen{};  // per receiver
-  std::span<const float> rest{};  // … and what those that come after would send, nothing hidden
-  std::span<const float> floor{};
-  double sources = 1;  // n
+  float error = 0;                 // relative to the light that arrives; 0: nothing is asked
+  double budget = 0;               // facets over which a receiver's masks may go
+  std::span<const float> seen{};   // per receiver
+  std::span<const float> rest{};   // … and what those that come after would send, nothing hidden
+  std::span<const float> floor{};  // … and the least that errors are compared with, / √n
+  double sources = 1;              // n
 };
 
 struct SourceTask {

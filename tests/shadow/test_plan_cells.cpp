@@ -24,9 +24,11 @@ std::vector<Quad> plane_with_hole(float x, float y, float side, float z) {
 
 struct Made {
   double bias = 0, rms = 0, told = 0;  // over the light that arrives
+  double light = 0;                    // mean, sr
+  uint64_t masks = 0;
 };
 
-Made made_through_hole(float side, float error, int seeds) {
+Made made_through_hole(float side, float error, int seeds, float floor = 0) {
   const FlatSource source = ceiling_source();
   BruteForceScene scene;
   scene.facets = plane_with_hole(0.05f, -0.03f, side, 1);
@@ -37,10 +39,13 @@ Made made_through_hole(float side, float error, int seeds) {
   Made made;
   const double n = double(seeds) * double(receivers.size());
   for (int seed = 0; seed < seeds; ++seed) {
-    for (size_t i = 0; i < receivers.size(); ++i) receivers[i].stream = hash_of(uint64_t(seed), i);
+    for (size_t i = 0; i < receivers.size(); ++i) {
+      receivers[i].stream = hash_of(uint64_t(seed), i);
+      receivers[i].floor = floor;
+    }
     std::vector<SourceVisibility> out(receivers.size());
     FoundFacets found;
-    evaluate_alone(options, source, receivers, scene, found, out);
+    made.masks += evaluate_alone(options, source, receivers, scene, found, out).masks;
     for (size_t i = 0; i < receivers.size(); ++i) {
       const float x = 0.05f, y = -0.03f, h = side / 2;
       const std::vector<Vec3d> hole{{double(x - h), double(y - h), 1},
@@ -50,6 +55,7 @@ Made made_through_hole(float side, float error, int seeds) {
       const double light =
           polygon_irradiance(hole, Vec3d(receivers[i].position), {0, 0, 1}, Sides::both);
       const double error_made = double(out[i].visible) * double(out[i].unoccluded) / light - 1;
+      made.light += light / n;
       made.bias += error_made / n;
       made.rms += sqr(error_made) / n;
       made.told += double(out[i].variance) * sqr(double(out[i].unoccluded) / light) / n;
@@ -74,6 +80,18 @@ TEST_CASE("masks keep the asked error of the light that arrives through a hole")
       CHECK(std::abs(made.bias) < 0.2 * double(error));
       CHECK(made.told < 2.5 * double(error));
     }
+}
+
+TEST_CASE("masks: what is far below the floor may err by more, and costs less") {
+  const Made strict = made_through_hole(0.1f, 0.003f, 40);
+  const float floor = 20 * float(strict.light);
+  const Made loose = made_through_hole(0.1f, 0.003f, 40, floor);
+  CHECK(loose.masks < strict.masks / 2);
+  CHECK(loose.rms * loose.light < 1.2 * 0.003 * double(floor));
+  CHECK(std::abs(loose.bias) < 0.01);
+  // A floor below the light changes nothing.
+  const Made same = made_through_hole(0.1f, 0.003f, 40, 0.5f * float(strict.light));
+  CHECK(same.masks == strict.masks);
 }
 
 TEST_CASE(
