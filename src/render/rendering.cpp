@@ -170,7 +170,7 @@ std::vector<int> Rendering::samples_of_pixels(double typical) const {
 // Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,
 // which are no part of the picture and of its statistics.
 double Rendering::typical_luminance() {
-  if (typical_) return *typical_;
+  if (refining_.typical) return *refining_.typical;
   constexpr int most = 32;  // rays along each side
   Work& w = work_[0];
   if (!w.scratch) w.scratch = integrator_.make_scratch();
@@ -195,8 +195,9 @@ double Rendering::typical_luminance() {
   }
   std::sort(values.begin(), values.end());
   values.resize(values.size() - values.size() / 20);
-  typical_ = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
-  return *typical_;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+  refining_.typical = mean;
+  return mean;
 }
 
 double Rendering::mean_luminance() const {

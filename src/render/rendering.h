@@ -52,6 +52,7 @@ class Rendering {
     int max_spp = 0;
     RefinementOptions options;
     std::optional<PixelRecords> records;
+    std::optional<double> typical;  // luminance
     bool has_begun = false;
   };
   struct Progress {
@@ -79,7 +80,6 @@ class Rendering {
   Film film_;
   std::vector<Work> work_;  // per thread
   Refining refining_;
-  std::optional<double> typical_;
   const ProgressCallback& report_;
   Progress progress_;
   const StopFlag& stop_;

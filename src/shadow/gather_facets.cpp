@@ -119,7 +119,7 @@ struct Division {
     const CertifiedOptions& o = task.options;
     size_t most = o.longest_list;
     if (task.promise.error > 0) most = std::min(most, size_t(2 * task.promise.budget));
-    return is_last ? std::min(most, 4 * o.most_found) : most;
+    return is_last ? std::min(most, o.most_found) : most;
   }
   void cut_list(const ReceiverHull& hull) {
     task.request.found->note_hopeless(hull.centre, radius_of(hull));
