@@ -26,17 +26,17 @@ class Interior:
 
 
 INTERIORS = [
-    Interior("kj92room", "scenes/kj92room/kj92room.gltf", "256x256", 8192, 50),
-    Interior("modern-hall-diffuse", "scenes/modern-hall/modern-hall-diffuse.pbrt", "160x120", 8192,
+    Interior("kj92room", "scenes/kj92room/kj92room.gltf", "256x256", 1024, 50),
+    Interior("modern-hall-diffuse", "scenes/modern-hall/modern-hall-diffuse.pbrt", "128x96", 1024,
              30),
-    Interior("modern-hall", "scenes/modern-hall/modern-hall.pbrt", "160x120", 8192, 10),
-    Interior("staircase", "", "160x120", 8192, 10),
-    Interior("bathroom", "", "160x120", 8192, 10),
-    Interior("ajar", "", "160x120", 8192, 20),
-    Interior("gallery", "", "160x120", 8192, 20),
-    Interior("furniture", "", "160x120", 8192, 10),
-    Interior("staircase-metal", "", "160x120", 8192, 10),
-    Interior("gloss", "", "160x120", 8192, 10),
+    Interior("modern-hall", "scenes/modern-hall/modern-hall.pbrt", "128x96", 1024, 10),
+    Interior("staircase", "", "128x96", 1024, 10),
+    Interior("bathroom", "", "128x96", 1024, 10),
+    Interior("ajar", "", "128x96", 4096, 20),
+    Interior("gallery", "", "128x96", 4096, 20),
+    Interior("furniture", "", "128x96", 1024, 10),
+    Interior("staircase-metal", "", "128x96", 1024, 10),
+    Interior("gloss", "", "128x96", 1024, 10),
 ]
 ERRORS = (0.05, 0.02, 0.01, 0.005)
 PATHS = (16, 64, 256, 1024)
@@ -49,6 +49,7 @@ def arguments():
     parser.add_argument("--out", default="build/bench/global", metavar="FOLDER")
     parser.add_argument("--copy", metavar="FOLDER")
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--references", action="store_true")
     parser.add_argument("--scenes", metavar="NAME,...")
     parser.add_argument("--build", default="build/release", metavar="FOLDER")
     return parser.parse_args()
@@ -70,15 +71,21 @@ def settings():
         yield "path", f"--spp {n}", f"--method path --spp {n} --max-spp {n}"
 
 
-def measure(program, interior, is_quick):
-    """Rows of the table for one scene, and the noise of its reference."""
+def halves(program, interior, is_quick):
+    """Of the reference. It is unbiased: whichever version of the program has made it."""
     size = "80x60" if is_quick else interior.size
     paths = 256 if is_quick else interior.paths
     file = scene_file(interior, program.out)
-    halves = [program.render(f"{interior.name}-half{seed}", file,
-                             f"--size {size} --method path --spp {paths} --max-spp {paths} "
-                             f"--seed {seed}") for seed in (101, 102)]
-    a, b = (h.picture for h in halves)
+    return [program.render(f"{interior.name}-half{seed}", file,
+                           f"--size {size} --method path --spp {paths} --max-spp {paths} "
+                           f"--seed {seed}", is_of_any_version=True) for seed in (101, 102)]
+
+
+def measure(program, interior, is_quick):
+    """Rows of the table for one scene, and the noise of its reference."""
+    size = "80x60" if is_quick else interior.size
+    file = scene_file(interior, program.out)
+    a, b = (h.picture for h in halves(program, interior, is_quick))
     reference = f"{program.out}/renders/{interior.name}-reference.pfm"
     write(reference, 0.5 * (a + b))
     rows = []
@@ -97,8 +104,13 @@ def main():
     chosen = [i for i in INTERIORS if not options.scenes or i.name in options.scenes.split(",")]
     os.makedirs(options.out, exist_ok=True)
     program = Program(options.build, options.out, "build/bench/global")
-    program.planned = len(chosen) * (2 + len(list(settings())))
+    runs = 0 if options.references else len(list(settings()))
+    program.planned = len(chosen) * (2 + runs)
     start = time.monotonic()
+    if options.references:
+        for interior in chosen:
+            halves(program, interior, options.quick)
+        return
     rows, noises = [], {}
     for interior in chosen:
         more, noises[interior.name] = measure(program, interior, options.quick)

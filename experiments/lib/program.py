@@ -71,10 +71,12 @@ class Program:
         minutes, seconds = divmod(int(time.time() - self.begun), 60)
         print(f"[{self.done:3d}/{self.planned}] {minutes:2d}:{seconds:02d}  {what}", flush=True)
 
-    def _execute(self, name, words, scene, target):
+    def _execute(self, name, words, scene, target, is_of_any_version=False):
         """Runs unless done; returns the record of the run."""
         record_path = f"{self.out}/renders/{name}.run.json"
         key = [self.version, _digest(scene), words]
+        if is_of_any_version:
+            key = ["any", _digest(scene), words[1:]]
         try:
             with open(record_path) as file:
                 record = json.load(file)
@@ -103,11 +105,12 @@ class Program:
         record = self._execute(name, words, scene, target)
         return Run(self.shown(words), target, {}, record["wall"], record["cpu"])
 
-    def render(self, name, scene, options):
+    def render(self, name, scene, options, is_of_any_version=False):
         target = f"{self.out}/renders/{name}.exr"
         stats = f"{self.out}/renders/{name}.json"
         words = [self.troffer, "render", scene, *options.split(), "-o", target]
-        record = self._execute(name, words + ["--stats", stats, "--quiet"], scene, target)
+        record = self._execute(name, words + ["--stats", stats, "--quiet"], scene, target,
+                               is_of_any_version)
         with open(stats) as file:
             numbers = json.load(file)
         return Run(self.shown(words), target, numbers, record["wall"], record["cpu"])

@@ -79,6 +79,7 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["height"] = s.height;
   j["threads"] = thread_count(c.options.threads);
   j["viewing_rays"] = n.viewing_rays;
+  j["glances"] = n.glances;
   j["shadow_rays"] = n.shadow_rays;
   j["shadow_rays_per_viewing_ray"] =
       n.viewing_rays > 0 ? double(n.shadow_rays) / double(n.viewing_rays) : 0.0;

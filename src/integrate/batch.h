@@ -44,6 +44,12 @@ struct SensorBatch {
   size_t size() const { return positions.size(); }
 };
 
+// What is known of a viewing ray's radiance before any light is sampled for it: what the first
+// surface emits, and about what it reflects. The same for the same ray, however it is asked.
+struct KnownRadiance {
+  Rgb direct, indirect;
+};
+
 // What n viewing rays bring back. direct + indirect is the radiance that arrives along the ray;
 // direct is the part that reaches the first surface, as seen by way of mirrors and clear glass,
 // straight from sources, and the sources themselves.
@@ -65,6 +71,8 @@ struct RadianceBatch {
   std::vector<Rgb> sources;
   // Empty unless asked for by resizing it to n (methods that compare patterns).
   std::vector<ShadowRecord> records;
+  // Empty unless asked for by resizing it to n (Integrator::can_glance).
+  std::vector<KnownRadiance> known;
   // Set by the caller and kept: luminance that is usual in the picture; 0: not known. What is far
   // below it may err by more (methods that keep an error).
   float typical = 0;
@@ -81,6 +89,7 @@ struct RadianceBatch {
     is_hit.assign(n, 0);
     sources.assign(n, Rgb{0});
     records.clear();
+    known.clear();
   }
   // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
   void tell_shared_error() { shared_error.resize(direct.size(), 0); }
@@ -94,6 +103,7 @@ struct RadianceBatch {
 // Counts of work done; those of all batches are added up.
 struct Counters {
   uint64_t viewing_rays = 0;
+  uint64_t glances = 0;         // viewing rays that look up what is known, and ask no source
   uint64_t extension_rays = 0;  // closest-hit rays after the viewing ray
   uint64_t shadow_rays = 0;
   uint64_t nan_samples = 0;
@@ -102,6 +112,7 @@ struct Counters {
 
   Counters& operator+=(const Counters& o) {
     viewing_rays += o.viewing_rays;
+    glances += o.glances;
     extension_rays += o.extension_rays;
     shadow_rays += o.shadow_rays;
     nan_samples += o.nan_samples;

@@ -17,6 +17,12 @@ bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance) con
   return true;
 }
 
+CellLightAt Cells::light_at(const CellHit& hit) const {
+  const uint32_t cell = map_->find(hit, map_->near());
+  if (cell == no_cell) return {};
+  return {direct_[cell], irradiance_[cell] - direct_[cell]};
+}
+
 // What one arrival sees: the cell's irradiance, or its direct part where what is behind it is
 // looked at more closely; false where there is no cell.
 bool Cells::look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const {

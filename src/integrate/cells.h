@@ -29,6 +29,11 @@ struct GatheredLight {
   std::vector<float> distance;         // to the first matte surface, all the way; 0: none
 };
 
+// Irradiance at a place.
+struct CellLightAt {
+  Rgb direct, indirect;
+};
+
 struct CellsScratch {
   GatherScratch gather;
   std::vector<GatherArrival> arrivals, again;
@@ -55,6 +60,8 @@ class Cells {
   // Irradiance at a place seen from this far, but for what comes straight from sources; false where
   // there is no cell that is good enough.
   bool indirect_at(const CellHit& hit, float distance, Rgb& irradiance) const;
+  // That of the cell there; black where there is none.
+  CellLightAt light_at(const CellHit& hit) const;
 
  private:
   bool look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const;

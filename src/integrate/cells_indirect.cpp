@@ -72,6 +72,25 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
   }
 }
 
+// By the records of the pixel, and by cells.
+void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
+  CheckItems items;
+  for (size_t i = 0; i < wave.size(); ++i) {
+    const SurfaceScattering& scattering = wave.scatterings[i];
+    const Walk& at = wave.walks[i];
+    if (!scattering.has_diffuse || at.vertex > 0) continue;
+    items.at(at.index);
+    const Rgb weight = albedo(scattering.diffuse, wave.vertices[i].wo.z) * inv_pi_f;
+    const CellHit hit = cell_hit_of(wave.vertices[i]);
+    const CellLightAt cell = cells_->light_at(hit);
+    const PixelAt& pixel = wave.viewing->pixels[at.index];
+    FittedRecord fitted;
+    const bool is_fitted = records_->irradiance_at(pixel.x, pixel.y, hit, fitted);
+    out.known[at.index].direct += weight * cell.direct;
+    out.known[at.index].indirect += weight * (is_fitted ? fitted.irradiance : cell.indirect);
+  }
+}
+
 void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
                           Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);

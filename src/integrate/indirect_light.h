@@ -25,6 +25,10 @@ class IndirectLight {
   // it; the specular parts are the walks'.
   virtual void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;
+  // Whether know() knows anything.
+  virtual bool is_known() const { return false; }
+  // Adds to out.known what first hits reflect, by what is at hand: no rays.
+  virtual void know(const WaveHits&, RadianceBatch&) const {}
   virtual void flush(IndirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;
 

@@ -24,6 +24,10 @@ class Integrator {
   // Adds to `out`, which has been reset to rays.size().
   virtual void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                         Counters& counters) const = 0;
+  // Whether there is anything known of radiance before light is sampled (KnownRadiance).
+  virtual bool can_glance() const { return false; }
+  // Adds that to out.known, of size rays.size(), and nothing else.
+  virtual void glance(const ViewingRays&, IntegratorScratch&, RadianceBatch&, Counters&) const {}
   // Adds one estimate of the irradiance at each point, W/m² per channel, to out.direct and
   // out.indirect; `out` has been reset to sensors.size().
   virtual void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,

@@ -63,12 +63,28 @@ void WaveIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
       s.wave.viewing = &rays;
       scatter(s, out);
       if (s.wave.size() == 0) continue;
+      if (!out.known.empty() && c == Coherence::coherent) indirect_->know(s.wave, out);
       direct_->queue(s.wave, *s.direct, out, counters);
       if (indirect_) indirect_->queue(s.wave, *s.indirect, out, counters);
       step_on(s);
     }
     flush(s, out, counters);
     s.walks.swap(s.next_walks);
+  }
+}
+
+// As radiance(), up to where light would be asked for.
+void WaveIntegrator::glance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
+                            Counters& counters) const {
+  auto& s = static_cast<Scratch&>(scratch);
+  start_walks(rays, s.walks);
+  counters.glances += rays.size();
+  trace_walks(scene_.tracer, s.walks, Coherence::coherent, s.trace, counters);
+  for (size_t first = 0; first < s.walks.size(); first += hits_at_a_time) {
+    arrive(first, std::min(first + hits_at_a_time, s.walks.size()), s, out);
+    s.wave.viewing = &rays;
+    scatter(s, out);
+    indirect_->know(s.wave, out);
   }
 }
 
@@ -142,6 +158,7 @@ void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {
       if (!is_direct && !indirect_) continue;
       const Rgb light = walk.throughput * seen->radiance[i] * seen->weights[i];
       // The variance of one sample is no more than the mean of its square.
+      if (!out.known.empty() && walk.vertex == 0) out.known[walk.index].direct += light;
       out.add(walk.index, is_direct, light, walk.pdf > 0 ? sqr(luminance(light)) : 0.0f);
     }
 }

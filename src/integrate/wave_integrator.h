@@ -30,6 +30,9 @@ class WaveIntegrator final : public Integrator {
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
   void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                 Counters& counters) const override;
+  bool can_glance() const override { return indirect_ && indirect_->is_known(); }
+  void glance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
+              Counters& counters) const override;
   void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch, RadianceBatch& out,
                   Counters& counters) const override;
 

@@ -15,6 +15,13 @@ Rgb as_rgb(const Vec3d& v) {
   return {float(v.x), float(v.y), float(v.z)};
 }
 
+// From the spread of n values; 0 with fewer than two.
+double error_of_mean(double sum, double squares, double n) {
+  if (n < 2) return 0;
+  const double mean = sum / n;
+  return std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1));
+}
+
 bool needs_first_hit(Aov a) {
   return a == Aov::albedo || a == Aov::normal || a == Aov::depth || a == Aov::position ||
          a == Aov::shadow_rays || a == Aov::sources;
@@ -53,11 +60,11 @@ Layer empty_layer(Aov aov, const PixelRect& window) {
 
 }  // namespace
 
-double Film::bytes(double pixels, const std::vector<Aov>& aovs) {
+double Film::bytes(double pixels, const std::vector<Aov>& aovs, bool has_glances) {
   const bool has_first_hits = std::any_of(aovs.begin(), aovs.end(), needs_first_hit);
   // The layers of the result stand beside the sums when they are made.
   return pixels * double(sizeof(Pixel) + (has_first_hits ? sizeof(FirstHit) : 0) +
-                         sizeof(Rgb) * (1 + aovs.size()));
+                         (has_glances ? sizeof(Known) : 0) + sizeof(Rgb) * (1 + aovs.size()));
 }
 
 Film::Film(const PixelRect& window, const std::vector<Aov>& aovs, const Vec3d& origin)
@@ -68,11 +75,9 @@ Film::Film(const PixelRect& window, const std::vector<Aov>& aovs, const Vec3d& o
   if (std::any_of(aovs.begin(), aovs.end(), needs_first_hit)) first_hits_.resize(pixels_.size());
 }
 
-// Of the mean luminance, from the spread of the samples; 0 with fewer than two.
+// Of the mean luminance, from the spread of the samples.
 double Film::standard_error(const Pixel& p) {
-  if (p.samples < 2) return 0;
-  const double n = p.samples, mean = p.sum_luminance / n;
-  return std::sqrt(std::max(0.0, p.sum_luminance_squared / n - mean * mean) / (n - 1));
+  return error_of_mean(p.sum_luminance, p.sum_luminance_squared, p.samples);
 }
 
 // What the method tells of its sampling, where it does: samples' errors that are independent add up
@@ -83,26 +88,78 @@ double Film::told_error(const Pixel& p) {
 }
 
 PixelEstimate Film::estimate(int x, int y) const {
-  const Pixel& p =
-      pixels_[size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0)];
-  return {p.samples, p.samples > 0 ? p.sum_luminance / p.samples : 0, standard_error(p)};
+  return estimate_of(index(x, y));
+}
+
+PixelEstimate Film::estimate_of(size_t i) const {
+  const Pixel& p = pixels_[i];
+  PixelEstimate e;
+  e.samples = p.samples;
+  if (p.samples == 0) return e;
+  e.luminance = e.rest = p.sum_luminance / p.samples;
+  e.standard_error = e.error_of_rest = standard_error(p);
+  if (known_.empty()) return e;
+  const Known& k = known_[i];
+  const double n = p.samples;
+  e.rest = double(k.rest) / n;
+  e.error_of_rest = error_of_mean(k.rest, k.squares_of_rest, n);
+  if (k.glances.count == 0) return e;
+  const double of_glances =
+      error_of_mean(k.glances.luminance, k.glances.squares, double(k.glances.count));
+  e.luminance = double(k.glances.luminance) / k.glances.count + e.rest;
+  e.standard_error = std::sqrt(sqr(e.error_of_rest) + sqr(of_glances));
+  return e;
+}
+
+Film::Light Film::light_of(size_t i) const {
+  const Pixel& p = pixels_[i];
+  if (p.samples == 0) return {};
+  const double each = 1.0 / p.samples;
+  const Light plain{p.direct * each, p.indirect * each};
+  if (known_.empty() || known_[i].glances.count == 0) return plain;
+  const auto &s = known_[i].samples, &g = known_[i].glances;
+  const double glance = 1.0 / g.count;
+  const Light light{plain.direct + as_vec(g.direct) * glance - as_vec(s.direct) * each,
+                    plain.indirect + as_vec(g.indirect) * glance - as_vec(s.indirect) * each};
+  // What is known may be too much of what few samples have seen. There is no less light than none.
+  const Vec3d sum = light.direct + light.indirect;
+  return std::min({sum.x, sum.y, sum.z}) < 0 ? plain : light;
+}
+
+void Film::FirstHit::add(const RadianceBatch& batch, size_t i, float at_depth) {
+  if (batch.is_hit[i] == 0) return;
+  albedo += as_vec(batch.albedo[i]);
+  normal += Vec3d(batch.normal[i]);
+  position += Vec3d(batch.position[i]);
+  depth += double(at_depth);
+  ++hits;
+}
+
+void Film::FirstHit::forget_hits() {
+  albedo = normal = position = {};
+  depth = 0;
+  hits = 0;
+}
+
+void Film::add_glance(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
+  const size_t at = index(x, y);
+  KnownSums& glances = known_[at].glances;
+  if (!first_hits_.empty()) {
+    if (glances.count == 0) first_hits_[at].forget_hits();
+    first_hits_[at].add(batch, i, depth);
+  }
+  glances.add(batch.known[i]);
 }
 
 bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
-  const size_t at = size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
+  const size_t at = index(x, y);
   Pixel& p = pixels_[at];
   ++p.samples;
   if (!first_hits_.empty()) {
     FirstHit& f = first_hits_[at];
     f.shadow_rays += batch.shadow_rays[i];
     f.sources += as_vec(batch.sources[i]);
-    if (batch.is_hit[i] != 0) {
-      f.albedo += as_vec(batch.albedo[i]);
-      f.normal += Vec3d(batch.normal[i]);
-      f.position += Vec3d(batch.position[i]);
-      f.depth += double(depth);
-      ++f.hits;
-    }
+    if (known_.empty() || known_[at].glances.count == 0) f.add(batch, i, depth);
   }
   const Rgb direct = batch.direct[i], indirect = batch.indirect[i];
   if (!is_finite(direct) || !is_finite(indirect)) return false;
@@ -111,6 +168,14 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   const double y_sample = double(luminance(direct + indirect));
   p.sum_luminance += y_sample;
   p.sum_luminance_squared += y_sample * y_sample;
+  if (!known_.empty()) {
+    Known& k = known_[at];
+    k.samples.add(batch.known[i]);
+    const double rest =
+        y_sample - double(luminance(batch.known[i].direct + batch.known[i].indirect));
+    k.rest += float(rest);
+    k.squares_of_rest += float(rest * rest);
+  }
   if (!batch.direct_variance.empty()) {
     p.source_variance += double(batch.direct_variance[i]);
     p.has_source_variance = true;
@@ -121,10 +186,8 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
 
 Layer Film::make_layer(Aov aov) const {
   Layer layer = empty_layer(aov, window_);
-  const auto per_sample = [&](auto&& sum) {
-    for (size_t i = 0; i < pixels_.size(); ++i)
-      if (pixels_[i].samples > 0)
-        layer.image.pixels[i] = as_rgb(sum(pixels_[i]) * (1.0 / pixels_[i].samples));
+  const auto per_pixel = [&](auto&& value) {
+    for (size_t i = 0; i < pixels_.size(); ++i) layer.image.pixels[i] = as_rgb(value(i));
   };
   const auto per_hit = [&](auto&& sum) {
     for (size_t i = 0; i < pixels_.size(); ++i)
@@ -133,10 +196,10 @@ Layer Film::make_layer(Aov aov) const {
   };
   switch (aov) {
     case Aov::direct:
-      per_sample([](const Pixel& p) { return p.direct; });
+      per_pixel([this](size_t i) { return light_of(i).direct; });
       break;
     case Aov::indirect:
-      per_sample([](const Pixel& p) { return p.indirect; });
+      per_pixel([this](size_t i) { return light_of(i).indirect; });
       break;
     case Aov::albedo:
       per_hit([](const FirstHit& f) { return f.albedo; });
@@ -169,7 +232,7 @@ Layer Film::make_layer(Aov aov) const {
       break;
     case Aov::viewing_error:
       for (size_t i = 0; i < pixels_.size(); ++i)
-        layer.image.pixels[i] = Rgb{float(standard_error(pixels_[i]))};
+        layer.image.pixels[i] = Rgb{float(estimate_of(i).standard_error)};
       break;
   }
   return layer;
@@ -179,9 +242,8 @@ std::vector<Layer> Film::layers() const {
   std::vector<Layer> layers(1);
   layers[0].image = Image(window_.width(), window_.height());
   for (size_t i = 0; i < pixels_.size(); ++i) {
-    const Pixel& p = pixels_[i];
-    if (p.samples > 0)
-      layers[0].image.pixels[i] = as_rgb((p.direct + p.indirect) * (1.0 / p.samples));
+    const Light light = light_of(i);
+    layers[0].image.pixels[i] = as_rgb(light.direct + light.indirect);
   }
   for (const Aov a : aovs_) layers.push_back(make_layer(a));
   return layers;

@@ -20,13 +20,35 @@ struct PixelRect {
 // What is known of a pixel.
 struct PixelEstimate {
   uint32_t samples = 0;
-  double luminance = 0, standard_error = 0;
+  double luminance = 0, standard_error = 0;  // of the pixel
+  // Of samples by themselves, without what is known of them (Film::add_known): the mean, and its
+  // standard error.
+  double rest = 0, error_of_rest = 0;
 };
 
+// What glances at a pixel (Integrator::glance) have seen, or what is known of its samples.
+struct KnownSums {
+  Rgb direct, indirect;
+  float luminance = 0, squares = 0;  // of luminance
+  uint32_t count = 0;
+
+  void add(const KnownRadiance& k) {
+    const float y = troffer::luminance(k.direct + k.indirect);
+    direct += k.direct;
+    indirect += k.indirect;
+    luminance += y;
+    squares += y * y;
+    ++count;
+  }
+};
+
+// A pixel with glances is the mean of what is known at these, plus the mean of how far its samples
+// differ from what is known of them: a control variate. The same in the mean, for glances lie in
+// the pixel as samples do; what is known of many rays takes the noise from where edges are.
 class Film {
  public:
   // Bytes that a film of this many pixels takes.
-  static double bytes(double pixels, const std::vector<Aov>& aovs);
+  static double bytes(double pixels, const std::vector<Aov>& aovs, bool has_glances);
 
   // `window`: the pixels kept, in coordinates of the whole image. `origin`: the scene's, added to
   // positions that are shown.
@@ -36,6 +58,13 @@ class Film {
   // pixel's samples must come in a fixed order for the sums to be reproducible. Samples that are
   // not finite count as black; returns whether it was finite.
   bool add(int x, int y, const RadianceBatch& batch, size_t i, float depth);
+
+  // From now on, what batches know of samples is kept. Before the first sample.
+  void expect_glances() { known_.resize(pixels_.size()); }
+  // Layers of first hits are those of glances where there are any, as light is.
+  void add_glance(int x, int y, const RadianceBatch& batch, size_t i, float depth);
+  // Of samples.
+  const KnownSums& known(int x, int y) const { return known_[index(x, y)].samples; }
 
   // (x, y) as in add().
   PixelEstimate estimate(int x, int y) const;
@@ -52,11 +81,26 @@ class Film {
     uint32_t samples = 0;
     bool has_source_variance = false;
   };
+  struct Light {
+    Vec3d direct, indirect;
+  };
   struct FirstHit {  // sums over samples that hit something
     Vec3d albedo, normal, position, sources;
     double depth = 0, shadow_rays = 0;
     uint32_t hits = 0;
+    void add(const RadianceBatch& batch, size_t i, float at_depth);
+    void forget_hits();
   };
+  // Of one pixel.
+  struct Known {
+    KnownSums samples, glances;
+    float rest = 0, squares_of_rest = 0;  // luminance of samples, less what is known
+  };
+  size_t index(int x, int y) const {
+    return size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
+  }
+  PixelEstimate estimate_of(size_t i) const;
+  Light light_of(size_t i) const;
   static double standard_error(const Pixel& p);
   static double told_error(const Pixel& p);
   Layer make_layer(Aov aov) const;
@@ -66,6 +110,7 @@ class Film {
   Vec3d origin_;
   std::vector<Pixel> pixels_;
   std::vector<FirstHit> first_hits_;  // empty if no AOV needs it
+  std::vector<Known> known_;          // empty where nothing is known before light is sampled
 };
 
 }  // namespace troffer

@@ -39,9 +39,10 @@ namespace {
 
 // What the first pass saw around a pixel, its own samples left out.
 struct Surroundings {
-  double mean = 0, low = 0, high = 0;  // of the neighbours' luminances
-  double sample_variance = 0;          // the largest among theirs, of one sample
-  bool has_contrast = false;           // between neighbours at opposite sides
+  double mean = 0;             // of the neighbours' luminances
+  double low = 0, high = 0;    // … of them, or of what is not known of them
+  double sample_variance = 0;  // the largest among theirs, of one sample, likewise
+  bool has_contrast = false;   // between neighbours at opposite sides
   // A neighbour's rays have met different surfaces where no corner of it shows an edge.
   bool has_thin_things = false;
 };
@@ -57,18 +58,31 @@ bool differ(const RefinementView& v, int ax, int ay, int bx, int by,
              double(options.pattern_contrast) * std::max({a, b, v.typical});
 }
 
-Surroundings look_around(const RefinementView& v, int x, int y, const RefinementOptions& options) {
+// What varies from sample to sample of a pixel.
+struct Varying {
+  double mean = 0, variance = 0;
+};
+
+Varying known_of(const KnownSums& k) {
+  const double n = k.count, mean = double(k.luminance) / n;
+  return {mean, n > 1 ? std::max(double(k.squares) / n - sqr(mean), 0.0) * n / (n - 1) : 0.0};
+}
+
+// of: what varies; takes a pixel.
+template <class Of>
+Surroundings look_around(const RefinementView& v, int x, int y, const RefinementOptions& options,
+                         const Of& of) {
   const PixelRect& w = v.records.window;
   Surroundings s;
   int count = 0;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       if ((dx == 0 && dy == 0) || !is_inside(w, x + dx, y + dy)) continue;
-      const PixelEstimate e = v.film.estimate(x + dx, y + dy);
-      s.low = count > 0 ? std::min(s.low, e.luminance) : e.luminance;
-      s.high = std::max(s.high, e.luminance);
-      s.mean += e.luminance;
-      s.sample_variance = std::max(s.sample_variance, sqr(e.standard_error) * e.samples);
+      const Varying e = of(x + dx, y + dy);
+      s.low = count > 0 ? std::min(s.low, e.mean) : e.mean;
+      s.high = count > 0 ? std::max(s.high, e.mean) : e.mean;
+      s.mean += v.film.estimate(x + dx, y + dy).luminance;
+      s.sample_variance = std::max(s.sample_variance, e.variance);
       s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
                            !v.edges.has_surface_edge(x + dx, y + dy);
       ++count;
@@ -82,10 +96,31 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
 
 }  // namespace
 
-int samples_wanted(const RefinementView& v, int x, int y, int first, int most,
-                   const RefinementOptions& options) {
+int glances_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
+  constexpr int most = 256;
   if (v.edges.has_light_edge(x, y)) return most;
-  const Surroundings s = look_around(v, x, y, options);
+  const Surroundings s =
+      look_around(v, x, y, options, [&](int px, int py) { return known_of(v.film.known(px, py)); });
+  const bool has_edge = v.edges.has_surface_edge(x, y);
+  if (!has_edge && !s.has_contrast && !s.has_thin_things) return 0;
+  const double variance = std::max(s.sample_variance, has_edge ? sqr(s.high - s.low) / 4 : 0.0);
+  const double allowed = double(options.error) * std::max(s.mean, v.typical);
+  if (!(variance > 0)) return 0;
+  // Samples that are spread over a pixel with an edge err by n^-3/4.
+  const double wanted = std::pow(variance / sqr(allowed), 2.0 / 3);
+  int count = 16;
+  while (count < most && count < wanted) count *= 2;
+  return wanted > 4 ? count : 0;
+}
+
+int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first, int most,
+                   const RefinementOptions& options) {
+  if (v.edges.has_light_edge(x, y) && !has_glances) return most;
+  const Surroundings s = look_around(v, x, y, options, [&](int px, int py) -> Varying {
+    const PixelEstimate e = v.film.estimate(px, py);
+    if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples};
+    return {e.luminance, sqr(e.standard_error) * e.samples};
+  });
   const bool has_edge = v.edges.has_surface_edge(x, y);
   if (!has_edge && !s.has_contrast && !s.has_thin_things) return first;
   double variance = s.sample_variance;

@@ -55,8 +55,13 @@ struct RefinementView {
   double typical = 0;  // luminance of the image
 };
 
-// How many viewing rays a pixel should have, between `first` (what it has) and `most`.
-int samples_wanted(const RefinementView& view, int x, int y, int first, int most,
+// How many rays a pixel should get that only look at what is known (Integrator::glance): none, or
+// a power of two.
+int glances_wanted(const RefinementView& view, int x, int y, const RefinementOptions& options);
+
+// How many viewing rays a pixel should have, between `first` (what it has) and `most`; has_glances:
+// it will have some.
+int samples_wanted(const RefinementView& view, int x, int y, bool has_glances, int first, int most,
                    const RefinementOptions& options);
 
 }  // namespace troffer

@@ -75,7 +75,9 @@ double film_bytes(const PixelRect& window, const RenderOptions& o) {
   const double pixels = double(window.width()) * window.height();
   constexpr double corner = 32;  // EdgeMap
   constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern) + corner + sizeof(int);
-  return Film::bytes(pixels, o.aovs) + (most_viewing_rays(o) > o.spp ? pixels * record : 0);
+  const bool is_refined = most_viewing_rays(o) > o.spp;
+  const bool has_glances = is_refined && needs_cells(o.method, o.indirect);
+  return Film::bytes(pixels, o.aovs, has_glances) + (is_refined ? pixels * record : 0);
 }
 
 }  // namespace

@@ -31,7 +31,11 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       report_(progress),
       stop_(stop) {
   refining_.max_spp = most_viewing_rays(options);
-  if (refining_.max_spp > options.spp) refining_.records.emplace(plan_.region);
+  if (refining_.max_spp > options.spp) {
+    refining_.records.emplace(plan_.region);
+    refining_.can_glance = integrator.can_glance();
+    if (refining_.can_glance) film_.expect_glances();
+  }
   progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(options.spp) +
                                                        passes_of(refining_.max_spp - options.spp));
 }
@@ -119,6 +123,7 @@ void Rendering::add_rays(const Pixel2& p, uint32_t count, Work& w) const {
 void Rendering::trace(Work& w) {
   w.radiance.reset(w.rays.size());
   if (refining_.records) w.radiance.records.assign(w.rays.size(), {});
+  if (refining_.can_glance) w.radiance.known.assign(w.rays.size(), {});
   integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
   for (size_t i = 0; i < w.rays.size(); ++i) {
     const auto [x, y] = w.pixels[i];
@@ -135,14 +140,16 @@ void Rendering::trace(Work& w) {
 void Rendering::refine() {
   const bool is_same_in_crops = options_.method.row().is_same_in_crops;
   const double typical = is_same_in_crops ? typical_luminance() : mean_luminance();
-  const std::vector<int> wanted = samples_of_pixels(typical);
   const PixelRecords& records = *refining_.records;
+  const FurtherRays wanted = further_rays(typical);
+  if (refining_.can_glance) glance(wanted.glances);
   refining_.has_begun = true;
   for (int first = options_.spp; first < refining_.max_spp && !was_stopped_;
        first += samples_per_batch) {
     pass([&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) {
-        const int count = std::min(samples_per_batch, wanted[records.index(p.x, p.y)] - first);
+        const int count =
+            std::min(samples_per_batch, wanted.samples[records.index(p.x, p.y)] - first);
         if (count <= 0) continue;
         add_rays(p, uint32_t(count), w);
         w.rays.neighbours.resize(w.rays.size(), records.around(p.x, p.y));
@@ -151,20 +158,61 @@ void Rendering::refine() {
   }
 }
 
-// For each pixel of the region, how many samples it is to have.
-std::vector<int> Rendering::samples_of_pixels(double typical) const {
+// How many of them the pixels of the region get, by what the first pass has seen.
+Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const PixelRecords& records = *refining_.records;
   const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
   const RefinementView view{film_, records, edges, typical};
-  std::vector<int> wanted(records.records.size(), options_.spp);
+  FurtherRays wanted;
+  wanted.samples.assign(records.records.size(), options_.spp);
+  wanted.glances.assign(records.records.size(), 0);
   const PixelRect& r = plan_.inner;
   parallel_for(size_t(r.height()), options_.threads, [&](size_t row) {
     const int y = r.y0 + int(row);
-    for (int x = r.x0; x < r.x1; ++x)
-      wanted[records.index(x, y)] =
-          samples_wanted(view, x, y, options_.spp, refining_.max_spp, refining_.options);
+    for (int x = r.x0; x < r.x1; ++x) {
+      const size_t i = records.index(x, y);
+      if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
+      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, options_.spp,
+                                         refining_.max_spp, refining_.options);
+    }
   });
   return wanted;
+}
+
+// Rays that look at what is known, where that varies within a pixel.
+void Rendering::glance(const std::vector<int>& wanted) {
+  parallel_for_slots(plan_.tiles.size(), options_.threads, [&](size_t t, size_t slot) {
+    if (stop_.load(std::memory_order_relaxed))
+      was_stopped_ = true;
+    else
+      glance(plan_.tiles[t], wanted, work_[slot]);
+  });
+}
+
+void Rendering::glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w) {
+  constexpr size_t rays_at_a_time = 1024;
+  const uint64_t seed = hash_of(options_.seed, uint64_t{0x676c'616e});  // not that of samples
+  if (!w.scratch) w.scratch = integrator_.make_scratch();
+  w.rays.clear();
+  w.pixels.clear();
+  const auto send = [&] {
+    const CheckContext context(&w, w.rays.size(), name_of_ray);
+    w.radiance.reset(w.rays.size());
+    w.radiance.known.assign(w.rays.size(), {});
+    integrator_.glance(w.rays, *w.scratch, w.radiance, w.counters);
+    for (size_t i = 0; i < w.rays.size(); ++i)
+      film_.add_glance(w.pixels[i].x, w.pixels[i].y, w.radiance, i,
+                       camera_.depth(w.radiance.position[i]));
+    w.rays.clear();
+    w.pixels.clear();
+  };
+  for (const Pixel2& p : pixels_in_order(tile)) {
+    const int count = wanted[refining_.records->index(p.x, p.y)];
+    add_viewing_rays(camera_, p, 0, uint32_t(count), seed, w.rays);
+    w.pixels.resize(w.rays.size(), p);
+    if (w.rays.size() >= rays_at_a_time) send();
+  }
+  send();
 }
 
 // Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,

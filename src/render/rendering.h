@@ -54,6 +54,11 @@ class Rendering {
     std::optional<PixelRecords> records;
     std::optional<double> typical;  // luminance
     bool has_begun = false;
+    bool can_glance = false;
+  };
+  // By pixels of the region, row by row.
+  struct FurtherRays {
+    std::vector<int> samples, glances;  // in all
   };
   struct Progress {
     std::mutex mutex;
@@ -67,7 +72,9 @@ class Rendering {
   void add_rays(const Pixel2& p, uint32_t count, Work& w) const;
   void trace(Work& w);
   void refine();
-  std::vector<int> samples_of_pixels(double typical) const;
+  FurtherRays further_rays(double typical) const;
+  void glance(const std::vector<int>& wanted);
+  void glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
   double typical_luminance();  // looked at once
   double mean_luminance() const;
   void tell_progress();

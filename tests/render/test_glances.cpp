@@ -1,0 +1,140 @@
+// Rays that only look at what is known of light: the same mean, with less noise where edges are.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/film.h"
+#include "render/pictures.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// A room whose window, of its own light, is behind slats.
+Scene room_behind_blinds() {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f, 0.5f, 0.4f}), white = add_diffuse(s, Rgb{0.8f});
+  add_box_inside(s, grey, {0, 0, 0}, {3, 3, 2.5f});
+  const float back = 2.99f;
+  make_light(
+      s,
+      add_quad(s, white,
+               std::array<Vec3, 4>{
+                   Vec3{0.8f, back, 0.8f}, {2.2f, back, 0.8f}, {2.2f, back, 2}, {0.8f, back, 2}}),
+      Rgb{10});
+  for (int i = 0; i < 15; ++i) {
+    const float z = 0.82f + 0.08f * float(i);
+    add_quad(s, white,
+             std::array<Vec3, 4>{Vec3{0.7f, 2.9f, z},
+                                 {2.3f, 2.9f, z},
+                                 {2.3f, 2.95f, z + 0.05f},
+                                 {0.7f, 2.95f, z + 0.05f}});
+  }
+  return s;
+}
+const Camera at_window = look_at({0.5f, 0.3f, 1.5f}, {1.6f, 3, 1.3f}, {0, 0, 1}, 55);
+
+RenderOptions small_picture() {
+  RenderOptions o;
+  o.indirect = Indirect::cells;
+  o.width = 32;
+  o.height = 24;
+  o.threads = 2;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "glances: a pixel is what they know in the mean, and how far its samples differ from it") {
+  Film film({0, 0, 2, 1}, {Aov::direct, Aov::indirect, Aov::albedo});
+  film.expect_glances();
+  RadianceBatch b;
+  b.reset(2);
+  b.direct = {Rgb{4}, Rgb{1}};
+  b.indirect = {Rgb{1}, Rgb{2}};
+  b.known = {{Rgb{3}, Rgb{0.5f}}, {Rgb{1}, Rgb{1.5f}}};
+  b.is_hit = {1, 1};
+  b.albedo = {Rgb{0.2f}, Rgb{0.4f}};
+  for (int x = 0; x < 2; ++x)
+    for (size_t i = 0; i < 2; ++i) CHECK(film.add(x, 0, b, i, 0));
+  RadianceBatch glances;
+  glances.reset(3);
+  glances.known = {{Rgb{3}, Rgb{0.5f}}, {Rgb{3}, Rgb{0.5f}}, {Rgb{0}, Rgb{0.5f}}};
+  glances.is_hit = {1, 1, 0};
+  glances.albedo[1] = Rgb{1};
+  for (size_t i = 0; i < 3; ++i) film.add_glance(0, 0, glances, i, 0);
+  const std::vector<Layer> layers = film.layers();
+  CHECK(double(layers[1].image.at(0, 0).g) == doctest::Approx(2 + (4 - 3 + 1 - 1) / 2.0));
+  CHECK(double(layers[2].image.at(0, 0).g) == doctest::Approx(0.5 + (1 - 0.5 + 2 - 1.5) / 2.0));
+  CHECK(double(layers[0].image.at(0, 0).g) == doctest::Approx(3.5));
+  CHECK(layers[0].image.at(1, 0) == Rgb{4});  // without glances: the mean of its samples
+  CHECK(layers[3].image.at(0, 0) == Rgb{0.5f});
+  CHECK(double(layers[3].image.at(1, 0).g) == doctest::Approx(0.3));
+  const PixelEstimate e = film.estimate(0, 0);
+  CHECK(e.luminance == doctest::Approx(3.5));
+  CHECK(e.rest == doctest::Approx(1));
+  CHECK(e.error_of_rest == doctest::Approx(0.5));  // of rests 1.5 and 0.5
+  CHECK(e.standard_error == doctest::Approx(std::sqrt(0.25 + 1)));
+}
+
+TEST_CASE("glances: no pixel sends less light than none") {
+  Film film({0, 0, 1, 1}, {});
+  film.expect_glances();
+  RadianceBatch b;
+  b.reset(1);
+  b.direct = {Rgb{0.2f}};
+  b.known = {{Rgb{1}, Rgb{0}}};
+  film.add(0, 0, b, 0, 0);
+  b.known[0].direct = Rgb{0.5f};
+  film.add_glance(0, 0, b, 0, 0);
+  CHECK(film.layers()[0].image.at(0, 0) == Rgb{0.2f});
+}
+
+TEST_CASE("glances: the mean of a picture with blinds stays") {
+  const PreparedScene scene(room_behind_blinds());
+  RenderOptions o = small_picture();
+  o.spp = 4;
+  o.max_spp = 16;
+  const Moments refined = render_ensemble(scene, at_window, o, 8).mean;
+  o.seed = 1000;
+  o.spp = o.max_spp = 16;
+  const Moments even = render_ensemble(scene, at_window, o, 8).mean;
+  const double spread = std::sqrt(refined.variance_of_mean() + even.variance_of_mean());
+  CAPTURE(refined.mean());
+  CAPTURE(even.mean());
+  CAPTURE(spread);
+  CHECK(spread < 0.004 * even.mean());  // it could see a bias
+  CHECK(std::abs(refined.mean() - even.mean()) < 3.3 * spread);
+}
+
+TEST_CASE("glances: blinds before a window err by less than half, with fewer viewing rays") {
+  const PreparedScene scene(room_behind_blinds());
+  RenderOptions o = small_picture();
+  o.spp = o.max_spp = 128;
+  const Image converged = render_now(scene, at_window, o).layers[0].image;
+  const auto error = [&](const RenderResult& r) {
+    double sum = 0;
+    for (size_t i = 0; i < converged.pixels.size(); ++i)
+      sum += std::pow(double(r.layers[0].image.pixels[i].g) - double(converged.pixels[i].g), 2);
+    return std::sqrt(sum / double(converged.pixels.size()));
+  };
+  o.seed = 1;
+  o.spp = o.max_spp = 16;
+  const RenderResult even = render_now(scene, at_window, o);
+  CHECK(even.statistics.counters.glances == 0);
+  o.spp = 4;
+  o.max_spp = 0;
+  const RenderResult refined = render_now(scene, at_window, o);
+  CHECK(refined.statistics.counters.glances > 0);
+  CHECK(refined.statistics.counters.viewing_rays < even.statistics.counters.viewing_rays);
+  MESSAGE("error ", error(refined), ", by 16 rays a pixel ", error(even));
+  CHECK(error(refined) < 0.5 * error(even));
+  o.threads = 3;
+  CHECK(is_identical(refined.layers, render_now(scene, at_window, o).layers));
+  o.has_crop = true;
+  o.crop = {7, 5, 25, 20};
+  CHECK(pixels_off_crop(refined, render_now(scene, at_window, o), o.crop) == 0);
+}
