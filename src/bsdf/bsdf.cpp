@@ -44,7 +44,7 @@ Split split_at(const Bsdf& b, float c) {
 
 // The g of each separable lobe at a direction on the viewer's side (far_glass: on the other).
 struct Gains {
-  float diffuse = 1, metal = 0, glass = 0;
+  float diffuse = 1, soft = 0, glass = 0;
 };
 
 float missing(const AlbedoRow& row, const CosineCoordinate& at) {
@@ -72,7 +72,7 @@ Gains gains_at(const Bsdf& b, float cosine) {
       break;
     }
   }
-  if (!b.metal_again.is_black()) g.metal = missing(b.one, at);
+  g.soft = soft_gain(b.soft, at);
   if (b.glass_weight > 0) g.glass = missing(b.near, at);
   return g;
 }
@@ -106,7 +106,7 @@ Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
   e.glossy = glossy_albedo(b, cos_o);
   if (!b.has_separable) return e;
   e.diffuse = b.diffuse * (g.diffuse * b.diffuse_mean);
-  e.again = b.metal_again * (g.metal * b.metal_mean) + b.glass_again * (g.glass * b.near_mean);
+  e.again = soft_energy(b.soft, cos_o, g.soft) + b.glass_again * (g.glass * b.near_mean);
   e.through = b.glass_through * (g.glass * b.far_mean);
   return e;
 }
@@ -160,11 +160,13 @@ float bound_of(const Bsdf& b, const Vec3& wo) {
   return b.has_transmission ? 1.0f : ggx_bound(wo, b.alpha);
 }
 
-// Cosine-shaped lobes at wi; cos_i > 0 on the viewer's side.
-Rgb separable(const Bsdf& b, const Gains& at_o, float cos_i) {
+// The soft lobe and the cosine-shaped ones at wi; cos_i > 0 on the viewer's side.
+Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) {
+  const float cos_i = wi.z;
   if (cos_i > 0) {
     const Gains at_i = gains_at(b, cos_i);
-    return (b.diffuse * (at_o.diffuse * at_i.diffuse) + b.metal_again * (at_o.metal * at_i.metal) +
+    return (b.diffuse * (at_o.diffuse * at_i.diffuse) +
+            soft_value(b.soft, wo, wi, at_o.soft, at_i.soft) +
             b.glass_again * (at_o.glass * at_i.glass)) *
            (cos_i * inv_pi_f);
   }
@@ -223,7 +225,7 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
     v.pdf *= choice.glossy;
   }
   if (b.has_separable) {
-    v.f_cos += separable(b, g, wi.z);
+    v.f_cos += separable(b, g, wo, wi);
     v.pdf += separable_pdf(choice, wi.z);
   }
   return v;
@@ -309,7 +311,7 @@ bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, 
 LobeConstants lobe_constants(const Bsdf& b, float cos_o) {
   const Gains g = b.has_separable ? gains_at(b, cos_o) : Gains{};
   const Choice c = choice_at(b, g, cos_o);
-  return {c.glossy, c.cosine, c.uniform, g.diffuse, g.metal};
+  return {c.glossy, c.cosine, c.uniform, g.diffuse, g.soft};
 }
 
 Bsdf diffuse_part(const Bsdf& b) {
@@ -317,7 +319,8 @@ Bsdf diffuse_part(const Bsdf& b) {
   if (b.is_lambertian) return d;
   d.fresnel = Bsdf::Fresnel::none;
   d.has_transmission = d.is_smooth = false;
-  d.metal_again = d.glass_again = d.glass_through = Rgb{0};
+  d.soft = {};
+  d.glass_again = d.glass_through = Rgb{0};
   d.glass_weight = 0;
   d.has_separable = !d.diffuse.is_black();
   return d;
@@ -328,8 +331,8 @@ Bsdf specular_part(const Bsdf& b) {
   s.is_lambertian = false;
   s.coat = Bsdf::Coat::none;
   s.diffuse = Rgb{0};
-  s.has_separable =
-      !s.metal_again.is_black() || !s.glass_again.is_black() || !s.glass_through.is_black();
+  s.has_separable = s.soft.kind != SoftLobe::Kind::none || !s.glass_again.is_black() ||
+                    !s.glass_through.is_black();
   return s;
 }
 

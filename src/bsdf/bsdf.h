@@ -44,6 +44,7 @@
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "base/warp.h"
+#include "bsdf/soft_lobe.h"
 #include "bsdf/tables.h"
 #include "scene/scene.h"
 
@@ -60,7 +61,7 @@ struct Bsdf {
   bool is_smooth = false;      // the glossy lobe is a delta
   bool is_thin = false;        // transmission goes straight on
   bool has_transmission = false;
-  bool has_separable = false;  // any of the cosine-shaped lobes below
+  bool has_separable = false;  // the soft lobe, or any of the cosine-shaped ones below
 
   float alpha = 0;  // GGX width of the glossy lobe
   float eta = 1;    // n(far side) / n(viewer's side); coat: n(below) / n(above)
@@ -71,12 +72,13 @@ struct Bsdf {
   float glass_weight = 0;  // share of the surface that is glass
   float glass_scale = 1;
 
+  SoftLobe soft;
+
   // Separable lobes: colour × g(wo) g(wi) / pi, each g = 1 - a directional albedo.
   Rgb diffuse;                     // g of the coat, or 1
-  Rgb metal_again;                 // GGX's lost energy
   Rgb glass_again, glass_through;  // glass's: reflected, transmitted (without 1/eta²)
   float diffuse_mean = 1;          // cosine-weighted mean of the g of each
-  float metal_mean = 0, near_mean = 0, far_mean = 0;
+  float near_mean = 0, far_mean = 0;
   float coat_f0 = 0, coat_f90 = 0;
 
   AlbedoRow one, grazing;  // GgxTables at this alpha

@@ -164,11 +164,11 @@ void add_block(const Bsdf& b, const Glossy& glossy, const LobeConstants& c, size
     diffuse_gains(b, n, l.z, gain);
     add_separable(b.diffuse * c.diffuse_gain, gain, n, l.z, l.r, l.g, l.b);
   }
-  if (!b.metal_again.is_black() && b.one.values != nullptr) {
+  if (b.soft.kind == SoftLobe::Kind::lost_light && b.soft.glossy.values != nullptr) {
     std::fill(gain, gain + n, 0.0f);
-    add_row(b.one.values, b.one.fraction, 1, n, l.z, gain);
+    add_row(b.soft.glossy.values, b.soft.glossy.fraction, 1, n, l.z, gain);
     to_missing(n, gain);
-    add_separable(b.metal_again * c.metal_gain, gain, n, l.z, l.r, l.g, l.b);
+    add_separable(b.soft.colour * c.soft_gain, gain, n, l.z, l.r, l.g, l.b);
   }
   add_separable_pdf(c.cosine, c.uniform, n, l.z, l.pdf);
 }
@@ -187,7 +187,8 @@ void evaluate_one_by_one(const Bsdf& b, const Vec3& wo, size_t n, const BsdfLane
 }  // namespace
 
 void evaluate_many(const Bsdf& b, const Vec3& wo, size_t n, const BsdfLanes& l) {
-  if (b.has_transmission || b.glass_weight > 0) return evaluate_one_by_one(b, wo, n, l);
+  if (b.has_transmission || b.glass_weight > 0 || !is_product(b.soft))
+    return evaluate_one_by_one(b, wo, n, l);
   const bool is_anything = wo.z > 0 && !is_purely_delta(b);
   const LobeConstants c = is_anything ? lobe_constants(b, wo.z) : LobeConstants{};
   Glossy glossy{wo.x, wo.y, wo.z, b.alpha, c.glossy, 0, b.eta, b.f0, b.f90};

@@ -64,9 +64,9 @@ constexpr float negligible = 1e-5f;
 void add_metal_compensation(Bsdf& b, Rgb f, float weight) {
   if (b.is_smooth || weight == 0) return;
   const float escape = b.one.average, stay = 1 - escape;
-  b.metal_mean = stay;
   if (stay < negligible) return;
-  b.metal_again = f * f * (weight * escape / stay) / (Rgb{1} - f * stay);
+  const Rgb colour = f * f * (weight * escape / stay) / (Rgb{1} - f * stay);
+  if (!colour.is_black()) b.soft = {SoftLobe::Kind::lost_light, colour, stay, b.one};
   b.has_separable = true;
 }
 
