@@ -270,16 +270,20 @@ int parse_and_run(int argc, const char* const* argv) {
     apply(render_raw, render.options);
     if (render.method != "kj92" && render_raw.shadow_rays == 0)
       throw UsageError("--shadow-rays 0 belongs to --method kj92");
-    parse_method(render.method);
-    warn_of_unused_options(*app.get_subcommand("render"), render.method, render.is_quiet);
+    const Method method = parse_method(render.method);
+    warn_of_unused_options(*app.get_subcommand("render"), method,
+                           indirect_with(render.solution, method, render.options.indirect),
+                           render.is_quiet);
     return run_render(std::move(render));
   }
   if (app.got_subcommand("compare")) return run_compare(compare);
   if (app.got_subcommand("measure")) {
     if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
     measure.indirect = parse_indirect(measure_raw.indirect);
-    parse_method(measure.method);
-    warn_of_unused_options(*app.get_subcommand("measure"), measure.method, measure.is_quiet);
+    const Method method = parse_method(measure.method);
+    warn_of_unused_options(*app.get_subcommand("measure"), method,
+                           indirect_with(measure.solution, method, measure.indirect),
+                           measure.is_quiet);
     return run_measure(measure);
   }
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);

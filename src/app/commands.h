@@ -93,8 +93,10 @@ Method parse_method(const std::string& name);
 Indirect indirect_with(const std::string& solution, Method method, Indirect indirect);
 void check_method(Method method, Indirect indirect, const std::string& solution);
 
-// Warns, unless is_quiet, of every option given to `command` that its method does not use.
-void warn_of_unused_options(const CLI::App& command, const std::string& method, bool is_quiet);
+// Warns, unless is_quiet, of every option given to `command` that its method does not use with this
+// indirect light (indirect_with's).
+void warn_of_unused_options(const CLI::App& command, Method method, Indirect indirect,
+                            bool is_quiet);
 
 // Says what the preprocessing leaves out of a scene.
 void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet);
@@ -103,9 +105,9 @@ void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet);
 // `solution`, or (empty) a new one, and the sources selected. Null for methods that need nothing,
 // and where it was interrupted.
 std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method method,
-                                                const Kj92Settings& settings, Indirect indirect,
-                                                const std::string& solution, int threads,
-                                                bool is_quiet, const StopFlag& stop);
+                                            const Kj92Settings& settings, Indirect indirect,
+                                            const std::string& solution, int threads, bool is_quiet,
+                                            const StopFlag& stop);
 
 // Parses the command line and runs it: the whole program but main.
 int run(int argc, const char* const* argv);
