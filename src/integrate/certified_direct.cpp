@@ -30,6 +30,7 @@ CertifiedSettings certified_settings(double error, size_t lights, int viewing_ra
   s.estimator.mask_error = float(error * std::sqrt(std::clamp(viewing_rays, 1, 4)));
   s.error = error;
   s.viewing_rays = viewing_rays;
+  s.estimator.viewing_rays = uint32_t(std::max(viewing_rays, 1));
   s.estimator.residual_error = float(error);
   s.estimator.rays.pair_error = float(2 * error);
   s.estimator.rays.most_rays =

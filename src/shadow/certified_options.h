@@ -34,6 +34,7 @@ struct CertifiedOptions {
   // send unoccluded: kept unless that takes more rays than the limits allow.
   float residual_error = 0.01f;
   RayLimits rays;
+  uint32_t viewing_rays = 1;     // of a pixel: they share a sequence of rays straight to sources
   uint32_t masks_with_rays = 4;  // per receiver and cell, where lists stay too long
   size_t most_found = 64;        // facets in the lists that are not complete
 };

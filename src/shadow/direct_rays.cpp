@@ -77,14 +77,16 @@ class Caster {
   }
 
   void run() {
+    m_.answers.clear();
     for (size_t first = 0, end = 0; first < members_.size(); first = end) {
       m_.segments.clear();
       m_.before.clear();
       m_.weights.clear();
       for (; end < members_.size() && m_.segments.size() < batch; ++end) add_rays(members_[end]);
       trace();
-      for (size_t i = first, ray = 0; i < end; ++i, ray += rays_) add_answer(members_[i], ray);
+      for (size_t i = first, ray = 0; i < end; ++i, ray += rays_) note_answer(members_[i], ray);
     }
+    add_answers();
     found_.dense.note(sums_.light, sums_.unoccluded, sums_.variance, sums_.random_variance);
   }
 
@@ -192,39 +194,52 @@ class Caster {
       m_.is_hidden[m_.rest_of[k]] = is_free(source_, m_.rest[k], m_.hits[k], scene_) ? 0 : 1;
   }
 
-  void add_answer(uint32_t member, size_t first) {
-    double sum = 0, seen = 0, squares = 0, changes = 0, last = 0, weights = 0;
+  // Keeps what the rays of a member say, for add_answers.
+  void note_answer(uint32_t member, size_t first) {
+    double sum = 0, squares = 0, changes = 0, last = 0;
     for (size_t i = first; i < first + rays_; ++i) {
       const double f = double(std::abs(m_.weights[i]));
       const double free = m_.weights[i] > 0 && m_.is_hidden[i] == 0 ? f : 0;
       const double value = free - double(control_) * f;
       sum += value;
-      seen += free;
-      squares += f * f;
-      weights += f;
+      squares += sqr(value);
       if (i > first) changes += sqr(value - last);
       last = value;
     }
     double all = 0;
     for (size_t c = 0; c < m_.cells.size(); ++c) all += double(unoccluded(c, member));
     if (!(all > 0)) return;
-    const auto n = double(rays_);
-    const double light = sum / n + double(control_) * all;
-    // Neighbours on the source differ by what their strata leave to chance; and the variance of one
-    // more ray, for pairs that saw no change.
-    const double p = weights > 0 ? std::clamp(seen / weights, 0.5 / n, 1 - 0.5 / n) : 0.5;
-    const double random = squares / n * p * (1 - p) / n;
-    // The sequence gains by what the strata have in order.
+    const auto n = double(rays_), mean = sum / n;
+    // Neighbours on the source differ by what their strata leave to chance. Where these are in
+    // order the sequence gains more, and the error of all rays of a pixel falls faster than with
+    // the root of their number, as N^-3/4; what is told here will be taken for independent.
     const double neighbours = changes / (2 * n * n);
+    const double random = std::max(squares / n - sqr(mean), 0.0) / n;
     const double order = random > 0 ? std::min(neighbours / random, 1.0) : 1;
-    const double variance = neighbours * (0.25 + 0.75 * order) + random / n;
-    CellSum& s = sums_of_[member];
-    s.add(float(all), float(light / all), float(variance / (all * all)), ShadowAnswer::mixed);
-    s.rays += rays_;
-    sums_.light += light;
-    sums_.unoccluded += all;
-    sums_.variance += variance;
-    sums_.random_variance += random;
+    const bool is_shared = task_.cluster.receivers[member].pixel != 0;
+    const double shared = is_shared ? 1 / std::sqrt(double(task_.options.viewing_rays)) : 1;
+    const double gain = (0.25 + 0.75 * sqr(order)) * (shared + (1 - shared) * order);
+    m_.answers.push_back({member, all, mean + double(control_) * all, neighbours * gain, random});
+  }
+
+  // A member's own rays may all have met the same: the spread of all members' counts for one of n +
+  // 1, and a ray of another answer for one of all.
+  void add_answers() {
+    double spread = 0;
+    for (const DirectRayMemory::Answer& a : m_.answers) spread += a.variance / sqr(a.unoccluded);
+    const auto n = double(rays_), answers = double(m_.answers.size());
+    const double mean = spread / answers + 1 / sqr(n * answers);
+    for (const DirectRayMemory::Answer& a : m_.answers) {
+      const double variance = (n * a.variance + mean * sqr(a.unoccluded)) / (n + 1);
+      CellSum& s = sums_of_[a.member];
+      s.add(float(a.unoccluded), float(a.light / a.unoccluded), float(variance / sqr(a.unoccluded)),
+            ShadowAnswer::mixed);
+      s.rays += rays_;
+      sums_.light += a.light;
+      sums_.unoccluded += a.unoccluded;
+      sums_.variance += variance;
+      sums_.random_variance += a.random_variance;
+    }
   }
 
   const SourceTask& task_;

@@ -29,6 +29,12 @@ struct DirectRayMemory {
   std::vector<uint8_t> is_hidden;
   std::vector<uint32_t> rest_of;
   std::vector<ShadowHit> hits;
+  struct Answer {
+    uint32_t member;
+    double unoccluded, light;          // sr
+    double variance, random_variance;  // sr²; the latter: of as many independent rays
+  };
+  std::vector<Answer> answers;
 };
 
 // Answers `members` of the part.

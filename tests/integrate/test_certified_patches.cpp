@@ -160,8 +160,9 @@ TEST_CASE("certified patches: the shadow of a table in light from the ceiling, a
   MESSAGE("rms ", error_general, " by the general value, ", error, " with patches; means ",
           mean_general, ", ", mean_promoted);
   CHECK(wanted.back() < 0.5 * wanted.front());  // there is a shadow
-  CHECK(error < 0.03);
-  CHECK(error < 0.6 * error_general);  // which the middles of elements keep near
+  // What patches err by did not change when the general value came nearer (middles of elements).
+  CHECK(error < 0.02);
+  CHECK(error < 0.6 * error_general);
 }
 
 TEST_CASE("certified patches: a patch sends what its elements hold") {
