@@ -8,6 +8,7 @@
 #include "import/gltf_camera.h"
 #include "import/gltf_file.h"
 #include "import/gltf_json.h"
+#include "import/gltf_light.h"
 #include "import/gltf_material.h"
 #include "import/gltf_mesh.h"
 #include "import/gltf_nodes.h"
@@ -20,6 +21,7 @@ namespace {
 
 // Over all instances: about 3 GB of vertices and triangles.
 constexpr uint64_t max_triangles = 60'000'000;
+constexpr const char* lights_extension = "KHR_lights_punctual";
 
 class Importer {
  public:
@@ -78,6 +80,8 @@ class Importer {
   void add_node(const GltfNode& node) {
     const JsonNode json = node_json(node);
     if (const auto camera = json.find("camera")) add_camera(json, *camera, node.world_from_node);
+    if (const auto light = json.extension(lights_extension))
+      add_light(json, light->member("light"), node.world_from_node);
     const auto mesh = mesh_of(json);
     if (!mesh) return;
     if (json.find("skin")) scene_.warnings.add("skinning is ignored: meshes stand as modelled");
@@ -109,6 +113,17 @@ class Importer {
       add_mesh_lights(
           scene_, uint32_t(scene_.meshes.size() - 1),
           {light_name, material.emission, material.emission_texture, material.is_two_sided});
+  }
+
+  // References are checked before (gltf_schema.h).
+  void add_light(const JsonNode& node, const JsonNode& reference, const Affine& world_from_node) {
+    const JsonNode lights = root_.extension(lights_extension)->member("lights");
+    const JsonNode light = lights.element(reference.as_index(lights.size(), "lights"));
+    std::string name = node.string_or("name", "");
+    if (name.empty()) name = light.string_or("name", "");
+    if (name.empty()) name = "light" + std::to_string(reference.as_index(lights.size(), "lights"));
+    if (auto made = gltf_light(light, world_from_node, name, scene_.warnings))
+      scene_.lights.push_back(std::move(*made));
   }
 
   void add_camera(const JsonNode& node, const JsonNode& reference, const Affine& world_from_node) {

@@ -255,7 +255,7 @@ void check_cameras(const JsonNode& root) {
   }
 }
 
-// KHR_lights_punctual is not drawn, but a reference to a light that does not exist is still wrong.
+// Also of nodes that are not shown.
 void check_light_references(const JsonNode& root) {
   const auto extension = root.extension("KHR_lights_punctual");
   const auto lights = extension ? extension->find("lights") : std::nullopt;
@@ -266,9 +266,9 @@ void check_light_references(const JsonNode& root) {
 }
 
 constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {"KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular",
-     "KHR_materials_transmission", "KHR_materials_volume", "KHR_mesh_quantization",
-     "KHR_texture_transform"});
+    {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
+     "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume",
+     "KHR_mesh_quantization", "KHR_texture_transform"});
 
 bool is_supported(const std::string& name) {
   return std::find(supported_extensions.begin(), supported_extensions.end(), name) !=

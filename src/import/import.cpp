@@ -17,7 +17,7 @@ Scene import_scene(const std::string& path) {
   Scene scene = is_gltf            ? import_gltf(path)
                 : ending == "pbrt" ? import_pbrt(path)
                                    : import_obj(path);
-  if (scene.lights.empty()) scene.warnings.add("the scene has no light: nothing will be seen");
+  if (scene.lights.empty()) scene.warnings.add("the scene has no light");
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "import/pbrt_interpreter.h"
+#include "import/pbrt_light.h"
 
 namespace troffer {
 
@@ -132,8 +133,14 @@ void PbrtInterpreter::on_area_light(const PbrtToken& word, PbrtTokenizer& tokens
 void PbrtInterpreter::on_light(const PbrtToken& word, PbrtTokenizer& tokens) {
   need_world(word, tokens);
   const std::string type = parse_string(word, tokens);
-  parse_typed(word, tokens, type, "light");
-  scene_.warnings.add("LightSource \"" + type + "\" is not supported: left out");
+  const PbrtParams params = parse_typed(word, tokens, type, "light");
+  const std::string name = "light" + std::to_string(placer_.next_light_source());
+  if (open_object_) scene_.warnings.add("LightSource within an object: is there once");
+  auto light = read_pbrt_light(type, params, state_.transform,
+                               materials_.textures.spectrum_context(), scene_);
+  if (!light) return;
+  light->name = name;
+  scene_.lights.push_back(std::move(*light));
 }
 
 void PbrtInterpreter::on_medium_interface(const PbrtToken& word, PbrtTokenizer& tokens) {

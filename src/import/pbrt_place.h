@@ -19,6 +19,8 @@ class PbrtPlacer {
   void count_waiting(const PbrtShape& shape, const PbrtPlace& place);
   // Another shape with an area light has appeared that will not be placed: it keeps its number.
   void skip_light() { ++lights_; }
+  // Lights without surface are counted apart, so that those of shapes keep their numbers.
+  size_t next_light_source() { return light_sources_++; }
 
  private:
   // A shape on its way into the scene.
@@ -33,7 +35,7 @@ class PbrtPlacer {
   Scene& scene_;
   PbrtMaterials& materials_;
   PlacedBounds& bounds_;
-  size_t lights_ = 0;
+  size_t lights_ = 0, light_sources_ = 0;
   size_t cost_ = 0;  // triangles so far; small shapes count as a few
 
   void place(Placing placing);

@@ -7,11 +7,11 @@
 namespace troffer {
 
 struct DistantLight : NoSurface {
-  static void bound(const Light& e, const Box& scene, LightPrimitive& p) {
+  static void bound(const Scene&, const Light& e, const Box& bounds, LightPrimitive& p) {
     p.shape = PrimitiveShape::infinite;
     p.mean_radiance = e.radiance;
     // What enters a sphere around the scene.
-    p.power = p.tree_power = pi_f * sqr(0.5f * scene.diagonal()) * luminance(e.radiance);
+    p.power = p.tree_power = pi_f * sqr(0.5f * bounds.diagonal()) * luminance(e.radiance);
     p.cone_axis = e.direction;
     p.cos_cone = 1;
   }

@@ -3,7 +3,9 @@
 #include "light/distant_light.h"
 #include "light/environment_light.h"
 #include "light/point_light.h"
+#include "light/sky_light.h"
 #include "light/spot_light.h"
+#include "light/sun_light.h"
 #include "light/surface_light.h"
 
 namespace troffer {
@@ -22,6 +24,10 @@ decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
       return ask(DistantLight());
     case LightKind::environment:
       return ask(EnvironmentLight());
+    case LightKind::sky:
+      return ask(SkyLight());
+    case LightKind::sun:
+      return ask(SunLight());
     case LightKind::polygon:
     case LightKind::disk:
     case LightKind::sphere:
@@ -66,12 +72,19 @@ Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, cons
 
 Rgb radiance_at_infinity(const Scene& scene, const LightPrimitive& p, const Vec3& wi) {
   const Light& light = scene.lights[p.light];
-  return ask_kind(light.kind, [&](auto kind) { return kind.radiance_at_infinity(light, wi); });
+  return ask_kind(light.kind,
+                  [&](auto kind) { return kind.radiance_at_infinity(scene, light, wi); });
 }
 
-LightPrimitive make_piece(const Light& light, const Box& scene_bounds) {
+std::unique_ptr<const DirectionTable> make_directions(const Scene& scene, const Light& light) {
+  return ask_kind(light.kind, [&](auto kind) { return kind.directions(scene, light); });
+}
+
+LightPrimitive make_piece(const Scene& scene, const Light& light, const Box& scene_bounds,
+                          const DirectionTable* directions) {
   LightPrimitive p;
-  ask_kind(light.kind, [&](auto kind) { kind.bound(light, scene_bounds, p); });
+  p.directions = directions;
+  ask_kind(light.kind, [&](auto kind) { kind.bound(scene, light, scene_bounds, p); });
   return p;
 }
 

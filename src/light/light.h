@@ -9,6 +9,8 @@
 //   certificate  the shape by which its visibility can be proved, or none
 #pragma once
 
+#include <memory>
+
 #include "light/light_primitive.h"
 #include "light/light_sample.h"
 
@@ -38,9 +40,13 @@ Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, cons
 // Radiance of piece p that a ray sees which leaves the scene in the unit direction wi.
 Rgb radiance_at_infinity(const Scene& scene, const LightPrimitive& p, const Vec3& wi);
 
-// The one piece of a light without surface; `scene_bounds` says how much of a light at infinity
-// enters the scene.
-LightPrimitive make_piece(const Light& light, const Box& scene_bounds);
+// By which directions towards a light at infinity are drawn; null for kinds that need no table.
+std::unique_ptr<const DirectionTable> make_directions(const Scene& scene, const Light& light);
+
+// The one piece of a light without surface, drawn by `directions` (which must outlive it);
+// `scene_bounds` says how much of a light at infinity enters the scene.
+LightPrimitive make_piece(const Scene& scene, const Light& light, const Box& scene_bounds,
+                          const DirectionTable* directions);
 
 // By which shape of its pieces a light's visibility can be proved (docs/certified.md).
 enum class CertificateShape : uint8_t { none, flat, sphere };

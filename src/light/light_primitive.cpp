@@ -135,7 +135,11 @@ int32_t LightPrimitives::append(LightPrimitive p, const Light& e) {
 
 void LightPrimitives::add_without_surface(const Scene& scene, uint32_t light,
                                           const Box& scene_bounds) {
-  LightPrimitive p = make_piece(scene.lights[light], scene_bounds);
+  const Light& e = scene.lights[light];
+  std::unique_ptr<const DirectionTable> directions = make_directions(scene, e);
+  if (directions && !(directions->integral() > 0)) return;
+  LightPrimitive p = make_piece(scene, e, scene_bounds, directions.get());
+  if (directions) directions_.push_back(std::move(directions));
   p.light = light;
   if (p.is_infinite()) at_infinity_.push_back(uint32_t(primitives_.size()));
   primitives_.push_back(p);

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/box.h"
 #include "base/rgb.h"
 #include "base/vec.h"
+#include "light/direction_table.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -34,6 +36,8 @@ struct LightPrimitive {
   Vec3 vertices[4];              // counterclockwise seen from the front, where vertex_count <= 4
   const Vec3* more_vertices = nullptr;  // all of them, where vertex_count > 4; LightPrimitives owns
   Vec2 uvs[3];                          // triangle: texture coordinates of the vertices
+  // infinite: by which directions are drawn, or none; LightPrimitives owns
+  const DirectionTable* directions = nullptr;
 
   uint32_t light = 0;        // index into Scene::lights
   int32_t triangle = -1;     // of a mesh source: index into that mesh's triangles
@@ -103,7 +107,8 @@ class LightPrimitives {
 
   std::vector<LightPrimitive> primitives_;
   std::vector<std::vector<Vec3>> vertices_;  // of polygons with more than 4
-  std::vector<Range> ranges_;                // per light
+  std::vector<std::unique_ptr<const DirectionTable>> directions_;
+  std::vector<Range> ranges_;  // per light
   std::vector<uint32_t> at_infinity_;
   std::vector<std::vector<int32_t>> triangle_table_;  // per mesh: empty, or per triangle
   std::vector<int32_t> disk_table_, sphere_table_;

@@ -1,10 +1,13 @@
 // What kinds of light without a surface share: points are deltas in direction, and lights at
 // infinity have no position. A kind's file derives from this and says what differs.
+// References: [1] Khronos, glTF extension KHR_lights_punctual ("Range Property").
 #pragma once
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
+#include "base/units.h"
 #include "light/light.h"
 
 namespace troffer {
@@ -15,28 +18,48 @@ struct NoSurface {
                                float) {
     return 0;
   }
-  static Rgb radiance_at_infinity(const Light&, const Vec3&) { return Rgb{0}; }
+  static Rgb radiance_at_infinity(const Scene&, const Light&, const Vec3&) { return Rgb{0}; }
+  static std::unique_ptr<const DirectionTable> directions(const Scene&, const Light&) {
+    return nullptr;
+  }
   static CertificateShape certificate(const Scene&, const Light&) { return CertificateShape::none; }
 
  protected:
+  static Vec3 in_own_axes(const Light& e, const Vec3& w) {
+    return {dot(w, e.axes[0]), dot(w, e.axes[1]), dot(w, e.axes[2])};
+  }
+
   static void set_point(LightPrimitive& p, const Vec3& position) {
     p.shape = PrimitiveShape::point;
     p.centroid = position;
     p.bounds.grow(position);
   }
 
-  // A point of radiant intensity `intensity` towards x.
-  static bool sample_point(const Vec3& position, const Vec3& x, Rgb intensity, LightSample& out) {
-    const Vec3 to_point = position - x;
+  // A point at e.position of radiant intensity `intensity` towards x. A range fades it as [1] has
+  // it, by 1 - (distance / range)^4.
+  static bool sample_point(const Light& e, const Vec3& x, Rgb intensity, LightSample& out) {
+    const Vec3 to_point = e.position - x;
     const float d2 = length_squared(to_point);
-    if (!(d2 > 0) || intensity.is_black()) return false;
+    const float share = e.range > 0 ? 1 - sqr(d2 / sqr(e.range)) : 1;
+    if (!(d2 > 0) || !(share > 0) || intensity.is_black()) return false;
     out = {};
-    out.point = position;
+    out.point = e.position;
     out.distance = std::sqrt(d2);
     out.wi = to_point * (1 / out.distance);
-    out.radiance = intensity / d2;
+    out.radiance = intensity * (share / d2);
     out.pdf_solid_angle = 1;
     out.is_delta = true;
+    return true;
+  }
+
+  // A direction by the piece's table, still without radiance; false where there is none.
+  static bool sample_table(const Light& e, const LightPrimitive& p, const Vec2& u,
+                           LightSample& out) {
+    float pdf = 0;
+    const Vec3 w = p.directions->sample(u, pdf);
+    if (!(pdf > 0)) return false;
+    sample_infinity(normalize(e.axes[0] * w.x + e.axes[1] * w.y + e.axes[2] * w.z), Rgb{0}, pdf,
+                    out);
     return true;
   }
 

@@ -1,5 +1,6 @@
 // A point that shines within a cone, fading between two angles from its axis.
 // References: [1] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., §12.2.1.
+//   [2] Khronos, glTF extension KHR_lights_punctual ("Inner and Outer Cone Angles").
 #pragma once
 
 #include <algorithm>
@@ -12,19 +13,22 @@ namespace troffer {
 
 struct SpotLight : NoSurface {
   // Radiant intensity in a direction at this cosine from the axis, as a share of the largest: a
-  // smooth step in the cosine [1].
+  // smooth step in the cosine [1], or its square [2].
   static float share(const Light& e, float cosine) {
     if (cosine >= e.cos_inner) return 1;
     if (cosine <= e.cos_outer) return 0;
     const float t = (cosine - e.cos_outer) / (e.cos_inner - e.cos_outer);
-    return t * t * (3 - 2 * t);
+    return e.falloff == SpotFalloff::square ? t * t : t * t * (3 - 2 * t);
   }
 
-  static void bound(const Light& e, const Box& /*scene*/, LightPrimitive& p) {
+  static void bound(const Scene&, const Light& e, const Box&, LightPrimitive& p) {
     set_point(p, e.position);
     p.mean_radiance = e.radiance;
-    // The step is symmetric: half of the light between the cosines.
-    const float solid_angle = pi_f * ((1 - e.cos_inner) + (1 - e.cos_outer));
+    // Between the cosines the smooth step has half of the light, since it is symmetric, and the
+    // square a third.
+    const float between = e.falloff == SpotFalloff::square ? 1.0f / 3 : 0.5f;
+    const float solid_angle =
+        2 * pi_f * ((1 - e.cos_inner) + between * (e.cos_inner - e.cos_outer));
     p.power = solid_angle * luminance(e.radiance);
     p.tree_power = 4 * pi_f * luminance(e.radiance);
     // Normals whose hemispheres hold the beam.
@@ -37,8 +41,7 @@ struct SpotLight : NoSurface {
     const Vec3 from_light = x - e.position;
     const float distance = length(from_light);
     if (!(distance > 0)) return false;
-    return sample_point(e.position, x,
-                        e.radiance * share(e, dot(from_light, e.direction) / distance), out);
+    return sample_point(e, x, e.radiance * share(e, dot(from_light, e.direction) / distance), out);
   }
 };
 

@@ -30,8 +30,12 @@ struct SurfaceLight {
                                const Vec3& wi, float distance) {
     return troffer::pdf_solid_angle(p, x, wi, distance);
   }
-  static Rgb radiance_at_infinity(const Light&, const Vec3&) { return Rgb{0}; }
-  static void bound(const Light&, const Box&, LightPrimitive&) {}  // has more than one piece
+  static Rgb radiance_at_infinity(const Scene&, const Light&, const Vec3&) { return Rgb{0}; }
+  static std::unique_ptr<const DirectionTable> directions(const Scene&, const Light&) {
+    return nullptr;
+  }
+  static void bound(const Scene&, const Light&, const Box&, LightPrimitive&) {
+  }  // has more than one piece
 
   static CertificateShape certificate(const Scene& scene, const Light& e) {
     if (e.kind != LightKind::sphere) return CertificateShape::flat;

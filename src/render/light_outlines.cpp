@@ -89,6 +89,8 @@ void add_outline(const Scene& scene, const Light& light, const ViewingCamera& ca
     case LightKind::spot:
     case LightKind::distant:
     case LightKind::environment:
+    case LightKind::sky:
+    case LightKind::sun:
       break;  // nothing that a camera sees has a border
   }
 }

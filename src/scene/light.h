@@ -2,6 +2,7 @@
 // light/light.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@
 namespace troffer {
 
 constexpr int32_t no_light = -1;
+constexpr int32_t no_environment = -1;
+constexpr int32_t no_web = -1;
 
 enum class LightKind : uint8_t {
   // Diffuse surfaces; what is hit has their number (Mesh::lights, Sphere::light, Disk::light).
@@ -23,16 +26,29 @@ enum class LightKind : uint8_t {
   // Without surface: no ray hits them.
   point,
   spot,
-  // At infinity: rays that leave the scene see them.
+  // At infinity: rays that leave the scene see them, but for `distant`.
   distant,
   environment,
+  sky,
+  sun,
 };
+
+// Luminance of a sky, relative: (1 + a exp(b / cos Z)) (k + c exp(d x) + e cos² x) at the angle Z
+// from the zenith and x from the sun (light/sky_light.h); below the horizon the ground.
+struct SkyShape {
+  float a = 0, b = 0, c = 0, d = 0, e = 0, k = 1;
+  Rgb ground;  // radiance
+};
+
+// How a spot fades between its angles, by t = 0 at the outer cosine to 1 at the inner one.
+enum class SpotFalloff : uint8_t { smooth_step /* 3t² - 2t³ */, square /* t² */ };
 
 struct Light {
   std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
   LightKind kind = LightKind::polygon;
   // W/(m² sr), or cd/m² where Scene::is_photometric; point, spot: radiant intensity (largest), W/sr
-  // or cd; distant: irradiance of a surface that faces it, W/m² or lx.
+  // or cd; distant: irradiance of a surface that faces it, W/m² or lx. A factor on what varies: an
+  // environment's image, a sky's shape, a point's web.
   Rgb radiance;
 
   // Kinds with a surface: it emits from the front, or from both sides where is_two_sided.
@@ -43,10 +59,22 @@ struct Light {
   std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
   std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
 
-  Vec3 position;             // point, spot
-  Vec3 direction{0, 0, -1};  // spot: axis of its beam; distant: which its light takes; unit
+  Vec3 position;  // point, spot
+  // spot: axis of its beam; distant, sun, sky: which the light takes that comes from there, or from
+  // the sun in it; unit
+  Vec3 direction{0, 0, -1};
   // spot: whole within the inner angle, none beyond the outer one, which is larger
   float cos_inner = 1, cos_outer = 0;
+  SpotFalloff falloff = SpotFalloff::smooth_step;
+  float range = 0;  // point, spot: > 0: fades to nothing at that distance, m (light/point_light.h)
+
+  int32_t environment = no_environment;  // environment: an image, of Scene::environments
+  SkyShape sky;                          // sky
+  float angular_radius = 0;              // sun: of its disc, rad
+  int32_t web = no_web;                  // point: how it shines by direction, of Scene::webs
+  // World directions of its own x, y, z, unit, orthogonal, of any handedness: of the environment's
+  // image; sky: z is up; point: of the web
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 };
 
 inline bool has_surface(LightKind k) {
@@ -72,6 +100,14 @@ void for_each_value(const Light& e, const Visit& visit) {
   visit(e.direction);
   visit(e.cos_inner);
   visit(e.cos_outer);
+  visit(uint64_t(e.falloff));
+  visit(e.range);
+  visit(uint64_t(e.environment));
+  for (const float f : {e.sky.a, e.sky.b, e.sky.c, e.sky.d, e.sky.e, e.sky.k}) visit(f);
+  visit(e.sky.ground);
+  visit(e.angular_radius);
+  visit(uint64_t(e.web));
+  for (const Vec3& axis : e.axes) visit(axis);
 }
 
 inline const char* name_of(LightKind k) {
@@ -92,6 +128,10 @@ inline const char* name_of(LightKind k) {
       return "distant";
     case LightKind::environment:
       return "environment";
+    case LightKind::sky:
+      return "sky";
+    case LightKind::sun:
+      return "sun";
   }
   return "";
 }

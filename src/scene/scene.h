@@ -12,7 +12,9 @@
 #include "base/rgb.h"
 #include "base/units.h"
 #include "base/vec.h"
+#include "scene/environment_map.h"
 #include "scene/light.h"
+#include "scene/light_web.h"
 #include "scene/material.h"
 #include "scene/texture.h"
 
@@ -79,6 +81,8 @@ struct Scene {
   std::vector<Disk> disks;
   std::vector<Material> materials;  // at least one if there is any geometry
   std::vector<Texture> textures;
+  std::vector<EnvironmentMap> environments;
+  std::vector<LightWeb> webs;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   bool is_photometric = false;  // emission in cd/m² (glTF); else W/(m² sr)

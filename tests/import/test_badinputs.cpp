@@ -28,8 +28,6 @@ const std::map<std::string, std::string> exceptions{
     {"magnum/GltfImporter/image-basis.gltf", "likewise"},
     {"magnum/GltfImporter/mesh-sparse.gltf",
      "its sparse indices do not ascend, as they must (glTF 2.0, 3.6.2.3)"},
-    {"magnum/GltfImporter/scene.gltf", "requires KHR_lights_punctual, which is not supported"},
-    {"magnum/TinyGltfImporter/light.gltf", "likewise"},
     {"magnum/GltfImporter/version-legacy.gltf",
      "glTF 1.0 is another format (and an error in asset/1_0_version.gltf)"},
     {"assimp/glTF2/MorphStressTest/glTF/MorphStressTest.gltf",

@@ -1,0 +1,241 @@
+// Lights without surface: pbrt's and glTF's, and images of environments.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "gltf_builder.h"
+#include "import/environment_file.h"
+#include "import/gltf.h"
+#include "import/pbrt.h"
+#include "temp_folder.h"
+
+using namespace troffer;
+
+namespace {
+
+Scene import_world(const std::string& world) {
+  const TempFolder folder;
+  return import_pbrt(folder.write("scene.pbrt", "WorldBegin\n" + world));
+}
+
+bool has_text(const Scene& scene, const std::string& part) {
+  for (const Warning& w : scene.warnings.entries())
+    if (w.text.find(part) != std::string::npos) return true;
+  return false;
+}
+
+std::string pfm(int width, int height, const std::vector<float>& rgb) {
+  std::string bytes = "PF\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1\n";
+  // Rows of the format run upwards.
+  for (int y = height - 1; y >= 0; --y)
+    bytes.append(reinterpret_cast<const char*>(rgb.data() + size_t(y) * size_t(width) * 3),
+                 size_t(width) * 3 * sizeof(float));
+  return bytes;
+}
+
+Light only_light(const Scene& scene) {
+  REQUIRE(scene.lights.size() == 1);
+  return scene.lights[0];
+}
+
+std::string gltf_with(const std::string& light, const std::string& node = "") {
+  std::string text =
+      "{'asset':{'version':'2.0'},'extensionsUsed':['KHR_lights_punctual'],"
+      "'extensions':{'KHR_lights_punctual':{'lights':[" +
+      light + "]}},'nodes':[{'extensions':{'KHR_lights_punctual':{'light':0}}" + node + "}]}";
+  for (char& c : text)
+    if (c == '\'') c = '"';
+  return text;
+}
+Scene import_light(const std::string& light, const std::string& node = "") {
+  const TempFolder folder;
+  return import_gltf(folder.write("scene.gltf", gltf_with(light, node)));
+}
+
+}  // namespace
+
+TEST_CASE("pbrt's point, spot and distant lights") {
+  Light e =
+      only_light(import_world("Translate 1 2 3 LightSource \"point\" \"rgb I\" [1 2 3] "
+                              "\"float scale\" 2 \"point3 from\" [0 0 1]"));
+  CHECK(e.kind == LightKind::point);
+  CHECK(e.name == "light0");
+  CHECK(e.position == Vec3{1, 2, 4});
+  CHECK(e.radiance == Rgb{2, 4, 6});
+  e = only_light(import_world("LightSource \"point\" \"float power\" 20"));
+  CHECK(double(e.radiance.g) == doctest::Approx(20 / (4 * pi)));
+
+  e = only_light(
+      import_world("Rotate 90 1 0 0 LightSource \"spot\" \"rgb I\" [5 5 5] \"point3 from\" "
+                   "[0 0 0] \"point3 to\" [0 2 0] \"float coneangle\" 40 "
+                   "\"float conedeltaangle\" 10"));
+  CHECK(e.kind == LightKind::spot);
+  CHECK(length(e.direction - Vec3{0, 0, 1}) < 1e-6f);
+  CHECK(double(e.cos_inner) == doctest::Approx(std::cos(pi / 6)));
+  CHECK(double(e.cos_outer) == doctest::Approx(std::cos(rad_from_deg(40.0))));
+  CHECK(e.falloff == SpotFalloff::smooth_step);
+
+  e = only_light(
+      import_world("Scale 3 3 3 LightSource \"distant\" \"rgb L\" [1 1 1] "
+                   "\"float illuminance\" 7 \"point3 from\" [0 0 5] \"point3 to\" [0 3 5]"));
+  CHECK(e.kind == LightKind::distant);
+  CHECK(e.radiance == Rgb{7});
+  CHECK(length(e.direction - Vec3{0, 1, 0}) < 1e-6f);
+  // Area lights keep their numbers.
+  const Scene both = import_world(
+      "LightSource \"point\" AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape \"sphere\"");
+  REQUIRE(both.lights.size() == 2);
+  CHECK(both.lights[0].name == "light0");
+  CHECK(both.lights[1].name == "emitter0");
+}
+
+TEST_CASE("pbrt's lights that make no sense are errors with a place, or warnings") {
+  for (const char* bad :
+       {"LightSource \"point\" \"float scale\" -1", "LightSource \"spot\" \"float coneangle\" 200",
+        "LightSource \"point\" \"point3 from\" [0 0 0 1 1 1]",
+        "LightSource \"infinite\" \"rgb L\" [1 1 1] \"string filename\" \"a.pfm\""}) {
+    CAPTURE(bad);
+    try {
+      import_world(bad);
+      FAIL("loads");
+    } catch (const InputError& error) {
+      CHECK(error.line() == 2);
+    }
+  }
+  for (const char* odd : {"LightSource \"distant\" \"point3 from\" [0 0 1]",
+                          "LightSource \"point\" \"rgb I\" [1e38 1 1] \"float scale\" 1e38",
+                          "LightSource \"infinite\" \"string filename\" \"missing.exr\"",
+                          "LightSource \"infinite\" \"string filename\" \"../x.exr\"",
+                          "LightSource \"goniometric\" \"string filename\" \"x.exr\""}) {
+    const Scene scene = import_world(odd);
+    CAPTURE(odd);
+    CHECK(scene.lights.empty());
+    CHECK(has_text(scene, "left out"));
+  }
+  CHECK(
+      has_text(import_world("LightSource \"infinite\" \"point3 portal\" [0 0 0 1 0 0 1 1 0 0 1 0]"),
+               "portal"));
+}
+
+TEST_CASE("pbrt's infinite lights: even, and images turned by the transform") {
+  Light e =
+      only_light(import_world("LightSource \"infinite\" \"rgb L\" [1 2 3] \"float scale\" 2"));
+  CHECK(e.kind == LightKind::environment);
+  CHECK(e.radiance == Rgb{2, 4, 6});
+  e = only_light(import_world("LightSource \"infinite\" \"float illuminance\" 6"));
+  CHECK(double(e.radiance.g) == doctest::Approx(6 / pi));
+
+  const TempFolder folder;
+  std::vector<float> texels(4 * 4 * 3, 0.5f);
+  folder.write("square.pfm", pfm(4, 4, texels));
+  const auto with = [&](const std::string& world) {
+    return import_pbrt(folder.write("scene.pbrt", "WorldBegin\n" + world));
+  };
+  const Scene turned = with(
+      "Rotate 90 0 0 1 LightSource \"infinite\" \"string filename\" \"square.pfm\" "
+      "\"float illuminance\" 10");
+  e = only_light(turned);
+  REQUIRE(turned.environments.size() == 1);
+  CHECK(turned.environments[0].projection == SphereMap::equal_area);
+  CHECK(length(e.axes[0] - Vec3{0, 1, 0}) < 1e-6f);
+  CHECK(length(e.axes[1] - Vec3{-1, 0, 0}) < 1e-6f);
+  // Half of the sphere's texels are above; cosines over their few centres are coarse.
+  CHECK(double(e.radiance.g) == doctest::Approx(10 / (0.5 * pi)).epsilon(0.05));
+  const Scene mirrored =
+      with("Scale -1 1 1 LightSource \"infinite\" \"string filename\" \"square.pfm\"");
+  e = only_light(mirrored);
+  CHECK(length(e.axes[0] - Vec3{-1, 0, 0}) < 1e-6f);
+  CHECK(length(e.axes[1] - Vec3{0, 1, 0}) < 1e-6f);
+  CHECK(mirrored.warnings.entries().empty());
+}
+
+TEST_CASE("images of environments: what is no number, negative, infinite or huge") {
+  const TempFolder folder;
+  std::vector<float> texels(8 * 4 * 3, 1.0f);
+  texels[0] = NAN;
+  texels[5] = -3;
+  texels[20] = INFINITY;
+  texels[30] = 1e35f;
+  WarningLog warnings;
+  EnvironmentMap map = read_environment(folder.write("odd.pfm", pfm(8, 4, texels)), warnings);
+  CHECK(map.projection == SphereMap::lat_long);
+  CHECK(warnings.total() == 2);
+  for (const Rgb& t : map.texels) {
+    REQUIRE(is_finite(t));
+    CHECK(t.r >= 0);
+    CHECK(t.g >= 0);
+    CHECK(t.b >= 0);
+  }
+  CHECK(map.texels[0].r == 0);
+  CHECK(map.texels[0].g == 1);
+  CHECK(map.texels[1].b == 0);
+
+  // Larger than is kept: the mean stays.
+  constexpr int width = 6000, height = 3000;
+  std::vector<float> large(size_t(width) * height * 3, 0.0f);
+  for (size_t i = 0; i < large.size() / 6; ++i) large[i] = 2;
+  WarningLog told;
+  map = read_environment(folder.write("large.pfm", pfm(width, height, large)), told);
+  CHECK(told.total() == 1);
+  CHECK(map.texels.size() <= size_t(1) << 23);
+  double mean = 0;
+  for (const Rgb& t : map.texels) mean += double(t.g) / double(map.texels.size());
+  CHECK(mean == doctest::Approx(1).epsilon(1e-3));
+
+  CHECK_THROWS_AS(read_environment(folder.write("bad.pfm", "PF\n4 4\n-1\nab"), told), InputError);
+  CHECK_THROWS_AS(read_environment(folder.write("text.exr", "hello"), told), InputError);
+  CHECK_THROWS_AS(read_environment("/nonexistent/a.hdr", told), InputError);
+}
+
+TEST_CASE("an even image's irradiance from above is pi times its radiance") {
+  for (const SphereMap projection : {SphereMap::lat_long, SphereMap::equal_area}) {
+    EnvironmentMap map;
+    map.projection = projection;
+    map.width = map.height = 64;
+    map.texels.assign(64 * 64, Rgb{1, 2, 3});
+    const Rgb e = irradiance_from_above(map);
+    CHECK(double(e.r) == doctest::Approx(pi).epsilon(1e-3));
+    CHECK(double(e.b) == doctest::Approx(3 * pi).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("KHR_lights_punctual: points, spots and directional lights in their units") {
+  Light e = only_light(
+      import_light("{'type':'point','color':[1,0.5,0.25],'intensity':80,'range':5,'name':'bulb'}",
+                   ",'translation':[1,2,3]"));
+  CHECK(e.kind == LightKind::point);
+  CHECK(e.name == "bulb");
+  CHECK(e.radiance == Rgb{80, 40, 20});
+  CHECK(e.position == Vec3{1, 2, 3});
+  CHECK(e.range == 5);
+  // Turned by 90 degrees about x: -z becomes +y.
+  e = only_light(import_light("{'type':'directional','intensity':1000}",
+                              ",'name':'sun','rotation':[0.70710678,0,0,0.70710678]"));
+  CHECK(e.kind == LightKind::distant);
+  CHECK(e.name == "sun");
+  CHECK(e.radiance == Rgb{1000});
+  CHECK(length(e.direction - Vec3{0, 1, 0}) < 1e-6f);
+  e = only_light(import_light("{'type':'spot','intensity':7,'spot':{'innerConeAngle':0.3}}"));
+  CHECK(e.kind == LightKind::spot);
+  CHECK(e.falloff == SpotFalloff::square);
+  CHECK(double(e.cos_inner) == doctest::Approx(std::cos(0.3)));
+  CHECK(double(e.cos_outer) == doctest::Approx(std::cos(pi / 4)));
+  CHECK(length(e.direction - Vec3{0, 0, -1}) < 1e-6f);
+}
+
+TEST_CASE("KHR_lights_punctual: what cannot be is an error at its place") {
+  for (const char* bad :
+       {"{'type':'area'}", "{'intensity':3}", "{'type':'point','intensity':-1}",
+        "{'type':'point','range':0}", "{'type':'point','color':[1,1]}",
+        "{'type':'spot','spot':{'innerConeAngle':1,'outerConeAngle':0.5}}",
+        "{'type':'spot','spot':{'outerConeAngle':3}}", "{'type':'point','intensity':1e300}"}) {
+    CAPTURE(bad);
+    CHECK_THROWS_AS(import_light(bad), InputError);
+  }
+  const Scene flat = import_light("{'type':'directional'}", ",'scale':[1,1,0]");
+  CHECK(flat.lights.empty());
+  CHECK(has_text(flat, "left out"));
+}
