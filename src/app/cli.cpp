@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <new>
 
@@ -66,6 +67,15 @@ void apply_shadow_rays(int asked, RenderOptions& o) {
   o.shadow_rays = std::max(asked, 1);
   tree.initial_rays = std::max(asked, 1);
   tree.most_rays = std::max(tree.most_rays, tree.initial_rays);
+}
+
+void check_exposure(const std::string& text) {
+  if (text.empty() || text == "auto") return;
+  constexpr double most = 60;
+  char* end = nullptr;
+  const double stops = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !(std::abs(stops) <= most))
+    throw UsageError("--exposure: '" + text + "' is neither auto nor stops between -60 and 60");
 }
 
 void apply(const RawOptions& raw, RenderOptions& o) {
@@ -185,12 +195,14 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
                 "shadow_rays,sources,error")
       ->delimiter(',')
       ->allow_extra_args(false);
-  r->add_option("--exposure", c.exposure, "Stops, for .png")
-      ->check(CLI::Range(-60.0, 60.0))
-      ->capture_default_str();
+  r->add_option(
+      "--exposure", c.exposure,
+      "For .png: stops, or auto [0; auto where the picture would come out nearly black or "
+      "white]");
   r->add_option("--tone-map", c.tone_map, "filmic or none, for .png")
       ->check(CLI::IsMember({"filmic", "none"}))
       ->capture_default_str();
+  add_daylight_options(*r, c.daylight);
   r->add_option("--stats", c.stats, "Write counts and times to this JSON file");
   r->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
 }
@@ -224,6 +236,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_daylight_options(*s, c.daylight);
   s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
   s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
@@ -263,7 +276,7 @@ int parse_and_run(int argc, const char* const* argv) {
     // CLI::Range lets NaN pass.
     if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
     if (!std::isfinite(render.options.error)) throw UsageError("--error: not a number");
-    if (!std::isfinite(render.exposure)) throw UsageError("--exposure: not a number");
+    check_exposure(render.exposure);
     const BintreeOptions& tree = render.options.kj92.sampling.tree;
     if (!std::isfinite(tree.allowed_variance)) throw UsageError("--variance: not a number");
     if (!std::isfinite(tree.mean_change)) throw UsageError("--mean-change: not a number");

@@ -25,7 +25,7 @@ int run_measure(const MeasureCommand& c) {
     fmt::print(stderr, "warning: --method {} measures direct light only\n", c.method);
   const std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
   const std::vector<MeasuringPoint> points = read_points(c.points);
-  const PreparedScene scene(load_scene(c.scene, c.lights, c.is_quiet));
+  const PreparedScene scene(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet));
 
   const StopFlag& stop = install_stop_handlers();
   const std::unique_ptr<Preparation> preparation =

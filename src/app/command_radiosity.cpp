@@ -152,7 +152,7 @@ int run_radiosity(const RadiosityCommand& c) {
   check_command(c);
   const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   Seconds seconds;
-  Scene imported = load_scene(c.scene, c.lights, c.is_quiet);
+  Scene imported = load_scene(c.scene, c.lights, nullptr, c.is_quiet);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   const PreparedScene scene(std::move(imported));

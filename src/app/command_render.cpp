@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/outputs.h"
@@ -12,37 +13,17 @@
 #include "app/signals.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
+#include "image/exposure.h"
 #include "image/write_image.h"
 #include "render/camera.h"
+#include "render/framing.h"
 
 namespace troffer {
 
 namespace {
 
-Vec3d parse_vector(const std::string& text, const char* option) {
-  Vec3d v;
-  const char* p = text.c_str();
-  for (size_t a = 0; a < 3; ++a) {
-    char* end = nullptr;
-    v[a] = std::strtod(p, &end);
-    const bool is_last = a == 2;
-    if (end == p || *end != (is_last ? '\0' : ',') || !(std::abs(v[a]) <= 1e9))
-      throw UsageError(fmt::format("{}: cannot read '{}' as x,y,z", option, text));
-    p = end + 1;
-  }
-  return v;
-}
-
-// The axis a scene stands on: y for glTF; for formats that do not say, the one of y and z along
-// which it extends less.
-Vec3 guess_up(const Scene& scene) {
-  const Box box = bounds(scene);
-  if (scene.is_photometric || box.is_empty()) return {0, 1, 0};
-  const Vec3 e = box.extent();
-  return e.z < e.y ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
-}
-
-Camera choose_camera(const Scene& scene, const RenderCommand& c) {
+// Nothing where the scene has no camera and none is described.
+std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c) {
   const Vec3 up = c.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.up, "--up"));
   if (!c.eye.empty() || !c.target.empty()) {
     if (c.eye.empty() || c.target.empty()) throw UsageError("--eye and --target go together");
@@ -58,11 +39,19 @@ Camera choose_camera(const Scene& scene, const RenderCommand& c) {
     throw UsageError("no camera is named '" + c.camera + "' (troffer info lists them)");
   }
   if (!scene.cameras.empty()) return scene.cameras.front();
+  return std::nullopt;
+}
+
+// For a scene without camera.
+Camera place_camera(const PreparedScene& scene, const RenderCommand& c) {
+  const Vec3 up = c.up.empty() ? guess_up(scene.scene) : Vec3(parse_vector(c.up, "--up"));
   if (!c.is_quiet)
-    fmt::print(stderr,
-               "warning: the scene has no camera; one is placed inside its bounds "
-               "(--eye, --target and --up choose another)\n");
-  return default_camera(scene, up);
+    fmt::print(
+        stderr,
+        "warning: the scene has no camera; one is placed {} (--eye, --target and --up choose "
+        "another)\n",
+        is_room(scene) ? "inside its bounds" : "before it");
+  return framing_camera(scene, up);
 }
 
 struct Seconds {
@@ -118,9 +107,29 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   return j.dump(2) + "\n";
 }
 
-WriteOptions write_options(const RenderCommand& c, const Camera& camera) {
+// The exposure of .png: as asked for; `auto` by the picture, which by itself is taken where without
+// one it would come out nearly black or white.
+double exposure_stops(const RenderCommand& c, const Image& picture) {
+  constexpr double most_stops_off = 4;
+  const Brightness b = brightness(picture);
+  if (b.is_black && !c.is_quiet)
+    fmt::print(stderr, "warning: the picture is black: no light reaches what the camera sees\n");
+  if (!c.exposure.empty() && c.exposure != "auto") return std::strtod(c.exposure.c_str(), nullptr);
+  if (c.exposure == "auto") return b.auto_stops;
+  const bool is_shown = std::any_of(c.outputs.begin(), c.outputs.end(), [](const std::string& o) {
+    return image_format(o) == ImageFormat::png;
+  });
+  if (!is_shown || std::abs(b.auto_stops) <= most_stops_off) return 0;
+  if (!c.is_quiet)
+    fmt::print(stderr, "the .png is exposed by {:+.1f} stops (--exposure chooses another)\n",
+               b.auto_stops);
+  return b.auto_stops;
+}
+
+WriteOptions write_options(const RenderCommand& c, const Camera& camera, const Image& picture) {
   WriteOptions write;
-  write.display = {double(c.exposure), c.tone_map == "none" ? ToneMap::none : ToneMap::filmic};
+  write.display = {exposure_stops(c, picture),
+                   c.tone_map == "none" ? ToneMap::none : ToneMap::filmic};
   write.threads = c.options.threads;
   if (c.options.has_crop) {
     const ImageSize whole = image_size(camera, c.options.width, c.options.height);
@@ -141,11 +150,13 @@ int run_render(RenderCommand c) {
   const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
 
   Seconds seconds;
-  Scene imported = load_scene(c.scene, c.lights, c.is_quiet);
-  const Camera camera = choose_camera(imported, c);
+  c.daylight.up = c.up;
+  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
+  const std::optional<Camera> chosen = choose_camera(imported, c);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   const PreparedScene scene(std::move(imported));
+  const Camera camera = chosen ? *chosen : place_camera(scene, c);
   seconds.build = seconds_since(mark);
 
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
@@ -172,7 +183,7 @@ int run_render(RenderCommand c) {
   seconds.render_cpu = cpu_seconds() - cpu;
 
   mark = Clock::now();
-  const WriteOptions write = write_options(c, camera);
+  const WriteOptions write = write_options(c, camera, result.layers[0].image);
   for (const std::string& path : c.outputs) write_image(path, result.layers, write);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())

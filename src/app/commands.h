@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/daylight_options.h"
 #include "render/radiosity.h"
 #include "render/render.h"
 
@@ -29,8 +30,9 @@ struct RenderCommand {
   std::string method = "certified";
   std::string camera;
   std::vector<std::string> lights;
+  DaylightOptions daylight;
   std::string stats;
-  float exposure = 0;  // stops
+  std::string exposure;  // stops, auto, or empty: by itself
   std::string tone_map = "filmic";
   std::vector<std::string> selected_lights;  // kj92: empty: all may be sampled
   std::string solution;                      // kj92, certified: file, or empty
@@ -52,6 +54,7 @@ struct MeasureCommand {
   std::string scene, points, output;
   std::string method = "certified";
   std::vector<std::string> lights;
+  DaylightOptions daylight;
   std::string solution;  // kj92, certified: file, or empty
   int spp = 0;           // 0 = by the method
   int depth = -1;
@@ -81,9 +84,10 @@ struct InfoCommand {
 };
 int run_info(const InfoCommand& command);
 
-// The scene of a command: imported, only `lights` emitting (all if empty), warnings printed to
-// standard error unless is_quiet.
-Scene load_scene(const std::string& path, const std::vector<std::string>& lights, bool is_quiet);
+// The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
+// emitting (all if empty), warnings printed to standard error unless is_quiet.
+Scene load_scene(const std::string& path, const std::vector<std::string>& lights,
+                 const DaylightOptions* daylight, bool is_quiet);
 
 // "certified", "kj92", "fixed" and "path"; UsageError for others.
 Method parse_method(const std::string& name);

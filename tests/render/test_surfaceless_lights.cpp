@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "base/warp.h"
+#include "daylight/sky_lights.h"
+#include "light/light.h"
 #include "pictures.h"
 #include "render/measure.h"
 #include "render/radiosity.h"
@@ -130,6 +133,41 @@ TEST_CASE("an open plain under a constant environment gets pi L, by every method
       const double error = m.standard_error / luminous_efficacy;
       CHECK(std::abs(double(m.irradiance.g) - 2 * pi) < 1e-4 + 5 * error);
       CHECK(error < 0.1);
+    }
+}
+
+TEST_CASE("an open plain gets of a sky, a sun and an image what they bring, by every method") {
+  Scene s = floor_of(0.5f);
+  SkyRequest request;
+  request.kind = SkyKind::cie;
+  request.cie_type = 12;
+  request.diffuse_lx = 9000;
+  request.sun = SunRequest{120, 40, 1, 50'000.0};
+  add_sky(s, request, make_compass({0, 0, 1}, 0, false));
+  // An image that is bright in one texel above, and even below.
+  EnvironmentMap map;
+  map.width = 16;
+  map.height = 8;
+  map.texels.assign(16 * 8, Rgb{0.5f});
+  map.texels[1 * 16 + 3] = Rgb{4000};
+  add_environment(s, map, 1, 0, make_compass({0, 0, 1}, 0, false));
+  const PreparedScene scene(std::move(s));
+  double image = 0;
+  constexpr int n = 1000;
+  for (int i = 0; i < n * n; ++i) {
+    const Vec3 w =
+        cosine_hemisphere_from_square({(float(i % n) + 0.5f) / n, (float(i / n) + 0.5f) / n});
+    image += double(radiance_at_infinity(scene.scene, scene.primitives[2], w).g) * pi / (n * n);
+  }
+  const double expected =
+      (9000 + 50'000 * std::sin(rad_from_deg(40.0))) / luminous_efficacy + image;
+  const std::vector<MeasuringPoint> points{{{0.5f, -0.3f, 0}, {0, 0, 1}}};
+  for (const Method method : all_methods)
+    for (const Measurement& m : measured(scene, points, method, 4096)) {
+      CAPTURE(std::string(method.row().name));
+      const double error = m.standard_error / luminous_efficacy;
+      CHECK(std::abs(double(m.irradiance.g) - expected) < 2e-4 * expected + 5 * error);
+      CHECK(error < 0.02 * expected);
     }
 }
 

@@ -1,0 +1,239 @@
+#include "app/daylight_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "daylight/sky_lights.h"
+#include "daylight/sun_position.h"
+#include "import/environment_file.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double most_lx = 1e9;
+
+std::optional<double> parse_number(const std::string& text) {
+  char* end = nullptr;
+  const double v = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(v)) return std::nullopt;
+  return v;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts{""};
+  for (const char c : text)
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+[[noreturn]] void fail(const char* option, const std::string& text, const char* expected) {
+  throw UsageError(fmt::format("{}: cannot read '{}' as {}", option, text, expected));
+}
+
+// The numbers of parts[first …], of which `least` to `most` are expected.
+std::vector<double> numbers(const std::vector<std::string>& parts, size_t first, size_t least,
+                            size_t most, const char* option, const std::string& text,
+                            const char* expected) {
+  std::vector<double> v;
+  for (size_t i = first; i < parts.size(); ++i) {
+    const auto number = parse_number(parts[i]);
+    if (!number) fail(option, text, expected);
+    v.push_back(*number);
+  }
+  if (v.size() < least || v.size() > most) fail(option, text, expected);
+  return v;
+}
+
+bool is_light(double lx) {
+  return lx >= 0 && lx <= most_lx;
+}
+
+SkyRequest parse_sky(const std::string& text) {
+  static constexpr const char* expected =
+      "even, overcast, clear or cie:1 … cie:15, each with ,LUX or without, perez:DNI,DHI, or none";
+  const std::vector<std::string> parts = split(text, ',');
+  const std::vector<std::string> name = split(parts[0], ':');
+  SkyRequest r;
+  if (name[0] == "perez" && name.size() == 2) {
+    const auto v = numbers(split(text.substr(6), ','), 0, 2, 2, "--sky", text, expected);
+    if (!(v[0] >= 0 && v[0] <= 2000 && v[1] > 0 && v[1] <= 2000)) fail("--sky", text, expected);
+    r.kind = SkyKind::perez;
+    r.direct_normal = v[0];
+    r.diffuse_horizontal = v[1];
+    return r;
+  }
+  const auto lux = numbers(parts, 1, 0, 1, "--sky", text, expected);
+  if (!lux.empty()) r.diffuse_lx = lux[0];
+  if (r.diffuse_lx && !is_light(*r.diffuse_lx)) fail("--sky", text, expected);
+  if (name[0] == "even" && name.size() == 1) return r;
+  r.kind = SkyKind::cie;
+  const auto type = name[0] == "overcast" ? 1 : name[0] == "clear" ? 12 : 0;
+  if (type > 0 && name.size() == 1) {
+    r.cie_type = type;
+    return r;
+  }
+  const auto number = name[0] == "cie" && name.size() == 2 ? parse_number(name[1]) : std::nullopt;
+  if (!number || *number != std::floor(*number) || *number < 1 || *number > 15)
+    fail("--sky", text, expected);
+  r.cie_type = int(*number);
+  return r;
+}
+
+std::optional<SunRequest> parse_sun(const DaylightOptions& o) {
+  if (!o.sun.empty() && !o.at.empty()) throw UsageError("--sun and --at exclude each other");
+  SunRequest sun;
+  if (!o.sun.empty()) {
+    static constexpr const char* expected = "AZIMUTH,ALTITUDE[,LUX], in degrees and lx";
+    const auto v = numbers(split(o.sun, ','), 0, 2, 3, "--sun", o.sun, expected);
+    if (std::abs(v[0]) > 360 || std::abs(v[1]) > 90) fail("--sun", o.sun, expected);
+    sun.azimuth_deg = v[0];
+    sun.altitude_deg = v[1];
+    if (v.size() == 3) sun.direct_lx = v[2];
+    if (v.size() == 3 && !is_light(v[2])) fail("--sun", o.sun, expected);
+    return sun;
+  }
+  if (o.at.empty()) return std::nullopt;
+  static constexpr const char* expected = "LATITUDE,LONGITUDE,TIME";
+  const std::vector<std::string> parts = split(o.at, ',');
+  if (parts.size() != 3) fail("--at", o.at, expected);
+  const auto v = numbers({parts[0], parts[1]}, 0, 2, 2, "--at", o.at, expected);
+  if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360) fail("--at", o.at, expected);
+  const SunPosition p = sun_position(v[0], v[1], parse_time(parts[2], "--at"));
+  sun.azimuth_deg = p.azimuth_deg;
+  sun.altitude_deg = p.altitude_deg;
+  sun.distance_au = p.distance_au;
+  return sun;
+}
+
+// A camera that keeps the hand of a right-handed world says that the world is one; pbrt's own is
+// not, where its camera has not mirrored it back.
+bool is_mirrored(const Scene& scene) {
+  if (scene.cameras.empty()) return false;
+  const Camera& c = scene.cameras.front();
+  return dot(cross(c.forward, c.up), c.right) < 0;
+}
+
+void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compass) {
+  SkyRequest request;
+  request.sun = parse_sun(o);
+  const bool has_sky = !o.sky.empty() && o.sky != "none";
+  if (has_sky) {
+    const auto sun = request.sun;
+    request = parse_sky(o.sky);
+    request.sun = sun;
+  } else if (request.sun) {
+    request.kind = SkyKind::cie;
+    request.cie_type = 12;
+    if (o.sky == "none") request.diffuse_lx = 0;
+  }
+  request.ground_reflectance = o.ground;
+  if (has_sky && needs_sun(request) && !request.sun)
+    throw UsageError("--sky " + o.sky + " depends on where the sun stands: give --sun or --at");
+  if (request.sun && !(request.sun->altitude_deg > 0)) {
+    scene.warnings.add(
+        fmt::format("the sun is {:.2f} degrees below the horizon: neither it nor a "
+                    "sky gives light",
+                    -request.sun->altitude_deg));
+    return;
+  }
+  add_sky(scene, request, compass);
+}
+
+}  // namespace
+
+Vec3d parse_vector(const std::string& text, const char* option) {
+  Vec3d v;
+  const char* p = text.c_str();
+  for (size_t a = 0; a < 3; ++a) {
+    char* end = nullptr;
+    v[a] = std::strtod(p, &end);
+    const bool is_last = a == 2;
+    if (end == p || *end != (is_last ? '\0' : ',') || !(std::abs(v[a]) <= 1e9))
+      throw UsageError(fmt::format("{}: cannot read '{}' as x,y,z", option, text));
+    p = end + 1;
+  }
+  return v;
+}
+
+Vec3 guess_up(const Scene& scene) {
+  const Box box = bounds(scene);
+  if (scene.is_photometric || box.is_empty()) return {0, 1, 0};
+  const Vec3 e = box.extent();
+  return e.z < e.y ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+}
+
+void add_daylight_options(CLI::App& command, DaylightOptions& o) {
+  command.add_option("--sky", o.sky,
+                     "Light of a sky: even, overcast, clear, cie:1 to cie:15 [,LUX of a horizontal "
+                     "plane]; perez:DNI,DHI in W/m²; none [even where a scene has no light]");
+  command.add_option("--sun", o.sun,
+                     "The sun: AZIMUTH,ALTITUDE[,LUX], degrees clockwise from north and above the "
+                     "horizon; with a clear sky unless --sky says else");
+  command.add_option("--at", o.at,
+                     "The sun by LATITUDE,LONGITUDE,TIME, such as "
+                     "48.2,16.4,2026-06-21T12:00+02:00");
+  command
+      .add_option("--north", o.north_deg,
+                  "Where north lies: degrees clockwise, seen from above, from -z; +y where z is "
+                  "up")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
+  command.add_option("--ground", o.ground, "Reflectance of the ground below a sky")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option(
+      "--environment", o.environment,
+      "Image of the surroundings, FILE[,SCALE]: .exr .hdr .pfm .png .jpg, azimuth by "
+      "height, or square and equal-area");
+  command
+      .add_option("--environment-rotation", o.environment_rotation_deg,
+                  "Turns it clockwise, seen from above, in degrees")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
+  if (command.get_option_no_throw("--up") == nullptr)
+    command.add_option("--up", o.up, "Upward direction x,y,z, for what comes from the sky");
+}
+
+void add_daylight(Scene& scene, const DaylightOptions& o) {
+  if (!std::isfinite(o.north_deg) || !std::isfinite(o.ground) ||
+      !std::isfinite(o.environment_rotation_deg))
+    throw UsageError("--north, --ground and --environment-rotation: not a number");
+  const Vec3 up = o.up.empty() ? guess_up(scene) : Vec3(parse_vector(o.up, "--up"));
+  if (!(length(up) > 0)) throw UsageError("--up has no length");
+  const Compass compass = make_compass(up, o.north_deg, is_mirrored(scene));
+  const bool had_light = !scene.lights.empty();
+  if (!o.environment.empty()) {
+    const size_t comma = o.environment.rfind(',');
+    const auto scale =
+        comma == std::string::npos ? std::nullopt : parse_number(o.environment.substr(comma + 1));
+    if (scale && !(*scale >= 0 && *scale <= 1e9))
+      throw UsageError("--environment: its scale must lie between 0 and 1e9");
+    add_environment(
+        scene,
+        read_environment(scale ? o.environment.substr(0, comma) : o.environment, scene.warnings),
+        scale.value_or(1), o.environment_rotation_deg, compass);
+  }
+  const bool is_asked = !o.sky.empty() || !o.sun.empty() || !o.at.empty();
+  if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {
+    add_asked_sky(scene, o, compass);
+  } else if (!had_light && o.environment.empty()) {
+    if (o.sky == "none") return;
+    SkyRequest even;
+    even.ground_reflectance = o.ground;
+    add_sky(scene, even, compass);
+    scene.warnings.add(
+        "an even sky of 10000 lx lights it (--sky chooses another, --sky none keeps it dark)");
+  }
+}
+
+}  // namespace troffer

@@ -1,0 +1,37 @@
+// Options that bring light from beyond a scene: --sky, --sun, --at, --north, --ground,
+// --environment.
+#pragma once
+
+#include <string>
+
+#include "scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace troffer {
+
+// As typed.
+struct DaylightOptions {
+  std::string sky, sun, at;
+  std::string environment;
+  std::string up;  // x,y,z; empty: guessed
+  double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;
+};
+
+void add_daylight_options(CLI::App& command, DaylightOptions& options);
+
+// Adds to the scene the lights that are asked for; to one that has none the even sky that a warning
+// tells of, unless it is told to stay dark. UsageError for values that make no sense, InputError
+// for images that cannot be read.
+void add_daylight(Scene& scene, const DaylightOptions& options);
+
+// Three numbers "x,y,z"; UsageError that names the option for others.
+Vec3d parse_vector(const std::string& text, const char* option);
+
+// The axis a scene stands on: y for glTF; for formats that do not say, the one of y and z along
+// which it extends less.
+Vec3 guess_up(const Scene& scene);
+
+}  // namespace troffer

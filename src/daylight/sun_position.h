@@ -1,0 +1,29 @@
+// Where the sun stands, by place and time.
+//
+// References: [1] Meeus, "Astronomical Algorithms", 2nd ed., 1998: ch. 7 (Julian day), 12 (sidereal
+//   time), 13 (coordinates), 16 (refraction, Eq. 16.4), 22 (nutation), 25 (the sun, low accuracy).
+//   [2] Meeus, "Astronomical Formulae for Calculators", 4th ed., 1988, ch. 18 (perturbations).
+#pragma once
+
+#include <string>
+
+namespace troffer {
+
+struct SunPosition {
+  double azimuth_deg = 0;   // clockwise from north, seen from above: [0, 360)
+  double altitude_deg = 0;  // above the horizon, as seen through a standard atmosphere
+  double distance_au = 1;
+};
+
+// Universal time as a Julian day, by the Gregorian calendar; hour may be any number.
+double julian_day(int year, int month, int day, double hour);
+
+// Latitude north and longitude east of Greenwich, in degrees; errors under .01 degrees from 1950 to
+// 2100 (tests/daylight/test_sun_position.cpp).
+SunPosition sun_position(double latitude_deg, double longitude_deg, double julian_day_ut);
+
+// "2026-06-21T12:00+02:00", "…T12:00:30Z" -> Julian day. UsageError, which begins with `option`,
+// for what is no such time or lies outside 1900 to 2200.
+double parse_time(const std::string& text, const std::string& option);
+
+}  // namespace troffer

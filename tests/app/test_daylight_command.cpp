@@ -1,0 +1,192 @@
+// Light from beyond a scene, by options; scenes without light or camera.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "base/units.h"
+#include "image/read_image.h"
+#include "program.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+const char* const plain_obj =
+    "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nf 1 2 3 4\n"
+    "v -.5 -.5 .1\nv .5 -.5 .1\nv .5 .5 .1\nv -.5 .5 .1\nf 5 6 7 8\n";
+const char* const one_point = "x,y,z,nx,ny,nz\n2,2,0,0,0,1\n";
+
+// Illuminance and standard error of the only point.
+struct Measured {
+  double lx, error;
+};
+Measured measure(const Folder& folder, std::vector<std::string> options) {
+  std::vector<std::string> words{"measure", folder.write("plain.obj", plain_obj), "--points",
+                                 folder.write("p.csv", one_point)};
+  words.insert(words.end(), options.begin(), options.end());
+  const Finished f = run_program(folder, words);
+  CAPTURE(f.err);
+  REQUIRE(f.status == 0);
+  std::istringstream rows(f.out);
+  std::string row;
+  std::getline(rows, row);
+  std::getline(rows, row);
+  std::vector<double> v;
+  std::istringstream cells(row);
+  for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
+  REQUIRE(v.size() == 11);
+  return {v[9], v[10]};
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("skies and suns bring to an open plain what is asked for") {
+  const Folder folder;
+  struct Case {
+    std::vector<std::string> options;
+    double lx;
+  };
+  const Case cases[] = {
+      {{}, 10'000},
+      {{"--sky", "even,500"}, 500},
+      {{"--sky", "overcast"}, 10'000},
+      {{"--sky", "cie:4,7000", "--sun", "90,40"}, 7000},
+      {{"--sky", "clear,9000", "--sun", "200,30,50000"}, 9000 + 25'000},
+      {{"--sky", "none", "--sun", "200,30,50000"}, 25'000},
+      // At noon of an equinox on the equator: the sun near the zenith, by the documented formula.
+      {{"--at", "0,0,2026-03-20T12:08Z"},
+       800 + 15'500 + 127'500 / std::pow(0.99599, 2) * std::exp(-0.21)},
+  };
+  for (const Case& c : cases) {
+    std::vector<std::string> options = c.options;
+    options.insert(options.end(), {"--spp", "4096", "--indirect", "none"});
+    const Measured m = measure(folder, options);
+    CAPTURE(c.lx);
+    CHECK(std::abs(m.lx - c.lx) < 1e-3 * c.lx + 5 * m.error);
+    CHECK(m.error < 0.01 * c.lx);
+  }
+}
+
+TEST_CASE("an image of the surroundings: scale, rotation, and what cannot be read") {
+  const Folder folder;
+  // Bright in the east: the middle of the image, at the height of 45 degrees.
+  std::string pfm = "PF\n8 4\n-1\n";
+  for (int y = 3; y >= 0; --y)
+    for (int x = 0; x < 8; ++x) {
+      const float v = y == 1 && (x == 3 || x == 4) ? 100.0f : 1.0f;
+      for (int c = 0; c < 3; ++c) pfm.append(reinterpret_cast<const char*>(&v), sizeof v);
+    }
+  const std::string image = folder.write("sky.pfm", pfm);
+  const auto lx = [&](const std::string& up_of, const std::string& scale, const char* rotation) {
+    folder.write("p2.csv", "x,y,z,nx,ny,nz\n2,2,0," + up_of + "\n");
+    std::vector<std::string> words{"--environment", image + scale, "--environment-rotation",
+                                   rotation,        "--indirect",  "none"};
+    return measure(folder, words).lx;
+  };
+  const double once = lx("0,0,1", "", "0");
+  CHECK(lx("0,0,1", ",3", "0") == doctest::Approx(3 * once).epsilon(5e-3));
+  CHECK(lx("0,0,1", "", "90") == doctest::Approx(once).epsilon(5e-3));
+
+  const std::string scene = folder.write("plain.obj", plain_obj),
+                    points = folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,3,1,0,0\n2,2,3,0,-1,0\n");
+  const auto rows = [&](const char* rotation) {
+    const Finished f = run_program(folder, {"measure", scene, "--points", points, "--environment",
+                                            image, "--environment-rotation", rotation, "--method",
+                                            "fixed", "--spp", "1024", "--quiet"});
+    REQUIRE(f.status == 0);
+    return f.out;
+  };
+  // Turned by 90 degrees clockwise, east has become south.
+  const auto column = [](const std::string& out, int row) {
+    std::istringstream lines(out);
+    std::string line;
+    for (int i = 0; i <= row; ++i) std::getline(lines, line);
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 10; ++i) std::getline(cells, cell, ',');
+    return std::stod(cell);
+  };
+  const std::string ahead = rows("0"), turned = rows("90");
+  CHECK(column(ahead, 1) > 3 * column(ahead, 2));
+  CHECK(column(turned, 2) == doctest::Approx(column(ahead, 1)).epsilon(0.02));
+  CHECK(column(turned, 1) == doctest::Approx(column(ahead, 2)).epsilon(0.1));
+
+  const Finished f =
+      run_program(folder, {"measure", scene, "--points", points, "--environment", "missing.exr"});
+  CHECK(f.status == 1);
+  CHECK(f.error_lines().size() == 1);
+}
+
+TEST_CASE("options of daylight that make no sense are told") {
+  const Folder folder;
+  const std::string scene = folder.write("plain.obj", plain_obj),
+                    points = folder.write("p.csv", one_point);
+  const std::vector<std::vector<std::string>> bad = {
+      {"--sky", "blue"},
+      {"--sky", "cie:16"},
+      {"--sky", "cie:1.5"},
+      {"--sky", "overcast,-1"},
+      {"--sky", "overcast,1,2"},
+      {"--sky", "perez:3"},
+      {"--sky", "perez:9,nan"},
+      {"--sky", "clear"},
+      {"--sky", "perez:800,100"},
+      {"--sun", "10"},
+      {"--sun", "10,95"},
+      {"--sun", "10,20,30,40"},
+      {"--sun", "a,b"},
+      {"--at", "10,20"},
+      {"--at", "100,20,2026-06-21T12:00Z"},
+      {"--at", "10,20,noon"},
+      {"--ground", "2"},
+      {"--north", "nan"},
+      {"--environment", "a,-2"},
+      {"--up", "0,0,0"},
+      {"--up", "x"},
+      {"--sun", "1,2", "--at", "10,20,2026-06-21T12:00Z"},
+  };
+  for (const auto& options : bad) {
+    std::vector<std::string> words{"measure", scene, "--points", points};
+    words.insert(words.end(), options.begin(), options.end());
+    const Finished f = run_program(folder, words);
+    CAPTURE(options[1]);
+    CHECK(f.status == 2);
+    CHECK(f.error_lines().size() == 1);
+  }
+}
+
+TEST_CASE("a scene without light and camera is lit, framed and exposed, and says so") {
+  const Folder folder;
+  const std::string scene = folder.write("plain.obj", plain_obj);
+  const std::string png = folder.path("o.png");
+  const std::vector<std::string> plain{"render", scene,   "-o", png,        "--size",
+                                       "40x30",  "--spp", "4",  "--method", "fixed"};
+  const Finished f = run_program(folder, plain);
+  REQUIRE(f.status == 0);
+  CHECK(contains(f.err, "no light"));
+  CHECK(contains(f.err, "even sky"));
+  CHECK(contains(f.err, "before it"));
+  CHECK(contains(f.err, "exposed by"));
+  double mean = 0;
+  for (const Rgb& p : read_image(png).pixels) mean += double(luminance(p)) / (40 * 30);
+  CHECK(mean > 0.05);
+  CHECK(mean < 0.6);
+
+  std::vector<std::string> dark = plain;
+  dark.insert(dark.end(), {"--sky", "none"});
+  const Finished none = run_program(folder, dark);
+  CHECK(none.status == 0);
+  CHECK(contains(none.err, "the picture is black"));
+  for (const Rgb& p : read_image(png).pixels) REQUIRE(p.is_black());
+
+  // After sunset.
+  std::vector<std::string> night = plain;
+  night.insert(night.end(), {"--at", "48,16,2026-06-21T23:00Z"});
+  CHECK(contains(run_program(folder, night).err, "below the horizon"));
+}

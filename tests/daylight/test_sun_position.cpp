@@ -1,0 +1,52 @@
+// The sun against published positions.
+#include "daylight/sun_position.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+
+using namespace troffer;
+
+TEST_CASE("Julian days") {
+  // Meeus, Astronomical Algorithms, ch. 7.
+  CHECK(julian_day(2000, 1, 1, 12) == 2451545.0);
+  CHECK(julian_day(1999, 1, 1, 0) == 2451179.5);
+  CHECK(julian_day(1987, 6, 19, 12) == 2446966.0);
+  CHECK(julian_day(1988, 1, 27, 0) == 2447187.5);
+  CHECK(julian_day(1900, 1, 1, 0) == 2415020.5);
+}
+
+TEST_CASE("the worked example of NREL's Solar Position Algorithm") {
+  // Reda & Andreas, NREL/TP-560-34302 (2008), table A5.1: Golden, Colorado, 17 October 2003,
+  // 12:30:30 at -7 h; topocentric zenith 50.11162 with the air of 820 hPa and 11 °C, whose
+  // refraction there is .0040 less than a standard atmosphere's; azimuth 194.34024.
+  const SunPosition p =
+      sun_position(39.742476, -105.1786, julian_day(2003, 10, 17, 12 + 30.5 / 60 + 7));
+  CHECK(std::abs(p.altitude_deg - (90 - 50.11162)) < 0.01);
+  CHECK(std::abs(p.azimuth_deg - 194.34024) < 0.01);
+  CHECK(p.distance_au == doctest::Approx(0.9965422974).epsilon(2e-5));
+}
+
+TEST_CASE("Meeus' example of the sun's place, seen from the pole") {
+  // Astronomical Algorithms, example 25.b: 13 October 1992, 0h TD (58.7 s before UT was there);
+  // apparent declination -7.78389, by the complete theory. From the north pole, below the horizon,
+  // altitude is declination but for parallax.
+  const SunPosition p = sun_position(90, 0, julian_day(1992, 10, 13, -58.7 / 3600));
+  CHECK(std::abs(p.altitude_deg - (-7.78389)) < 0.01);
+  CHECK(p.distance_au == doctest::Approx(0.99760775).epsilon(1e-4));
+}
+
+TEST_CASE("times as ISO 8601 writes them") {
+  CHECK(parse_time("2026-06-21T12:00Z", "--at") == julian_day(2026, 6, 21, 12));
+  CHECK(parse_time("2026-06-21T12:00+02:00", "--at") == julian_day(2026, 6, 21, 10));
+  CHECK(parse_time("2026-06-21T12:00:30-05:30", "--at") ==
+        doctest::Approx(julian_day(2026, 6, 21, 17.5 + 30 / 3600.0)));
+  for (const char* bad : {"", "2026-06-21", "2026-06-21T12:00", "2026-13-21T12:00Z",
+                          "2026-06-21T12:00+", "2026-06-21T25:00Z", "2026-06-21T12:60Z",
+                          "1026-06-21T12:00Z", "2026-06-21T12:00Zx", "noon"}) {
+    CAPTURE(bad);
+    CHECK_THROWS_AS(parse_time(bad, "--at"), UsageError);
+  }
+}
