@@ -121,7 +121,8 @@ double exposure_stops(const RenderCommand& c, const Image& picture) {
   });
   if (!is_shown || std::abs(b.auto_stops) <= most_stops_off) return 0;
   if (!c.is_quiet)
-    fmt::print(stderr, "the .png is exposed by {:+.1f} stops (--exposure chooses another)\n",
+    fmt::print(stderr,
+               "warning: the .png is exposed by {:+.1f} stops (--exposure chooses another)\n",
                b.auto_stops);
   return b.auto_stops;
 }

@@ -227,7 +227,7 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
   if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {
     add_asked_sky(scene, o, compass);
   } else if (!had_light && o.environment.empty()) {
-    if (o.sky == "none") return;
+    if (o.sky == "none" || bounds(scene).is_empty()) return;
     SkyRequest even;
     even.ground_reflectance = o.ground;
     add_sky(scene, even, compass);

