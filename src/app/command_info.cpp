@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/luminaire_options.h"
 #include "base/box.h"
 #include "import/import.h"
 #include "render/source_info.h"
@@ -92,6 +93,10 @@ void print_text(const Scene& scene, const Json& j) {
 }  // namespace
 
 int run_info(const InfoCommand& command) {
+  if (is_luminaire(command.scene)) {
+    fmt::print("{}", luminaire_info(command.scene, command.is_json));
+    return exit_done;
+  }
   const Scene scene = import_scene(command.scene);
   const Json j = info_json(scene);
   if (command.is_json)

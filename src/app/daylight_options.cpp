@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/luminaire_options.h"
 #include "base/error.h"
 #include "daylight/sky_lights.h"
 #include "daylight/sun_position.h"
@@ -200,6 +201,11 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
                   "Turns it clockwise, seen from above, in degrees")
       ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str();
+  command
+      .add_option("--luminaire", o.luminaires,
+                  "NODE=FILE[,LUMENS]: a flat surface, a point or a spot shines as an .ies or .ldt "
+                  "file says; may be repeated")
+      ->allow_extra_args(false);
   if (command.get_option_no_throw("--up") == nullptr)
     command.add_option("--up", o.up, "Upward direction x,y,z, for what comes from the sky");
 }
@@ -211,6 +217,7 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
   const Vec3 up = o.up.empty() ? guess_up(scene) : Vec3(parse_vector(o.up, "--up"));
   if (!(length(up) > 0)) throw UsageError("--up has no length");
   const Compass compass = make_compass(up, o.north_deg, is_mirrored(scene));
+  attach_luminaires(scene, o.luminaires, Vec3(-compass.up));
   const bool had_light = !scene.lights.empty();
   if (!o.environment.empty()) {
     const size_t comma = o.environment.rfind(',');

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -14,6 +15,7 @@ namespace troffer {
 
 // As typed.
 struct DaylightOptions {
+  std::vector<std::string> luminaires;  // light of the scene's own: app/luminaire_options.h
   std::string sky, sun, at;
   std::string environment;
   std::string up;  // x,y,z; empty: guessed

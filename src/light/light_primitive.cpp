@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "light/light.h"
 #include "light/polygon.h"
+#include "light/web.h"
 
 namespace troffer {
 
@@ -90,6 +91,15 @@ Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3]) 
   return mean_over_triangle(scene, e, uv, std::min(wanted, 128));
 }
 
+// Of a piece of a flat light that shines as a web says: as if diffuse, the flux of an area over pi
+// and the sides. All else is by direction (surface_light.h).
+void set_web(const Scene& scene, const Light& e, LightPrimitive& p) {
+  if (e.web == no_web) return;
+  p.is_textured = true;
+  const auto total = float(flux(scene.webs[size_t(e.web)]));
+  p.mean_radiance = e.radiance * (total / (e.is_two_sided ? 2 * pi_f : pi_f));
+}
+
 }  // namespace
 
 LightPrimitives::LightPrimitives(const Scene& scene)
@@ -155,6 +165,7 @@ void LightPrimitives::add_polygon(const Scene& scene, uint32_t light) {
     vertices_.push_back(e.polygon);
     p.more_vertices = vertices_.back().data();  // stays where it is when vertices_ grows
   }
+  set_web(scene, e, p);
   const int32_t index = append(p, e);
   std::vector<int32_t>& table = triangle_table_[e.geometry];
   table.resize(scene.meshes[e.geometry].triangles.size(), no_primitive);
@@ -182,6 +193,7 @@ void LightPrimitives::add_mesh(const Scene& scene, uint32_t light) {
       p.is_textured = true;
       p.mean_radiance = mean_over_triangle(scene, e, p.uvs);
     }
+    set_web(scene, e, p);
     table[t] = append(p, e);
   }
 }

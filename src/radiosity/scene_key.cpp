@@ -55,6 +55,13 @@ void add_texture(Hasher& h, const Texture& t) {
   h.add(t.uv_rotation_rad);
 }
 
+void add_web(Hasher& h, const LightWeb& web) {
+  for (const auto* values : {&web.heights_rad, &web.turns_rad, &web.intensities}) {
+    h.add(values->size());
+    for (const float v : *values) h.add(v);
+  }
+}
+
 }  // namespace
 
 uint64_t radiosity_scene_key(const Scene& scene) {
@@ -67,6 +74,9 @@ uint64_t radiosity_scene_key(const Scene& scene) {
   h.add(scene.lights.size());
   for (const Light& e : scene.lights) {
     for_each_value(e, [&](const auto& v) { h.add(v); });
+    if (e.web == no_web) continue;
+    for (const Vec3& axis : e.axes) h.add(axis);
+    add_web(h, scene.webs[size_t(e.web)]);
   }
   return h.value();
 }

@@ -1,0 +1,21 @@
+// --luminaire, and what info tells of photometric files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace troffer {
+
+// Each "NODE=FILE" or "NODE=FILE,LUMENS". UsageError for what cannot be read so and for nodes that
+// cannot shine so; InputError for files.
+void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down);
+
+// By the ending of a file: .ies or .ldt.
+bool is_luminaire(const std::string& path);
+
+// Lumens, efficacy, beam and field angles, the opening: as text, or as JSON.
+std::string luminaire_info(const std::string& path, bool is_json);
+
+}  // namespace troffer

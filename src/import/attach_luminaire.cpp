@@ -1,0 +1,100 @@
+#include "import/attach_luminaire.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+#include "base/frame.h"
+#include "base/units.h"
+#include "import/emissive.h"
+#include "import/mesh_clean.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double flatness = 0.999;  // of the length of the sum of areas over their sum
+constexpr float quarter_turn = pi_f / 2;
+
+// C0 lies along the longer side of what the axis is normal to; without one anywhere.
+std::array<Vec3, 3> axes_about(const Vec3d& axis, const Vec3d& along) {
+  const Vec3d flat = along - axis * dot(along, axis);
+  const Vec3d x = length(flat) > 1e-6 * length(along) ? normalize(flat) : Framed(axis).tangent;
+  return {Vec3(x), Vec3(cross(axis, x)), Vec3(axis)};
+}
+
+struct Opening {
+  std::vector<uint32_t> meshes;
+  Vec3d area_vector;
+  double area = 0;
+  Vec3d longest_edge;
+};
+
+Opening opening_of(const Scene& scene, const std::string& node) {
+  Opening o;
+  for (uint32_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    bool is_named = mesh.name == node;
+    for (const Light& e : scene.lights)
+      is_named = is_named || (has_surface(e.kind) && e.name == node && e.geometry == m &&
+                              (e.kind == LightKind::polygon || e.kind == LightKind::mesh));
+    if (!is_named) continue;
+    o.meshes.push_back(m);
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3d a = area_vector(mesh, t) * 0.5;
+      o.area_vector += a;
+      o.area += length(a);
+      for (size_t k = 0; k < 3; ++k) {
+        const Vec3d edge = Vec3d(mesh.positions[t[(k + 1) % 3]]) - Vec3d(mesh.positions[t[k]]);
+        if (length(edge) > length(o.longest_edge) * 1.0001) o.longest_edge = edge;
+      }
+    }
+  }
+  return o;
+}
+
+void attach_to_surfaces(Scene& scene, const std::string& node, const Luminaire& luminaire,
+                        double scale, int32_t web) {
+  const Opening o = opening_of(scene, node);
+  if (o.meshes.empty()) throw UsageError("--luminaire: nothing is named '" + node + "'");
+  if (!(length(o.area_vector) >= flatness * o.area) || !(o.area > 0))
+    throw UsageError("--luminaire: '" + node + "' is neither a flat surface nor a point");
+  const auto axes = axes_about(normalize(o.area_vector), o.longest_edge);
+  const bool is_two_sided = luminaire.web.heights_rad.back() > quarter_turn + 1e-4f;
+  for (const uint32_t m : o.meshes) {
+    if (scene.meshes[m].lights.empty())
+      add_mesh_lights(scene, m, {node, Rgb{1}, no_texture, is_two_sided});
+    for (Light& e : scene.lights) {
+      if (!has_surface(e.kind) || e.geometry != m ||
+          (e.kind != LightKind::polygon && e.kind != LightKind::mesh))
+        continue;
+      e.web = web;
+      e.axes = axes;
+      e.texture = no_texture;
+      e.is_two_sided = is_two_sided;
+      e.radiance = Rgb{float(scale / o.area)};
+    }
+  }
+}
+
+}  // namespace
+
+void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire,
+                      double scale, const Vec3& down) {
+  const auto web = int32_t(scene.webs.size());
+  scene.webs.push_back(luminaire.web);
+  bool is_point = false;
+  for (Light& e : scene.lights) {
+    if (e.name != node || (e.kind != LightKind::point && e.kind != LightKind::spot)) continue;
+    const Vec3d axis = normalize(Vec3d(e.kind == LightKind::spot ? e.direction : down));
+    e.kind = LightKind::point;
+    e.web = web;
+    e.axes = axes_about(axis, Framed(axis).tangent);
+    e.radiance = Rgb{float(scale)};
+    is_point = true;
+  }
+  if (!is_point) attach_to_surfaces(scene, node, luminaire, scale, web);
+}
+
+}  // namespace troffer

@@ -1,0 +1,107 @@
+#include "import/photometric_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace troffer {
+
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || c == '\0' || c == '\x1a';
+}
+bool is_separator(char c) {
+  return is_blank(c) || c == '\n' || c == ',';
+}
+
+std::string_view trimmed(std::string_view s) {
+  while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+  return s;
+}
+
+}  // namespace
+
+void PhotometricText::fail(const std::string& what) const {
+  throw InputError(file_, int(std::max<size_t>(line_, 1)), int(column_), what);
+}
+
+std::string_view PhotometricText::take_line() {
+  ++line_;
+  column_ = 1;
+  line_start_ = next_;
+  const size_t end = text_.find('\n', next_);
+  const std::string_view line = text_.substr(next_, end == text_.npos ? end : end - next_);
+  next_ = end == text_.npos ? text_.size() : end + 1;
+  return line;
+}
+
+bool PhotometricText::next_line(std::string_view& line) {
+  is_in_line_ = false;
+  if (next_ >= text_.size()) return false;
+  line = trimmed(take_line());
+  return true;
+}
+
+double PhotometricText::parse(std::string_view word, const char* name, double least, double most) {
+  std::string plain(word.substr(0, 64));
+  if (!plain.empty() && plain.front() == '+') plain.erase(0, 1);
+  const size_t comma = plain.find(',');
+  if (comma != plain.npos) {
+    plain[comma] = '.';
+    has_met_commas_ = true;
+  }
+  double value = 0;
+  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+  if (error != std::errc() || end != plain.data() + plain.size() || !std::isfinite(value))
+    fail(fmt::format("{}: a number expected", name));
+  if (value < least || value > most)
+    fail(fmt::format("{}: {} does not lie between {} and {}", name, value, least, most));
+  return value;
+}
+
+double PhotometricText::number(const char* name, double least, double most) {
+  if (!is_in_line_) {
+    ++line_;
+    line_start_ = next_;
+    is_in_line_ = true;
+  }
+  while (next_ < text_.size() && is_separator(text_[next_])) {
+    if (text_[next_++] == '\n') {
+      ++line_;
+      line_start_ = next_;
+    }
+  }
+  column_ = next_ - line_start_ + 1;
+  if (next_ >= text_.size()) fail(fmt::format("{}: the file ends too soon", name));
+  const size_t first = next_;
+  while (next_ < text_.size() && !is_separator(text_[next_])) ++next_;
+  return parse(text_.substr(first, next_ - first), name, least, most);
+}
+
+int PhotometricText::integer(const char* name, int least, int most) {
+  const double v = number(name, least, most);
+  if (v != std::floor(v)) fail(fmt::format("{}: a whole number expected", name));
+  return int(v);
+}
+
+double PhotometricText::number_of_line(const char* name, double least, double most) {
+  std::string_view line;
+  if (!next_line(line)) fail(fmt::format("{}: the file ends too soon", name));
+  const size_t end = line.find_first_of(" \t;");
+  line = line.substr(0, end);
+  return line.empty() ? std::clamp(0.0, least, most) : parse(line, name, least, most);
+}
+
+int PhotometricText::integer_of_line(const char* name, int least, int most) {
+  const double v = number_of_line(name, least, most);
+  if (v != std::floor(v)) fail(fmt::format("{}: a whole number expected", name));
+  return int(v);
+}
+
+}  // namespace troffer

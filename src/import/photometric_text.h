@@ -1,0 +1,43 @@
+// Numbers and lines of photometric files, which many programs have written in many ways.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/log.h"
+
+namespace troffer {
+
+// Takes a text apart into lines, and lines into numbers. Commas are separators between numbers, and
+// points within a number that has a line of its own.
+class PhotometricText {
+ public:
+  // Both must outlive this.
+  PhotometricText(const std::string& file, std::string_view text) : file_(file), text_(text) {}
+
+  // The next line without blanks and line ends around it; false at the end.
+  bool next_line(std::string_view& line);
+  // The next number, of this line or a later one, within [least, most]; `name` is for messages.
+  double number(const char* name, double least, double most);
+  int integer(const char* name, int least, int most);
+  // One number that has a line of its own; what follows it there is left aside. An empty line is 0.
+  double number_of_line(const char* name, double least, double most);
+  int integer_of_line(const char* name, int least, int most);
+
+  bool has_met_decimal_commas() const { return has_met_commas_; }
+  // At the number or line read last.
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  double parse(std::string_view word, const char* name, double least, double most);
+  std::string_view take_line();
+
+  const std::string& file_;
+  std::string_view text_;
+  size_t next_ = 0;               // offset of what is not read
+  size_t line_ = 0, column_ = 1;  // of what was read last; lines from 1
+  size_t line_start_ = 0;
+  bool is_in_line_ = false, has_met_commas_ = false;
+};
+
+}  // namespace troffer

@@ -1,0 +1,127 @@
+// Measured luminaires, by the command line.
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/units.h"
+#include "program.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// Intensities 1000 cos^n cd, every degree from the nadir.
+std::string ies(int power) {
+  std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 91 1 1 2 1 1 0\n1 1 25\n";
+  for (int i = 0; i <= 90; ++i) text += fmt::format("{}\n", i);
+  text += "0\n";
+  for (int i = 0; i <= 90; ++i)
+    text += fmt::format("{:.9g}\n", 1000 * std::pow(std::cos(rad_from_deg(double(i))), power));
+  return text;
+}
+
+// A panel of 1 m² at the height of 2 m, facing down, beside a floor.
+std::string panel_obj(double radiance) {
+  return fmt::format("newmtl lit\nKd .5 .5 .5\nKe {0:.9g} {0:.9g} {0:.9g}\n", radiance);
+}
+const char* const geometry =
+    "mtllib m.mtl\nv -.5 -.5 2\nv -.5 .5 2\nv .5 .5 2\nv .5 -.5 2\nusemtl lit\nf 1 2 3 4\n";
+const char* const points =
+    "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1.5,0,0.5,0,0,1\n0.2,0.1,1.7,0,0,1\n0,0,-28,0,0,1\n";
+
+std::vector<std::pair<double, double>> measure(const Folder& folder,
+                                               std::vector<std::string> options) {
+  std::vector<std::string> words{"measure",    folder.path("panel.obj"),
+                                 "--points",   folder.write("p.csv", points),
+                                 "--indirect", "none"};
+  words.insert(words.end(), options.begin(), options.end());
+  const Finished f = run_program(folder, words);
+  CAPTURE(f.err);
+  REQUIRE(f.status == 0);
+  std::istringstream rows(f.out);
+  std::string row;
+  std::getline(rows, row);
+  std::vector<std::pair<double, double>> values;
+  while (std::getline(rows, row)) {
+    std::vector<double> v;
+    std::istringstream cells(row);
+    for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
+    REQUIRE(v.size() == 11);
+    values.emplace_back(v[9], v[10]);
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a panel that shines by the cosine is a diffuse one; a narrow one as subdivided sums say") {
+  const Folder folder;
+  folder.write("panel.obj", geometry);
+  const std::string even = folder.write("even.ies", ies(1)),
+                    narrow = folder.write("narrow.ies", ies(5));
+  folder.write("m.mtl", panel_obj(1000 / luminous_efficacy));
+  const auto diffuse = measure(folder, {});
+  for (const char* method : {"certified", "path", "fixed"}) {
+    const auto measured =
+        measure(folder, {"--luminaire", "emitter0=" + even, "--method", method, "--spp", "4096"});
+    const auto sharp = measure(folder, {"--luminaire", "emitter0=" + narrow + ",3000", "--method",
+                                        method, "--spp", "4096"});
+    std::istringstream rows(points);
+    std::string row;
+    std::getline(rows, row);
+    for (size_t i = 0; i < diffuse.size(); ++i) {
+      CAPTURE(method);
+      CAPTURE(i);
+      CHECK(std::abs(measured[i].first - diffuse[i].first) <
+            1e-3 * diffuse[i].first + 5 * measured[i].second);
+      // Points of 1 / n² of the intensity each.
+      std::getline(rows, row);
+      double x = 0, y = 0, z = 0;
+      REQUIRE(std::sscanf(row.c_str(), "%lf,%lf,%lf", &x, &y, &z) == 3);
+      double sum = 0;
+      constexpr int n = 200;
+      for (int k = 0; k < n * n; ++k) {
+        const double dx = (k % n + 0.5) / n - 0.5 - x, dy = (k / n + 0.5) / n - 0.5 - y, dz = 2 - z;
+        const double d2 = dx * dx + dy * dy + dz * dz, cosine = dz / std::sqrt(d2);
+        // 3000 lm of I cos^5: 2 pi I / 6 of them.
+        sum += 3000 * 3 / pi * std::pow(cosine, 5) * cosine / d2 / (n * n);
+      }
+      CHECK(std::abs(sharp[i].first - sum) < 3e-3 * sum + 5 * sharp[i].second);
+    }
+  }
+}
+
+TEST_CASE("info tells what a photometric file says; what is wrong is told in a line") {
+  const Folder folder;
+  const std::string file = folder.write("even.ies", ies(1));
+  const Finished f = run_program(folder, {"info", file, "--json"});
+  REQUIRE(f.status == 0);
+  const auto j = nlohmann::json::parse(f.out);
+  CHECK(j["lumens"].get<double>() == doctest::Approx(1000 * pi).epsilon(1e-3));
+  CHECK(j["efficacy"].get<double>() == doctest::Approx(40 * pi).epsilon(1e-3));
+  CHECK(j["beam_angle"][0].get<double>() == doctest::Approx(120).epsilon(2e-3));
+  CHECK(run_program(folder, {"info", file}).out.find("lm") != std::string::npos);
+
+  folder.write("panel.obj", geometry);
+  folder.write("m.mtl", panel_obj(1));
+  folder.write("p.csv", points);
+  const std::string bad = folder.write("bad.ies", "TILT=NONE\n1 2\n");
+  for (const auto& [luminaire, status] : {std::pair<std::string, int>{"emitter0=" + bad, 1},
+                                          {"emitter0=missing.ies", 1},
+                                          {"nobody=" + file, 2},
+                                          {"emitter0", 2},
+                                          {"=" + file, 2},
+                                          {"emitter0=" + file + ",-3", 2}}) {
+    const Finished g = run_program(folder, {"measure", folder.path("panel.obj"), "--points",
+                                            folder.path("p.csv"), "--luminaire", luminaire});
+    CAPTURE(luminaire);
+    CHECK(g.status == status);
+    CHECK(g.error_lines().size() == 1);
+  }
+}

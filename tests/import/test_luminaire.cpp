@@ -1,0 +1,234 @@
+// Photometric files: what they say, the sins that are forgiven, and ten thousand mutations.
+#include "import/luminaire.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/units.h"
+#include "import/attach_luminaire.h"
+#include "temp_folder.h"
+
+using namespace troffer;
+
+namespace {
+
+// A diffuse disc of 1000 cd: pi 1000 lm.
+std::string cosine_ies(const std::string& head = "IESNA:LM-63-2002\n") {
+  std::string text = head +
+                     "[TEST] none\n[LUMINAIRE] even disc\nTILT=NONE\n1 4000 1 19 1 1 2 0.6 "
+                     "1.2 0\n1 1 40\n";
+  for (int i = 0; i <= 18; ++i) text += std::to_string(5 * i) + " ";
+  text += "\n0\n";
+  for (int i = 0; i <= 18; ++i)
+    text += std::to_string(1000 * std::cos(rad_from_deg(5.0 * i))) + (i % 7 == 6 ? "\n" : " ");
+  return text + "\n";
+}
+
+// Planes by C angle, two heights each: 100 + the C angle, and nothing at 90 degrees.
+std::string planes_ies(const std::vector<int>& turns) {
+  std::string text =
+      "IESNA91\nTILT=NONE\n1 -1 1 2 " + std::to_string(turns.size()) + " 1 1 1 1 0 1 1 10\n0 90\n";
+  for (const int t : turns) text += std::to_string(t) + ",";
+  text += "\n";
+  for (const int t : turns) text += std::to_string(100 + t) + " 0\n";
+  return text;
+}
+
+std::string ldt(int symmetry, int planes, const std::vector<std::string>& values,
+                const std::string& lumens = "2000") {
+  std::string text = "maker\n1\n" + std::to_string(symmetry) + "\n" + std::to_string(planes) +
+                     "\n" + std::to_string(360 / planes) +
+                     "\n2\n90\nreport\nname of it\nnumber\nfile\n"
+                     "date\n600\n600\n80\n550\n500\n0\n0\n0\n0\n100\n80,5\n1\n0\n1\n1\nLED\n" +
+                     lumens + "\n4000\n80\n20\n";
+  for (int i = 0; i < 10; ++i) text += "0.5\n";
+  for (int i = 0; i < planes; ++i) text += std::to_string(i * 360 / planes) + "\n";
+  text += "0\n90\n";
+  for (const std::string& v : values) text += v + "\n";
+  return text;
+}
+
+Luminaire read(const std::string& text, const std::string& name = "a.ies") {
+  const TempFolder folder;
+  WarningLog warnings;
+  return read_luminaire(folder.write(name, text), warnings);
+}
+
+// At the nadir, in the plane at `turn_deg`.
+double nadir(const Luminaire& l, double turn_deg) {
+  for (size_t i = 0; i < l.web.turns_rad.size(); ++i)
+    if (std::abs(double(l.web.turns_rad[i]) - rad_from_deg(turn_deg)) < 1e-4)
+      return double(l.web.intensities[i * l.web.heights_rad.size()]);
+  return -1;
+}
+
+bool is_whole(const LightWeb& web) {
+  if (web.heights_rad.size() < 2 || web.turns_rad.size() < 2) return false;
+  if (web.turns_rad.front() != 0 || web.turns_rad.back() != 2 * pi_f) return false;
+  for (size_t i = 1; i < web.turns_rad.size(); ++i)
+    if (!(web.turns_rad[i] > web.turns_rad[i - 1])) return false;
+  for (size_t i = 1; i < web.heights_rad.size(); ++i)
+    if (!(web.heights_rad[i] > web.heights_rad[i - 1])) return false;
+  for (const float v : web.intensities)
+    if (!(v >= 0) || !std::isfinite(v)) return false;
+  return web.intensities.size() == web.heights_rad.size() * web.turns_rad.size();
+}
+
+}  // namespace
+
+TEST_CASE("LM-63: what stands in a file of any edition") {
+  for (const char* head : {"IESNA:LM-63-2002\n", "IESNA91\n", "IES:LM-63-2019\r\n", ""}) {
+    const Luminaire l = read(cosine_ies(head));
+    CHECK(l.description == " even disc");
+    CHECK(l.lamp_lumens == 4000);
+    CHECK(l.watts == 40);
+    CHECK(l.width == doctest::Approx(0.6));
+    CHECK(l.length == doctest::Approx(1.2));
+    CHECK_FALSE(l.is_round);
+    CHECK(is_whole(l.web));
+    CHECK(l.web.heights_rad.size() == 19);
+    CHECK(double(l.web.intensities[12]) == doctest::Approx(500));
+  }
+}
+
+TEST_CASE("planes that symmetry leaves out are there") {
+  const Luminaire quarter = read(planes_ies({0, 30, 90}));
+  for (const auto& [turn, value] : {std::pair{0, 100},
+                                    {30, 130},
+                                    {90, 190},
+                                    {150, 130},
+                                    {180, 100},
+                                    {210, 130},
+                                    {270, 190},
+                                    {330, 130},
+                                    {360, 100}})
+    CHECK(nadir(quarter, turn) == value);
+  const Luminaire half = read(planes_ies({0, 45, 180}));
+  CHECK(nadir(half, 45) == 145);
+  CHECK(nadir(half, 315) == 145);
+  CHECK(nadir(half, 360) == 100);
+  const Luminaire other = read(planes_ies({90, 120, 270}));
+  CHECK(nadir(other, 120) == 220);
+  CHECK(nadir(other, 60) == 220);
+  CHECK(nadir(other, 270) == 370);
+  const Luminaire all = read(planes_ies({0, 90, 180, 270, 360}));
+  CHECK(nadir(all, 270) == 370);
+  const Luminaire open = read(planes_ies({0, 90, 180, 270}));
+  CHECK(nadir(open, 360) == 100);
+  for (const Luminaire* l : {&quarter, &half, &other, &all, &open}) CHECK(is_whole(l->web));
+}
+
+TEST_CASE("EULUMDAT: symmetries, lumens, decimal commas") {
+  Luminaire l = read(ldt(1, 4, {"250,5", "0"}), "a.LDT");
+  CHECK(l.description == "name of it");
+  CHECK(l.length == doctest::Approx(0.55));
+  CHECK(nadir(l, 0) == 501);
+  l = read(ldt(0, 4, {"1", "0", "2", "0", "3", "0", "4", "0"}), "a.ldt");
+  CHECK(nadir(l, 90) == 4);
+  CHECK(nadir(l, 270) == 8);
+  l = read(ldt(2, 4, {"1", "0", "2", "0", "3", "0"}), "a.ldt");
+  CHECK(nadir(l, 270) == 4);
+  l = read(ldt(3, 4, {"1", "0", "2", "0", "3", "0"}), "a.ldt");  // C270, C0, C90
+  CHECK(nadir(l, 270) == 2);
+  CHECK(nadir(l, 0) == 4);
+  CHECK(nadir(l, 180) == 4);
+  CHECK(nadir(l, 90) == 6);
+  l = read(ldt(4, 4, {"1", "0", "2", "0"}), "a.ldt");
+  CHECK(nadir(l, 180) == 2);
+  CHECK(nadir(l, 270) == 4);
+  CHECK(is_whole(l.web));
+}
+
+TEST_CASE("photometric files that cannot be used are errors with a place") {
+  const TempFolder folder;
+  WarningLog warnings;
+  const auto line_of = [&](const std::string& text, const std::string& name) {
+    try {
+      read_luminaire(folder.write(name, text), warnings);
+    } catch (const InputError& error) {
+      return error.line();
+    }
+    return -1;
+  };
+  CHECK(line_of("", "a.ies") >= 1);
+  CHECK(line_of("hello\nworld\n", "a.ies") == 2);
+  CHECK(line_of("TILT=NONE\n1 1 1 2 1 2 1 1 1 1 1 1 1\n0 90\n0\n1 1\n", "a.ies") == 2);
+  CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n0 90\n0\n0 0\n", "a.ies") == 5);
+  CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n90 0\n0\n1 0\n", "a.ies") == 3);
+  CHECK(line_of("TILT=NONE\n1 1 1 99999 99999 1 1 1 1 1 1 1 1\n0 90\n", "a.ies") == 2);
+  CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n0 90\n0\n1 x\n", "a.ies") == 5);
+  CHECK(line_of(ldt(1, 4, {"1"}), "a.ldt") > 40);
+  CHECK(line_of(ldt(1, 4, {"1", "0"}, "0"), "a.ldt") > 40);
+  CHECK_THROWS_AS(read_luminaire("/nonexistent/a.ies", warnings), InputError);
+}
+
+TEST_CASE("ten thousand mutated files load whole or fail as they should") {
+  const TempFolder folder;
+  const std::string originals[] = {cosine_ies(), planes_ies({0, 30, 90}),
+                                   planes_ies({0, 90, 180, 270, 360}),
+                                   ldt(0, 4, {"1", "0", "2", "0", "3", "0", "4", "0"}),
+                                   ldt(3, 4, {"1", "0", "2", "0", "3", "0"})};
+  const char alphabet[] = "0123456789.,-+eE \n\t=xTILT\xff\0[]";
+  Random random(77);
+  const auto below = [&](size_t n) { return size_t(random.next_u32()) % n; };
+  int loaded = 0, refused = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    const size_t which = below(std::size(originals));
+    std::string text = originals[which];
+    for (size_t edits = 1 + below(6); edits > 0 && !text.empty(); --edits) {
+      const size_t at = below(text.size());
+      const char c = alphabet[below(sizeof(alphabet) - 1)];
+      const size_t kind = below(5);
+      if (kind == 0) text[at] = c;
+      if (kind == 1) text.insert(at, 1, c);
+      if (kind == 2) text.erase(at, 1 + below(5));
+      if (kind == 3) text.resize(at);
+      if (kind == 4) text.insert(at, text.substr(below(text.size()), below(40)));
+    }
+    WarningLog warnings;
+    try {
+      const Luminaire l =
+          read_luminaire(folder.write(which < 3 ? "m.ies" : "m.ldt", text), warnings);
+      REQUIRE(is_whole(l.web));
+      ++loaded;
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  CHECK(loaded > 500);
+  CHECK(refused > 500);
+}
+
+TEST_CASE("a luminaire takes the place of a point, of a flat mesh, and of nothing else") {
+  const Luminaire l = read(cosine_ies());
+  Scene s;
+  s.materials.emplace_back();
+  Mesh m;
+  m.name = "panel";
+  m.positions = {{0, 0, 3}, {0, 1, 3}, {2, 1, 3}, {2, 0, 3}};
+  m.triangles = {{0, 1, 2}, {0, 2, 3}};
+  s.meshes.push_back(m);
+  m.name = "roof";
+  m.positions[0].z = 5;
+  s.meshes.push_back(m);
+  Light point;
+  point.name = "bulb";
+  point.kind = LightKind::point;
+  s.lights.push_back(point);
+  attach_luminaire(s, "bulb", l, 2, {0, 0, -1});
+  CHECK(s.lights[0].web == 0);
+  CHECK(s.lights[0].axes[2] == Vec3{0, 0, -1});
+  attach_luminaire(s, "panel", l, 2, {0, 0, -1});
+  REQUIRE(s.lights.size() == 2);
+  const Light& e = s.lights[1];
+  CHECK(e.web == 1);
+  CHECK(e.kind == LightKind::polygon);
+  CHECK(e.radiance == Rgb{1});  // 2 over 2 m²
+  CHECK(e.axes[2] == Vec3{0, 0, -1});
+  CHECK_FALSE(e.is_two_sided);
+  CHECK_THROWS_AS(attach_luminaire(s, "roof", l, 1, {0, 0, -1}), UsageError);
+  CHECK_THROWS_AS(attach_luminaire(s, "nobody", l, 1, {0, 0, -1}), UsageError);
+}
