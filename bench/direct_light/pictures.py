@@ -32,13 +32,15 @@ SCENES = [
                  "blinds", "wires", "bookshelf", "foliage", "gallery", "gloss", "lanterns", "balls",
                  "disks", "lights10", "lights100", "lights1000", "lights3000")),
 ]
-ERRORS = (0.05, 0.02, 0.01, 0.005, 0.002)
-FIXED_RAYS = (1, 4, 16, 64, 256)
+ERRORS = (0.05, 0.02, 0.01, 0.005)
+FIXED_RAYS = (1, 4, 16, 64, 256, 1024)
 MOST_FIXED = 4096  # rays of a viewing ray, to all lights
 PATHS = (4, 16, 64, 256)
-REFERENCE_RAYS, REFERENCE_PATHS = 4096, 512  # the latter twice
+REFERENCE_RAYS = 16384  # of a viewing ray, to all lights, but no more to one than
+MOST_TO_ONE = 4096
+REFERENCE_PATHS = 512  # twice
 # Runs shorter than this, s, are made three times.
-SHORT = 0.5
+SHORT = 0.2
 VIEWING_RAYS = 4
 # Where no edge goes through a pixel, four viewing rays see what all see, within this share.
 EVEN = 0.005
@@ -61,12 +63,17 @@ def luminance(picture):
     return picture.astype(np.float64) @ np.array([0.2126, 0.7152, 0.0722])
 
 
+def reference_rays(lights):
+    """Of a viewing ray to each light."""
+    return 2 ** int(np.log2(min(max(8, REFERENCE_RAYS / lights), MOST_TO_ONE)))
+
+
 class Reference:
     """The light of the picture's own viewing rays, and of all; and the pixels where both agree:
     there, methods with different viewing rays can be compared."""
 
     def __init__(self, program, scene, file, size):
-        rays = 2 ** int(np.log2(max(8, REFERENCE_RAYS / scene.lights)))
+        rays = reference_rays(scene.lights)
         paths = REFERENCE_PATHS
         common = f"--size {size} --indirect none"
         own = program.render(
@@ -113,7 +120,9 @@ def settings(scene, is_quick):
     for e in ERRORS[1:4] if is_quick else ERRORS:
         yield "certified", f"--error {e:g}", f"{own} --error {e:g} --aov error", True
     for n in FIXED_RAYS:
-        if n == 1 or n * scene.lights <= MOST_FIXED:
+        # a setting near the reference's would be compared with itself
+        is_apart = 4 * n <= reference_rays(scene.lights)
+        if n == 1 or (n * scene.lights <= MOST_FIXED and is_apart):
             yield "fixed", f"--shadow-rays {n}", f"{own} --method fixed --shadow-rays {n}", True
     for n in PATHS:
         yield "path", f"--spp {n}", f"--method path --spp {n} --max-spp {n}", False
@@ -154,9 +163,20 @@ def measure(program, references, scene, options):
     return rows, reference.share
 
 
+def write(rows, scenes, shares, options):
+    """What has been measured so far."""
+    with open(f"{options.out}/pictures.csv", "w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(HEADER)
+        writer.writerows([page.shown(r[k]) for k in HEADER] for r in rows)
+    with open(f"{options.out}/pictures.md", "w") as file:
+        file.write(page.text(rows, scenes, shares, options.quick))
+
+
 def main():
     options = arguments()
-    chosen = [s for s in SCENES if not options.scenes or s.name in options.scenes.split(",")]
+    names = options.scenes.split(",") if options.scenes else [s.name for s in SCENES]
+    chosen = [s for name in names for s in SCENES if s.name == name]
     os.makedirs(options.out, exist_ok=True)
     program = Program(options.build, options.out, "build/bench/direct-pictures")
     program.planned = 3 * len(chosen)  # timed() counts its own
@@ -172,15 +192,8 @@ def main():
         if options.references_only:
             continue
         print(page.summary(rows, [scene.name]), flush=True)
-    if options.references_only:
-        return
-    with open(f"{options.out}/pictures.csv", "w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEADER)
-        writer.writerows([page.shown(r[k]) for k in HEADER] for r in rows)
-    with open(f"{options.out}/pictures.md", "w") as file:
-        file.write(page.text(rows, chosen, shares, options.quick))
-    if options.copy:
+        write(rows, [s for s in chosen if s.name in shares], shares, options)
+    if options.copy and not options.references_only:
         os.makedirs(options.copy, exist_ok=True)
         for name in ("pictures.csv", "pictures.md"):
             shutil.copyfile(f"{options.out}/{name}", f"{options.copy}/{name}")

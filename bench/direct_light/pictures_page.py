@@ -68,14 +68,14 @@ def text(rows, scenes, shares, is_quick):
 Made by `bench/direct-pictures`: `troffer render --indirect none` on one thread, `certified` (the
 default) at settings of `--error`, `fixed` and `path` at settings of their rays. Nothing but the
 command line: trees, masks, viewing rays and all else are in the times (`render_cpu` of `--stats`, the
-quickest of three, of one where it took longer than half a second).
+quickest of three, of one where it took longer than .2 s).
 
 - **asked**: `--error`. **made**: against the reference. **told**: layer `error`. Roots of mean squares
   over all pixels, edges too, of the error over the pixel's own light (or a hundredth of the mean light,
   where that is more): the viewing rays are the reference's own, so that only shadows differ.
 - **RMSE**: over the mean light of the picture; what methods are compared by.
 - `certified` and `fixed` have the same 4 viewing rays in a pixel, and so has their reference (`fixed`
-  with 4096 rays to all sources); `path` has others, more of them at every setting, and a reference of
+  with 16384 rays to all sources, up to 4096 to one, whose own noise is in the figures of small errors); `path` has others, more of them at every setting, and a reference of
   its own, in two halves of 512 samples. So that this is fair, pixels count only where both references
   agree: where no edge goes through, and where gloss leaves little noise (one ray of the lobe's own,
   which `certified`, `fixed` and the reference have in common).
