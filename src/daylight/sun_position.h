@@ -18,8 +18,8 @@ struct SunPosition {
 // Universal time as a Julian day, by the Gregorian calendar; hour may be any number.
 double julian_day(int year, int month, int day, double hour);
 
-// Latitude north and longitude east of Greenwich, in degrees; errors under .01 degrees from 1950 to
-// 2100 (tests/daylight/test_sun_position.cpp).
+// Latitude north and longitude east of Greenwich, in degrees; within .01 degrees of the published
+// examples that tests/daylight/test_sun_position.cpp has.
 SunPosition sun_position(double latitude_deg, double longitude_deg, double julian_day_ut);
 
 // "2026-06-21T12:00+02:00", "…T12:00:30Z" -> Julian day. UsageError, which begins with `option`,
