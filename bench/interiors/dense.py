@@ -44,24 +44,30 @@ def furniture(s, rng):
 
 # ---- what stands before the light ----
 
-def chandelier(s, rng):
-    s.matte((0.8, 0.8, 0.8))
-    m = Mesh()
-    for ring in range(6):
-        r = 0.15 + 0.06 * ring
-        for k in range(60):
-            t = 2 * math.pi * (k + rng.random()) / 60
-            p = (2.5 + r * math.cos(t), 2 + r * math.sin(t), 2.5 - 0.5 * rng.random())
-            q = 0.01 * (0.6 + rng.random())
+def crystals(mesh, top, rng, rings, per_ring, radius, height, size, has_caps=True):
+    for ring in range(rings):
+        r = radius + 0.06 * ring
+        for k in range(per_ring):
+            t = 2 * math.pi * (k + rng.random()) / per_ring
+            p = (top[0] + r * math.cos(t), top[1] + r * math.sin(t), top[2] - height * rng.random())
+            q = size * (0.6 + rng.random())
+            above, below = (p[0], p[1], p[2] + 1.6 * q), (p[0], p[1], p[2] - 1.6 * q)
             waist = [(p[0] + q * math.cos(f), p[1] + q * math.sin(f), p[2])
                      for f in (0, math.pi / 2, math.pi, 3 * math.pi / 2)]
             for i in range(4):
-                m.triangle((p[0], p[1], p[2] + 1.6 * q), waist[i], waist[(i + 1) % 4])
-                m.triangle((p[0], p[1], p[2] - 1.6 * q), waist[(i + 1) % 4], waist[i])
+                mesh.triangle(above, waist[i], waist[(i + 1) % 4])
+                mesh.triangle(below, waist[(i + 1) % 4], waist[i])
         for k in range(48):
             t, u = 2 * math.pi * k / 48, 2 * math.pi * (k + 1) / 48
-            m.tube((2.5 + r * math.cos(t), 2 + r * math.sin(t), 2.5),
-                   (2.5 + r * math.cos(u), 2 + r * math.sin(u), 2.5), 0.006, 6, False)
+            mesh.tube((top[0] + r * math.cos(t), top[1] + r * math.sin(t), top[2]),
+                      (top[0] + r * math.cos(u), top[1] + r * math.sin(u), top[2]), 0.006, 6,
+                      has_caps)
+
+
+def chandelier(s, rng):
+    s.matte((0.8, 0.8, 0.8))
+    m = Mesh()
+    crystals(m, (2.5, 2, 2.5), rng, 6, 60, 0.15, 0.5, 0.01, False)
     s.add(m)
     table(s)
 

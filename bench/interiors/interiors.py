@@ -8,27 +8,8 @@ setting of troffer was chosen on them.
 import math
 import random
 
-from dense import DENSE, furniture, room
+from dense import DENSE, crystals, furniture, room
 from mesh import Mesh, Scene, facing_down
-
-
-def crystals(mesh, top, rng, rings, per_ring, radius, height, size):
-    for ring in range(rings):
-        r = radius + 0.06 * ring
-        for k in range(per_ring):
-            t = 2 * math.pi * (k + rng.random()) / per_ring
-            p = (top[0] + r * math.cos(t), top[1] + r * math.sin(t), top[2] - height * rng.random())
-            q = size * (0.6 + rng.random())
-            above, below = (p[0], p[1], p[2] + 1.6 * q), (p[0], p[1], p[2] - 1.6 * q)
-            waist = [(p[0] + q * math.cos(f), p[1] + q * math.sin(f), p[2])
-                     for f in (0, math.pi / 2, math.pi, 3 * math.pi / 2)]
-            for i in range(4):
-                mesh.triangle(above, waist[i], waist[(i + 1) % 4])
-                mesh.triangle(below, waist[(i + 1) % 4], waist[i])
-        for k in range(48):
-            t, u = 2 * math.pi * k / 48, 2 * math.pi * (k + 1) / 48
-            mesh.tube((top[0] + r * math.cos(t), top[1] + r * math.sin(t), top[2]),
-                      (top[0] + r * math.cos(u), top[1] + r * math.sin(u), top[2]), 0.006, 6)
 
 
 def staircase(is_metal=False):

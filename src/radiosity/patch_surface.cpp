@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/box.h"
+#include "radiosity/subdivide.h"
 
 namespace troffer {
 
@@ -10,15 +11,7 @@ namespace {
 
 // Corner 0 is the apex of a fan, which is least slanted opposite the longest edge.
 void begin_opposite_longest_edge(std::vector<Vec3>& triangle) {
-  size_t apex = 0;
-  float longest = -1;
-  for (size_t k = 0; k < 3; ++k) {
-    const float l = length_squared(triangle[(k + 1) % 3] - triangle[k]);
-    if (l > longest) {
-      longest = l;
-      apex = (k + 2) % 3;
-    }
-  }
+  const size_t apex = (longest_edge(std::span<const Vec3, 3>(triangle)).number + 2) % 3;
   std::rotate(triangle.begin(), triangle.begin() + std::ptrdiff_t(apex), triangle.end());
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "radiosity/subdivide.h"
 
 namespace troffer {
 
@@ -45,15 +46,7 @@ std::vector<ShooterCell> flat_shooter_cells(const Shooter& shooter) {
         [](const ShooterCell& a, const ShooterCell& b) { return a.area < b.area; });
     const ShooterCell c = *largest;
     cells.erase(largest);
-    size_t edge = 0;
-    float longest = -1;
-    for (size_t k = 0; k < 3; ++k) {
-      const float l = length_squared(c.corners[(k + 1) % 3] - c.corners[k]);
-      if (l > longest) {
-        longest = l;
-        edge = k;
-      }
-    }
+    const size_t edge = longest_edge(c.corners).number;
     const Vec3 a = c.corners[edge], b = c.corners[(edge + 1) % 3], d = c.corners[(edge + 2) % 3];
     const Vec3 m = a * 0.5f + b * 0.5f;
     const size_t before = cells.size();

@@ -146,16 +146,10 @@ uint32_t flat_triangle(const Scene& scene, const BaseSurface& surface, const Vec
 }
 
 float Subdivider::longest_edge(const std::array<uint32_t, 3>& t, uint8_t& edge) const {
-  float longest = -1;
-  for (uint8_t k = 0; k < 3; ++k) {
-    const float l =
-        length_squared(geometry_.positions[t[(k + 1u) % 3]] - geometry_.positions[t[k]]);
-    if (l > longest) {
-      longest = l;
-      edge = k;
-    }
-  }
-  return std::sqrt(longest);
+  const auto& p = geometry_.positions;
+  const LongestEdge longest = troffer::longest_edge(std::array{p[t[0]], p[t[1]], p[t[2]]});
+  edge = uint8_t(longest.number);
+  return std::sqrt(longest.square);
 }
 
 uint32_t Subdivider::midpoint(uint32_t surface, uint32_t a, uint32_t b) {
@@ -195,15 +189,7 @@ size_t count_parts(const std::array<Vec3, 3>& p, float size2, size_t limit) {
   while (!stack.empty() && count < limit) {
     const Part part = stack.back();
     stack.pop_back();
-    size_t edge = 0;
-    float longest = -1;
-    for (size_t k = 0; k < 3; ++k) {
-      const float l = length_squared(part.p[(k + 1) % 3] - part.p[k]);
-      if (l > longest) {
-        longest = l;
-        edge = k;
-      }
-    }
+    const auto [edge, longest] = longest_edge(part.p);
     if (!(longest > size2) || part.depth >= 40) {
       ++count;
       continue;
@@ -220,6 +206,15 @@ size_t count_parts(const std::array<Vec3, 3>& p, float size2, size_t limit) {
 }
 
 }  // namespace
+
+LongestEdge longest_edge(std::span<const Vec3, 3> triangle) {
+  LongestEdge longest;
+  for (size_t k = 0; k < 3; ++k) {
+    const float square = length_squared(triangle[(k + 1) % 3] - triangle[k]);
+    if (square > longest.square) longest = {k, square};
+  }
+  return longest;
+}
 
 size_t count_fragments(const BaseGeometry& geometry, uint32_t triangle, double size, size_t limit) {
   const BaseTriangle& t = geometry.triangles[triangle];

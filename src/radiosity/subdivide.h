@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -71,6 +72,13 @@ class Subdivider {
   BaseGeometry& geometry_;
   std::unordered_map<uint64_t, uint32_t> midpoints_;
 };
+
+// A triangle's longest edge: between corners `number` and number + 1.
+struct LongestEdge {
+  size_t number = 0;
+  float square = -1;  // of its length, m²
+};
+LongestEdge longest_edge(std::span<const Vec3, 3> triangle);
 
 // How many fragments no longer than `size` a triangle has (a round one: about); stops at `limit`.
 size_t count_fragments(const BaseGeometry& geometry, uint32_t triangle, double size, size_t limit);

@@ -12,10 +12,10 @@
 
 using namespace troffer;
 
-TEST_CASE("many points at a stroke are those chosen one by one") {
-  Scene s;
-  test::add_ceiling_light(s, 1, 2, Rgb{1});
-  test::add_ceiling_light(s, 0.01f, 1, Rgb{1});
+namespace {
+
+// A parallelogram that shines both ways, and a sphere.
+void add_slanted_and_round(Scene& s) {
   const uint32_t black = test::add_diffuse(s, Rgb{0});
   test::make_light(
       s, test::add_quad(s, black, {Vec3{0, 0, 3}, {1, 0.5f, 3}, {1.2f, 1.5f, 3}, {0.2f, 1, 3}}),
@@ -25,6 +25,15 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
   sphere.kind = LightKind::sphere;
   sphere.radiance = Rgb{1};
   s.lights.push_back(sphere);
+}
+
+}  // namespace
+
+TEST_CASE("many points at a stroke are those chosen one by one") {
+  Scene s;
+  test::add_ceiling_light(s, 1, 2, Rgb{1});
+  test::add_ceiling_light(s, 0.01f, 1, Rgb{1});
+  add_slanted_and_round(s);
   const LightPrimitives lights(s);
   REQUIRE(lights.size() == 4);
 
@@ -77,16 +86,8 @@ TEST_CASE("many points at a stroke are those chosen one by one") {
 
 TEST_CASE("points for one receiver are those chosen one by one") {
   Scene s;
-  const uint32_t black = test::add_diffuse(s, Rgb{0});
   test::add_ceiling_light(s, 1, 2, Rgb{1});
-  test::make_light(
-      s, test::add_quad(s, black, {Vec3{0, 0, 3}, {1, 0.5f, 3}, {1.2f, 1.5f, 3}, {0.2f, 1, 3}}),
-      Rgb{1}, true);
-  s.spheres.push_back({{2, 0, 1}, 0.3f, false, black, int32_t(s.lights.size())});
-  Light sphere;
-  sphere.kind = LightKind::sphere;
-  sphere.radiance = Rgb{1};
-  s.lights.push_back(sphere);
+  add_slanted_and_round(s);
   const LightPrimitives lights(s);
   Random random(31);
   constexpr size_t n = 32;

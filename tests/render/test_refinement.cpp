@@ -49,7 +49,12 @@ Moments means_of(const PreparedScene& scene, const Camera& camera, RenderOptions
   return render_ensemble(scene, camera, o, pictures).mean;
 }
 
-void check_mean(const PreparedScene& scene, const Camera& camera, RenderOptions o, int pictures) {
+// Of direct light by path.
+void check_mean(const PreparedScene& scene, const Vec3& target, float fov_deg, int pictures) {
+  const Camera camera = look_at({0.3f, 0.3f, 1.6f}, target, {0, 0, 1}, fov_deg);
+  RenderOptions o;
+  o.method = Method::path;
+  o.depth = 1;
   o.width = o.height = 48;
   o.spp = 4;
   o.max_spp = 16;
@@ -67,19 +72,11 @@ void check_mean(const PreparedScene& scene, const Camera& camera, RenderOptions 
 }  // namespace
 
 TEST_CASE("refinement keeps the mean of a picture with many small lights") {
-  const PreparedScene scene(matte_room());
-  RenderOptions o;
-  o.method = Method::path;
-  o.depth = 1;
-  check_mean(scene, look_at({0.3f, 0.3f, 1.6f}, {3, 3, 2.2f}, {0, 0, 1}, 70), o, 40);
+  check_mean(PreparedScene(matte_room()), {3, 3, 2.2f}, 70, 40);
 }
 
 TEST_CASE("refinement keeps the mean where small lights are seen in a mirror") {
-  const PreparedScene scene(mirror_room());
-  RenderOptions o;
-  o.method = Method::path;
-  o.depth = 1;
-  check_mean(scene, look_at({0.3f, 0.3f, 1.6f}, {3, 3, 0}, {0, 0, 1}, 60), o, 100);
+  check_mean(PreparedScene(mirror_room()), {3, 3, 0}, 60, 100);
 }
 
 TEST_CASE("the edge map finds borders of objects, and every pixel that a small light touches") {
