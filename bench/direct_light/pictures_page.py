@@ -75,9 +75,9 @@ quickest of three, of one where it took longer than .2 s).
   where that is more): the viewing rays are the reference's own, so that only shadows differ.
 - **RMSE**: over the mean light of the picture; what methods are compared by.
 - `certified` and `fixed` have the same 4 viewing rays in a pixel, and so has their reference (`fixed`
-  with 16384 rays to all sources, up to 4096 to one, whose own noise is in the figures of small errors); `path` has others, more of them at every setting, and a reference of
-  its own, in two halves of 512 samples. So that this is fair, pixels count only where both references
-  agree: where no edge goes through, and where gloss leaves little noise (one ray of the lobe's own,
+  with 16384 rays to all sources, up to 4096 to one, whose own noise is in the figures of small
+  errors); `path` has others, more of them at every setting, and a reference of its own, in two halves
+  of 512 samples. So that this is fair, pixels count only where both references agree: where no edge goes through, and where gloss leaves little noise (one ray of the lobe's own,
   which `certified`, `fixed` and the reference have in common).
 - **Cheapest run at or under it**: of the runs that were made, the cheapest that is as exact, and how
   many times the time of `certified` it takes. **Interpolated**: the same between two settings, on
