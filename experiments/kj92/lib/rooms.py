@@ -43,7 +43,7 @@ def _row(name, run, reference):
     off = 100 * (float(run.picture.mean()) / float(reference.mean()) - 1)
     s = run.stats
     return [name, s["spp"], s["shadow_rays_per_viewing_ray"], off, d.relative_rmse, d.average,
-            s["seconds"]["preprocess"], s["seconds"]["render"], run.wall, s["peak_memory_mb"]]
+            s["seconds"]["preprocess"], s["seconds"]["render"], run.cpu, s["peak_memory_mb"]]
 
 
 ROOM_DIFFERENCE_TEXT = (
@@ -54,7 +54,7 @@ ROOM_DIFFERENCE_TEXT = (
     "elements as well. "
     "The outline of the table is the noise of four viewing rays on its edges.")
 HEADER = ["picture", "viewing rays per pixel", RAYS, "mean, % off the reference",
-          "relative rmse", DIFFERENCE, "preprocessing s", "rendering s", "whole process s",
+          "relative rmse", DIFFERENCE, "preprocessing s", "rendering s", "processor s",
           "peak memory MB"]
 
 
@@ -203,7 +203,7 @@ def _halls_text(rows):
     plain, diffuse = rows
     return (
         f"Both halls go through whole, without special settings, in {plain[8]:.0f} s and "
-        f"{diffuse[8]:.0f} s and {plain[9]:.0f} and {diffuse[9]:.0f} MB, at {plain[2]:.0f} and "
+        f"{diffuse[8]:.0f} s of processor time and {plain[9]:.0f} and {diffuse[9]:.0f} MB, at {plain[2]:.0f} and "
         f"{diffuse[2]:.0f} shadow rays per viewing ray: 13 sources and many bright patches, at an "
         "allowance of 0.01, where the second stop or the cap ends most trees. The diffuse "
         f"hall's mean is {diffuse[3]:+.2f} % off the reference (ours is rgb, the reference spectral: path "
