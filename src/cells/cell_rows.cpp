@@ -12,6 +12,7 @@ namespace {
 
 constexpr size_t cells_at_a_time = 1024;
 constexpr int most_iterations = 400;
+constexpr int bounces_of_noise = 6;
 constexpr double smallest_change = 1e-6;  // of the sum of all light
 
 // Σ D and Σ (E - W E) per channel, over all cells: E times their quotient gives and takes as much
@@ -77,7 +78,30 @@ void CellRows::apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, 
   });
 }
 
-CellLight CellRows::solve(const std::vector<Rgb>& direct, int threads) const {
+// What is off in one cell is off in those that see it: d = s + W d, to the first few bounces.
+void CellRows::spread(std::vector<float>& differences, int threads) const {
+  const std::vector<float> source = differences;
+  std::vector<float> next(source.size());
+  const size_t n = source.size();
+  for (int bounce = 0; bounce < bounces_of_noise; ++bounce) {
+    parallel_for((n + cells_at_a_time - 1) / cells_at_a_time, threads, [&](size_t chunk) {
+      const size_t end = std::min(n, (chunk + 1) * cells_at_a_time);
+      for (size_t i = chunk * cells_at_a_time; i < end; ++i) {
+        float sum = 0;
+        for (size_t o = begin_[i]; o < begin_[i + 1]; ++o) {
+          const RowEntry* k = &entries_[first_entry_[order_[o]]];
+          for (uint32_t t = 0; t < parts_[order_[o]].entries; ++t)
+            sum += luminance(k[t].weight) * differences[k[t].cell];
+        }
+        next[i] = source[i] + (rays_[i] > 0 ? sum / float(rays_[i]) : 0.0f);
+      }
+    });
+    differences.swap(next);
+  }
+}
+
+CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<float>& of_direct,
+                          int threads) const {
   CellLight light;
   std::vector<Rgb> e = direct, next;
   double before = 0;
@@ -96,12 +120,13 @@ CellLight CellRows::solve(const std::vector<Rgb>& direct, int threads) const {
     before = change;
     if (light.iterations % 4 != 0 && change / (1 - ratio) <= smallest_change * sum) break;
   }
-  light.half_difference.resize(e.size());
+  light.half_difference = of_direct;
   for (const Half half : {Half::first, Half::second}) {
     apply(direct, e, half, threads, next);
     const float sign = half == Half::first ? 0.5f : -0.5f;
     for (size_t i = 0; i < e.size(); ++i) light.half_difference[i] += sign * luminance(next[i]);
   }
+  spread(light.half_difference, threads);
   light.irradiance = std::move(e);
   return light;
 }

@@ -30,8 +30,10 @@ struct RowPart {
 
 struct CellLight {
   std::vector<Rgb> irradiance;
-  // From either half of the rays alone: how far they differ says how much noise there is.
-  std::vector<float> half_difference;  // luminance
+  // Half the difference of what either half of the rays, and of the hits that were lit, would bring
+  // a cell, by way of other cells too: luminance; how far halves differ says how much noise there
+  // is.
+  std::vector<float> half_difference;
   int iterations = 0;
 };
 
@@ -47,8 +49,9 @@ class CellRows {
   bool has_row(size_t cell) const { return cell < rays_.size() && rays_[cell] > 0; }
   uint32_t rays(size_t cell) const { return rays_[cell]; }
 
-  // Solves for E; direct: D, per cell.
-  CellLight solve(const std::vector<Rgb>& direct, int threads) const;
+  // Solves for E; direct: D, per cell; of_direct: half the difference of two halves of it.
+  CellLight solve(const std::vector<Rgb>& direct, const std::vector<float>& of_direct,
+                  int threads) const;
   // How much of what is asked for each cell's light is, all bounces counted: y = c + Wᵀ y. Not more
   // than `iterations` bounces.
   std::vector<float> importance(const std::vector<float>& asked, int iterations) const;
@@ -57,6 +60,8 @@ class CellRows {
   enum class Half { both, first, second };
   void apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half, int threads,
              std::vector<Rgb>& out) const;
+
+  void spread(std::vector<float>& differences, int threads) const;
 
   std::vector<RowPart> parts_;
   std::vector<size_t> first_entry_;  // of each part

@@ -51,6 +51,7 @@ class Builder {
   std::vector<Place> places_of(const CellPilot& pilot);
   void note(const std::vector<CellTask>& tasks, CellsSeen& seen);
   bool run(const std::vector<CellTask>& tasks);
+  std::span<const CellHit> hits_of(const CellTask& task) const;
   CellTask task_of(uint32_t cell, uint32_t first, uint32_t count) const;
   std::vector<uint32_t> cells_to_resolve();
   std::vector<CellTask> further_tasks();
@@ -129,6 +130,19 @@ CellTask Builder::task_of(uint32_t cell, uint32_t first, uint32_t count) const {
   return t;
 }
 
+// Every other step of a cell's rays; either half goes from its own half of the hits, so that what
+// halves differ by tells of the choice of hits as well.
+bool is_second_half(const CellTask& task) {
+  return task.first / rays_of_step % 2 == 1;
+}
+
+std::span<const CellHit> Builder::hits_of(const CellTask& task) const {
+  const std::span<const CellHit> hits = map_->hits(task.cell);
+  if (hits.size() < 2) return hits;
+  const size_t half = hits.size() / 2;
+  return is_second_half(task) ? hits.subspan(half) : hits.first(half);
+}
+
 // New cells where there were none, and the rows.
 void Builder::note(const std::vector<CellTask>& tasks, CellsSeen& seen) {
   std::vector<RowEntry> entries;
@@ -140,8 +154,7 @@ void Builder::note(const std::vector<CellTask>& tasks, CellsSeen& seen) {
       if (c.cell == no_cell) c.cell = map_->add(c.hit, c.distance);
       entries.push_back({c.cell, c.weight});
     }
-    rows_.add({tasks[t].cell, tasks[t].count, 0, tasks[t].first / rays_of_step % 2 == 1,
-               seen.emission[t]},
+    rows_.add({tasks[t].cell, tasks[t].count, 0, is_second_half(tasks[t]), seen.emission[t]},
               entries);
   }
   TROFFER_CHECK(at == seen.seen.size());
@@ -154,7 +167,7 @@ bool Builder::run(const std::vector<CellTask>& tasks) {
     if (stop_.load(std::memory_order_relaxed)) return false;
     some.assign(tasks.begin() + std::ptrdiff_t(first),
                 tasks.begin() + std::ptrdiff_t(std::min(first + tasks_at_a_time, tasks.size())));
-    for (CellTask& t : some) t.from = map_->hits(t.cell);
+    for (CellTask& t : some) t.from = hits_of(t);
     trace_cell_rays(walks_, map_.get(), some, options_.threads, seen, counters_);
     note(some, seen);
   }
@@ -223,9 +236,9 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
 }
 
 std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_point start) {
-  std::vector<Rgb> lit = direct_light_of(*map_, direct, options_.threads, stop_, counters_);
+  CellDirectLight lit = direct_light_of(*map_, direct, options_.threads, stop_, counters_);
   if (stop_.load()) return nullptr;
-  CellLight light = rows_.solve(lit, options_.threads);
+  CellLight light = rows_.solve(lit.irradiance, lit.half_difference, options_.threads);
   statistics_.cells = map_->size();
   double sum = 0;
   for (size_t c = 0; c < asked_.size(); ++c)
@@ -238,7 +251,7 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_po
   statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry);
   map_->forget_hits();
   statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit),
+  return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit.irradiance),
                                  std::move(light.irradiance), std::move(light.half_difference),
                                  statistics_);
 }

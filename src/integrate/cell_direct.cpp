@@ -1,6 +1,7 @@
 #include "integrate/cell_direct.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "base/error.h"
@@ -53,7 +54,7 @@ std::string name_of_hit(const void*, size_t i) {
 }
 
 void light_group(const CellMap& map, const DirectLight& direct, std::span<const uint32_t> cells,
-                 Worker& w, std::vector<Rgb>& irradiance) {
+                 Worker& w, CellDirectLight& light) {
   if (!w.direct) w.direct = direct.make_scratch();
   direct.begin(*w.direct);
   size_t hits = 0;
@@ -83,21 +84,23 @@ void light_group(const CellMap& map, const DirectLight& direct, std::span<const 
   index = 0;
   for (const uint32_t c : cells) {
     const size_t n = map.hits(c).size();
-    Rgb sum;
+    std::array<Rgb, 2> halves;
     for (size_t i = 0; i < n; ++i, ++index) {
       const Rgb e = w.out.direct[index] + w.out.indirect[index];
-      if (is_finite(e)) sum += e;
+      if (is_finite(e)) halves[i < n / 2 ? 0 : 1] += e;
     }
-    irradiance[c] = n > 0 ? sum / float(n) : Rgb{0};
+    light.irradiance[c] = n > 0 ? (halves[0] + halves[1]) / float(n) : Rgb{0};
+    if (n < 2) continue;
+    light.half_difference[c] = luminance(halves[0]) / float(n / 2) - luminance(light.irradiance[c]);
   }
 }
 
 }  // namespace
 
-std::vector<Rgb> direct_light_of(const CellMap& map, const DirectLight& direct, int threads,
-                                 const StopFlag& stop, Counters& counters) {
+CellDirectLight direct_light_of(const CellMap& map, const DirectLight& direct, int threads,
+                                const StopFlag& stop, Counters& counters) {
   const std::vector<uint32_t> order = cells_in_order(map);
-  std::vector<Rgb> irradiance(map.size());
+  CellDirectLight light{std::vector<Rgb>(map.size()), std::vector<float>(map.size(), 0)};
   std::vector<Worker> workers(size_t(thread_count(threads)));
   const size_t groups = (order.size() + cells_of_group - 1) / cells_of_group;
   parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
@@ -105,10 +108,10 @@ std::vector<Rgb> direct_light_of(const CellMap& map, const DirectLight& direct, 
     const size_t first = g * cells_of_group;
     light_group(map, direct,
                 std::span(order).subspan(first, std::min(cells_of_group, order.size() - first)),
-                workers[slot], irradiance);
+                workers[slot], light);
   });
   for (const Worker& w : workers) counters += w.counters;
-  return irradiance;
+  return light;
 }
 
 }  // namespace troffer
