@@ -16,6 +16,8 @@ namespace troffer {
 
 namespace {
 
+constexpr double most_scale = 1e24;  // by which intensities can be multiplied to have a flux
+
 // Twice the least angle from the nadir at which the mean over both directions of the plane at
 // `turn` falls under a share of the largest intensity.
 double full_angle_deg(const LightWeb& web, double share, double turn) {
@@ -55,6 +57,9 @@ void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires,
     const Luminaire luminaire = read_luminaire(file, scene.warnings);
     const double unit = scene.is_photometric ? 1 : 1 / luminous_efficacy;
     const double scale = lumens > 0 ? lumens / flux(luminaire.web) : 1;
+    if (!(scale <= most_scale))
+      throw UsageError(
+          fmt::format("--luminaire: {} has too little light to be scaled to {} lm", file, lumens));
     attach_luminaire(scene, text.substr(0, equals), luminaire, unit * scale, down);
   }
 }

@@ -57,7 +57,10 @@ Opening opening_of(const Scene& scene, const std::string& node) {
 void attach_to_surfaces(Scene& scene, const std::string& node, const Luminaire& luminaire,
                         double scale, int32_t web) {
   const Opening o = opening_of(scene, node);
-  if (o.meshes.empty()) throw UsageError("--luminaire: nothing is named '" + node + "'");
+  const bool is_known =
+      !o.meshes.empty() || std::any_of(scene.lights.begin(), scene.lights.end(),
+                                       [&](const Light& e) { return e.name == node; });
+  if (!is_known) throw UsageError("--luminaire: nothing is named '" + node + "'");
   if (!(length(o.area_vector) >= flatness * o.area) || !(o.area > 0))
     throw UsageError("--luminaire: '" + node + "' is neither a flat surface nor a point");
   const auto axes = axes_about(normalize(o.area_vector), o.longest_edge);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr uint64_t max_file_bytes = uint64_t(64) << 20;
 constexpr size_t max_values = size_t(4) << 20;
+constexpr double least_candela = 1e-12;  // of the largest intensity of a file
 constexpr double most_candela = 1e12, most_lumens = 1e12, most_metres = 1e4;
 constexpr double metres_per_foot = 0.3048;
 
@@ -123,7 +124,7 @@ void finish(Luminaire& l, Planes& planes, PhotometricText& text, WarningLog& war
   for (double& c : planes.candela) {
     negative += c < 0 ? 1 : 0;
     c = std::max(c, 0.0);
-    is_dark = is_dark && c == 0;
+    is_dark = is_dark && c < least_candela;
   }
   if (is_dark) text.fail("no intensity is above 0");
   if (negative > 0)
