@@ -19,7 +19,7 @@ TreeSource::TreeSource(const PreparedScene& scene, uint32_t light)
   is_black_ = range.first == range.last;
   is_delta_ = troffer::is_delta(e.kind);
   is_convex_ = range.last - range.first == 1 && has_surface(e.kind);
-  is_constant_ = has_surface(e.kind) && e.texture < 0 && !e.is_alpha_masked;
+  is_constant_ = has_surface(e.kind) && e.texture < 0 && !e.is_alpha_masked && e.web == no_web;
   if (!is_black_ && (!has_surface(e.kind) || e.kind == LightKind::sphere))
     sampled_ = int32_t(range.first);
 }

@@ -35,7 +35,7 @@ class TreeSource {
   }
   // All points are one: a ray tells all.
   bool is_delta() const { return is_delta_; }
-  // All points send the same radiance.
+  // All points send the same radiance in all directions.
   bool is_constant() const { return is_constant_; }
   Rgb radiance() const { return radiance_; }  // where is_constant
 

@@ -67,7 +67,7 @@ TEST_CASE(
                     narrow = folder.write("narrow.ies", ies(5));
   folder.write("m.mtl", panel_obj(1000 / luminous_efficacy));
   const auto diffuse = measure(folder, {});
-  for (const char* method : {"certified", "path", "fixed"}) {
+  for (const char* method : {"certified", "path", "fixed", "kj92"}) {
     const auto measured =
         measure(folder, {"--luminaire", "emitter0=" + even, "--method", method, "--spp", "4096"});
     const auto sharp = measure(folder, {"--luminaire", "emitter0=" + narrow + ",3000", "--method",
@@ -112,8 +112,11 @@ TEST_CASE("info tells what a photometric file says; what is wrong is told in a l
   folder.write("m.mtl", panel_obj(1));
   folder.write("p.csv", points);
   const std::string bad = folder.write("bad.ies", "TILT=NONE\n1 2\n");
+  const std::string faint =
+      folder.write("faint.ies", "TILT=NONE\n1 1 1 2 1 1 2 1 1 0\n1 1 9\n0 90\n0\n1e-300 0\n");
   for (const auto& [luminaire, status] : {std::pair<std::string, int>{"emitter0=" + bad, 1},
                                           {"emitter0=missing.ies", 1},
+                                          {"emitter0=" + faint, 1},
                                           {"nobody=" + file, 2},
                                           {"emitter0", 2},
                                           {"=" + file, 2},
