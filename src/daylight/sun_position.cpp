@@ -66,6 +66,12 @@ double refraction_deg(double altitude_deg) {
   return 1.02 / 60 / std::tan(rad_from_deg(angle));
 }
 
+int days_of(int year, int month) {
+  static constexpr int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  const bool is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+  return days[month - 1] + (month == 2 && is_leap ? 1 : 0);
+}
+
 }  // namespace
 
 double julian_day(int year, int month, int day, double hour) {
@@ -114,10 +120,11 @@ double parse_time(const std::string& text, const std::string& option) {
               m >= 0 && m < 60;
     offset_hours = (sign == '-' ? -1 : 1) * (h + m / 60.0);
   }
-  static constexpr int days[] = {31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  if (!is_fine || year < 1900 || year > 2200 || month < 1 || month > 12 || day < 1 ||
-      day > days[month - 1] || hour < 0 || hour > 24 || minute < 0 || minute > 59 ||
-      !(second >= 0 && second < 61))
+  // 24:00 is the end of a day, and 60 a leap second.
+  is_fine = is_fine && year >= 1900 && year <= 2200 && month >= 1 && month <= 12 && day >= 1 &&
+            day <= days_of(year, month) && hour >= 0 && minute >= 0 && minute <= 59 &&
+            (hour < 24 || (hour == 24 && minute == 0 && second == 0)) && second >= 0 && second < 61;
+  if (!is_fine)
     throw UsageError(option + ": cannot read '" + text +
                      "' as a time such as 2026-06-21T12:00+02:00 or 2026-06-21T10:00Z");
   return julian_day(year, month, day, hour + minute / 60.0 + second / 3600 - offset_hours);
