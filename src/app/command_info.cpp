@@ -97,7 +97,8 @@ int run_info(const InfoCommand& command) {
     fmt::print("{}", luminaire_info(command.scene, command.is_json));
     return exit_done;
   }
-  const Scene scene = import_scene(command.scene);
+  Scene scene = import_scene(command.scene);
+  if (scene.lights.empty()) scene.warnings.add("the scene has no light");
   const Json j = info_json(scene);
   if (command.is_json)
     // A file may hold any bytes in its names; what is not UTF-8 is replaced.

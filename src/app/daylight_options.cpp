@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -147,7 +148,25 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
                     -request.sun->altitude_deg));
     return;
   }
+  const size_t before = scene.lights.size();
   add_sky(scene, request, compass);
+  const bool has_sun = scene.lights.size() > before && scene.lights.back().kind == LightKind::sun;
+  const bool is_dark = request.sun && request.sun->direct_lx && *request.sun->direct_lx == 0;
+  if (request.sun && !has_sun && !is_dark)
+    scene.warnings.add("--sky " + o.sky +
+                       " hides the sun (--sun AZIMUTH,ALTITUDE,LUX shows it all the same)");
+}
+
+void warn_of_unused(Scene& scene, const DaylightOptions& o) {
+  if (o.environment_rotation_deg != 0 && o.environment.empty())
+    scene.warnings.add("--environment-rotation does nothing without --environment");
+  const bool has_sky = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& e) {
+    return e.kind == LightKind::sky || e.kind == LightKind::sun;
+  });
+  if (o.north_deg != 0 && !has_sky && o.environment.empty())
+    scene.warnings.add("--north does nothing without a sky or a sun");
+  if (o.ground != DaylightOptions().ground && !has_sky)
+    scene.warnings.add("--ground does nothing without a sky");
 }
 
 }  // namespace
@@ -233,14 +252,15 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
   const bool is_asked = !o.sky.empty() || !o.sun.empty() || !o.at.empty();
   if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {
     add_asked_sky(scene, o, compass);
-  } else if (!had_light && o.environment.empty()) {
-    if (o.sky == "none" || bounds(scene).is_empty()) return;
+  } else if (!had_light && o.environment.empty() && o.sky != "none" && !bounds(scene).is_empty()) {
     SkyRequest even;
     even.ground_reflectance = o.ground;
     add_sky(scene, even, compass);
     scene.warnings.add(
-        "an even sky of 10000 lx lights it (--sky chooses another, --sky none keeps it dark)");
+        "the scene has no light: an even sky of 10000 lx lights it (--sky chooses another, --sky "
+        "none keeps it dark)");
   }
+  warn_of_unused(scene, o);
 }
 
 }  // namespace troffer

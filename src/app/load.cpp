@@ -12,7 +12,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& lights
                  const DaylightOptions* daylight, bool is_quiet) {
   Scene scene = import_scene(path);
   if (daylight != nullptr) add_daylight(scene, *daylight);
-  if (scene.lights.empty()) scene.warnings.add("nothing will be seen");
+  if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
   if (is_quiet) return scene;
   constexpr size_t most_lines = 20;

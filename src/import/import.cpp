@@ -14,11 +14,7 @@ Scene import_scene(const std::string& path) {
   if (!is_gltf && ending != "pbrt" && ending != "obj")
     throw InputError(path, 0, 0, "is no scene: its name should end in .gltf, .glb, .pbrt or .obj");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
-  Scene scene = is_gltf            ? import_gltf(path)
-                : ending == "pbrt" ? import_pbrt(path)
-                                   : import_obj(path);
-  if (scene.lights.empty()) scene.warnings.add("the scene has no light");
-  return scene;
+  return is_gltf ? import_gltf(path) : ending == "pbrt" ? import_pbrt(path) : import_obj(path);
 }
 
 }  // namespace troffer

@@ -190,3 +190,25 @@ TEST_CASE("a scene without light and camera is lit, framed and exposed, and says
   night.insert(night.end(), {"--at", "48,16,2026-06-21T23:00Z"});
   CHECK(contains(run_program(folder, night).err, "below the horizon"));
 }
+
+TEST_CASE("warnings tell of a hidden sun and of options without effect, and of no lack of light") {
+  const Folder folder;
+  const std::string scene = folder.write("plain.obj", plain_obj),
+                    points = folder.write("p.csv", one_point);
+  const auto warnings = [&](std::vector<std::string> options) {
+    std::vector<std::string> words{"measure", scene, "--points", points};
+    words.insert(words.end(), options.begin(), options.end());
+    const Finished f = run_program(folder, words);
+    CHECK(f.status == 0);
+    return f.err;
+  };
+  CHECK(warnings({"--sky", "clear", "--sun", "90,40", "--north", "30"}).empty());
+  CHECK(contains(warnings({"--sky", "overcast", "--sun", "90,40"}), "hides the sun"));
+  CHECK(contains(warnings({"--sky", "even", "--sun", "90,40"}), "hides the sun"));
+  CHECK(warnings({"--sky", "even", "--sun", "90,40,1000"}).empty());
+  CHECK(contains(warnings({"--sky", "even", "--environment-rotation", "9"}), "does nothing"));
+  const std::string dark = warnings({"--sky", "none", "--north", "9", "--ground", ".5"});
+  CHECK(contains(dark, "--north does nothing"));
+  CHECK(contains(dark, "--ground does nothing"));
+  CHECK(contains(dark, "there is no light"));
+}
