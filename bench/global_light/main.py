@@ -32,14 +32,14 @@ INTERIORS = [
     Interior("modern-hall", "scenes/modern-hall/modern-hall.pbrt", "128x96", 1024, 10),
     Interior("staircase", "", "128x96", 1024, 10),
     Interior("bathroom", "", "128x96", 1024, 10),
-    Interior("ajar", "", "128x96", 4096, 20),
-    Interior("gallery", "", "128x96", 4096, 20),
+    Interior("ajar", "", "128x96", 1024, 20),
+    Interior("gallery", "", "128x96", 1024, 20),
     Interior("furniture", "", "128x96", 1024, 10),
     Interior("staircase-metal", "", "128x96", 1024, 10),
     Interior("gloss", "", "128x96", 1024, 10),
 ]
 ERRORS = (0.05, 0.02, 0.01, 0.005)
-PATHS = (16, 64, 256, 1024)
+PATHS = (16, 64, 256)
 HEADER = ["scene", "method", "setting", "processor s", "viewing rays", "relative rmse",
           "8x8 rmse", "mean", "flip"]
 

@@ -1,5 +1,5 @@
 // Irradiance gathered for a picture, before it is made: one ray through the middle of every pixel,
-// to the matte surfaces that it sees, straight, in mirrors and through glass; 16 gather rays from
+// to the matte surfaces that it sees, straight, in mirrors and through glass; 8 gather rays from
 // each, as many more as the asked error needs, and a linear fit over what neighbours gathered that
 // lie on the same surface. Viewing rays look the result up (docs/cells.md).
 //

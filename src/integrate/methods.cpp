@@ -10,13 +10,20 @@
 #include "integrate/fixed_direct.h"
 #include "integrate/path.h"
 #include "integrate/radiosity_indirect.h"
+#include "integrate/staged_direct.h"
 #include "integrate/wave_integrator.h"
 
 namespace troffer {
 
 namespace {
 
-// Cells are lit as points are, but for an error that their number makes small.
+// Light at cells, and at what gloss shows: certified as at first surfaces, but for an error that
+// their number makes small, or what carries it.
+CertifiedSettings settings_beyond(const MethodInput& in) {
+  constexpr double least_error = 0.1;
+  return certified_settings(std::max(in.settings.error, least_error), in.scene.scene.lights.size());
+}
+
 std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
                                                    std::shared_ptr<const Occluders> occluders) {
   TROFFER_CHECK(in.cells != nullptr);
@@ -24,10 +31,7 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
     if (!in.cells->progress) return nullptr;
     return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
   };
-  constexpr double least_error = 0.1;
-  const CertifiedDirect direct(
-      in.scene, std::move(occluders),
-      certified_settings(std::max(in.settings.error, least_error), in.scene.scene.lights.size()));
+  const CertifiedDirect direct(in.scene, std::move(occluders), settings_beyond(in));
   std::unique_ptr<Cells> cells =
       make_cells(in.scene, direct, in.cells->pilot, {in.settings.threads, in.cells->seed},
                  part(0, 0.4), in.cells->stop, in.cells->counters);
@@ -55,9 +59,13 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   } else if (in.radiosity != nullptr && !in.settings.is_direct_only())
     indirect =
         std::make_unique<RadiosityIndirect>(in.scene, *in.radiosity, occluders, settings.estimator);
-  return std::make_unique<WaveIntegrator>(
-      in.scene, std::make_unique<CertifiedDirect>(in.scene, occluders, settings),
-      std::move(indirect));
+  std::unique_ptr<DirectLight> direct =
+      std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
+  if (needs_cells(Method::certified, in.settings.indirect))
+    direct = std::make_unique<StagedDirect>(
+        std::move(direct),
+        std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in)));
+  return std::make_unique<WaveIntegrator>(in.scene, std::move(direct), std::move(indirect));
 }
 
 // The trees sample selected patches as they do lights.
