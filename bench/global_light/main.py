@@ -118,7 +118,8 @@ def main():
     with open(f"{options.out}/global.csv", "w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([HEADER, *rows])
     plot.error_against_time(f"{options.out}/global.png", rows)
-    text = page.text(chosen, rows, noises, options.quick)
+    left_out = [i for i in INTERIORS if i not in chosen]
+    text = page.text(chosen, left_out, rows, noises, options.quick)
     with open(f"{options.out}/README.md", "w") as file:
         file.write(text)
     print(page.summary(chosen, rows))

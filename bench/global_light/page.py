@@ -42,12 +42,13 @@ def summary(interiors, rows):
                      for row in [HEADER] + body)
 
 
-def text(interiors, rows, noises, is_quick):
+def text(interiors, left_out, rows, noises, is_quick):
     body = [g for i in interiors for g in gains(i, rows)]
     paths = [[r[0], r[2], r[3], r[5], r[6], f"{100 * float(r[7]):+.2f} %", r[8]]
              for r in rows if r[1] == "path"]
     noise = [[i.name, i.size, f"2 × {i.paths}", f"{noises[i.name]:.5f}"] for i in interiors]
     note = "**A quick run: no results.**\n\n" if is_quick else ""
+    missing = f"Not in this run: {', '.join(i.name for i in left_out)}.\n\n" if left_out else ""
     return f"""# Whole pictures of interiors: error against time
 
 {note}Made by `bench/global --copy docs/results-global`, this page too; nothing here is typed by hand.
@@ -58,7 +59,7 @@ pixels, against path tracing in two independent halves, so that the reference's 
 out. *Path, s at equal RMSE*: path tracing's error falls with the root of its time; from its run
 nearest in error. The scenes: the two of `scenes/`, and those of `bench/interiors`, made by rule.
 
-{table(HEADER, body)}
+{missing}{table(HEADER, body)}
 
 ![Error against time](global.png)
 
