@@ -16,12 +16,23 @@ namespace {
 
 constexpr double flatness = 0.999;  // of the length of the sum of areas over their sum
 constexpr float quarter_turn = pi_f / 2;
+constexpr float least_uplight = 1e-3f;  // of the largest intensity
 
 // C0 lies along the longer side of what the axis is normal to; without one anywhere.
 std::array<Vec3, 3> axes_about(const Vec3d& axis, const Vec3d& along) {
   const Vec3d flat = along - axis * dot(along, axis);
   const Vec3d x = length(flat) > 1e-6 * length(along) ? normalize(flat) : Framed(axis).tangent;
   return {Vec3(x), Vec3(cross(axis, x)), Vec3(axis)};
+}
+
+// Files go up to the zenith whether or not light does. The radiosity halves what has two sides.
+bool shines_upward(const LightWeb& web) {
+  const size_t n = web.heights_rad.size();
+  const float least =
+      least_uplight * *std::max_element(web.intensities.begin(), web.intensities.end());
+  for (size_t i = 0; i < web.intensities.size(); ++i)
+    if (web.heights_rad[i % n] > quarter_turn + 1e-4f && web.intensities[i] > least) return true;
+  return false;
 }
 
 struct Opening {
@@ -64,7 +75,7 @@ void attach_to_surfaces(Scene& scene, const std::string& node, const Luminaire& 
   if (!(length(o.area_vector) >= flatness * o.area) || !(o.area > 0))
     throw UsageError("--luminaire: '" + node + "' is neither a flat surface nor a point");
   const auto axes = axes_about(normalize(o.area_vector), o.longest_edge);
-  const bool is_two_sided = luminaire.web.heights_rad.back() > quarter_turn + 1e-4f;
+  const bool is_two_sided = shines_upward(luminaire.web);
   for (const uint32_t m : o.meshes) {
     if (scene.meshes[m].lights.empty())
       add_mesh_lights(scene, m, {node, Rgb{1}, no_texture, is_two_sided});

@@ -162,7 +162,7 @@ void read_labels(PhotometricText& text, Luminaire& l, WarningLog& warnings,
     }
     for (const char* label : {"[LUMINAIRE]", "[LUMCAT]"})
       if (line.starts_with(label) && l.description.empty())
-        l.description = std::string(line.substr(std::string_view(label).size(), 200));
+        l.description = std::string(trimmed(line.substr(std::string_view(label).size(), 200)));
   }
   text.fail("no line begins with TILT=");
 }

@@ -19,13 +19,13 @@ bool is_separator(char c) {
   return is_blank(c) || c == '\n' || c == ',';
 }
 
+}  // namespace
+
 std::string_view trimmed(std::string_view s) {
   while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
   while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
   return s;
 }
-
-}  // namespace
 
 void PhotometricText::fail(const std::string& what) const {
   throw InputError(file_, int(std::max<size_t>(line_, 1)), int(column_), what);

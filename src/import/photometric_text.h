@@ -8,6 +8,9 @@
 
 namespace troffer {
 
+// Without blanks at its ends.
+std::string_view trimmed(std::string_view s);
+
 // Takes a text apart into lines, and lines into numbers. Commas are separators between numbers, and
 // points within a number that has a line of its own.
 class PhotometricText {

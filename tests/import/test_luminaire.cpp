@@ -82,7 +82,7 @@ bool is_whole(const LightWeb& web) {
 TEST_CASE("LM-63: what stands in a file of any edition") {
   for (const char* head : {"IESNA:LM-63-2002\n", "IESNA91\n", "IES:LM-63-2019\r\n", ""}) {
     const Luminaire l = read(cosine_ies(head));
-    CHECK(l.description == " even disc");
+    CHECK(l.description == "even disc");
     CHECK(l.lamp_lumens == 4000);
     CHECK(l.watts == 40);
     CHECK(l.width == doctest::Approx(0.6));
@@ -231,4 +231,25 @@ TEST_CASE("a luminaire takes the place of a point, of a flat mesh, and of nothin
   CHECK_FALSE(e.is_two_sided);
   CHECK_THROWS_AS(attach_luminaire(s, "roof", l, 1, {0, 0, -1}), UsageError);
   CHECK_THROWS_AS(attach_luminaire(s, "nobody", l, 1, {0, 0, -1}), UsageError);
+}
+
+TEST_CASE("an opening has two sides where light goes up, not where a file goes up") {
+  for (const auto& [intensities, is_two_sided] : {std::pair{"500 500 0 0 0", false},
+                                                  {"500 500 0 0 0.1", false},
+                                                  {"500 500 0 100 0", true},
+                                                  {"0 0 0 0 500", true}}) {
+    const Luminaire l = read(std::string("TILT=NONE\n1 -1 1 5 1 1 2 1 1 0\n1 1 9\n") +
+                             "0 45 90 135 180\n0\n" + intensities + "\n");
+    Scene s;
+    Mesh panel;
+    panel.name = "panel";
+    panel.positions = {{0, 0, 2}, {0, 1, 2}, {1, 1, 2}, {1, 0, 2}};
+    panel.triangles = {{0, 1, 2}, {0, 2, 3}};
+    s.materials.resize(1);
+    s.meshes.push_back(panel);
+    attach_luminaire(s, "panel", l, 1, {0, 0, -1});
+    REQUIRE(s.lights.size() == 1);
+    CAPTURE(intensities);
+    CHECK(s.lights[0].is_two_sided == is_two_sided);
+  }
 }
