@@ -58,7 +58,7 @@ class Unfolder {
     } else {
       add_all(0, +1);
       if (last - first < 360) {
-        if (first != 0 || 360 - last > 1.5 * (last - turns[turns.size() - 2]))
+        if (first + 360 - last > 1.5 * (last - turns[turns.size() - 2]))
           warnings_.add(name_ + ": planes do not go round; the first follows upon the last");
         add(first + 360, 0);
       }

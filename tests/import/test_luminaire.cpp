@@ -119,6 +119,15 @@ TEST_CASE("planes that symmetry leaves out are there") {
   const Luminaire open = read(planes_ies({0, 90, 180, 270}));
   CHECK(nadir(open, 360) == 100);
   for (const Luminaire* l : {&quarter, &half, &other, &all, &open}) CHECK(is_whole(l->web));
+
+  const TempFolder folder;
+  for (const auto& [turns, is_open] : {std::pair{std::vector<int>{0, 90, 180, 270}, false},
+                                       {{10, 100, 190, 280}, false},
+                                       {{0, 30, 60}, true}}) {
+    WarningLog warnings;
+    read_luminaire(folder.write("a.ies", planes_ies(turns)), warnings);
+    CHECK(warnings.entries().empty() != is_open);
+  }
 }
 
 TEST_CASE("EULUMDAT: symmetries, lumens, decimal commas") {
