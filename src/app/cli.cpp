@@ -166,7 +166,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->check(CLI::Range(0, 1 << 20));
   add_kj92(r, c, raw);
   r->add_option("--error", c.options.error,
-                "certified: allowed standard error of direct light, of the unoccluded light")
+                "certified: standard error asked of a pixel, of the light that it gets (shadows and gathers)")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   r->add_option(
@@ -192,7 +192,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
   r->add_option("--aov", raw.aovs,
                 "Further layers for .exr: albedo,normal,depth,position,direct,indirect,"
-                "shadow_rays,sources,error")
+                "shadow_rays,sources,error,viewing_error")
       ->delimiter(',')
       ->allow_extra_args(false);
   r->add_option(
