@@ -45,8 +45,11 @@ std::optional<Light> gltf_light(const JsonNode& light, const Affine& world_from_
     e.kind = LightKind::point;
   else if (type == "spot")
     e.kind = LightKind::spot;
-  else
-    light.member("type").fail("'" + printable(type) + "' is no type of light");
+  else {
+    warnings.add("light '" + printable(name) + "': type '" + printable(type) +
+                 "' is not known; left out");
+    return std::nullopt;
+  }
   e.radiance = emission_of(light);
   if (e.kind == LightKind::spot) read_cone(light, e);
   if (const auto range = light.find("range"); range && e.kind != LightKind::distant) {
