@@ -25,13 +25,12 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
 }
 
 std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
-                                                   std::shared_ptr<const Occluders> occluders) {
+                                                   const DirectLight& direct) {
   TROFFER_CHECK(in.cells != nullptr);
   const auto part = [&](double first, double last) -> std::function<void(double)> {
     if (!in.cells->progress) return nullptr;
     return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
   };
-  const CertifiedDirect direct(in.scene, std::move(occluders), settings_beyond(in));
   std::unique_ptr<Cells> cells =
       make_cells(in.scene, direct, in.cells->pilot, {in.settings.threads, in.cells->seed},
                  part(0, 0.4), in.cells->stop, in.cells->counters);
@@ -52,19 +51,19 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   const CertifiedSettings settings =
       certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
   const auto occluders = std::make_shared<const Occluders>(in.scene.scene);
+  auto direct = std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
   std::unique_ptr<IndirectLight> indirect;
   if (needs_cells(Method::certified, in.settings.indirect)) {
-    indirect = make_cells_indirect(in, occluders);
+    auto beyond = std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
+    indirect = make_cells_indirect(in, *beyond);
     if (!indirect) return nullptr;
-  } else if (in.radiosity != nullptr && !in.settings.is_direct_only())
+    return std::make_unique<WaveIntegrator>(
+        in.scene, std::make_unique<StagedDirect>(std::move(direct), std::move(beyond)),
+        std::move(indirect));
+  }
+  if (in.radiosity != nullptr && !in.settings.is_direct_only())
     indirect =
         std::make_unique<RadiosityIndirect>(in.scene, *in.radiosity, occluders, settings.estimator);
-  std::unique_ptr<DirectLight> direct =
-      std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
-  if (needs_cells(Method::certified, in.settings.indirect))
-    direct = std::make_unique<StagedDirect>(
-        std::move(direct),
-        std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in)));
   return std::make_unique<WaveIntegrator>(in.scene, std::move(direct), std::move(indirect));
 }
 

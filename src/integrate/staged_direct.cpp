@@ -68,6 +68,9 @@ void StagedDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
 
 // Emission that was run into competes with the samples of who lit the vertex before.
 void StagedDirect::weigh(SeenEmission& seen) const {
+  if (std::all_of(seen.walks.begin(), seen.walks.end(),
+                  [](auto* w) { return w->scatterings <= 1; }))
+    return first_->weigh(seen);
   for (const bool is_first : {true, false}) {
     SeenEmission part;
     std::vector<size_t> places;
