@@ -157,4 +157,19 @@ Finished run_program(const Folder& folder, const std::vector<std::string>& argum
   return Running(folder, arguments).wait();
 }
 
+std::vector<Measured> measured(const Finished& finished) {
+  std::istringstream rows(finished.out);
+  std::string row;
+  std::getline(rows, row);
+  std::vector<Measured> values;
+  while (std::getline(rows, row)) {
+    std::vector<double> v;
+    std::istringstream cells(row);
+    for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
+    REQUIRE(v.size() == 11);
+    values.push_back({v[9], v[10]});
+  }
+  return values;
+}
+
 }  // namespace troffer::test

@@ -58,6 +58,12 @@ class Running {
 
 Finished run_program(const Folder& folder, const std::vector<std::string>& arguments);
 
+// What `measure` has written to its standard output, by points.
+struct Measured {
+  double lx, error;
+};
+std::vector<Measured> measured(const Finished& finished);
+
 // A floor of 4 × 4 m under a 1 × 1 m source of radiance 5, two metres up, 40 × 30 pixels.
 extern const char* const lit_floor_pbrt;
 // The same within walls that reflect 0.95, so that light goes to and fro for long.

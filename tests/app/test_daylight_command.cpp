@@ -18,10 +18,7 @@ const char* const plain_obj =
     "v -.5 -.5 .1\nv .5 -.5 .1\nv .5 .5 .1\nv -.5 .5 .1\nf 5 6 7 8\n";
 const char* const one_point = "x,y,z,nx,ny,nz\n2,2,0,0,0,1\n";
 
-// Illuminance and standard error of the only point.
-struct Measured {
-  double lx, error;
-};
+// At the only point.
 Measured measure(const Folder& folder, std::vector<std::string> options) {
   std::vector<std::string> words{"measure", folder.write("plain.obj", plain_obj), "--points",
                                  folder.write("p.csv", one_point)};
@@ -29,15 +26,7 @@ Measured measure(const Folder& folder, std::vector<std::string> options) {
   const Finished f = run_program(folder, words);
   CAPTURE(f.err);
   REQUIRE(f.status == 0);
-  std::istringstream rows(f.out);
-  std::string row;
-  std::getline(rows, row);
-  std::getline(rows, row);
-  std::vector<double> v;
-  std::istringstream cells(row);
-  for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
-  REQUIRE(v.size() == 11);
-  return {v[9], v[10]};
+  return measured(f).at(0);
 }
 
 bool contains(const std::string& text, const std::string& part) {

@@ -34,8 +34,7 @@ const char* const geometry =
 const char* const points =
     "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1.5,0,0.5,0,0,1\n0.2,0.1,1.7,0,0,1\n0,0,-28,0,0,1\n";
 
-std::vector<std::pair<double, double>> measure(const Folder& folder,
-                                               std::vector<std::string> options) {
+std::vector<Measured> measure(const Folder& folder, std::vector<std::string> options) {
   std::vector<std::string> words{"measure",    folder.path("panel.obj"),
                                  "--points",   folder.write("p.csv", points),
                                  "--indirect", "none"};
@@ -43,18 +42,7 @@ std::vector<std::pair<double, double>> measure(const Folder& folder,
   const Finished f = run_program(folder, words);
   CAPTURE(f.err);
   REQUIRE(f.status == 0);
-  std::istringstream rows(f.out);
-  std::string row;
-  std::getline(rows, row);
-  std::vector<std::pair<double, double>> values;
-  while (std::getline(rows, row)) {
-    std::vector<double> v;
-    std::istringstream cells(row);
-    for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
-    REQUIRE(v.size() == 11);
-    values.emplace_back(v[9], v[10]);
-  }
-  return values;
+  return measured(f);
 }
 
 }  // namespace
@@ -78,8 +66,8 @@ TEST_CASE(
     for (size_t i = 0; i < diffuse.size(); ++i) {
       CAPTURE(method);
       CAPTURE(i);
-      CHECK(std::abs(measured[i].first - diffuse[i].first) <
-            1e-3 * diffuse[i].first + 5 * measured[i].second);
+      CHECK(std::abs(measured[i].lx - diffuse[i].lx) <
+            1e-3 * diffuse[i].lx + 5 * measured[i].error);
       // Points of 1 / n² of the intensity each.
       std::getline(rows, row);
       double x = 0, y = 0, z = 0;
@@ -92,7 +80,7 @@ TEST_CASE(
         // 3000 lm of I cos^5: 2 pi I / 6 of them.
         sum += 3000 * 3 / pi * std::pow(cosine, 5) * cosine / d2 / (n * n);
       }
-      CHECK(std::abs(sharp[i].first - sum) < 3e-3 * sum + 5 * sharp[i].second);
+      CHECK(std::abs(sharp[i].lx - sum) < 3e-3 * sum + 5 * sharp[i].error);
     }
   }
 }

@@ -68,7 +68,7 @@ TEST_CASE("measure: plates that face each other") {
 }
 
 TEST_CASE("measure: perpendicular plates") {
-  check_points(perpendicular_plates(), 0.25,
+  check_points(perpendicular_plates(), 0.125,
                {{{0.05, 1, 0}, {0, 0, 1}}, {{1, 0.3, 0}, {0, 0, 1}}, {{0, 1, 0.7}, {1, 0, 0}}});
 }
 
