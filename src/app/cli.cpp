@@ -166,7 +166,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->check(CLI::Range(0, 1 << 20));
   add_kj92(r, c, raw);
   r->add_option("--error", c.options.error,
-                "certified: standard error asked of a pixel, of the light that it gets (shadows and gathers)")
+                "certified: standard error asked of a pixel, of the light that it gets")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   r->add_option(
