@@ -14,18 +14,27 @@
 #define TROFFER_MASK_WIDTH 4
 #define TROFFER_MASK_NAMESPACE mask_plain
 #include "shadow/coverage_mask_kernels.h"
+#include "shadow/coverage_mask_proofs.h"
+#undef TROFFER_MASK_WIDTH
+#undef TROFFER_MASK_NAMESPACE
 #ifdef TROFFER_MASK_DISPATCH
 #pragma GCC push_options
 #pragma GCC target("avx2,popcnt")
 #define TROFFER_MASK_WIDTH 8
 #define TROFFER_MASK_NAMESPACE mask_avx2
 #include "shadow/coverage_mask_kernels.h"
+#include "shadow/coverage_mask_proofs.h"
+#undef TROFFER_MASK_WIDTH
+#undef TROFFER_MASK_NAMESPACE
 #pragma GCC pop_options
 #pragma GCC push_options
 #pragma GCC target("avx512f,popcnt")
 #define TROFFER_MASK_WIDTH 16
 #define TROFFER_MASK_NAMESPACE mask_avx512
 #include "shadow/coverage_mask_kernels.h"
+#include "shadow/coverage_mask_proofs.h"
+#undef TROFFER_MASK_WIDTH
+#undef TROFFER_MASK_NAMESPACE
 #pragma GCC pop_options
 #endif
 

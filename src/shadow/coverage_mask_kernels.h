@@ -1,7 +1,8 @@
 // The loops of coverage_mask.cpp, written for vectors of `width` numbers and compiled once per
-// instruction set: coverage_mask.cpp includes this file with TROFFER_MASK_WIDTH and
-// TROFFER_MASK_NAMESPACE set, under the pragma that selects the set. No function here may call one
-// from elsewhere, whose code would be the plain one. Results are the same bits for every width.
+// instruction set: coverage_mask.cpp includes this file, and coverage_mask_proofs.h after it,
+// with TROFFER_MASK_WIDTH and TROFFER_MASK_NAMESPACE set, under the pragma that selects the set. No
+// function here may call one from elsewhere, whose code would be the plain one. Results are the
+// same bits for every width.
 #ifndef TROFFER_MASK_WIDTH
 #include "shadow/coverage_mask.h"
 #define TROFFER_MASK_WIDTH 4
@@ -17,6 +18,7 @@ constexpr float far_away = 1e9f;  // beyond any canvas
 using Floats = float __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
 using Ints = int32_t __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
 using Bits = uint32_t __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
+using Bytes = int8_t __attribute__((vector_size(TROFFER_MASK_WIDTH)));
 
 // What rasterising a facet needs: crossings m j + q + 1 of its edges, once as lower bounds and once
 // as upper bounds of k, far away where an edge bounds the other way.
@@ -27,6 +29,9 @@ struct Crossings {
   alignas(64) float upper_m[edges][lanes];
   alignas(64) float upper_q[edges][lanes];
   alignas(64) int32_t is_relevant[lanes];  // not 0 where the facet may hide something
+  // Rows in which the facet may hide a sample, and how many.
+  alignas(64) int32_t first_row[lanes];
+  alignas(64) int32_t row_count[lanes];
 };
 
 inline __attribute__((always_inline)) Floats load(const float* from) {
@@ -101,6 +106,45 @@ inline __attribute__((always_inline)) Ints set_up_edge(const FacetBatch<edges>& 
   return most + base > zero;
 }
 
+// The largest whole number not above x, and the least not below it, of numbers that are not
+// negative.
+inline __attribute__((always_inline)) Ints rounded_down(const Floats& x) {
+  return __builtin_convertvector(x, Ints);
+}
+inline __attribute__((always_inline)) Ints rounded_up(const Floats& x) {
+  const Ints down = rounded_down(x);
+  return down - (__builtin_convertvector(down, Floats) < x);  // true is -1
+}
+
+// The rows between the corners as the receiver sees them on the canvas, and some more for what
+// these places may be off by. All rows where a corner is close to the receiver, or behind it.
+template <int edges>
+inline __attribute__((always_inline)) void set_up_rows(const FacetBatch<edges>& f, int from,
+                                                       const MaskPoint& p, Crossings<edges>& c) {
+  const Floats zero = {}, least_depth = zero + 1e-3f * p.h, last_row = zero + (p.rows - 1);
+  Floats least = zero + far_away, most = zero - far_away;
+  Ints is_before = Ints{} - 1;
+  for (int e = 0; e < edges; ++e) {
+    const Floats depth = load(f.w[e] + from) - p.w, inverse = 1.0f / depth;
+    const Floats aside = load(f.j[e] + from) - p.j, scale = inverse * p.h;
+    const Floats size = (aside > zero ? aside : -aside) + p.receiver_size;
+    const Floats off = 0.02f + 2e-6f * scale * size * (1.0f + inverse * p.receiver_size);
+    const Floats at = aside * scale - p.first_j;
+    is_before &= depth > least_depth;
+    least = at - off < least ? at - off : least;
+    most = at + off > most ? at + off : most;
+  }
+  least = is_before & (least > zero) ? least : zero;
+  most = is_before & (most < last_row) ? most : last_row;
+  Ints is_relevant;
+  __builtin_memcpy(&is_relevant, c.is_relevant + from, sizeof is_relevant);
+  is_relevant &= (least <= last_row) & (most >= zero);
+  const Ints first = rounded_up(is_relevant ? least : zero);
+  const Ints count = (rounded_down(is_relevant ? most : zero) - first + 1) & is_relevant;
+  __builtin_memcpy(c.first_row + from, &first, sizeof first);
+  __builtin_memcpy(c.row_count + from, &count, sizeof count);
+}
+
 // Sets up facets `from` to from + width.
 template <int edges>
 inline __attribute__((always_inline)) void set_up(const FacetBatch<edges>& f, int from,
@@ -136,31 +180,137 @@ inline __attribute__((always_inline)) void rasterise(const Crossings<edges>& c, 
   open &= ~(all << first) | (all << end);
 }
 
+// Eight lanes of a mask to a word, a byte each.
+struct LaneWords {
+  static constexpr int lanes = width < 8 ? width : 8;  // of a word
+  uint64_t word[(width + 7) / 8] = {};
+  inline __attribute__((always_inline)) explicit LaneWords(const Ints& mask) {
+    const Bytes bytes = __builtin_convertvector(mask, Bytes);
+    __builtin_memcpy(word, &bytes, sizeof bytes);
+  }
+  inline __attribute__((always_inline)) bool is_any() const {
+    uint64_t all = 0;
+    for (const uint64_t w : word) all |= w;
+    return all != 0;
+  }
+  // Calls f(i) for each lane i that is not 0.
+  template <typename F>
+  inline __attribute__((always_inline)) void for_each(const F& f) const {
+    int from = 0;
+    for (uint64_t w : word) {
+      while (w != 0) {
+        const int lane = __builtin_ctzll(w) >> 3;
+        w &= ~(uint64_t{0xff} << (8 * lane));
+        f(from + lane);
+      }
+      from += lanes;
+    }
+  }
+};
+
+// Facets that reach so few rows are done side by side, each in its own rows; of others each in all
+// rows side by side.
+constexpr int few_rows = 4;
+
+// Sets the bits that facets `from` to from + width hide, of those that reach few rows.
+template <int edges>
+inline __attribute__((always_inline)) void rasterise_small(const Crossings<edges>& c, int from,
+                                                           float canvas_rows, uint32_t* hidden) {
+  const Floats zero = {}, limit = zero + canvas_rows;
+  Ints first, count;
+  __builtin_memcpy(&first, c.first_row + from, sizeof first);
+  __builtin_memcpy(&count, c.row_count + from, sizeof count);
+  const Ints is_small = count <= few_rows;
+  for (int r = 0; r < few_rows; ++r) {
+    const Ints reaches = is_small & (count > r);
+    if (!LaneWords(reaches).is_any()) return;
+    const Floats at = __builtin_convertvector(first + r, Floats);
+    Floats lower = zero, upper = limit;
+    for (int e = 0; e < edges; ++e) {
+      const Floats l = load(c.lower_m[e] + from) * at + load(c.lower_q[e] + from);
+      const Floats u = load(c.upper_m[e] + from) * at + load(c.upper_q[e] + from);
+      lower = l > lower ? l : lower;
+      upper = u < upper ? u : upper;
+    }
+    const Ints begin = rounded_down(lower < limit ? lower : limit);
+    const Ints end = rounded_down(upper > zero ? upper : zero);
+    LaneWords(reaches & (begin < end)).for_each([&](int i) {
+      hidden[first[i] + r] |= (~0u << begin[i]) & ~(~0u << end[i]);
+    });
+  }
+}
+
+// Bits that facets hide, as batches are gone through.
+template <int edges, int rows>
+struct Canvas {
+  static constexpr int blocks = rows / width;
+  Bits open[blocks];
+  Floats at[blocks];
+  alignas(64) uint32_t hidden[rows] = {};  // by facets of few rows
+  float canvas_rows;
+
+  inline __attribute__((always_inline)) Canvas(const uint32_t* open_rows, float limit)
+      : canvas_rows(limit) {
+    __builtin_memcpy(open, open_rows, sizeof open);
+    for (int block = 0; block < blocks; ++block)
+      for (int i = 0; i < width; ++i) at[block][i] = float(block * width + i);
+  }
+  inline __attribute__((always_inline)) void hide(const Crossings<edges>& c, int i) {
+    for (int block = 0; block < blocks; ++block)
+      rasterise<edges>(c, i, at[block], canvas_rows, open[block]);
+  }
+  inline __attribute__((always_inline)) bool is_any_open() const {
+    Bits any = open[0];
+    for (int block = 1; block < blocks; ++block) any |= open[block];
+    return LaneWords(any != 0).is_any();
+  }
+  inline __attribute__((always_inline)) void hide_small() {
+    for (int block = 0; block < blocks; ++block) {
+      Bits of_small;
+      __builtin_memcpy(&of_small, hidden + block * width, sizeof of_small);
+      open[block] &= ~of_small;
+    }
+  }
+};
+
+// A batch of which many facets are expected to reach few rows; whether they do.
+template <int edges, int rows>
+inline __attribute__((always_inline)) bool cover_small(const FacetBatch<edges>& batch,
+                                                       const MaskPoint& p, Crossings<edges>& c,
+                                                       Canvas<edges, rows>& canvas) {
+  int large = 0;
+  for (int from = 0; from < lanes; from += width) {
+    set_up_rows(batch, from, p, c);
+    rasterise_small(c, from, p.rows, canvas.hidden);
+    Ints count;
+    __builtin_memcpy(&count, c.row_count + from, sizeof count);
+    LaneWords(count > few_rows).for_each([&](int i) {
+      canvas.hide(c, from + i);
+      ++large;
+    });
+  }
+  return large < lanes / 2;
+}
+
 template <int edges, int rows>
 inline __attribute__((always_inline)) bool cover_batches(const FacetBatch<edges>* batches, size_t n,
                                                          const MaskPoint& p, uint32_t* open_rows) {
-  constexpr int blocks = rows / width;
-  Bits open[blocks];
-  Floats at[blocks];
-  __builtin_memcpy(open, open_rows, sizeof open);
-  for (int block = 0; block < blocks; ++block)
-    for (int i = 0; i < width; ++i) at[block][i] = float(block * width + i);
-  bool is_any_open = true;
+  constexpr size_t look_every = 8;  // batches
+  Canvas<edges, rows> canvas(open_rows, p.rows);
+  bool is_any_open = true, are_small = false;
   for (size_t b = 0; b < n && is_any_open; ++b) {
     Crossings<edges> c;
     for (int from = 0; from < lanes; from += width) set_up(batches[b], from, p, c);
-    for (int i = 0; i < lanes; ++i) {
-      if (c.is_relevant[i] == 0) continue;
-      for (int block = 0; block < blocks; ++block)
-        rasterise<edges>(c, i, at[block], p.rows, open[block]);
+    if (are_small || (b % look_every == 0 && n >= look_every)) {
+      are_small = cover_small(batches[b], p, c, canvas);
+    } else {
+      for (int i = 0; i < lanes; ++i)
+        if (c.is_relevant[i] != 0) canvas.hide(c, i);
     }
-    Bits any = open[0];
-    for (int block = 1; block < blocks; ++block) any |= open[block];
-    uint32_t together = 0;
-    for (int i = 0; i < width; ++i) together |= any[i];
-    is_any_open = together != 0;
+    if (b + 1 == n || b % look_every == look_every - 1) canvas.hide_small();
+    is_any_open = canvas.is_any_open();
   }
-  __builtin_memcpy(open_rows, open, sizeof open);
+  __builtin_memcpy(open_rows, canvas.open, sizeof canvas.open);
   return is_any_open;
 }
 
@@ -172,104 +322,6 @@ bool cover_rows(const MaskPoint& p, int rows, const FacetBatch<4>* quads, size_t
            cover_batches<3, 16>(triangles, triangle_batches, p, open);
   return cover_batches<4, 32>(quads, quad_batches, p, open) &&
          cover_batches<3, 32>(triangles, triangle_batches, p, open);
-}
-
-// Are all receivers strictly on one side of the facets' planes, and the source on which?
-struct Sides {
-  Ints is_before, is_behind, is_source_before, is_source_behind;
-};
-
-inline __attribute__((always_inline)) Sides sides_of(const Planes& planes,
-                                                     const MaskPoint* receivers, int count,
-                                                     float slack) {
-  const Floats zero = {};
-  const Ints all = Ints{} - 1;
-  Sides s{all, all, all, all};
-  const Floats size = planes.distance > zero ? planes.distance : -planes.distance;
-  for (int r = 0; r < count; ++r) {
-    const MaskPoint& p = receivers[r];
-    const Floats height = planes.height(p);
-    const Floats error = 2e-6f * (size + p.receiver_size) + slack;
-    s.is_before &= height > error;
-    s.is_behind &= height < -error;
-    const Floats error_source = error + 2e-6f * p.source_size;
-    for (int corner = 0; corner < 4; ++corner) {
-      const Floats at = height - (planes.nk * p.corner_k[corner] + planes.nj * p.corner_j[corner] +
-                                  planes.nw * p.h);
-      s.is_source_before &= at > error_source;
-      s.is_source_behind &= at < -error_source;
-    }
-  }
-  return s;
-}
-
-// Sum of absolute coordinates.
-inline __attribute__((always_inline)) Floats size_of(const Floats& k, const Floats& j,
-                                                     const Floats& w) {
-  const Floats zero = {};
-  return (k > zero ? k : -k) + (j > zero ? j : -j) + (w > zero ? w : -w);
-}
-
-// Clears is_outside where some of the source may lie inside of the edge from a to b for some
-// receiver, is_inside where some may lie outside.
-inline __attribute__((always_inline)) void classify_edge(const Vertex& a, const Vertex& b,
-                                                         const Floats& side,
-                                                         const MaskPoint* receivers, int count,
-                                                         float slack, Ints& is_outside,
-                                                         Ints& is_inside) {
-  for (int r = 0; r < count; ++r) {
-    const MaskPoint& p = receivers[r];
-    const Floats ak = a.k - p.k, aj = a.j - p.j, aw = a.w - p.w;
-    const Floats bk = b.k - p.k, bj = b.j - p.j, bw = b.w - p.w;
-    const Floats ek = side * (aj * bw - aw * bj);
-    const Floats ej = side * (aw * bk - ak * bw);
-    const Floats ew = side * (ak * bj - aj * bk);
-    const Floats size_a = size_of(ak, aj, aw) + p.receiver_size;
-    const Floats size_b = size_of(bk, bj, bw) + p.receiver_size;
-    const Floats error = (2e-6f * size_a * size_b + 2 * slack * (size_a + size_b)) * p.source_size;
-    const Floats base = ew * p.h;
-    for (int corner = 0; corner < 4; ++corner) {
-      const Floats at = ek * p.corner_k[corner] + ej * p.corner_j[corner] + base;
-      is_outside &= at < -error;
-      is_inside &= at > error;
-    }
-  }
-}
-
-// Certificates for facets `from` to from + width, see classify().
-template <int edges>
-inline __attribute__((always_inline)) void classify_lanes(const FacetBatch<edges>& f, int from,
-                                                          const MaskPoint* receivers, int count,
-                                                          float slack, int32_t* flags) {
-  const Planes planes = planes_of(f, from);
-  const Sides s = sides_of(planes, receivers, count, slack);
-  const Floats zero = {}, one = zero + 1.0f;
-  const Floats side = s.is_before ? one : (s.is_behind ? -one : zero);
-  Ints misses = (s.is_before & s.is_source_before) | (s.is_behind & s.is_source_behind);
-  misses |= (side == planes.skipped) & (side != zero);
-  Ints covers = s.is_before | s.is_behind;
-  for (int e = 0; e < edges; ++e) {
-    Ints is_outside = s.is_before | s.is_behind, is_inside = Ints{} - 1;
-    classify_edge(vertex_of(f, e, from), vertex_of(f, e + 1 == edges ? 0 : e + 1, from), side,
-                  receivers, count, slack, is_outside, is_inside);
-    misses |= is_outside;
-    covers &= is_inside;
-  }
-  const Ints result = (misses & 1) | (covers & ~misses & 2);
-  __builtin_memcpy(flags + from, &result, sizeof result);
-}
-
-void classify_quads(const FacetBatch<4>* batches, size_t n, const MaskPoint* receivers, int count,
-                    float slack, int32_t* flags) {
-  for (size_t b = 0; b < n; ++b)
-    for (int from = 0; from < lanes; from += width)
-      classify_lanes(batches[b], from, receivers, count, slack, flags + b * size_t(lanes));
-}
-void classify_triangles(const FacetBatch<3>* batches, size_t n, const MaskPoint* receivers,
-                        int count, float slack, int32_t* flags) {
-  for (size_t b = 0; b < n; ++b)
-    for (int from = 0; from < lanes; from += width)
-      classify_lanes(batches[b], from, receivers, count, slack, flags + b * size_t(lanes));
 }
 
 template <int rows, int columns>
@@ -337,6 +389,3 @@ void weigh_rows(const MaskWeights& w, int rows, const uint32_t* inside, const ui
 }
 
 }  // namespace troffer::TROFFER_MASK_NAMESPACE
-
-#undef TROFFER_MASK_WIDTH
-#undef TROFFER_MASK_NAMESPACE

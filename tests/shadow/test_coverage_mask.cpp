@@ -151,6 +151,52 @@ TEST_CASE("facets that share edges leave no crack and overlap nowhere") {
   }
 }
 
+TEST_CASE("small facets, of which many are looked at together, hide what each hides alone") {
+  const Parallelogram source{{-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, {0, 0, -1}};
+  Random r(9);
+  size_t hidden = 0, small = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const MaskLattice lattice = trial % 2 == 0 ? fine_lattice : coarse_lattice;
+    const MaskFrame frame(source, lattice, trial % 3 == 1, {0, 0, 0});
+    const Vec3 x = frame.to_canvas({0.2 * r.next_double(), 0.2 * r.next_double(), 0});
+    // specks, some large facets among them, some beside, close before or behind the receiver
+    FacetList all;
+    std::vector<FacetList> single;
+    const float most_size = std::exp(-4 + 3.5f * r.next_float());
+    for (int i = 0; i < 500; ++i) {
+      const auto coordinate = [&](float size) { return size * (2 * r.next_float() - 1); };
+      const float height = trial % 5 == 0 ? -0.3f + 2.2f * r.next_float() : 0.2f + r.next_float();
+      const Vec3 centre{coordinate(0.8f), coordinate(0.8f), height};
+      const float size = most_size * (i % 97 == 0 ? 10.0f : 1.0f);
+      Quad q;
+      for (size_t v = 0; v < 3; ++v)
+        q[v] = centre + Vec3{coordinate(size), coordinate(size), coordinate(size)};
+      q[3] = i % 2 == 0 ? q[2] : q[2] + (q[0] - q[1]);
+      all.add(frame, q);
+      single.emplace_back().add(frame, q);
+      single.back().finish();
+    }
+    all.finish();
+    const Vec2 shift = r.next_vec2();
+    CoverageMask together, alone;
+    MaskRows open;
+    for (const FacetList& one : single) {
+      cover(frame, one, x, shift, alone);
+      if (&one == single.data()) open = alone.inside;
+      for (size_t j = 0; j < most_mask_rows; ++j) open.row[j] &= alone.open.row[j];
+      const int of_one = count(alone.inside) - count(alone.open);
+      small += of_one > 0 && of_one < 10 ? 1 : 0;
+    }
+    for (int set = 0; set < 3; ++set) {
+      cover(frame, all, x, shift, together, set);
+      for (size_t j = 0; j < most_mask_rows; ++j) REQUIRE(together.open.row[j] == open.row[j]);
+    }
+    hidden += size_t(count(together.inside) - count(together.open));
+  }
+  CHECK(hidden > 10000);
+  CHECK(small > 10000);
+}
+
 TEST_CASE("a quadrilateral hides what its two triangles hide") {
   Random r(9);
   for (int trial = 0; trial < 300; ++trial) {
