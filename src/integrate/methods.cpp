@@ -137,6 +137,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .has_noise_of_batch = true,
         .wants_typical = true,
         .refinement = 4,
+        .measures_to_error = true,
     },
     {
         .name = "kj92",

@@ -121,7 +121,9 @@ struct MethodRow {
   bool is_same_in_crops = true;
   int refinement = 1;                  // most viewing rays of a pixel, in --spp, by default
   int usual_measuring_samples = 4096;  // per measuring point
-  int rays_of_measuring_sample = 1;    // one estimate stands for so many of these samples
+  // … and where their error is above a quarter of MethodSettings::error, as many as that wants.
+  bool measures_to_error = false;
+  int rays_of_measuring_sample = 1;  // one estimate stands for so many of these samples
 };
 
 struct IndirectRow {

@@ -18,6 +18,10 @@ namespace {
 // The samples of a point are dealt to so many independently scrambled sets; the spread of their
 // means tells the error truly, which the spread of stratified samples would not.
 constexpr int most_replicates = 32;
+// Of a point whose usual samples err by more than this share of the allowed error …
+constexpr double share_of_error = 0.25;
+// … at most so many times as many are taken.
+constexpr double most_times_usual = 128;
 // Stops are looked for between batches: those of scenes with many sources are smaller.
 constexpr int largest_batch = 4096;
 constexpr double most_rays_per_batch = 1 << 22;
@@ -84,9 +88,18 @@ Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point,
   return sums;
 }
 
+// How a point is measured.
+struct PointPlan {
+  int samples;
+  int samples_per_estimate;
+  double error = 0;  // relative, that is aimed at; 0: so many samples do
+  double lx_per_unit = 1;
+};
+
 Measurement measure_point(const Integrator& integrator, const MeasuringPoint& point,
-                          uint64_t stream, int spp, int samples_per_estimate, bool is_photometric,
-                          const StopFlag& stop, Worker& w, Counters& counters) {
+                          uint64_t stream, const PointPlan& plan, const StopFlag& stop, Worker& w,
+                          Counters& counters) {
+  const int spp = plan.samples, samples_per_estimate = plan.samples_per_estimate;
   const int replicates = std::min(most_replicates, spp);
   const int samples = (spp + replicates - 1) / replicates;
   Vec3d irradiance;
@@ -102,16 +115,29 @@ Measurement measure_point(const Integrator& integrator, const MeasuringPoint& po
     mean += before / (r + 1);
     sum_squares += before * (value - mean);
   }
-  const double lx_per_unit = is_photometric ? 1.0 : luminous_efficacy;
   Measurement m;
   m.irradiance = {float(irradiance.x), float(irradiance.y), float(irradiance.z)};
-  m.illuminance_lx = mean * lx_per_unit;
+  m.illuminance_lx = mean * plan.lx_per_unit;
   if (replicates > 1) {
     const double variance_of_mean = sum_squares / (replicates - 1) / replicates;
     m.standard_error =
-        std::sqrt(variance_of_mean) * lx_per_unit * (t_quantile_95(replicates - 1) / 1.959964);
+        std::sqrt(variance_of_mean) * plan.lx_per_unit * (t_quantile_95(replicates - 1) / 1.959964);
   }
   return m;
+}
+
+// The same, and once more where the error is larger than the plan has it. The first samples only
+// say how many are taken then: were they used again, a sum that is small by chance, with a small
+// error, would stay, and one that is large would not.
+Measurement measure_to_error(const Integrator& integrator, const MeasuringPoint& point,
+                             uint64_t stream, PointPlan plan, const StopFlag& stop, Worker& w,
+                             Counters& counters) {
+  const Measurement first = measure_point(integrator, point, stream, plan, stop, w, counters);
+  const double aim = plan.error * first.illuminance_lx;
+  if (!(aim > 0) || first.standard_error <= aim) return first;
+  const double times = std::min(sqr(first.standard_error / aim), most_times_usual);
+  plan.samples = int(double(plan.samples) * std::exp2(std::ceil(std::log2(times))));
+  return measure_point(integrator, point, hash_of(stream, 1u), plan, stop, w, counters);
 }
 
 // What the method knows of errors that no spread of its samples shows: half the difference between
@@ -181,6 +207,9 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 
   const Box box = bounds(scene.scene);
+  PointPlan plan{spp, row.rays_of_measuring_sample, 0,
+                 scene.scene.is_photometric ? 1.0 : luminous_efficacy};
+  if (row.measures_to_error && options.spp == 0) plan.error = share_of_error * options.error;
 
   MeasureResult result;
   result.values.resize(points.size());
@@ -198,9 +227,8 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     w.sensors.offset = offset_of_point(w.position, box);
     w.samples_per_batch = samples_per_batch;
     w.point = i;
-    result.values[i] = measure_point(*integrator, points[i], hash_of(options.seed, i), spp,
-                                     row.rays_of_measuring_sample, scene.scene.is_photometric, stop,
-                                     w, counters[i]);
+    result.values[i] = measure_to_error(*integrator, points[i], hash_of(options.seed, i), plan,
+                                        stop, w, counters[i]);
     shared_errors[i] = w.shared_error;
     if (stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
     is_measured[i] = 1;
@@ -208,8 +236,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     ++done;
     if (progress) progress(double(done) / double(points.size()));
   });
-  add_shared_errors(shared_errors, scene.scene.is_photometric ? 1.0 : luminous_efficacy,
-                    result.values);
+  add_shared_errors(shared_errors, plan.lx_per_unit, result.values);
   for (const Counters& c : counters) result.counters += c;
   result.is_measured.assign(is_measured.begin(), is_measured.end());
   result.is_complete = done == points.size();
