@@ -120,9 +120,18 @@ void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, Radi
 void CertifiedDirect::weigh(SeenEmission& seen) const {
   for (size_t i = 0; i < seen.size(); ++i)
     seen.weights[i] = seen.vertices[i] == nullptr
-                          ? sampler_.miss_weight(*seen.walks[i], seen.at_infinity[i],
-                                                 uint32_t(settings_.shadow_rays))
+                          ? weight_of_miss(*seen.walks[i], seen.at_infinity[i])
                           : weight_of(*seen.walks[i], *seen.vertices[i]);
+}
+
+float CertifiedDirect::weight_of_miss(const Walk& walk, uint32_t primitive) const {
+  if (walk.last_both_sides || !lights_.has(scene_.primitives[primitive].light))
+    return sampler_.miss_weight(walk, primitive, uint32_t(settings_.shadow_rays));
+  const CertifiedSource* source = lights_.source_towards(primitive, walk.ray.direction);
+  if (source == nullptr) return 1;
+  return power_heuristic(
+      walk.pdf, lights_.competition().density(*source, walk.last_position, walk.last_normal,
+                                              walk.ray.direction));
 }
 
 // Of emission that a walk has run into, against points on the source chosen at the vertex before.

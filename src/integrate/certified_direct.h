@@ -2,8 +2,9 @@
 // are proved.
 //
 // Hits of a batch are treated together for every source (certified_lights.h), without rays but
-// where no list of facets is complete. A fixed number of shadow rays (source_sampler.h) does what
-// has no surface, and rough surfaces that transmit.
+// where no list of facets is complete; lights at infinity are sources among others. A fixed number
+// of shadow rays (source_sampler.h) does points, spots and distant lights, and rough surfaces that
+// transmit.
 // Unbiased. Hits are clustered, and found occluders are remembered within a batch: the noise of the
 // result, though not its mean, depends on what is in the batch. References: docs/certified.md.
 #pragma once
@@ -50,6 +51,7 @@ class CertifiedDirect final : public DirectLight {
   void queue_hit(const WaveHits& wave, size_t i, Scratch& s, RadianceBatch& out,
                  Counters& counters) const;
   float weight_of(const Walk& walk, const Vertex& v) const;
+  float weight_of_miss(const Walk& walk, uint32_t primitive) const;
 
   const PreparedScene& scene_;
   std::shared_ptr<const Occluders> occluders_;

@@ -31,9 +31,11 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
+      far_{FarCells(scene.scene, scene.primitives)},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
+  add_far_lights(scene);
   add_drawn_lights(scene);
   groups_.finish();
   competition_ = LobeCompetition(scene, gloss_points, groups_.are_many());
@@ -147,6 +149,31 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
   return true;
 }
 
+void CertifiedLights::add_far_lights(const PreparedScene& scene) {
+  far_.first_source = uint32_t(sources_.size());
+  for (const FarCell& cell : far_.cells.all()) {
+    CertifiedSource source;
+    source.flat.plane = cell.plane;
+    source.flat.is_disk = cell.is_disk;
+    source.radiance = cell.mean;
+    source.is_textured = !cell.is_even;
+    source.primitive = cell.primitive;
+    source.stream = hash_of(sources_.size(), 3u);
+    source.far = &cell;
+    sources_.push_back(source);
+    before_.push_back(-1);
+    has_light_[scene.primitives[cell.primitive].light] = true;
+  }
+}
+
+const CertifiedSource* CertifiedLights::source_towards(uint32_t primitive,
+                                                       const Vec3& direction) const {
+  for (size_t i = far_.first_source; i < sources_.size(); ++i)
+    if (sources_[i].primitive == primitive && sources_[i].far->holds(direction))
+      return &sources_[i];
+  return nullptr;
+}
+
 // What has no certificates but a surface: a few neighbours at a time, where triangles are many.
 void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
   constexpr uint32_t most_groups = 8192;
@@ -217,20 +244,22 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
   s.cluster.requests.clear();
   s.requested.clear();
   s.integrand.sources().clear();
+  const auto add = [&](uint32_t i) {
+    const CertifiedSource& source = sources_[i];
+    LightRequest& r = s.cluster.requests.emplace_back();
+    if (source.is_round)
+      r.sphere = &source.sphere;
+    else
+      r.flat = &source.flat;
+    r.stream = source.stream;
+    r.brightness = luminance(source.radiance);
+    r.found = &s.found[i];
+    s.requested.push_back(i);
+    s.integrand.sources().push_back(&source);
+  };
   for (const uint32_t g : s.chosen.certified)
-    for (uint32_t i = groups_[g].first_source; i < groups_[g].last_source; ++i) {
-      const CertifiedSource& source = sources_[i];
-      LightRequest& r = s.cluster.requests.emplace_back();
-      if (source.is_round)
-        r.sphere = &source.sphere;
-      else
-        r.flat = &source.flat;
-      r.stream = source.stream;
-      r.brightness = luminance(source.radiance);
-      r.found = &s.found[i];
-      s.requested.push_back(i);
-      s.integrand.sources().push_back(&source);
-    }
+    for (uint32_t i = groups_[g].first_source; i < groups_[g].last_source; ++i) add(i);
+  for (auto i = far_.first_source; i < uint32_t(sources_.size()); ++i) add(i);
 }
 
 void CertifiedLights::add_answers(uint32_t request, std::span<const uint32_t> members,

@@ -49,11 +49,13 @@ class CertifiedLights {
   // meshes of too many pieces that lie in no common plane, or have no certificate shape (light.h).
   bool has(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
   bool is_drawn(uint32_t light) const { return is_drawn_[light]; }
-  bool is_empty() const { return groups_.size() == 0; }
+  bool is_empty() const { return groups_.size() == 0 && far_.cells.all().empty(); }
   const LobeCompetition& competition() const { return competition_; }
   // The source that a point on a piece of a light belongs to, seen from its front or its back;
   // null if none.
   const CertifiedSource* source_of(uint32_t primitive, bool is_back, const Vec3& point) const;
+  // The one of a light at infinity in a direction; null if none.
+  const CertifiedSource* source_towards(uint32_t primitive, const Vec3& direction) const;
 
   // What a batch learns is forgotten at its beginning, so that it does not matter what a thread did
   // before.
@@ -67,6 +69,7 @@ class CertifiedLights {
   bool add_flat_light(const PreparedScene& scene, uint32_t light,
                       const std::vector<SourcePiece>& pieces);
   void add_drawn_lights(const PreparedScene& scene);
+  void add_far_lights(const PreparedScene& scene);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
   void set_requests(CertifiedLightsScratch& s) const;
@@ -84,6 +87,10 @@ class CertifiedLights {
   // Per primitive, the last source that covers some of it; per source, one before that covers some
   // of the same primitive; -1: none.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;
+  struct Far {
+    FarCells cells;
+    uint32_t first_source = 0;  // those of the cells are the last ones
+  } far_;
   DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart
 };

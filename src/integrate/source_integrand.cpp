@@ -28,7 +28,7 @@ float LobeCompetition::density_of(const CertifiedSource& source, const Vec3& x,
                                   const Vec3& n) const {
   const auto unoccluded = float(source.unoccluded(Vec3d(x), Vec3d(n)));
   if (!(unoccluded > 0)) return 0;
-  const float points = are_many_
+  const float points = are_many_ && source.far == nullptr
                            ? shared_points * scene_->light_tree.pmf(x, n, false, source.primitive)
                            : float(points_);
   return points / unoccluded;
@@ -61,6 +61,12 @@ Rgb glossy_value(const GlossyHit& g, const Vec3& world, float density) {
 Rgb SourceIntegrand::radiance_at(const CertifiedSource& source, const Vec3& point,
                                  const Vec3& receiver) const {
   if (!source.is_textured) return source.radiance;
+  if (source.far != nullptr) {
+    const Vec3 d = point - receiver;
+    Rgb l;
+    far_radiance(*source.far, 1, &d.x, &d.y, &d.z, &l.r, &l.g, &l.b);
+    return l;
+  }
   const LightPrimitive& p = scene_.primitives[source.primitive];
   const Vec3d a(p.vertices[0]), ab = Vec3d(p.vertices[1]) - a, ac = Vec3d(p.vertices[2]) - a;
   const Vec3d n = cross(ab, ac), d = Vec3d(point) - a;
@@ -125,6 +131,11 @@ void add_rough(float density, size_t n, const float* __restrict above, const flo
   }
 }
 
+TROFFER_MULTIVERSION
+void multiply(const float* __restrict by, size_t n, float* __restrict values) {
+  for (size_t i = 0; i < n; ++i) values[i] *= by[i];
+}
+
 // Times radiance, over the cosine; 0 below either horizon.
 TROFFER_MULTIVERSION
 void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
@@ -143,11 +154,28 @@ void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
 void SourceIntegrand::evaluate_many(uint32_t request, uint32_t member, PointArrays& p) {
   const CertifiedSource& source = *sources_[request];
   const IntegrandHit& hit = hits_[member];
+  const size_t n = p.size();
+  for (auto* a : {&p.r, &p.g, &p.b}) a->assign(n, 0);
+  if (hit.glossy != nullptr) evaluate_gloss(source, hit, p);
+  if (source.far == nullptr || !source.is_textured) return;
+  if (hit.glossy == nullptr)
+    return far_radiance(*source.far, n, p.x.data(), p.y.data(), p.z.data(), p.r.data(), p.g.data(),
+                        p.b.data());
+  far_values_.resize(3 * n);
+  float* const r = far_values_.data();
+  far_radiance(*source.far, n, p.x.data(), p.y.data(), p.z.data(), r, r + n, r + 2 * n);
+  multiply(r, n, p.r.data());
+  multiply(r + n, n, p.g.data());
+  multiply(r + 2 * n, n, p.b.data());
+}
+
+// Of a source whose radiance varies what the surface does with it alone.
+void SourceIntegrand::evaluate_gloss(const CertifiedSource& source, const IntegrandHit& hit,
+                                     PointArrays& p) {
   const GlossyHit& g = *hit.glossy;
   const size_t n = p.size();
   lanes_.resize(n);
   GlossyLanes& l = lanes_;
-  for (auto* a : {&p.r, &p.g, &p.b}) a->assign(n, 0);
   to_local(g.frame, g.geometric_normal, n, p.x.data(), p.y.data(), p.z.data(), l.x.data(),
            l.y.data(), l.z.data(), l.above.data());
   if (g.has_diffuse)
@@ -163,7 +191,8 @@ void SourceIntegrand::evaluate_many(uint32_t request, uint32_t member, PointArra
     add_rough(density, n, l.above.data(), l.pdf.data(), l.r.data(), l.g.data(), l.b.data(),
               p.r.data(), p.g.data(), p.b.data());
   }
-  scale_all(source.radiance, n, l.z.data(), l.above.data(), p.r.data(), p.g.data(), p.b.data());
+  const Rgb radiance = source.is_textured ? Rgb{1} : source.radiance;
+  scale_all(radiance, n, l.z.data(), l.above.data(), p.r.data(), p.g.data(), p.b.data());
 }
 
 }  // namespace troffer

@@ -9,6 +9,7 @@
 #include "integrate/prepared_scene.h"
 #include "integrate/surface_scattering.h"
 #include "integrate/vertex.h"
+#include "light/far_cells.h"
 #include "shadow/source_task.h"
 
 namespace troffer {
@@ -20,10 +21,11 @@ struct CertifiedSource {
   FlatSource flat;
   SphereSource sphere;
   Rgb radiance;              // mean, where it varies
-  bool is_textured = false;  // a triangle with texture coordinates
+  bool is_textured = false;  // a triangle with texture coordinates, or a far cell that is not even
   bool is_back = false;      // the light is seen from its back
   uint32_t primitive = 0;    // (one) of LightPrimitives
   uint64_t stream = 0;
+  const FarCell* far = nullptr;  // of a light at infinity; it has `radiance`, or varies
 
   // Projected solid angle from x with unit normal n, nothing hidden, sr.
   double unoccluded(const Vec3d& x, const Vec3d& n) const;
@@ -97,12 +99,14 @@ class SourceIntegrand final : public ShadowIntegrand {
   void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
                 std::span<Rgb> values) override;
   bool is_smooth(uint32_t request, uint32_t member) const override {
-    return hits_[member].glossy != nullptr && !sources_[request]->is_textured;
+    return sources_[request]->far != nullptr ||
+           (hits_[member].glossy != nullptr && !sources_[request]->is_textured);
   }
   void evaluate_many(uint32_t request, uint32_t member, PointArrays& points) override;
 
  private:
   Rgb radiance_at(const CertifiedSource& source, const Vec3& point, const Vec3& receiver) const;
+  void evaluate_gloss(const CertifiedSource& source, const IntegrandHit& hit, PointArrays& points);
 
   const PreparedScene& scene_;
   uint32_t points_;
@@ -110,6 +114,7 @@ class SourceIntegrand final : public ShadowIntegrand {
   std::vector<IntegrandHit> hits_;
   std::vector<const CertifiedSource*> sources_;
   GlossyLanes lanes_;
+  std::vector<float> far_values_;
 };
 
 }  // namespace troffer

@@ -1,0 +1,341 @@
+#include "light/far_cells.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/frame.h"
+#include "base/simd.h"
+#include "light/light.h"
+
+namespace troffer {
+
+namespace {
+
+// Half an edge of the cube, in radii of the scene.
+constexpr double cube_in_radii = 0x1p20;
+// A polynomial may be off by so much of the cell's mean radiance, or by so much of all the light's
+// integral over the cell.
+constexpr double fit_error = 1e-4, fit_error_of_all = 1e-5;
+// A cell is halved until the samples of a coarse mask, thrown at random, would err by less than
+// this share of all light, but for what is smooth: then they err by much less.
+constexpr double table_error = 1e-3, samples_of_mask = 178;
+
+// Where the radiance is looked at for the fit: nodes of Chebyshev's.
+constexpr double nodes[4] = {0.5 - 0.5 * 0.92387953251128674, 0.5 - 0.5 * 0.38268343236508977,
+                             0.5 + 0.5 * 0.38268343236508977, 0.5 + 0.5 * 0.92387953251128674};
+// … and where the fit is held against it; not on the very edge, beyond which lies the ground.
+constexpr double checks[6] = {1e-4, 0.13, 0.31, 0.5, 0.77, 1 - 1e-4};
+
+// A face of the cube, in units of its distance: directions axis + a across + b up, a and b in
+// [-1,1].
+struct Face {
+  Vec3d axis, across, up;
+};
+
+struct Square {
+  double a, b, size;  // from (a,b) to (a + size, b + size)
+  Vec3d at(const Face& f, double u, double v) const {
+    return f.axis + f.across * (a + size * u) + f.up * (b + size * v);
+  }
+};
+
+// Row i makes the coefficient of t^i of values at the nodes.
+std::array<std::array<double, 4>, 4> coefficients_of_values() {
+  std::array<std::array<double, 4>, 4> m{};
+  for (size_t n = 0; n < 4; ++n) {
+    std::array<double, 4> c{1, 0, 0, 0};  // of the product of (t - t_k) / (t_n - t_k)
+    size_t degree = 0;
+    for (size_t k = 0; k < 4; ++k) {
+      if (k == n) continue;
+      const double scale = 1 / (nodes[n] - nodes[k]);
+      for (size_t i = ++degree; i > 0; --i) c[i] = (c[i - 1] - nodes[k] * c[i]) * scale;
+      c[0] *= -nodes[k] * scale;
+    }
+    for (size_t i = 0; i < 4; ++i) m[i][n] = c[i];
+  }
+  return m;
+}
+
+float value_at(const FarPolynomial& c, float u, float v) {
+  float sum = 0;
+  for (size_t i = 4; i-- > 0;)
+    sum = sum * u + (c[i][0] + v * (c[i][1] + v * (c[i][2] + v * c[i][3])));
+  return sum;
+}
+
+// Cuts one light.
+class Cutter {
+ public:
+  Cutter(const Scene& scene, const LightPrimitives& primitives, uint32_t primitive,
+         const Box& bounds, std::vector<FarCell>& out)
+      : scene_(scene),
+        piece_(primitives[primitive]),
+        light_(scene.lights[piece_.light]),
+        primitive_(primitive),
+        centre_(bounds.centre()),
+        distance_(cube_in_radii * 0.5 * std::max(double(bounds.diagonal()), 1e-6)),
+        matrix_(coefficients_of_values()),
+        out_(out) {
+    all_ = 4 * pi * double(luminance(piece_.mean_radiance));
+  }
+
+  void cut_faces(std::vector<std::unique_ptr<const FarTable>>& tables) {
+    // The horizon of a sky is to run along edges of cells.
+    const Vec3d z = normalize(Vec3d(light_.axes[2]));
+    const Vec3d other = std::abs(z.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1};
+    const Vec3d x = normalize(other - z * dot(other, z)), y = cross(z, x);
+    for (const double side : {1.0, -1.0})
+      for (const Face& f : {Face{x * side, y, z}, Face{y * side, z, x}, Face{z * side, x, y}}) {
+        if (is_even()) {
+          FarCell cell = cell_of(f, {-1, -1, 2});
+          cell.is_even = true;
+          cell.mean = light_.radiance;
+          out_.push_back(cell);
+          continue;
+        }
+        tables.push_back(table_of(f));
+        table_ = tables.back().get();
+        cut(f, {-1, -1, 2}, 0, 0, table_->size);
+      }
+  }
+
+  void add_disk() {
+    const Vec3d axis = -normalize(Vec3d(light_.direction));
+    const Framed frame(axis);
+    const double radius = std::tan(double(light_.angular_radius));
+    FarCell cell = cell_of({axis, frame.tangent, frame.bitangent}, {-radius, -radius, 2 * radius});
+    cell.is_disk = cell.is_even = true;
+    cell.mean = light_.radiance;
+    out_.push_back(cell);
+  }
+
+ private:
+  bool is_even() const {
+    return light_.kind == LightKind::environment && light_.environment == no_environment;
+  }
+  const EnvironmentMap* image() const {
+    return light_.kind == LightKind::environment ? &scene_.environments[size_t(light_.environment)]
+                                                 : nullptr;
+  }
+
+  FarCell cell_of(const Face& f, const Square& s) const {
+    FarCell cell;
+    cell.primitive = primitive_;
+    const double edge = s.size * distance_;
+    cell.plane = {centre_ + s.at(f, 0, 0) * distance_, f.across * edge, f.up * edge, -f.axis};
+    cell.along_u = Vec3(f.across / edge);
+    cell.along_v = Vec3(f.up / edge);
+    cell.from_u = float(s.a / s.size);
+    cell.from_v = float(s.b / s.size);
+    cell.height = distance_;
+    return cell;
+  }
+
+  Rgb radiance(const Vec3d& direction) const {
+    return radiance_at_infinity(scene_, piece_, Vec3(normalize(direction)));
+  }
+
+  // As fine as an image's texels, as far as memory allows; each value the mean of some.
+  std::unique_ptr<const FarTable> table_of(const Face& f) const {
+    int texels = 128, each = 1;  // along a face's edge; looked at for a value, in either direction
+    if (const EnvironmentMap* map = image())
+      texels = map->projection == SphereMap::lat_long ? map->width / 4 : map->width / 2;
+    auto table = std::make_unique<FarTable>();
+    table->size = int(std::bit_ceil(unsigned(std::clamp(texels, 128, 512))));
+    each = std::clamp((texels + table->size - 1) / table->size, 1, 8);
+    const int n = table->size;
+    table->values.resize(size_t(n) * size_t(n));
+    const Square all{-1, -1, 2};
+    const double step = 1.0 / (double(n) * each);
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        Rgb sum;
+        for (int i = 0; i < each * each; ++i)
+          sum += radiance(
+              all.at(f, (x * each + i % each + 0.5) * step, (y * each + i / each + 0.5) * step));
+        table->values[size_t(y) * size_t(n) + size_t(x)] = sum * (1 / float(each * each));
+      }
+    return table;
+  }
+
+  // The square is the part of the table from (x,y) on, n × n.
+  void cut(const Face& f, const Square& s, int x, int y, int n) {
+    FarCell cell = cell_of(f, s);
+    cell.table = table_;
+    cell.table_x = x;
+    cell.table_y = y;
+    cell.table_size = n;
+    set_fit(f, s, cell);
+    const Spread spread = look_at_table(f, s, cell);
+    if (spread.most == 0) return;
+    cell.is_even = spread.is_even;
+    if (cell.is_even || is_fitted(f, s, cell, spread.steradians)) {
+      cell.table = nullptr;
+    } else if (n > 2 && spread.deviation * spread.steradians >
+                            table_error * std::sqrt(samples_of_mask) * all_) {
+      const double half = s.size / 2;
+      for (const int j : {0, 1})
+        for (const int i : {0, 1})
+          cut(f, {s.a + i * half, s.b + j * half, half}, x + i * n / 2, y + j * n / 2, n / 2);
+      return;
+    }
+    out_.push_back(cell);
+  }
+
+  struct Spread {
+    double deviation = 0, steradians = 0;  // standard, of luminance, from the mean or the fit
+    float most = 0;                        // of any component
+    bool is_even = true;
+  };
+
+  // Of the fit's cell; sets its mean too.
+  Spread look_at_table(const Face& f, const Square& s, FarCell& cell) const {
+    Spread spread;
+    double r = 0, g = 0, b = 0, squares = 0, from_fit = 0, weights = 0;
+    const Rgb first = value(cell, 0, 0);
+    for (int j = 0; j < cell.table_size; ++j)
+      for (int i = 0; i < cell.table_size; ++i) {
+        const Vec3d at = s.at(f, (i + 0.5) / cell.table_size, (j + 0.5) / cell.table_size);
+        const double square = length_squared(at), weight = 1 / (square * std::sqrt(square));
+        const Rgb l = value(cell, i, j);
+        r += weight * double(l.r);
+        g += weight * double(l.g);
+        b += weight * double(l.b);
+        squares += weight * sqr(double(luminance(l)));
+        const float u = (float(i) + 0.5f) / float(cell.table_size),
+                    v = (float(j) + 0.5f) / float(cell.table_size);
+        from_fit += weight * sqr(double(luminance(l)) - double(fitted_luminance(cell, u, v)));
+        weights += weight;
+        spread.most = std::max(spread.most, max_component(l));
+        spread.is_even = spread.is_even &&
+                         max_component(l - first) <= 1e-6f * max_component(first) &&
+                         max_component(first - l) <= 1e-6f * max_component(first);
+      }
+    cell.mean = {float(r / weights), float(g / weights), float(b / weights)};
+    spread.deviation = std::sqrt(std::min(
+        std::max(squares / weights - sqr(double(luminance(cell.mean))), 0.0), from_fit / weights));
+    spread.steradians = weights * sqr(s.size / cell.table_size);
+    return spread;
+  }
+  static const Rgb& value(const FarCell& c, int i, int j) {
+    return c.table->values[size_t(c.table_y + j) * size_t(c.table->size) + size_t(c.table_x + i)];
+  }
+
+  static float fitted_luminance(const FarCell& c, float u, float v) {
+    return luminance(
+        {value_at(c.fit[0], u, v), value_at(c.fit[1], u, v), value_at(c.fit[2], u, v)});
+  }
+
+  // An image may hold what nodes pass by; it has no polynomials.
+  bool is_fitted(const Face& f, const Square& s, const FarCell& cell, double steradians) const {
+    if (image() != nullptr) return false;
+    double worst = 0;
+    for (const double u : checks)
+      for (const double v : checks) {
+        const Rgb exact = radiance(s.at(f, u, v));
+        for (size_t c = 0; c < 3; ++c)
+          worst = std::max(worst,
+                           double(std::abs(value_at(cell.fit[c], float(u), float(v)) - exact[c])));
+      }
+    return worst <= fit_error * double(max_component(cell.mean)) ||
+           worst * steradians <= fit_error_of_all * all_;
+  }
+
+  void set_fit(const Face& f, const Square& s, FarCell& cell) const {
+    std::array<std::array<Rgb, 4>, 4> values;
+    for (size_t m = 0; m < 4; ++m)
+      for (size_t n = 0; n < 4; ++n) values[m][n] = radiance(s.at(f, nodes[m], nodes[n]));
+    for (size_t c = 0; c < 3; ++c)
+      for (size_t i = 0; i < 4; ++i)
+        for (size_t j = 0; j < 4; ++j) {
+          double sum = 0;
+          for (size_t m = 0; m < 4; ++m)
+            for (size_t n = 0; n < 4; ++n)
+              sum += matrix_[i][m] * matrix_[j][n] * double(values[m][n][c]);
+          cell.fit[c][i][j] = float(sum);
+        }
+  }
+
+  const Scene& scene_;
+  const LightPrimitive& piece_;
+  const Light& light_;
+  uint32_t primitive_;
+  Vec3d centre_;
+  double distance_;
+  double all_ = 0;  // the luminance's integral over all directions
+  std::array<std::array<double, 4>, 4> matrix_;
+  const FarTable* table_ = nullptr;  // of the face at hand
+  std::vector<FarCell>& out_;
+};
+
+TROFFER_MULTIVERSION
+void evaluate_fit(const FarCell& cell, const FarPolynomial& c, size_t n, const float* __restrict x,
+                  const float* __restrict y, const float* __restrict z, float* __restrict out) {
+  const Vec3 au = cell.along_u, av = cell.along_v;
+  const float fu = cell.from_u, fv = cell.from_v;
+  for (size_t i = 0; i < n; ++i) {
+    const float u = x[i] * au.x + y[i] * au.y + z[i] * au.z - fu;
+    const float v = x[i] * av.x + y[i] * av.y + z[i] * av.z - fv;
+    const float c0 = c[0][0] + v * (c[0][1] + v * (c[0][2] + v * c[0][3]));
+    const float c1 = c[1][0] + v * (c[1][1] + v * (c[1][2] + v * c[1][3]));
+    const float c2 = c[2][0] + v * (c[2][1] + v * (c[2][2] + v * c[2][3]));
+    const float c3 = c[3][0] + v * (c[3][1] + v * (c[3][2] + v * c[3][3]));
+    const float sum = c0 + u * (c1 + u * (c2 + u * c3));
+    out[i] = sum > 0 ? sum : 0.0f;
+  }
+}
+
+void look_up(const FarCell& cell, size_t n, const float* x, const float* y, const float* z,
+             float* r, float* g, float* b) {
+  const int last = cell.table_size - 1;
+  const auto size = float(cell.table_size);
+  const Rgb* first = cell.table->values.data() + size_t(cell.table_y) * size_t(cell.table->size) +
+                     size_t(cell.table_x);
+  for (size_t i = 0; i < n; ++i) {
+    const Vec3 d{x[i], y[i], z[i]};
+    const int column = int((dot(d, cell.along_u) - cell.from_u) * size);
+    const int row = int((dot(d, cell.along_v) - cell.from_v) * size);
+    const Rgb& l = first[size_t(std::clamp(row, 0, last)) * size_t(cell.table->size) +
+                         size_t(std::clamp(column, 0, last))];
+    r[i] = l.r;
+    g[i] = l.g;
+    b[i] = l.b;
+  }
+}
+
+}  // namespace
+
+bool FarCell::holds(const Vec3& direction) const {
+  const Vec3d d(direction);
+  const double towards = -dot(plane.normal, d);
+  if (!(towards > 0)) return false;
+  const Vec3d at = d * (height / towards);
+  const double u = dot(at, Vec3d(along_u)) - double(from_u);
+  const double v = dot(at, Vec3d(along_v)) - double(from_v);
+  return is_disk ? sqr(u - 0.5) + sqr(v - 0.5) <= 0.25 : u >= 0 && u <= 1 && v >= 0 && v <= 1;
+}
+
+FarCells::FarCells(const Scene& scene, const LightPrimitives& primitives) {
+  const Box box = bounds(scene);
+  if (box.is_empty()) return;
+  for (const uint32_t p : primitives.at_infinity()) {
+    const LightKind kind = scene.lights[primitives[p].light].kind;
+    if (!has_far_cells(kind)) continue;
+    Cutter cutter(scene, primitives, p, box, cells_);
+    if (kind == LightKind::sun)
+      cutter.add_disk();
+    else
+      cutter.cut_faces(tables_);
+  }
+}
+
+void far_radiance(const FarCell& cell, size_t n, const float* x, const float* y, const float* z,
+                  float* r, float* g, float* b) {
+  if (cell.table != nullptr) return look_up(cell, n, x, y, z, r, g, b);
+  evaluate_fit(cell, cell.fit[0], n, x, y, z, r);
+  evaluate_fit(cell, cell.fit[1], n, x, y, z, g);
+  evaluate_fit(cell, cell.fit[2], n, x, y, z, b);
+}
+
+}  // namespace troffer
