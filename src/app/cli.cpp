@@ -143,7 +143,9 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
                 "kj92: only these sources may be sampled; all others stay in the general light")
       ->delimiter(',')
       ->allow_extra_args(false);
-  r->add_option("--solution", c.solution, "certified, kj92: a file made by troffer radiosity");
+  r->add_option(
+      "--solution", c.solution,
+      "certified: keep cells in this file, and go on from them; kj92: what troffer radiosity made");
 }
 
 void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
@@ -225,7 +227,9 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
       ->capture_default_str();
   s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256]")
       ->check(CLI::Range(2, 1 << 26));
-  s->add_option("--solution", c.solution, "certified, kj92: a file made by troffer radiosity");
+  s->add_option(
+      "--solution", c.solution,
+      "certified: keep cells in this file, and go on from them; kj92: what troffer radiosity made");
   s->add_option("--error", c.error, "certified: allowed standard error of direct light")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();

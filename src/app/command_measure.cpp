@@ -7,6 +7,7 @@
 #include "app/points_csv.h"
 #include "app/progress.h"
 #include "app/signals.h"
+#include "app/solution_file.h"
 #include "image/atomic_file.h"
 
 namespace troffer {
@@ -23,7 +24,9 @@ int run_measure(const MeasureCommand& c) {
   options.seed = c.seed;
   if (options.method.row().is_direct_only && options.indirect != Indirect::none && !c.is_quiet)
     fmt::print(stderr, "warning: --method {} measures direct light only\n", c.method);
-  const std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
+  std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
+  if (!c.solution.empty() && needs_cells(options.method, options.indirect))
+    reserved.emplace_back(c.solution);
   const std::vector<MeasuringPoint> points = read_points(c.points);
   const PreparedScene scene(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet));
 
@@ -32,6 +35,9 @@ int run_measure(const MeasureCommand& c) {
       prepare_method(scene, options.method, options.kj92, options.indirect, c.solution, c.threads,
                      c.is_quiet, stop);
   options.preparation = preparation.get();
+  const std::unique_ptr<CellStore> cells =
+      load_kept_cells(scene, options.method, options.indirect, c.solution);
+  options.cells = cells.get();
   MeasureResult result;
   {
     ProgressBar bar("measure", c.is_quiet);
@@ -41,6 +47,7 @@ int run_measure(const MeasureCommand& c) {
   if (!c.is_quiet && result.counters.nan_samples > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as 0\n",
                result.counters.nan_samples);
+  if (result.is_complete) save_kept_cells(scene, cells.get(), c.solution, c.is_quiet);
   const std::string csv = measurements_csv(points, result);
   if (c.output.empty())
     std::fputs(csv.c_str(), stdout);

@@ -11,6 +11,7 @@
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
+#include "app/solution_file.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
 #include "image/exposure.h"
@@ -148,7 +149,9 @@ int run_render(RenderCommand c) {
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs)
     image_format(path);  // a wrong ending is a usage error before any work is done
-  const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
+  std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
+  if (!c.solution.empty() && needs_cells(c.options.method, c.options.indirect))
+    reserved.emplace_back(c.solution);
 
   Seconds seconds;
   c.daylight.up = c.up;
@@ -174,6 +177,9 @@ int run_render(RenderCommand c) {
   seconds.preprocess_cpu = cpu_seconds() - cpu;
   cpu = cpu_seconds();
   c.options.preparation = preparation.get();
+  const std::unique_ptr<CellStore> cells =
+      load_kept_cells(scene, c.options.method, c.options.indirect, c.solution);
+  c.options.cells = cells.get();
   RenderResult result;
   {
     ProgressBar bar("render", c.is_quiet);
@@ -186,6 +192,7 @@ int run_render(RenderCommand c) {
   mark = Clock::now();
   const WriteOptions write = write_options(c, camera, result.layers[0].image);
   for (const std::string& path : c.outputs) write_image(path, result.layers, write);
+  if (result.is_complete) save_kept_cells(scene, cells.get(), c.solution, c.is_quiet);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())
     write_file(c.stats, statistics_json(c, result.statistics, seconds, seconds_since(start),

@@ -92,9 +92,9 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& lights
 // "certified", "kj92", "fixed" and "path"; UsageError for others.
 Method parse_method(const std::string& name);
 
-// UsageError where options belong to another method.
-// `automatic` where a radiosity solution is given: what takes it.
+// `automatic` where the file `solution` holds a radiosity solution: what takes it.
 Indirect indirect_with(const std::string& solution, Method method, Indirect indirect);
+// UsageError where options belong to another method.
 void check_method(Method method, Indirect indirect, const std::string& solution);
 
 // Warns, unless is_quiet, of every option given to `command` that its method does not use with this

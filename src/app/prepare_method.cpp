@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/progress.h"
+#include "app/solution_file.h"
 #include "base/error.h"
 #include "image/read_image.h"
 #include "render/radiosity.h"
@@ -12,7 +13,8 @@ namespace troffer {
 
 Indirect indirect_with(const std::string& solution, Method method, Indirect indirect) {
   const bool is_free = indirect == Indirect::automatic && method.row().has_choice_of_indirect;
-  return is_free && !solution.empty() ? Indirect::radiosity : indirect;
+  return is_free && kind_of_solution(solution) == SolutionKind::radiosity ? Indirect::radiosity
+                                                                          : indirect;
 }
 
 void check_method(Method method, Indirect indirect, const std::string& solution) {
@@ -20,9 +22,9 @@ void check_method(Method method, Indirect indirect, const std::string& solution)
     throw UsageError("--indirect radiosity belongs to --method kj92 and certified");
   if (indirect == Indirect::cells && !method.row().takes_cells)
     throw UsageError("--indirect cells belongs to --method certified");
-  if (!solution.empty() && !needs_radiosity(method, indirect))
+  if (!solution.empty() && !needs_radiosity(method, indirect) && !needs_cells(method, indirect))
     throw UsageError(method.row().has_choice_of_indirect
-                         ? "--solution goes with --indirect radiosity"
+                         ? "--solution does not go with --indirect none: there is nothing to keep"
                          : "--solution belongs to --method kj92 and certified");
 }
 

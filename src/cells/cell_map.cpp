@@ -118,7 +118,7 @@ uint32_t CellMap::add(const CellHit& hit, float distance) {
   if (slot.first != no_cell) found = search(slot.first, hit);
   if (found.cell != no_cell) {
     Hits& h = hits_[found.cell];
-    if (h.count < hits_per_cell) h.hits[h.count++] = hit;
+    if (found.cell >= frozen_ && h.count < hits_per_cell) h.hits[h.count++] = hit;
     return found.cell;
   }
   const uint32_t cell = make(hit, size);

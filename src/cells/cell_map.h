@@ -7,7 +7,7 @@
 // share a cell, nor the boards of a shelf, nor two rooms that stand on one floor.
 //
 // Cells are made one after the other in the order of add(), and never change: the same cells for
-// any number of threads.
+// any number of threads. A copy can be added to without a change to those it was copied from.
 #pragma once
 
 #include <array>
@@ -40,6 +40,9 @@ class CellMap {
   uint32_t find(const CellHit& hit, float distance) const;
   // The same, made if there is none.
   uint32_t add(const CellHit& hit, float distance);
+  // From here on the cells that there are keep the hits that they have.
+  void freeze() { frozen_ = anchors_.size(); }
+  size_t frozen() const { return frozen_; }
 
   // Of one cell; empty after forget_hits().
   std::span<const CellHit> hits(size_t cell) const {
@@ -50,6 +53,8 @@ class CellMap {
   void forget_hits() { hits_ = {}; }
 
  private:
+  friend struct CellMapParts;  // cell_store.cpp: to and from bytes
+
   struct Anchor {
     Vec3 position, normal;
     uint32_t next = no_cell;  // of the same voxel
@@ -82,6 +87,7 @@ class CellMap {
   std::vector<Hits> hits_;
   std::vector<Slot> slots_;  // open addressing; a power of two of them
   size_t used_ = 0;
+  size_t frozen_ = 0;  // cells from 0 that get no more hits
 };
 
 }  // namespace troffer

@@ -44,6 +44,10 @@ class CellRows {
   // Call before all that follow; cells: how many there are.
   void finish(size_t cells);
 
+  std::span<const RowPart> parts() const { return parts_; }
+  std::span<const RowEntry> entries(size_t part) const {
+    return std::span(entries_).subspan(first_entry_[part], parts_[part].entries);
+  }
   size_t entry_count() const { return entries_.size(); }
   uint64_t ray_count() const { return rays_in_all_; }
   bool has_row(size_t cell) const { return cell < rays_.size() && rays_[cell] > 0; }

@@ -21,6 +21,7 @@ constexpr uint32_t rays_of_row = 16;     // first ones of every cell
 constexpr uint32_t rays_of_step = 8;     // further ones come in so many
 constexpr uint32_t most_rays_of_row = 4096;
 constexpr double most_unresolved = 1e-5;  // of the light asked for
+constexpr double enough_of_wanted = 1.5;  // further rays that a kept cell has: no more then
 constexpr int most_rounds = 12;
 constexpr size_t most_cells = 1 << 21;
 constexpr size_t tasks_at_a_time = 1 << 14;
@@ -38,9 +39,14 @@ struct Place {
 
 class Builder {
  public:
-  Builder(const PreparedScene& scene, const CellBuilderOptions& options, const StopFlag& stop,
-          Counters& counters)
-      : scene_(scene), walks_(scene), options_(options), stop_(stop), counters_(counters) {}
+  Builder(const PreparedScene& scene, const CellBuilderOptions& options, CellStore* store,
+          const StopFlag& stop, Counters& counters)
+      : scene_(scene),
+        walks_(scene),
+        options_(options),
+        stop_(stop),
+        counters_(counters),
+        store_(store) {}
 
   void ask(const CellPilot& pilot);
   // False once stopped.
@@ -49,6 +55,9 @@ class Builder {
 
  private:
   std::vector<Place> places_of(const CellPilot& pilot);
+  void start_map(const CellsSeen& seen);
+  bool add_direct(const DirectLight& direct, CellDirectLight& lit);
+  void keep(const CellDirectLight& lit);
   void note(const std::vector<CellTask>& tasks, CellsSeen& seen);
   bool run(const std::vector<CellTask>& tasks);
   std::span<const CellHit> hits_of(const CellTask& task) const;
@@ -61,10 +70,12 @@ class Builder {
   CellBuilderOptions options_;
   const StopFlag& stop_;
   Counters& counters_;
-  std::unique_ptr<CellMap> map_;
+  CellStore* store_;  // null: nothing is kept
+  std::shared_ptr<CellMap> map_;
   CellRows rows_;
   std::vector<float> asked_;  // per cell
   size_t askers_ = 0;         // viewing rays, and points
+  size_t entries_kept_ = 0;   // of rows_, from the store
   CellStatistics statistics_;
 };
 
@@ -81,6 +92,26 @@ std::vector<Place> Builder::places_of(const CellPilot& pilot) {
   for (const GatherArrival& a : s.arrivals)
     places.push_back({a.hit, luminance(a.walk.throughput), a.distance, a.walk.scatterings > 0});
   return places;
+}
+
+// What is kept, or an empty map of cells as large as suits what was seen.
+void Builder::start_map(const CellsSeen& seen) {
+  if (store_ != nullptr && store_->map) {
+    map_ = std::make_shared<CellMap>(*store_->map);
+    map_->freeze();
+    rows_ = std::move(store_->rows);
+    entries_kept_ = rows_.entry_count();
+    return;
+  }
+  std::vector<float> lengths;
+  for (const CellSeen& c : seen.seen) lengths.push_back(c.distance);
+  const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
+  if (!lengths.empty()) std::nth_element(lengths.begin(), middle, lengths.end());
+  const float median = lengths.empty() ? 0 : *middle;
+  // Finer than this, voxels would be no larger than the rounding of positions.
+  const Box box = bounds(scene_.scene);
+  const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), 1e-6f);
+  map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size_of_median * median, least));
 }
 
 void Builder::ask(const CellPilot& pilot) {
@@ -104,15 +135,7 @@ void Builder::ask(const CellPilot& pilot) {
     seen.seen.push_back({uint32_t(tasks.size()), no_cell, p.distance, Rgb{1}, p.hit});
     tasks.emplace_back().weight = p.weight;
   }
-  std::vector<float> lengths;
-  for (const CellSeen& c : seen.seen) lengths.push_back(c.distance);
-  const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
-  if (!lengths.empty()) std::nth_element(lengths.begin(), middle, lengths.end());
-  const float median = lengths.empty() ? 0 : *middle;
-  // Finer than this, voxels would be no larger than the rounding of positions.
-  const Box box = bounds(scene_.scene);
-  const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), 1e-6f);
-  map_ = std::make_unique<CellMap>(scene_.tracer, std::max(size_of_median * median, least));
+  start_map(seen);
   for (const CellSeen& c : seen.seen) {
     const uint32_t cell = map_->add(c.hit, c.distance);
     asked_.resize(map_->size(), 0);
@@ -199,19 +222,26 @@ std::vector<uint32_t> Builder::cells_to_resolve() {
   return cells;
 }
 
-// As many rays again, in proportion to what is asked of cells.
+// As many rays again as the first ones of the cells that matter, in proportion to what is asked of
+// them; less what they have had already, for other views.
 std::vector<CellTask> Builder::further_tasks() {
   const std::vector<float> y = rows_.importance(asked_, bounces_of_importance);
   const double all = std::accumulate(y.begin(), y.end(), 0.0);
   std::vector<CellTask> tasks;
   if (!(all > 0)) return tasks;
-  const double steps = double(rows_.ray_count()) / rays_of_step;
+  const double least = map_->frozen() > 0 ? 0.5 * most_unresolved * all / double(y.size()) : -1;
+  size_t cells = 0;
+  for (uint32_t c = 0; c < y.size(); ++c)
+    if (rows_.has_row(c) && double(y[c]) > least) ++cells;
+  const double steps = double(cells) * rays_of_row / rays_of_step;
   for (uint32_t c = 0; c < y.size(); ++c) {
     if (!rows_.has_row(c)) continue;
     const double wanted =
         std::min(steps * double(y[c]) / all, double(most_rays_of_row / rays_of_step));
-    for (int step = 0; step < int(wanted + 0.5); ++step)
-      tasks.push_back(task_of(c, rays_of_row + uint32_t(step) * rays_of_step, rays_of_step));
+    const uint32_t had = (rows_.rays(c) - rays_of_row) / rays_of_step;
+    if (wanted < enough_of_wanted * had) continue;
+    for (uint32_t step = had; step < uint32_t(wanted + 0.5); ++step)
+      tasks.push_back(task_of(c, rays_of_row + step * rays_of_step, rays_of_step));
   }
   return tasks;
 }
@@ -235,9 +265,33 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
   return !stop_.load();
 }
 
+// Light straight from sources, where it is not kept; false once stopped.
+bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
+  size_t first = 0;
+  if (map_->frozen() > 0 && store_->direct_error <= options_.direct_error) {
+    lit = {std::move(store_->direct), std::move(store_->direct_half_difference)};
+    first = map_->frozen();
+  }
+  add_direct_light(*map_, direct, first, options_.threads, stop_, lit, counters_);
+  return !stop_.load();
+}
+
+// Hits are no longer needed but by those who go on from here.
+void Builder::keep(const CellDirectLight& lit) {
+  if (store_ == nullptr) return map_->forget_hits();
+  const bool is_relit = map_->frozen() > 0 && store_->direct_error > options_.direct_error;
+  store_->is_changed =
+      map_->size() > map_->frozen() || rows_.entry_count() > entries_kept_ || is_relit;
+  if (map_->frozen() == 0 || is_relit) store_->direct_error = options_.direct_error;
+  store_->map = map_;
+  store_->rows = std::move(rows_);
+  store_->direct = lit.irradiance;
+  store_->direct_half_difference = lit.half_difference;
+}
+
 std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_point start) {
-  CellDirectLight lit = direct_light_of(*map_, direct, options_.threads, stop_, counters_);
-  if (stop_.load()) return nullptr;
+  CellDirectLight lit;
+  if (!add_direct(direct, lit)) return nullptr;
   CellLight light = rows_.solve(lit.irradiance, lit.half_difference, options_.threads);
   statistics_.cells = map_->size();
   double sum = 0;
@@ -249,7 +303,7 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_po
   statistics_.iterations = light.iterations;
   statistics_.size = double(map_->size_of_cells());
   statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry);
-  map_->forget_hits();
+  keep(lit);
   statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit.irradiance),
                                  std::move(light.irradiance), std::move(light.half_difference),
@@ -260,10 +314,10 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_po
 
 std::unique_ptr<Cells> make_cells(const PreparedScene& scene, const DirectLight& direct,
                                   const CellPilot& pilot, const CellBuilderOptions& options,
-                                  const std::function<void(double)>& progress, const StopFlag& stop,
-                                  Counters& counters) {
+                                  CellStore* store, const std::function<void(double)>& progress,
+                                  const StopFlag& stop, Counters& counters) {
   const Clock::time_point start = Clock::now();
-  Builder builder(scene, options, stop, counters);
+  Builder builder(scene, options, store, stop, counters);
   builder.ask(pilot);
   if (!builder.make_rows(progress)) return nullptr;
   return builder.finish(direct, start);

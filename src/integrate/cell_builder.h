@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "cells/cell_rows.h"
+#include "cells/cell_store.h"
 #include "integrate/cells.h"
 #include "integrate/direct_light.h"
 
@@ -23,12 +24,16 @@ struct CellPilot {
 struct CellBuilderOptions {
   int threads = 0;
   uint64_t seed = 0;
+  double direct_error = 0;  // asked of the light straight from sources
 };
 
-// direct: light straight from sources. Null once `stop` is set. progress: 0 to 1; may be null.
+// direct: light straight from sources. store: what is kept from before, or nothing yet; left with
+// what there is now (empty once stopped), and may be null. Cells that have been kept serve as they
+// are; only what the pilot asks for beyond them is made. Null once `stop` is set. progress: 0 to 1;
+// may be null.
 std::unique_ptr<Cells> make_cells(const PreparedScene& scene, const DirectLight& direct,
                                   const CellPilot& pilot, const CellBuilderOptions& options,
-                                  const std::function<void(double)>& progress, const StopFlag& stop,
-                                  Counters& counters);
+                                  CellStore* store, const std::function<void(double)>& progress,
+                                  const StopFlag& stop, Counters& counters);
 
 }  // namespace troffer

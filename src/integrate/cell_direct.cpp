@@ -31,16 +31,17 @@ uint64_t spread_bits(uint64_t x) {  // 21 bits, each third
   return (x | x << 2) & 0x1249249249249249ull;
 }
 
-// Cells along a space-filling curve.
-std::vector<uint32_t> cells_in_order(const CellMap& map) {
-  std::vector<std::pair<uint64_t, uint32_t>> keys(map.size());
-  for (uint32_t c = 0; c < map.size(); ++c) {
+// Cells from number `first` on, along a space-filling curve.
+std::vector<uint32_t> cells_in_order(const CellMap& map, size_t first) {
+  std::vector<std::pair<uint64_t, uint32_t>> keys;
+  keys.reserve(map.size() - first);
+  for (auto c = uint32_t(first); c < map.size(); ++c) {
     uint64_t key = 0;
     for (size_t a = 0; a < 3; ++a) {
       const double voxel = double(map.position(c)[a]) / double(map.size_of_cells());
       key |= spread_bits(uint64_t(std::clamp(voxel + 0x1p20, 0.0, 0x1p21 - 1))) << a;
     }
-    keys[c] = {key, c};
+    keys.emplace_back(key, c);
   }
   std::sort(keys.begin(), keys.end());
   std::vector<uint32_t> order;
@@ -97,10 +98,11 @@ void light_group(const CellMap& map, const DirectLight& direct, std::span<const 
 
 }  // namespace
 
-CellDirectLight direct_light_of(const CellMap& map, const DirectLight& direct, int threads,
-                                const StopFlag& stop, Counters& counters) {
-  const std::vector<uint32_t> order = cells_in_order(map);
-  CellDirectLight light{std::vector<Rgb>(map.size()), std::vector<float>(map.size(), 0)};
+void add_direct_light(const CellMap& map, const DirectLight& direct, size_t first_cell, int threads,
+                      const StopFlag& stop, CellDirectLight& light, Counters& counters) {
+  const std::vector<uint32_t> order = cells_in_order(map, first_cell);
+  light.irradiance.resize(map.size());
+  light.half_difference.resize(map.size(), 0);
   std::vector<Worker> workers(size_t(thread_count(threads)));
   const size_t groups = (order.size() + cells_of_group - 1) / cells_of_group;
   parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
@@ -111,7 +113,6 @@ CellDirectLight direct_light_of(const CellMap& map, const DirectLight& direct, i
                 workers[slot], light);
   });
   for (const Worker& w : workers) counters += w.counters;
-  return light;
 }
 
 }  // namespace troffer

@@ -14,8 +14,9 @@ struct CellDirectLight {
   std::vector<float> half_difference;  // luminance: what either half of the hits has more or less
 };
 
-// Cells near each other are lit together, in the same groups for any number of threads.
-CellDirectLight direct_light_of(const CellMap& map, const DirectLight& direct, int threads,
-                                const StopFlag& stop, Counters& counters);
+// Of all cells from number `first` on; what is in `light` of those before stays. Cells near each
+// other are lit together, in the same groups for any number of threads.
+void add_direct_light(const CellMap& map, const DirectLight& direct, size_t first, int threads,
+                      const StopFlag& stop, CellDirectLight& light, Counters& counters);
 
 }  // namespace troffer

@@ -42,7 +42,7 @@ struct CellsScratch {
 
 class Cells {
  public:
-  Cells(const PreparedScene& scene, std::unique_ptr<CellMap> map, std::vector<Rgb> direct,
+  Cells(const PreparedScene& scene, std::shared_ptr<const CellMap> map, std::vector<Rgb> direct,
         std::vector<Rgb> irradiance, std::vector<float> half_difference,
         const CellStatistics& statistics)
       : map_(std::move(map)),
@@ -66,7 +66,7 @@ class Cells {
  private:
   bool look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const;
 
-  std::unique_ptr<CellMap> map_;
+  std::shared_ptr<const CellMap> map_;
   std::vector<Rgb> direct_, irradiance_;
   std::vector<float> half_difference_;
   CellStatistics statistics_;

@@ -19,9 +19,12 @@ namespace {
 
 // Light at cells, and at what gloss shows: certified as at first surfaces, but for an error that
 // their number makes small, or what carries it.
-CertifiedSettings settings_beyond(const MethodInput& in) {
+double error_beyond(const MethodInput& in) {
   constexpr double least_error = 0.1;
-  return certified_settings(std::max(in.settings.error, least_error), in.scene.scene.lights.size());
+  return std::max(in.settings.error, least_error);
+}
+CertifiedSettings settings_beyond(const MethodInput& in) {
+  return certified_settings(error_beyond(in), in.scene.scene.lights.size());
 }
 
 std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
@@ -31,9 +34,9 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
     if (!in.cells->progress) return nullptr;
     return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
   };
-  std::unique_ptr<Cells> cells =
-      make_cells(in.scene, direct, in.cells->pilot, {in.settings.threads, in.cells->seed},
-                 part(0, 0.4), in.cells->stop, in.cells->counters);
+  std::unique_ptr<Cells> cells = make_cells(
+      in.scene, direct, in.cells->pilot, {in.settings.threads, in.cells->seed, error_beyond(in)},
+      in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
   std::unique_ptr<GatherRecords> records;

@@ -81,6 +81,7 @@ struct CellInput {
   const StopFlag& stop;
   Counters counters;
   CellStatistics statistics;
+  CellStore* store = nullptr;  // make_cells
 };
 
 // What a method is made from. radiosity, cells: null where there is none; radiosity is copied.

@@ -198,7 +198,8 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     preparation = own.get();
   }
   const MethodSettings settings = settings_of(options);
-  CellInput cells{points_pilot(scene, points), nullptr, options.seed, nullptr, stop, {}, {}};
+  CellInput cells{
+      points_pilot(scene, points), nullptr, options.seed, nullptr, stop, {}, {}, options.cells};
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene, options.method, settings, preparation, &cells);
   if (!integrator) return nothing_measured(points.size());

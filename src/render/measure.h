@@ -32,6 +32,7 @@ struct MeasureOptions {
   double error = 0.01;  // certified
   Kj92Settings kj92;
   const Preparation* preparation = nullptr;  // made beforehand; null: made here if needed
+  CellStore* cells = nullptr;  // certified: kept from before, and kept for later; may be null
   int depth = -1;
   Indirect indirect = Indirect::automatic;
   int threads = 0;

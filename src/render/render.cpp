@@ -147,8 +147,14 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   const double share = needs_cells(options.method, options.indirect) ? 0.5 : 0.0;
   const ProgressCallback of_cells = part_of_progress(progress, 0, share),
                          of_tiles = part_of_progress(progress, share, 1);
-  CellInput cells{
-      picture_pilot(viewing, size, options.seed), &view, options.seed, of_cells, stop, {}, {}};
+  CellInput cells{picture_pilot(viewing, size, options.seed),
+                  &view,
+                  options.seed,
+                  of_cells,
+                  stop,
+                  {},
+                  {},
+                  options.cells};
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene, options.method, settings, preparation, &cells);
   if (!integrator) return nothing_rendered(window, options, result);

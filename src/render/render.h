@@ -45,6 +45,7 @@ struct RenderOptions {
   Kj92Settings kj92;     // certified: the radiosity of its indirect light
   // Made beforehand by prepare(); null: made by render(), where it is needed.
   const Preparation* preparation = nullptr;
+  CellStore* cells = nullptr;  // certified: kept from before, and kept for later; may be null
   Indirect indirect = Indirect::automatic;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera

@@ -1,0 +1,273 @@
+#include "cells/cell_store.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/random.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr char magic[8] = {'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'};
+constexpr uint32_t version = 1;
+constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
+static_assert(std::endian::native == std::endian::little, "files of cells are little endian");
+
+struct Header {
+  char magic[8];
+  uint32_t version;
+  float size;
+  uint64_t scene_key;
+  double direct_error;
+  uint64_t cells, hits, slots, parts, entries;
+  uint64_t hash;  // of all else: header with 0 here, and body
+};
+static_assert(sizeof(Header) == 80);
+
+struct FileCell {
+  Vec3 position, normal;
+  uint32_t next;
+  float size;
+  uint32_t is_divided, hits;
+  Rgb direct;
+  float direct_half_difference;
+};
+static_assert(sizeof(FileCell) == 56);
+
+struct FileSlot {
+  uint64_t key;
+  uint32_t first, unused;
+};
+
+struct FilePart {
+  uint32_t cell, rays, entries, is_second_half;
+  Rgb emission;
+};
+static_assert(sizeof(FilePart) == 28 && sizeof(RowEntry) == 16 && sizeof(CellHit) == 40);
+
+uint64_t hash_of_file(Header h, std::span<const uint8_t> body) {
+  h.hash = 0;
+  uint64_t hash = body.size();
+  const auto add = [&](const uint8_t* bytes, size_t n) {
+    for (size_t i = 0; i < n; i += 8) {
+      uint64_t word = 0;
+      std::memcpy(&word, bytes + i, std::min<size_t>(8, n - i));
+      hash = hash_combine(hash, word);
+    }
+  };
+  add(reinterpret_cast<const uint8_t*>(&h), sizeof(h));
+  add(body.data(), body.size());
+  return hash;
+}
+
+template <class T>
+void append(std::vector<uint8_t>& out, const T& v) {
+  const size_t at = out.size();
+  out.resize(at + sizeof(T));
+  std::memcpy(out.data() + at, &v, sizeof(T));
+}
+
+// Reads one thing after the other; that there are enough bytes has been seen to.
+class Reader {
+ public:
+  explicit Reader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+  template <class T>
+  T next() {
+    TROFFER_CHECK(bytes_.size() >= sizeof(T));
+    T v;
+    std::memcpy(&v, bytes_.data(), sizeof(T));
+    bytes_ = bytes_.subspan(sizeof(T));
+    return v;
+  }
+
+ private:
+  std::span<const uint8_t> bytes_;
+};
+
+bool is_light(const Rgb& c) {
+  return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0;
+}
+bool is_unit(const Vec3& v) {
+  return std::abs(length_squared(v) - 1) < 1e-3f;
+}
+
+}  // namespace
+
+// What the map is made of; checked, for the file may be anybody's.
+struct CellMapParts {
+  static uint64_t hits_of(const CellMap& map) {
+    uint64_t n = 0;
+    for (const CellMap::Hits& h : map.hits_) n += h.count;
+    return n;
+  }
+  static uint64_t slots_of(const CellMap& map) { return map.used_; }
+
+  static void write(const CellStore& s, std::vector<uint8_t>& out) {
+    const CellMap& map = *s.map;
+    for (size_t c = 0; c < map.size(); ++c) {
+      const CellMap::Anchor& a = map.anchors_[c];
+      append(out, FileCell{a.position, a.normal, a.next, a.size, a.is_divided ? 1u : 0u,
+                           map.hits_[c].count, s.direct[c], s.direct_half_difference[c]});
+    }
+    for (const CellMap::Hits& h : map.hits_)
+      for (uint32_t i = 0; i < h.count; ++i) append(out, h.hits[i]);
+    for (const CellMap::Slot& slot : map.slots_)
+      if (slot.key != 0) append(out, FileSlot{slot.key, slot.first, 0});
+  }
+
+  // False where something is not as a map can be. Cells of a voxel come in the order in which they
+  // were made, so their lists end.
+  static bool read_cell(const FileCell& f, size_t cell, size_t cells, CellMap& map) {
+    if (!is_finite(f.position) || !is_unit(f.normal) || !(f.size > 0) || !std::isfinite(f.size) ||
+        f.is_divided > 1 || f.hits < 1 || f.hits > hits_per_cell)
+      return false;
+    if (f.next != no_cell && (f.next <= cell || f.next >= cells)) return false;
+    map.anchors_.push_back({f.position, f.normal, f.next, f.size, f.is_divided != 0});
+    map.hits_.emplace_back().count = f.hits;
+    return true;
+  }
+
+  static bool read_hits(Reader& in, CellMap& map) {
+    for (CellMap::Hits& h : map.hits_)
+      for (uint32_t i = 0; i < h.count; ++i) {
+        const auto hit = in.next<CellHit>();
+        if (!is_finite(hit.position) || !is_unit(hit.normal) || !is_unit(hit.horizon) ||
+            !(hit.offset >= 0) || !std::isfinite(hit.offset))
+          return false;
+        h.hits[i] = hit;
+      }
+    return true;
+  }
+
+  static bool read_slots(Reader& in, uint64_t slots, CellMap& map) {
+    for (uint64_t i = 0; i < slots; ++i) {
+      const auto f = in.next<FileSlot>();
+      if (f.key == 0 || f.first >= map.size()) return false;
+      CellMap::Slot& slot = map.slots_[map.slot_of(f.key)];
+      if (slot.key != 0) return false;
+      slot = {f.key, f.first};
+      if (++map.used_ * 2 > map.slots_.size()) map.grow();
+    }
+    return true;
+  }
+};
+
+bool are_cells(std::span<const uint8_t> bytes) {
+  return bytes.size() >= sizeof(magic) && std::memcmp(bytes.data(), magic, sizeof(magic)) == 0;
+}
+
+std::vector<uint8_t> save_cells(const CellStore& store, uint64_t scene_key) {
+  TROFFER_CHECK(store.map != nullptr && store.direct.size() == store.map->size());
+  std::vector<uint8_t> body;
+  CellMapParts::write(store, body);
+  const std::span<const RowPart> parts = store.rows.parts();
+  for (const RowPart& p : parts)
+    append(body, FilePart{p.cell, p.rays, p.entries, p.is_second_half ? 1u : 0u, p.emission});
+  for (size_t p = 0; p < parts.size(); ++p)
+    for (const RowEntry& e : store.rows.entries(p)) append(body, e);
+  Header h{};
+  std::memcpy(h.magic, magic, sizeof(magic));
+  h.version = version;
+  h.size = store.map->size_of_cells();
+  h.scene_key = scene_key;
+  h.direct_error = store.direct_error;
+  h.cells = store.map->size();
+  h.hits = CellMapParts::hits_of(*store.map);
+  h.slots = CellMapParts::slots_of(*store.map);
+  h.parts = parts.size();
+  h.entries = store.rows.entry_count();
+  h.hash = hash_of_file(h, body);
+  std::vector<uint8_t> out;
+  out.reserve(sizeof(Header) + body.size());
+  append(out, h);
+  out.insert(out.end(), body.begin(), body.end());
+  return out;
+}
+
+namespace {
+
+Header checked_header(std::span<const uint8_t> bytes, const std::string& file, uint64_t scene_key) {
+  const auto refuse = [&](const std::string& what) { throw InputError(file, 0, 0, what); };
+  if (!are_cells(bytes)) refuse("not a file of cells");
+  if (bytes.size() < sizeof(Header)) refuse("file of cells is cut short");
+  const auto h = Reader(bytes).next<Header>();
+  if (h.version != version)
+    refuse("file of cells of version " + std::to_string(h.version) + "; this program reads " +
+           std::to_string(version));
+  uint64_t left = bytes.size() - sizeof(Header);
+  const auto take = [&](uint64_t count, uint64_t size) {
+    if (count > left / size) refuse("file of cells is cut short");
+    left -= count * size;
+  };
+  take(h.cells, sizeof(FileCell));
+  take(h.hits, sizeof(CellHit));
+  take(h.slots, sizeof(FileSlot));
+  take(h.parts, sizeof(FilePart));
+  take(h.entries, sizeof(RowEntry));
+  if (left != 0) refuse("file of cells has bytes too many");
+  if (hash_of_file(h, bytes.subspan(sizeof(Header))) != h.hash) refuse("file of cells is damaged");
+  if (!(h.size > 0) || !std::isfinite(h.size) || !(h.direct_error >= 0) || h.cells >= no_cell)
+    refuse("file of cells has values that none can have");
+  if (h.scene_key != scene_key)
+    refuse("file of cells belongs to another scene, or other light: make it anew");
+  return h;
+}
+
+bool read_cells(Reader& in, const Header& h, CellMap& map, CellStore& store) {
+  uint64_t hits = 0;
+  for (size_t c = 0; c < h.cells; ++c) {
+    const auto f = in.next<FileCell>();
+    if (!CellMapParts::read_cell(f, c, h.cells, map)) return false;
+    if (!is_finite(f.direct) || !std::isfinite(f.direct_half_difference)) return false;
+    hits += f.hits;
+    store.direct.push_back(f.direct);
+    store.direct_half_difference.push_back(f.direct_half_difference);
+  }
+  return hits == h.hits && CellMapParts::read_hits(in, map) &&
+         CellMapParts::read_slots(in, h.slots, map);
+}
+
+bool read_rows(Reader& in, const Header& h, CellRows& rows) {
+  std::vector<RowPart> parts;
+  uint64_t entries = 0;
+  for (size_t p = 0; p < h.parts; ++p) {
+    const auto f = in.next<FilePart>();
+    if (f.cell >= h.cells || f.rays < 1 || f.rays > most_rays || f.is_second_half > 1 ||
+        !is_light(f.emission))
+      return false;
+    entries += f.entries;
+    parts.push_back({f.cell, f.rays, f.entries, f.is_second_half != 0, f.emission});
+  }
+  if (entries != h.entries) return false;
+  std::vector<RowEntry> row;
+  for (const RowPart& p : parts) {
+    row.clear();
+    for (uint32_t e = 0; e < p.entries; ++e) {
+      row.push_back(in.next<RowEntry>());
+      if (row.back().cell >= h.cells || !is_light(row.back().weight)) return false;
+    }
+    rows.add(p, row);
+  }
+  rows.finish(h.cells);
+  return true;
+}
+
+}  // namespace
+
+CellStore load_cells(std::span<const uint8_t> bytes, const std::string& file, uint64_t scene_key,
+                     const Tracer& tracer) {
+  const Header h = checked_header(bytes, file, scene_key);
+  Reader in(bytes.subspan(sizeof(Header)));
+  CellStore store;
+  auto map = std::make_shared<CellMap>(tracer, h.size);
+  if (!read_cells(in, h, *map, store) || !read_rows(in, h, store.rows))
+    throw InputError(file, 0, 0, "file of cells has values that none can have");
+  store.map = std::move(map);
+  store.direct_error = h.direct_error;
+  return store;
+}
+
+}  // namespace troffer

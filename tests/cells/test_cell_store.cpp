@@ -1,0 +1,149 @@
+// Cells as files: what comes back, what is refused, and how they are added to.
+#include "cells/cell_store.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "support/scenes.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+constexpr uint64_t key = 77;
+
+CellHit on_floor(float x, float y) {
+  return {{x, y, 0}, {0, 0, 1}, {0, 0, 1}, 1e-5f};
+}
+
+Scene floor_scene() {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});
+  return s;
+}
+
+// So many hits on the floor, in cells that see each other at random.
+CellStore random_store(const Tracer& tracer, int hits) {
+  CellStore store;
+  auto map = std::make_shared<CellMap>(tracer, 0.5f);
+  Random random(3);
+  for (int i = 0; i < hits; ++i)
+    map->add(on_floor(8 * random.next_float() - 4, 8 * random.next_float() - 4),
+             i % 3 == 0 ? 0.5f : 5.0f);
+  const auto cells = uint32_t(map->size());
+  for (uint32_t c = 0; c < cells; ++c) {
+    std::vector<RowEntry> entries(c % 5);
+    for (RowEntry& e : entries)
+      e = {random.next_u32() % cells, {random.next_float(), random.next_float(), 0.5f}};
+    store.rows.add({c, 8, 0, c % 2 == 1, Rgb{float(c % 7)}}, entries);
+    store.direct.emplace_back(random.next_float());
+    store.direct_half_difference.push_back(random.next_float() - 0.5f);
+  }
+  store.rows.finish(cells);
+  store.map = std::move(map);
+  store.direct_error = 0.1;
+  return store;
+}
+
+std::string refusal(const std::vector<uint8_t>& bytes, uint64_t scene, const Tracer& tracer) {
+  try {
+    load_cells(bytes, "a.cells", scene, tracer);
+  } catch (const InputError& e) {
+    CHECK(e.file() == "a.cells");
+    return e.reason();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("kept cells come back the same: the same bytes, and every hit finds its cell") {
+  const Scene scene = floor_scene();
+  const Tracer tracer(scene);
+  const CellStore store = random_store(tracer, 3000);
+  const std::vector<uint8_t> bytes = save_cells(store, key);
+  REQUIRE(are_cells(bytes));
+  const CellStore back = load_cells(bytes, "a.cells", key, tracer);
+  CHECK(save_cells(back, key) == bytes);
+  REQUIRE(back.map->size() == store.map->size());
+  Random random(8);
+  int found = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const CellHit hit = on_floor(9 * random.next_float() - 4.5f, 9 * random.next_float() - 4.5f);
+    for (const float distance : {0.5f, 5.0f}) {
+      const uint32_t cell = store.map->find(hit, distance);
+      CHECK(back.map->find(hit, distance) == cell);
+      found += cell != no_cell ? 1 : 0;
+    }
+  }
+  CHECK(found > 5000);
+  const CellLight a = store.rows.solve(store.direct, store.direct_half_difference, 1);
+  const CellLight b = back.rows.solve(back.direct, back.direct_half_difference, 1);
+  CHECK(a.irradiance == b.irradiance);
+}
+
+TEST_CASE("kept cells get no more hits, new ones beside them do") {
+  const Scene scene = floor_scene();
+  const Tracer tracer(scene);
+  CellMap map(tracer, 1);
+  const uint32_t old = map.add(on_floor(0.1f, 0.1f), 5);
+  map.freeze();
+  CHECK(map.add(on_floor(0.2f, 0.1f), 5) == old);
+  CHECK(map.hits(old).size() == 1);
+  const uint32_t young = map.add(on_floor(3.1f, 0.1f), 5);
+  CHECK(map.add(on_floor(3.2f, 0.1f), 5) == young);
+  CHECK(map.hits(young).size() == 2);
+}
+
+TEST_CASE("damaged files of cells, and those of other scenes, are refused") {
+  const Scene scene = floor_scene();
+  const Tracer tracer(scene);
+  const std::vector<uint8_t> bytes = save_cells(random_store(tracer, 300), key);
+  CHECK(refusal(bytes, key, tracer).empty());
+  CHECK(refusal(bytes, key + 1, tracer).find("another scene") != std::string::npos);
+  for (const size_t n : {size_t(0), size_t(5), size_t(8), size_t(79), size_t(80), bytes.size() / 2,
+                         bytes.size() - 1}) {
+    const std::vector<uint8_t> part(bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
+    CHECK_FALSE(refusal(part, key, tracer).empty());
+  }
+  std::vector<uint8_t> longer = bytes;
+  longer.push_back(0);
+  CHECK_FALSE(refusal(longer, key, tracer).empty());
+  Random r(1);
+  for (size_t i = 0; i < 500; ++i) {  // every byte of the header, and some of the rest
+    std::vector<uint8_t> bad = bytes;
+    const size_t at = i < 80 ? i : r.next_u32() % bytes.size();
+    bad[at] = uint8_t(bad[at] ^ (1u << (r.next_u32() % 8)));
+    CHECK_FALSE(refusal(bad, key, tracer).empty());
+  }
+}
+
+TEST_CASE("values that no cells have are refused, though the file is whole") {
+  const Scene scene = floor_scene();
+  const Tracer tracer(scene);
+  const float nan = std::nanf("");
+  const auto with = [&](const auto& change) {
+    CellStore s = random_store(tracer, 300);
+    change(s);
+    return refusal(save_cells(s, key), key, tracer);
+  };
+  CHECK(with([](CellStore&) {}).empty());
+  CHECK_FALSE(with([&](CellStore& s) { s.direct[7] = Rgb{nan}; }).empty());
+  CHECK_FALSE(with([&](CellStore& s) { s.direct_half_difference[7] = nan; }).empty());
+  CHECK_FALSE(with([&](CellStore& s) { s.direct_error = double(nan); }).empty());
+  CHECK_FALSE(with([](CellStore& s) {
+                s.rows.add({0, 8, 0, false, Rgb{0}},
+                           std::vector<RowEntry>{{uint32_t(s.map->size()), Rgb{1}}});
+              }).empty());
+  CHECK_FALSE(with([](CellStore& s) {
+                s.rows.add({uint32_t(s.map->size()), 8, 0, false, Rgb{0}}, {});
+              }).empty());
+  CHECK_FALSE(with([](CellStore& s) {
+                s.rows.add({0, 8, 0, false, Rgb{0}}, std::vector<RowEntry>{{0, Rgb{-1}}});
+              }).empty());
+  CHECK_FALSE(with([](CellStore& s) { s.rows.add({0, 0, 0, false, Rgb{0}}, {}); }).empty());
+}
