@@ -27,6 +27,7 @@ ShadowWorld::ShadowWorld(const Scene& scene, const Occluders& occluders, const T
 void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
                              size_t most, uint64_t own, ShadowCandidates& out) {
   found_.facets.clear();
+  found_.rounds.clear();
   found_.others = 0;
   found_.own = own;
   found_.is_complete = true;
@@ -34,6 +35,7 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
   occluders_.gather(planes, most, found_);
   visited_nodes_ += found_.visited_nodes;
   out.facets.clear();
+  out.rounds.assign(found_.rounds.begin(), found_.rounds.end());
   out.is_too_long = !found_.is_complete;
   out.is_complete = found_.is_complete && found_.others == 0;
   for (const uint32_t id : found_.facets) {

@@ -231,7 +231,7 @@ void cover(const MaskFrame& frame, const FacetList& facets, const Vec3& x, const
   }
   out.open = out.inside;
   out.is_any_open = true;
-  if (facets.size() == 0) return;
+  if (facets.quads().empty() && facets.triangles().empty()) return;
 
   const MaskPoint p = mask_point(frame, x, shift);
   out.is_any_open = kernels(instruction_set)

@@ -25,6 +25,7 @@
 #include "base/quad.h"
 #include "base/vec.h"
 #include "light/source_surface.h"
+#include "shadow/round_list.h"
 
 namespace troffer {
 
@@ -114,7 +115,7 @@ struct FacetToAdd {
   bool is_front_only;
 };
 
-// Facets of one cluster of receivers and one source.
+// Facets of one cluster of receivers and one source, and what is round among what may hide it.
 class FacetList {
  public:
   void clear();
@@ -124,10 +125,13 @@ class FacetList {
   // The same for many, several to a vector register.
   void add_many(const MaskFrame& frame, std::span<const FacetToAdd> facets);
   void finish();
-  // Becomes the facets of `from` whose flag is 0.
+  // Becomes the facets of `from` whose flag is 0; what is round is not copied.
   void keep_unsettled(const FacetList& from, const FacetFlags& flags);
-  // Lanes in use; after add_many some of them may hold no facet.
-  size_t size() const { return triangle_count_ + quad_count_; }
+  // Lanes in use, of which after add_many some may hold no facet, and what is round.
+  size_t size() const { return triangle_count_ + quad_count_ + round_.size(); }
+  // What is round: covered by round_cover.h, all else by cover() below.
+  RoundList& round() { return round_; }
+  const RoundList& round() const { return round_; }
 
   const std::vector<FacetBatch<3>>& triangles() const { return triangles_; }
   const std::vector<FacetBatch<4>>& quads() const { return quads_; }
@@ -140,6 +144,7 @@ class FacetList {
   std::vector<FacetBatch<3>> triangles_;
   std::vector<FacetBatch<4>> quads_;
   size_t triangle_count_ = 0, quad_count_ = 0;
+  RoundList round_;
 };
 
 // A receiver against the canvas, for the kernels: itself, and from it to sample (0,0) and to the

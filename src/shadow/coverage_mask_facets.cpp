@@ -10,6 +10,7 @@ namespace troffer {
 void FacetList::clear() {
   triangles_.clear();
   quads_.clear();
+  round_.clear();
   triangle_count_ = quad_count_ = 0;
 }
 

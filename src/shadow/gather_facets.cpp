@@ -35,7 +35,7 @@ void gather(const Shot& s, size_t most, ShadowScene& scene, ShadowCandidates& ou
   const Box receivers = padded_bounds({s.hull.corners.data(), size_t(s.hull.count)}, s.hull.slack);
   scene.candidates(s.shaft.all(), receivers, s.source, most, s.own, out);
   ++counters.gathers;
-  counters.candidates += out.facets.size();
+  counters.candidates += out.facets.size() + out.rounds.size();
   counters.incomplete += out.is_complete ? 0 : 1;
 }
 
@@ -125,6 +125,8 @@ struct Division {
     task.request.found->note_hopeless(hull.centre, radius_of(hull));
     shorten_candidates(*task.request.found, hull.centre, task.options.most_found, scene,
                        memory.candidates.facets);
+    std::vector<RoundBody>& rounds = memory.candidates.rounds;
+    rounds.resize(std::min(rounds.size(), task.options.most_found));
   }
   // What has been gathered is a part's list.
   SourcePart& add_part(std::span<const uint32_t> members, const ReceiverHull& hull) {
@@ -132,6 +134,7 @@ struct Division {
     part.members.assign(members.begin(), members.end());
     part.hull = hull;
     part.facets.swap(memory.candidates.facets);
+    part.rounds.swap(memory.candidates.rounds);
     part.is_complete = memory.candidates.is_complete;
     part.is_hopeless = memory.candidates.is_too_long;
     return part;
@@ -178,6 +181,7 @@ void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int
   ShadowCandidates& c = memory.candidates;
   if (is_too_near) {  // nothing is known, and rays decide
     c.facets.clear();
+    c.rounds.clear();
     c.is_too_long = c.is_complete = false;
   } else {
     gather_facets(hull, source, most_facets(is_last), scene, c, counters);
@@ -231,7 +235,7 @@ bool has_rim(const FlatSource& source, double tolerance, size_t most, ShadowScen
   }
   ShadowCandidates near;
   scene.candidates(planes, box, box, most, no_round_source, near);
-  bool is_rim = !near.is_complete;
+  bool is_rim = !near.is_complete || !near.rounds.empty();
   for (const FacetToAdd& f : near.facets)
     for (const Vec3& v : f.quad)
       is_rim = is_rim || dot(n, Vec3d(v) - source.plane.origin) > tolerance;

@@ -17,6 +17,7 @@ struct SourcePart {
   FlatCell cell;         // of a flat source
   bool is_whole = true;  // it is all of the source that stands above a common horizon
   std::vector<FacetToAdd> facets;
+  std::vector<RoundBody> rounds;
   bool is_complete = true;   // nothing else can hide anything
   bool is_hopeless = false;  // the list was too long and has been cut
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "shadow/round_cover.h"
 
 namespace troffer {
 
@@ -78,6 +79,7 @@ MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& f
   const uint64_t bits = numbers_of(cell, member, pass, purpose_shift);
   samples.shift = {unit_float(uint32_t(bits)), unit_float(uint32_t(bits >> 32))};
   cover(frame, facets, frame.to_canvas(Vec3d(r.origin)), samples.shift, mask);
+  cover(frame, facets.round(), Vec3d(r.origin), samples.shift, mask);
   samples.open = 0;
   if (!mask.is_any_open) return {0, 0};
   const Vec3d x(r.position);

@@ -132,6 +132,7 @@ void Plan::look(size_t c, bool is_coarse) {
                         cell.all_outline(), cell.is_disk);
   FacetList& list = settle_.lists[0];
   list.clear();
+  list.round().bodies = part_.rounds;
   list.add_many(frame, part_.facets);
   list.finish();
   const CellTask task{task_, frame, task_.unoccluded, stream, part_.is_complete, false};
@@ -169,7 +170,7 @@ void plan_cells(const SourceTask& task, const SourcePart& part, uint64_t stream,
   out.clear();
   memory.cells.clear();
   cut_cells(part.cell, part.hull, task.options.cells, memory.cells);
-  const bool has_masks = part.is_complete && !part.facets.empty();
+  const bool has_masks = part.is_complete && !(part.facets.empty() && part.rounds.empty());
   if (!has_masks || !(task.promise.error > 0)) {
     for (const FlatCell& c : memory.cells) out.push_back({c, task.options.lattice});
     return;

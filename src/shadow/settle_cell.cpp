@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "shadow/round_certificate.h"
+
 namespace troffer {
 
 Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetList& facets,
                     FacetFlags& flags, FacetList& left) {
   left.clear();
-  if (facets.size() > 0) {
-    const MaskFrame& frame = cell.frame;
+  const MaskFrame& frame = cell.frame;
+  if (facets.size() > facets.round().size()) {
     MaskPoint corners[8];
     for (int i = 0; i < hull.count; ++i)
       corners[i] = mask_point(frame, frame.to_canvas(hull.corners[size_t(i)]), {0, 0});
@@ -18,6 +20,11 @@ Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetL
         std::any_of(flags.triangles.begin(), flags.triangles.end(), hides_all))
       return Certificate::dark;
     left.keep_unsettled(facets, flags);
+  }
+  for (const RoundBody& body : facets.round().bodies) {
+    const RoundFlag flag = classify(body, frame, hull);
+    if (flag == RoundFlag::hides_all) return Certificate::dark;
+    if (flag == RoundFlag::unknown) left.round().bodies.push_back(body);
   }
   const bool is_lit = left.size() == 0 && cell.is_complete && !cell.source.does_horizon_hide();
   return is_lit ? Certificate::lit : Certificate::none;

@@ -14,9 +14,10 @@ bool is_mirrored(uint64_t stream, const SourceTask& task, uint32_t member) {
   return (mix64(stream + task.cluster.receivers[member].stream) & 1) != 0;
 }
 
-void set_list(const MaskFrame& frame, std::span<const FacetToAdd> facets, FacetList& list) {
+void set_list(const MaskFrame& frame, const SourcePart& part, FacetList& list) {
   list.clear();
-  list.add_many(frame, facets);
+  list.round().bodies = part.rounds;
+  list.add_many(frame, part.facets);
   list.finish();
 }
 
@@ -46,7 +47,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
                           is_mirrored(stream + task.request.stream, task, part.members[0]),
                           part.hull.centre, cell.all_outline(), cell.is_disk);
     if (!part.is_complete) results.rays.frames.push_back(frame);
-    set_list(frame, part.facets, memory.settle.lists[0]);
+    set_list(frame, part, memory.settle.lists[0]);
     const bool is_all = memory.members.size() == part.members.size();
     if (!is_all)
       memory.some_receivers.set(task.cluster, memory.members,
@@ -60,7 +61,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
 bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memory) {
   const MaskFrame frame(part.cell.plane, coarse_lattice, false, part.hull.centre,
                         part.cell.all_outline(), part.cell.is_disk);
-  set_list(frame, part.facets, memory.lists[0]);
+  set_list(frame, part, memory.lists[0]);
   return certify({task, frame, task.unoccluded, 0, false, true}, part.hull, memory.lists[0],
                  memory.flags, memory.lists[1]) == Certificate::dark;
 }
@@ -82,12 +83,25 @@ void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& 
   if (!others.members.empty()) settle_by_masks(task, others, stream, memory, results);
 }
 
+namespace {
+
+// The facets that reach into the sphere; they leave the part, and so does what lies within it and
+// hides nothing.
+std::vector<Quad> take_entering(const SphereSource& sphere, SourcePart& part) {
+  std::vector<Quad> entering;
+  for (const FacetToAdd& f : part.facets)
+    if (may_enter(f.quad, sphere) && !is_within(f.quad, sphere)) entering.push_back(f.quad);
+  std::erase_if(part.facets, [&](const FacetToAdd& f) { return may_enter(f.quad, sphere); });
+  std::erase_if(part.rounds, [&](const RoundBody& b) { return is_within(b, sphere); });
+  return entering;
+}
+
+}  // namespace
+
 void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& memory,
                         SourceResults& results) {
   const SphereSource& sphere = *task.request.sphere;
-  const size_t entering =
-      std::erase_if(part.facets, [&](const FacetToAdd& f) { return may_enter(f.quad, sphere); });
-  part.is_complete = part.is_complete && entering == 0;
+  const std::vector<Quad> entering = take_entering(sphere, part);
   ++results.counters.cells;
   const uint64_t stream = task.request.stream;
   for (const uint32_t m : part.members) {
@@ -95,12 +109,16 @@ void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& me
                           task.options.lattice, is_mirrored(stream, task, m), part.hull.centre, {},
                           true);
     const CellTask disk{task, frame, task.unoccluded, stream, part.is_complete, part.is_hopeless};
-    if (part.is_complete && part.facets.empty() && !task.does_horizon_hide()) {
+    const bool is_nothing = part.facets.empty() && part.rounds.empty() && entering.empty();
+    if (part.is_complete && is_nothing && !task.does_horizon_hide()) {
       add_lit(disk, m, memory.settle.masks, results);
       continue;
     }
     FacetList& list = memory.settle.lists[0];
-    set_list(frame, part.facets, list);
+    set_list(frame, part, list);
+    list.round().is_source_round = true;
+    list.round().source = {sphere.centre, sphere.radius};
+    list.round().entering = entering;
     if (!part.is_complete) results.rays.frames.push_back(frame);
     mask_cell(disk, {&m, 1}, list, memory.settle.masks, results);
   }

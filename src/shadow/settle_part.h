@@ -26,7 +26,7 @@ struct PartMemory {
 // may prove that all is dark; else rays are cast now.
 void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
                       ShadowScene& scene, PartMemory& memory, SourceResults& results);
-// Facets that may enter the sphere leave the part's list, which is then not complete.
+// Facets that may enter the sphere leave the part's list: what of them lies outside is covered.
 void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& memory,
                         SourceResults& results);
 

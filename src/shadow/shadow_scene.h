@@ -7,6 +7,7 @@
 
 #include "base/box.h"
 #include "base/quad.h"
+#include "base/round_body.h"
 #include "shadow/coverage_mask.h"
 #include "shadow/shaft.h"
 
@@ -34,18 +35,19 @@ struct ShadowHit {
 // is_front_only where a facet is part of a closed surface outside of which both ends lie.
 struct ShadowCandidates {
   std::vector<FacetToAdd> facets;
+  std::vector<RoundBody> rounds;
   bool is_complete = true;   // nothing else can hide anything inside the shaft
   bool is_too_long = false;  // there are more facets: fewer receivers, or less source, would help
 };
 
-// The scene as certified visibility sees it: a few virtual calls per cluster and source; for single rays
-// none but facet(), of those that are stopped. It may keep memory between calls: one for each
+// The scene as certified visibility sees it: a few virtual calls per cluster and source; for single
+// rays none but facet(), of those that are stopped. It may keep memory between calls: one for each
 // thread.
 class ShadowScene {
  public:
   virtual ~ShadowScene() = default;
-  // Sets `out` to all facets that may have a point inside all planes, at most about `most`. What is
-  // no facet, but for `own`, makes the list incomplete.
+  // Sets `out` to all facets, spheres and disks but `own` that may have a point inside all planes,
+  // at most about `most` of each. What is none of these makes the list incomplete.
   virtual void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
                           size_t most, uint64_t own, ShadowCandidates& out) = 0;
   // hits[i]: the first thing on segments[i] but for segments[i].own, at which a segment ends free.

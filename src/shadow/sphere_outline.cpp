@@ -27,13 +27,30 @@ Parallelogram outline_of(const SphereSource& s, const Vec3d& x) {
 
 // Whether a facet may reach into the sphere, where it would hide the disk but not the cap.
 bool may_enter(const Quad& q, const SphereSource& s) {
-  Vec3d lower(q[0]), upper = lower;
-  for (const Vec3& v : q) {
-    lower = min(lower, Vec3d(v));
-    upper = max(upper, Vec3d(v));
+  const double radius = s.radius * (1 + 1e-6) + 1e-6 * length(s.centre);
+  Vec3d corners[4];
+  for (size_t i = 0; i < 4; ++i) corners[i] = Vec3d(q[i]) - s.centre;
+  const Vec3d area = cross(corners[2] - corners[0], corners[3] - corners[1]);
+  const double size = length(area);
+  bool is_inside_edges = size > 0;  // what is nearest in the plane lies on the facet
+  for (size_t i = 0; i < 4; ++i) {
+    const Vec3d &a = corners[i], b = corners[(i + 1) % 4], way = b - a;
+    const double square = length_squared(way);
+    const double t = square > 0 ? std::clamp(-dot(a, way) / square, 0.0, 1.0) : 0;
+    if (length(a + way * t) < radius) return true;
+    is_inside_edges = is_inside_edges && dot(cross(way, -a), area) >= 0;
   }
-  const Vec3d nearest = max(lower, min(upper, s.centre));
-  return length(nearest - s.centre) < s.radius * (1 + 1e-6);
+  return is_inside_edges && std::abs(dot(area, corners[0])) < radius * size;
+}
+
+bool is_within(const Quad& q, const SphereSource& s) {
+  for (const Vec3& v : q)
+    if (!(length(Vec3d(v) - s.centre) < s.radius)) return false;
+  return true;
+}
+
+bool is_within(const RoundBody& body, const SphereSource& s) {
+  return length(Vec3d(body.centre) - s.centre) + double(body.radius) < s.radius;
 }
 
 }  // namespace troffer

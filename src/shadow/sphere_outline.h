@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/quad.h"
+#include "base/round_body.h"
 #include "shadow/shadow_source.h"
 #include "shadow/shaft.h"
 
@@ -18,5 +19,8 @@ Parallelogram outline_of(const SphereSource& sphere, const Vec3d& x);
 
 // Whether a facet may reach into the sphere, where it would hide the disk but not the cap.
 bool may_enter(const Quad& facet, const SphereSource& sphere);
+// Whether all of it lies within the sphere, where it hides nothing.
+bool is_within(const Quad& facet, const SphereSource& sphere);
+bool is_within(const RoundBody& body, const SphereSource& sphere);
 
 }  // namespace troffer

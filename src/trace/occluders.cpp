@@ -72,11 +72,10 @@ bool is_outside(const Quad& q, const PlaneSet& planes) {
   return kernels.facet(&q[0].x, planes.x, planes.y, planes.z, planes.distance, planes.padded);
 }
 
-bool is_outside(const Box& b, const PlaneSet& planes) {
+// Of a sphere, up to `radius` from the centre.
+bool is_outside(const Vec3& centre, float radius, const PlaneSet& planes) {
   for (int p = 0; p < planes.count; ++p)
-    if ((planes.x[p] > 0 ? b.lower.x : b.upper.x) * planes.x[p] +
-            (planes.y[p] > 0 ? b.lower.y : b.upper.y) * planes.y[p] +
-            (planes.z[p] > 0 ? b.lower.z : b.upper.z) * planes.z[p] >
+    if (centre.x * planes.x[p] + centre.y * planes.y[p] + centre.z * planes.z[p] - radius >
         planes.distance[p])
       return true;
   return false;
@@ -250,9 +249,16 @@ void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found)
       const uint32_t item = leaf_items_[i];
       if (item >= facets) {
         const Other& o = others_[item - facets];
-        const bool is_own = o.key == found.own && o.key != no_key;
-        found.others +=
-            is_own || (o.is_flat ? is_outside(o.cover, set) : is_outside(o.bounds, set)) ? 0 : 1;
+        if (o.key == found.own && o.key != no_key) continue;
+        if (o.is_flat ? is_outside(o.cover, set)
+                      : is_outside(o.round.centre, o.bounds.upper.x - o.round.centre.x, set))
+          continue;
+        if (!(o.round.radius > 0)) {
+          ++found.others;
+          continue;
+        }
+        if (found.rounds.size() >= most) return false;
+        found.rounds.push_back(o.round);
       } else if (!is_outside(facets_[item], set)) {
         if (found.facets.size() >= most) return false;
         found.facets.push_back(item);

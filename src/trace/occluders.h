@@ -3,9 +3,9 @@
 //
 // Triangles of a mesh that lie in one plane are merged to larger triangles and convex
 // quadrilaterals where that is exact to rounding (base/merge_polygons.h), so that a tessellated
-// wall is one facet. Each triangle with area belongs to one facet, whole. What is no opaque facet
-// (spheres, disks, meshes with an alpha mask) is reported by its bounds alone: only rays can tell
-// what it hides.
+// wall is one facet. Each triangle with area belongs to one facet, whole. Spheres and disks are
+// reported as they are, meshes with an alpha mask by their bounds alone: only rays can tell what
+// these hide.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 
 #include "base/box.h"
 #include "base/quad.h"
+#include "base/round_body.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -47,12 +48,13 @@ class Occluders {
     return uint64_t(geometry) << 32 | primitive;
   }
 
-  // Appends to `facets` the ids of all facets of which a point may lie inside all planes, until
-  // more than `most` have been found; counts what is no facet in `others`. False if it stopped
-  // early: the list is then incomplete. A facet is left out only if one plane has all of it
-  // outside.
+  // Appends to `facets` the ids of all facets of which a point may lie inside all planes, and to
+  // `rounds` spheres and disks, until more than `most` have been found; counts what is neither in
+  // `others`. Where it stops early the list is incomplete. A facet is left out only if one plane
+  // has all of it outside.
   struct Found {
     std::vector<uint32_t> facets;
+    std::vector<RoundBody> rounds;
     uint32_t others = 0;
     // A sphere or disk that does not count: key() of what a hit on it says; none by default.
     uint64_t own = no_key;
@@ -83,7 +85,8 @@ class Occluders {
     Box bounds;
     Quad cover;
     bool is_flat;
-    uint64_t key;  // of a hit on it
+    RoundBody round;  // of no radius: it is neither sphere nor disk
+    uint64_t key;     // of a hit on it
   };
   std::vector<Other> others_;
   std::vector<std::vector<uint32_t>> facet_of_;  // per mesh, per triangle

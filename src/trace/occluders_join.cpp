@@ -63,10 +63,10 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
 }
 
 void Occluders::add_others(const Scene& scene) {
-  const auto add_flat = [&](const Quad& q, uint64_t k) {
+  const auto add_flat = [&](const Quad& q, const RoundBody& round, uint64_t k) {
     Box b;
     for (const Vec3& v : q) b.grow(v);
-    others_.push_back({b, q, true, k});
+    others_.push_back({b, q, true, round, k});
   };
   const auto meshes = uint32_t(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
@@ -74,7 +74,7 @@ void Occluders::add_others(const Scene& scene) {
     for (const Triangle& t : mesh.triangles)
       add_flat(
           {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], mesh.positions[t[2]]},
-          no_key);
+          {}, no_key);
   }
   for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
@@ -84,14 +84,14 @@ void Occluders::add_others(const Scene& scene) {
     Box b;
     b.grow(s.centre - reach);
     b.grow(s.centre + reach);
-    others_.push_back({b, {}, false, key(meshes, i)});
+    others_.push_back({b, {}, false, {s.centre, s.radius, {}}, key(meshes, i)});
   }
   for (uint32_t i = 0; i < scene.disks.size(); ++i) {
     const Disk& d = scene.disks[i];
     const Frame frame(d.normal);
     const Vec3 x = frame.tangent * (1.0001f * d.radius), y = frame.bitangent * (1.0001f * d.radius);
     add_flat({d.centre - x - y, d.centre + x - y, d.centre + x + y, d.centre - x + y},
-             key(meshes + 1, i));
+             {d.centre, d.radius, d.normal}, key(meshes + 1, i));
   }
 }
 

@@ -172,9 +172,17 @@ inline void add_occluders(Random& r, const Placing& at, CertificateScene& out) {
   if (r.next_double() < 0.05)
     for (int i = 0; i < 64; ++i)
       add_facet(s, at, {-1 + i / 32.0, -1, 1.2}, {1.0 / 64, 0, 0}, {0, 2, 0});
-  if (r.next_double() < 0.05)
-    s.disks.push_back(
-        {at(random_in_cube(r) + Vec3d{0, 0, 1}), {0, 0, 1}, float(0.1 * at.scale), 0, no_light});
+  if (r.next_double() < 0.5) return;
+  const int rounds = int(r.next_double() * 4);
+  for (int i = 0; i < rounds; ++i) {
+    const Vec3 centre = at(random_in_cube(r) + Vec3d{0, 0, 1.1});
+    const auto radius = float(log_uniform(r, 0.002, 1.5) * at.scale);
+    const bool is_disk = r.next_double() < 0.5;
+    if (is_disk)
+      s.disks.push_back({centre, Vec3(normalize(random_in_cube(r))), radius, 0, no_light});
+    else
+      s.spheres.push_back({centre, radius});
+  }
 }
 
 // A plate about a sphere, or beside it, at the height of its centre or so: what some receivers see

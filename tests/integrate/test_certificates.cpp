@@ -55,9 +55,38 @@ int meets(const Vec3d& from, const Vec3d& to, const Vec3d& a, const Vec3d& b, co
   return is_near ? -1 : 1;
 }
 
-// Over all facets: surely hidden, surely free, or neither.
-int is_hidden(const Occluders& occluders, const Vec3d& from, const Vec3d& to, double tolerance) {
+// The same for a sphere, which hides nothing from within …
+int meets(const Vec3d& from, const Vec3d& to, const Sphere& s, double tolerance) {
+  const Vec3d a = Vec3d(s.centre) - from, d = to - from;
+  const double t = std::clamp(dot(a, d) / length_squared(d), 0.0, 1.0);
+  const double inside = double(s.radius) - length(a - d * t);
+  if (inside < -tolerance) return 0;
+  const double ends = std::min(length(a), length(a - d));
+  return inside < tolerance || ends < double(s.radius) + tolerance ? -1 : 1;
+}
+
+// … and for a disk.
+int meets(const Vec3d& from, const Vec3d& to, const Disk& disk, double tolerance) {
+  const Vec3d n = normalize(Vec3d(disk.normal)), c(disk.centre);
+  const double h0 = dot(n, from - c), h1 = dot(n, to - c);
+  if (std::abs(h0) < tolerance || std::abs(h1) < tolerance) return -1;
+  if ((h0 > 0) == (h1 > 0)) return 0;
+  const double inside = double(disk.radius) - length(from + (to - from) * (h0 / (h0 - h1)) - c);
+  return inside > tolerance ? 1 : inside < -tolerance ? 0 : -1;
+}
+
+// Over all that may hide a source: surely hidden, surely free, or neither.
+int is_hidden(const CertificateScene& scene, const Occluders& occluders, const Vec3d& from,
+              const Vec3d& to, double tolerance) {
   int answer = 0;
+  const auto look = [&](int met) {
+    if (answer != 1 && met != 0) answer = met;
+  };
+  const size_t own = scene.shape == SourceShape::sphere ? 1 : 0;  // the source is the first
+  for (size_t i = own; i < scene.scene.spheres.size(); ++i)
+    look(meets(from, to, scene.scene.spheres[i], 4 * tolerance));
+  for (const Disk& d : scene.scene.disks) look(meets(from, to, d, 4 * tolerance));
+  if (answer == 1) return 1;
   for (uint32_t f = 0; f < occluders.facet_count(); ++f) {
     const Quad& q = occluders.facet(f);
     const Vec3d a(q[0]), b(q[1]), c(q[2]), d(q[3]);
@@ -119,6 +148,21 @@ Vec3d point_of_source(const CertificateScene& s, Random& r) {
   return sum / weights;
 }
 
+// Near the rim of a sphere or disk, as it may be seen from x.
+Vec3d point_at_rim(const Scene& scene, const Vec3d& x, Random& r) {
+  const size_t n = scene.spheres.size() + scene.disks.size();
+  const size_t i = std::min(size_t(r.next_double() * double(n)), n - 1);
+  const double off = 1 + (r.next_double() - 0.5) * log_uniform(r, 1e-5, 1);
+  if (i >= scene.spheres.size()) {
+    const Disk& d = scene.disks[i - scene.spheres.size()];
+    const Vec3d way = cross(Vec3d(d.normal), random_in_cube(r));
+    return Vec3d(d.centre) + normalize(way) * (double(d.radius) * off);
+  }
+  const Sphere& s = scene.spheres[i];
+  const Vec3d way = Vec3d(s.centre) - x;
+  return Vec3d(s.centre) + normalize(cross(way, random_in_cube(r))) * (double(s.radius) * off);
+}
+
 // Where a ray may betray a certificate: through a facet's inside, or past its edge.
 Vec3d point_at_facet(const Occluders& occluders, double tolerance, Random& r) {
   const Quad& q = occluders.facet(uint32_t(r.next_double() * double(occluders.facet_count())));
@@ -172,14 +216,16 @@ void check_scene(uint64_t seed, std::array<Tally, source_shapes>& tallies) {
     const Vec3d x(receiver.origin), p(receiver.position);
     for (int k = 0; k < 24; ++k) {
       Vec3d end;
-      const Vec3d through = k % 4 == 0 || occluders.facet_count() == 0
+      const bool has_round = s.scene.spheres.size() + s.scene.disks.size() > 0;
+      const Vec3d through = has_round && k % 4 == 1 ? point_at_rim(s.scene, x, r)
+                            : k % 4 == 0 || occluders.facet_count() == 0
                                 ? point_of_source(s, r)
                                 : point_at_facet(occluders, tolerance, r);
       if (!aim(s, x, through, is_lit ? 2.01e-6 * magnitude : 0, end)) continue;
       if (dot(end - p, Vec3d(receiver.horizon)) <= 5e-6 * magnitude) continue;
       if (dot(end - p, Vec3d(receiver.normal)) <= 5e-6 * magnitude) continue;
       ++tally.rays;
-      const int hidden = is_hidden(occluders, x, end, tolerance);
+      const int hidden = is_hidden(s, occluders, x, end, tolerance);
       if (hidden < 0 || (hidden == 1) != is_lit) continue;
       if (tally.contradictions++ < 3)
         MESSAGE("seed ", seed, ", shape ", int(s.shape), ", receiver ", i, ": ",

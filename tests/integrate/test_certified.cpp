@@ -166,11 +166,20 @@ TEST_CASE("certified: penumbrae are those of fixed sampling") {
                     {Vec3{x, -2, 1.8f}, {x + 0.03f, -2, 1.8f}, {x + 0.03f, 2, 1.8f}, {x, 2, 1.8f}});
          }
        }},
-      {"a ball, which is no facet, before a two-sided source and a square",
+      {"a ball before a two-sided source and a square",
        [](Scene& s) {
          add_two_sided(s);
          add_ceiling_light(s, 1, 2, Rgb{5});
          s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_light});
+       }},
+      {"a leaf, which only rays meet, before a two-sided source and a square",
+       [](Scene& s) {
+         add_two_sided(s);
+         add_ceiling_light(s, 1, 2, Rgb{5});
+         add_leaf(s, {Vec3{-0.3f, -0.7f, 0.8f},
+                      {0.3f, -0.7f, 0.7f},
+                      {0.3f, -0.1f, 0.7f},
+                      {-0.3f, -0.1f, 0.8f}});
        }},
   };
   const std::vector<Vec3> points{{0, -0.5f, 0}, {-0.7f, -0.6f, 0}, {0.8f, -0.9f, 0}};
@@ -212,7 +221,10 @@ TEST_CASE("certified: what a scratch was used for before leaves no trace") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});
-  s.spheres.push_back({{0, -0.4f, 0.8f}, 0.3f, false, 0, no_light});  // rays are needed
+  add_leaf(s, {Vec3{-0.3f, -0.7f, 0.8f},
+               {0.3f, -0.7f, 0.8f},
+               {0.3f, -0.1f, 0.8f},
+               {-0.3f, -0.1f, 0.8f}});  // rays are needed
   add_block(s, grey, {-0.6f, -0.7f, 0.7f}, {0.6f, 0.3f, 0.75f});
   add_floor(s, grey);
   const PreparedScene scene(std::move(s));

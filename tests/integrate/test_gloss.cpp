@@ -11,8 +11,8 @@ using namespace troffer::test;
 
 namespace {
 
-// A rough floor under a panel; `ball`: beside the panel's shadow, so that lists are not complete.
-Scene glossy_room(MaterialKind kind, float roughness, bool has_ball) {
+// A rough floor under a panel; `leaf`: between the two, so that lists are not complete.
+Scene glossy_room(MaterialKind kind, float roughness, bool has_leaf) {
   Scene s;
   Material m;
   m.kind = kind;
@@ -22,7 +22,8 @@ Scene glossy_room(MaterialKind kind, float roughness, bool has_ball) {
   const uint32_t floor = add_material(s, m);
   add_quad(s, floor, {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
   add_ceiling_light(s, 1.0f, 2, Rgb{5});
-  if (has_ball) s.spheres.push_back({{0.2f, 0.1f, 1}, 0.2f, false, floor, -1});
+  if (has_leaf)
+    add_leaf(s, {Vec3{0, -0.1f, 1}, {0.4f, -0.1f, 1.1f}, {0.4f, 0.3f, 1.1f}, {0, 0.3f, 1}});
   return s;
 }
 

@@ -32,6 +32,14 @@ inline uint32_t add_quad(Scene& s, uint32_t material, const std::array<Vec3, 4>&
   return uint32_t(s.meshes.size() - 1);
 }
 
+// An opaque sheet with an alpha mask: what lists of occluders leave to rays.
+inline void add_leaf(Scene& s, const std::array<Vec3, 4>& corners) {
+  Material m;
+  m.is_alpha_masked = true;
+  const uint32_t masked = add_material(s, m);
+  add_quad(s, masked, corners);
+}
+
 // Makes a quad a polygon source.
 inline void make_light(Scene& s, uint32_t mesh, Rgb radiance, bool is_two_sided = false) {
   Light e;
