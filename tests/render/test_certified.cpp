@@ -26,21 +26,21 @@ RenderOptions certified_options() {
 }
 
 // Where rays decide, what one cluster found helps the next.
-Scene room_with_disks() {
+Scene room_with_leaves() {
   Scene s = mixed_room();
-  for (int i = 0; i < 40; ++i)
-    s.disks.push_back({{-1.5f + 0.3f * float(i % 8), -1.2f + 0.4f * float(i / 8), 1.6f},
-                       {0, 0, 1},
-                       0.1f,
-                       0,
-                       no_light});
+  for (int i = 0; i < 40; ++i) {
+    const float x = -1.6f + 0.3f * float(i % 8), y = -1.3f + 0.4f * float(i / 8), size = 0.2f;
+    add_leaf(
+        s,
+        {Vec3{x, y, 1.6f}, {x + size, y, 1.6f}, {x + size, y + size, 1.6f}, {x, y + size, 1.6f}});
+  }
   return s;
 }
 
 }  // namespace
 
 TEST_CASE("certified: a crop holds the same pixels as the whole picture") {
-  const PreparedScene scene(room_with_disks());
+  const PreparedScene scene(room_with_leaves());
   RenderOptions o = certified_options();
   o.indirect = Indirect::none;
   o.aovs = {Aov::direct, Aov::shadow_rays, Aov::error};
@@ -60,7 +60,7 @@ TEST_CASE("certified: a crop holds the same pixels as the whole picture") {
 }
 
 TEST_CASE("certified: byte-identical for any number of threads") {
-  const PreparedScene scene(room_with_disks());
+  const PreparedScene scene(room_with_leaves());
   for (const Indirect indirect : {Indirect::automatic, Indirect::none}) {
     RenderOptions o = certified_options();
     o.indirect = indirect;
