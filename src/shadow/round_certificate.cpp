@@ -8,29 +8,31 @@ namespace troffer {
 
 namespace {
 
-// Corners of receivers and cell, from the body's centre.
+// Corners of receivers and cell, from the body's centre; a cell may be far away.
 struct Corners {
   std::array<Vec3d, 8 + most_source_corners> at;
   size_t receivers = 0, count = 0;
-  double slack = 0;  // how far off receivers, and all that is rounded, may lie
+  double slack = 0, cell_slack = 0;  // how far off receivers, and corners of the cell, may lie
 
   Corners(const RoundBody& body, const MaskFrame& frame, const ReceiverHull& hull) {
     const Vec3d centre(body.centre);
-    double magnitude = 0;
+    const auto largest = [](const Vec3d& p) {
+      return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    };
+    double magnitude = largest(centre) + double(body.radius);
     const auto add = [&](const Vec3d& p) {
-      for (size_t a = 0; a < 3; ++a) magnitude = std::max(magnitude, std::abs(p[a]));
+      magnitude = std::max(magnitude, largest(p));
       at[count++] = p - centre;
     };
     for (int i = 0; i < hull.count; ++i) add(hull.corners[size_t(i)]);
     receivers = count;
+    constexpr double rounding = 2e-6;
+    slack = hull.slack + rounding * magnitude;
     for (int i = 0; i < frame.corner_count(); ++i) {
       const MaskFrame::Corner& c = frame.corners()[i];
       add(frame.first_sample() + frame.step_k() * double(c.k) + frame.step_j() * double(c.j));
     }
-    for (size_t a = 0; a < 3; ++a)
-      magnitude = std::max(magnitude, std::abs(centre[a]) + double(body.radius));
-    constexpr double rounding = 2e-6;
-    slack = hull.slack + rounding * magnitude;
+    cell_slack = rounding * magnitude;
   }
   std::span<const Vec3d> of_receivers() const { return {at.data(), receivers}; }
   std::span<const Vec3d> of_cell() const { return {at.data() + receivers, count - receivers}; }
@@ -46,9 +48,10 @@ double reach(const RoundBody& body, const Vec3d& n) {
 
 // Whether a plane across n, unit, parts the body from all corners, and so from every segment.
 bool parts(const RoundBody& body, const Corners& c, const Vec3d& n) {
-  double least = dot(n, c.at[0]);
-  for (size_t i = 1; i < c.count; ++i) least = std::min(least, dot(n, c.at[i]));
-  return least > reach(body, n) + c.slack;
+  const double least = reach(body, n);
+  for (size_t i = 0; i < c.count; ++i)
+    if (!(dot(n, c.at[i]) > least + (i < c.receivers ? c.slack : c.cell_slack))) return false;
+  return true;
 }
 
 // Looks for such a plane: across the way to the point of the hull that lies nearest, to which steps
@@ -76,19 +79,21 @@ bool hides_nothing(const RoundBody& body, const Corners& c) {
   return false;
 }
 
-// Whether the segment surely passes through the body, were its ends moved by `slack`.
-bool passes_through(const RoundBody& body, const Vec3d& x, const Vec3d& y, double slack) {
+// Whether the segment surely passes through the body, were its ends moved by as much as they may.
+bool passes_through(const RoundBody& body, const Vec3d& x, const Vec3d& y, const Corners& c) {
   const Vec3d d = y - x;
   const double radius = body.radius;
   if (!body.is_disk()) {
     const double square = length_squared(d);
     const double t = square > 0 ? std::clamp(-dot(x, d) / square, 0.0, 1.0) : 0;
-    return length(x + d * t) < radius - slack;
+    return length(x + d * t) < radius - (1 - t) * c.slack - t * c.cell_slack;
   }
   const Vec3d n(body.normal);
   const double from = dot(n, x), to = dot(n, y), across = std::abs(from - to);
-  if (!(std::min(std::abs(from), std::abs(to)) > slack) || (from > 0) == (to > 0)) return false;
-  const Vec3d p = x + d * (from / (from - to));
+  if (!(std::abs(from) > c.slack) || !(std::abs(to) > c.cell_slack)) return false;
+  if ((from > 0) == (to > 0)) return false;
+  const double t = from / (from - to), slack = (1 - t) * c.slack + t * c.cell_slack;
+  const Vec3d p = x + d * t;
   return length(p) < radius - 2 * slack * (1 + length(d) / across);
 }
 
@@ -103,13 +108,13 @@ bool hides_all(const RoundBody& body, const Corners& c) {
     const double size = length(normal);
     if (!(size > 0)) return false;
     const double height = dot(normal, cell[0]) / size;
-    if (!(std::abs(height) > double(body.radius) + c.slack)) return false;
+    if (!(std::abs(height) > double(body.radius) + c.cell_slack)) return false;
     for (const Vec3d& x : c.of_receivers())
       if (!(length(x) > double(body.radius) + c.slack)) return false;
   }
   for (const Vec3d& x : c.of_receivers())
     for (const Vec3d& y : c.of_cell())
-      if (!passes_through(body, x, y, c.slack)) return false;
+      if (!passes_through(body, x, y, c)) return false;
   return true;
 }
 
