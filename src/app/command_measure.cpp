@@ -36,7 +36,7 @@ int run_measure(const MeasureCommand& c) {
                      c.is_quiet, stop);
   options.preparation = preparation.get();
   const std::unique_ptr<CellStore> cells =
-      load_kept_cells(scene, options.method, options.indirect, c.solution);
+      cells_of_file(scene, options.method, options.indirect, c.solution);
   options.cells = cells.get();
   MeasureResult result;
   {
@@ -47,7 +47,7 @@ int run_measure(const MeasureCommand& c) {
   if (!c.is_quiet && result.counters.nan_samples > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as 0\n",
                result.counters.nan_samples);
-  if (result.is_complete) save_kept_cells(scene, cells.get(), c.solution, c.is_quiet);
+  if (result.is_complete) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   const std::string csv = measurements_csv(points, result);
   if (c.output.empty())
     std::fputs(csv.c_str(), stdout);

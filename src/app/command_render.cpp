@@ -140,18 +140,23 @@ WriteOptions write_options(const RenderCommand& c, const Camera& camera, const I
   return write;
 }
 
+// What can be said of the command before any work is done; the files that it will write.
+std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
+  c.options.method = parse_method(c.method);
+  c.options.indirect = indirect_with(c.solution, c.options.method, c.options.indirect);
+  check_method(c.options.method, c.options.indirect, c.solution);
+  for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
+  std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
+  if (!c.solution.empty() && needs_cells(c.options.method, c.options.indirect))
+    reserved.emplace_back(c.solution);
+  return reserved;
+}
+
 }  // namespace
 
 int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
-  c.options.method = parse_method(c.method);
-  c.options.indirect = indirect_with(c.solution, c.options.method, c.options.indirect);
-  check_method(c.options.method, c.options.indirect, c.solution);
-  for (const std::string& path : c.outputs)
-    image_format(path);  // a wrong ending is a usage error before any work is done
-  std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
-  if (!c.solution.empty() && needs_cells(c.options.method, c.options.indirect))
-    reserved.emplace_back(c.solution);
+  const std::vector<OutputReservation> reserved = check_and_reserve(c);
 
   Seconds seconds;
   c.daylight.up = c.up;
@@ -178,7 +183,7 @@ int run_render(RenderCommand c) {
   cpu = cpu_seconds();
   c.options.preparation = preparation.get();
   const std::unique_ptr<CellStore> cells =
-      load_kept_cells(scene, c.options.method, c.options.indirect, c.solution);
+      cells_of_file(scene, c.options.method, c.options.indirect, c.solution);
   c.options.cells = cells.get();
   RenderResult result;
   {
@@ -192,7 +197,7 @@ int run_render(RenderCommand c) {
   mark = Clock::now();
   const WriteOptions write = write_options(c, camera, result.layers[0].image);
   for (const std::string& path : c.outputs) write_image(path, result.layers, write);
-  if (result.is_complete) save_kept_cells(scene, cells.get(), c.solution, c.is_quiet);
+  if (result.is_complete) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())
     write_file(c.stats, statistics_json(c, result.statistics, seconds, seconds_since(start),

@@ -9,7 +9,6 @@
 
 #include "image/atomic_file.h"
 #include "image/read_image.h"
-#include "render/radiosity.h"
 
 namespace troffer {
 
@@ -27,18 +26,17 @@ SolutionKind kind_of_solution(const std::string& path) {
                                                           : SolutionKind::radiosity;
 }
 
-std::unique_ptr<CellStore> load_kept_cells(const PreparedScene& scene, Method method,
-                                           Indirect indirect, const std::string& path) {
+std::unique_ptr<CellStore> cells_of_file(const PreparedScene& scene, Method method,
+                                         Indirect indirect, const std::string& path) {
   if (path.empty() || !needs_cells(method, indirect)) return nullptr;
   if (kind_of_solution(path) == SolutionKind::missing) return std::make_unique<CellStore>();
-  return std::make_unique<CellStore>(
-      load_cells(read_file_bytes(path), path, radiosity_scene_key(scene.scene), scene.tracer));
+  return std::make_unique<CellStore>(load_kept_cells(scene, read_file_bytes(path), path));
 }
 
-void save_kept_cells(const PreparedScene& scene, const CellStore* store, const std::string& path,
-                     bool is_quiet) {
+void keep_cells(const PreparedScene& scene, const CellStore* store, const std::string& path,
+                bool is_quiet) {
   if (store == nullptr || !store->map || !store->is_changed) return;
-  const std::vector<uint8_t> bytes = save_cells(*store, radiosity_scene_key(scene.scene));
+  const std::vector<uint8_t> bytes = save_kept_cells(scene, *store);
   AtomicFile file(path);
   file.write(bytes);
   file.commit();

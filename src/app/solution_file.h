@@ -6,8 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "integrate/methods.h"
-#include "integrate/prepared_scene.h"
+#include "render/kept_cells.h"
 
 namespace troffer {
 
@@ -18,11 +17,11 @@ SolutionKind kind_of_solution(const std::string& path);
 
 // What is kept for methods that take cells: that of the file, or nothing yet if there is no file;
 // null where the method takes none, or no file was asked for.
-std::unique_ptr<CellStore> load_kept_cells(const PreparedScene& scene, Method method,
-                                           Indirect indirect, const std::string& path);
+std::unique_ptr<CellStore> cells_of_file(const PreparedScene& scene, Method method,
+                                         Indirect indirect, const std::string& path);
 
 // Writes them, if there is anything new; store: null where there is nothing to keep.
-void save_kept_cells(const PreparedScene& scene, const CellStore* store, const std::string& path,
-                     bool is_quiet);
+void keep_cells(const PreparedScene& scene, const CellStore* store, const std::string& path,
+                bool is_quiet);
 
 }  // namespace troffer

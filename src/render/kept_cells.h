@@ -1,0 +1,21 @@
+// Cells that a view leaves for the next (cells/cell_store.h), as bytes: the façade.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cells/cell_store.h"
+#include "integrate/methods.h"
+#include "integrate/prepared_scene.h"
+
+namespace troffer {
+
+std::vector<uint8_t> save_kept_cells(const PreparedScene& scene, const CellStore& store);
+
+// Throws InputError, naming `file`, for bytes that are no cells of this scene, or damaged.
+CellStore load_kept_cells(const PreparedScene& scene, std::span<const uint8_t> bytes,
+                          const std::string& file);
+
+}  // namespace troffer
