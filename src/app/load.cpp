@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "base/error.h"
 #include "import/import.h"
+#include "scene/joined_lights.h"
 
 namespace troffer {
 
@@ -14,6 +15,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& lights
   if (daylight != nullptr) add_daylight(scene, *daylight);
   if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
+  scene = with_joined_lights(std::move(scene));
   if (is_quiet) return scene;
   constexpr size_t most_lines = 20;
   const auto& entries = scene.warnings.entries();
