@@ -8,6 +8,7 @@
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
+#include "app/solution_file.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
 #include "import/file.h"
@@ -30,7 +31,26 @@ void check_command(const RadiosityCommand& c) {
     for (const char* other : {"exr", "hdr", "pfm", "png", "jpg", "pbrt", "obj", "csv", "json"})
       if (ending == other)
         throw UsageError("radiosity writes .gltf, .glb or a solution (.trad), not ." + ending);
+    if (c.makes_cells && (ending == "gltf" || ending == "glb"))
+      throw UsageError("--cells are not shown in ." + ending + ": give a file for --solution");
   }
+}
+
+// --cells: kept for --method certified, as render --solution would.
+int make_cell_files(const RadiosityCommand& c, const PreparedScene& scene, const StopFlag& stop) {
+  constexpr double error = 0.01;  // as render by itself
+  CellStore store;
+  {
+    ProgressBar bar("cells", c.is_quiet);
+    store = cells_of_surfaces(
+        scene, error, c.options.seed, c.threads, [&](double f) { bar.update(f); }, stop);
+  }
+  if (!store.map) {
+    fmt::print(stderr, "interrupted: wrote nothing\n");
+    return exit_interrupted;
+  }
+  for (const std::string& path : c.outputs) keep_cells(scene, &store, path, c.is_quiet);
+  return exit_done;
 }
 
 void write_output(const std::string& path, const PreparedScene& scene,
@@ -123,6 +143,9 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
                 "for render --solution; may be repeated")
       ->required()
       ->allow_extra_args(false);
+  s->add_flag("--cells", c.makes_cells,
+              "Cells for --method certified instead, of all surfaces: for render and measure "
+              "--solution");
   s->add_option("--element-size", c.options.meshing.element_size,
                 "Longest edge of an element, metres [by the scene]")
       ->check(CLI::PositiveNumber);
@@ -141,6 +164,7 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
   s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_daylight_options(*s, c.daylight);
   s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
   s->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
   s->add_option("--stats", c.stats, "Write counts and times to this JSON file");
@@ -152,14 +176,15 @@ int run_radiosity(const RadiosityCommand& c) {
   check_command(c);
   const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   Seconds seconds;
-  Scene imported = load_scene(c.scene, c.lights, nullptr, c.is_quiet);
+  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   const PreparedScene scene(std::move(imported));
   seconds.build = seconds_since(mark);
 
-  warn_of_lights_left_out(scene, c.is_quiet);
   const StopFlag& stop = install_stop_handlers();
+  if (c.makes_cells) return make_cell_files(c, scene, stop);
+  warn_of_lights_left_out(scene, c.is_quiet);
   RadiosityResult result;
   {
     ProgressBar bar("radiosity", c.is_quiet);

@@ -71,6 +71,8 @@ struct RadiosityCommand {
   std::vector<std::string> outputs;
   RadiosityOptions options;
   std::vector<std::string> lights;
+  DaylightOptions daylight;
+  bool makes_cells = false;  // for certified, instead of a solution
   std::string stats;
   int threads = 0;
   bool is_quiet = false;

@@ -14,6 +14,9 @@ CellPilot picture_pilot(const ViewingCamera& camera, const ImageSize& size, uint
 
 CellPilot points_pilot(const PreparedScene& scene, const std::vector<MeasuringPoint>& points);
 
+// Places all over the surfaces of the scene, as many on every square metre of either side.
+CellPilot surfaces_pilot(const PreparedScene& scene, uint64_t seed);
+
 // Points are often given on the very surface they measure, rounded to a few digits: rays start
 // some rounding errors of their coordinates off it, and never less than a hundredth of a millimetre
 // (or a millionth of a scene smaller than ten metres).

@@ -9,8 +9,14 @@
 #include "cells/cell_store.h"
 #include "integrate/methods.h"
 #include "integrate/prepared_scene.h"
+#include "render/progress.h"
 
 namespace troffer {
+
+// Cells for all of the scene, from wherever it will be seen; `error`, of render, bounds that of
+// their direct light. Empty once `stop` is set.
+CellStore cells_of_surfaces(const PreparedScene& scene, double error, uint64_t seed, int threads,
+                            const ProgressCallback& progress, const StopFlag& stop);
 
 std::vector<uint8_t> save_kept_cells(const PreparedScene& scene, const CellStore& store);
 

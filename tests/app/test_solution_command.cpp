@@ -1,6 +1,7 @@
 // render and measure --solution by cells: kept in a file, and gone on from.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "image/read_image.h"
@@ -14,7 +15,7 @@ namespace {
 std::vector<std::string> render_of(const Folder& folder, const std::string& scene,
                                    std::vector<std::string> more) {
   more.insert(more.begin(), {"render", scene, "-o", folder.path("o.exr"), "--error", ".05",
-                             "--solution", folder.path("a.cells")});
+                             "--size", "40x30", "--solution", folder.path("a.cells")});
   return more;
 }
 
@@ -122,4 +123,31 @@ TEST_CASE("--solution: cells of another scene, damaged ones and other files are 
   // kj92 stands on a radiosity solution.
   folder.write("a.cells", whole);
   CHECK(run_program(folder, render_of(folder, other, {"--method", "kj92"})).status == 1);
+}
+
+TEST_CASE("radiosity --cells: of all surfaces, for any view; under a sky too") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", bright_room_pbrt()),
+                    file = folder.path("a.cells"), stats = folder.path("s.json");
+  const std::vector<std::string> sky{"--sky", "overcast"};
+  std::vector<std::string> make{"radiosity", scene, "--cells", "-o", file, "--quiet"};
+  make.insert(make.end(), sky.begin(), sky.end());
+  REQUIRE(run_program(folder, make).status == 0);
+  for (const char* eye : {"1.4,-1.2,1.1", "-1.3,-1,1.5"}) {
+    std::vector<std::string> view{"--quiet", "--eye", eye, "--target", "0,1,0.4", "--stats", stats};
+    view.insert(view.end(), sky.begin(), sky.end());
+    REQUIRE(run_program(folder, render_of(folder, scene, view)).status == 0);
+    const double by_kept = mean(folder.path("o.exr")), rounds = rounds_told(folder);
+    const std::vector<std::string> words = render_of(folder, scene, view);
+    std::vector<std::string> alone(words.begin(), words.end());
+    alone.erase(std::find(alone.begin(), alone.end(), "--solution"),
+                std::find(alone.begin(), alone.end(), "--solution") + 2);
+    REQUIRE(run_program(folder, alone).status == 0);
+    CHECK(mean(folder.path("o.exr")) == doctest::Approx(by_kept).epsilon(5e-3));
+    CHECK(rounds < rounds_told(folder));
+  }
+  // Not under another sky, and not to be shown.
+  CHECK(run_program(folder, render_of(folder, scene, {"--quiet"})).status == 1);
+  CHECK(run_program(folder, {"radiosity", scene, "--cells", "-o", folder.path("a.gltf")}).status ==
+        2);
 }
