@@ -4,6 +4,7 @@
 #include "base/frame.h"
 #include "base/units.h"
 #include "light/irradiance.h"
+#include "light/receiver_view.h"
 
 namespace troffer {
 
@@ -14,7 +15,7 @@ double sphere_irradiance(const Vec3d& centre, double radius, const Vec3d& x, con
                          Sides sides, bool is_inside_out) {
   const Vec3d to_centre = centre - x;
   const double d = length(to_centre);
-  const bool is_inside = d < radius;
+  const bool is_inside = d <= radius + rounding_of_sphere(centre, radius);
   if (sides == Sides::front && is_inside != is_inside_out) return 0;
   if (is_inside) return pi;
   const Vec3d n = normalize(normal);

@@ -92,8 +92,14 @@ struct DiskView {
   }
 };
 
-// Lengths in radii of the sphere. Where the inside emits, receivers on the surface itself count as
-// inside even if rounding put them out: the inside lights itself, the outside does not.
+// How far off the sphere its own points may lie, metres: they are rounded to single precision.
+inline double rounding_of_sphere(const Vec3d& centre, double radius) {
+  const Vec3d c = abs(centre);
+  return 4e-7 * (radius + std::max({c.x, c.y, c.z}));
+}
+
+// Lengths in radii of the sphere. Receivers on the surface itself count as inside even if rounding
+// put them out: the inside lights itself, the outside lights neither itself nor the inside.
 struct SphereView {
   Vec3d to_centre;  // in radii
   double distance;
@@ -101,10 +107,8 @@ struct SphereView {
 
   SphereView(const LightPrimitive& p, const Vec3& x)
       : to_centre((Vec3d(p.centroid) - Vec3d(x)) / double(p.radius)), distance(length(to_centre)) {
-    const Vec3 c = abs(p.centroid);
-    const double rounding =
-        4e-7 * (1 + double(std::max(c.x, std::max(c.y, c.z))) / double(p.radius));
-    is_inside = distance <= (p.is_inside_out || p.is_two_sided ? 1 + rounding : 1);
+    const double radius = p.radius;
+    is_inside = distance <= 1 + rounding_of_sphere(Vec3d(p.centroid), radius) / radius;
     is_front = is_inside == p.is_inside_out;
     is_visible = is_front || p.is_two_sided;
   }

@@ -233,6 +233,26 @@ TEST_CASE("flat sources do not light their own backs, whichever side rounding pu
   }
 }
 
+TEST_CASE("a sphere that shines outwards does not light its inside, whatever rounding does") {
+  for (const Vec3& centre : {Vec3{0, 0, 0}, Vec3{2, 2, 2}, Vec3{-30, 7, 11}}) {
+    Scene s;
+    add_diffuse(s, Rgb{0.6f});
+    add_sphere_light(s, 0, centre, 0.3f, Rgb{10});
+    const PreparedScene scene(std::move(s));
+    const WaveIntegrator mine = certified_integrator(scene), fixed = fixed_integrator(scene, 16);
+    const PathIntegrator path(scene, PathOptions{1});
+    Random random(3);
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 towards = centre + Vec3{random.next_float() - 0.5f, random.next_float() - 0.5f,
+                                         random.next_float() - 0.5f};
+      for (const Integrator* method :
+           {static_cast<const Integrator*>(&mine), static_cast<const Integrator*>(&fixed),
+            static_cast<const Integrator*>(&path)})
+        CHECK(probe(*method, ray_towards(centre, towards), 4, 1, uint64_t(i)).total.mean() == 0);
+    }
+  }
+}
+
 // Its fixture enters the bulb, balls and disks are no facets: all the same lists are complete.
 TEST_CASE("certified: bulbs in their fixtures, balls and disks take no ray") {
   const std::vector<HostileScene> all = hostile_scenes();
