@@ -149,8 +149,7 @@ float fresnel_dielectric_average(float eta) {
   return hemisphere_average([eta](float c) { return fresnel_dielectric(c, eta); });
 }
 float plate_reflectance_average(float eta) {
-  return hemisphere_average(
-      [eta](float c) { return plate_reflectance(fresnel_dielectric(c, eta)); });
+  return hemisphere_average([eta](float c) { return plate_reflectance(c, eta); });
 }
 float fresnel_conductor_average(float eta, float k) {
   return hemisphere_average([eta, k](float c) { return fresnel_conductor(c, eta, k); });

@@ -89,7 +89,7 @@ struct CoatTable {
 void build_albedo_tables(GgxTables& ggx, std::vector<CoatTable>& coats,
                          std::vector<GlassTables>& glasses);
 
-// Cosine-weighted mean of fresnel_dielectric over the hemisphere, and of plate_reflectance of it.
+// Cosine-weighted mean of fresnel_dielectric over the hemisphere, and of plate_reflectance.
 float fresnel_dielectric_average(float eta);
 float plate_reflectance_average(float eta);
 // The same of fresnel_conductor.

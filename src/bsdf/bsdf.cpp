@@ -35,7 +35,7 @@ Split split_at(const Bsdf& b, float c) {
       const Rgb opaque = fresnel_schlick(c, b.f0, b.f90);
       float r = fresnel_dielectric(c, b.eta);
       if (r >= 1) return {opaque + Rgb{b.glass_weight}, Rgb{0}};
-      if (b.is_thin) r = plate_reflectance(r);
+      if (b.is_thin) r = plate_reflectance(c, b.eta);
       return {opaque + b.glass_reflect * r, b.glass_transmit * (1 - b.glass_scale * r)};
     }
   }
@@ -306,6 +306,11 @@ bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, 
   out.is_transmission = out.wi.z < 0;
   if (out.is_transmission && !b.is_thin) out.eta = b.eta;
   return is_finite(out.weight) && !out.weight.is_black();
+}
+
+Rgb straight_transmittance(const Bsdf& b, float cos_o) {
+  if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
+  return split_at(b, std::min(cos_o, 1.0f)).transmitted;
 }
 
 LobeConstants lobe_constants(const Bsdf& b, float cos_o) {

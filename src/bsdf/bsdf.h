@@ -24,7 +24,8 @@
 //   takes the largest channel of a coloured specular, as KHR_materials_specular asks. The share
 //   that transmits is glass of exact Fresnel reflectance scaled by specular and specular_color,
 //   tinted by base_color on the way through; its compensation ignores that scaling.
-// - Thin sheets: R = 2r / (1 + r), the rest goes straight on. Rough thin sheets transmit GGX's
+// - Thin sheets: R = 2r / (1 + r) for each polarisation, the rest goes straight on. Rough thin
+// sheets transmit GGX's
 //   reflection lobe mirrored to the other side, as glTF's viewers do, with R's roughness.
 //
 // How well energy is kept, measured at cosines of 0.02 and more and all alpha (the white furnace
@@ -60,6 +61,7 @@ struct Bsdf {
   bool is_lambertian = false;  // diffuse / pi and nothing else
   bool is_smooth = false;      // the glossy lobe is a delta
   bool is_thin = false;        // transmission goes straight on
+  bool is_pane = false;        // is_pane(material)
   bool has_transmission = false;
   bool has_separable = false;  // the soft lobe, or any of the cosine-shaped ones below
 
@@ -155,6 +157,9 @@ Rgb albedo(const Bsdf& bsdf, float cos_o);
 Bsdf diffuse_part(const Bsdf& bsdf);
 // … and all else: mirrors, gloss with its lost energy, everything that transmits.
 Bsdf specular_part(const Bsdf& bsdf);
+
+// What a pane lets through straight on, seen at a cosine > 0; 0 of all else.
+Rgb straight_transmittance(const Bsdf& bsdf, float cos_o);
 
 // Nothing for next-event estimation to do.
 inline bool is_purely_delta(const Bsdf& bsdf) {

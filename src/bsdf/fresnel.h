@@ -30,9 +30,15 @@ inline float fresnel_dielectric(float cos_i, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// A plate with two parallel interfaces of reflectance r, all inter-reflections summed [3].
-inline float plate_reflectance(float r) {
-  return 2 * r / (1 + r);
+// A plate with two parallel interfaces, all inter-reflections summed [3]: for each of the two
+// polarisations, of reflectance r at one interface, 2 r / (1 + r). Their mean is not that of the
+// mean reflectance: at 60 degrees glass transmits 0.848 and not 0.836.
+inline float plate_reflectance(float cos_i, float eta) {
+  const float c = std::max(cos_i, 1e-9f);
+  const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (eta * eta)));
+  const float parallel = sqr((eta * c - cos_t) / (eta * c + cos_t));
+  const float perpendicular = sqr((c - eta * cos_t) / (c + eta * cos_t));
+  return parallel / (1 + parallel) + perpendicular / (1 + perpendicular);
 }
 
 // Reflectance of a conductor of complex index eta + i k seen from vacuum [1].

@@ -37,19 +37,20 @@ void set_lambertian(Bsdf& b, Rgb rho) {
   b.diffuse = rho;
 }
 
-void set_roughness(Bsdf& b, const Inputs& in) {
-  const float r = in.value(in.material.roughness);
-  switch (in.material.roughness_meaning) {
+float alpha_of(float roughness, RoughnessMeaning meaning) {
+  switch (meaning) {
     case RoughnessMeaning::alpha:
-      b.alpha = r;
-      break;
+      return roughness;
     case RoughnessMeaning::alpha_is_sqrt:
-      b.alpha = std::sqrt(r);
-      break;
+      return std::sqrt(roughness);
     case RoughnessMeaning::alpha_is_square:
-      b.alpha = r * r;
-      break;
+      return roughness * roughness;
   }
+  return roughness;
+}
+
+void set_roughness(Bsdf& b, const Inputs& in) {
+  b.alpha = alpha_of(in.value(in.material.roughness), in.material.roughness_meaning);
   b.is_smooth = b.alpha < smooth_alpha;
   if (b.is_smooth) return;
   b.one = in.tables.ggx().one.row(b.alpha);
@@ -196,6 +197,15 @@ bool can_be_rough(const Material& m) {
 
 }  // namespace
 
+bool is_pane(const Material& m) {
+  const bool is_glass =
+      m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
+                                             m.transmission.value > 0 && m.metallic.value < 1);
+  if (!is_glass || !m.is_thin || m.is_alpha_masked) return false;
+  return m.roughness.texture < 0 &&
+         alpha_of(safe01(m.roughness.value), m.roughness_meaning) < smooth_alpha;
+}
+
 TableNeeds table_needs(const Material& m) {
   const bool is_rough = can_be_rough(m);
   TableNeeds n;
@@ -228,6 +238,7 @@ Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
                bool is_front) {
   const Inputs in{tables, textures, materials[material], tables.material(material), uv, is_front};
   Bsdf b;
+  b.is_pane = in.prepared.is_pane;
   switch (in.material.kind) {
     case MaterialKind::diffuse:
       set_lambertian(b, in.base());

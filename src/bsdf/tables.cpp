@@ -45,6 +45,7 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
   for (const Material& m : materials) {
     PreparedMaterial p;
     p.ior = safe_ior(m.ior);
+    p.is_pane = is_pane(m);
     const TableNeeds needs = table_needs(m);
     needs_ggx |= needs.has_ggx;
     if (needs.has_coat) p.coat = table_for(coats_, p.ior, max_iors);

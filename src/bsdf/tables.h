@@ -21,7 +21,8 @@ struct PreparedMaterial {
   int32_t coat = -1, glass = -1;  // tables for this ior, where the material can need them
   float dielectric_average = 0;   // cosine-weighted mean Fresnel reflectance from outside
   float plate_average = 0;        // … of a thin plate
-  Rgb conductor_average;          // … of the conductor eta, k (not of is_reflectance)
+  bool is_pane = false;
+  Rgb conductor_average;  // … of the conductor eta, k (not of is_reflectance)
 };
 
 // What make_bsdf asks of the tables for a material, at any hit.
@@ -31,6 +32,10 @@ struct TableNeeds {
   bool has_dielectric_average = false, has_conductor_average = false;
 };
 TableNeeds table_needs(const Material& material);  // make_bsdf.cpp
+
+// Clear thin glass: light that it does not reflect goes through straight on, so that shadow rays
+// may pass it. Not where its roughness varies or it has holes.
+bool is_pane(const Material& material);  // make_bsdf.cpp
 
 // Immutable once built; Bsdf values point into it, so it must outlive them and stay in place.
 class BsdfTables {

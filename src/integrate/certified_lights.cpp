@@ -244,6 +244,10 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
   s.cluster.requests.clear();
   s.requested.clear();
   s.integrand.sources().clear();
+  s.integrand.behind_panes().clear();
+  Box receivers;
+  if (!scene_.panes.is_empty())
+    for (const ShadowReceiver& r : s.cluster.receivers) receivers.grow(r.position);
   const auto add = [&](uint32_t i) {
     const CertifiedSource& source = sources_[i];
     LightRequest& r = s.cluster.requests.emplace_back();
@@ -256,6 +260,8 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
     r.found = &s.found[i];
     s.requested.push_back(i);
     s.integrand.sources().push_back(&source);
+    if (!scene_.panes.is_empty())
+      scene_.panes.between(receivers, source.bounds(), s.integrand.behind_panes().emplace_back());
   };
   for (const uint32_t g : s.chosen.certified)
     for (uint32_t i = groups_[g].first_source; i < groups_[g].last_source; ++i) add(i);

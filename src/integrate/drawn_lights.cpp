@@ -288,9 +288,10 @@ void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<ui
 void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLightsScratch& s,
                    RadianceBatch& out, Counters& counters) {
   s.is_occluded.resize(s.rays.size());
-  scene.tracer.occluded(s.rays, s.is_occluded, Coherence::coherent);
-  for (const auto& d : s.draws) {
+  scene.tracer.occluded(s.rays, s.is_occluded, Coherence::coherent, s.factors);
+  for (auto& d : s.draws) {
     if (d.ray < 0) continue;
+    d.light *= s.factors[size_t(d.ray)];
     const uint32_t index = hits.indices[d.hit];
     ++out.shadow_rays[index];
     if (s.is_occluded[size_t(d.ray)] == 0) out.add(index, hits.is_direct[d.hit] != 0, d.light, 0);

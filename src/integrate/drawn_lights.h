@@ -53,6 +53,7 @@ struct DrawnLightsScratch {
   std::vector<size_t> runs;  // where draws of another pixel, or cluster, begin
   std::vector<Ray> rays;
   std::vector<uint8_t> is_occluded;
+  PaneFactors factors;
   // of a cluster
   std::vector<float> estimates, near, sums;
   std::vector<uint32_t> groups;

@@ -97,11 +97,12 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
         s.rough.bsdfs.push_back(scattering.specular);
       }
       Walk next = walk;
-      next.last_place = 0;
       next.length += distance;
       if (step(next, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
-          survives_spawning(next))
+          survives_spawning(next)) {
+        if (next.panes == walk.panes) next.last_place = 0;
         s.next.push_back(next);
+      }
     }
   }
   if (reflectance.is_black()) return;

@@ -84,8 +84,8 @@ void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
 
 void LightTreeDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
                             Counters& counters) const {
-  static_cast<LightTreeDirectScratch&>(scratch).shadows.resolve(scene_.tracer, Coherence::coherent, out,
-                                                                counters);
+  static_cast<LightTreeDirectScratch&>(scratch).shadows.resolve(scene_.tracer, Coherence::coherent,
+                                                                out, counters);
 }
 
 void LightTreeDirect::weigh(SeenEmission& seen) const {

@@ -75,13 +75,19 @@ void MatteRays::add(const MatteReceiver& from, const LightPoints& p, Group group
 // The variance is that of a mean of independent points: stratified ones do better.
 void MatteRays::tell(const Group& g, size_t first, RadianceBatch& out) const {
   float sum = 0, squares = 0;
+  Rgb passed;  // of panes
   for (size_t i = first; i < g.end; ++i) {
-    const float w = is_hidden_[i] != 0 ? 0.0f : weights_[i];
+    float w = is_hidden_[i] != 0 ? 0.0f : weights_[i];
+    if (!factors_.values.empty()) {
+      passed += factors_[i] * w;
+      w *= luminance(factors_[i]);
+    }
     sum += w;
     squares += w * w;
   }
   const auto n = float(g.points);
-  (g.is_direct ? out.direct : out.indirect)[g.index] += g.carried * (sum / n);
+  const Rgb arrived = factors_.values.empty() ? Rgb{sum} : passed;
+  (g.is_direct ? out.direct : out.indirect)[g.index] += g.carried * (arrived / n);
   out.shadow_rays[g.index] += uint32_t(g.end - first);
   if (!g.is_direct || out.direct_variance.empty()) return;
   const float spread = std::max(squares - sum * sum / n, 0.0f);
@@ -91,7 +97,7 @@ void MatteRays::tell(const Group& g, size_t first, RadianceBatch& out) const {
 
 void MatteRays::resolve(const Tracer& tracer, RadianceBatch& out, Counters& counters) {
   is_hidden_.resize(std::max(is_hidden_.size(), segments_.size()));
-  tracer.occluded(segments_, is_hidden_);
+  tracer.occluded(segments_, is_hidden_, factors_);
   size_t first = 0;
   for (const Group& g : groups_) {
     tell(g, first, out);

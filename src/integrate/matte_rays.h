@@ -42,6 +42,7 @@ class MatteRays {
   std::vector<float> weights_;
   std::vector<Group> groups_;
   std::vector<uint8_t> is_hidden_;
+  PaneFactors factors_;
 };
 
 }  // namespace troffer

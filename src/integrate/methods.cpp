@@ -53,7 +53,7 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   const CertifiedSettings settings =
       certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
-  const auto occluders = std::make_shared<const Occluders>(in.scene.scene);
+  const auto occluders = std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
   auto direct = std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
   std::unique_ptr<IndirectLight> indirect;
   if (needs_cells(Method::certified, in.settings.indirect)) {

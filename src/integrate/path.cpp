@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "integrate/look_through_panes.h"
 #include "integrate/purposes.h"
 
 namespace troffer {
@@ -91,7 +92,7 @@ void PathIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
 
 // True where only emission is still to be gathered.
 bool PathIntegrator::is_last(const Walk& walk) const {
-  return (options_.depth >= 0 && walk.vertex >= uint32_t(options_.depth)) ||
+  return (options_.depth >= 0 && bounces(walk) >= uint32_t(options_.depth)) ||
          (options_.is_direct_only && walk.scatterings > 0);
 }
 
@@ -125,7 +126,12 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
     Vertex& v = vertices[alive];
     make_vertex(scene_.scene, walk.ray, hit, v);
     if (v.surface.light >= 0) add_emission(walk, v, out);
-    if (is_last(walk) && walk.vertex > 0) continue;
+    if (is_last(walk) && walk.vertex > 0) {
+      look_through_panes(scene_, walk, v, [&](const Walk& beyond, const Vertex* seen) {
+        seen != nullptr ? add_emission(beyond, *seen, out) : add_miss(beyond, out);
+      });
+      continue;
+    }
     const ColorInput& color = scene_.scene.materials[v.surface.material].base_color;
     if (color.texture >= 0) prefetch(scene_.scene.textures, uint32_t(color.texture), v.surface.uv);
     walks[alive++] = walk;

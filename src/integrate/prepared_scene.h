@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
+#include "integrate/scene_glass.h"
 #include "light/light_primitive.h"
 #include "scene/scene.h"
 #include "select/light_tree.h"
@@ -13,16 +14,20 @@ namespace troffer {
 struct PreparedScene {
   explicit PreparedScene(Scene s)
       : scene(std::move(s)),
-        tracer(scene),
         bsdf_tables(scene),
+        glass(scene, bsdf_tables),
+        panes(scene, glass),
+        tracer(scene, panes.is_empty() ? nullptr : &glass),
         primitives(scene),
         light_tree(primitives) {}
   PreparedScene(const PreparedScene&) = delete;
   PreparedScene& operator=(const PreparedScene&) = delete;
 
   const Scene scene;
-  Tracer tracer;
   const BsdfTables bsdf_tables;
+  const SceneGlass glass;
+  const PanePlaces panes;
+  Tracer tracer;
   const LightPrimitives primitives;
   const LightTree light_tree;
 };

@@ -1,5 +1,7 @@
 #include "integrate/source_integrand.h"
 
+#include <algorithm>
+
 #include "base/simd.h"
 #include "bsdf/evaluate_many.h"
 #include "integrate/connect.h"
@@ -7,6 +9,20 @@
 #include "light/polygon.h"
 
 namespace troffer {
+
+Box CertifiedSource::bounds() const {
+  Box box;
+  if (is_round) {
+    const auto reach = float(sphere.radius);
+    box.grow(Vec3(sphere.centre) - Vec3{reach, reach, reach});
+    box.grow(Vec3(sphere.centre) + Vec3{reach, reach, reach});
+    return box;
+  }
+  const Parallelogram& p = flat.plane;
+  for (const Vec3d& corner : {p.origin, p.origin + p.u, p.origin + p.v, p.origin + p.u + p.v})
+    box.grow(Vec3(corner));
+  return box;
+}
 
 double CertifiedSource::unoccluded(const Vec3d& x, const Vec3d& n) const {
   if (is_round) return sphere_irradiance(sphere.centre, sphere.radius, x, n);
@@ -84,6 +100,7 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
   if (hit.glossy == nullptr) {
     for (size_t i = 0; i < points.size(); ++i)
       values[i] = radiance_at(source, points[i], hit.position);
+    take_by_panes(request, hit.position, points, values);
     return;
   }
   const GlossyHit& g = *hit.glossy;
@@ -97,6 +114,25 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
       values[i] = glossy_value(g, wi, density * dot(wi, g.geometric_normal)) * (1 / cosine) *
                   radiance_at(source, points[i], hit.position);
   }
+  take_by_panes(request, hit.position, points, values);
+}
+
+void SourceIntegrand::take_by_panes(uint32_t request, const Vec3& receiver,
+                                    std::span<const Vec3> points, std::span<Rgb> values) const {
+  if (!is_behind_panes(request)) return;
+  for (size_t i = 0; i < points.size(); ++i)
+    if (!values[i].is_black()) values[i] *= left_by_panes(request, receiver, points[i] - receiver);
+}
+
+// A pane that the receiver itself lies on does not count.
+Rgb SourceIntegrand::left_by_panes(uint32_t request, const Vec3& receiver, const Vec3& way) const {
+  const PanesBetween& panes = behind_panes_[request];
+  if (panes.are_simple) return scene_.panes.transmittance(panes, receiver, way);
+  Ray ray{receiver, 0, way, 1};
+  const Vec3 at = abs(receiver);
+  ray.t_min = ray_offset(std::max({at.x, at.y, at.z})) / std::max(length(way), 1e-30f);
+  ray.t_max = 1 - 4e-6f;
+  return scene_.tracer.transmittance(ray);
 }
 
 namespace {
@@ -157,10 +193,30 @@ void SourceIntegrand::evaluate_many(uint32_t request, uint32_t member, PointArra
   const size_t n = p.size();
   for (auto* a : {&p.r, &p.g, &p.b}) a->assign(n, 0);
   if (hit.glossy != nullptr) evaluate_gloss(source, hit, p);
-  if (source.far == nullptr || !source.is_textured) return;
-  if (hit.glossy == nullptr)
-    return far_radiance(*source.far, n, p.x.data(), p.y.data(), p.z.data(), p.r.data(), p.g.data(),
-                        p.b.data());
+  multiply_by_radiance(source, hit, p);
+  if (!is_behind_panes(request)) return;
+  for (size_t i = 0; i < n; ++i) {
+    const Rgb left = left_by_panes(request, hit.position, {p.x[i], p.y[i], p.z[i]});
+    p.r[i] *= left.r;
+    p.g[i] *= left.g;
+    p.b[i] *= left.b;
+  }
+}
+
+void SourceIntegrand::multiply_by_radiance(const CertifiedSource& source, const IntegrandHit& hit,
+                                           PointArrays& p) {
+  const size_t n = p.size();
+  const bool varies = source.far != nullptr && source.is_textured;
+  if (hit.glossy == nullptr) {
+    if (varies)
+      return far_radiance(*source.far, n, p.x.data(), p.y.data(), p.z.data(), p.r.data(),
+                          p.g.data(), p.b.data());
+    p.r.assign(n, source.radiance.r);
+    p.g.assign(n, source.radiance.g);
+    p.b.assign(n, source.radiance.b);
+    return;
+  }
+  if (!varies) return;  // the surface's part has it
   far_values_.resize(3 * n);
   float* const r = far_values_.data();
   far_radiance(*source.far, n, p.x.data(), p.y.data(), p.z.data(), r, r + n, r + 2 * n);

@@ -27,6 +27,7 @@ struct CertifiedSource {
   uint64_t stream = 0;
   const FarCell* far = nullptr;  // of a light at infinity; it has `radiance`, or varies
 
+  Box bounds() const;
   // Projected solid angle from x with unit normal n, nothing hidden, sr.
   double unoccluded(const Vec3d& x, const Vec3d& n) const;
 };
@@ -89,9 +90,11 @@ class SourceIntegrand final : public ShadowIntegrand {
   // The cluster at hand: its hits, and its requests' sources, which must stay where they are.
   std::vector<IntegrandHit>& hits() { return hits_; }
   std::vector<const CertifiedSource*>& sources() { return sources_; }
+  // Per source: panes that may lie between it and the hits. Empty: the scene has none.
+  std::vector<PanesBetween>& behind_panes() { return behind_panes_; }
 
   bool is_wanted(uint32_t request, uint32_t member) const {
-    return sources_[request]->is_textured || hits_[member].glossy != nullptr;
+    return varies(request) || hits_[member].glossy != nullptr;
   }
   uint32_t points(uint32_t request, uint32_t member) override {
     return is_wanted(request, member) ? points_ : 0;
@@ -100,19 +103,32 @@ class SourceIntegrand final : public ShadowIntegrand {
                 std::span<Rgb> values) override;
   bool is_smooth(uint32_t request, uint32_t member) const override {
     return sources_[request]->far != nullptr ||
-           (hits_[member].glossy != nullptr && !sources_[request]->is_textured);
+           (hits_[member].glossy != nullptr && !varies(request));
   }
   void evaluate_many(uint32_t request, uint32_t member, PointArrays& points) override;
 
  private:
+  bool is_behind_panes(uint32_t request) const {
+    return !behind_panes_.empty() && behind_panes_[request].are_any;
+  }
+  bool varies(uint32_t request) const {
+    return sources_[request]->is_textured || is_behind_panes(request);
+  }
   Rgb radiance_at(const CertifiedSource& source, const Vec3& point, const Vec3& receiver) const;
   void evaluate_gloss(const CertifiedSource& source, const IntegrandHit& hit, PointArrays& points);
+  void multiply_by_radiance(const CertifiedSource& source, const IntegrandHit& hit,
+                            PointArrays& points);
+  void take_by_panes(uint32_t request, const Vec3& receiver, std::span<const Vec3> points,
+                     std::span<Rgb> values) const;
+  // To the receiver, from so far away.
+  Rgb left_by_panes(uint32_t request, const Vec3& receiver, const Vec3& way) const;
 
   const PreparedScene& scene_;
   uint32_t points_;
   LobeCompetition competition_;
   std::vector<IntegrandHit> hits_;
   std::vector<const CertifiedSource*> sources_;
+  std::vector<PanesBetween> behind_panes_;
   GlossyLanes lanes_;
   std::vector<float> far_values_;
 };

@@ -59,7 +59,8 @@ TreeLight TreeSampler::run(const TreeReceiver& r, std::span<const TreatedSource>
     is_first = false;
     is_occluded_.resize(rays_.size());
     scene_.tracer.occluded(rays_, is_occluded_,
-                           rays_.size() >= packet_rays ? Coherence::coherent : Coherence::none);
+                           rays_.size() >= packet_rays ? Coherence::coherent : Coherence::none,
+                           factors_);
     light.rays += uint32_t(rays_.size());
     next_active_.clear();
     for (const size_t i : active_)
@@ -193,7 +194,7 @@ void TreeSampler::ask_single(const TreeReceiver& r, Task& t) {
 
 void TreeSampler::answer_lattice(Task& t) {
   for (size_t i = 0; i < t.values.size(); ++i)
-    if (is_occluded_[t.first_ray + i] == 0) t.sum += t.values[i];
+    if (is_occluded_[t.first_ray + i] == 0) t.sum += t.values[i] * factors_[t.first_ray + i];
 }
 
 // True if the task asks on.
@@ -203,8 +204,11 @@ bool TreeSampler::answer(Task& t) {
     return false;
   }
   for (size_t i = 0; i < t.results.size(); ++i)
-    if (t.ray_of[i] >= 0)
-      t.results[i].is_visible = is_occluded_[t.first_ray + size_t(t.ray_of[i])] == 0;
+    if (t.ray_of[i] >= 0) {
+      const size_t ray = t.first_ray + size_t(t.ray_of[i]);
+      t.results[i].is_visible = is_occluded_[ray] == 0;
+      if (!factors_.values.empty()) t.results[i].kernel *= luminance(factors_[ray]);
+    }
   Bintree& tree = t.entry->tree;
   tree.supply(t.results);
   const bool is_first = t.is_first_round;
@@ -227,7 +231,8 @@ Rgb TreeSampler::light_of(const TreeReceiver& r, const Task& t) const {
   if (t.entry == nullptr) return t.sum;
   if (t.takes_exact) return t.exact;
   const Bintree& tree = t.entry->tree;
-  if (options_.uses_ratio && t.has_exact) {
+  // What panes take is in the visible rays alone: no share of what would come without them.
+  if (options_.uses_ratio && t.has_exact && !scene_.tracer.has_panes()) {
     const float all = tree.kernel_mean();
     return all > 0 ? t.exact * (tree.estimate().mean / all) : Rgb{0};
   }
@@ -240,7 +245,8 @@ Rgb TreeSampler::light_of(const TreeReceiver& r, const Task& t) const {
     if (n.is_visible && n.kernel > 0 &&
         t.source->sample(scene_, n.uv, *r.vertex, *r.scattering, float(options_.tree.initial_rays),
                          s))
-      sum += s.value * tree.nodes().cell(leaf).measure();
+      sum += s.value * (tree.nodes().cell(leaf).measure() *
+                        (scene_.tracer.has_panes() ? n.kernel / luminance(s.value) : 1.0f));
   });
   return sum;
 }

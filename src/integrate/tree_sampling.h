@@ -99,6 +99,7 @@ class TreeSampler {
   std::vector<size_t> active_, next_active_;
   std::vector<Ray> rays_;
   std::vector<uint8_t> is_occluded_;
+  PaneFactors factors_;
 };
 
 }  // namespace troffer

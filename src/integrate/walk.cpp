@@ -60,12 +60,26 @@ bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2&
   walk.ray = {};
   walk.ray.origin = offset_origin(v.surface, wi);
   walk.ray.direction = wi;
+  if (bsdf.is_pane && sampled.is_delta && sampled.is_transmission) {
+    ++walk.vertex;
+    ++walk.panes;
+    return true;
+  }
   walk.pdf = sampled.is_delta ? 0 : sampled.pdf;
   walk.last_position = v.surface.position;
   walk.last_normal = v.geometric_normal;
   walk.last_both_sides = bsdf.has_transmission;
   ++walk.vertex;
   if (!sampled.is_delta) ++walk.scatterings;
+  return true;
+}
+
+bool pass_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
+  walk.throughput *= straight_transmittance(bsdf, v.wo.z);
+  if (walk.throughput.is_black()) return false;
+  walk.ray.origin = offset_origin(v.surface, walk.ray.direction);
+  ++walk.vertex;
+  ++walk.panes;
   return true;
 }
 
@@ -131,10 +145,11 @@ void ShadowBatch::tell_variance(RadianceBatch& out) const {
 void ShadowBatch::resolve(const Tracer& tracer, Coherence coherence, RadianceBatch& out,
                           Counters& counters) {
   is_occluded.resize(rays.size());
-  tracer.occluded(rays, is_occluded, coherence);
+  tracer.occluded(rays, is_occluded, coherence, factors);
   for (size_t i = 0; i < rays.size(); ++i) {
     ++out.shadow_rays[indices[i]];
     if (is_occluded[i] != 0) continue;
+    contributions[i] *= factors[i];
     (is_direct[i] != 0 ? out.direct : out.indirect)[indices[i]] += contributions[i];
   }
   if (!out.direct_variance.empty()) tell_variance(out);

@@ -18,7 +18,8 @@ struct Walk {
   // Where it comes from, for the density with which a light could have been sampled from there.
   Vec3 last_position, last_normal;
   bool last_both_sides = false;
-  uint32_t vertex = 0;       // how many vertices it has left behind
+  uint32_t vertex = 0;  // how many vertices it has left behind
+  uint32_t panes = 0;   // … of which so many straight through panes, as if they were not there
   uint32_t scatterings = 0;  // … by lobes that are not deltas
   float eta_squared = 1;     // by which refraction has scaled radiance so far, inverted
   uint32_t index = 0;        // of the viewing ray in its batch
@@ -50,8 +51,18 @@ Vec2 direction_number(const Walk& walk);
 float lobe_number(const Walk& walk);
 float roulette_number(const Walk& walk);
 
-// Chooses a direction by the BSDF and sets out in it; false where the walk ends.
+// How often it has been sent on by a surface: panes that it went straight through do not count.
+inline uint32_t bounces(const Walk& walk) {
+  return walk.vertex - walk.panes;
+}
+
+// Chooses a direction by the BSDF and sets out in it; false where the walk ends. A walk that goes
+// straight through a pane still competes with the lights sampled where it set out, since their
+// shadow rays pass panes as well.
 bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, float lobe, const Vec2& direction);
+
+// Sends a walk straight on through a pane at v, with what this leaves; false for what is no pane.
+bool pass_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
 
 // Spawned walks that carry less than a tenth of the light go on as rarely as they are weak, and
 // carry more: false where the walk ends.
@@ -76,6 +87,7 @@ struct ShadowBatch {
   std::vector<uint32_t> indices;
   std::vector<uint8_t> is_direct;
   std::vector<uint8_t> is_occluded;
+  PaneFactors factors;
   // Rays of one vertex to one source, with how many points they stand for: where the variance is
   // told.
   struct Group {

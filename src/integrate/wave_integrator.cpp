@@ -1,8 +1,10 @@
 #include "integrate/wave_integrator.h"
 
 #include <algorithm>
+#include <deque>
 
 #include "base/error.h"
+#include "integrate/look_through_panes.h"
 
 namespace troffer {
 
@@ -23,6 +25,9 @@ struct WaveIntegrator::Scratch final : IntegratorScratch {
   WaveHits wave;
   SeenEmission seen;       // what competes with the sampling of sources
   SeenEmission undivided;  // what does not
+  // Behind panes: what those refer to.
+  std::deque<Walk> beyond_walks;
+  std::deque<Vertex> beyond;
 };
 
 WaveIntegrator::WaveIntegrator(const PreparedScene& scene, std::unique_ptr<DirectLight> direct,
@@ -120,6 +125,8 @@ void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch
   w.vertices.reserve(hits_at_a_time);
   s.seen.clear();
   s.undivided.clear();
+  s.beyond_walks.clear();
+  s.beyond.clear();
   CheckItems items;
   for (size_t i = first; i < last; ++i) {
     const Hit& hit = s.trace.hits[i];
@@ -132,11 +139,28 @@ void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch
     w.hits.push_back(hit);
     Vertex& v = w.vertices.emplace_back();
     make_vertex(scene_.scene, walk.ray, hit, v);
-    if (v.surface.light < 0) continue;
-    const Rgb radiance = emission_at(scene_, v);
-    if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, &v, radiance);
+    if (v.surface.light >= 0) {
+      const Rgb radiance = emission_at(scene_, v);
+      if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, &v, radiance);
+    }
+    if (!indirect_ && walk.scatterings > 0 && scene_.tracer.has_panes())
+      see_through_panes(walk, v, s);
   }
   add_emission(s, out);
+}
+
+// What a walk sees that is not followed from here on.
+void WaveIntegrator::see_through_panes(const Walk& walk, const Vertex& v, Scratch& s) const {
+  look_through_panes(scene_, walk, v, [&](const Walk& beyond, const Vertex* seen) {
+    const Walk& kept = s.beyond_walks.emplace_back(beyond);
+    if (seen == nullptr) {
+      see_lights_at_infinity(kept, s);
+      return;
+    }
+    const Rgb radiance = seen->surface.light >= 0 ? emission_at(scene_, *seen) : Rgb{0};
+    if (!radiance.is_black())
+      (kept.pdf > 0 ? s.seen : s.undivided).add(kept, &s.beyond.emplace_back(*seen), radiance);
+  });
 }
 
 void WaveIntegrator::see_lights_at_infinity(const Walk& walk, Scratch& s) const {

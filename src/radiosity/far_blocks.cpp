@@ -156,13 +156,13 @@ void FarBlocks::trace() {
   for (Purpose& p : purposes_) aim(p);
   std::erase_if(purposes_, [&](Purpose& p) { return !find_ray(p); });
   occluded_.resize(ray_list_.size());
-  row_->tracer.occluded(ray_list_, occluded_, Coherence::coherent);
+  row_->tracer.occluded(ray_list_, occluded_, Coherence::coherent, factors_);
   rays_ += ray_list_.size();
   for (size_t k = 0; k < purposes_.size(); ++k) {
     Block& f = blocks_[purposes_[k].block];
     for (uint8_t i = purposes_[k].first; i < purposes_[k].last; ++i) {
       f.all[i] += purposes_[k].weight;
-      if (occluded_[k] == 0) f.visible[i] += purposes_[k].weight;
+      if (occluded_[k] == 0) f.visible[i] += purposes_[k].weight * luminance(factors_[k]);
     }
   }
   ray_list_.clear();

@@ -52,6 +52,7 @@ class FarBlocks {
   std::vector<Ray> ray_list_;
   std::vector<Purpose> purposes_;  // of ray_list_
   std::vector<uint8_t> occluded_;
+  PaneFactors factors_;
 };
 
 }  // namespace troffer

@@ -261,7 +261,7 @@ class Gatherer {
       }
     }
     s_.is_occluded.resize(s_.rays.size());
-    tracer_.occluded(s_.rays, s_.is_occluded, Coherence::coherent);
+    tracer_.occluded(s_.rays, s_.is_occluded, Coherence::coherent, s_.factors);
     s_.next_jobs.clear();
     for (size_t i = 0; i < s_.jobs.size(); ++i)
       weigh(s_.jobs[i], i + 1 < s_.jobs.size() ? s_.jobs[i + 1].ray : s_.rays.size());
@@ -279,7 +279,7 @@ class Gatherer {
       const double weight = double(s_.weights[k]), sent = weight * double(s_.shares[k]);
       j.sum_without_shares += weight;
       j.sum += sent;
-      if (s_.is_occluded[k] == 0) j.visible += sent;
+      if (s_.is_occluded[k] == 0) j.visible += sent * double(luminance(s_.factors[k]));
       if (s_.records != nullptr)
         s_.records->push_back({j.receiver, s_.ends[k], s_.weights[k], s_.is_occluded[k] == 0});
     }

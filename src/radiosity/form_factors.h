@@ -58,6 +58,7 @@ struct TransferScratch {
   std::vector<float> numbers;
   std::vector<float> weights, shares;
   std::vector<uint8_t> is_occluded;
+  PaneFactors factors;
   std::vector<double> piece_irradiance;
   struct Job {
     uint32_t receiver;

@@ -17,6 +17,7 @@
 #include "base/quad.h"
 #include "base/round_body.h"
 #include "scene/scene.h"
+#include "trace/panes.h"
 
 namespace troffer {
 
@@ -26,7 +27,9 @@ class Occluders {
  public:
   // Throws EnvironmentError if memory runs out. The scene is not kept. Works on the calling thread
   // alone; what is built, the order of gathered lists too, depends on the scene alone.
-  explicit Occluders(const Scene& scene);
+  explicit Occluders(const Scene& scene) : Occluders(scene, nullptr) {}
+  // … and what panes are, which hide nothing: none if null.
+  Occluders(const Scene& scene, const PaneGlass* glass);
 
   size_t facet_count() const { return facets_.size(); }
   const Quad& facet(uint32_t id) const { return facets_[id]; }
@@ -74,7 +77,7 @@ class Occluders {
     uint8_t count[8];   // leaf: items; 0: a node; 255: nothing
   };
   void join_and_add(const Scene& scene, uint32_t mesh);
-  void add_others(const Scene& scene);
+  void add_others(const Scene& scene, const PaneGlass* glass);
   void build_tree();
 
   std::vector<Quad> facets_;

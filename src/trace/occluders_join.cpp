@@ -62,7 +62,10 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
   }
 }
 
-void Occluders::add_others(const Scene& scene) {
+void Occluders::add_others(const Scene& scene, const PaneGlass* glass) {
+  const auto is_pane = [&](uint32_t material) {
+    return glass != nullptr && glass->is_pane(material);
+  };
   const auto add_flat = [&](const Quad& q, const RoundBody& round, uint64_t k) {
     Box b;
     for (const Vec3& v : q) b.grow(v);
@@ -78,6 +81,7 @@ void Occluders::add_others(const Scene& scene) {
   }
   for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
+    if (is_pane(s.material)) continue;
     // with room for the rounding of Embree's intersections
     const float slack = 1e-5f * (length(s.centre) + s.radius);
     const Vec3 reach = Vec3{1, 1, 1} * (s.radius + slack);
@@ -88,6 +92,7 @@ void Occluders::add_others(const Scene& scene) {
   }
   for (uint32_t i = 0; i < scene.disks.size(); ++i) {
     const Disk& d = scene.disks[i];
+    if (is_pane(d.material)) continue;
     const Frame frame(d.normal);
     const Vec3 x = frame.tangent * (1.0001f * d.radius), y = frame.bitangent * (1.0001f * d.radius);
     add_flat({d.centre - x - y, d.centre + x - y, d.centre + x + y, d.centre - x + y},
@@ -95,12 +100,13 @@ void Occluders::add_others(const Scene& scene) {
   }
 }
 
-Occluders::Occluders(const Scene& scene) : facet_of_(scene.meshes.size()) {
+Occluders::Occluders(const Scene& scene, const PaneGlass* glass) : facet_of_(scene.meshes.size()) {
   for (uint32_t i = 0; i < scene.meshes.size(); ++i)
     if (!scene.meshes[i].triangles.empty() &&
-        !scene.materials[scene.meshes[i].material].is_alpha_masked)
+        !scene.materials[scene.meshes[i].material].is_alpha_masked &&
+        !(glass != nullptr && glass->is_pane(scene.meshes[i].material)))
       join_and_add(scene, i);
-  add_others(scene);
+  add_others(scene, glass);
   build_tree();
 }
 

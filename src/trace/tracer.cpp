@@ -1,15 +1,11 @@
 #include "trace/tracer.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-#include <vector>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "trace/embree_scene.h"
+#include "trace/surface.h"
 
 namespace troffer {
 
@@ -17,157 +13,11 @@ namespace {
 
 constexpr size_t packet_size = 16;
 
-// What an alpha test needs to know of its mesh.
-struct AlphaTest {
-  const Scene* scene;
-  const Mesh* mesh;
-};
-
-bool is_transparent(const AlphaTest& test, uint32_t primitive, float u, float v) {
-  const Triangle& t = test.mesh->triangles[primitive];
-  Vec2 uv{0, 0};
-  if (!test.mesh->uvs.empty()) {
-    const auto& c = test.mesh->uvs;
-    uv = c[t[0]] * (1 - u - v) + c[t[1]] * u + c[t[2]] * v;
-  }
-  const Material& m = test.scene->materials[test.mesh->material];
-  return evaluate(test.scene->textures, m.alpha, uv) < m.alpha_cutoff;
-}
-
-void alpha_filter(const RTCFilterFunctionNArguments* args) {
-  const auto& test = *static_cast<const AlphaTest*>(args->geometryUserPtr);
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] != -1) continue;
-    if (is_transparent(test, RTCHitN_primID(args->hit, args->N, i),
-                       RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)))
-      args->valid[i] = 0;
-  }
-}
-
-struct EmbreeStatus {
-  RTCError code = RTC_ERROR_NONE;
-  std::string text;
-};
-
-void on_error(void* user, RTCError code, const char* text) {
-  auto& status = *static_cast<EmbreeStatus*>(user);
-  if (status.code != RTC_ERROR_NONE) return;
-  status.code = code;
-  status.text = text != nullptr ? text : "";
-}
-
 }  // namespace
 
-struct Tracer::Embree {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  EmbreeStatus status;
-  std::vector<AlphaTest> alpha_tests;
-
-  Embree() = default;
-  Embree(const Embree&) = delete;
-  Embree& operator=(const Embree&) = delete;
-  ~Embree() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-
-  void throw_if_failed() const {
-    if (status.code == RTC_ERROR_NONE) return;
-    throw EnvironmentError(
-        "cannot build the ray tracing structure: " +
-        (status.code == RTC_ERROR_OUT_OF_MEMORY ? std::string("out of memory") : status.text));
-  }
-
-  template <class T>
-  T* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, size_t stride,
-            size_t count) {
-    auto* data = static_cast<T*>(
-        rtcSetNewGeometryBuffer(geometry, type, 0, format, stride, std::max<size_t>(count, 1)));
-    throw_if_failed();
-    return data;
-  }
-
-  void attach(RTCGeometry geometry, uint32_t id) {
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, id);
-    rtcReleaseGeometry(geometry);
-  }
-
-  void add_mesh(const Scene& s, uint32_t id) {
-    const Mesh& mesh = s.meshes[id];
-    if (mesh.triangles.empty()) return;
-    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree owns the copies: it reads vertices in 16-byte loads, past the end of ours.
-    auto* p = buffer<float>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                            mesh.positions.size());
-    for (size_t i = 0; i < mesh.positions.size(); ++i)
-      for (size_t a = 0; a < 3; ++a) p[3 * i + a] = mesh.positions[i][a];
-    auto* t = buffer<uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                               mesh.triangles.size());
-    for (size_t i = 0; i < mesh.triangles.size(); ++i)
-      for (size_t a = 0; a < 3; ++a) t[3 * i + a] = mesh.triangles[i][a];
-    if (s.materials[mesh.material].is_alpha_masked) {
-      alpha_tests[id] = {&s, &mesh};
-      rtcSetGeometryUserData(g, &alpha_tests[id]);
-      rtcSetGeometryIntersectFilterFunction(g, alpha_filter);
-      rtcSetGeometryOccludedFilterFunction(g, alpha_filter);
-    }
-    attach(g, id);
-  }
-
-  void add_spheres(const Scene& s) {
-    if (s.spheres.empty()) return;
-    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto* p = buffer<float>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float),
-                            s.spheres.size());
-    for (const Sphere& sphere : s.spheres) {
-      for (size_t a = 0; a < 3; ++a) *p++ = sphere.centre[a];
-      *p++ = sphere.radius;
-    }
-    attach(g, uint32_t(s.meshes.size()));
-  }
-
-  void add_disks(const Scene& s) {
-    if (s.disks.empty()) return;
-    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
-    auto* p = buffer<float>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float),
-                            s.disks.size());
-    auto* n = buffer<float>(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                            s.disks.size());
-    for (const Disk& disk : s.disks) {
-      for (size_t a = 0; a < 3; ++a) {
-        *p++ = disk.centre[a];
-        *n++ = disk.normal[a];
-      }
-      *p++ = disk.radius;
-    }
-    attach(g, uint32_t(s.meshes.size()) + 1);
-  }
-};
-
-Tracer::Tracer(const Scene& scene) : embree_(std::make_unique<Embree>()) {
-  Embree& e = *embree_;
-  e.device = rtcNewDevice(nullptr);
-  if (e.device == nullptr) throw EnvironmentError("cannot start Embree");
-  rtcSetDeviceErrorFunction(e.device, on_error, &e.status);
-  e.scene = rtcNewScene(e.device);
-  rtcSetSceneFlags(e.scene, RTC_SCENE_FLAG_ROBUST);  // no light leaks through shared edges
-  rtcSetSceneBuildQuality(e.scene, RTC_BUILD_QUALITY_HIGH);
-  e.alpha_tests.resize(scene.meshes.size());
-  for (uint32_t i = 0; i < scene.meshes.size(); ++i) e.add_mesh(scene, i);
-  e.add_spheres(scene);
-  e.add_disks(scene);
-  // Coincident surfaces are told apart by the order of primitives in the tree's leaves, which is
-  // the same for any number of threads only when the tree is built on one. Large scenes, where
-  // that would take long, are built on all cores.
-  constexpr size_t large = 400'000;
-  if (triangle_count(scene) > large)
-    rtcCommitScene(e.scene);
-  else
-    run_on_one_thread([&] { rtcJoinCommitScene(e.scene); });
-  e.throw_if_failed();
-}
+Tracer::Tracer(const Scene& scene, const PaneGlass* glass)
+    : embree_(std::make_unique<Embree>(scene, glass)),
+      glass_(embree_->panes != nullptr ? glass : nullptr) {}
 
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
@@ -218,7 +68,7 @@ void fill(RTCRay16& p, std::span<const Ray> rays, std::array<int, packet_size>& 
   }
 }
 
-void closest_packets(RTCScene scene, RTCIntersectContext& context, std::span<const Ray> rays,
+void closest_packets(RTCScene scene, Context& context, std::span<const Ray> rays,
                      std::span<Hit> hits) {
   alignas(64) std::array<int, packet_size> valid{};
   for (size_t first = 0; first < rays.size(); first += packet_size) {
@@ -226,7 +76,7 @@ void closest_packets(RTCScene scene, RTCIntersectContext& context, std::span<con
     RTCRayHit16 p;
     fill(p.ray, rays.subspan(first, n), valid);
     std::fill(std::begin(p.hit.geomID), std::end(p.hit.geomID), RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect16(valid.data(), scene, &context, &p);
+    rtcIntersect16(valid.data(), scene, &context.embree, &p);
     for (size_t i = 0; i < n; ++i)
       hits[first + i] = {p.ray.tfar[i], p.hit.u[i], p.hit.v[i], p.hit.geomID[i], p.hit.primID[i]};
   }
@@ -234,14 +84,14 @@ void closest_packets(RTCScene scene, RTCIntersectContext& context, std::span<con
 
 // Not told that they are coherent: Embree's frusta of rays pay in scenes of few large triangles (a
 // tenth), and cost up to twice the time behind wires and leaves.
-void occluded_packets(RTCScene scene, RTCIntersectContext& context, std::span<const Ray> rays,
+void occluded_packets(RTCScene scene, Context& context, std::span<const Ray> rays,
                       std::span<uint8_t> is_occluded) {
   alignas(64) std::array<int, packet_size> valid{};
   for (size_t first = 0; first < rays.size(); first += packet_size) {
     const size_t n = std::min(packet_size, rays.size() - first);
     RTCRay16 p;
     fill(p, rays.subspan(first, n), valid);
-    rtcOccluded16(valid.data(), scene, &context, &p);
+    rtcOccluded16(valid.data(), scene, &context.embree, &p);
     for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
   }
 }
@@ -276,18 +126,30 @@ void fill(RTCRay16& p, const Segments& s, size_t first, std::array<int, packet_s
       if (!(reach[i] < 1e18f)) lane[i] = 1;
 }
 
+Ray ray_of(const Segments& s, size_t i) {
+  return {{s.coordinate(0)[i], s.coordinate(1)[i], s.coordinate(2)[i]},
+          0,
+          {s.coordinate(3)[i], s.coordinate(4)[i], s.coordinate(5)[i]},
+          1};
+}
+
 void append(RayLog& log, const Segments& s) {
   log.batches.push_back({log.rays.size(), s.size(), Coherence::coherent, true});
-  for (size_t i = 0; i < s.size(); ++i)
-    log.rays.push_back({{s.coordinate(0)[i], s.coordinate(1)[i], s.coordinate(2)[i]},
-                        0,
-                        {s.coordinate(3)[i], s.coordinate(4)[i], s.coordinate(5)[i]},
-                        1});
+  for (size_t i = 0; i < s.size(); ++i) log.rays.push_back(ray_of(s, i));
 }
 
 }  // namespace
 
 namespace {
+
+Hit closest_of(RTCScene scene, Context& context, const Ray& ray) {
+  RTCRayHit r;
+  fill(r.ray, ray);
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene, &context.embree, &r);
+  return {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID};
+}
 
 void append(RayLog& log, std::span<const Ray> rays, Coherence coherence, bool is_occlusion) {
   log.batches.push_back({log.rays.size(), rays.size(), coherence, is_occlusion});
@@ -297,31 +159,33 @@ void append(RayLog& log, std::span<const Ray> rays, Coherence coherence, bool is
 }  // namespace
 
 void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) const {
+  trace_closest(rays, hits, coherence, false);
+}
+
+void Tracer::closest_but_panes(std::span<const Ray> rays, std::span<Hit> hits,
+                               Coherence coherence) const {
+  trace_closest(rays, hits, coherence, true);
+}
+
+void Tracer::trace_closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence,
+                           bool skips_panes) const {
   if (log_ != nullptr) append(*log_, rays, coherence, false);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  Context context(skips_panes);
   if (coherence == Coherence::coherent) {
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     closest_packets(embree_->scene, context, rays, hits);
     return;
   }
   for (size_t i = 0; i < rays.size(); ++i) {
     hits[i] = {};
-    if (!is_traceable(rays[i])) continue;
-    RTCRayHit r;
-    fill(r.ray, rays[i]);
-    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(embree_->scene, &context, &r);
-    hits[i] = {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID};
+    if (is_traceable(rays[i])) hits[i] = closest_of(embree_->scene, context, rays[i]);
   }
 }
 
 void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
                       Coherence coherence) const {
   if (log_ != nullptr) append(*log_, rays, coherence, true);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  Context context(false);
   if (coherence == Coherence::coherent) {
     occluded_packets(embree_->scene, context, rays, is_occluded);
     return;
@@ -331,23 +195,61 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
     if (!is_traceable(rays[i])) continue;
     RTCRay r;
     fill(r, rays[i]);
-    rtcOccluded1(embree_->scene, &context, &r);
+    rtcOccluded1(embree_->scene, &context.embree, &r);
     is_occluded[i] = r.tfar < 0 ? 1 : 0;
   }
 }
 
 void Tracer::occluded(const Segments& segments, std::span<uint8_t> is_occluded) const {
   if (log_ != nullptr) append(*log_, segments);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  Context context(false);
   alignas(64) std::array<int, packet_size> valid{};
   RTCRay16 p;
   for (size_t first = 0; first < segments.size(); first += packet_size) {
     fill(p, segments, first, valid);
-    rtcOccluded16(valid.data(), embree_->scene, &context, &p);
+    rtcOccluded16(valid.data(), embree_->scene, &context.embree, &p);
     const size_t n = std::min(packet_size, segments.size() - first);
     for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
   }
+}
+
+void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
+                      Coherence coherence, PaneFactors& factors) const {
+  occluded(rays, is_occluded, coherence);
+  factors.values.clear();
+  if (!has_panes()) return;
+  factors.values.assign(rays.size(), Rgb{1});
+  for (size_t i = 0; i < rays.size(); ++i)
+    if (is_occluded[i] == 0) factors.values[i] = transmittance(rays[i]);
+}
+
+void Tracer::occluded(const Segments& segments, std::span<uint8_t> is_occluded,
+                      PaneFactors& factors) const {
+  occluded(segments, is_occluded);
+  factors.values.clear();
+  if (!has_panes()) return;
+  factors.values.assign(segments.size(), Rgb{1});
+  for (size_t i = 0; i < segments.size(); ++i)
+    if (is_occluded[i] == 0) factors.values[i] = transmittance(ray_of(segments, i));
+}
+
+Rgb Tracer::transmittance(const Ray& ray) const {
+  constexpr int most_panes = 256;
+  Rgb left{1};
+  if (!has_panes() || !is_traceable(ray)) return left;
+  Context context(false);
+  const float per_metre = 1 / length(ray.direction);
+  Ray rest = ray;
+  for (int i = 0; i < most_panes; ++i) {
+    const Hit hit = closest_of(embree_->panes, context, rest);
+    if (!hit.is_valid()) return left;
+    left *= glass_->transmittance(ray, hit);
+    // Clear of this pane: where two of its triangles meet it counts once.
+    const Vec3 at = abs(ray.origin + ray.direction * hit.t);
+    rest.t_min = hit.t + per_metre * ray_offset(std::max({at.x, at.y, at.z}));
+    if (left.is_black() || !(rest.t_min < rest.t_max)) return left;
+  }
+  return Rgb{0};
 }
 
 }  // namespace troffer

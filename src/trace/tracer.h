@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "trace/panes.h"
 #include "trace/ray.h"
 
 namespace troffer {
@@ -28,10 +29,15 @@ struct RayLog {
 // The acceleration structure of a scene, which must outlive it. Immutable and safe to use from
 // many threads; results do not depend on how many. Rays that are not finite or reach beyond 1e18
 // hit nothing and count as occluded.
+//
+// Panes are hit by rays as all else is, but hide nothing. `factors` is set to what they leave of
+// the light of rays that are not occluded.
 class Tracer {
  public:
   // Throws EnvironmentError if memory runs out.
-  explicit Tracer(const Scene& scene);
+  explicit Tracer(const Scene& scene) : Tracer(scene, nullptr) {}
+  // glass: null: there are no panes; else it must outlive the tracer.
+  Tracer(const Scene& scene, const PaneGlass* glass);
   ~Tracer();
   Tracer(Tracer&&) noexcept;
   Tracer& operator=(Tracer&&) noexcept;
@@ -39,19 +45,33 @@ class Tracer {
   // hits[i] = closest hit of rays[i]. Hits that an alpha mask makes transparent do not count.
   void closest(std::span<const Ray> rays, std::span<Hit> hits,
                Coherence coherence = Coherence::none) const;
-  // is_occluded[i] = 1 if anything lies on rays[i], else 0.
+  // The same, but no hit is on a pane.
+  void closest_but_panes(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) const;
+  // is_occluded[i] = 1 if anything but a pane lies on rays[i], else 0.
+  void occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded, Coherence coherence,
+                PaneFactors& factors) const;
+  // The same, coherent, for segments.
+  void occluded(const Segments& segments, std::span<uint8_t> is_occluded,
+                PaneFactors& factors) const;
+  // Without asking what panes leave.
   void occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
                 Coherence coherence = Coherence::none) const;
-
-  // The same, coherent, for segments.
   void occluded(const Segments& segments, std::span<uint8_t> is_occluded) const;
+
+  bool has_panes() const { return glass_ != nullptr; }
+  // What panes on a ray leave of its light, whatever else is on it.
+  Rgb transmittance(const Ray& ray) const;
 
   // From now on also writes all rays into `log` (null: no more). Not while other threads trace.
   void set_log(RayLog* log) { log_ = log; }
 
  private:
   struct Embree;
+  void trace_closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence,
+                     bool skips_panes) const;
+
   std::unique_ptr<Embree> embree_;
+  const PaneGlass* glass_ = nullptr;  // null: there are no panes
   RayLog* log_ = nullptr;
 };
 

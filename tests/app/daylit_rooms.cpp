@@ -11,9 +11,10 @@
 
 namespace troffer::test {
 
-std::string pbrt_rectangles(const std::vector<Rectangle>& rectangles, double reflectance) {
-  std::string text =
-      fmt::format("Material \"diffuse\" \"rgb reflectance\" [{0} {0} {0}]\n", reflectance);
+namespace {
+
+std::string rectangles_of(const std::vector<Rectangle>& rectangles, const std::string& material) {
+  std::string text = material;
   for (const Rectangle& r : rectangles) {
     text +=
         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
@@ -24,6 +25,18 @@ std::string pbrt_rectangles(const std::vector<Rectangle>& rectangles, double ref
     text += "]\n";
   }
   return text;
+}
+
+}  // namespace
+
+std::string pbrt_rectangles(const std::vector<Rectangle>& rectangles, double reflectance) {
+  return rectangles_of(
+      rectangles,
+      fmt::format("Material \"diffuse\" \"rgb reflectance\" [{0} {0} {0}]\n", reflectance));
+}
+
+std::string pbrt_glass(const std::vector<Rectangle>& rectangles) {
+  return rectangles_of(rectangles, "Material \"thindielectric\" \"float eta\" 1.5\n");
 }
 
 Rectangle Room::opening() const {

@@ -26,6 +26,9 @@ struct Rectangle {
 // A pbrt file of rectangles that reflect the same share.
 std::string pbrt_rectangles(const std::vector<Rectangle>& rectangles, double reflectance);
 
+// … of panes of clear glass of index 1.5.
+std::string pbrt_glass(const std::vector<Rectangle>& rectangles);
+
 // The walls of a room of 4 × 4 × 3 m about (0, 0, 1.5), black, with a hole in the ceiling or in the
 // south wall, whose middle lies at x = 0.
 struct Room {

@@ -165,6 +165,25 @@ TEST_CASE("CIE 171, 5.4: what enters by an opening arrives within") {
        {10'000});
 }
 
+TEST_CASE("CIE 171, 5.5: the directional transmittance of clear glass") {
+  constexpr double lx = 10'000;
+  std::vector<double> shares, expected;
+  for (const int angle : {0, 10, 20, 30, 40, 50, 60, 70, 80, 85}) {
+    const double a = rad_from_deg(double(angle));
+    const std::string beam = fmt::format(
+        "LightSource \"distant\" \"point3 from\" [{0:.9g} 0 {1:.9g}] \"point3 to\" [0 0 0] "
+        "\"rgb L\" [{2:.9g} {2:.9g} {2:.9g}]\n",
+        std::sin(a), std::cos(a), lx / luminous_efficacy);
+    const std::string pane = pbrt_glass({{{-50, -50, 1}, {100, 0, 0}, {0, 100, 0}}});
+    // facing the beam
+    const Point p{{0, 0, 0}, {std::sin(a), 0, std::cos(a)}};
+    shares.push_back(measure(beam + pane, {p}, {})[0]);
+    expected.push_back(pane_transmittance(std::cos(a)) * lx);
+  }
+  tell("5.5", "10 000 lx in a parallel beam at 0° to 85° through a pane of index 1.5", shares,
+       expected);
+}
+
 TEST_CASE("CIE 171, 5.6 and 5.7: light off a diffuse square, and past an obstruction") {
   // A vertical beam on the square y in [0, size]: points above its edge, upright and facing down,
   // see only what it reflects.
@@ -247,6 +266,7 @@ struct SkyCase {
   double ground = 0;
   double overhang = 0;     // of a black roof over the opening's upper edge, metres
   double obstruction = 0;  // distance of a black wall of 4 m before the façade
+  bool is_glazed = false;
 };
 
 std::vector<Point> facade_points() {
@@ -276,9 +296,11 @@ double expected_at(const SkyCase& c, const Point& p, const Luminance& sky) {
   const double hidden_from = c.overhang > 0 ? height_at_opening(c.overhang, top) : 1e9;
   const double hidden_to = c.obstruction > 0 ? height_at_opening(c.obstruction, 4) : -1e9;
   const auto luminance = [&](const Vec3d& from, const Vec3d& w) {
-    if (c.room.has_roof_opening) return sky(w);
+    const double glass =
+        c.is_glazed ? pane_transmittance(std::abs(c.room.has_roof_opening ? w.z : w.y)) : 1;
+    if (c.room.has_roof_opening) return glass * sky(w);
     const double z = from.z + w.z * inside / -w.y;
-    return z > hidden_from || z < hidden_to ? 0.0 : sky(w);
+    return z > hidden_from || z < hidden_to ? 0.0 : glass * sky(w);
   };
   return illuminance_through(c.room.opening(), p, luminance,
                              {p.position.z, hidden_from, hidden_to});
@@ -292,7 +314,9 @@ void check_skies(const SkyCase& c, const std::vector<int>& types) {
   for (const int type : types) {
     const Luminance sky = cie_sky_of(type, c.ground);
     for (const Point& p : points) expected.push_back(expected_at(c, p, sky));
-    const auto values = measure(pbrt_rectangles(rectangles, 0), points,
+    const auto values = measure(pbrt_rectangles(rectangles, 0) +
+                                    (c.is_glazed ? pbrt_glass({c.room.opening()}) : std::string()),
+                                points,
                                 {"--sky", fmt::format("cie:{},10000", type), "--sun", "180,60,0",
                                  "--up", "0,0,1", "--ground", fmt::format("{}", c.ground)});
     lx.insert(lx.end(), values.begin(), values.end());
@@ -306,8 +330,12 @@ TEST_CASE("CIE 171, 5.9 to 5.14: sky and ground through openings, clear and obst
   const Room small_roof, large_roof{true, 4, 4}, window{false, 2, 1, 1}, facade{false, 4, 3, 0};
   const SkyCase cases[] = {{"5.9", "roof opening of 1 × 1 m", small_roof},
                            {"5.9", "roof opening of 4 × 4 m", large_roof},
+                           {"5.10", "glazed roof opening of 1 × 1 m", small_roof, 0, 0, 0, true},
+                           {"5.10", "glazed roof opening of 4 × 4 m", large_roof, 0, 0, 0, true},
                            {"5.11", "window of 2 × 1 m, ground .3", window, 0.3},
                            {"5.11", "façade of 4 × 3 m, ground .3", facade, 0.3},
+                           {"5.12", "glazed window, ground .3", window, 0.3, 0, 0, true},
+                           {"5.12", "glazed façade, ground .3", facade, 0.3, 0, 0, true},
                            {"5.13", "window, black roof of 1 m above it", window, 0.3, 1},
                            {"5.14", "window, black wall of 4 m at 6 m", window, 0.3, 0, 6}};
   std::vector<int> types{1, 12};

@@ -1,0 +1,27 @@
+// The panes of a scene: clear thin glass, by its materials.
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "scene/scene.h"
+#include "trace/panes.h"
+
+namespace troffer {
+
+class SceneGlass final : public PaneGlass {
+ public:
+  SceneGlass(const Scene& scene, const BsdfTables& tables) : scene_(scene), tables_(tables) {}
+  bool is_pane(uint32_t material) const override { return tables_.material(material).is_pane; }
+  bool is_even(uint32_t material) const override {
+    return !has_textured_input(scene_.materials[material]);
+  }
+  Rgb transmittance_at(uint32_t material, float cosine) const override {
+    return straight_transmittance(make_bsdf(tables_, scene_, material, {}, true), cosine);
+  }
+  Rgb transmittance(const Ray& ray, const Hit& hit) const override;
+
+ private:
+  const Scene& scene_;
+  const BsdfTables& tables_;
+};
+
+}  // namespace troffer

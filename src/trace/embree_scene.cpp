@@ -1,0 +1,186 @@
+#include "trace/embree_scene.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace troffer {
+
+namespace {
+
+bool is_transparent(const AlphaTest& test, uint32_t primitive, float u, float v) {
+  const Triangle& t = test.mesh->triangles[primitive];
+  Vec2 uv{0, 0};
+  if (!test.mesh->uvs.empty()) {
+    const auto& c = test.mesh->uvs;
+    uv = c[t[0]] * (1 - u - v) + c[t[1]] * u + c[t[2]] * v;
+  }
+  const Material& m = test.scene->materials[test.mesh->material];
+  return evaluate(test.scene->textures, m.alpha, uv) < m.alpha_cutoff;
+}
+
+void alpha_filter(const RTCFilterFunctionNArguments* args) {
+  const auto& test = *static_cast<const AlphaTest*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != -1) continue;
+    if (is_transparent(test, RTCHitN_primID(args->hit, args->N, i),
+                       RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)))
+      args->valid[i] = 0;
+  }
+}
+
+void reject_panes(const RTCFilterFunctionNArguments* args) {
+  const auto& test = *static_cast<const PaneTest*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != -1) continue;
+    if (test.is_pane.empty() || test.is_pane[RTCHitN_primID(args->hit, args->N, i)] != 0)
+      args->valid[i] = 0;
+  }
+}
+
+void pane_filter(const RTCFilterFunctionNArguments* args) {
+  if (reinterpret_cast<const Context*>(args->context)->skips_panes) reject_panes(args);
+}
+
+void on_error(void* user, RTCError code, const char* text) {
+  auto& status = *static_cast<EmbreeStatus*>(user);
+  if (status.code != RTC_ERROR_NONE) return;
+  status.code = code;
+  status.text = text != nullptr ? text : "";
+}
+
+}  // namespace
+
+void Tracer::Embree::throw_if_failed() const {
+  if (status.code == RTC_ERROR_NONE) return;
+  throw EnvironmentError(
+      "cannot build the ray tracing structure: " +
+      (status.code == RTC_ERROR_OUT_OF_MEMORY ? std::string("out of memory") : status.text));
+}
+
+void* Tracer::Embree::buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                             size_t stride, size_t count) {
+  void* data =
+      rtcSetNewGeometryBuffer(geometry, type, 0, format, stride, std::max<size_t>(count, 1));
+  throw_if_failed();
+  return data;
+}
+
+void Tracer::Embree::attach(RTCGeometry geometry, uint32_t id) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  if (id < pane_tests.size() && pane_tests[id].has_panes) {
+    if (panes == nullptr) panes = rtcNewScene(device);
+    rtcSetSceneFlags(panes, RTC_SCENE_FLAG_ROBUST);
+    rtcAttachGeometryByID(panes, geometry, id);
+  }
+  rtcReleaseGeometry(geometry);
+}
+
+void Tracer::Embree::set_pane_test(RTCGeometry g, uint32_t id, std::vector<uint8_t> is_pane) {
+  pane_tests[id] = {true, std::move(is_pane)};
+  rtcSetGeometryUserData(g, &pane_tests[id]);
+  rtcSetGeometryIntersectFilterFunction(g, pane_filter);
+  rtcSetGeometryOccludedFilterFunction(g, reject_panes);
+}
+
+void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass) {
+  const Mesh& mesh = s.meshes[id];
+  if (mesh.triangles.empty()) return;
+  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  // Embree owns the copies: it reads vertices in 16-byte loads, past the end of ours.
+  auto* p = static_cast<float*>(buffer(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                                       3 * sizeof(float), mesh.positions.size()));
+  for (size_t i = 0; i < mesh.positions.size(); ++i)
+    for (size_t a = 0; a < 3; ++a) p[3 * i + a] = mesh.positions[i][a];
+  auto* t = static_cast<uint32_t*>(buffer(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                          3 * sizeof(uint32_t), mesh.triangles.size()));
+  for (size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (size_t a = 0; a < 3; ++a) t[3 * i + a] = mesh.triangles[i][a];
+  if (s.materials[mesh.material].is_alpha_masked) {
+    alpha_tests[id] = {&s, &mesh};
+    rtcSetGeometryUserData(g, &alpha_tests[id]);
+    rtcSetGeometryIntersectFilterFunction(g, alpha_filter);
+    rtcSetGeometryOccludedFilterFunction(g, alpha_filter);
+  } else if (glass != nullptr && glass->is_pane(mesh.material)) {
+    set_pane_test(g, id, {});
+  }
+  attach(g, id);
+}
+
+// Of the shapes of one geometry, which are panes.
+template <class Shapes>
+void Tracer::Embree::mark_panes(RTCGeometry g, uint32_t id, const Shapes& shapes,
+                                const PaneGlass* glass) {
+  if (glass == nullptr) return;
+  std::vector<uint8_t> is_pane;
+  for (const auto& shape : shapes) is_pane.push_back(glass->is_pane(shape.material) ? 1 : 0);
+  if (std::find(is_pane.begin(), is_pane.end(), 1) != is_pane.end())
+    set_pane_test(g, id, std::move(is_pane));
+}
+
+void Tracer::Embree::add_spheres(const Scene& s, const PaneGlass* glass) {
+  if (s.spheres.empty()) return;
+  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  auto* p = static_cast<float*>(
+      buffer(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float), s.spheres.size()));
+  for (const Sphere& sphere : s.spheres) {
+    for (size_t a = 0; a < 3; ++a) *p++ = sphere.centre[a];
+    *p++ = sphere.radius;
+  }
+  const auto id = uint32_t(s.meshes.size());
+  mark_panes(g, id, s.spheres, glass);
+  attach(g, id);
+}
+
+void Tracer::Embree::add_disks(const Scene& s, const PaneGlass* glass) {
+  if (s.disks.empty()) return;
+  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+  auto* p = static_cast<float*>(
+      buffer(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float), s.disks.size()));
+  auto* n = static_cast<float*>(
+      buffer(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, 3 * sizeof(float), s.disks.size()));
+  for (const Disk& disk : s.disks) {
+    for (size_t a = 0; a < 3; ++a) {
+      *p++ = disk.centre[a];
+      *n++ = disk.normal[a];
+    }
+    *p++ = disk.radius;
+  }
+  const auto id = uint32_t(s.meshes.size()) + 1;
+  mark_panes(g, id, s.disks, glass);
+  attach(g, id);
+}
+
+Tracer::Embree::Embree(const Scene& s, const PaneGlass* glass) {
+  device = rtcNewDevice(nullptr);
+  if (device == nullptr) throw EnvironmentError("cannot start Embree");
+  rtcSetDeviceErrorFunction(device, on_error, &status);
+  scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no light leaks through shared edges
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  alpha_tests.resize(s.meshes.size());
+  pane_tests.resize(s.meshes.size() + 2);
+  for (uint32_t i = 0; i < s.meshes.size(); ++i) add_mesh(s, i, glass);
+  add_spheres(s, glass);
+  add_disks(s, glass);
+  // Coincident surfaces are told apart by the order of primitives in the tree's leaves, which is
+  // the same for any number of threads only when the tree is built on one. Large scenes, where
+  // that would take long, are built on all cores.
+  constexpr size_t large = 400'000;
+  if (triangle_count(s) > large)
+    rtcCommitScene(scene);
+  else
+    run_on_one_thread([&] { rtcJoinCommitScene(scene); });
+  if (panes != nullptr) run_on_one_thread([&] { rtcJoinCommitScene(panes); });
+  throw_if_failed();
+}
+
+Tracer::Embree::~Embree() {
+  if (panes != nullptr) rtcReleaseScene(panes);
+  if (scene != nullptr) rtcReleaseScene(scene);
+  if (device != nullptr) rtcReleaseDevice(device);
+}
+
+}  // namespace troffer

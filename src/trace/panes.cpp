@@ -1,0 +1,149 @@
+#include "trace/panes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trace/surface.h"
+
+namespace troffer {
+
+PanePlaces::PanePlaces(const Scene& scene, const PaneGlass& glass) {
+  for (const Mesh& mesh : scene.meshes) {
+    if (!glass.is_pane(mesh.material) || mesh.triangles.empty()) continue;
+    Box box;
+    Vec3 normal;
+    float largest = 0;
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+      for (const Vec3& p : {a, b, c}) box.grow(p);
+      const Vec3 n = cross(b - a, c - a);
+      if (const float l = length(n); l > largest) {
+        largest = l;
+        normal = n * (1 / l);
+      }
+    }
+    std::vector<Vec3> points;
+    for (const Triangle& t : mesh.triangles)
+      for (const uint32_t i : t) points.push_back(mesh.positions[i]);
+    make_simple(scene, mesh, glass, add(box, normal, points));
+  }
+  for (const Sphere& s : scene.spheres)
+    if (glass.is_pane(s.material)) {
+      Box box;
+      box.grow(s.centre - Vec3{s.radius, s.radius, s.radius});
+      box.grow(s.centre + Vec3{s.radius, s.radius, s.radius});
+      add(box, {}, {});
+    }
+  for (const Disk& d : scene.disks)
+    if (glass.is_pane(d.material)) {
+      Box box;
+      box.grow(d.centre - Vec3{d.radius, d.radius, d.radius});
+      box.grow(d.centre + Vec3{d.radius, d.radius, d.radius});
+      add(box, d.normal, {d.centre});
+    }
+}
+
+PanePlaces::Place& PanePlaces::add(const Box& bounds, const Vec3& normal,
+                                   const std::vector<Vec3>& points) {
+  Place& p = places_.emplace_back();
+  p.bounds = bounds;
+  float magnitude = 0;
+  for (size_t a = 0; a < 3; ++a)
+    magnitude = std::max({magnitude, std::abs(bounds.lower[a]), std::abs(bounds.upper[a])});
+  p.slack = ray_offset(magnitude);
+  if (points.empty()) return p;
+  p.normal = normal;
+  p.height = dot(points[0], normal);
+  for (const Vec3& x : points)
+    if (std::abs(dot(x, normal) - p.height) > p.slack) p.normal = {};  // not flat
+  return p;
+}
+
+// Flat and even, of few triangles, seen as it lies.
+void PanePlaces::make_simple(const Scene& scene, const Mesh& mesh, const PaneGlass& glass,
+                             Place& place) {
+  constexpr size_t most_triangles = 8;
+  constexpr int steps = 1024;
+  if (!(length_squared(place.normal) > 0) || mesh.triangles.size() > most_triangles ||
+      !glass.is_even(mesh.material) || scene.materials[mesh.material].normal_texture >= 0)
+    return;
+  for (const Vec3& n : mesh.normals)
+    if (std::abs(dot(n, place.normal)) < 0.9999f * length(n)) return;
+  for (const Triangle& t : mesh.triangles)
+    place.triangles.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+  for (int i = 0; i <= steps; ++i)
+    place.by_cosine.push_back(glass.transmittance_at(mesh.material, float(i) / float(steps)));
+}
+
+namespace {
+
+// Both ends of a box along a direction.
+void extent_along(const Box& box, const Vec3& n, float& least, float& most) {
+  least = most = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    const float p = n[a] * box.lower[a], q = n[a] * box.upper[a];
+    least += std::min(p, q);
+    most += std::max(p, q);
+  }
+}
+
+}  // namespace
+
+void PanePlaces::between(const Box& a, const Box& b, PanesBetween& out) const {
+  out = {};
+  Box both = a;
+  both.grow(b.lower);
+  both.grow(b.upper);
+  for (uint32_t i = 0; i < places_.size(); ++i) {
+    const Place& p = places_[i];
+    bool is_apart = false;
+    for (size_t axis = 0; axis < 3; ++axis)
+      is_apart |= p.bounds.lower[axis] - p.slack > both.upper[axis] ||
+                  both.lower[axis] > p.bounds.upper[axis] + p.slack;
+    if (is_apart) continue;
+    if (length_squared(p.normal) > 0) {
+      float least = 0, most = 0;
+      extent_along(both, p.normal, least, most);
+      if (least > p.height + p.slack || most < p.height - p.slack) continue;
+    }
+    out.are_any = true;
+    out.are_simple = out.are_simple && !p.by_cosine.empty();
+    out.places.push_back(i);
+  }
+}
+
+namespace {
+
+// Whether a ray from x in the direction w goes through the triangle's inside: the three volumes
+// that it spans with the edges agree.
+bool goes_through(const std::array<Vec3, 3>& t, const Vec3& x, const Vec3& w) {
+  const Vec3 a = t[0] - x, b = t[1] - x, c = t[2] - x;
+  const float p = dot(cross(a, b), w), q = dot(cross(b, c), w), r = dot(cross(c, a), w);
+  return (p >= 0 && q >= 0 && r >= 0) || (p <= 0 && q <= 0 && r <= 0);
+}
+
+}  // namespace
+
+Rgb PanePlaces::transmittance(const PanesBetween& panes, const Vec3& x, const Vec3& way) const {
+  Rgb left{1};
+  const float distance = length(way);
+  const Vec3 w = way * (1 / std::max(distance, 1e-30f));
+  for (const uint32_t i : panes.places) {
+    const Place& p = places_[i];
+    const float cosine = dot(w, p.normal), height = p.height - dot(x, p.normal);
+    // Not where x lies on it, where it lies behind, or beyond the way's end.
+    if (std::abs(height) <= p.slack || !(height * cosine > 0) ||
+        !(std::abs(height) < std::abs(cosine) * distance))
+      continue;
+    bool is_met = false;
+    for (const auto& t : p.triangles) is_met = is_met || goes_through(t, x, w);
+    if (!is_met) continue;
+    const auto steps = float(p.by_cosine.size() - 1);
+    const float at = std::min(std::abs(cosine), 1.0f) * steps;
+    const auto k = std::min(size_t(at), p.by_cosine.size() - 2);
+    left *= p.by_cosine[k] * (1 - (at - float(k))) + p.by_cosine[k + 1] * (at - float(k));
+  }
+  return left;
+}
+
+}  // namespace troffer
