@@ -9,6 +9,7 @@
 #include <new>
 
 #include "app/commands.h"
+#include "app/printable.h"
 #include "app/signals.h"
 #include "base/error.h"
 
@@ -311,7 +312,7 @@ int report(const char* text, int status) {
   std::string line = text;
   for (char& ch : line)  // one line, whatever a hostile file put into a name
     if (static_cast<unsigned char>(ch) < 0x20) ch = ' ';
-  std::fprintf(stderr, "error: %s\n", line.c_str());
+  std::fprintf(stderr, "error: %s\n", printable(line).c_str());
   return status;
 }
 

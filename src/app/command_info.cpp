@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/luminaire_options.h"
+#include "app/printable.h"
 #include "base/box.h"
 #include "import/import.h"
 #include "render/source_info.h"
@@ -59,7 +60,7 @@ Json info_json(const Scene& scene) {
 }
 
 void print_text(const Scene& scene, const Json& j) {
-  fmt::print("scene      {}\n", scene.file);
+  fmt::print("scene      {}\n", printable(scene.file));
   for (const char* key : {"triangles", "meshes", "materials", "textures", "spheres", "disks"})
     fmt::print("{:<10} {}\n", key, j[key].get<size_t>());
   const Boxd box = bounds_in_file(scene);
@@ -71,20 +72,20 @@ void print_text(const Scene& scene, const Json& j) {
                digits, box.upper.z, digits);
   fmt::print("cameras    {}\n", scene.cameras.size());
   for (const Camera& c : scene.cameras) {
-    fmt::print("  {}", c.name);
+    fmt::print("  {}", printable(c.name));
     if (c.width > 0) fmt::print("  {}x{}", c.width, c.height);
     fmt::print("\n");
   }
   fmt::print("emitters   {} of {} triangles\n", scene.lights.size(),
              j["emitter_triangles"].get<size_t>());
   for (const Json& s : j["sources"])
-    fmt::print("  {:<16} {:<8} {:10.4g} m2  {:10.4g} {}{}\n", s["name"].get<std::string>(),
-               s["shape"].get<std::string>(), s["area"].get<double>(), s["power"].get<double>(),
-               scene.is_photometric ? "lm" : "W",
+    fmt::print("  {:<16} {:<8} {:10.4g} m2  {:10.4g} {}{}\n",
+               printable(s["name"].get<std::string>()), s["shape"].get<std::string>(),
+               s["area"].get<double>(), s["power"].get<double>(), scene.is_photometric ? "lm" : "W",
                s["is_two_sided"].get<bool>() ? "  two-sided" : "");
   if (scene.warnings.total() > 0) fmt::print("warnings   {}\n", scene.warnings.total());
   for (const Warning& w : scene.warnings.entries()) {
-    fmt::print("  {}", w.text);
+    fmt::print("  {}", printable(w.text));
     if (w.count > 1) fmt::print(" ({} times)", w.count);
     fmt::print("\n");
   }

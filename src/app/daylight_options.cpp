@@ -136,9 +136,11 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
   } else if (request.sun) {
     request.kind = SkyKind::cie;
     request.cie_type = 12;
-    if (o.sky == "none") request.diffuse_lx = 0;
+    // An image of the surroundings has a sky and a ground of its own.
+    if (o.sky == "none" || !o.environment.empty()) request.diffuse_lx = 0;
   }
-  request.ground_reflectance = o.ground;
+  const bool has_own_ground = !has_sky && !o.environment.empty();
+  request.ground_reflectance = has_own_ground ? 0 : o.ground;
   if (has_sky && needs_sun(request) && !request.sun)
     throw UsageError("--sky " + o.sky + " depends on where the sun stands: give --sun or --at");
   if (request.sun && !(request.sun->altitude_deg > 0)) {
@@ -198,7 +200,7 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
                      "plane]; perez:DNI,DHI in W/m²; none [even where a scene has no light]");
   command.add_option("--sun", o.sun,
                      "The sun: AZIMUTH,ALTITUDE[,LUX], degrees clockwise from north and above the "
-                     "horizon; with a clear sky unless --sky says else");
+                     "horizon; with a clear sky unless --sky or --environment says else");
   command.add_option("--at", o.at,
                      "The sun by LATITUDE,LONGITUDE,TIME, such as "
                      "48.2,16.4,2026-06-21T12:00+02:00");
@@ -221,9 +223,10 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
       ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str();
   command
-      .add_option("--luminaire", o.luminaires,
-                  "NODE=FILE[,LUMENS]: a flat surface, a point or a spot shines as an .ies or .ldt "
-                  "file says; may be repeated")
+      .add_option(
+          "--luminaire", o.luminaires,
+          "NODE=FILE[,LUMENS[,KELVIN]]: a flat surface, a point or a spot shines as an .ies "
+          "or .ldt file says, in the colour of a black body; may be repeated")
       ->allow_extra_args(false);
   if (command.get_option_no_throw("--up") == nullptr)
     command.add_option("--up", o.up, "Upward direction x,y,z, for what comes from the sky");

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/printable.h"
 #include "base/error.h"
 #include "import/import.h"
 #include "scene/joined_lights.h"
@@ -20,7 +21,7 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& lights
   constexpr size_t most_lines = 20;
   const auto& entries = scene.warnings.entries();
   for (size_t i = 0; i < entries.size() && i < most_lines; ++i) {
-    fmt::print(stderr, "warning: {}", entries[i].text);
+    fmt::print(stderr, "warning: {}", printable(entries[i].text));
     if (entries[i].count > 1) fmt::print(stderr, " ({} times)", entries[i].count);
     fmt::print(stderr, "\n");
   }

@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "app/printable.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "import/attach_luminaire.h"
 #include "import/file.h"
+#include "import/spectra.h"
 #include "light/web.h"
 
 namespace troffer {
@@ -36,31 +38,62 @@ double full_angle_deg(const LightWeb& web, double share, double turn) {
 
 }  // namespace
 
+namespace {
+
+// "NODE=FILE[,LUMENS[,KELVIN]]"
+struct LuminaireOption {
+  std::string node, file;
+  double lumens = 0;  // 0: the file's
+  double kelvin = 0;  // 0: white
+};
+
+// Takes a number behind the last comma off the text; false where there is none.
+bool take_number(std::string& text, double& number) {
+  const size_t comma = text.rfind(',');
+  if (comma == std::string::npos || comma + 1 == text.size()) return false;
+  char* end = nullptr;
+  number = std::strtod(text.c_str() + comma + 1, &end);
+  if (*end != '\0') return false;
+  text.resize(comma);
+  return true;
+}
+
+LuminaireOption parse_luminaire(const std::string& text) {
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw UsageError("--luminaire: '" + text +
+                     "' is not NODE=FILE, NODE=FILE,LUMENS or NODE=FILE,"
+                     "LUMENS,KELVIN");
+  LuminaireOption o;
+  o.node = text.substr(0, equals);
+  o.file = text.substr(equals + 1);
+  double last = 0;
+  if (!take_number(o.file, last)) return o;
+  const bool has_kelvin = take_number(o.file, o.lumens);
+  if (!has_kelvin) o.lumens = last;
+  // With a colour lumens of 0 stand for the file's.
+  if (!(o.lumens >= (has_kelvin ? 0 : 1e-30) && o.lumens <= 1e9))
+    throw UsageError("--luminaire: lumens must lie between 0 and 1e9");
+  if (!has_kelvin) return o;
+  o.kelvin = last;
+  if (!(o.kelvin >= 1000 && o.kelvin <= 40'000))
+    throw UsageError("--luminaire: a colour temperature must lie between 1000 and 40000 K");
+  return o;
+}
+
+}  // namespace
+
 void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down) {
   for (const std::string& text : luminaires) {
-    const size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw UsageError("--luminaire: '" + text + "' is not NODE=FILE or NODE=FILE,LUMENS");
-    std::string file = text.substr(equals + 1);
-    double lumens = 0;
-    if (const size_t comma = file.rfind(','); comma != std::string::npos) {
-      char* end = nullptr;
-      lumens = std::strtod(file.c_str() + comma + 1, &end);
-      if (*end == '\0' && comma + 1 < file.size()) {
-        if (!(lumens > 0 && lumens <= 1e9))
-          throw UsageError("--luminaire: lumens must lie between 0 and 1e9");
-        file.resize(comma);
-      } else {
-        lumens = 0;
-      }
-    }
-    const Luminaire luminaire = read_luminaire(file, scene.warnings);
+    const LuminaireOption o = parse_luminaire(text);
+    const Luminaire luminaire = read_luminaire(o.file, scene.warnings);
     const double unit = scene.is_photometric ? 1 : 1 / luminous_efficacy;
-    const double scale = lumens > 0 ? lumens / flux(luminaire.web) : 1;
+    const double scale = o.lumens > 0 ? o.lumens / flux(luminaire.web) : 1;
     if (!(scale <= most_scale))
-      throw UsageError(
-          fmt::format("--luminaire: {} has too little light to be scaled to {} lm", file, lumens));
-    attach_luminaire(scene, text.substr(0, equals), luminaire, unit * scale, down);
+      throw UsageError(fmt::format("--luminaire: {} has too little light to be scaled to {} lm",
+                                   o.file, o.lumens));
+    const Rgb colour = o.kelvin > 0 ? blackbody_emission(o.kelvin) : Rgb{1};
+    attach_luminaire(scene, o.node, luminaire, colour * float(unit * scale), down);
   }
 }
 
@@ -92,11 +125,11 @@ std::string luminaire_info(const std::string& path, bool is_json) {
       "luminaire  {}\nflux       {:.5g} lm (lamps {:.5g} lm)\npower      {:.4g} W, {:.4g} lm/W\n"
       "intensity  {:.5g} cd at most\nbeam       {:.1f} x {:.1f} degrees (half), {:.1f} x {:.1f} "
       "(a tenth)\nopening    {:.3g} x {:.3g} x {:.3g} m{}\n",
-      l.description, lumens, l.lamp_lumens, l.watts, j["efficacy"].get<double>(),
+      printable(l.description), lumens, l.lamp_lumens, l.watts, j["efficacy"].get<double>(),
       largest_intensity(l.web), j["beam_angle"][0].get<double>(), j["beam_angle"][1].get<double>(),
       j["field_angle"][0].get<double>(), j["field_angle"][1].get<double>(), l.width, l.length,
       l.height, l.is_round ? ", round" : "");
-  for (const Warning& w : warnings.entries()) text += "warning    " + w.text + "\n";
+  for (const Warning& w : warnings.entries()) text += "warning    " + printable(w.text) + "\n";
   return text;
 }
 

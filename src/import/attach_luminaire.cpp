@@ -66,7 +66,7 @@ Opening opening_of(const Scene& scene, const std::string& node) {
 }
 
 void attach_to_surfaces(Scene& scene, const std::string& node, const Luminaire& luminaire,
-                        double scale, int32_t web) {
+                        Rgb scale, int32_t web) {
   const Opening o = opening_of(scene, node);
   const bool is_known =
       !o.meshes.empty() || std::any_of(scene.lights.begin(), scene.lights.end(),
@@ -87,15 +87,15 @@ void attach_to_surfaces(Scene& scene, const std::string& node, const Luminaire& 
       e.axes = axes;
       e.texture = no_texture;
       e.is_two_sided = is_two_sided;
-      e.radiance = Rgb{float(scale / o.area)};
+      e.radiance = scale * float(1 / o.area);
     }
   }
 }
 
 }  // namespace
 
-void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire,
-                      double scale, const Vec3& down) {
+void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire, Rgb scale,
+                      const Vec3& down) {
   const auto web = int32_t(scene.webs.size());
   scene.webs.push_back(luminaire.web);
   bool is_point = false;
@@ -105,7 +105,7 @@ void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& lu
     e.kind = LightKind::point;
     e.web = web;
     e.axes = axes_about(axis, Framed(axis).tangent);
-    e.radiance = Rgb{float(scale)};
+    e.radiance = scale;
     is_point = true;
   }
   if (!is_point) attach_to_surfaces(scene, node, luminaire, scale, web);

@@ -8,11 +8,11 @@
 
 namespace troffer {
 
-// Makes `node` shine as the luminaire does, its intensities times `scale`: a point or spot of that
-// name, whose direction becomes the nadir (points: straight down, `down`), or flat meshes of that
-// name, or those of lights of that name, whose front becomes the luminous opening, facing the
-// nadir. UsageError where there is nothing of that name, or it is not flat.
-void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire,
-                      double scale, const Vec3& down);
+// Makes `node` shine as the luminaire does, its intensities times `scale`, which may be a colour: a
+// point or spot of that name, whose direction becomes the nadir (points: straight down, `down`), or
+// flat meshes of that name, or those of lights of that name, whose front becomes the luminous
+// opening, facing the nadir. UsageError where there is nothing of that name, or it is not flat.
+void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire, Rgb scale,
+                      const Vec3& down);
 
 }  // namespace troffer

@@ -35,6 +35,23 @@ bool contains(const std::string& text, const std::string& part) {
 
 }  // namespace
 
+TEST_CASE("a sun beside an image of the surroundings brings no sky and no ground of its own") {
+  const Folder folder;
+  std::string image = "PF\n4 2\n-1.0\n";
+  const float one = 1;
+  for (int i = 0; i < 4 * 2 * 3; ++i) image.append(reinterpret_cast<const char*>(&one), 4);
+  const std::string file = folder.write("even.pfm", image);
+  const double even = pi * luminous_efficacy;
+  for (const auto& [options, lx] :
+       {std::pair<std::vector<std::string>, double>{{"--environment", file}, even},
+        {{"--environment", file, "--sun", "200,30,50000"}, even + 25'000},
+        {{"--environment", file, "--sun", "200,30,50000", "--sky", "clear,9000"},
+         even + 25'000 + 9000}}) {
+    const Measured m = measure(folder, options);
+    CHECK(std::abs(m.lx - lx) < 2e-3 * lx + 5 * m.error);
+  }
+}
+
 TEST_CASE("skies and suns bring to an open plain what is asked for") {
   const Folder folder;
   struct Case {

@@ -116,3 +116,44 @@ TEST_CASE("info tells what a photometric file says; what is wrong is told in a l
     CHECK(g.error_lines().size() == 1);
   }
 }
+
+TEST_CASE("a colour temperature colours a luminaire and leaves its lumens") {
+  const Folder folder;
+  folder.write("panel.obj", geometry);
+  folder.write("m.mtl", panel_obj(1));
+  const std::string file = folder.write("even.ies", ies(1));
+  const auto white = measure(folder, {"--luminaire", "emitter0=" + file + ",3000"});
+  for (const auto& [kelvin, is_warm] :
+       {std::pair<std::string, bool>{"2700", true}, {"15000", false}}) {
+    const std::string option = "emitter0=" + file + ",3000," + kelvin;
+    const auto lit = measure(folder, {"--luminaire", option});
+    for (size_t i = 0; i < white.size(); ++i)
+      CHECK(std::abs(lit[i].lx - white[i].lx) < 2e-3 * white[i].lx + 5 * lit[i].error);
+    const Finished f = run_program(folder, {"measure", folder.path("panel.obj"), "--points",
+                                            folder.path("p.csv"), "--luminaire", option});
+    std::istringstream rows(f.out);
+    std::string row;
+    std::getline(rows, row);
+    std::getline(rows, row);
+    double r = 0, g = 0, b = 0;
+    REQUIRE(std::sscanf(row.c_str(), "%*f,%*f,%*f,%*f,%*f,%*f,%lf,%lf,%lf", &r, &g, &b) == 3);
+    CHECK((r > 1.5 * b) == is_warm);
+    CHECK((b > 1.2 * r) == !is_warm);
+  }
+  for (const char* bad : {",3000,500", ",-1,3000", ",1e10,3000"})
+    CHECK(run_program(folder, {"measure", folder.path("panel.obj"), "--points",
+                               folder.path("p.csv"), "--luminaire", "emitter0=" + file + bad})
+              .status == 2);
+}
+
+TEST_CASE("control characters of a file's names do not reach the terminal") {
+  const Folder folder;
+  std::string text = ies(1);
+  text.insert(text.find("TILT"),
+              "[LUMINAIRE] red \x1b[31mlamp \xc2\x9b"
+              "1m\n");
+  const Finished f = run_program(folder, {"info", folder.write("red.ies", text)});
+  REQUIRE(f.status == 0);
+  CHECK(f.out.find("red ?[31mlamp ?1m") != std::string::npos);
+  CHECK(f.out.find('\x1b') == std::string::npos);
+}

@@ -227,10 +227,10 @@ TEST_CASE("a luminaire takes the place of a point, of a flat mesh, and of nothin
   point.name = "bulb";
   point.kind = LightKind::point;
   s.lights.push_back(point);
-  attach_luminaire(s, "bulb", l, 2, {0, 0, -1});
+  attach_luminaire(s, "bulb", l, Rgb{2}, {0, 0, -1});
   CHECK(s.lights[0].web == 0);
   CHECK(s.lights[0].axes[2] == Vec3{0, 0, -1});
-  attach_luminaire(s, "panel", l, 2, {0, 0, -1});
+  attach_luminaire(s, "panel", l, Rgb{2}, {0, 0, -1});
   REQUIRE(s.lights.size() == 2);
   const Light& e = s.lights[1];
   CHECK(e.web == 1);
@@ -238,8 +238,8 @@ TEST_CASE("a luminaire takes the place of a point, of a flat mesh, and of nothin
   CHECK(e.radiance == Rgb{1});  // 2 over 2 m²
   CHECK(e.axes[2] == Vec3{0, 0, -1});
   CHECK_FALSE(e.is_two_sided);
-  CHECK_THROWS_AS(attach_luminaire(s, "roof", l, 1, {0, 0, -1}), UsageError);
-  CHECK_THROWS_AS(attach_luminaire(s, "nobody", l, 1, {0, 0, -1}), UsageError);
+  CHECK_THROWS_AS(attach_luminaire(s, "roof", l, Rgb{1}, {0, 0, -1}), UsageError);
+  CHECK_THROWS_AS(attach_luminaire(s, "nobody", l, Rgb{1}, {0, 0, -1}), UsageError);
 }
 
 TEST_CASE("an opening has two sides where light goes up, not where a file goes up") {
@@ -256,7 +256,7 @@ TEST_CASE("an opening has two sides where light goes up, not where a file goes u
     panel.triangles = {{0, 1, 2}, {0, 2, 3}};
     s.materials.resize(1);
     s.meshes.push_back(panel);
-    attach_luminaire(s, "panel", l, 1, {0, 0, -1});
+    attach_luminaire(s, "panel", l, Rgb{1}, {0, 0, -1});
     REQUIRE(s.lights.size() == 1);
     CAPTURE(intensities);
     CHECK(s.lights[0].is_two_sided == is_two_sided);
