@@ -55,6 +55,7 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
       lights_(scene, {float(settings.error), float(settings.viewing_rays)},
               uint32_t(settings.gloss_samples)),
       sampler_(scene) {
+  lights_.set_occluders(*occluders_);
   for (uint32_t light = 0; light < sampler_.lights(); ++light) {
     if (sampler_.is_empty(light)) continue;
     at_transmitting_.push_back(light);

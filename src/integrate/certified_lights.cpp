@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/random.h"
+#include "integrate/far_draws.h"
 #include "light/light.h"
 #include "trace/occluders.h"
 
@@ -31,7 +32,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      far_{FarCells(scene.scene, scene.primitives)},
+      far_{FarCells(scene.scene, scene.primitives), 0, {}},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
@@ -149,6 +150,10 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
   return true;
 }
 
+void CertifiedLights::set_occluders(const Occluders& occluders) {
+  if (!far_.cells.all().empty()) far_.scene = far_scene(occluders);
+}
+
 void CertifiedLights::add_far_lights(const PreparedScene& scene) {
   far_.first_source = uint32_t(sources_.size());
   for (const FarCell& cell : far_.cells.all()) {
@@ -231,6 +236,8 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
                   [&](uint32_t request, std::span<const SourceVisibility> answers) {
                     add_answers(request, members, answers, s, out, counters);
                   });
+  draw_left({scene_, competition_, s.hits, members, s.cluster, s.integrand.sources()}, budget_,
+            s.drawn, out, counters);
 }
 
 void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
@@ -258,6 +265,7 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
     r.stream = source.stream;
     r.brightness = luminance(source.radiance);
     r.found = &s.found[i];
+    if (source.far != nullptr) r.far = &far_.scene;
     s.requested.push_back(i);
     s.integrand.sources().push_back(&source);
     if (!scene_.panes.is_empty())

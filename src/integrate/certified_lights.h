@@ -57,6 +57,9 @@ class CertifiedLights {
   // The one of a light at infinity in a direction; null if none.
   const CertifiedSource* source_towards(uint32_t primitive, const Vec3& direction) const;
 
+  // Before the first hits, where there are lights at infinity.
+  void set_occluders(const Occluders& occluders);
+
   // What a batch learns is forgotten at its beginning, so that it does not matter what a thread did
   // before.
   void forget(CertifiedLightsScratch& s) const { s.found.assign(sources_.size(), {}); }
@@ -90,6 +93,7 @@ class CertifiedLights {
   struct Far {
     FarCells cells;
     uint32_t first_source = 0;  // those of the cells are the last ones
+    FarScene scene;             // what hides much of them
   } far_;
   DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart

@@ -143,7 +143,12 @@ class Cutter {
       texels = map->projection == SphereMap::lat_long ? map->width / 4 : map->width / 2;
     auto table = std::make_unique<FarTable>();
     table->size = int(std::bit_ceil(unsigned(std::clamp(texels, 128, 512))));
-    each = std::clamp((texels + table->size - 1) / table->size, 1, 8);
+    // Between texels an image is bilinear: a bright one is a hat, which a few values must not miss.
+    each = std::clamp((texels + table->size - 1) / table->size,
+                      image() == nullptr  ? 1
+                      : table->size > 256 ? 2
+                                          : 4,
+                      8);
     const int n = table->size;
     table->values.resize(size_t(n) * size_t(n));
     const Square all{-1, -1, 2};

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "shadow/divide_far.h"
+#include "shadow/far_pilot.h"
+
 namespace troffer {
 
 namespace {
@@ -54,13 +57,17 @@ void settle_flat(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m)
   target.tolerance = 2e-6 * magnitude;  // as the shaft has it
   m.queue.sources.push_back(target);
   const size_t first_ray = m.queue.open.size();
-  divide_flat(task, m.members, hull, whole, scene, m.gather, m.counters);
+  if (task.request.far != nullptr)
+    divide_far(task, m.members, hull, whole, scene, m.gather, m.counters);
+  else
+    divide_flat(task, m.members, hull, whole, scene, m.gather, m.counters);
   FoundFacets& found = *task.request.found;
-  if (found.is_hopeless() && found.rim == FoundFacets::Rim::unknown)
+  const bool is_far = task.request.far != nullptr;
+  if (!is_far && found.is_hopeless() && found.rim == FoundFacets::Rim::unknown)
     found.rim = has_rim(source, target.tolerance, task.options.most_found, scene)
                     ? FoundFacets::Rim::some
                     : FoundFacets::Rim::none;
-  SourceResults results{m.sums, m.queue, m.counters};
+  SourceResults results{m.sums, m.queue, m.counters, &m.left};
   uint64_t stream = task.request.stream;
   for (const SourcePart& part : m.gather.parts.all())
     settle_flat_part(task, part, stream, scene, m.part, results);
@@ -77,7 +84,7 @@ void settle_sphere(const SourceTask& task, ShadowScene& scene, CertifiedMemory& 
   target.own = source.own;
   m.queue.sources.push_back(target);
   divide_sphere(task, m.members, hull_of(task.cluster, m.members), scene, m.gather, m.counters);
-  SourceResults results{m.sums, m.queue, m.counters};
+  SourceResults results{m.sums, m.queue, m.counters, nullptr};
   for (SourcePart& part : m.gather.parts.all()) settle_sphere_part(task, part, m.part, results);
 }
 
@@ -149,7 +156,7 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
 // than that are not worth a mask.
 Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
                    const CertifiedOptions& options, CertifiedMemory& m) {
-  constexpr double facets_per_ray = 12, least_budget = 512,
+  constexpr double facets_per_ray = 12, least_budget = 512, least_far_budget = 64,
                    most_budget = facets_per_ray * most_rays_of_receiver;
   Promise p;
   p.error = options.mask_error;
@@ -171,6 +178,11 @@ Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
   // Masks may cost what rays may. Beyond that an error that is too large is told.
   p.budget =
       std::clamp(share * facets_per_ray / (4 * sqr(double(p.error))), least_budget, most_budget);
+  if (request.far != nullptr)
+    p.budget = std::min(
+        p.budget, std::max(2 * facets_per_ray * share * rays_for_error(m.far_open, double(p.error)),
+                           least_far_budget));
+  p.far_open = m.far_open;
   p.seen = m.seen;
   p.rest = m.rest;
   p.floor = m.floor;
@@ -186,11 +198,15 @@ void certified_light(const ShadowCluster& cluster, std::span<const LightRequest>
   const size_t n = cluster.size();
   if (n == 0) return;
   find_unoccluded(cluster, requests, m);
+  const bool is_far = std::any_of(requests.begin(), requests.end(),
+                                  [](const LightRequest& r) { return r.far != nullptr; });
+  if (is_far) m.far_open = far_open_share(cluster, requests, m.all_unoccluded, scene);
   m.light.assign(n, 0);
   m.done.assign(n, 0);
   m.is_cast_in_parts = false;
   m.queue.clear();
   m.waiting.clear();
+  m.left.clear();
   m.wanted_points.resize(n);
   m.answers.resize(n);
   std::vector<Waiting> waiting;

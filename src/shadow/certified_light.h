@@ -48,6 +48,8 @@ struct CertifiedMemory {
   RayMemory rays;
   std::vector<SourceVisibility> answers;  // of the source at hand, or of all that wait for rays
   std::vector<SourceVisibility> waiting;
+  double far_open = 0.5;  // the share of far sources' light that arrives, about
+  std::vector<LeftPart> left;  // of far sources, of the last call: their answers leave these out
   CertifiedCounters counters;
 };
 

@@ -136,6 +136,7 @@ struct Division {
     part.facets.swap(memory.candidates.facets);
     part.rounds.swap(memory.candidates.rounds);
     part.is_complete = memory.candidates.is_complete;
+    part.is_dark = false;
     part.is_hopeless = memory.candidates.is_too_long;
     return part;
   }

@@ -20,6 +20,7 @@ struct SourcePart {
   std::vector<RoundBody> rounds;
   bool is_complete = true;   // nothing else can hide anything
   bool is_hopeless = false;  // the list was too long and has been cut
+  bool is_dark = false;      // one facet hides all of it from all members
 };
 
 // The parts that one source comes to; keeps their memory from source to source.
@@ -39,6 +40,8 @@ class SourceParts {
 struct GatherMemory {
   ShadowCandidates candidates;
   SourceParts parts;
+  FacetList large, left;  // of far sources
+  FacetFlags flags;
 };
 
 // Sets `out` to the facets in the shaft between a hull and a flat outline, or a sphere.

@@ -66,10 +66,25 @@ bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memor
                  memory.flags, memory.lists[1]) == Certificate::dark;
 }
 
+// What is dark, or left out, without a look at it.
+void set_aside(const SourceTask& task, const SourcePart& part, PartMemory& memory,
+               SourceResults& results) {
+  memory.cells.assign(1, {part.cell, coarse_lattice});
+  const std::span<const float> unoccluded = unoccluded_of(task, part, part.cell, memory);
+  for (const uint32_t m : part.members)
+    if (unoccluded[m] > 0)
+      results.sums[m].add(unoccluded[m], 0, 0,
+                          part.is_dark ? ShadowAnswer::dark : ShadowAnswer::mixed);
+  if (!part.is_dark)
+    results.left->push_back({task.number, part.cell, {unoccluded.begin(), unoccluded.end()}});
+}
+
 }  // namespace
 
 void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
                       ShadowScene& scene, PartMemory& memory, SourceResults& results) {
+  if (part.is_dark || (part.is_hopeless && task.request.far != nullptr && results.left != nullptr))
+    return set_aside(task, part, memory, results);
   if (!part.is_hopeless || is_dark(task, part, memory.settle))
     return settle_by_masks(task, part, stream, memory, results);
   // An integrand wants to know which points are open.

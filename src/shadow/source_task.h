@@ -8,6 +8,7 @@
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "shadow/certified_options.h"
+#include "shadow/cut_cells.h"
 #include "shadow/found_facets.h"
 #include "shadow/pair_answer.h"
 #include "shadow/ray_queue.h"
@@ -45,13 +46,20 @@ class ShadowIntegrand {
   virtual void evaluate_many(uint32_t /*request*/, uint32_t /*member*/, PointArrays& /*points*/) {}
 };
 
+// What is known of a scene before sources that are far away: facets that may hide much of them. Of
+// such a source, parts that facets are too dense before are left to whoever asked.
+struct FarScene {
+  std::vector<FacetToAdd> large;
+};
+
 // A source whose light a cluster wants: one of the two shapes.
 struct LightRequest {
   const FlatSource* flat = nullptr;
   const SphereSource* sphere = nullptr;
-  uint64_t stream = 0;           // hash that tells its random numbers from others'
-  float brightness = 1;          // luminance of its radiance
-  FoundFacets* found = nullptr;  // what earlier clusters have learnt; this one adds to it
+  uint64_t stream = 0;            // hash that tells its random numbers from others'
+  float brightness = 1;           // luminance of its radiance
+  FoundFacets* found = nullptr;   // what earlier clusters have learnt; this one adds to it
+  const FarScene* far = nullptr;  // of a flat source at infinity
 };
 
 // What the masks of one of n sources may err by, and may cost. Where receivers see the light `seen`
@@ -65,6 +73,7 @@ struct Promise {
   std::span<const float> rest{};   // … and what those that come after would send, nothing hidden
   std::span<const float> floor{};  // … and the least that errors are compared with, / √n
   double sources = 1;              // n
+  double far_open = 0.5;           // what share of all far sources' light arrives, about
 };
 
 struct SourceTask {
@@ -85,11 +94,19 @@ struct SourceTask {
   }
 };
 
+// A part of a far source that its answer leaves out.
+struct LeftPart {
+  uint32_t request;
+  FlatCell cell;
+  std::vector<float> unoccluded;  // per receiver, sr
+};
+
 // Where the stages put what they find.
 struct SourceResults {
   std::span<CellSum> sums;  // per receiver
   RayQueue& rays;           // what only rays can tell
   CertifiedCounters& counters;
+  std::vector<LeftPart>* left = nullptr;  // null: nothing may be left
 };
 
 }  // namespace troffer

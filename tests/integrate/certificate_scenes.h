@@ -15,8 +15,16 @@
 
 namespace troffer::test {
 
-enum class SourceShape : uint8_t { parallelogram, triangle, polygon, disk, sphere };
-constexpr int source_shapes = 5;
+enum class SourceShape : uint8_t {
+  parallelogram,
+  triangle,
+  polygon,
+  disk,
+  sphere,
+  far_square,
+  far_disk
+};
+constexpr int source_shapes = 7;
 
 // Where a scene stands, and how large it is: coordinates are rounded once, at the end.
 struct Placing {
@@ -31,6 +39,7 @@ struct CertificateScene {
   FlatSource flat;
   SphereSource sphere;
   std::vector<ShadowReceiver> receivers;
+  bool is_far() const { return shape >= SourceShape::far_square; }
 };
 
 inline Vec3d random_in_cube(Random& r) {
@@ -46,6 +55,17 @@ inline void add_facet(Scene& s, const Placing& at, const Vec3d& corner, const Ve
   add_quad(s, 0, {at(corner), at(corner + u), at(corner + u + v), at(corner + v)});
 }
 
+// A cell at infinity as far_cells.h has them, or a sun, somewhere above.
+inline void add_far_source(Random& r, const Placing& at, CertificateScene& out) {
+  const double distance = 0x1p20 * 4 * at.scale;
+  const Framed frame(-normalize(Vec3d{0, 0, 1.1} + random_in_cube(r)));
+  out.flat.is_disk = out.shape == SourceShape::far_disk;
+  const double size =
+      distance * (out.flat.is_disk ? log_uniform(r, 0.009, 0.1) : log_uniform(r, 0.01, 2));
+  const Vec3d u = frame.tangent * size, v = frame.bitangent * size;
+  out.flat.plane = {at.offset - frame.normal * distance - (u + v) * 0.5, u, v, frame.normal};
+}
+
 // About (0,0,2), facing down, more or less.
 inline void add_source(Random& r, const Placing& at, CertificateScene& out) {
   const Vec3d centre{0, 0, 2};
@@ -58,6 +78,7 @@ inline void add_source(Random& r, const Placing& at, CertificateScene& out) {
                   Occluders::key(uint32_t(out.scene.meshes.size()), 0)};
     return;  // the key is set again when all meshes are known
   }
+  if (out.is_far()) return add_far_source(r, at, out);
   const Framed frame(normalize(Vec3d{0, 0, -1} + random_in_cube(r) * (r.next_double() * 0.6)));
   if (out.shape == SourceShape::disk) {
     const double radius = 0.5 * size * at.scale;

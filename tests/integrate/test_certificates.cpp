@@ -7,6 +7,7 @@
 #include <string>
 
 #include "certificate_scenes.h"
+#include "integrate/far_draws.h"
 #include "integrate/shadow_world.h"
 #include "probe.h"
 #include "shadow/certified_light.h"
@@ -27,7 +28,7 @@ double magnitude_of(const CertificateScene& s) {
   for (const ShadowReceiver& x : s.receivers) grow(Vec3d(x.origin));
   if (s.shape == SourceShape::sphere)
     grow(s.sphere.centre);
-  else
+  else if (!s.is_far())
     for (const Vec3d& c : s.flat.corners()) grow(c);
   return m;
 }
@@ -178,13 +179,16 @@ Vec3d point_at_facet(const Occluders& occluders, double tolerance, Random& r) {
   return rim + inwards * (step / size * (r.next_double() < 0.5 ? 1 : -1));
 }
 
-std::vector<SourceVisibility> answers_of(const CertificateScene& s, ShadowScene& world) {
+std::vector<SourceVisibility> answers_of(const CertificateScene& s, const Occluders& occluders,
+                                         ShadowScene& world) {
   std::vector<SourceVisibility> out(s.receivers.size());
   ShadowCluster cluster;
   cluster.set(s.receivers);
   FoundFacets found;
   LightRequest request{&s.flat, nullptr, 1, 1, &found};
   if (s.shape == SourceShape::sphere) request = {nullptr, &s.sphere, 1, 1, &found};
+  const FarScene far = far_scene(occluders);
+  if (s.is_far()) request.far = &far;
   CertifiedMemory memory;
   CertifiedOptions options;
   options.rays.most_rays = options.rays.most_pair_rays = 1;  // rays are not what is looked at
@@ -204,7 +208,7 @@ void check_scene(uint64_t seed, std::array<Tally, source_shapes>& tallies) {
   const Occluders occluders(s.scene);
   const Tracer tracer(s.scene);
   ShadowWorld world(s.scene, occluders, tracer);
-  const std::vector<SourceVisibility> answers = answers_of(s, world);
+  const std::vector<SourceVisibility> answers = answers_of(s, occluders, world);
   const double magnitude = magnitude_of(s), tolerance = 1e-7 * magnitude;
   Tally& tally = tallies[size_t(s.shape)];
   Random r(hash_of(seed, 8u));
@@ -221,9 +225,10 @@ void check_scene(uint64_t seed, std::array<Tally, source_shapes>& tallies) {
                             : k % 4 == 0 || occluders.facet_count() == 0
                                 ? point_of_source(s, r)
                                 : point_at_facet(occluders, tolerance, r);
-      if (!aim(s, x, through, is_lit ? 2.01e-6 * magnitude : 0, end)) continue;
-      if (dot(end - p, Vec3d(receiver.horizon)) <= 5e-6 * magnitude) continue;
-      if (dot(end - p, Vec3d(receiver.normal)) <= 5e-6 * magnitude) continue;
+      if (!aim(s, x, through, is_lit && !s.is_far() ? 2.01e-6 * magnitude : 0, end)) continue;
+      const double least = 5e-6 * (s.is_far() ? length(end - p) : magnitude);
+      if (dot(end - p, Vec3d(receiver.horizon)) <= least) continue;
+      if (dot(end - p, Vec3d(receiver.normal)) <= least) continue;
       ++tally.rays;
       const int hidden = is_hidden(s, occluders, x, end, tolerance);
       if (hidden < 0 || (hidden == 1) != is_lit) continue;

@@ -1,0 +1,165 @@
+#include "integrate/far_draws.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "shadow/cell_points.h"
+
+namespace troffer {
+
+namespace {
+
+// As for other lights (drawn_lights.cpp).
+constexpr double most_draws = 256, clutter = 2;
+constexpr size_t most_waiting = 16384;
+// Less than this share of the light is not taken to arrive, when numbers of draws are chosen.
+constexpr double least_open = 0.02;
+constexpr uint64_t purpose_far = 0x6661'7200;
+
+// A wall is among so many of the scene's largest facets, if it counts.
+constexpr size_t most_large = 96;
+
+double area_of(const Quad& q) {
+  return 0.5 * length(cross(Vec3d(q[2]) - Vec3d(q[0]), Vec3d(q[3]) - Vec3d(q[1])));
+}
+
+class Drawing {
+ public:
+  Drawing(const FarDraws& draws, DrawnLightsScratch& s)
+      : d_(draws), left_(draws.cluster.memory.left), s_(s) {
+    for (const LeftPart& part : left_) {
+      points_.emplace_back(part.cell);
+      brightness_.push_back(double(luminance(d_.sources[part.request]->radiance)));
+    }
+  }
+
+  // Points of a pixel. N of a Sobol sequence over a light of which the share p arrives err by about
+  // (p (1 - p))^½ N^-¾ of it.
+  double points_of_pixel(double error, double p) const {
+    double of_left = 0, seen = 0;
+    for (size_t i = 0; i < d_.members.size(); ++i) {
+      of_left += left_of(i);
+      seen += double(d_.cluster.memory.light[i]);
+    }
+    const double open = std::clamp(p, least_open, 1 - least_open);
+    const double arrives = seen + open * of_left;
+    if (!(arrives > 0)) return 0;
+    return clutter * std::pow(of_left * std::sqrt(open * (1 - open)) / (error * arrives), 4.0 / 3);
+  }
+
+  void of_member(size_t i, uint32_t n) {
+    const uint32_t m = d_.members[i];
+    const double all = left_of(i);
+    if (!(all > 0)) return;
+    set_numbers(m, n);
+    for (uint32_t j = 0; j < n; ++j) {
+      DrawnLightsScratch::Draw& draw = s_.draws.emplace_back();
+      draw = {m, s_.numbers[2 * n + j], {}, -1};
+      const double target = double(draw.place) * all;
+      double before = 0;
+      size_t part = 0;
+      for (; part + 1 < left_.size(); ++part) {
+        const double own = light_of(part, i);
+        if (target < before + own) break;
+        before += own;
+      }
+      if (light_of(part, i) > 0)
+        connect(draw, part, light_of(part, i) / all * n, s_.numbers[j], s_.numbers[n + j]);
+    }
+  }
+
+ private:
+  double light_of(size_t part, size_t i) const {
+    return brightness_[part] * double(left_[part].unoccluded[i]);
+  }
+  double left_of(size_t i) const {
+    double sum = 0;
+    for (size_t p = 0; p < left_.size(); ++p) sum += light_of(p, i);
+    return sum;
+  }
+
+  void set_numbers(uint32_t m, uint32_t n) {
+    s_.streams.assign(n, hash_combine(d_.hits.draw_streams[m], purpose_far));
+    s_.samples.resize(n);
+    s_.numbers.resize(3 * size_t(n));
+    for (uint32_t j = 0; j < n; ++j) s_.samples[j] = d_.hits.samples[m] * n + j;
+    sobol_groups(s_.streams.data(), s_.samples.data(), n, 0, 3, s_.numbers.data());
+  }
+
+  // points: expected number of them in the part.
+  void connect(DrawnLightsScratch::Draw& draw, size_t part, double points, float u, float v) {
+    const CertifiedSource& source = *d_.sources[left_[part].request];
+    const ShadowReceiver& r = d_.hits.receivers[draw.hit];
+    const Vec3d y = points_[part].at(u, v), x(r.position), d = y - x;
+    const double distance = length(d);
+    const Vec3 wi(d * (1 / distance));
+    const float cosine = dot(wi, r.normal);
+    if (!(cosine > 0) || !(dot(wi, r.horizon) > 0)) return;
+    const Parallelogram& plane = source.flat.plane;
+    const double steradians =
+        dot(plane.normal, x - plane.origin) / distance * points_[part].area() / sqr(distance);
+    draw.light = d_.hits.weights[draw.hit] * radiance(source, Vec3(d)) *
+                 value(source, draw.hit, wi, cosine) * float(steradians / points);
+    if (draw.light.is_black()) return;
+    draw.ray = int32_t(s_.rays.size());
+    Ray ray;
+    ray.origin = r.origin;
+    ray.direction = wi;
+    s_.rays.push_back(ray);
+  }
+
+  static Rgb radiance(const CertifiedSource& source, const Vec3& d) {
+    if (!source.is_textured) return source.radiance;
+    Rgb l;
+    far_radiance(*source.far, 1, &d.x, &d.y, &d.z, &l.r, &l.g, &l.b);
+    return l;
+  }
+
+  // BRDF × cosine, of what does not compete or wins.
+  Rgb value(const CertifiedSource& source, uint32_t m, const Vec3& wi, float cosine) const {
+    if (d_.hits.glossy[m] < 0) return Rgb{cosine};
+    const ShadowReceiver& r = d_.hits.receivers[m];
+    return glossy_value(d_.hits.glossy_hits[size_t(d_.hits.glossy[m])], wi,
+                        d_.competition.density(source, r.position, r.horizon, wi));
+  }
+
+  const FarDraws& d_;
+  const std::vector<LeftPart>& left_;
+  DrawnLightsScratch& s_;
+  std::vector<CellPoints> points_;  // per part
+  std::vector<double> brightness_;
+};
+
+}  // namespace
+
+FarScene far_scene(const Occluders& occluders) {
+  std::vector<std::pair<double, uint32_t>> order;
+  order.reserve(occluders.facet_count());
+  for (uint32_t i = 0; i < occluders.facet_count(); ++i)
+    order.emplace_back(-area_of(occluders.facet(i)), i);
+  const size_t n = std::min(order.size(), most_large);
+  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(n), order.end());
+  FarScene far;
+  for (size_t i = 0; i < n; ++i)
+    far.large.push_back({occluders.facet(order[i].second), order[i].second, false});
+  return far;
+}
+
+void draw_left(const FarDraws& draws, const DrawingBudget& budget, DrawnLightsScratch& s,
+               RadianceBatch& out, Counters& counters) {
+  if (draws.cluster.memory.left.empty()) return;
+  Drawing drawing(draws, s);
+  const double of_pixel =
+      drawing.points_of_pixel(double(budget.error), draws.cluster.memory.far_open);
+  const auto n = uint32_t(std::ceil(std::min(of_pixel / double(budget.viewing_rays), most_draws)));
+  if (n == 0) return;
+  for (size_t i = 0; i < draws.members.size(); ++i) {
+    if (i == 0 || draws.hits.pixels[draws.members[i]] != draws.hits.pixels[draws.members[i - 1]])
+      s.runs.push_back(s.draws.size());
+    drawing.of_member(i, n);
+  }
+  if (s.rays.size() >= most_waiting) resolve_draws(draws.scene, draws.hits, s, out, counters);
+}
+
+}  // namespace troffer

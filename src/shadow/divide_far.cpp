@@ -1,0 +1,164 @@
+#include "shadow/divide_far.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shadow/far_pilot.h"
+#include "shadow/settle_cell.h"
+
+namespace troffer {
+
+namespace {
+
+// A cell is halved so often at most: a face of the cube comes to 4 × 4 parts.
+constexpr int most_halvings = 4;
+// What the cluster's rays to all lights would cost, in facets of a mask, is what a proof may cost:
+// a few times that, by the share of the light. A gather costs about so many facets, and so many for
+// each that it finds; a large facet is tried once.
+constexpr double facets_per_ray = 12;
+constexpr double cost_of_gather = 1000, cost_of_found = 10, cost_of_large = 5, cost_of_part = 15;
+// A list costs masks, pilots and halvings of clusters: so many times its length. But blinds and
+// plants before a window are to be masked.
+constexpr double cost_of_list = 120, most_facets = 4096, fewest_facets = 64, usual_members = 32;
+
+class FarDivision {
+ public:
+  FarDivision(const SourceTask& task, std::span<const uint32_t> members, const ReceiverHull& hull,
+              ShadowScene& scene, GatherMemory& memory, CertifiedCounters& counters)
+      : task_(task),
+        members_(members),
+        hull_(hull),
+        scene_(scene),
+        memory_(memory),
+        counters_(counters),
+        work_(allowed_work()),
+        most_(longest_list()) {}
+
+  void divide(const FlatCell& cell, bool is_whole, int halvings) {
+    if (!is_whole && work_ <= 0) return add_hopeless(cell, is_whole);
+    gather_facets(hull_, cell.all_corners(), task_.request.flat->plane.normal, most_, scene_,
+                  memory_.candidates, counters_);
+    work_ -= cost_of_gather + cost_of_found * double(length_of_list());
+    FlatCell first, second;
+    if (!memory_.candidates.is_too_long) {
+      work_ -= double(members_.size()) * (cost_of_part + double(length_of_list()));
+      add_part(cell, is_whole);
+    } else if (is_dark(cell)) {
+      clear_list();
+      memory_.candidates.is_complete = true;
+      memory_.candidates.is_too_long = false;
+      add_part(cell, is_whole).is_dark = true;
+    } else if (halvings == 0 || work_ <= 0 || cell.is_disk || !halve(cell, first, second)) {
+      add_hopeless(cell, is_whole);
+    } else {
+      divide(first, false, halvings - 1);
+      divide(second, false, halvings - 1);
+    }
+  }
+
+  // Without a look at anything.
+  void leave(const FlatCell& cell) { add_hopeless(cell, true); }
+  double work() const { return work_; }
+
+ private:
+  size_t length_of_list() const {
+    return memory_.candidates.facets.size() + memory_.candidates.rounds.size();
+  }
+  void clear_list() {
+    memory_.candidates.facets.clear();
+    memory_.candidates.rounds.clear();
+  }
+
+  // By the share of the light that all sources would send.
+  double allowed_work() const {
+    const Promise& p = task_.promise;
+    if (!(p.error > 0)) return 1e30;
+    double own = 0, all = 0;
+    for (const uint32_t m : members_) {
+      const double light = double(task_.unoccluded[m]);
+      own += light;
+      all += std::max(double(p.seen[m]) + light + double(p.rest[m]), light);
+    }
+    const double rays = rays_for_error(p.far_open, double(p.error));
+    return double(members_.size()) * facets_per_ray * rays * (all > 0 ? own / all : 0);
+  }
+  size_t longest_list() const {
+    const double fewest = fewest_facets * std::min(1.0, double(members_.size()) / usual_members);
+    const double wanted = std::clamp(work_ / cost_of_list, fewest, most_facets);
+    return std::min(task_.options.longest_list, size_t(wanted));
+  }
+
+  bool is_dark(const FlatCell& cell) {
+    const std::span<const FacetToAdd> large = task_.request.far->large;
+    if (large.empty()) return false;
+    work_ -= cost_of_large * double(large.size());
+    const MaskFrame frame(cell.plane, coarse_lattice, false, hull_.centre, cell.all_outline(),
+                          cell.is_disk);
+    FacetList& list = memory_.large;
+    list.clear();
+    list.add_many(frame, large);
+    list.finish();
+    return certify({task_, frame, task_.unoccluded, 0, false, true}, hull_, list, memory_.flags,
+                   memory_.left) == Certificate::dark;
+  }
+
+  void add_hopeless(const FlatCell& cell, bool is_whole) {
+    clear_list();
+    memory_.candidates.is_too_long = true;
+    memory_.candidates.is_complete = false;
+    add_part(cell, is_whole);
+  }
+
+  SourcePart& add_part(const FlatCell& cell, bool is_whole) {
+    SourcePart& part = memory_.parts.add();
+    part.members.assign(members_.begin(), members_.end());
+    part.hull = hull_;
+    part.cell = cell;
+    part.is_whole = is_whole;
+    part.is_dark = false;
+    part.facets.swap(memory_.candidates.facets);
+    part.rounds.swap(memory_.candidates.rounds);
+    part.is_complete = memory_.candidates.is_complete;
+    part.is_hopeless = memory_.candidates.is_too_long;
+    return part;
+  }
+
+  const SourceTask& task_;
+  std::span<const uint32_t> members_;
+  const ReceiverHull& hull_;
+  ShadowScene& scene_;
+  GatherMemory& memory_;
+  CertifiedCounters& counters_;
+  double work_;  // that is left
+  size_t most_;  // facets in a list
+};
+
+double radius_of(const ReceiverHull& hull) {
+  double most = 0;
+  for (int i = 0; i < hull.count; ++i)
+    most = std::max(most, length(hull.corners[size_t(i)] - hull.centre));
+  return most;
+}
+
+}  // namespace
+
+void divide_far(const SourceTask& task, std::span<const uint32_t> members, const ReceiverHull& hull,
+                const FlatCell& cell, ShadowScene& scene, GatherMemory& memory,
+                CertifiedCounters& counters) {
+  memory.parts.clear();
+  FoundFacets& found = *task.request.found;
+  const double radius = radius_of(hull);
+  // Where a cell has been given up close by, it is not halved again; few receivers do not even ask.
+  const bool is_hopeless = found.is_hopeless_at(hull.centre, radius);
+  FarDivision division(task, members, hull, scene, memory, counters);
+  if (division.work() < cost_of_gather)
+    division.leave(cell);
+  else
+    division.divide(cell, true, is_hopeless ? 0 : most_halvings);
+  size_t hopeless = 0;
+  for (const SourcePart& p : memory.parts.all()) hopeless += p.is_hopeless ? 1 : 0;
+  if (!is_hopeless && 4 * hopeless >= 3 * memory.parts.all().size() && hopeless > 0)
+    found.note_hopeless(hull.centre, radius);
+}
+
+}  // namespace troffer

@@ -1,0 +1,137 @@
+// Light from infinity through openings: the default by proofs, against closed forms and rays.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "base/units.h"
+#include "light/irradiance.h"
+#include "pictures.h"
+#include "render/measure.h"
+#include "support/light_scenes.h"
+#include "support/surfaceless_lights.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// 5 × 4 × 2.7 m, black, without thickness; a window of 2 × 1.2 m in the wall at x = 5.
+Scene room(bool has_window = true) {
+  Scene s;
+  const uint32_t m = add_diffuse(s, Rgb{0});
+  constexpr float X = 5, Y = 4, Z = 2.7f, y0 = 1, y1 = 3, z0 = 0.9f, z1 = 2.1f;
+  add_quad(s, m, {Vec3{0, 0, 0}, {X, 0, 0}, {X, Y, 0}, {0, Y, 0}});
+  add_quad(s, m, {Vec3{0, 0, Z}, {0, Y, Z}, {X, Y, Z}, {X, 0, Z}});
+  add_quad(s, m, {Vec3{0, 0, 0}, {0, Y, 0}, {0, Y, Z}, {0, 0, Z}});
+  add_quad(s, m, {Vec3{0, 0, 0}, {0, 0, Z}, {X, 0, Z}, {X, 0, 0}});
+  add_quad(s, m, {Vec3{0, Y, 0}, {X, Y, 0}, {X, Y, Z}, {0, Y, Z}});
+  add_quad(s, m, {Vec3{X, 0, 0}, {X, 0, Z}, {X, y0, Z}, {X, y0, 0}});
+  add_quad(s, m, {Vec3{X, y1, 0}, {X, y1, Z}, {X, Y, Z}, {X, Y, 0}});
+  add_quad(s, m, {Vec3{X, y0, 0}, {X, y0, z0}, {X, y1, z0}, {X, y1, 0}});
+  add_quad(s, m, {Vec3{X, y0, z1}, {X, y0, Z}, {X, y1, Z}, {X, y1, z1}});
+  if (!has_window) add_quad(s, m, {Vec3{X, y0, z0}, {X, y0, z1}, {X, y1, z1}, {X, y1, z0}});
+  return s;
+}
+
+std::vector<MeasuringPoint> desk_points() {
+  std::vector<MeasuringPoint> points;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 3; ++j)
+      points.push_back({{0.7f + 1.1f * float(i), 0.6f + 1.3f * float(j), 0.2f}, {0, 0, 1}});
+  return points;
+}
+
+std::vector<Measurement> measured(const PreparedScene& scene,
+                                  const std::vector<MeasuringPoint>& points, Method method, int spp,
+                                  int threads = 2, double error = 0.01) {
+  MeasureOptions o;
+  o.method = method;
+  o.spp = spp;
+  o.indirect = Indirect::none;
+  o.threads = threads;
+  o.error = error;
+  return measure(scene, points, o, {}, never_stopped).values;
+}
+
+}  // namespace
+
+TEST_CASE("a window under an even sky gives its form factor times pi L") {
+  Scene s = room();
+  add_environment(s, Rgb{2});
+  const PreparedScene scene(std::move(s));
+  const Vec3d window[4] = {{5, 1, 0.9f}, {5, 3, 0.9f}, {5, 3, 2.1f}, {5, 1, 2.1f}};
+  const auto points = desk_points();
+  const auto values = measured(scene, points, Method::certified, 64, 2, 0.002);
+  double squares = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double expected =
+        2 * polygon_irradiance(window, Vec3d(points[i].position), {0, 0, 1}, Sides::both);
+    const double error = values[i].standard_error / luminous_efficacy;
+    CAPTURE(i);
+    CHECK(double(values[i].irradiance.g) == doctest::Approx(expected).epsilon(2e-3));
+    CHECK(error < 2e-3 * expected);
+    squares += sqr(double(values[i].irradiance.g) / expected - 1) / double(points.size());
+  }
+  CHECK(std::sqrt(squares) < 1e-3);
+}
+
+TEST_CASE("a closed room is dark under any sky, sun and image") {
+  Scene s = room(false);
+  add_environment(s, Rgb{2});
+  Light& sun = add_light(s, LightKind::sun, Rgb{1e6f});
+  sun.direction = normalize(Vec3{-1, 0.2f, -0.7f});
+  sun.angular_radius = 0.00465f;
+  const PreparedScene scene(std::move(s));
+  for (const Measurement& m : measured(scene, desk_points(), Method::certified, 4))
+    CHECK(m.irradiance.g == 0);
+}
+
+TEST_CASE("the sun's patch on the floor has the sun's light, and its edge the sun's width") {
+  Scene s = room();
+  const double irradiance = 500, radius = 0.00465;
+  Light& sun = add_light(s, LightKind::sun, Rgb{float(irradiance / (pi * sqr(std::sin(radius))))});
+  sun.direction = normalize(Vec3{-1, 0, -1});
+  sun.angular_radius = float(radius);
+  const PreparedScene scene(std::move(s));
+  // The window's sill throws its edge to x = 5 - 0.9, whatever y; the sun's penumbra is about
+  // 2 radius × 0.9 √2 / sin 45° wide.
+  const double width = 2 * radius * 0.9 * std::sqrt(2.0) * std::sqrt(2.0);
+  std::vector<MeasuringPoint> points;
+  for (const double x : {4.1 - 2 * width, 4.1, 4.1 + 2 * width})
+    points.push_back({{float(x), 2, 0}, {0, 0, 1}});
+  const auto values = measured(scene, points, Method::certified, 64);
+  const double full = irradiance * std::sqrt(0.5);
+  CHECK(double(values[0].irradiance.g) == doctest::Approx(full).epsilon(1e-3));
+  CHECK(double(values[1].irradiance.g) == doctest::Approx(full / 2).epsilon(0.02));
+  CHECK(values[2].irradiance.g == 0);
+}
+
+// So many things before the window that no list holds them: rays to what is left of the sky.
+TEST_CASE("a thicket before a window: the mean of rays, and the same bytes for all threads") {
+  Scene s = room();
+  const uint32_t m = add_diffuse(s, Rgb{0});
+  Random random(11);
+  for (int i = 0; i < 6000; ++i) {
+    const float y = 0.8f + 2.4f * random.next_float(), z = 0.8f + 1.4f * random.next_float();
+    const float x = 5.1f + 0.5f * random.next_float(), d = 0.02f;
+    add_quad(s, m, {Vec3{x, y, z}, {x + d, y + d, z}, {x + d, y + d, z + d}, {x, y, z + d}});
+  }
+  add_environment(s, Rgb{2});
+  const PreparedScene scene(std::move(s));
+  const auto points = desk_points();
+  const auto mine = measured(scene, points, Method::certified, 256);
+  const auto alone = measured(scene, points, Method::certified, 256, 1);
+  const auto rays = measured(scene, points, Method::fixed, 16384);
+  double sum = 0, variance = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    CAPTURE(i);
+    CHECK(mine[i].irradiance == alone[i].irradiance);
+    const double error = std::hypot(mine[i].standard_error, rays[i].standard_error);
+    CHECK(std::abs(double(mine[i].irradiance.g) - double(rays[i].irradiance.g)) <
+          5 * error / luminous_efficacy + 1e-3 * double(rays[i].irradiance.g));
+    sum += double(mine[i].irradiance.g) - double(rays[i].irradiance.g);
+    variance += sqr(error / luminous_efficacy);
+  }
+  CHECK(std::abs(sum) < 4 * std::sqrt(variance));
+}
