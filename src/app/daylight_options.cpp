@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/luminaire_list.h"
 #include "app/luminaire_options.h"
 #include "base/error.h"
 #include "daylight/sky_lights.h"
@@ -228,6 +229,8 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
           "NODE=FILE[,LUMENS[,KELVIN]]: a flat surface, a point or a spot shines as an .ies "
           "or .ldt file says, in the colour of a black body; may be repeated")
       ->allow_extra_args(false);
+  command.add_option("--luminaires", o.luminaire_list,
+                     "LIST.csv of luminaires to add: file,x,y,z[,dx,dy,dz[,rotation[,dimming]]]");
   if (command.get_option_no_throw("--up") == nullptr)
     command.add_option("--up", o.up, "Upward direction x,y,z, for what comes from the sky");
 }
@@ -240,6 +243,7 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
   if (!(length(up) > 0)) throw UsageError("--up has no length");
   const Compass compass = make_compass(up, o.north_deg, is_mirrored(scene));
   attach_luminaires(scene, o.luminaires, Vec3(-compass.up));
+  if (!o.luminaire_list.empty()) add_luminaire_list(scene, o.luminaire_list, Vec3(-compass.up));
   const bool had_light = !scene.lights.empty();
   if (!o.environment.empty()) {
     const size_t comma = o.environment.rfind(',');

@@ -16,6 +16,7 @@ namespace troffer {
 // As typed.
 struct DaylightOptions {
   std::vector<std::string> luminaires;  // light of the scene's own: app/luminaire_options.h
+  std::string luminaire_list;           // app/luminaire_list.h
   std::string sky, sun, at;
   std::string environment;
   std::string up;  // x,y,z; empty: guessed

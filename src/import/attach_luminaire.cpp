@@ -94,6 +94,45 @@ void attach_to_surfaces(Scene& scene, const std::string& node, const Luminaire& 
 
 }  // namespace
 
+void add_luminaire(Scene& scene, const std::string& name, const Luminaire& luminaire, int32_t web,
+                   Rgb scale, const Vec3d& position, const Vec3d& down, const Vec3d& along) {
+  const auto axes = axes_about(normalize(down), along);
+  const double area = luminaire.width * luminaire.length;
+  if (!(area > 1e-8) || luminaire.is_round) {
+    Light e;
+    e.name = name;
+    e.kind = LightKind::point;
+    e.position = Vec3(position);
+    e.web = web;
+    e.axes = axes;
+    e.radiance = scale;
+    scene.lights.push_back(std::move(e));
+    return;
+  }
+  Mesh mesh;
+  mesh.name = name;
+  // counterclockwise seen from the nadir
+  const Vec3d x = Vec3d(axes[0]) * (luminaire.length / 2),
+              y = Vec3d(axes[1]) * (luminaire.width / 2);
+  for (const Vec3d& corner : {-x - y, x - y, x + y, -x + y})
+    mesh.positions.push_back(Vec3(position + corner));
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.material = uint32_t(scene.materials.size());
+  Material black;
+  black.base_color.value = Rgb{0};
+  scene.materials.push_back(black);
+  const auto first = scene.lights.size();
+  scene.meshes.push_back(std::move(mesh));
+  const bool is_two_sided = shines_upward(luminaire.web);
+  add_mesh_lights(scene, uint32_t(scene.meshes.size()) - 1,
+                  {name, Rgb{1}, no_texture, is_two_sided});
+  for (size_t i = first; i < scene.lights.size(); ++i) {
+    scene.lights[i].web = web;
+    scene.lights[i].axes = axes;
+    scene.lights[i].radiance = scale * float(1 / area);
+  }
+}
+
 void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire, Rgb scale,
                       const Vec3& down) {
   const auto web = int32_t(scene.webs.size());

@@ -157,3 +157,48 @@ TEST_CASE("control characters of a file's names do not reach the terminal") {
   CHECK(f.out.find("red ?[31mlamp ?1m") != std::string::npos);
   CHECK(f.out.find('\x1b') == std::string::npos);
 }
+
+TEST_CASE("a list hangs luminaires: points and openings, turned and dimmed") {
+  // cos γ with a plane C90 half as strong as C0.
+  const auto oval = [](double width, double length) {
+    std::string text = fmt::format("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 91 2 1 2 {} {} 0\n1 1 25\n",
+                                   width, length);
+    for (int i = 0; i <= 90; ++i) text += fmt::format("{}\n", i);
+    text += "0\n90\n";
+    for (const double strength : {1000.0, 500.0})
+      for (int i = 0; i <= 90; ++i)
+        text += fmt::format("{:.9g}\n", strength * std::cos(rad_from_deg(double(i))));
+    return text;
+  };
+  const Folder folder;
+  folder.write("point.ies", oval(0, 0));
+  folder.write("slot.ies", oval(.01, .02));
+  const std::string scene = folder.write("floor.obj", "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nf 1 2 3\n");
+  const std::string at = folder.write("p.csv", "x,y,z,nx,ny,nz\n1,0,0,0,0,1\n0,1,0,0,0,1\n");
+  const auto lit = [&](const std::string& rows) {
+    const Finished f = run_program(
+        folder, {"measure", scene, "--points", at, "--indirect", "none", "--luminaires",
+                 folder.write("list.csv", "file,x,y,z,dx,dy,dz,rotation,dimming\n" + rows)});
+    CAPTURE(f.err);
+    REQUIRE(f.status == 0);
+    return measured(f);
+  };
+  const double c = 3 / std::sqrt(10.0), strong = 1000 * c * c / 10, weak = strong / 2;
+  for (const char* file : {"point.ies", "slot.ies"}) {
+    CAPTURE(file);
+    const auto plain = lit(fmt::format("{},0,0,3,0,0,-1,0,1\n", file));
+    CHECK(plain[0].lx == doctest::Approx(strong).epsilon(5e-3));
+    CHECK(plain[1].lx == doctest::Approx(weak).epsilon(5e-3));
+    const auto turned = lit(fmt::format("{},0,0,3,0,0,-1,90,.5\n", file));
+    CHECK(turned[0].lx == doctest::Approx(weak / 2).epsilon(5e-3));
+    CHECK(turned[1].lx == doctest::Approx(strong / 2).epsilon(5e-3));
+    const auto both = lit(fmt::format("{0},0,0,3,0,0,-1,0,1\n{0},0,0,3,0,0,-1,90,1\n", file));
+    if (file[0] == 'p') CHECK(both[0].lx == doctest::Approx(strong + weak).epsilon(5e-3));
+  }
+  for (const char* bad :
+       {"file,x,y\n", "file,x,y,z\npoint.ies,0,0\n", "file,x,y,z\npoint.ies,0,0,a\n",
+        "file,x,y,z\nnone.ies,0,0,1\n", "file,x,y,z,dx,dy,dz\npoint.ies,0,0,1,0,0,0\n"})
+    CHECK(run_program(folder, {"measure", scene, "--points", at, "--luminaires",
+                               folder.write("bad.csv", bad)})
+              .status == 1);
+}
