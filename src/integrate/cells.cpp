@@ -6,6 +6,8 @@ namespace {
 
 // Of rays that find no cell, or one that is too near, one after the other.
 constexpr int most_bounces = 16;
+// … or are shorter than a cell is wide.
+constexpr int short_bounces = 4;
 
 }  // namespace
 
@@ -51,7 +53,9 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
     for (GatherArrival& a : s.arrivals) {
       if (bounce == 0 && s.light.distance[a.walk.index] == 0)
         s.light.distance[a.walk.index] = a.length;
-      if (!look_up(a, bounce > 0, s)) s.arrivals[missed++] = a;
+      // The mean of a cell wider than the ray is long is not what the ray sees.
+      const bool is_short = a.distance < 0.25f * map_->near() && bounce < short_bounces;
+      if (is_short || !look_up(a, bounce > 0, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);
     if (missed > 0) walks_.light_up(s.arrivals, s.gather, counters);

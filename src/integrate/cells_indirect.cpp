@@ -53,7 +53,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
     FittedRecord fitted;
     if (at.scatterings == 0 && records_ && !wave.viewing->pixels.empty()) {
       const PixelAt& pixel = wave.viewing->pixels[at.index];
-      if (records_->irradiance_at(pixel.x, pixel.y, hit, fitted)) {
+      if (records_->irradiance_at(pixel.x, pixel.y, hit, false, fitted)) {
         out.indirect[at.index] += weight * fitted.irradiance;
         out.shared_error[at.index] += luminance(weight) * fitted.error;
         continue;
@@ -85,10 +85,15 @@ void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
     const CellLightAt cell = cells_->light_at(hit);
     const PixelAt& pixel = wave.viewing->pixels[at.index];
     FittedRecord fitted;
-    const bool is_fitted = records_->irradiance_at(pixel.x, pixel.y, hit, fitted);
+    const bool is_fitted = records_->irradiance_at(pixel.x, pixel.y, hit, true, fitted);
     out.known[at.index].direct += weight * cell.direct;
     out.known[at.index].indirect += weight * (is_fitted ? fitted.irradiance : cell.indirect);
   }
+}
+
+bool CellsIndirect::about_direct(const Vertex& v, Rgb& irradiance) const {
+  irradiance = cells_->light_at(cell_hit_of(v)).direct;
+  return !irradiance.is_black();
 }
 
 void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,

@@ -21,6 +21,8 @@ constexpr uint32_t most_rays = 256;
 // fit's own error is more than it saves.
 constexpr float near_radius = 0.06f, far_radius = 0.12f;
 constexpr float least_pixels = 1.5f;
+// Fits hold within this share of the distance, times the root of the asked error; at most so far.
+constexpr float reach_of_error = 2, most_reach = 0.2f;
 // Neighbours on either side that a fit looks at, of those within its radius.
 constexpr int few_along = 4, many_along = 8;
 
@@ -169,7 +171,10 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
     r.sum += light.irradiance[i];
     r.squares += sqr(luminance(light.irradiance[i]));
     r.half += light.half_difference[i];
-    if (light.distance[i] > 0) r.nearness += 1 / light.distance[i];
+    if (light.distance[i] > 0) {
+      r.nearness += 1 / light.distance[i];
+      r.bright_nearness += luminance(light.irradiance[i]) / light.distance[i];
+    }
   }
 }
 
@@ -202,19 +207,23 @@ void GatherPass::join(std::vector<Tile>& tiles) {
 
 GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r) const {
   const GatherRecord& at = out_.records_[r];
-  float nearness = 0, rays = 0, variance = 0, records = 0;
+  float nearness = 0, bright_nearness = 0, light = 0, rays = 0, variance = 0, records = 0;
   for (int j = y - 2; j <= y + 2; ++j)
     for (int i = x - 2; i <= x + 2; ++i)
       out_.of_pixel(i, j, [&](uint32_t o) {
         const GatherRecord& n = out_.records_[o];
         if (!is_one_surface(at.hit, n.hit, at.spacing)) return;
         nearness += n.nearness;
+        bright_nearness += n.bright_nearness;
+        light += luminance(n.sum);
         rays += n.rays;
         const float mean = luminance(n.sum) / n.rays;
         variance += std::max(n.squares / n.rays - mean * mean, 0.0f) * n.rays / (n.rays - 1) / unit;
         records += 1;
       });
-  return {nearness / std::max(rays, 1.0f), variance / std::max(records, 1.0f)};
+  // Rays that bring much light tell more of how it changes than others do.
+  return {std::max(nearness / std::max(rays, 1.0f), bright_nearness / std::max(light, 1e-30f)),
+          variance / std::max(records, 1.0f)};
 }
 
 LinearFit GatherPass::fit(int x, int y, uint32_t r, float radius, int along) const {
@@ -306,7 +315,11 @@ FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
   const double chance = 2 * narrow.spread / std::max(narrow.neighbours, 1.0);
   const double bend2 = std::max(apart * apart - chance, 0.0) * 16 / 9;
   const double half = double(at.half) / double(at.rays);
-  return {fine.value, float(std::sqrt(noise + bend2 + half * half))};
+  // What it errs by elsewhere goes with the square of how far.
+  const float reach =
+      std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
+  return {fine.value, float(std::sqrt(noise + bend2 + half * half)),
+          at.spacing > reach ? 0 : reach};
 }
 
 }  // namespace troffer

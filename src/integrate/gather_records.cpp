@@ -32,7 +32,8 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   return records;
 }
 
-bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, FittedRecord& out) const {
+bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, bool is_rough,
+                                  FittedRecord& out) const {
   float weights = 0;
   out = {};
   for (int j = y - 1; j <= y + 1; ++j)
@@ -43,6 +44,7 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, FittedRecord
         // As far as pixels are apart where one looks along a surface, and no farther.
         if (d2 > sqr(16 * record.spacing) || !is_one_surface(record.hit, hit, record.spacing))
           return;
+        if (!is_rough && d2 > sqr(fitted_[r].reach)) return;
         // The own pixel's, but for where it goes over into the next one's.
         const float w = 1 / sqr(d2 / sqr(record.spacing) + 0.03f);
         out.irradiance += fitted_[r].irradiance * w;

@@ -48,12 +48,14 @@ struct GatherRecord {
   Rgb sum;
   float squares = 0;   // of luminance
   float nearness = 0;  // 1 / distance
+  float bright_nearness = 0;  // … times luminance
   float half = 0;      // difference by halves of cells' rays (CellLight)
 };
 
 struct FittedRecord {
   Rgb irradiance;
   float error = 0;  // standard error of its luminance
+  float reach = 0;  // metres over which it holds
 };
 
 class GatherRecords {
@@ -65,8 +67,8 @@ class GatherRecords {
                                              const StopFlag& stop, Counters& counters);
 
   // Irradiance at a place that pixel (x, y) sees; false where the pixels around see another
-  // surface.
-  bool irradiance_at(int x, int y, const CellHit& hit, FittedRecord& out) const;
+  // surface. is_rough: what is too far away to hold there is better than nothing.
+  bool irradiance_at(int x, int y, const CellHit& hit, bool is_rough, FittedRecord& out) const;
   size_t bytes() const {
     return records_.capacity() * sizeof(GatherRecord) + fitted_.capacity() * sizeof(FittedRecord) +
            first_.capacity() * sizeof(uint32_t);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "base/error.h"
 #include "integrate/bintree_direct.h"
@@ -24,7 +25,10 @@ double error_beyond(const MethodInput& in) {
   return std::max(in.settings.error, least_error);
 }
 CertifiedSettings settings_beyond(const MethodInput& in) {
-  return certified_settings(error_beyond(in), in.scene.scene.lights.size());
+  constexpr int few_points = 8;
+  CertifiedSettings s = certified_settings(error_beyond(in), in.scene.scene.lights.size());
+  s.gloss_samples = few_points;
+  return s;
 }
 
 std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
@@ -60,8 +64,10 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
     auto beyond = std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
     indirect = make_cells_indirect(in, *beyond);
     if (!indirect) return nullptr;
+    constexpr auto all = std::numeric_limits<uint32_t>::max();
+    const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
     return std::make_unique<WaveIntegrator>(
-        in.scene, std::make_unique<StagedDirect>(std::move(direct), std::move(beyond)),
+        in.scene, std::make_unique<StagedDirect>(std::move(direct), std::move(beyond), samples),
         std::move(indirect));
   }
   if (in.radiosity != nullptr && !in.settings.is_direct_only())

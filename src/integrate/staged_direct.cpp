@@ -6,32 +6,24 @@
 
 namespace troffer {
 
-namespace {
-
-// Hits of `wave` that are first ones, or those that are not.
-void take(const WaveHits& wave, bool is_first, WaveHits& out) {
-  out.clear();
-  out.viewing = wave.viewing;
-  for (size_t i = 0; i < wave.size(); ++i) {
-    if (is_direct_at(wave.walks[i]) != is_first) continue;
-    out.walks.push_back(wave.walks[i]);
-    if (!wave.hits.empty()) out.hits.push_back(wave.hits[i]);
-    out.vertices.push_back(wave.vertices[i]);
-    if (!wave.bsdfs.empty()) out.bsdfs.push_back(wave.bsdfs[i]);
-    if (!wave.scatterings.empty()) out.scatterings.push_back(wave.scatterings[i]);
-  }
-}
-
-}  // namespace
-
 struct StagedDirect::Scratch final : DirectLightScratch {
   std::unique_ptr<DirectLightScratch> first, later;
   WaveHits part;
 };
 
-StagedDirect::StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<DirectLight> later)
-    : first_(std::move(first)), later_(std::move(later)) {
+StagedDirect::StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<DirectLight> later,
+                           uint32_t samples)
+    : first_(std::move(first)), later_(std::move(later)), samples_(samples) {
   TROFFER_CHECK(first_->walked_part() == later_->walked_part());
+}
+
+// Hits of `wave` that the first is for, or those that it is not for.
+void StagedDirect::take(const WaveHits& wave, bool first, WaveHits& out) const {
+  out.clear();
+  out.viewing = wave.viewing;
+  for (size_t i = 0; i < wave.size(); ++i) {
+    if (is_first(wave.walks[i], 0) == first) out.take(wave, i, 1);
+  }
 }
 
 std::unique_ptr<DirectLightScratch> StagedDirect::make_scratch() const {
@@ -50,7 +42,8 @@ void StagedDirect::begin(DirectLightScratch& scratch) const {
 void StagedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
                          Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
-  const auto firsts = size_t(std::count_if(wave.walks.begin(), wave.walks.end(), is_direct_at));
+  const auto firsts = size_t(std::count_if(wave.walks.begin(), wave.walks.end(),
+                                           [&](const Walk& w) { return is_first(w, 0); }));
   if (firsts == wave.size()) return first_->queue(wave, *s.first, out, counters);
   if (firsts == 0) return later_->queue(wave, *s.later, out, counters);
   take(wave, true, s.part);
@@ -69,18 +62,18 @@ void StagedDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
 // Emission that was run into competes with the samples of who lit the vertex before.
 void StagedDirect::weigh(SeenEmission& seen) const {
   if (std::all_of(seen.walks.begin(), seen.walks.end(),
-                  [](auto* w) { return w->scatterings <= 1; }))
+                  [&](const Walk* w) { return is_first(*w, 1); }))
     return first_->weigh(seen);
-  for (const bool is_first : {true, false}) {
+  for (const bool first : {true, false}) {
     SeenEmission part;
     std::vector<size_t> places;
     for (size_t i = 0; i < seen.size(); ++i) {
-      if ((seen.walks[i]->scatterings <= 1) != is_first) continue;
+      if (is_first(*seen.walks[i], 1) != first) continue;
       part.add(*seen.walks[i], seen.vertices[i], seen.radiance[i], seen.at_infinity[i]);
       places.push_back(i);
     }
     if (places.empty()) continue;
-    (is_first ? first_ : later_)->weigh(part);
+    (first ? first_ : later_)->weigh(part);
     for (size_t k = 0; k < places.size(); ++k) seen.weights[places[k]] = part.weights[k];
   }
 }

@@ -106,8 +106,10 @@ PixelEstimate Film::estimate_of(size_t i) const {
   if (k.glances.count == 0) return e;
   const double of_glances =
       error_of_mean(k.glances.luminance, k.glances.squares, double(k.glances.count));
-  e.luminance = double(k.glances.luminance) / k.glances.count + e.rest;
-  e.standard_error = std::sqrt(sqr(e.error_of_rest) + sqr(of_glances));
+  // What is known was seen by both.
+  const double m = k.glances.count, share = m / (m + n);
+  e.luminance += share * (double(k.glances.luminance) / m - double(k.samples.luminance) / n);
+  e.standard_error = std::sqrt(sqr(e.error_of_rest) + sqr(of_glances) * share);
   return e;
 }
 
@@ -118,9 +120,10 @@ Film::Light Film::light_of(size_t i) const {
   const Light plain{p.direct * each, p.indirect * each};
   if (known_.empty() || known_[i].glances.count == 0) return plain;
   const auto &s = known_[i].samples, &g = known_[i].glances;
-  const double glance = 1.0 / g.count;
-  const Light light{plain.direct + as_vec(g.direct) * glance - as_vec(s.direct) * each,
-                    plain.indirect + as_vec(g.indirect) * glance - as_vec(s.indirect) * each};
+  const double glance = 1.0 / g.count, share = double(g.count) / (double(g.count) + p.samples);
+  const Light light{
+      plain.direct + (as_vec(g.direct) * glance - as_vec(s.direct) * each) * share,
+      plain.indirect + (as_vec(g.indirect) * glance - as_vec(s.indirect) * each) * share};
   // What is known may be too much of what few samples have seen. There is no less light than none.
   const Vec3d sum = light.direct + light.indirect;
   return std::min({sum.x, sum.y, sum.z}) < 0 ? plain : light;

@@ -42,9 +42,10 @@ struct KnownSums {
   }
 };
 
-// A pixel with glances is the mean of what is known at these, plus the mean of how far its samples
-// differ from what is known of them: a control variate. The same in the mean, for glances lie in
-// the pixel as samples do; what is known of many rays takes the noise from where edges are.
+// A pixel with glances is the mean of what is known at these and at its samples, plus the mean of
+// how far its samples differ from what is known of them: a control variate. The same in the mean,
+// for glances lie in the pixel as samples do; what is known of many rays takes the noise from where
+// edges are.
 class Film {
  public:
   // Bytes that a film of this many pixels takes.

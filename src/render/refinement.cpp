@@ -42,6 +42,7 @@ struct Surroundings {
   double mean = 0;             // of the neighbours' luminances
   double low = 0, high = 0;    // … of them, or of what is not known of them
   double sample_variance = 0;  // the largest among theirs, of one sample, likewise
+  double usual_variance = 0;   // … and the middle one
   bool has_contrast = false;   // between neighbours at opposite sides
   // A neighbour's rays have met different surfaces where no corner of it shows an edge.
   bool has_thin_things = false;
@@ -74,7 +75,8 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
                          const Of& of) {
   const PixelRect& w = v.records.window;
   Surroundings s;
-  int count = 0;
+  std::array<double, 8> variances{};
+  size_t count = 0;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       if ((dx == 0 && dy == 0) || !is_inside(w, x + dx, y + dy)) continue;
@@ -82,7 +84,9 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
       s.low = count > 0 ? std::min(s.low, e.mean) : e.mean;
       s.high = count > 0 ? std::max(s.high, e.mean) : e.mean;
       s.mean += v.film.estimate(x + dx, y + dy).luminance;
-      s.sample_variance = std::max(s.sample_variance, e.variance);
+      size_t at = count;  // they are sorted
+      for (; at > 0 && variances[at - 1] > e.variance; --at) variances[at] = variances[at - 1];
+      variances[at] = e.variance;
       s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
                            !v.edges.has_surface_edge(x + dx, y + dy);
       ++count;
@@ -90,27 +94,41 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
       if (is_first_of_pair && is_inside(w, x - dx, y - dy))
         s.has_contrast |= differ(v, x + dx, y + dy, x - dx, y - dy, options);
     }
-  s.mean /= std::max(count, 1);
+  if (count == 0) return s;
+  s.mean /= double(count);
+  s.sample_variance = variances[count - 1];
+  s.usual_variance = variances[count / 2];
   return s;
+}
+
+// Of the luminance of a pixel amid such a mean. Where all of the picture is refined, what is bright
+// is so for an error between that of its own luminance and that of the picture's, at most four
+// times less than its own.
+double allowed_error(double mean, double typical, const RefinementOptions& options) {
+  const double bright = std::max(mean, typical);
+  return double(options.error) *
+         (options.is_everywhere ? std::sqrt(bright * std::max(typical, bright / 16)) : bright);
 }
 
 }  // namespace
 
 int glances_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
-  constexpr int most = 256;
-  if (v.edges.has_light_edge(x, y)) return most;
+  constexpr int most = 1024;
   const Surroundings s =
       look_around(v, x, y, options, [&](int px, int py) { return known_of(v.film.known(px, py)); });
-  const bool has_edge = v.edges.has_surface_edge(x, y);
-  if (!has_edge && !s.has_contrast && !s.has_thin_things) return 0;
-  const double variance = std::max(s.sample_variance, has_edge ? sqr(s.high - s.low) / 4 : 0.0);
-  const double allowed = double(options.error) * std::max(s.mean, v.typical);
-  if (!(variance > 0)) return 0;
-  // Samples that are spread over a pixel with an edge err by n^-3/4.
-  const double wanted = std::pow(variance / sqr(allowed), 2.0 / 3);
+  const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
+  if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things) return 0;
+  const bool is_divided = has_edge || has_light;
+  const double variance = std::max(s.sample_variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0);
+  const double allowed = allowed_error(s.mean, v.typical, options);
+  // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
+  // seen what shines.)
+  const double least = has_light ? 256 : 0;
+  const double wanted = variance > 0 ? std::pow(variance / sqr(allowed), 2.0 / 3) : 0;
+  if (std::max(wanted, least) <= 4) return 0;
   int count = 16;
-  while (count < most && count < wanted) count *= 2;
-  return wanted > 4 ? count : 0;
+  while (count < most && count < std::max(wanted, least)) count *= 2;
+  return count;
 }
 
 int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first, int most,
@@ -122,13 +140,16 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
     return {e.luminance, sqr(e.standard_error) * e.samples};
   });
   const bool has_edge = v.edges.has_surface_edge(x, y);
-  if (!has_edge && !s.has_contrast && !s.has_thin_things) return first;
-  double variance = s.sample_variance;
+  const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
+  if (!is_uneven && !options.is_everywhere) return first;
+  double variance = is_uneven ? s.sample_variance : s.usual_variance;
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
   if (has_edge) variance = std::max(variance, sqr(s.high - s.low) / 4);
-  const double allowed = double(options.error) * std::max(s.mean, v.typical);
+  const double allowed = allowed_error(s.mean, v.typical, options);
   // As of independent samples. (Nothing to see by: no light is allowed, none varies.)
-  const double wanted = variance > 0 ? variance / sqr(allowed) : 0;
+  double wanted = variance > 0 ? variance / sqr(allowed) : 0;
+  const double even = double(options.most_even);
+  if (even > 0 && wanted > sqr(even)) wanted = even * std::sqrt(wanted);
   return wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most;
 }
 

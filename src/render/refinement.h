@@ -28,6 +28,11 @@ struct RefinementOptions {
   // Standard error of the mean that is to be reached, over the larger of the luminance around and
   // the image's mean.
   float error = 0.01f;
+  // Pixels get further rays where no edge is to be seen, too, if their neighbours vary.
+  bool is_everywhere = false;
+  // More rays than this squared are in proportion to the pixel's standard deviation, not to its
+  // variance: so many rays leave the picture the least error. 0: all by the variance.
+  float most_even = 0;
 };
 
 // One record for each pixel of the window, row by row: that of its last viewing ray.

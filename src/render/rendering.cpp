@@ -34,10 +34,15 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
   if (refining_.max_spp > options.spp) {
     refining_.records.emplace(plan_.region);
     refining_.can_glance = integrator.can_glance();
-    if (refining_.can_glance) film_.expect_glances();
+    if (refining_.can_glance) {
+      film_.expect_glances();
+      refining_.options.error = float(options.error);
+      refining_.options.is_everywhere = true;
+      refining_.options.most_even = 6;
+    }
   }
-  progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(options.spp) +
-                                                       passes_of(refining_.max_spp - options.spp));
+  const int passes = refining_.can_glance ? 1 : passes_of(refining_.max_spp - options.spp);
+  progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(options.spp) + passes);
 }
 
 bool Rendering::run() {
@@ -68,7 +73,8 @@ ViewingErrors Rendering::viewing_errors() const {
     for (int x = w.x0; x < w.x1; ++x) {
       const PixelEstimate p = film_.estimate(x, y);
       e.relative_rms += sqr(p.standard_error);
-      const double allowed = double(refining_.options.error) * std::max(p.luminance, mean);
+      constexpr double percent = 0.01;
+      const double allowed = percent * std::max(p.luminance, mean);
       e.share_above += p.standard_error > allowed ? 1 : 0;
     }
   const double pixels = double(w.width()) * w.height();
@@ -142,8 +148,11 @@ void Rendering::refine() {
   const double typical = is_same_in_crops ? typical_luminance() : mean_luminance();
   const PixelRecords& records = *refining_.records;
   const FurtherRays wanted = further_rays(typical);
-  if (refining_.can_glance) glance(wanted.glances);
   refining_.has_begun = true;
+  if (refining_.can_glance) {
+    glance(wanted.glances);
+    return refine(wanted.samples);
+  }
   for (int first = options_.spp; first < refining_.max_spp && !was_stopped_;
        first += samples_per_batch) {
     pass([&](const PixelRect& tile, Work& w) {
@@ -156,6 +165,43 @@ void Rendering::refine() {
       }
     });
   }
+}
+
+// All further rays of a tile at once: few pixels may get many.
+void Rendering::refine(const std::vector<int>& wanted) {
+  parallel_for_slots(plan_.tiles.size(), options_.threads, [&](size_t t, size_t slot) {
+    if (stop_.load(std::memory_order_relaxed)) {
+      was_stopped_ = true;
+      return;
+    }
+    refine(plan_.tiles[t], wanted, work_[slot]);
+    tell_progress();
+  });
+}
+
+void Rendering::refine(const PixelRect& tile, const std::vector<int>& wanted, Work& w) {
+  constexpr size_t rays_at_a_time = 1024;
+  const auto clear = [&] {
+    w.rays.clear();
+    w.pixels.clear();
+  };
+  const auto send = [&] {
+    const CheckContext context(&w, w.rays.size(), name_of_ray);
+    if (w.rays.size() > 0) trace(w);
+    clear();
+  };
+  if (!w.scratch) w.scratch = integrator_.make_scratch();
+  clear();
+  for (const Pixel2& p : pixels_in_order(tile)) {
+    int left = wanted[refining_.records->index(p.x, p.y)] - options_.spp;
+    while (left > 0 && !stop_.load(std::memory_order_relaxed)) {
+      const int count = std::min(left, int(rays_at_a_time - w.rays.size()));
+      add_rays(p, uint32_t(count), w);
+      left -= count;
+      if (w.rays.size() == rays_at_a_time) send();
+    }
+  }
+  send();
 }
 
 // How many of them the pixels of the region get, by what the first pass has seen.

@@ -72,6 +72,8 @@ class Rendering {
   void add_rays(const Pixel2& p, uint32_t count, Work& w) const;
   void trace(Work& w);
   void refine();
+  void refine(const std::vector<int>& wanted);
+  void refine(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
   FurtherRays further_rays(double typical) const;
   void glance(const std::vector<int>& wanted);
   void glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w);

@@ -30,8 +30,10 @@ class Marking final : public DirectLight {
   float value_;
 };
 
+constexpr uint32_t first_samples = 4;
+
 StagedDirect one_then_two() {
-  return {std::make_unique<Marking>(1.0f), std::make_unique<Marking>(2.0f)};
+  return {std::make_unique<Marking>(1.0f), std::make_unique<Marking>(2.0f), first_samples};
 }
 
 }  // namespace
@@ -58,6 +60,29 @@ TEST_CASE("staged direct light: first hits by the first, what gloss shows by the
       CHECK(out.direct[i] == Rgb{scatterings[i] == 0 ? 1.0f : 2.0f});
     CHECK(out.indirect[0] == Rgb{3});
   }
+}
+
+TEST_CASE("staged direct light: a pixel's further samples are the other's") {
+  const StagedDirect direct = one_then_two();
+  const auto scratch = direct.make_scratch();
+  Counters counters;
+  WaveHits wave;
+  RadianceBatch out;
+  out.reset(3);
+  std::vector<Walk> walks(3);
+  SeenEmission seen;
+  for (uint32_t i = 0; i < 3; ++i) {
+    walks[i].index = i;
+    walks[i].sample = first_samples - 1 + i;
+    walks[i].scatterings = i < 2 ? 0 : 1;
+    wave.walks.push_back(walks[i]);
+    seen.add(walks[i], nullptr, Rgb{1});
+  }
+  wave.vertices.resize(3);
+  direct.queue(wave, *scratch, out, counters);
+  CHECK(out.direct == std::vector<Rgb>{Rgb{1}, Rgb{2}, Rgb{2}});
+  direct.weigh(seen);
+  CHECK(seen.weights == std::vector<float>{1, 2, 2});
 }
 
 TEST_CASE("staged direct light: emission competes with the samples of the vertex before") {

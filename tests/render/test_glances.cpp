@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "render/film.h"
@@ -48,7 +49,7 @@ RenderOptions small_picture() {
 }  // namespace
 
 TEST_CASE(
-    "glances: a pixel is what they know in the mean, and how far its samples differ from it") {
+    "glances: a pixel is what they and its samples know in the mean, and how far samples differ") {
   Film film({0, 0, 2, 1}, {Aov::direct, Aov::indirect, Aov::albedo});
   film.expect_glances();
   RadianceBatch b;
@@ -67,17 +68,19 @@ TEST_CASE(
   glances.albedo[1] = Rgb{1};
   for (size_t i = 0; i < 3; ++i) film.add_glance(0, 0, glances, i, 0);
   const std::vector<Layer> layers = film.layers();
-  CHECK(double(layers[1].image.at(0, 0).g) == doctest::Approx(2 + (4 - 3 + 1 - 1) / 2.0));
-  CHECK(double(layers[2].image.at(0, 0).g) == doctest::Approx(0.5 + (1 - 0.5 + 2 - 1.5) / 2.0));
-  CHECK(double(layers[0].image.at(0, 0).g) == doctest::Approx(3.5));
+  const double direct = (3 + 1 + 3 + 3 + 0) / 5.0 + (4 - 3 + 1 - 1) / 2.0;
+  const double indirect = (0.5 + 1.5 + 3 * 0.5) / 5.0 + (1 - 0.5 + 2 - 1.5) / 2.0;
+  CHECK(double(layers[1].image.at(0, 0).g) == doctest::Approx(direct));
+  CHECK(double(layers[2].image.at(0, 0).g) == doctest::Approx(indirect));
+  CHECK(double(layers[0].image.at(0, 0).g) == doctest::Approx(direct + indirect));
   CHECK(layers[0].image.at(1, 0) == Rgb{4});  // without glances: the mean of its samples
   CHECK(layers[3].image.at(0, 0) == Rgb{0.5f});
   CHECK(double(layers[3].image.at(1, 0).g) == doctest::Approx(0.3));
   const PixelEstimate e = film.estimate(0, 0);
-  CHECK(e.luminance == doctest::Approx(3.5));
+  CHECK(e.luminance == doctest::Approx(direct + indirect));
   CHECK(e.rest == doctest::Approx(1));
   CHECK(e.error_of_rest == doctest::Approx(0.5));  // of rests 1.5 and 0.5
-  CHECK(e.standard_error == doctest::Approx(std::sqrt(0.25 + 1)));
+  CHECK(e.standard_error == doctest::Approx(std::sqrt(0.25 + 1 * 3 / 5.0)));
 }
 
 TEST_CASE("glances: no pixel sends less light than none") {
@@ -126,7 +129,6 @@ TEST_CASE("glances: blinds before a window err by less than half, with fewer vie
   const RenderResult even = render_now(scene, at_window, o);
   CHECK(even.statistics.counters.glances == 0);
   o.spp = 4;
-  o.max_spp = 0;
   const RenderResult refined = render_now(scene, at_window, o);
   CHECK(refined.statistics.counters.glances > 0);
   CHECK(refined.statistics.counters.viewing_rays < even.statistics.counters.viewing_rays);
@@ -137,4 +139,40 @@ TEST_CASE("glances: blinds before a window err by less than half, with fewer vie
   o.has_crop = true;
   o.crop = {7, 5, 25, 20};
   CHECK(pixels_off_crop(refined, render_now(scene, at_window, o), o.crop) == 0);
+}
+
+TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by less if less is") {
+  const PreparedScene scene(room_behind_blinds());
+  // Two halves of a reference: by their product their own noise does not count.
+  std::array<Image, 2> halves;
+  for (size_t i = 0; i < 2; ++i) {
+    RenderOptions o = small_picture();
+    o.method = Method::path;
+    o.indirect = Indirect::automatic;
+    o.spp = o.max_spp = 1024;
+    o.seed = 10 + i;
+    halves[i] = render_now(scene, at_window, o).layers[0].image;
+  }
+  double mean = 0;
+  for (const Rgb& p : halves[0].pixels) mean += double(p.g);
+  mean /= double(halves[0].pixels.size());
+  const auto error = [&](double asked) {
+    RenderOptions o = small_picture();
+    o.spp = 4;
+    o.error = asked;
+    const Image image = render_now(scene, at_window, o).layers[0].image;
+    double sum = 0;
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+      const auto off = [&](const Image& half) {
+        return double(image.pixels[i].g) - double(half.pixels[i].g);
+      };
+      sum += off(halves[0]) * off(halves[1]);
+    }
+    return std::sqrt(std::max(sum, 0.0) / double(image.pixels.size())) / mean;
+  };
+  const double coarse = error(0.05), fine = error(0.01);
+  MESSAGE("of .05 ", coarse, ", of .01 ", fine);
+  CHECK(coarse < 0.05);
+  CHECK(fine < 0.02);
+  CHECK(fine < 0.7 * coarse);
 }
