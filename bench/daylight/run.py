@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Error against processor time of the sky's direct light: run.py TROFFER [--lights "ARGS" ...]
+
+Renders the rooms of rooms.py by the default and by `fixed`, each with two seeds, and prints as a
+table: processor seconds of a picture, its error, and how many times longer `fixed` would take for
+the same error, by the power law between its two runs. Errors come from the difference of the two
+pictures: the relative RMSE of all pixels, most of which is made by edges where the sky itself is
+seen, and the median pixel's relative error (as a standard deviation), by which times are compared.
+"""
+import array
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import rooms
+
+
+def luminances(path):
+    with open(path, 'rb') as f:
+        channels = 3 if f.readline().strip() == b'PF' else 1
+        f.readline(), f.readline()
+        v = array.array('f', f.read())
+    if channels == 1:
+        return list(v)
+    return [.2126 * v[i] + .7152 * v[i + 1] + .0722 * v[i + 2] for i in range(0, len(v), 3)]
+
+
+def measure(troffer, scene, options, folder):
+    """Seconds, error of all pixels, of the median one among those that get light."""
+    pictures, seconds = [], 0
+    for seed in ('1', '2'):
+        out, stats = folder / f'{seed}.pfm', folder / 'stats.json'
+        subprocess.run([troffer, 'render', scene, '--quiet', '--indirect', 'none', '--seed', seed,
+                        '-o', out, '--stats', stats, *options], check=True)
+        pictures.append(luminances(out))
+        seconds += json.loads(stats.read_text())['seconds']['render_cpu'] / 2
+    a, b = pictures
+    mean = [(x + y) / 2 for x, y in zip(a, b)]
+    middle = sorted(mean)[len(mean) // 2]
+    differences = [abs(x - y) / math.sqrt(2) for x, y in zip(a, b)]
+    overall = math.sqrt(sum(d * d for d in differences) / len(a)) / (sum(mean) / len(mean))
+    relative = sorted(d / (m + .05 * middle + 1e-9) for d, m in zip(differences, mean) if m > 0)
+    return seconds, overall, relative[len(relative) // 2] / .6745
+
+
+def main():
+    troffer, lights = sys.argv[1], sys.argv[3:] or ['--sky overcast', '--sky clear --sun 60,35']
+    print('| scene | light | default, s | error | `fixed` 64, s | error | `fixed` 256, s | error '
+          '| times longer |\n|---|---|---|---|---|---|---|---|---|')
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        rooms.write(folder)
+        for light in lights:
+            for scene in rooms.SCENES:
+                path = folder / f'{scene}.pbrt'
+                ours = measure(troffer, path, light.split(), folder)
+                few, many = (measure(troffer, path,
+                                     [*light.split(), '--method', 'fixed', '--shadow-rays', n], folder)
+                             for n in ('64', '256'))
+                power = math.log(many[0] / few[0]) / math.log(few[2] / many[2])
+                needed = many[0] * (many[2] / ours[2]) ** power
+                cells = [f'{s:.2f} | {e:.3f} / {b:.4f}' for s, e, b in (ours, few, many)]
+                print(f'| {scene} | `{light}` | {" | ".join(cells)} | {needed / ours[0]:.1f} |',
+                      flush=True)
+
+
+if __name__ == '__main__':
+    main()
