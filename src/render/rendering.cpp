@@ -265,7 +265,7 @@ void Rendering::glance(const PixelRect& tile, const std::vector<int>& wanted, Wo
 // which are no part of the picture and of its statistics.
 double Rendering::typical_luminance() {
   if (refining_.typical) return *refining_.typical;
-  constexpr int most = 32;  // rays along each side
+  constexpr int most = 16;  // rays along each side
   Work& w = work_[0];
   if (!w.scratch) w.scratch = integrator_.make_scratch();
   w.rays.clear();

@@ -156,7 +156,7 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
 // than that are not worth a mask.
 Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
                    const CertifiedOptions& options, CertifiedMemory& m) {
-  constexpr double facets_per_ray = 12, least_budget = 512, least_far_budget = 64,
+  constexpr double facets_per_ray = 12, least_budget = 256, least_far_budget = 64,
                    most_budget = facets_per_ray * most_rays_of_receiver;
   Promise p;
   p.error = options.mask_error;
@@ -183,6 +183,10 @@ Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
         p.budget, std::max(2 * facets_per_ray * share * rays_for_error(m.far_open, double(p.error)),
                            least_far_budget));
   p.far_open = m.far_open;
+  // The smaller the error, the more a mask's error lies below that of as many rays.
+  constexpr double even_error = 0.1;
+  p.longest_list =
+      p.budget * (request.far != nullptr ? 2 : std::pow(even_error / double(p.error), 1.5));
   p.seen = m.seen;
   p.rest = m.rest;
   p.floor = m.floor;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
+#include "base/simd.h"
 #include "shadow/cell_points.h"
 #include "shadow/trace_rays.h"
 
@@ -15,6 +17,82 @@ namespace {
 constexpr size_t batch = 4096;
 constexpr uint32_t fewest_rays = 4;
 constexpr uint32_t purpose_direct = 0x64697265u;
+
+// A cell of four right angles, of which points are drawn evenly by solid angle: what a ray brings
+// then varies by the receiver's cosine alone. Nothing for other cells.
+std::optional<LightPrimitive> rectangle_of(const FlatCell& cell) {
+  if (cell.is_disk || cell.count != 0) return {};
+  const Parallelogram& p = cell.plane;
+  const double size_u = length(p.u), size_v = length(p.v);
+  if (!(std::abs(dot(p.u, p.v)) <= 1e-6 * size_u * size_v) || !(size_u * size_v > 0)) return {};
+  LightPrimitive out;
+  out.shape = PrimitiveShape::rectangle;
+  out.is_two_sided = true;
+  out.vertex_count = 4;
+  out.size_x = float(size_u);
+  out.size_y = float(size_v);
+  out.area = float(size_u * size_v);
+  out.radius = float(0.5 * std::hypot(size_u, size_v));
+  out.centroid = Vec3(p.origin + (p.u + p.v) * 0.5);
+  out.axis_x = Vec3(p.u / size_u);
+  out.axis_y = Vec3(p.v / size_v);
+  out.normal = p.normal;
+  const Vec3d corners[] = {p.origin, p.origin + p.u, p.origin + p.u + p.v, p.origin + p.v};
+  for (size_t i = 0; i < 4; ++i) out.vertices[i] = Vec3(corners[i]);
+  return out;
+}
+
+// Cosine over density; below the horizon `below` times that.
+TROFFER_MULTIVERSION
+void weigh_points(size_t n, const float* __restrict x, const float* __restrict y,
+                  const float* __restrict z, const float* __restrict inverse_pdf,
+                  const Vec3& normal, const Vec3& horizon, float below, float* __restrict weights) {
+  const Vec3 a = normal, b = horizon;
+  for (size_t i = 0; i < n; ++i) {
+    const Vec3 d{x[i], y[i], z[i]};
+    const float square = std::max(dot(d, d), 1e-30f);
+    const float f = std::max(dot(d, a), 0.0f) * inverse_pdf[i] / std::sqrt(square);
+    weights[i] = dot(d, b) > 0 ? f : below * f;
+  }
+}
+
+// Sums over the rays of one receiver: of f V - b f, of its square, and of squared differences of
+// neighbours.
+struct RaySums {
+  float value = 0, squares = 0, changes = 0;
+};
+TROFFER_MULTIVERSION
+RaySums add_up(size_t n, const float* __restrict weights, const uint8_t* __restrict is_hidden,
+               float control, float* __restrict values) {
+  constexpr size_t lanes = 16;
+  float value[lanes] = {}, squares[lanes] = {}, changes[lanes] = {};
+  for (size_t i = 0; i < n; ++i) {
+    const float free = weights[i] > 0 && is_hidden[i] == 0 ? weights[i] : 0.0f;
+    values[i] = free - control * std::abs(weights[i]);
+  }
+  values[n] = values[n - 1];
+  const size_t whole = n / lanes * lanes;
+  for (size_t i = 0; i < whole; i += lanes)
+    for (size_t k = 0; k < lanes; ++k) {
+      const float v = values[i + k], change = values[i + k + 1] - v;
+      value[k] += v;
+      squares[k] += v * v;
+      changes[k] += change * change;
+    }
+  for (size_t i = whole; i < n; ++i) {
+    const float v = values[i], change = values[i + 1] - v;
+    value[i - whole] += v;
+    squares[i - whole] += v * v;
+    changes[i - whole] += change * change;
+  }
+  RaySums sums;
+  for (size_t k = 0; k < lanes; ++k) {
+    sums.value += value[k];
+    sums.squares += squares[k];
+    sums.changes += changes[k];
+  }
+  return sums;
+}
 
 class Caster {
  public:
@@ -28,7 +106,11 @@ class Caster {
         m_(memory),
         sums_of_(results.sums) {
     m_.cells.clear();
-    cut_cells(part.cell, part.hull, task.options.cells, m_.cells);
+    rectangle_ = rectangle_of(part.cell);
+    if (rectangle_)
+      m_.cells.push_back(part.cell);
+    else
+      cut_cells(part.cell, part.hull, task.options.cells, m_.cells);
     for (const FlatCell& c : m_.cells) points_.emplace_back(c);
     set_unoccluded(part);
     rays_ = rays_for_error();
@@ -70,7 +152,7 @@ class Caster {
   // Of the source's rays a part of it gets its share. As many as make the variance k p (1 - p) U² /
   // n what the masks' may be (Promise), for the mean share p that is open and the mean gain k over
   // random numbers, a power of two.
-  uint32_t rays_for_error() const {
+  uint32_t rays_for_error() {
     const auto most = double(task_.options.rays.most_rays);
     const Promise& promise = task_.promise;
     if (!(promise.error > 0)) return uint32_t(std::bit_floor(unsigned(most)));
@@ -86,7 +168,10 @@ class Caster {
     const double allowed = std::max((seen / all + p) * p, sqr(floor / all));
     const double wanted = double(found_.dense.gain()) * p * (1 - std::min(p, 0.98)) /
                           (sqr(double(promise.error)) * allowed);
-    const double n = std::clamp(wanted, double(fewest_rays), most) * (own > 0 ? part / own : 1);
+    const double kept = std::clamp(wanted, double(fewest_rays), most);
+    found_.dense.note_wanted(double(members_.size()), kept);
+    const double n = std::clamp(found_.dense.spread(kept), double(fewest_rays), most) *
+                     (own > 0 ? part / own : 1);
     return uint32_t(std::bit_floor(unsigned(std::max(n * std::sqrt(2.0), 4.0))));
   }
 
@@ -113,23 +198,44 @@ class Caster {
     const ShadowReceiver& r = task_.cluster.receivers[member];
     m_.blocks.draw(hash_combine(r.pixel != 0 ? r.pixel : r.stream, task_.request.stream),
                    purpose_direct, r.pixel != 0 ? r.sample : 0, 2, m_.numbers.data());
-    const Vec3d x(r.position), normal(r.normal), horizon(r.horizon);
-    const double height = dot(source_.normal, x - source_.point);
     // as trace_rays.cpp has it
     const double origin_height = dot(source_.normal, Vec3d(r.origin) - source_.point);
     const double end = std::max(1 - 1.25 * source_.tolerance / origin_height, 1e-3);
-    float all = 0;
-    for (size_t c = 0; c < m_.cells.size(); ++c) all += unoccluded(c, member);
     const size_t first = m_.segments.size();
     m_.segments.resize(first + rays_);
     m_.weights.resize(first + rays_);
     m_.before.resize(first + rays_, float(end));
+    if (rectangle_)
+      aim_by_angle(r, first);
+    else
+      aim_by_area(member, first);
+  }
+
+  // A horizon of the receiver's own hides what round sources have below it: such points have
+  // negative weights.
+  void aim_by_angle(const ShadowReceiver& r, size_t first) {
+    LightPoints& p = m_.points;
+    const float* numbers = m_.numbers.data();
+    if (!sample_points(*rectangle_, r.position, rays_, numbers, numbers + rays_, p))
+      std::fill_n(p.inverse_pdf.begin(), rays_, 0.0f);
+    weigh_points(rays_, p.x.data(), p.y.data(), p.z.data(), p.inverse_pdf.data(), r.normal,
+                 r.horizon, task_.does_horizon_hide() ? -1.0f : 0.0f, m_.weights.data() + first);
+    for (uint32_t i = 0; i < rays_; ++i)
+      m_.segments[first + i] = {r.origin, r.position + Vec3{p.x[i], p.y[i], p.z[i]},
+                                no_round_source};
+  }
+
+  void aim_by_area(uint32_t member, size_t first) {
+    const ShadowReceiver& r = task_.cluster.receivers[member];
+    const Vec3d x(r.position), normal(r.normal), horizon(r.horizon);
+    const double height = dot(source_.normal, x - source_.point);
+    float all = 0;
+    for (size_t c = 0; c < m_.cells.size(); ++c) all += unoccluded(c, member);
     for (uint32_t i = 0; i < rays_; ++i) {
       const Choice choice = choose(member, all, m_.numbers[i]);
       const Vec3d y = points_[choice.cell].at(choice.u, m_.numbers[rays_ + i]), d = y - x;
       const double f =
           height * std::max(dot(normal, d), 0.0) / sqr(length_squared(d)) * choice.inverse_density;
-      // A horizon of the receiver's own hides what round sources have below it: so they are told.
       const bool is_below = dot(horizon, d) <= 0;
       m_.weights[first + i] = !is_below ? float(f) : task_.does_horizon_hide() ? -float(f) : 0;
       m_.segments[first + i] = {r.origin, Vec3(y), no_round_source};
@@ -157,20 +263,14 @@ class Caster {
 
   // Keeps what the rays of a member say, for add_answers.
   void note_answer(uint32_t member, size_t first) {
-    double sum = 0, squares = 0, changes = 0, last = 0;
-    for (size_t i = first; i < first + rays_; ++i) {
-      const double f = double(std::abs(m_.weights[i]));
-      const double free = m_.weights[i] > 0 && m_.is_hidden[i] == 0 ? f : 0;
-      const double value = free - double(control_) * f;
-      sum += value;
-      squares += sqr(value);
-      if (i > first) changes += sqr(value - last);
-      last = value;
-    }
+    m_.values.resize(rays_ + 1);
+    const RaySums sums = add_up(rays_, m_.weights.data() + first, m_.is_hidden.data() + first,
+                                control_, m_.values.data());
+    const auto squares = double(sums.squares), changes = double(sums.changes);
     double all = 0;
     for (size_t c = 0; c < m_.cells.size(); ++c) all += double(unoccluded(c, member));
     if (!(all > 0)) return;
-    const auto n = double(rays_), mean = sum / n;
+    const auto n = double(rays_), mean = double(sums.value) / n;
     // Neighbours on the source differ by what their strata leave to chance. Where these are in
     // order the sequence gains more, and the error of all rays of a pixel falls faster than with
     // the root of their number, as N^-3/4; what is told here will be taken for independent.
@@ -211,6 +311,7 @@ class Caster {
   DirectRayMemory& m_;
   std::span<CellSum> sums_of_;  // per receiver
   std::vector<CellPoints> points_;
+  std::optional<LightPrimitive> rectangle_;
   uint32_t rays_ = 0;
   float control_ = 0;
   struct Sums {

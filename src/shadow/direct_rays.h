@@ -1,18 +1,20 @@
 // Where so many facets stand before a flat source that no list is worth its while: rays straight to
 // the source, as many as the asked error takes, and nothing else that costs time.
 //
-// Points come from one Owen-scrambled Sobol sequence over all viewing rays of a pixel, spread over
-// the source's cells in proportion to their exact unoccluded light, and evenly over each. With f
-// the unoccluded term over the points' density, V what a ray says and b any number that does not
-// depend on them, the mean of f V - b (f - U) is unbiased, U being the exact unoccluded light:
-// where nothing hides the source b = 1 leaves no noise, and where all does b = 0. What b is, and
-// how many rays are cast, comes from what rays of earlier clusters to this source have found.
+// Points come from one Owen-scrambled Sobol sequence over all viewing rays of a pixel: of
+// rectangles evenly by solid angle, else spread over the source's cells in proportion to their
+// exact unoccluded light, and evenly over each. With f the unoccluded term over the points'
+// density, V what a ray says and b any number that does not depend on them, the mean of f V - b (f
+// - U) is unbiased, U being the exact unoccluded light: where nothing hides the source b = 1 leaves
+// no noise, and where all does b = 0. What b is, and how many rays are cast, comes from what rays
+// of earlier clusters to this source have found.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "base/random.h"
+#include "light/light_points.h"
 #include "shadow/gather_facets.h"
 
 namespace troffer {
@@ -20,9 +22,10 @@ namespace troffer {
 struct DirectRayMemory {
   std::vector<FlatCell> cells;
   std::vector<float> unoccluded;  // per cell and receiver, sr
-  std::vector<float> values;      // of a cell
+  std::vector<float> values;      // of a cell, or of a receiver's rays
   SobolBlocks blocks;
   std::vector<float> numbers;
+  LightPoints points;
   std::vector<ShadowSegment> segments, rest;
   std::vector<float> before;
   std::vector<float> weights;  // per segment: f, sr

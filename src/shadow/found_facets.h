@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -41,14 +42,30 @@ class FoundFacets {
       random_variance_ = 0.5 * random_variance_ + random_variance;
     }
     float open_share() const { return unoccluded_ > 0 ? float(light_ / unoccluded_) : 0.5f; }
+    // Where much is open no single facet hides it all.
+    bool is_partly_open() const { return unoccluded_ > 0 && light_ > 0.05 * unoccluded_; }
     // Their variance over that of as many independent ones.
     float gain() const {
       return random_variance_ > 0 ? std::clamp(float(variance_ / random_variance_), 0.1f, 1.0f)
                                   : 0.5f;
     }
 
+    // Receivers were worth so many rays each, by the error asked of each of them.
+    void note_wanted(double receivers, double rays) {
+      receivers_ += receivers;
+      roots_ += receivers * std::sqrt(rays);
+    }
+    // Rays for those that are worth `rays`: for the mean square of all receivers' errors, relative
+    // to what each may err by, the fewest are had by numbers in proportion to the roots of what is
+    // wanted. Nobody errs by more than twice what it may.
+    double spread(double rays) const {
+      if (!(receivers_ > 0)) return rays;
+      return std::clamp(std::sqrt(rays) * roots_ / receivers_, 0.25 * rays, 4 * rays);
+    }
+
    private:
     double light_ = 0, unoccluded_ = 0, variance_ = 0, random_variance_ = 0;
+    double receivers_ = 0, roots_ = 0;
   };
   Dense dense;
   // Whether anything that rises over the source's plane comes within rounding of the source: rays

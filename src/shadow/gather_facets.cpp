@@ -104,6 +104,9 @@ double radius_of(const ReceiverHull& hull) {
   return 0.5 * diameter({hull.corners.data(), size_t(hull.count)});
 }
 
+// Facets and round bodies before a sphere that make halving a cluster worth while.
+constexpr size_t fewest_to_halve = 8;
+
 // What a division carries along.
 struct Division {
   const SourceTask& task;
@@ -118,7 +121,7 @@ struct Division {
   size_t most_facets(bool is_last) const {
     const CertifiedOptions& o = task.options;
     size_t most = o.longest_list;
-    if (task.promise.error > 0) most = std::min(most, size_t(2 * task.promise.budget));
+    if (task.promise.error > 0) most = std::min(most, size_t(task.promise.longest_list));
     return is_last ? std::min(most, o.most_found) : most;
   }
   void cut_list(const ReceiverHull& hull) {
@@ -151,6 +154,17 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
                     bool is_whole, int halvings) {
   const bool is_last = is_last_try(halvings, hull);
   const FlatSource& source = *task.request.flat;
+  if (is_last && halvings > 0 && task.request.found->dense.is_partly_open()) {
+    // No single facet will prove it all dark: nothing is worth gathering.
+    memory.candidates.facets.clear();
+    memory.candidates.rounds.clear();
+    memory.candidates.is_complete = false;
+    memory.candidates.is_too_long = true;
+    SourcePart& part = add_part(members, hull);
+    part.cell = cell;
+    part.is_whole = is_whole;
+    return;
+  }
   gather_facets(hull, cell.all_corners(), source.plane.normal, most_facets(is_last), scene,
                 memory.candidates, counters);
   if (is_last && memory.candidates.is_too_long) cut_list(hull);
@@ -187,10 +201,15 @@ void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int
   } else {
     gather_facets(hull, source, most_facets(is_last), scene, c, counters);
   }
-  if ((is_too_near || c.is_too_long) && !is_last && members.size() >= 2) {
+  const bool is_long = (is_too_near || c.is_too_long) && !is_last && members.size() >= 2;
+  // Each receiver has a list of its own on its own disk, which costs more than to gather again.
+  const bool is_worth_halving = !is_too_near && !c.is_too_long &&
+                                c.facets.size() + c.rounds.size() >= fewest_to_halve &&
+                                members.size() >= task.options.smallest_cluster;
+  if (is_long || is_worth_halving) {
     const size_t half = halve_members(task.cluster, members);
     for (const std::span<uint32_t> side : {members.first(half), members.subspan(half)})
-      sphere(side, hull_of(task.cluster, side), halvings - 1);
+      sphere(side, hull_of(task.cluster, side), is_long ? halvings - 1 : halvings);
     return;
   }
   if (c.is_too_long) cut_list(hull);

@@ -74,6 +74,7 @@ struct Promise {
   std::span<const float> floor{};  // … and the least that errors are compared with, / √n
   double sources = 1;              // n
   double far_open = 0.5;           // what share of all far sources' light arrives, about
+  double longest_list = 0;         // facets that are worth gathering before the source
 };
 
 struct SourceTask {
