@@ -12,19 +12,19 @@ namespace troffer {
 namespace {
 
 // N points of an Owen-Sobol sequence over lights of which many are hidden err by about this much
-// times N^-3/4, relative to the light that they stand for (docs/certified.md).
-constexpr float error_of_one = 0.5f;
+// times N^-2/3, relative to the light that they stand for (docs/certified.md).
+constexpr float error_of_one = 0.4f;
 constexpr float most_draws = 256;
 // What a light costs by certificates, in rays: of each hit, and once for the cluster.
 constexpr float cost_of_hit = 0.15f, cost_of_cluster = 12;
 
 float points_of_pixel(float share, float error) {
-  return std::pow(share * error_of_one / error, 4.0f / 3);
+  return std::pow(share * error_of_one / error, 1.5f);
 }
 
 }  // namespace
 
-// Greedily from the strongest on, by what each saves: of the N ~ r^4/3 points that stand for a
+// Greedily from the strongest on, by what each saves: of the N ~ r^3/2 points that stand for a
 // share r of the light, dN/dr s for a light of share s.
 void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
                    const DrawingBudget& budget, LightsOfCluster& out) {
@@ -37,7 +37,7 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   const bool are_all = !groups.are_many();
   const float points = points_of_pixel(1, budget.error);
   const float cost = cost_of_hit + cost_of_cluster / float(hits);
-  const float least = 0.75f * cost * budget.viewing_rays / points;  // share, where r is 1
+  const float least = 2.0f / 3 * cost * budget.viewing_rays / points;  // share, where r is 1
   for (uint32_t g = 0; g < n; ++g)
     if (groups[g].first_source < groups[g].last_source && out.estimates[g] > 0 &&
         (are_all || double(out.estimates[g]) > double(least) * total))
@@ -48,7 +48,7 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   double rest = total;
   for (const uint32_t g : out.order) {
     const double e = double(out.estimates[g]);
-    if (!are_all && e * std::cbrt(rest / total) <= double(least) * total) break;
+    if (!are_all && e * std::sqrt(rest / total) <= double(least) * total) break;
     out.is_certified[g] = 1;
     rest -= e;
   }
