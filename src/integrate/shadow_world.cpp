@@ -28,6 +28,7 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
                              size_t most, uint64_t own, ShadowCandidates& out) {
   found_.facets.clear();
   found_.rounds.clear();
+  found_.masked.clear();
   found_.others = 0;
   found_.own = own;
   found_.is_complete = true;
@@ -38,6 +39,8 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
   out.rounds.assign(found_.rounds.begin(), found_.rounds.end());
   out.is_too_long = !found_.is_complete;
   out.is_complete = found_.is_complete && found_.others == 0;
+  out.masked.assign(found_.masked.begin(), found_.masked.end());
+  out.is_masked_known = found_.is_complete && found_.masked.size() == found_.others;
   for (const uint32_t id : found_.facets) {
     const Occluders::Component& c = occluders_.component_of(id);
     const bool is_front_only =

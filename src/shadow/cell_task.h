@@ -18,6 +18,9 @@ struct CellTask {
   bool is_complete;                   // of the list of facets
   bool is_hopeless;                   // lists of this source are too long: masks share the rays
 
+  // Of a list that is not complete all that it lacks; null where that is not known.
+  const FacetList* masked = nullptr;
+
   const ShadowReceiver& receiver(uint32_t member) const { return source.cluster.receivers[member]; }
 };
 

@@ -138,6 +138,8 @@ struct Division {
     part.hull = hull;
     part.facets.swap(memory.candidates.facets);
     part.rounds.swap(memory.candidates.rounds);
+    part.masked.swap(memory.candidates.masked);
+    part.is_masked_known = memory.candidates.is_masked_known;
     part.is_complete = memory.candidates.is_complete;
     part.is_dark = false;
     part.is_hopeless = memory.candidates.is_too_long;
@@ -197,6 +199,7 @@ void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int
   if (is_too_near) {  // nothing is known, and rays decide
     c.facets.clear();
     c.rounds.clear();
+    c.is_masked_known = false;
     c.is_too_long = c.is_complete = false;
   } else {
     gather_facets(hull, source, most_facets(is_last), scene, c, counters);

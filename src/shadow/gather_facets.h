@@ -18,6 +18,8 @@ struct SourcePart {
   bool is_whole = true;  // it is all of the source that stands above a common horizon
   std::vector<FacetToAdd> facets;
   std::vector<RoundBody> rounds;
+  std::vector<Quad> masked;  // as in ShadowCandidates
+  bool is_masked_known = false;
   bool is_complete = true;   // nothing else can hide anything
   bool is_hopeless = false;  // the list was too long and has been cut
   bool is_dark = false;      // one facet hides all of it from all members

@@ -162,14 +162,53 @@ void mask_complete(const CellTask& cell, uint32_t member, const FacetList& facet
                  results);
 }
 
-// What a mask of an incomplete list finds dark is dark; for what is open rays count.
+// Divides the open samples into those that nothing can hide any more, which become `free`, and
+// memory.samples, whose rays meet what only rays can tell of. Returns the share of the open weight
+// that is free.
+float divide_open(const CellTask& cell, uint32_t member, MaskMemory& memory, OpenSamples& free) {
+  const MaskFrame& frame = cell.frame;
+  OpenSamples& rest = memory.samples;
+  const float open = rest.open;
+  cover(frame, *cell.masked, frame.to_canvas(Vec3d(cell.receiver(member).origin)), rest.shift,
+        memory.mask);
+  free = rest;
+  CoverageMask part = memory.mask;
+  const auto set = [&](OpenSamples& s) {
+    part.open = s.rows;
+    s.open = weigh(frame, part, s.weights, s.open_by_row).open;
+  };
+  for (size_t r = 0; r < most_mask_rows; ++r) {
+    free.rows.row[r] &= memory.mask.open.row[r];
+    rest.rows.row[r] &= ~memory.mask.open.row[r];
+  }
+  set(free);
+  set(rest);
+  return std::clamp(free.open / open, 0.0f, 1.0f);
+}
+
+// What a mask of an incomplete list finds dark is dark, and what is clear of all that the list
+// lacks is open; for what else is open rays count.
 void mask_incomplete(const CellTask& cell, uint32_t member, const FacetList& facets,
                      MaskMemory& memory, SourceResults& results) {
   const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
-  const float light = seen.share * cell.unoccluded[member];
-  add_answer(cell, member, seen.share < 0 ? unknown_share : MaskShare{0, seen.variance},
-             ShadowAnswer::mixed, results);
-  if (!(seen.share > 0)) return;
+  float free_share = 0;
+  if (seen.share > 0 && cell.masked != nullptr) {
+    OpenSamples free;
+    free_share = seen.share * divide_open(cell, member, memory, free);
+    if (free_share > 0 && cell.source.wanted_points[member] > 0) {
+      std::swap(free, memory.samples);
+      CellTask complete = cell;
+      complete.is_complete = true;
+      add_integral(complete, member, free_share * cell.unoccluded[member], seen.variance, memory,
+                   results);
+      std::swap(free, memory.samples);
+    }
+  }
+  const bool is_any_left = seen.share > 0 && memory.samples.open > 0;
+  add_answer(cell, member, seen.share < 0 ? unknown_share : MaskShare{free_share, seen.variance},
+             is_any_left || seen.share < 0 ? ShadowAnswer::mixed : ShadowAnswer::masked, results);
+  if (!is_any_left) return;
+  const float light = std::max(seen.share - free_share, 0.0f) * cell.unoccluded[member];
   if (cell.source.wanted_points[member] > 0)
     add_integral(cell, member, light, seen.variance, memory, results);
   else

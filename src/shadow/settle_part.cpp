@@ -21,6 +21,15 @@ void set_list(const MaskFrame& frame, const SourcePart& part, FacetList& list) {
   list.finish();
 }
 
+// The list of what only rays can tell of; null where there is nothing, or it is not known whole.
+const FacetList* set_masked(const MaskFrame& frame, const SourcePart& part, FacetList& list) {
+  if (part.masked.empty() || !part.is_masked_known || part.is_hopeless) return nullptr;
+  list.clear();
+  for (const Quad& q : part.masked) list.add(frame, q);
+  list.finish();
+  return &list;
+}
+
 // The whole source's light, or that of the cell alone, set in `memory`.
 std::span<const float> unoccluded_of(const SourceTask& task, const SourcePart& part,
                                      const FlatCell& cell, PartMemory& memory) {
@@ -52,7 +61,8 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
     if (!is_all)
       memory.some_receivers.set(task.cluster, memory.members,
                                 hull_of(task.cluster, memory.members));
-    settle_cell({task, frame, unoccluded, stream, part.is_complete, part.is_hopeless},
+    settle_cell({task, frame, unoccluded, stream, part.is_complete, part.is_hopeless,
+                 set_masked(frame, part, memory.masked)},
                 is_all ? memory.receivers : memory.some_receivers, memory.settle, results);
   }
 }
@@ -108,6 +118,8 @@ std::vector<Quad> take_entering(const SphereSource& sphere, SourcePart& part) {
     if (may_enter(f.quad, sphere) && !is_within(f.quad, sphere)) entering.push_back(f.quad);
   std::erase_if(part.facets, [&](const FacetToAdd& f) { return may_enter(f.quad, sphere); });
   std::erase_if(part.rounds, [&](const RoundBody& b) { return is_within(b, sphere); });
+  for (const Quad& q : part.masked)
+    part.is_masked_known = part.is_masked_known && !may_enter(q, sphere);
   return entering;
 }
 
@@ -123,7 +135,13 @@ void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& me
     const MaskFrame frame(outline_of(sphere, Vec3d(task.cluster.receivers[m].position)),
                           task.options.lattice, is_mirrored(stream, task, m), part.hull.centre, {},
                           true);
-    const CellTask disk{task, frame, task.unoccluded, stream, part.is_complete, part.is_hopeless};
+    const CellTask disk{task,
+                        frame,
+                        task.unoccluded,
+                        stream,
+                        part.is_complete,
+                        part.is_hopeless,
+                        set_masked(frame, part, memory.masked)};
     const bool is_nothing = part.facets.empty() && part.rounds.empty() && entering.empty();
     if (part.is_complete && is_nothing && !task.does_horizon_hide()) {
       add_lit(disk, m, memory.settle.masks, results);

@@ -15,8 +15,9 @@ namespace troffer {
 struct PartMemory {
   std::vector<PlannedCell> cells;
   PilotMemory pilots;
-  std::vector<float> unoccluded;           // per receiver, of a cell
-  std::vector<uint32_t> members;           // whom the cell lights
+  std::vector<float> unoccluded;  // per receiver, of a cell
+  std::vector<uint32_t> members;  // whom the cell lights
+  FacetList masked;
   ReceiverTree receivers, some_receivers;  // of the part, and of the cell where these are fewer
   SettleMemory settle;
   DirectRayMemory rays;

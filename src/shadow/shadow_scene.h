@@ -36,6 +36,8 @@ struct ShadowHit {
 struct ShadowCandidates {
   std::vector<FacetToAdd> facets;
   std::vector<RoundBody> rounds;
+  std::vector<Quad> masked;  // what only rays can tell of, all of it where is_masked_known
+  bool is_masked_known = false;
   bool is_complete = true;   // nothing else can hide anything inside the shaft
   bool is_too_long = false;  // there are more facets: fewer receivers, or less source, would help
 };

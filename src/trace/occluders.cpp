@@ -255,6 +255,7 @@ void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found)
           continue;
         if (!(o.round.radius > 0)) {
           ++found.others;
+          if (found.masked.size() < most_masked) found.masked.push_back(o.cover);
           continue;
         }
         if (found.rounds.size() >= most) return false;

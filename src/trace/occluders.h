@@ -4,7 +4,7 @@
 // Triangles of a mesh that lie in one plane are merged to larger triangles and convex
 // quadrilaterals where that is exact to rounding (base/merge_polygons.h), so that a tessellated
 // wall is one facet. Each triangle with area belongs to one facet, whole. Spheres and disks are
-// reported as they are, meshes with an alpha mask by their bounds alone: only rays can tell what
+// reported as they are, triangles with an alpha mask apart from the others: only rays can tell what
 // these hide.
 #pragma once
 
@@ -52,12 +52,14 @@ class Occluders {
   }
 
   // Appends to `facets` the ids of all facets of which a point may lie inside all planes, and to
-  // `rounds` spheres and disks, until more than `most` have been found; counts what is neither in
-  // `others`. Where it stops early the list is incomplete. A facet is left out only if one plane
-  // has all of it outside.
+  // `rounds` spheres and disks, until more than `most` have been found; counts triangles with an
+  // alpha mask in `others`, of which the first most_masked are in `masked`. Where it stops early
+  // the list is incomplete. A facet is left out only if one plane has all of it outside.
+  static constexpr size_t most_masked = 256;
   struct Found {
     std::vector<uint32_t> facets;
     std::vector<RoundBody> rounds;
+    std::vector<Quad> masked;
     uint32_t others = 0;
     // A sphere or disk that does not count: key() of what a hit on it says; none by default.
     uint64_t own = no_key;

@@ -221,9 +221,9 @@ TEST_CASE("certified: what a scratch was used for before leaves no trace") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.6f});
   add_ceiling_light(s, 1, 2, Rgb{5});
-  add_leaf(s, {Vec3{-0.3f, -0.7f, 0.8f},
-               {0.3f, -0.7f, 0.8f},
-               {0.3f, -0.1f, 0.8f},
+  add_leaf(s, {Vec3{-0.3f, -1.2f, 0.8f},
+               {0.1f, -1.2f, 0.8f},
+               {0.1f, -0.1f, 0.8f},
                {-0.3f, -0.1f, 0.8f}});  // rays are needed
   add_block(s, grey, {-0.6f, -0.7f, 0.7f}, {0.6f, 0.3f, 0.75f});
   add_floor(s, grey);
@@ -232,7 +232,7 @@ TEST_CASE("certified: what a scratch was used for before leaves no trace") {
   const auto used = mine.make_scratch(), fresh = mine.make_scratch();
   RadianceBatch first, second;
   Counters counters, more;
-  const ViewingRays before = repeated(ray_towards(eye, {-0.7f, -0.6f, 0}), 5, 50);
+  const ViewingRays before = repeated(ray_towards(eye, {-0.1f, -0.9f, 0}), 5, 50);
   first.reset(before.size());
   mine.radiance(before, *used, first, counters);
   CHECK(counters.shadow_rays > 0);
@@ -338,4 +338,30 @@ TEST_CASE("certified: a point on a polygon of many corners belongs to one of its
   REQUIRE(arc != nullptr);
   CHECK(square->flat.outline.empty());
   CHECK(arc->flat.outline.size() == 11);
+}
+
+TEST_CASE("certified: a leaf takes rays where it may hide a source, and nowhere else") {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
+  add_ceiling_light(s, 1, 2, Rgb{5});
+  add_leaf(s, {Vec3{-0.01f, -0.7f, 0.8f},
+               {0.01f, -0.7f, 0.8f},
+               {0.01f, -0.1f, 0.8f},
+               {-0.01f, -0.1f, 0.8f}});
+  add_floor(s, grey);
+  const PreparedScene scene(std::move(s));
+  const WaveIntegrator mine = certified_integrator(scene);
+  const auto rays_at = [&](const Vec3& x) {
+    RadianceBatch out;
+    Counters counters;
+    const ViewingRays rays = repeated(ray_towards(eye, x), 3, 64);
+    out.reset(rays.size());
+    mine.radiance(rays, *mine.make_scratch(), out, counters);
+    return double(counters.shadow_rays) / 64;
+  };
+  const double under = rays_at({0, -0.6f, 0}), beside = rays_at({1.5f, -0.6f, 0});
+  MESSAGE(under, " rays under the leaf, ", beside, " beside it");
+  CHECK(under > 0);
+  CHECK(under < 20);  // through all that is open: 256
+  CHECK(beside == 0);
 }
