@@ -9,7 +9,10 @@ namespace troffer {
 
 SourcePart& SourceParts::add() {
   if (count_ == parts_.size()) parts_.emplace_back();
-  return parts_[count_++];
+  SourcePart& part = parts_[count_++];
+  part.masked.clear();
+  part.is_masked_known = false;
+  return part;
 }
 
 namespace {
