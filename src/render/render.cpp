@@ -85,7 +85,7 @@ double film_bytes(const PixelRect& window, const RenderOptions& o) {
 int most_viewing_rays(const RenderOptions& options) {
   if (options.max_spp > 0) return std::max(options.max_spp, options.spp);
   // By what cells know, edges cost little, and further rays are for what is left.
-  constexpr int with_cells = 256;
+  constexpr int with_cells = 16;
   const MethodRow& row = options.method.row();
   if (row.refinement > 1 && needs_cells(options.method, options.indirect))
     return with_cells * options.spp;

@@ -317,13 +317,13 @@ TEST_CASE("render and measure take certified visibility by default") {
   const Json of_plain = stats();
   CHECK(of_plain["method"] == "certified");
   CHECK(of_plain["spp"] == 4);
-  CHECK(of_plain["max_spp"] == 1024);
+  CHECK(of_plain["max_spp"] == 64);
   CHECK(of_plain["lit_certified"].get<int>() > 40 * 30);
   CHECK(of_plain["shadow_rays"] == 0);
-  // Refined at the edges of floor and lamp alone.
+  // Refined at the edges of floor and lamp, and by less elsewhere.
   CHECK(of_plain["viewing_rays"].get<int>() > 40 * 30 * 4);
-  CHECK(of_plain["viewing_rays"].get<int>() < 40 * 30 * 8);
-  CHECK(plain == render({"--method", "certified", "--spp", "4", "--max-spp", "1024"}));
+  CHECK(of_plain["viewing_rays"].get<int>() < 40 * 30 * 32);
+  CHECK(plain == render({"--method", "certified", "--spp", "4", "--max-spp", "64"}));
   CHECK(plain != render({"--max-spp", "4"}));
   CHECK(stats()["viewing_rays"] == 40 * 30 * 4);
   CHECK(plain != render({"--method", "path"}));

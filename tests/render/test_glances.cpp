@@ -159,6 +159,7 @@ TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by l
   const auto error = [&](double asked) {
     RenderOptions o = small_picture();
     o.spp = 4;
+    o.max_spp = 1024;
     o.error = asked;
     const Image image = render_now(scene, at_window, o).layers[0].image;
     double sum = 0;
