@@ -22,7 +22,7 @@ struct WaveIntegrator::Scratch final : IntegratorScratch {
   std::unique_ptr<IndirectLightScratch> indirect;  // null: there is none
   std::vector<Walk> walks, next_walks;
   WalkScratch trace;
-  WaveHits wave, asked;
+  WaveHits wave;
   SeenEmission seen;       // what competes with the sampling of sources
   SeenEmission undivided;  // what does not
   // Behind panes: what those refer to.
@@ -69,7 +69,7 @@ void WaveIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
       scatter(s, out);
       if (s.wave.size() == 0) continue;
       if (!out.known.empty() && c == Coherence::coherent) indirect_->know(s.wave, out);
-      ask_for_direct(s, out, counters);
+      direct_->queue(s.wave, *s.direct, out, counters);
       if (indirect_) indirect_->queue(s.wave, *s.indirect, out, counters);
       step_on(s);
     }
@@ -216,34 +216,6 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   w.walks.resize(kept);
   w.hits.resize(kept);
   w.vertices.resize(kept);
-}
-
-// What gloss shows is a small part of a pixel, and about known: the difference is asked for at some
-// of its hits, for all (a control variate, by Russian roulette: the same in the mean).
-void WaveIntegrator::ask_for_direct(Scratch& s, RadianceBatch& out, Counters& counters) const {
-  constexpr float share = 0.25f;
-  const WaveHits& w = s.wave;
-  if (!indirect_ || std::all_of(w.walks.begin(), w.walks.end(), is_direct_at))
-    return direct_->queue(s.wave, *s.direct, out, counters);
-  s.asked.clear();
-  s.asked.viewing = w.viewing;
-  CheckItems items;
-  for (size_t i = 0; i < w.size(); ++i) {
-    const Walk& walk = w.walks[i];
-    items.at(walk.index);
-    Rgb irradiance;
-    if (is_direct_at(walk) || !w.scatterings[i].has_diffuse ||
-        !indirect_->about_direct(w.vertices[i], irradiance)) {
-      s.asked.take(w, i, 1);
-      continue;
-    }
-    const bool is_asked = choice_number(walk) < share;
-    if (is_asked) s.asked.take(w, i, 1 / share);
-    const Rgb reflectance = albedo(w.scatterings[i].diffuse, w.vertices[i].wo.z);
-    out.indirect[walk.index] +=
-        walk.throughput * reflectance * irradiance * (inv_pi_f * (is_asked ? 1 - 1 / share : 1.0f));
-  }
-  direct_->queue(s.asked, *s.direct, out, counters);
 }
 
 // The next viewing rays: those that the hits' surfaces spawn.

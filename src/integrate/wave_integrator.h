@@ -45,7 +45,6 @@ class WaveIntegrator final : public Integrator {
   void see_lights_at_infinity(const Walk& walk, Scratch& s) const;
   void add_emission(Scratch& s, RadianceBatch& out) const;
   void scatter(Scratch& s, RadianceBatch& out) const;
-  void ask_for_direct(Scratch& s, RadianceBatch& out, Counters& counters) const;
   void step_on(Scratch& s) const;
   void flush(Scratch& s, RadianceBatch& out, Counters& counters) const;
 
