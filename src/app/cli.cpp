@@ -231,7 +231,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option(
       "--solution", c.solution,
       "certified: keep cells in this file, and go on from them; kj92: what troffer radiosity made");
-  s->add_option("--error", c.error, "certified: allowed standard error of direct light")
+  s->add_option("--error", c.error, "certified: allowed standard error of a point's light")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")

@@ -25,8 +25,7 @@ int run_measure(const MeasureCommand& c) {
   if (options.method.row().is_direct_only && options.indirect != Indirect::none && !c.is_quiet)
     fmt::print(stderr, "warning: --method {} measures direct light only\n", c.method);
   std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
-  if (!c.solution.empty() && needs_cells(options.method, options.indirect))
-    reserved.emplace_back(c.solution);
+  reserve_cells(c.solution, options.method, options.indirect, reserved);
   const std::vector<MeasuringPoint> points = read_points(c.points);
   const PreparedScene scene(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet));
 

@@ -14,6 +14,7 @@
 #include "import/file.h"
 #include "render/radiosity.h"
 #include "render/radiosity_gltf.h"
+#include "render/render.h"
 
 namespace troffer {
 
@@ -38,7 +39,7 @@ void check_command(const RadiosityCommand& c) {
 
 // --cells: kept for --method certified, as render --solution would.
 int make_cell_files(const RadiosityCommand& c, const PreparedScene& scene, const StopFlag& stop) {
-  constexpr double error = 0.01;  // as render by itself
+  const double error = RenderOptions{}.error;  // as render by itself
   CellStore store;
   {
     ProgressBar bar("cells", c.is_quiet);

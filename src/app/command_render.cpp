@@ -147,8 +147,7 @@ std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
-  if (!c.solution.empty() && needs_cells(c.options.method, c.options.indirect))
-    reserved.emplace_back(c.solution);
+  reserve_cells(c.solution, c.options.method, c.options.indirect, reserved);
   return reserved;
 }
 

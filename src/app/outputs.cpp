@@ -10,4 +10,9 @@ std::vector<OutputReservation> reserve_outputs(const std::vector<std::string>& o
   return reserved;
 }
 
+void reserve_cells(const std::string& path, const Method& method, Indirect indirect,
+                   std::vector<OutputReservation>& reserved) {
+  if (!path.empty() && needs_cells(method, indirect)) reserved.emplace_back(path);
+}
+
 }  // namespace troffer

@@ -1,20 +1,15 @@
 #include "cells/cell_store.h"
 
-#include <bit>
 #include <cmath>
-#include <cstring>
 
-#include "base/error.h"
-#include "base/random.h"
+#include "base/own_file.h"
 
 namespace troffer {
 
 namespace {
 
-constexpr char magic[8] = {'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'};
-constexpr uint32_t version = 1;
+constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 2, "file of cells"};
 constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
-static_assert(std::endian::native == std::endian::little, "files of cells are little endian");
 
 struct Header {
   char magic[8];
@@ -47,45 +42,6 @@ struct FilePart {
   Rgb emission;
 };
 static_assert(sizeof(FilePart) == 28 && sizeof(RowEntry) == 16 && sizeof(CellHit) == 40);
-
-uint64_t hash_of_file(Header h, std::span<const uint8_t> body) {
-  h.hash = 0;
-  uint64_t hash = body.size();
-  const auto add = [&](const uint8_t* bytes, size_t n) {
-    for (size_t i = 0; i < n; i += 8) {
-      uint64_t word = 0;
-      std::memcpy(&word, bytes + i, std::min<size_t>(8, n - i));
-      hash = hash_combine(hash, word);
-    }
-  };
-  add(reinterpret_cast<const uint8_t*>(&h), sizeof(h));
-  add(body.data(), body.size());
-  return hash;
-}
-
-template <class T>
-void append(std::vector<uint8_t>& out, const T& v) {
-  const size_t at = out.size();
-  out.resize(at + sizeof(T));
-  std::memcpy(out.data() + at, &v, sizeof(T));
-}
-
-// Reads one thing after the other; that there are enough bytes has been seen to.
-class Reader {
- public:
-  explicit Reader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
-  template <class T>
-  T next() {
-    TROFFER_CHECK(bytes_.size() >= sizeof(T));
-    T v;
-    std::memcpy(&v, bytes_.data(), sizeof(T));
-    bytes_ = bytes_.subspan(sizeof(T));
-    return v;
-  }
-
- private:
-  std::span<const uint8_t> bytes_;
-};
 
 bool is_light(const Rgb& c) {
   return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0;
@@ -130,7 +86,7 @@ struct CellMapParts {
     return true;
   }
 
-  static bool read_hits(Reader& in, CellMap& map) {
+  static bool read_hits(ByteReader& in, CellMap& map) {
     for (CellMap::Hits& h : map.hits_)
       for (uint32_t i = 0; i < h.count; ++i) {
         const auto hit = in.next<CellHit>();
@@ -142,7 +98,7 @@ struct CellMapParts {
     return true;
   }
 
-  static bool read_slots(Reader& in, uint64_t slots, CellMap& map) {
+  static bool read_slots(ByteReader& in, uint64_t slots, CellMap& map) {
     for (uint64_t i = 0; i < slots; ++i) {
       const auto f = in.next<FileSlot>();
       if (f.key == 0 || f.first >= map.size()) return false;
@@ -156,7 +112,7 @@ struct CellMapParts {
 };
 
 bool are_cells(std::span<const uint8_t> bytes) {
-  return bytes.size() >= sizeof(magic) && std::memcmp(bytes.data(), magic, sizeof(magic)) == 0;
+  return cell_file.is_of(bytes);
 }
 
 std::vector<uint8_t> save_cells(const CellStore& store, uint64_t scene_key) {
@@ -169,8 +125,6 @@ std::vector<uint8_t> save_cells(const CellStore& store, uint64_t scene_key) {
   for (size_t p = 0; p < parts.size(); ++p)
     for (const RowEntry& e : store.rows.entries(p)) append(body, e);
   Header h{};
-  std::memcpy(h.magic, magic, sizeof(magic));
-  h.version = version;
   h.size = store.map->size_of_cells();
   h.scene_key = scene_key;
   h.direct_error = store.direct_error;
@@ -179,36 +133,21 @@ std::vector<uint8_t> save_cells(const CellStore& store, uint64_t scene_key) {
   h.slots = CellMapParts::slots_of(*store.map);
   h.parts = parts.size();
   h.entries = store.rows.entry_count();
-  h.hash = hash_of_file(h, body);
-  std::vector<uint8_t> out;
-  out.reserve(sizeof(Header) + body.size());
-  append(out, h);
-  out.insert(out.end(), body.begin(), body.end());
-  return out;
+  return own_file(cell_file, h, body);
 }
 
 namespace {
 
-Header checked_header(std::span<const uint8_t> bytes, const std::string& file, uint64_t scene_key) {
+Header header_of(std::span<const uint8_t> bytes, const std::string& file, uint64_t scene_key) {
   const auto refuse = [&](const std::string& what) { throw InputError(file, 0, 0, what); };
-  if (!are_cells(bytes)) refuse("not a file of cells");
-  if (bytes.size() < sizeof(Header)) refuse("file of cells is cut short");
-  const auto h = Reader(bytes).next<Header>();
-  if (h.version != version)
-    refuse("file of cells of version " + std::to_string(h.version) + "; this program reads " +
-           std::to_string(version));
-  uint64_t left = bytes.size() - sizeof(Header);
-  const auto take = [&](uint64_t count, uint64_t size) {
-    if (count > left / size) refuse("file of cells is cut short");
-    left -= count * size;
+  const auto count = [](const Header& h, BodySize& body) {
+    body.take(h.cells, sizeof(FileCell));
+    body.take(h.hits, sizeof(CellHit));
+    body.take(h.slots, sizeof(FileSlot));
+    body.take(h.parts, sizeof(FilePart));
+    body.take(h.entries, sizeof(RowEntry));
   };
-  take(h.cells, sizeof(FileCell));
-  take(h.hits, sizeof(CellHit));
-  take(h.slots, sizeof(FileSlot));
-  take(h.parts, sizeof(FilePart));
-  take(h.entries, sizeof(RowEntry));
-  if (left != 0) refuse("file of cells has bytes too many");
-  if (hash_of_file(h, bytes.subspan(sizeof(Header))) != h.hash) refuse("file of cells is damaged");
+  const auto h = checked_header<Header>(cell_file, bytes, file, count);
   if (!(h.size > 0) || !std::isfinite(h.size) || !(h.direct_error >= 0) || h.cells >= no_cell)
     refuse("file of cells has values that none can have");
   if (h.scene_key != scene_key)
@@ -216,7 +155,7 @@ Header checked_header(std::span<const uint8_t> bytes, const std::string& file, u
   return h;
 }
 
-bool read_cells(Reader& in, const Header& h, CellMap& map, CellStore& store) {
+bool read_cells(ByteReader& in, const Header& h, CellMap& map, CellStore& store) {
   uint64_t hits = 0;
   for (size_t c = 0; c < h.cells; ++c) {
     const auto f = in.next<FileCell>();
@@ -230,7 +169,7 @@ bool read_cells(Reader& in, const Header& h, CellMap& map, CellStore& store) {
          CellMapParts::read_slots(in, h.slots, map);
 }
 
-bool read_rows(Reader& in, const Header& h, CellRows& rows) {
+bool read_rows(ByteReader& in, const Header& h, CellRows& rows) {
   std::vector<RowPart> parts;
   uint64_t entries = 0;
   for (size_t p = 0; p < h.parts; ++p) {
@@ -259,8 +198,8 @@ bool read_rows(Reader& in, const Header& h, CellRows& rows) {
 
 CellStore load_cells(std::span<const uint8_t> bytes, const std::string& file, uint64_t scene_key,
                      const Tracer& tracer) {
-  const Header h = checked_header(bytes, file, scene_key);
-  Reader in(bytes.subspan(sizeof(Header)));
+  const Header h = header_of(bytes, file, scene_key);
+  ByteReader in(bytes.subspan(sizeof(Header)));
   CellStore store;
   auto map = std::make_shared<CellMap>(tracer, h.size);
   if (!read_cells(in, h, *map, store) || !read_rows(in, h, store.rows))

@@ -91,11 +91,6 @@ void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
   }
 }
 
-bool CellsIndirect::about_direct(const Vertex& v, Rgb& irradiance) const {
-  irradiance = cells_->light_at(cell_hit_of(v)).direct;
-  return !irradiance.is_black();
-}
-
 void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
                           Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);

@@ -19,7 +19,6 @@ class CellsIndirect final : public IndirectLight {
              Counters& counters) const override;
   bool is_known() const override { return records_ != nullptr; }
   void know(const WaveHits& wave, RadianceBatch& out) const override;
-  bool about_direct(const Vertex& v, Rgb& irradiance) const override;
   void flush(IndirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
   // By one ray per sample.
   void gather(const SensorBatch& sensors, IndirectLightScratch& scratch, RadianceBatch& out,

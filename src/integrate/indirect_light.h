@@ -29,8 +29,6 @@ class IndirectLight {
   virtual bool is_known() const { return false; }
   // Adds to out.known what first hits reflect, by what is at hand: no rays.
   virtual void know(const WaveHits&, RadianceBatch&) const {}
-  // About the irradiance of a place straight from sources, by what is at hand; false: not known.
-  virtual bool about_direct(const Vertex&, Rgb&) const { return false; }
   virtual void flush(IndirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;
 

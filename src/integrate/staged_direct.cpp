@@ -22,7 +22,7 @@ void StagedDirect::take(const WaveHits& wave, bool first, WaveHits& out) const {
   out.clear();
   out.viewing = wave.viewing;
   for (size_t i = 0; i < wave.size(); ++i) {
-    if (is_first(wave.walks[i], 0) == first) out.take(wave, i, 1);
+    if (is_first(wave.walks[i], 0) == first) out.take(wave, i);
   }
 }
 

@@ -49,12 +49,6 @@ float roulette_number(const Walk& walk) {
       uint32_t(hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample) >> 32));
 }
 
-float choice_number(const Walk& walk) {
-  return unit_float(uint32_t(
-      hash_of(walk.stream, uint64_t{walk.vertex}, uint64_t{walk.sample}, uint64_t{0x6368'6f69}) >>
-      32));
-}
-
 bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2& direction) {
   BsdfSample sampled;
   if (!sample(bsdf, v.wo, lobe, direction, sampled)) return false;

@@ -46,12 +46,10 @@ void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence
                  WalkScratch& scratch, Counters& counters);
 
 // Random numbers at a walk's vertex: for choosing a direction (with purpose_scatter, dimensions 0
-// and 1), a lobe (dimension 2), and for Russian roulette, which gains nothing by stratification;
-// for the choice of those hits of many at which something is asked for.
+// and 1), a lobe (dimension 2), and for Russian roulette, which gains nothing by stratification.
 Vec2 direction_number(const Walk& walk);
 float lobe_number(const Walk& walk);
 float roulette_number(const Walk& walk);
-float choice_number(const Walk& walk);
 
 // How often it has been sent on by a surface: panes that it went straight through do not count.
 inline uint32_t bounces(const Walk& walk) {

@@ -25,10 +25,9 @@ struct WaveHits {
 
   size_t size() const { return walks.size(); }
   const Bsdf& bsdf(size_t i) const { return scatterings.empty() ? bsdfs[i] : scatterings[i].whole; }
-  // Hit i of another wave of the same method; its walk brings `factor` times the light.
-  void take(const WaveHits& other, size_t i, float factor) {
+  // Hit i of another wave of the same method.
+  void take(const WaveHits& other, size_t i) {
     walks.push_back(other.walks[i]);
-    walks.back().throughput *= factor;
     if (!other.hits.empty()) hits.push_back(other.hits[i]);
     vertices.push_back(other.vertices[i]);
     if (!other.bsdfs.empty()) bsdfs.push_back(other.bsdfs[i]);

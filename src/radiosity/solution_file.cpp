@@ -1,11 +1,10 @@
 // Saving and loading of solutions (solution.h).
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <cstring>
 
-#include "base/error.h"
+#include "base/own_file.h"
 #include "radiosity/hasher.h"
 #include "radiosity/solution.h"
 
@@ -13,9 +12,7 @@ namespace troffer {
 
 namespace {
 
-constexpr char magic[8] = {'t', 'r', 'o', 'f', 'f', 'R', 'a', 'd'};
-constexpr uint32_t version = 3;
-static_assert(std::endian::native == std::endian::little, "solutions are little endian");
+constexpr OwnFile solution_file{{'t', 'r', 'o', 'f', 'f', 'R', 'a', 'd'}, 3, "radiosity solution"};
 
 uint64_t points_key(const RadiosityMesh& mesh) {
   Hasher h;
@@ -72,19 +69,6 @@ struct FileContribution {
   uint32_t source;
   float received[3], unoccluded[3];
 };
-
-uint64_t hash_bytes(std::span<const uint8_t> bytes) {
-  Hasher h;
-  h.add(bytes.size());
-  size_t i = 0;
-  for (; i + 8 <= bytes.size(); i += 8) {
-    uint64_t v = 0;
-    std::memcpy(&v, bytes.data() + i, 8);
-    h.add(v);
-  }
-  for (; i < bytes.size(); ++i) h.add(uint64_t(bytes[i]));
-  return h.value();
-}
 
 void put(float (&to)[3], Rgb c) {
   for (size_t i = 0; i < 3; ++i) to[i] = c[i];
@@ -177,30 +161,6 @@ std::string difference(const FileOptions& file, const FileOptions& wanted) {
   return "settings of meshing or rays differ";
 }
 
-template <class T>
-void append(std::vector<uint8_t>& out, const T& v) {
-  const size_t at = out.size();
-  out.resize(at + sizeof(T));
-  std::memcpy(out.data() + at, &v, sizeof(T));
-}
-template <class T>
-T read(std::span<const uint8_t> bytes, size_t at) {
-  T v;
-  std::memcpy(&v, bytes.data() + at, sizeof(T));
-  return v;
-}
-
-}  // namespace
-
-namespace {
-
-uint64_t hash_of_file(Header h, std::span<const uint8_t> body) {
-  h.hash = 0;
-  std::vector<uint8_t> header;
-  append(header, h);
-  return hash_combine(hash_bytes(header), hash_bytes(body));
-}
-
 }  // namespace
 
 std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& s) {
@@ -227,8 +187,6 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
     append(body, p);
   }
   Header h{};
-  std::memcpy(h.magic, magic, sizeof(magic));
-  h.version = version;
   h.stored_per_point = s.stored_per_point;
   h.scene_key = radiosity_scene_key(scene);
   h.options = packed(s.options);
@@ -245,34 +203,20 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
   const double balance[7] = {b.emitted, b.shot,    b.absorbed,   b.lost_to_specular,
                              b.unshot,  b.escaped, b.unaccounted};
   std::memcpy(h.balance, balance, sizeof(balance));
-  h.hash = hash_of_file(h, body);
-  std::vector<uint8_t> out;
-  out.reserve(sizeof(Header) + body.size());
-  append(out, h);
-  out.insert(out.end(), body.begin(), body.end());
-  return out;
+  return own_file(solution_file, h, body);
 }
 
 namespace {
 
 // All that can be told without the mesh.
-Header checked_header(std::span<const uint8_t> bytes, const std::string& file) {
+Header header_of(std::span<const uint8_t> bytes, const std::string& file) {
   const auto refuse = [&](const std::string& what) { throw InputError(file, 0, 0, what); };
-  if (bytes.size() < sizeof(magic) || std::memcmp(bytes.data(), magic, sizeof(magic)) != 0)
-    refuse("not a radiosity solution");
-  if (bytes.size() < sizeof(Header)) refuse("radiosity solution is cut short");
-  const auto h = read<Header>(bytes, 0);
-  if (h.version != version)
-    refuse("radiosity solution of version " + std::to_string(h.version) + "; this program reads " +
-           std::to_string(version));
-  if (h.stored_per_point > max_stored) refuse("radiosity solution is damaged");
-  const size_t per_point = sizeof(FilePoint) + h.stored_per_point * sizeof(FileContribution);
-  const size_t body = bytes.size() - sizeof(Header), patches = h.patches * sizeof(FilePatch);
-  if (h.points > body / per_point || h.points * per_point + patches > body)
-    refuse("radiosity solution is cut short");
-  if (h.points * per_point + patches != body) refuse("radiosity solution has bytes too many");
-  if (hash_of_file(h, bytes.subspan(sizeof(Header))) != h.hash)
-    refuse("radiosity solution is damaged");
+  const auto count = [&](const Header& h, BodySize& body) {
+    if (h.stored_per_point > max_stored) refuse("radiosity solution is damaged");
+    body.take(h.points, sizeof(FilePoint) + h.stored_per_point * sizeof(FileContribution));
+    body.take(h.patches, sizeof(FilePatch));
+  };
+  const auto h = checked_header<Header>(solution_file, bytes, file, count);
   if (!is_sane(h)) refuse("radiosity solution has values that none can have");
   return h;
 }
@@ -282,7 +226,7 @@ Header checked_header(std::span<const uint8_t> bytes, const std::string& file) {
 RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::string& file,
                                 const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
                                 const RadiosityOptions* options, int threads) {
-  const Header h = checked_header(bytes, file);
+  const Header h = header_of(bytes, file);
   if (h.scene_key != radiosity_scene_key(scene))
     throw InputError(file, 0, 0, "radiosity solution belongs to another scene: compute it anew");
   if (options != nullptr) {
@@ -315,21 +259,21 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
       throw InputError(file, 0, 0, "radiosity solution has light that is not finite");
     return c;
   };
-  size_t at = sizeof(Header);
-  for (size_t i = 0; i < h.points; ++i, at += sizeof(FilePoint)) {
-    const auto p = read<FilePoint>(bytes, at);
+  ByteReader body(bytes.subspan(sizeof(Header)));
+  for (size_t i = 0; i < h.points; ++i) {
+    const auto p = body.next<FilePoint>();
     s.general.push_back(finite(p.general));
     s.general_direct.push_back(finite(p.general_direct));
   }
   const size_t sources = s.light_count + s.mesh.patches.size();
-  for (size_t i = 0; i < h.points * h.stored_per_point; ++i, at += sizeof(FileContribution)) {
-    const auto c = read<FileContribution>(bytes, at);
+  for (size_t i = 0; i < h.points * h.stored_per_point; ++i) {
+    const auto c = body.next<FileContribution>();
     if (c.source != no_source && c.source >= sources)
       throw InputError(file, 0, 0, "radiosity solution is damaged");
     s.stored.push_back({c.source, finite(c.received), finite(c.unoccluded)});
   }
-  for (size_t i = 0; i < h.patches; ++i, at += sizeof(FilePatch))
-    s.shot_radiance.push_back(finite(read<FilePatch>(bytes, at).shot_radiance));
+  for (size_t i = 0; i < h.patches; ++i)
+    s.shot_radiance.push_back(finite(body.next<FilePatch>().shot_radiance));
   s.mean_irradiance = h.mean_irradiance;
   return s;
 }
