@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "import/file.h"
 #include "import/gltf.h"
+#include "import/mitsuba.h"
 #include "import/obj.h"
 #include "import/pbrt.h"
 
@@ -11,9 +12,11 @@ namespace troffer {
 Scene import_scene(const std::string& path) {
   const std::string ending = lower_case_ending(path);
   const bool is_gltf = ending == "gltf" || ending == "glb";
-  if (!is_gltf && ending != "pbrt" && ending != "obj")
-    throw InputError(path, 0, 0, "is no scene: its name should end in .gltf, .glb, .pbrt or .obj");
+  if (!is_gltf && ending != "pbrt" && ending != "obj" && ending != "xml")
+    throw InputError(path, 0, 0,
+                     "is no scene: its name should end in .gltf, .glb, .pbrt, .obj or .xml");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
+  if (ending == "xml") return import_mitsuba(path);
   return is_gltf ? import_gltf(path) : ending == "pbrt" ? import_pbrt(path) : import_obj(path);
 }
 

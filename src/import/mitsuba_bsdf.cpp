@@ -1,0 +1,357 @@
+#include "import/mitsuba_bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "import/mitsuba_values.h"
+#include "import/spectra.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr int max_depth = 16;
+constexpr float default_alpha = 0.1f;
+
+// Mean reflectance, over diffuse light from within, of the inside of a boundary of that index: what
+// Lambertian reflection under a coat loses on its way out. Exact Fresnel terms, midpoint rule.
+float mean_reflectance_inside(double index) {
+  constexpr int steps = 2000;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double cos2 = (i + 0.5) / steps;  // uniform in cos²: cosine-weighted directions
+    const double sin2_out = (1 - cos2) * index * index;
+    if (sin2_out >= 1) {
+      sum += 1;
+      continue;
+    }
+    const double in = std::sqrt(cos2), out = std::sqrt(1 - sin2_out);
+    const double s = (index * in - out) / (index * in + out);
+    const double p = (in - index * out) / (in + index * out);
+    sum += (s * s + p * p) / 2;
+  }
+  return float(sum / steps);
+}
+
+bool is_texture(const ColorInput& c) {
+  return c.texture >= 0;
+}
+
+float mean_of(const ColorInput& c) {
+  return average(c.value);
+}
+
+}  // namespace
+
+void MitsubaBsdfs::approximate(const MitsubaNode& node, const std::string& how) {
+  scene_.warnings.add("bsdf \"" + shortened(node.type) + "\" is approximated: " + how);
+}
+
+uint32_t MitsubaBsdfs::default_index(bool is_emitting) {
+  std::optional<uint32_t>& index = is_emitting ? black_ : grey_;
+  if (!index) {
+    Material m;
+    m.name = is_emitting ? "black" : "default";
+    if (is_emitting) m.base_color.value = Rgb{0};
+    index = uint32_t(scene_.materials.size());
+    scene_.materials.push_back(std::move(m));
+  }
+  return *index;
+}
+
+std::optional<uint32_t> MitsubaBsdfs::index_of(const MitsubaNode& given) {
+  const MitsubaNode& node = tree_.resolved(given);
+  const auto found = made_.find(&node);
+  if (found != made_.end()) return found->second;
+  std::optional<Material> m = convert(node);
+  std::optional<uint32_t> index;
+  if (m) {
+    m->name = node.id;
+    index = uint32_t(scene_.materials.size());
+    scene_.materials.push_back(std::move(*m));
+  }
+  return made_[&node] = index;
+}
+
+// The bsdf within another one: the first; nothing where it is null.
+std::optional<Material> MitsubaBsdfs::nested(const MitsubaNode& node) {
+  for (const MitsubaNode* child : node.children) {
+    const MitsubaNode& inner = tree_.resolved(*child);
+    if (inner.tag != "bsdf") continue;
+    child->is_used = true;
+    return convert(inner);
+  }
+  node.place.fail("bsdf \"" + shortened(node.type) + "\" has no bsdf in it");
+}
+
+void MitsubaBsdfs::read_alpha(const MitsubaNode& node, Material& m) {
+  m.roughness_meaning = RoughnessMeaning::alpha;
+  if (find_parameter(node, "alpha_u") || find_parameter(node, "alpha_v")) {
+    const FloatInput u = textures_.real(node, {"alpha_u"}, default_alpha);
+    const FloatInput v = textures_.real(node, {"alpha_v"}, default_alpha);
+    m.roughness = u;
+    m.roughness.value = std::sqrt(u.value * v.value);
+    if (u.value != v.value || u.texture != v.texture)
+      approximate(node, "different roughness along u and v as its geometric mean");
+  } else {
+    m.roughness = textures_.real(node, {"alpha"}, default_alpha);
+  }
+  // Its widths mean nearly the same where it is small.
+  const std::string distribution = get_text(node, "distribution", "beckmann");
+  if (distribution != "ggx")
+    approximate(node, "microfacets \"" + shortened(distribution) + "\" as ggx of the same width");
+  get_flag(node, "sample_visible", true);
+}
+
+Material MitsubaBsdfs::diffuse(const MitsubaNode& node) {
+  Material m;
+  if (node.type == "roughdiffuse") {
+    textures_.real(node, {"alpha"}, 0);
+    find_parameter(node, "use_fast_approx");
+    approximate(node, "without its roughness");
+  }
+  m.base_color = textures_.color(node, {"reflectance", "diffuse_reflectance"}, Rgb{0.5f});
+  return m;
+}
+
+Material MitsubaBsdfs::conductor(const MitsubaNode& node) {
+  Material m;
+  m.kind = MaterialKind::conductor;
+  if (node.type == "roughconductor") read_alpha(node, m);
+  const ColorInput scale = textures_.color(node, {"specular_reflectance"}, Rgb{1});
+  const MitsubaNode *eta = find_parameter(node, "eta"), *k = find_parameter(node, "k");
+  const std::string name = get_text(node, "material", tree_.is_legacy() && !eta ? "Cu" : "none");
+  const double outside =
+      find_parameter(node, "ext_eta") ? index_of_refraction(node, "ext_eta", "air") : 1;
+  if (eta && k) {
+    m.eta = metal_index_of(tree_.resolved(*eta), tree_.folder());
+    m.k = metal_index_of(tree_.resolved(*k), tree_.folder());
+  } else if (const auto known = named_metal("metal-" + name + "-eta")) {
+    m.eta = *known;
+    m.k = *named_metal("metal-" + name + "-k");
+  } else {
+    // 0 + i: reflects everything.
+    m.is_reflectance = true;
+    m.base_color = scale;
+    if (name != "none") {
+      m.base_color.value *= Rgb{0.6f};
+      approximate(node, "the metal \"" + shortened(name) + "\" is not known; reflectance 0.6");
+    }
+    return m;
+  }
+  m.eta = m.eta / float(outside);
+  m.k = m.k / float(outside);
+  if (is_texture(scale) || scale.value != Rgb{1}) {
+    // Reflectance at normal incidence, which is then all that is known of the metal.
+    const Rgb e1 = m.eta - Rgb{1}, e2 = m.eta + Rgb{1}, k2 = m.k * m.k;
+    m.is_reflectance = true;
+    m.base_color = scale;
+    m.base_color.value *= (e1 * e1 + k2) / (e2 * e2 + k2);
+    approximate(node, "a metal with specular_reflectance by its reflectance at normal incidence");
+  }
+  return m;
+}
+
+Material MitsubaBsdfs::dielectric(const MitsubaNode& node) {
+  Material m;
+  m.kind = MaterialKind::dielectric;
+  m.is_thin = node.type == "thindielectric";
+  if (node.type == "roughdielectric") read_alpha(node, m);
+  m.ior = float(index_of_refraction(node, "int_ior", "bk7") /
+                index_of_refraction(node, "ext_ior", "air"));
+  const ColorInput reflected = textures_.color(node, {"specular_reflectance"}, Rgb{1});
+  m.base_color = textures_.color(node, {"specular_transmittance"}, Rgb{1});
+  if (is_texture(reflected) || reflected.value != Rgb{1})
+    approximate(node, "without its specular_reflectance");
+  return m;
+}
+
+// Light that the base scatters is tinted at each inner reflection only where `nonlinear`; else all
+// reflections are as of a white base: ρ / (1 - F) in place of ρ / (1 - ρF), with F the mean
+// reflectance of the coat from inside. Our coat is the former; ρ / (1 - F + ρF) makes it the
+// latter.
+Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
+  Material m;
+  m.kind = MaterialKind::coated_diffuse;
+  if (node.type == "roughplastic") read_alpha(node, m);
+  m.ior = float(index_of_refraction(node, "int_ior", "polypropylene") /
+                index_of_refraction(node, "ext_ior", "air"));
+  m.base_color = textures_.color(node, {"diffuse_reflectance"}, Rgb{0.5f});
+  const ColorInput specular = textures_.color(node, {"specular_reflectance"}, Rgb{1});
+  if (is_texture(specular) || specular.value != Rgb{1})
+    approximate(node, "without its specular_reflectance");
+  if (!get_flag(node, "nonlinear", false) && m.ior > 1) {
+    const float f = mean_reflectance_inside(double(m.ior));
+    if (is_texture(m.base_color))
+      m.base_color.texture = textures_.with_brightened_texels(m.base_color.texture, f);
+    else
+      m.base_color.value = m.base_color.value / (Rgb{1 - f} + m.base_color.value * f);
+  }
+  return m;
+}
+
+Material MitsubaBsdfs::principled(const MitsubaNode& node) {
+  Material m;
+  m.kind = MaterialKind::metallic_roughness;
+  m.base_color = textures_.color(node, {"base_color"}, Rgb{0.5f});
+  m.roughness = textures_.real(node, {"roughness"}, 0.5f);
+  m.roughness_meaning = RoughnessMeaning::alpha_is_square;
+  m.metallic = textures_.real(node, {"metallic"}, 0);
+  m.transmission = textures_.real(node, {"spec_trans"}, 0);
+  m.is_thin = node.type == "principledthin";
+  if (find_parameter(node, "eta")) {
+    m.ior = float(index_of_refraction(node, "eta", "bk7"));
+  } else {
+    const double specular = std::clamp(get_number(node, "specular", 0.5), 0.0, 1.0);
+    m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
+  }
+  std::string left_out;
+  for (const char* name : {"anisotropic", "spec_tint", "sheen", "sheen_tint", "flatness",
+                           "clearcoat", "clearcoat_gloss", "diff_trans"}) {
+    const MitsubaNode* p = find_parameter(node, name);
+    if (p && p->attribute("value") != "0" && p->attribute("value") != "0.0")
+      left_out += std::string(left_out.empty() ? "" : ", ") + name;
+  }
+  for (const char* name : {"main_specular_sampling_rate", "clearcoat_sampling_rate",
+                           "diffuse_reflectance_sampling_rate"})
+    find_parameter(node, name);
+  approximate(node, "as metal and coat mixed by its weights" +
+                        (left_out.empty() ? "" : ", without " + left_out));
+  return m;
+}
+
+// The exponent of a lobe as wide as ggx of width α: α² = 2 / (n + 2).
+Material MitsubaBsdfs::phong(const MitsubaNode& node) {
+  Material m;
+  m.kind = MaterialKind::metallic_roughness;
+  m.base_color = textures_.color(node, {"diffuse_reflectance"}, Rgb{0.5f});
+  const ColorInput specular = textures_.color(node, {"specular_reflectance"}, Rgb{0.2f});
+  m.roughness_meaning = RoughnessMeaning::alpha;
+  if (node.type == "phong") {
+    m.roughness = textures_.real(node, {"exponent"}, 30);
+    m.roughness.value = std::sqrt(2 / (std::max(m.roughness.value, 0.0f) + 2));
+    m.roughness.texture = no_texture;
+  } else {
+    read_alpha(node, m);
+  }
+  find_parameter(node, "variant");
+  // Schlick's coat of that reflectance at normal incidence, up to the index 3.
+  const float f = std::sqrt(std::clamp(mean_of(specular), 0.0f, 0.25f));
+  m.ior = (1 + f) / (1 - f);
+  if (m.ior <= 1) m.specular.value = 0;
+  approximate(node, "as a coat with its specular_reflectance at normal incidence");
+  return m;
+}
+
+std::optional<Material> MitsubaBsdfs::masked(const MitsubaNode& node) {
+  const FloatInput opacity = textures_.real(node, {"opacity"}, 0.5f);
+  std::optional<Material> m = nested(node);
+  if (!m || (opacity.texture < 0 && opacity.value >= 1)) return m;
+  m->is_alpha_masked = true;
+  m->alpha = opacity;
+  m->alpha_cutoff = 0.5f;
+  approximate(node, "holes where its opacity is below 0.5");
+  if (opacity.texture < 0 && opacity.value < 0.5f) return std::nullopt;
+  return m;
+}
+
+// One of two by its weight; colours of two diffuse ones are mixed.
+std::optional<Material> MitsubaBsdfs::blended(const MitsubaNode& node) {
+  double weight = 0.5;
+  if (const MitsubaNode* weights = find_parameter(node, "weights")) {
+    const std::vector<double> w = numbers_of(*weights, weights->attribute("value"));
+    if (w.size() >= 2 && w[0] + w[1] > 0) weight = w[1] / (w[0] + w[1]);
+  } else {
+    const FloatInput input = textures_.real(node, {"weight"}, 0.5f);
+    if (input.texture < 0) weight = double(input.value);
+    if (input.texture >= 0) approximate(node, "its weight's texture as 0.5");
+  }
+  std::vector<std::optional<Material>> parts;
+  for (const MitsubaNode* child : node.children) {
+    const MitsubaNode& inner = tree_.resolved(*child);
+    if (inner.tag != "bsdf") continue;
+    child->is_used = true;
+    if (parts.size() < 2) parts.push_back(convert(inner));
+  }
+  if (parts.size() != 2) node.place.fail("bsdf \"" + shortened(node.type) + "\" needs two bsdfs");
+  if (weight <= 0) return parts[0];
+  if (weight >= 1) return parts[1];
+  const bool are_plain = parts[0] && parts[1] && parts[0]->kind == MaterialKind::diffuse &&
+                         parts[1]->kind == MaterialKind::diffuse &&
+                         !is_texture(parts[0]->base_color) && !is_texture(parts[1]->base_color);
+  if (are_plain) {
+    parts[0]->base_color.value =
+        parts[0]->base_color.value * float(1 - weight) + parts[1]->base_color.value * float(weight);
+    return parts[0];
+  }
+  approximate(node, "by the one of its bsdfs that has more weight");
+  return weight > 0.5 ? parts[1] : parts[0];
+}
+
+std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
+  std::optional<Material> m = nested(node);
+  for (const char* name : {"thickness", "sigma_a", "specular_reflectance"})
+    find_parameter(node, name);
+  if (m && m->kind == MaterialKind::diffuse && !m->is_alpha_masked) {
+    m->kind = MaterialKind::coated_diffuse;
+    if (node.type == "roughcoating") read_alpha(node, *m);
+    m->ior = float(index_of_refraction(node, "int_ior", "bk7") /
+                   index_of_refraction(node, "ext_ior", "air"));
+    approximate(node, "without absorption in the coat");
+  } else {
+    approximate(node, "without the coat");
+  }
+  return m;
+}
+
+std::optional<Material> MitsubaBsdfs::bumped(const MitsubaNode& node) {
+  std::optional<Material> m = nested(node);
+  if (node.type != "normalmap") {
+    approximate(node, "without the bumps");
+    return m;
+  }
+  if (!m) return m;
+  for (const MitsubaNode* child : node.children) {
+    if (tree_.resolved(*child).tag != "texture") continue;
+    child->is_used = true;
+    m->normal_texture = textures_.raw_image(*child);
+  }
+  return m;
+}
+
+std::optional<Material> MitsubaBsdfs::convert_simple(const MitsubaNode& node) {
+  const std::string& type = node.type;
+  const auto is_any = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* n) { return type == n; });
+  };
+  if (is_any({"diffuse", "roughdiffuse"})) return diffuse(node);
+  if (is_any({"conductor", "roughconductor"})) return conductor(node);
+  if (is_any({"dielectric", "thindielectric", "roughdielectric"})) return dielectric(node);
+  if (is_any({"plastic", "roughplastic"})) return plastic(node);
+  if (is_any({"principled", "principledthin"})) return principled(node);
+  if (is_any({"phong", "ward"})) return phong(node);
+  if (is_any({"mask"})) return masked(node);
+  if (is_any({"blendbsdf", "mixturebsdf"})) return blended(node);
+  if (is_any({"coating", "roughcoating"})) return coated(node);
+  if (is_any({"bumpmap", "bump", "normalmap"})) return bumped(node);
+  if (is_any({"twosided"})) return nested(node);
+  if (is_any({"null"})) return std::nullopt;
+  scene_.warnings.add("bsdf \"" + shortened(type) + "\" is not supported: shown diffuse grey");
+  for (const MitsubaNode* child : node.children) child->is_used = true;
+  Material m;
+  const ColorInput c = textures_.color(
+      node, {"reflectance", "transmittance", "diffuse_reflectance", "base_color"}, Rgb{0.5f});
+  m.base_color = c;
+  return m;
+}
+
+std::optional<Material> MitsubaBsdfs::convert(const MitsubaNode& node) {
+  if (++depth_ > max_depth) node.place.fail("bsdfs contain each other too deeply");
+  node.is_used = true;
+  std::optional<Material> m = convert_simple(node);
+  warn_of_unused(node, scene_.warnings);
+  --depth_;
+  return m;
+}
+
+}  // namespace troffer

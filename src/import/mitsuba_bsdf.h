@@ -1,0 +1,51 @@
+// Mitsuba's bsdf plugins -> materials.
+//
+// References: [1] W. Jakob et al., "Mitsuba 3 documentation: BSDFs"; [2] W. Jakob, "Mitsuba 0.6
+//   Documentation", §8.2 (Surface scattering models).
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "import/mitsuba_texture.h"
+
+namespace troffer {
+
+class MitsubaBsdfs {
+ public:
+  // All must outlive this.
+  MitsubaBsdfs(Scene& scene, const MitsubaTree& tree, MitsubaTextures& textures)
+      : scene_(scene), tree_(tree), textures_(textures) {}
+
+  // Index in Scene::materials of what a <bsdf> says, made when it is first asked for; nothing for
+  // surfaces that are not there for light (null). InputError: parameters that cannot be used.
+  std::optional<uint32_t> index_of(const MitsubaNode& bsdf);
+  // Of shapes without bsdf: grey; black where they emit.
+  uint32_t default_index(bool is_emitting);
+
+ private:
+  Scene& scene_;
+  const MitsubaTree& tree_;
+  MitsubaTextures& textures_;
+  std::map<const MitsubaNode*, std::optional<uint32_t>> made_;
+  std::optional<uint32_t> grey_, black_;
+  int depth_ = 0;
+
+  std::optional<Material> convert(const MitsubaNode& node);
+  std::optional<Material> convert_simple(const MitsubaNode& node);
+  std::optional<Material> nested(const MitsubaNode& node);
+  Material diffuse(const MitsubaNode& node);
+  Material conductor(const MitsubaNode& node);
+  Material dielectric(const MitsubaNode& node);
+  Material plastic(const MitsubaNode& node);
+  Material principled(const MitsubaNode& node);
+  Material phong(const MitsubaNode& node);
+  std::optional<Material> masked(const MitsubaNode& node);
+  std::optional<Material> blended(const MitsubaNode& node);
+  std::optional<Material> coated(const MitsubaNode& node);
+  std::optional<Material> bumped(const MitsubaNode& node);
+  void read_alpha(const MitsubaNode& node, Material& m);
+  void approximate(const MitsubaNode& node, const std::string& how);
+};
+
+}  // namespace troffer

@@ -1,0 +1,237 @@
+#include "import/mitsuba_light.h"
+
+#include <cmath>
+
+#include "base/units.h"
+#include "import/environment_file.h"
+#include "import/file.h"
+#include "import/mitsuba_values.h"
+
+namespace troffer {
+
+namespace {
+
+// cd/m² per radiance in Mitsuba's unit of spectra, W/(m² sr nm): 683 lm/W times the integral of the
+// observer's luminance curve.
+constexpr double luminance_per_radiance = 683 * 106.857;
+
+class LightReader {
+ public:
+  LightReader(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene)
+      : node_(node), tree_(tree), scene_(scene), world_(get_transform(node, "to_world")) {}
+
+  void read();
+
+ private:
+  const MitsubaNode& node_;
+  const MitsubaTree& tree_;
+  Scene& scene_;
+  Affine world_;
+
+  Rgb color(const char* name, Rgb fallback) {
+    const MitsubaNode* p = find_parameter(node_, name);
+    if (!p) return fallback;
+    if (is_color(*p)) return color_of(*p, tree_.folder(), scene_.warnings, true);
+    scene_.warnings.add(label() + "its texture is not supported: even");
+    return fallback;
+  }
+  std::string label() const { return "emitter \"" + shortened(node_.type) + "\": "; }
+  void add(Light e);
+  bool turn(Light& e, const Vec3d& direction);
+  bool set_axes(Light& e);
+  void point();
+  void spot();
+  void directional();
+  void envmap();
+  void daylight(bool has_sky, bool has_sun);
+  void add_sky(double turbidity, double height, double scale, const Vec3d& to_sun, const Vec3d& up);
+  Vec3d sun_direction();
+};
+
+void LightReader::add(Light e) {
+  if (!is_finite(e.radiance)) {
+    scene_.warnings.add(label() + "too bright for a number: left out");
+    return;
+  }
+  e.name = !node_.id.empty() ? node_.id : "light" + std::to_string(scene_.lights.size());
+  scene_.lights.push_back(std::move(e));
+}
+
+bool LightReader::turn(Light& e, const Vec3d& direction) {
+  const double size = length(direction);
+  if (!(size > 0) || !std::isfinite(size)) {
+    scene_.warnings.add(label() + "its direction cannot be used: left out");
+    return false;
+  }
+  e.direction = Vec3(direction / size);
+  return true;
+}
+
+void LightReader::point() {
+  Light e;
+  e.kind = LightKind::point;
+  e.radiance = color("intensity", Rgb{1});
+  const Vec3d at = get_vector(node_, "position").value_or(Vec3d{0});
+  e.position = Vec3(world_.point(at) - scene_.origin);
+  if (is_finite(e.position)) add(std::move(e));
+}
+
+// Linear in the angle between beam_width and cutoff_angle; ours is smooth in its cosine.
+void LightReader::spot() {
+  Light e;
+  e.kind = LightKind::spot;
+  const double cutoff = get_number(node_, "cutoff_angle", 20);
+  const double beam = get_number(node_, "beam_width", cutoff * 3 / 4);
+  if (!(cutoff > 0 && cutoff <= 180) || !(beam >= 0 && beam <= cutoff))
+    node_.place.fail("spot: 0 <= beam_width <= cutoff_angle <= 180 expected");
+  e.cos_outer = float(std::cos(rad_from_deg(cutoff)));
+  e.cos_inner = std::max(float(std::cos(rad_from_deg(beam))), std::nextafter(e.cos_outer, 2.0f));
+  e.radiance = color("intensity", Rgb{1});
+  e.position = Vec3(world_.translation - scene_.origin);
+  if (find_parameter(node_, "texture"))
+    scene_.warnings.add(label() + "its texture is not supported: even");
+  if (beam < cutoff)
+    scene_.warnings.add(label() + "fades smoothly, not linearly, between its two angles");
+  if (turn(e, world_.columns[2]) && is_finite(e.position)) add(std::move(e));
+}
+
+void LightReader::directional() {
+  Light e;
+  e.kind = LightKind::distant;
+  e.radiance = color("irradiance", Rgb{1});
+  const auto given = get_vector(node_, "direction");
+  if (turn(e, world_.vector(given.value_or(Vec3d{0, 0, 1})))) add(std::move(e));
+}
+
+// The image's +z is the world's +y, its azimuth runs from -z to +x.
+bool LightReader::set_axes(Light& e) {
+  const Vec3d up = normalize(world_.columns[1]);
+  const Vec3d x = normalize(-world_.columns[2] + up * dot(world_.columns[2], up));
+  Vec3d y = cross(x, up);
+  if (dot(y, world_.columns[0]) < 0) y = -y;
+  if (!is_finite(x) || !is_finite(y) || !is_finite(up)) {
+    scene_.warnings.add(label() + "its transform cannot be used: left out");
+    return false;
+  }
+  e.axes = {Vec3(x), Vec3(y), Vec3(up)};
+  return true;
+}
+
+void LightReader::envmap() {
+  Light e;
+  e.kind = LightKind::environment;
+  e.radiance = Rgb{float(get_number(node_, "scale", 1))};
+  if (!(e.radiance.r >= 0)) node_.place.fail("scale must not be negative");
+  const std::string file = get_text(node_, "filename", "");
+  const ConfinedPath path = confined_path(tree_.folder(), file);
+  std::string problem = path.problem;
+  if (path.is_fine() && set_axes(e)) {
+    try {
+      EnvironmentMap map = read_environment(path.path, scene_.warnings);
+      map.projection = SphereMap::lat_long;
+      scene_.environments.push_back(std::move(map));
+      e.environment = int32_t(scene_.environments.size()) - 1;
+      add(std::move(e));
+      return;
+    } catch (const InputError& error) {
+      problem = error.reason();
+    }
+  }
+  scene_.warnings.add("image '" + shortened(file) + "' of an envmap: " + problem +
+                      "; the light is left out");
+}
+
+// Where none is given: 45° high, over +x and +z.
+Vec3d LightReader::sun_direction() {
+  const auto given = get_vector(node_, "sun_direction");
+  for (const char* name :
+       {"latitude", "longitude", "timezone", "year", "month", "day", "hour", "minute", "second"})
+    find_parameter(node_, name);
+  if (!given)
+    scene_.warnings.add(label() +
+                        "place and time are not read: give sun_direction; the sun stands "
+                        "45 degrees high");
+  const Vec3d d = world_.vector(given.value_or(Vec3d{0.5, std::sqrt(0.5), 0.5}));
+  return length(d) > 0 ? normalize(d) : Vec3d{0, 1, 0};
+}
+
+// Luminances of clear skies by turbidity [3]; both white.
+void LightReader::daylight(bool has_sky, bool has_sun) {
+  const double turbidity = std::clamp(get_number(node_, "turbidity", 3), 1.7, 10.0);
+  const double both = get_number(node_, "scale", 1);
+  const double sky_scale = get_number(node_, "sky_scale", both);
+  const double sun_scale = get_number(node_, "sun_scale", both);
+  for (const char* name : {"albedo", "resolution", "stretch", "extend", "complex_sun"})
+    find_parameter(node_, name);
+  const Vec3d to_sun = sun_direction();
+  const Vec3d up = normalize(world_.columns[1]);
+  const double height = std::asin(std::clamp(dot(to_sun, up), -1.0, 1.0));
+  scene_.warnings.add(label() +
+                      "is approximated: white, with the luminance of a clear sky of its turbidity");
+  if (!(height > 0)) return;
+  if (has_sky) add_sky(turbidity, height, sky_scale, to_sun, up);
+  if (!has_sun) return;
+  Light e;
+  e.kind = LightKind::sun;
+  e.angular_radius = float(rad_from_deg(0.2666 * get_number(node_, "sun_radius_scale", 1)));
+  if (!(e.angular_radius > 1e-6f && e.angular_radius < 1)) return;
+  // Illuminance of a plane that faces the sun: what air of that turbidity lets through.
+  const double lux = 133'800 * std::exp(-0.07 * turbidity / std::sin(height));
+  e.radiance = Rgb{float(sun_scale * lux / luminance_per_radiance /
+                         (pi * sqr(std::sin(double(e.angular_radius)))))};
+  if (turn(e, -to_sun)) add(std::move(e));
+}
+
+void LightReader::add_sky(double turbidity, double height, double scale, const Vec3d& to_sun,
+                          const Vec3d& up) {
+  const double t = turbidity, theta = pi / 2 - height;
+  Light e;
+  e.kind = LightKind::sky;
+  e.sky.a = float(0.1787 * t - 1.4630);
+  e.sky.b = float(-0.3554 * t + 0.4275);
+  e.sky.c = float(-0.0227 * t + 5.3251);
+  e.sky.d = float(0.1206 * t - 2.5771);
+  e.sky.e = float(-0.0670 * t + 0.3703);
+  const double chi = (4.0 / 9 - t / 120) * (pi - 2 * theta);
+  const double zenith = 1000 * ((4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192);
+  const double of_shape = (1 + double(e.sky.a) * std::exp(double(e.sky.b))) *
+                          (1 + double(e.sky.c) * std::exp(double(e.sky.d) * theta) +
+                           double(e.sky.e) * sqr(std::cos(theta)));
+  e.radiance = Rgb{float(scale * std::max(zenith, 0.0) / of_shape / luminance_per_radiance)};
+  const Vec3d x = normalize(cross(std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1}, up));
+  e.axes = {Vec3(x), Vec3(cross(up, x)), Vec3(up)};
+  if (turn(e, -to_sun)) add(std::move(e));
+}
+
+void LightReader::read() {
+  find_parameter(node_, "sampling_weight");
+  const std::string& type = node_.type;
+  if (type == "point") {
+    point();
+  } else if (type == "spot") {
+    spot();
+  } else if (type == "directional") {
+    directional();
+  } else if (type == "constant") {
+    Light e;
+    e.kind = LightKind::environment;
+    e.radiance = color("radiance", Rgb{1});
+    add(std::move(e));
+  } else if (type == "envmap") {
+    envmap();
+  } else if (type == "sky" || type == "sun" || type == "sunsky") {
+    daylight(type != "sun", type != "sky");
+  } else {
+    for (const MitsubaNode* child : node_.children) child->is_used = true;
+    scene_.warnings.add("emitter \"" + shortened(type) + "\" is not supported: left out");
+  }
+  warn_of_unused(node_, scene_.warnings);
+}
+
+}  // namespace
+
+void add_mitsuba_light(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene) {
+  LightReader(node, tree, scene).read();
+}
+
+}  // namespace troffer

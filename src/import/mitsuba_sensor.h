@@ -1,0 +1,16 @@
+// Mitsuba's sensor plugins -> cameras.
+//
+// References: [1] W. Jakob et al., "Mitsuba 3 documentation: Sensors, Films".
+#pragma once
+
+#include "import/mitsuba_tree.h"
+#include "scene/scene.h"
+
+namespace troffer {
+
+// Appends the camera of a <sensor> to the scene, its position counted from the scene's origin.
+// Kinds other than perspective, thinlens and orthographic are shown as perspective, with a warning.
+// InputError: angles, sizes and transforms that cannot be.
+void add_mitsuba_camera(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene);
+
+}  // namespace troffer

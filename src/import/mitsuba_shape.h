@@ -1,0 +1,51 @@
+// Mitsuba's shape plugins -> geometry, in spaces of their own.
+//
+// References: [1] W. Jakob et al., "Mitsuba 3 documentation: Shapes"; [2] W. Jakob, "Mitsuba 0.6
+//   Documentation", §8.1 (Shapes).
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "import/mitsuba_tree.h"
+#include "import/recentre.h"
+
+namespace troffer {
+
+enum class MitsubaShapeKind { mesh, sphere, disk };
+
+struct MitsubaShape {
+  MitsubaShapeKind kind = MitsubaShapeKind::mesh;
+  AnchoredMesh mesh;
+  Vec3d centre;
+  double radius = 1;
+  bool is_turned = false;  // flip_normals
+  // The front of a mesh without normals is the side that the transform takes its winding's to, not
+  // that of its winding in the world.
+  bool keeps_side = false;
+};
+
+class MitsubaShapes {
+ public:
+  // Both must outlive this.
+  MitsubaShapes(const MitsubaTree& tree, WarningLog& warnings) : tree_(tree), warnings_(warnings) {}
+
+  // The geometry of a <shape>, without its to_world; nothing, with a warning that names it, where
+  // it is not supported. InputError: parameters or files that cannot be used.
+  std::optional<MitsubaShape> read(const MitsubaNode& node);
+
+ private:
+  const MitsubaTree& tree_;
+  WarningLog& warnings_;
+  // The file of serialized meshes that was read last: many shapes in a row come from one.
+  struct LastFile {
+    std::string path;
+    std::vector<uint8_t> bytes;
+  } last_file_;
+
+  std::string file_path(const MitsubaNode& node);
+  AnchoredMesh read_mesh_file(const MitsubaNode& node);
+  AnchoredMesh read_obj(const std::string& path);
+};
+
+}  // namespace troffer

@@ -1,0 +1,190 @@
+#include "import/mitsuba_texture.h"
+
+#include <cmath>
+
+#include "import/file.h"
+#include "import/mitsuba_values.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr int max_depth = 16;
+constexpr Rgb unknown_color{0.5f};
+
+WrapMode wrap_mode(const MitsubaNode& node, const std::string& text) {
+  if (text == "repeat") return WrapMode::repeat;
+  if (text == "mirror") return WrapMode::mirror;
+  if (text == "clamp") return WrapMode::clamp;
+  if (text == "zero") return WrapMode::black;
+  if (text == "one") return WrapMode::clamp;
+  node.place.fail("wrap mode '" + shortened(text) + "' is not known");
+}
+
+}  // namespace
+
+int32_t MitsubaTextures::append(Texture texture) {
+  scene_.textures.push_back(std::move(texture));
+  return int32_t(scene_.textures.size()) - 1;
+}
+
+// (u,v) -> uv · scale + offset: to_uv of version 2 and 3; uscale … voffset of 0.x.
+void MitsubaTextures::set_coordinates(const MitsubaNode& node, Texture& look) {
+  const double both = get_number(node, "uvscale", 1);
+  look.uv_scale = {float(get_number(node, "uscale", both)),
+                   float(get_number(node, "vscale", both))};
+  look.uv_offset = {float(get_number(node, "uoffset", 0)), float(get_number(node, "voffset", 0))};
+  if (!find_parameter(node, "to_uv")) return;
+  const Affine t = get_transform(node, "to_uv");
+  const auto &x = t.columns[0], &y = t.columns[1];
+  // Rotation before scale, as glTF has it: rows are scale_u (cos, sin) and scale_v (-sin, cos).
+  const double su = std::hypot(x.x, y.x), sv_size = std::hypot(x.y, y.y);
+  const double determinant = x.x * y.y - x.y * y.x;
+  const double sv = determinant < 0 ? -sv_size : sv_size;
+  look.uv_scale = {float(su), float(sv)};
+  look.uv_offset = {float(t.translation.x), float(t.translation.y)};
+  if (x.y == 0 && y.x == 0) {
+    look.uv_scale = {float(x.x), float(y.y)};
+  } else {
+    scene_.warnings.add("texture \"" + shortened(node.type) +
+                        "\": the rotation of its to_uv is left out");
+  }
+}
+
+int32_t MitsubaTextures::bitmap(const MitsubaNode& node, bool is_raw) {
+  Texture look;
+  look.is_srgb = !is_raw && !get_flag(node, "raw", false);
+  if (const double gamma = get_number(node, "gamma", -1); gamma > 0 && gamma != 2.2) {
+    if (gamma == 1) look.is_srgb = false;
+    if (gamma != 1) scene_.warnings.add("texture \"bitmap\": its gamma is read as sRGB");
+  }
+  look.is_filtered = get_text(node, "filter_type", "bilinear") != "nearest";
+  const std::string wrap = get_text(node, "wrap_mode", "repeat");
+  look.wrap_u = wrap_mode(node, get_text(node, "wrap_mode_u", wrap));
+  look.wrap_v = wrap_mode(node, get_text(node, "wrap_mode_v", wrap));
+  set_coordinates(node, look);
+  for (const char* name : {"max_anisotropy", "cache", "format", "accel"})
+    find_parameter(node, name);
+  const std::string file = get_text(node, "filename", "");
+  warn_of_unused(node, scene_.warnings);
+  const ConfinedPath path = confined_path(tree_.folder(), file);
+  return path.is_fine() ? loader_.from_file(path.path, look)
+                        : loader_.missing(shortened(file), path.problem, look);
+}
+
+Rgb MitsubaTextures::plain(const MitsubaNode& node, std::string_view name, Rgb fallback) {
+  const MitsubaNode* p = find_parameter(node, name);
+  if (!p) return fallback;
+  if (is_color(*p)) return color_of(*p, tree_.folder(), scene_.warnings, false);
+  scene_.warnings.add("texture \"" + shortened(node.type) +
+                      "\": textures within it are shown as one colour");
+  return fallback;
+}
+
+// Two by two squares on [0,1]², the first colour where both coordinates are in the same half.
+ColorInput MitsubaTextures::checkerboard(const MitsubaNode& node) {
+  const Rgb a = plain(node, "color0", Rgb{0.4f}), b = plain(node, "color1", Rgb{0.2f});
+  Texture t;
+  t.name = node.id;
+  t.kind = TextureKind::image;
+  t.width = t.height = 2;
+  t.channels = 3;
+  for (const Rgb& c : {a, b, b, a}) t.texels_float.insert(t.texels_float.end(), {c.r, c.g, c.b});
+  t.is_srgb = t.is_filtered = false;
+  set_coordinates(node, t);
+  warn_of_unused(node, scene_.warnings);
+  return {Rgb{1}, append(std::move(t))};
+}
+
+ColorInput MitsubaTextures::scaled(const MitsubaNode& node, bool is_raw) {
+  const Rgb factor = plain(node, "scale", plain(node, "value", Rgb{1}));
+  for (const MitsubaNode* child : node.children) {
+    const MitsubaNode& inner = tree_.resolved(*child);
+    if (inner.tag != "texture") continue;
+    child->is_used = true;
+    ColorInput c = texture(inner, is_raw);
+    c.value *= factor;
+    return c;
+  }
+  return {factor, no_texture};
+}
+
+ColorInput MitsubaTextures::texture(const MitsubaNode& node, bool is_raw) {
+  if (++depth_ > max_depth) node.place.fail("textures contain each other too deeply");
+  ColorInput out{unknown_color, no_texture};
+  if (node.type == "bitmap") {
+    out = {Rgb{1}, bitmap(node, is_raw)};
+  } else if (node.type == "checkerboard") {
+    out = checkerboard(node);
+  } else if (node.type == "scale") {
+    out = scaled(node, is_raw);
+  } else if (node.type == "uniform" || node.type == "srgb" || node.type == "constant" ||
+             node.type == "d65" || node.type == "rawconstant") {
+    out.value = plain(node, "color", plain(node, "value", Rgb{1}));
+    out.value *= plain(node, "scale", Rgb{1});
+  } else {
+    if (node.type == "gridtexture") out.value = plain(node, "color0", Rgb{0.2f});
+    scene_.warnings.add("texture \"" + shortened(node.type) +
+                        "\" is not supported: shown as one colour");
+  }
+  --depth_;
+  return out;
+}
+
+ColorInput MitsubaTextures::value(const MitsubaNode& given, bool is_emission, bool is_raw) {
+  const MitsubaNode& node = tree_.resolved(given);
+  if (node.tag == "texture" || node.tag == "spectrum") {
+    if (node.tag == "texture" || !node.type.empty()) return texture(node, is_raw);
+  }
+  return {color_of(node, tree_.folder(), scene_.warnings, is_emission), no_texture};
+}
+
+ColorInput MitsubaTextures::color(const MitsubaNode& plugin,
+                                  std::initializer_list<std::string_view> names, Rgb fallback) {
+  const MitsubaNode* p = find_parameter(plugin, names);
+  if (!p) return {fallback, no_texture};
+  ColorInput c = value(*p, false, false);
+  if (c.texture < 0 && clamp01(c.value) != c.value) {
+    scene_.warnings.add("bsdf \"" + shortened(plugin.type) + "\": '" + p->name +
+                        "' above 1 is set to 1");
+    c.value = clamp01(c.value);
+  }
+  return c;
+}
+
+FloatInput MitsubaTextures::real(const MitsubaNode& plugin,
+                                 std::initializer_list<std::string_view> names, float fallback) {
+  const MitsubaNode* p = find_parameter(plugin, names);
+  if (!p) return {fallback, no_texture, 0};
+  const ColorInput c = value(*p, false, true);
+  return {c.value.g, c.texture, 0};
+}
+
+ColorInput MitsubaTextures::emission(const MitsubaNode& parameter) {
+  return value(parameter, true, false);
+}
+
+int32_t MitsubaTextures::raw_image(const MitsubaNode& given) {
+  const MitsubaNode& node = tree_.resolved(given);
+  return node.tag == "texture" ? texture(node, true).texture : no_texture;
+}
+
+int32_t MitsubaTextures::with_brightened_texels(int32_t index, float f) {
+  if (scene_.textures[size_t(index)].kind != TextureKind::image) return index;
+  Texture t = scene_.textures[size_t(index)];
+  const auto brightened = [&](float v) { return v / (1 - f + f * v); };
+  const auto channels = size_t(t.channels);
+  const bool has_alpha = channels == 2 || channels == 4;
+  const auto is_alpha = [&](size_t i) { return has_alpha && i % channels == channels - 1; };
+  for (size_t i = 0; i < t.texels_float.size(); ++i)
+    if (!is_alpha(i)) t.texels_float[i] = brightened(std::max(t.texels_float[i], 0.0f));
+  for (size_t i = 0; i < t.texels8.size(); ++i) {
+    if (is_alpha(i)) continue;
+    const float v = float(t.texels8[i]) / 255;
+    const float out = t.is_srgb ? srgb_from_linear(brightened(linear_from_srgb(v))) : brightened(v);
+    t.texels8[i] = uint8_t(std::lround(255 * std::clamp(out, 0.0f, 1.0f)));
+  }
+  return append(std::move(t));
+}
+
+}  // namespace troffer

@@ -1,0 +1,224 @@
+#include "import/mitsuba_tree.h"
+
+#include <algorithm>
+#include <pugixml.hpp>
+
+#include "import/file.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr uint64_t max_file_bytes = uint64_t(256) << 20;  // of all files
+constexpr size_t max_nodes = 8'000'000;
+constexpr size_t max_depth = 64, max_files = 200, max_open_files = 16;
+constexpr size_t max_expanded_bytes = size_t(64) << 20;  // of values with $parameters
+constexpr size_t max_value = size_t(1) << 20;
+
+bool is_upper(char c) {
+  return c >= 'A' && c <= 'Z';
+}
+bool is_name_character(char c) {
+  return is_upper(c) || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+// Where lines begin, to find the place of an offset.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) {
+    for (size_t i = 0; i < text.size(); ++i)
+      if (text[i] == '\n') begins_.push_back(i + 1);
+  }
+  SourcePlace place(const std::shared_ptr<const std::string>& file, ptrdiff_t offset) const {
+    const size_t at = offset > 0 ? size_t(offset) : 0;
+    const auto next = std::upper_bound(begins_.begin(), begins_.end(), at);
+    return {file, int(next - begins_.begin()), int(at - *(next - 1)) + 1};
+  }
+
+ private:
+  std::vector<size_t> begins_{0};
+};
+
+}  // namespace
+
+std::string snake_case(std::string_view name) {
+  std::string out;
+  for (size_t i = 0; i < name.size(); ++i) {
+    if (is_upper(name[i]) && i > 0 && !is_upper(name[i - 1]) && name[i - 1] != '_') out += '_';
+    out += is_upper(name[i]) ? char(name[i] - 'A' + 'a') : name[i];
+  }
+  return out;
+}
+
+const std::string& MitsubaNode::attribute(const std::string& key) const {
+  static const std::string nothing;
+  const auto found = attributes.find(key);
+  return found == attributes.end() ? nothing : found->second;
+}
+
+class MitsubaTreeReader {
+ public:
+  MitsubaTreeReader(MitsubaTree& tree, WarningLog& warnings) : tree_(tree), warnings_(warnings) {}
+
+  void read_root(const std::string& path);
+
+ private:
+  // A file while its elements are copied.
+  struct Open {
+    std::shared_ptr<const std::string> path;
+    const Lines& lines;
+  };
+
+  MitsubaTree& tree_;
+  WarningLog& warnings_;
+  std::map<std::string, std::string> parameters_;
+  uint64_t bytes_ = 0;
+  size_t files_ = 0, open_files_ = 0, expanded_bytes_ = 0;
+
+  void read_file_into(const std::string& path, const SourcePlace* from, MitsubaNode& parent,
+                      size_t depth);
+  void add_children(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
+  void add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
+  void include(const MitsubaNode& node, MitsubaNode& parent, size_t depth);
+  void fill(const pugi::xml_node& from, MitsubaNode& node);
+  std::string expanded(std::string_view text, const SourcePlace& place);
+};
+
+void MitsubaTreeReader::read_root(const std::string& path) {
+  tree_.nodes_.emplace_back();
+  read_file_into(path, nullptr, tree_.nodes_.front(), 0);
+}
+
+void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlace* from,
+                                       MitsubaNode& parent, size_t depth) {
+  const auto name = std::make_shared<const std::string>(path);
+  const SourcePlace top{name, 0, 0};
+  if (++files_ > max_files || open_files_ >= max_open_files)
+    (from ? *from : top).fail("includes too many files, or itself");
+  const std::string text = read_text_file(path, max_file_bytes);
+  bytes_ += text.size();
+  if (bytes_ > max_file_bytes) top.fail("the files of this scene are too large");
+  const Lines lines(text);
+  pugi::xml_document document;
+  // Entities of a document type are never expanded.
+  const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+  if (!result) lines.place(name, result.offset).fail(std::string("XML: ") + result.description());
+  const pugi::xml_node root = document.document_element();
+  if (!root) top.fail("has no XML element");
+  const std::string tag = root.name();
+  const Open open{name, lines};
+  ++open_files_;
+  if (tag == "scene") {
+    if (!from) {
+      parent.tag = tag;
+      parent.place = lines.place(name, root.offset_debug());
+      const std::string version = root.attribute("version").as_string("3.0.0");
+      tree_.is_legacy_ = version.starts_with("0.");
+    }
+    add_children(open, root, parent, depth);
+  } else if (from) {
+    add_child(open, root, parent, depth);
+  } else {
+    lines.place(name, root.offset_debug())
+        .fail("is no Mitsuba scene: its first element is <" + shortened(tag) + ">, not <scene>");
+  }
+  --open_files_;
+}
+
+void MitsubaTreeReader::add_children(const Open& open, const pugi::xml_node& from, MitsubaNode& to,
+                                     size_t depth) {
+  for (const pugi::xml_node& child : from.children())
+    if (child.type() == pugi::node_element) add_child(open, child, to, depth);
+}
+
+void MitsubaTreeReader::fill(const pugi::xml_node& from, MitsubaNode& node) {
+  for (const pugi::xml_attribute& a : from.attributes()) {
+    const std::string key = a.name();
+    std::string value = expanded(a.value(), node.place);
+    if (key == "type")
+      node.type = std::move(value);
+    else if (key == "name")
+      node.name = node.tag == "default" ? std::move(value) : snake_case(value);
+    else if (key == "id")
+      node.id = std::move(value);
+    else
+      node.attributes[key] = std::move(value);
+  }
+}
+
+void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to,
+                                  size_t depth) {
+  const SourcePlace place = open.lines.place(open.path, from.offset_debug());
+  if (depth >= max_depth) place.fail("elements nest too deeply");
+  if (tree_.nodes_.size() >= max_nodes) place.fail("the scene has too many elements");
+  MitsubaNode& node = tree_.nodes_.emplace_back();
+  node.tag = from.name();
+  node.place = place;
+  fill(from, node);
+  if (node.tag == "default") {
+    parameters_.emplace(node.name, node.attribute("value"));  // the first one counts
+  } else if (node.tag == "include") {
+    include(node, to, depth);
+  } else if (node.tag == "alias") {
+    const auto found = tree_.by_id_.find(node.id);
+    if (found == tree_.by_id_.end())
+      place.fail("alias of the unknown id '" + shortened(node.id) + "'");
+    tree_.by_id_[node.attribute("as")] = found->second;
+  } else if (node.tag == "path") {
+    warnings_.add("<path> is not used: files are looked up in the scene's folder");
+  } else {
+    if (!node.id.empty() && node.tag != "ref" && !tree_.by_id_.emplace(node.id, &node).second) {
+      warnings_.add("id '" + shortened(node.id) + "' is defined again: the later one counts");
+      tree_.by_id_[node.id] = &node;
+    }
+    to.children.push_back(&node);
+    add_children(open, from, node, depth + 1);
+  }
+}
+
+void MitsubaTreeReader::include(const MitsubaNode& node, MitsubaNode& parent, size_t depth) {
+  const std::string& name = node.attribute("filename");
+  const ConfinedPath path = confined_path(tree_.folder(), name);
+  if (!path.is_fine()) node.place.fail("cannot use '" + shortened(name) + "': " + path.problem);
+  read_file_into(path.path, &node.place, parent, depth);
+}
+
+// $name and (version 0.x to 3) ${name}.
+std::string MitsubaTreeReader::expanded(std::string_view text, const SourcePlace& place) {
+  if (text.find('$') == std::string_view::npos) return std::string(text);
+  std::string out;
+  for (size_t i = 0; i < text.size();) {
+    if (text[i] != '$') {
+      out += text[i++];
+      continue;
+    }
+    const bool has_braces = i + 1 < text.size() && text[i + 1] == '{';
+    const size_t begin = i + (has_braces ? 2 : 1);
+    size_t end = begin;
+    while (end < text.size() && is_name_character(text[end])) ++end;
+    const std::string name(text.substr(begin, end - begin));
+    const auto found = parameters_.find(name);
+    if (found == parameters_.end())
+      place.fail("the parameter $" + shortened(name) + " has no <default>");
+    out += found->second;
+    expanded_bytes_ += found->second.size() + 1;
+    if (out.size() > max_value || expanded_bytes_ > max_expanded_bytes)
+      place.fail("parameters expand to too much text");
+    i = has_braces && end < text.size() && text[end] == '}' ? end + 1 : end;
+  }
+  return out;
+}
+
+MitsubaTree::MitsubaTree(const std::string& path, WarningLog& warnings) : folder_(folder_of(path)) {
+  MitsubaTreeReader(*this, warnings).read_root(path);
+}
+
+const MitsubaNode& MitsubaTree::resolved(const MitsubaNode& node) const {
+  if (node.tag != "ref") return node;
+  const auto found = by_id_.find(node.id);
+  if (found == by_id_.end()) node.place.fail("no element has the id '" + shortened(node.id) + "'");
+  node.is_used = true;
+  return *found->second;
+}
+
+}  // namespace troffer

@@ -1,0 +1,153 @@
+#include "import/placed_geometry.h"
+
+#include <cmath>
+
+#include "import/mesh_clean.h"
+#include "import/tessellate.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t max_triangles = 60'000'000;
+constexpr size_t smallest_cost = 20;  // of a shape, in triangles
+constexpr double circle_tolerance = 1e-5;
+
+// Inverse transpose up to a positive factor: keeps the side that a normal points to.
+Vec3d covector(const Affine& t, const Vec3d& n) {
+  return t.swaps_handedness() ? -t.normal(n) : t.normal(n);
+}
+
+void orient(Mesh& mesh, bool is_turned) {
+  for (Triangle& t : mesh.triangles) {
+    double side = 0;
+    if (!mesh.normals.empty()) {
+      const Vec3d n =
+          Vec3d(mesh.normals[t[0]]) + Vec3d(mesh.normals[t[1]]) + Vec3d(mesh.normals[t[2]]);
+      side = dot(area_vector(mesh, t), n);
+    }
+    if (side < 0 || (!(side > 0) && is_turned)) std::swap(t[1], t[2]);
+  }
+}
+
+}  // namespace
+
+bool keeps_circles(const Affine& t, size_t axis_a, size_t axis_b) {
+  const Vec3d &a = t.columns[axis_a], &b = t.columns[axis_b];
+  const double la = length(a), lb = length(b);
+  return la > 0 && lb > 0 && std::abs(la - lb) <= circle_tolerance * la &&
+         std::abs(dot(a, b)) <= circle_tolerance * la * lb;
+}
+
+void GeometryPlacer::spend(size_t triangles, const SourcePlace& place) {
+  cost_ += std::max(triangles, smallest_cost);
+  if (cost_ > max_triangles)
+    place.fail("the scene has too much geometry (over " +
+               std::to_string(max_triangles / 1'000'000) + " million triangles)");
+}
+
+bool GeometryPlacer::needs_coordinates(const PlacedLook& look) const {
+  const Material& m = scene_.materials[look.material];
+  return has_textured_input(m) || m.normal_texture >= 0 ||
+         (m.is_alpha_masked && m.alpha.texture >= 0) ||
+         (look.emission && look.emission->texture >= 0);
+}
+
+int32_t GeometryPlacer::add_light(const PlacedLook& look, LightKind kind, size_t geometry) {
+  if (!look.emission || look.emission->radiance.is_black()) return no_light;
+  Light e;
+  e.name = look.emission->name;
+  e.kind = kind;
+  e.radiance = look.emission->radiance;
+  e.is_two_sided = look.emission->is_two_sided;
+  e.geometry = uint32_t(geometry);
+  scene_.lights.push_back(std::move(e));
+  return int32_t(scene_.lights.size()) - 1;
+}
+
+void GeometryPlacer::add_mesh(const AnchoredMesh& local, const Affine& world_from_local,
+                              bool is_turned, const PlacedLook& look) {
+  spend(std::max(local.mesh.triangles.size(), local.mesh.positions.size() / 3), look.place);
+  Affine t = world_from_local;
+  t.translation -= scene_.origin;
+  Mesh mesh = local.mesh;
+  mesh.lights.clear();
+  const auto world = [&](const Vec3& p) { return t.point(local.anchor + Vec3d(p)); };
+  for (const Triangle& v : mesh.triangles)
+    bounds_.add_triangle(world(mesh.positions[v[0]]), world(mesh.positions[v[1]]),
+                         world(mesh.positions[v[2]]));
+  for (Vec3& p : mesh.positions) p = Vec3(world(p));
+  for (Vec3& n : mesh.normals) {
+    const Vec3d turned = covector(t, Vec3d(n));
+    // Normalised here, so that small scales do not underflow in float.
+    const double size = length(turned);
+    n = size > 0 && std::isfinite(size) ? Vec3(turned * ((is_turned ? -1 : 1) / size)) : Vec3{};
+  }
+  orient(mesh, is_turned);
+  clean_mesh(mesh, scene_.warnings);
+  if (mesh.triangles.empty()) {
+    if (look.emission) scene_.warnings.add("area light without area is left out");
+    return;
+  }
+  mesh.material = look.material;
+  if (needs_coordinates(look)) add_default_uvs(mesh);
+  scene_.meshes.push_back(std::move(mesh));
+  if (look.emission) add_mesh_lights(scene_, uint32_t(scene_.meshes.size() - 1), *look.emission);
+}
+
+void GeometryPlacer::add_sphere(const Affine& world_from_local, const Vec3d& centre, double radius,
+                                bool is_turned, const PlacedLook& look) {
+  const Affine t = world_from_local * Affine::translate(centre);
+  const bool is_round = keeps_circles(t, 0, 1) && keeps_circles(t, 1, 2) && keeps_circles(t, 2, 0);
+  if (!is_round || needs_coordinates(look)) {
+    AnchoredMesh mesh{tessellate_sphere(radius, -radius, radius, 2 * pi), {}};
+    for (Vec2& uv : mesh.mesh.uvs) uv.y = 1 - uv.y;  // from the pole +z down
+    add_mesh(mesh, t, is_turned, look);
+    return;
+  }
+  spend(1, look.place);
+  const Vec3d middle = t.translation - scene_.origin;
+  const double r = radius * length(t.columns[0]);
+  bounds_.add_ball(middle, r);
+  Sphere sphere;
+  sphere.centre = Vec3(middle);
+  sphere.radius = float(r);
+  sphere.is_inside_out = is_turned;
+  sphere.material = look.material;
+  if (!is_finite(sphere.centre) || !(sphere.radius > 0) || !std::isfinite(sphere.radius)) {
+    scene_.warnings.add("sphere that is not finite or has no area is left out");
+    return;
+  }
+  sphere.light = add_light(look, LightKind::sphere, scene_.spheres.size());
+  scene_.spheres.push_back(sphere);
+}
+
+void GeometryPlacer::add_disk(const Affine& world_from_local, double radius, bool is_turned,
+                              const PlacedLook& look) {
+  const Affine& t = world_from_local;
+  if (!keeps_circles(t, 0, 1) || needs_coordinates(look)) {
+    add_mesh({tessellate_disk(0, radius, 0, 2 * pi), {}}, t, is_turned, look);
+    return;
+  }
+  spend(1, look.place);
+  const Vec3d middle = t.translation - scene_.origin;
+  const double r = radius * length(t.columns[0]);
+  bounds_.add_ball(middle, r);
+  // The axes of its plane are not parallel, so their cross product has a length.
+  Vec3d axis = normalize(cross(t.columns[0], t.columns[1]));
+  if (t.swaps_handedness() != is_turned) axis = -axis;
+  Disk disk;
+  disk.centre = Vec3(middle);
+  disk.normal = Vec3(axis);
+  disk.radius = float(r);
+  disk.material = look.material;
+  if (!is_finite(disk.centre) || !is_finite(disk.normal) || !(disk.radius > 0) ||
+      !std::isfinite(disk.radius)) {
+    scene_.warnings.add("disk that is not finite or has no area is left out");
+    return;
+  }
+  disk.light = add_light(look, LightKind::disk, scene_.disks.size());
+  scene_.disks.push_back(disk);
+}
+
+}  // namespace troffer
