@@ -27,11 +27,15 @@ bool is_jpeg(std::span<const uint8_t> bytes);
 bool is_hdr(std::span<const uint8_t> bytes);
 bool is_pfm(std::span<const uint8_t> bytes);
 bool is_exr(std::span<const uint8_t> bytes);
+bool is_webp(std::span<const uint8_t> bytes);
+bool is_tga(std::span<const uint8_t> bytes);  // by guess: to be asked last
 
 Raster decode_png(const EncodedImage& encoded);
 Raster decode_jpeg(const EncodedImage& encoded);
 Raster decode_hdr(const EncodedImage& encoded);
 Raster decode_pfm(const EncodedImage& encoded);
 Raster decode_exr(const EncodedImage& encoded);
+Raster decode_webp(const EncodedImage& encoded);
+Raster decode_tga(const EncodedImage& encoded);
 
 }  // namespace troffer

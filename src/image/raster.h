@@ -16,19 +16,21 @@ struct Raster {
   int width = 0, height = 0, channels = 0;
   std::vector<uint8_t> texels8;     // 8-bit files
   std::vector<float> texels_float;  // 16-bit PNG scaled to [0,1]; HDR, PFM and EXR as they are
-  bool is_srgb = false;             // colour channels are sRGB encoded (PNG and JPEG)
+  bool is_srgb = false;             // colour channels are sRGB encoded (PNG, JPEG, WebP, TGA)
 };
 
 // The most pixels that readers decode unless told otherwise.
 constexpr size_t default_max_pixels = size_t(64) << 20;
 
-// Decodes PNG, JPEG, Radiance HDR, PFM or EXR, told apart by content. A file that is broken,
-// truncated, of another format or of more than `max_pixels` pixels throws
+// Decodes PNG, JPEG, WebP, TGA, Radiance HDR, PFM or EXR, told apart by content. A file that is
+// broken, truncated, of another format or of more than `max_pixels` pixels throws
 // InputError{name_for_errors, 0, 0, what}; the size is checked before memory is taken.
 //
 // PNG: all colour types, depths and interlacing; tRNS becomes alpha; gamma and colour profiles are
 //   ignored. JPEG: grey, YCbCr, RGB, CMYK and YCCK (Adobe's inverted form too), as rgb; damage
 //   that costs no data (junk between markers) is forgiven, missing data is not.
+// WebP: lossy and lossless, alpha; not animated. TGA: colour, grey and mapped, run lengths, 8 to 32
+//   bits, any origin; the fourth byte is alpha where the header says so.
 // HDR: RGBE and XYZE (converted to Rec. 709), old and new run lengths, every orientation of the
 //   resolution line; pixels are divided by the header's EXPOSURE values, as the format asks.
 // PFM: both endians, colour and grey.

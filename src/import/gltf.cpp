@@ -12,6 +12,7 @@
 #include "import/gltf_material.h"
 #include "import/gltf_mesh.h"
 #include "import/gltf_nodes.h"
+#include "import/gltf_pose.h"
 #include "import/gltf_schema.h"
 #include "import/recentre.h"
 
@@ -34,13 +35,15 @@ class Importer {
 
   void run() {
     read_primitives();
-    std::vector<GltfNode> nodes = gltf_nodes(root_, scene_.warnings);
-    for (GltfNode& node : nodes) node.world_from_node.translation -= scene_.origin;
-    check_triangle_count(nodes);
-    for (const GltfNode& node : nodes) add_node(node);
+    nodes_ = gltf_nodes(root_, scene_.warnings);
+    for (GltfNode& node : nodes_.shown) node.world_from_node.translation -= scene_.origin;
+    for (Affine& world : nodes_.world) world.translation -= scene_.origin;
+    check_triangle_count();
+    for (const GltfNode& node : nodes_.shown) add_node(node);
     if (scene_.meshes.empty()) scene_.warnings.add("the scene shows no triangles");
     if (const auto animations = root_.find("animations"))
-      if (animations->size() > 0) scene_.warnings.add("animations are ignored");
+      if (animations->size() > 0)
+        scene_.warnings.add("animations are not played: nodes stand where the file has them");
   }
 
  private:
@@ -65,14 +68,16 @@ class Importer {
   }
 
   // Before anything of that size is made.
-  void check_triangle_count(const std::vector<GltfNode>& nodes) const {
-    uint64_t count = 0;
-    for (const GltfNode& node : nodes) {
+  void check_triangle_count() const {
+    uint64_t count = 0, instances = 0;
+    for (const GltfNode& node : nodes_.shown) {
       const JsonNode json = node_json(node);
       const auto mesh = mesh_of(json);
       if (!mesh) continue;
-      for (const GltfPrimitive& p : primitives_[*mesh]) count += p.triangle_count();
-      if (count > max_triangles)
+      const uint64_t n = gltf_instances(json, buffers_).size();
+      instances += n;
+      for (const GltfPrimitive& p : primitives_[*mesh]) count += n * p.triangle_count();
+      if (count > max_triangles || instances > max_triangles)
         json.fail("the scene has more than " + std::to_string(max_triangles) + " triangles");
     }
   }
@@ -84,18 +89,26 @@ class Importer {
       add_light(json, light->member("light"), node.world_from_node);
     const auto mesh = mesh_of(json);
     if (!mesh) return;
-    if (json.find("skin")) scene_.warnings.add("skinning is ignored: meshes stand as modelled");
+    const JsonNode mesh_json = root_.member("meshes").element(*mesh);
+    GltfPose pose;
+    pose.target_weights = gltf_target_weights(json, mesh_json);
+    if (const auto skin = json.find("skin")) {
+      const JsonNode skins = root_.member("skins");
+      pose.joints =
+          gltf_joints(skins.element(skin->as_index(skins.size(), "skins")), buffers_, nodes_.world);
+    }
     const std::string node_name = json.string_or("name", "");
-    const std::string name =
-        node_name.empty() ? root_.member("meshes").element(*mesh).string_or("name", "") : node_name;
-    for (const GltfPrimitive& p : primitives_[*mesh])
-      add_mesh(p, node.world_from_node, name, node_name);
+    const std::string name = node_name.empty() ? mesh_json.string_or("name", "") : node_name;
+    for (const Affine& instance : gltf_instances(json, buffers_)) {
+      pose.world_from_mesh = node.world_from_node * instance;
+      for (const GltfPrimitive& p : primitives_[*mesh]) add_mesh(p, pose, name, node_name);
+    }
   }
 
-  void add_mesh(const GltfPrimitive& p, const Affine& world_from_node, const std::string& name,
+  void add_mesh(const GltfPrimitive& p, const GltfPose& pose, const std::string& name,
                 const std::string& node_name) {
     const GltfMaterial& material = materials_.get(p.material);
-    Mesh mesh = make_gltf_mesh(p, world_from_node, material.uv_set, scene_.warnings, bounds_);
+    Mesh mesh = make_gltf_mesh(p, pose, material.uv_set, scene_.warnings, bounds_);
     mesh.name = name;
     mesh.material = material.material;
     const bool is_empty = mesh.triangles.empty();
@@ -142,6 +155,7 @@ class Importer {
   GltfBuffers buffers_;
   GltfMaterials materials_;
   std::vector<std::vector<GltfPrimitive>> primitives_;  // by mesh
+  GltfNodes nodes_;
   size_t emissive_count_ = 0;
 };
 

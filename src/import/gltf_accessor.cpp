@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "import/file.h"
+#include "import/gltf_meshopt.h"
 #include "import/gltf_uri.h"
 #include "import/uri.h"
 
@@ -26,6 +27,7 @@ enum ComponentType : uint32_t {
 // Of accessors without a buffer view, which cost the file nothing.
 constexpr uint64_t max_elements_without_data = 4u << 20;
 // What many accessors over the same data may cost in all.
+constexpr uint64_t max_decoded_bytes = uint64_t(4) << 30;
 constexpr uint64_t max_sparse_elements = 100'000'000, max_checked_indices = 1'000'000'000;
 
 uint32_t component_size(uint32_t type) {
@@ -157,7 +159,7 @@ std::vector<uint8_t> bytes_of_data_uri(const JsonNode& uri) {
 const uint8_t* AccessorView::element(uint64_t i) const {
   if (sparse_count > 0) {
     const uint64_t at = sparse_position(*this, i);
-    // Substituted values are scalars or vectors here: matrices are never read.
+    // Substituted values are scalars, vectors or 4x4 floats here: other matrices are never read.
     if (at < sparse_count) return sparse_values + at * components * component_size(component_type);
   }
   return data ? data + i * stride : nullptr;
@@ -170,6 +172,12 @@ std::array<float, 4> AccessorView::read(uint64_t i) const {
   const uint32_t size = component_size(component_type);
   for (uint32_t k = 0; k < std::min(components, 4u); ++k)
     values[k] = component_as_float(at + k * size, component_type, is_normalized);
+  return values;
+}
+
+std::array<float, 16> AccessorView::read_matrix(uint64_t i) const {
+  std::array<float, 16> values{};
+  if (const uint8_t* const at = element(i)) std::memcpy(values.data(), at, sizeof values);
   return values;
 }
 
@@ -210,22 +218,39 @@ void GltfBuffers::load_buffer(const JsonNode& buffer, size_t index, GltfFile& fi
   buffers_.push_back(std::move(contents));
 }
 
-void GltfBuffers::check_view(const JsonNode& view) {
-  const uint32_t index = view.member("buffer").as_index(buffers_.size(), "buffers");
-  const uint64_t offset = view.integer_or("byteOffset", 0, ~uint64_t(0));
-  const JsonNode length_node = view.member("byteLength");
+std::optional<std::span<const uint8_t>> GltfBuffers::range(const JsonNode& where) const {
+  const uint32_t index = where.member("buffer").as_index(buffers_.size(), "buffers");
+  const uint64_t offset = where.integer_or("byteOffset", 0, ~uint64_t(0));
+  const JsonNode length_node = where.member("byteLength");
   const uint64_t length = length_node.as_integer(~uint64_t(0));
+  const Contents& contents = buffers_[index];
+  if (!contents) return std::nullopt;
+  const uint64_t available = contents->size();
+  if (offset > available || length > available - offset)
+    length_node.fail("the view ends behind the " + std::to_string(available) + " bytes of buffer " +
+                     std::to_string(index));
+  return std::span(*contents).subspan(size_t(offset), size_t(length));
+}
+
+void GltfBuffers::check_view(const JsonNode& view) {
   View out;
   out.stride = view.integer_or("byteStride", 0, 252);
-  const Contents& contents = buffers_[index];
-  out.has_data = contents != nullptr;
-  if (contents) {
-    const uint64_t available = contents->size();
-    if (offset > available || length > available - offset)
-      length_node.fail("the view ends behind the " + std::to_string(available) +
-                       " bytes of buffer " + std::to_string(index));
-    out.bytes = std::span(*contents).subspan(size_t(offset), size_t(length));
+  std::optional<std::span<const uint8_t>> bytes;
+  if (const auto compressed = meshopt_extension(view)) {
+    const auto from = range(*compressed);
+    if (!from) compressed->fail("its compressed data lies in a buffer without data");
+    const uint64_t length = view.member("byteLength").as_integer(~uint64_t(0));
+    if (length > max_decoded_bytes - decoded_bytes_)
+      compressed->fail("the compressed data of this file becomes too much");
+    decoded_bytes_ += length;
+    decoded_.push_back(
+        std::make_shared<std::vector<uint8_t>>(decode_meshopt(*compressed, *from, length)));
+    bytes = *decoded_.back();
+  } else {
+    bytes = range(view);
   }
+  out.has_data = bytes.has_value();
+  if (bytes) out.bytes = *bytes;
   views_.push_back(out);
 }
 
@@ -268,9 +293,6 @@ void GltfBuffers::check_accessor(const JsonNode& accessor) {
     if (stride > 0) view.stride = stride;
     view.data = checked_range(accessor, accessor.integer_or("byteOffset", 0, ~uint64_t(0)),
                               view.count, element_size, view.stride);
-  } else if (view.count > max_elements_without_data) {
-    count.fail("is more than the " + std::to_string(max_elements_without_data) +
-               " elements supported in an accessor without a buffer view");
   }
   if (const auto sparse = accessor.find("sparse"))
     check_sparse(*sparse, view, element_size, packed);
@@ -302,6 +324,14 @@ void GltfBuffers::check_sparse(const JsonNode& sparse, AccessorView& view, uint6
   }
 }
 
+const AccessorView& GltfBuffers::accessor(const JsonNode& reference) const {
+  const AccessorView& view = accessors_[reference.as_index(accessors_.size(), "accessors")];
+  if (view.data == nullptr && view.count > max_elements_without_data)
+    reference.fail("its accessor has no buffer view and more than " +
+                   std::to_string(max_elements_without_data) + " elements");
+  return view;
+}
+
 uint32_t GltfBuffers::largest_index(const JsonNode& reference, uint32_t index) {
   const auto known = largest_indices_.find(index);
   if (known != largest_indices_.end()) return known->second;
@@ -313,8 +343,12 @@ uint32_t GltfBuffers::largest_index(const JsonNode& reference, uint32_t index) {
   return largest_indices_[index] = largest;
 }
 
-std::span<const uint8_t> GltfBuffers::buffer_view(uint32_t index) const {
-  return views_[index].bytes;
+bool GltfBuffers::is_normalized(const JsonNode& reference) const {
+  return accessors_[reference.as_index(accessors_.size(), "accessors")].is_normalized;
+}
+
+std::span<const uint8_t> GltfBuffers::buffer_view(const JsonNode& reference) const {
+  return views_[reference.as_index(views_.size(), "bufferViews")].bytes;
 }
 
 }  // namespace troffer

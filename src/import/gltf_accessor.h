@@ -1,11 +1,13 @@
 // Buffers, buffer views and accessors: typed, bounds-checked access to binary data.
-// References: [1] Khronos, glTF 2.0 Specification, §3.6 (Binary Data Storage).
+// References: [1] Khronos, glTF 2.0 Specification, §3.6 (Binary Data Storage);
+//   [2] Khronos extension EXT_meshopt_compression.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +35,8 @@ struct AccessorView {
   // The first components of element i as floats, normalised integers mapped to [0,1] or [-1,1];
   // zero for components that the accessor does not have.
   std::array<float, 4> read(uint64_t i) const;
+  // All components of element i of an accessor of 4x4 floats.
+  std::array<float, 16> read_matrix(uint64_t i) const;
   // Element i of an unsigned integer accessor of one component.
   uint32_t read_index(uint64_t i) const;
 
@@ -45,12 +49,17 @@ struct AccessorView {
 class GltfBuffers {
  public:
   // Loads every buffer: from its data URI, from a file in the scene's folder, or from the GLB's
-  // binary chunk; then checks all buffer views and accessors, used or not. InputError at the
-  // JSON value that is wrong.
+  // binary chunk; then checks all buffer views and accessors, used or not, and decodes views that
+  // are compressed [2]. InputError at the JSON value that is wrong.
   GltfBuffers(const JsonNode& root, GltfFile& file);
 
-  std::span<const uint8_t> buffer_view(uint32_t index) const;
-  const AccessorView& accessor(uint32_t index) const { return accessors_[index]; }
+  // Of the buffer view that `reference` names; empty where its buffer has no data.
+  std::span<const uint8_t> buffer_view(const JsonNode& reference) const;
+  // The accessor that `reference` names. Fails where it has no data of its own and is larger than
+  // what is taken for granted.
+  const AccessorView& accessor(const JsonNode& reference) const;
+  // Of an accessor whose data is elsewhere.
+  bool is_normalized(const JsonNode& reference) const;
   // Of an accessor of unsigned integer scalars; 0 for an empty one. Remembered. Fails at
   // `reference` where the file makes too much work of it.
   uint32_t largest_index(const JsonNode& reference, uint32_t index);
@@ -63,6 +72,9 @@ class GltfBuffers {
   };
   using Contents = std::shared_ptr<const std::vector<uint8_t>>;
 
+  // The bytes that /buffer, /byteOffset and /byteLength of an object name; nothing where the buffer
+  // has no data.
+  std::optional<std::span<const uint8_t>> range(const JsonNode& where) const;
   void load_buffer(const JsonNode& buffer, size_t index, GltfFile& file);
   void check_view(const JsonNode& view);
   void check_accessor(const JsonNode& accessor);
@@ -75,6 +87,8 @@ class GltfBuffers {
   std::map<std::string, Contents> files_;
   std::vector<Contents> buffers_;  // null: a buffer without data
   std::vector<View> views_;
+  std::vector<Contents> decoded_;  // of compressed views
+  uint64_t decoded_bytes_ = 0;
   std::vector<AccessorView> accessors_;
   std::map<uint32_t, uint32_t> largest_indices_;  // by accessor
   uint64_t sparse_elements_ = 0, checked_indices_ = 0;

@@ -55,9 +55,11 @@ class GltfMaterials::Reader {
   // The texture at object/key, or none.
   int32_t texture(const JsonNode& object, const char* key, bool is_srgb) {
     const auto info = object.find(key);
+    stand_in_ = Rgb{1};
     if (!info) return no_texture;
     const GltfTextureUse use =
         gltf_texture(all_.root_, *info, is_srgb, all_.buffers_, all_.loader_, all_.scene_);
+    stand_in_ = use.stand_in;
     if (use.texture == no_texture) return no_texture;
     if (uv_set_ < 0) uv_set_ = use.uv_set;  // the base colour's, which is read first
     if (uv_set_ != use.uv_set)
@@ -78,6 +80,7 @@ class GltfMaterials::Reader {
       material_.alpha.value = unit_number(color->element(3));
     }
     material_.base_color.texture = texture(*pbr, "baseColorTexture", true);
+    material_.base_color.value *= stand_in_;
     material_.roughness.value = unit_number(*pbr, "roughnessFactor", 1);
     material_.metallic.value = unit_number(*pbr, "metallicFactor", 1);
     const int32_t both = texture(*pbr, "metallicRoughnessTexture", false);
@@ -174,6 +177,7 @@ class GltfMaterials::Reader {
   Material material_;
   GltfMaterial result_;
   int uv_set_ = -1;  // not yet known
+  Rgb stand_in_{1};  // for the image that was asked for last, where it is missing
 };
 
 const GltfMaterial& GltfMaterials::get(std::optional<uint32_t> index) {

@@ -1,27 +1,15 @@
 #include "import/gltf_nodes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
+
+#include "import/gltf_pose.h"
 
 namespace troffer {
 
 namespace {
 
 constexpr uint32_t none = 0xffffffffu;
-
-// The rotation of a quaternion (x, y, z, w) of any length but zero [1] §3.5.3.
-Affine rotation_of(const JsonNode& node) {
-  const std::vector<double> q = node.as_numbers(4);
-  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(length > 1e-6) || !std::isfinite(length)) node.fail("is no rotation");
-  const double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
-  Affine a;
-  a.columns = {Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
-               Vec3d{2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
-               Vec3d{2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
-  return a;
-}
 
 Affine local_transform(const JsonNode& node) {
   if (const auto matrix = node.find("matrix")) {
@@ -36,20 +24,24 @@ Affine local_transform(const JsonNode& node) {
   const std::vector<double> t = node.numbers_or("translation", {0, 0, 0});
   const std::vector<double> s = node.numbers_or("scale", {1, 1, 1});
   Affine a = Affine::translate({t[0], t[1], t[2]});
-  if (const auto rotation = node.find("rotation")) a = a * rotation_of(*rotation);
+  if (const auto rotation = node.find("rotation")) {
+    const std::vector<double> q = rotation->as_numbers(4);
+    a = a * gltf_rotation(*rotation, q[0], q[1], q[2], q[3]);
+  }
   return a * Affine::scale({s[0], s[1], s[2]});
 }
 
 struct Hierarchy {
   std::vector<std::vector<uint32_t>> children;
-  std::vector<uint32_t> parent;  // none for roots
+  std::vector<uint32_t> parent;    // none for roots
+  std::vector<uint32_t> in_order;  // parents before children
 };
 
 // A strict tree [1] §3.5.2: with one parent each, whatever no root leads to lies on or below a
 // cycle.
 Hierarchy read_hierarchy(const JsonNode& nodes) {
   const size_t n = nodes.size();
-  Hierarchy h{std::vector<std::vector<uint32_t>>(n), std::vector<uint32_t>(n, none)};
+  Hierarchy h{std::vector<std::vector<uint32_t>>(n), std::vector<uint32_t>(n, none), {}};
   for (uint32_t i = 0; i < n; ++i) {
     const auto list = nodes.element(i).find("children");
     for (size_t k = 0; list && k < list->size(); ++k) {
@@ -70,7 +62,10 @@ Hierarchy read_hierarchy(const JsonNode& nodes) {
     const auto& below = h.children[reached[at]];
     reached.insert(reached.end(), below.begin(), below.end());
   }
-  if (reached.size() == n) return h;
+  if (reached.size() == n) {
+    h.in_order = std::move(reached);
+    return h;
+  }
   std::vector<bool> is_reached(n, false);
   for (const uint32_t i : reached) is_reached[i] = true;
   const auto lost =
@@ -94,42 +89,46 @@ std::vector<uint32_t> roots_of_scene(const JsonNode& root, const Hierarchy& hier
   const auto list = scenes->element(size_t(shown)).find("nodes");
   std::vector<bool> is_listed(hierarchy.parent.size(), false);
   for (size_t k = 0; list && k < list->size(); ++k) {
-    const JsonNode reference = list->element(k);
-    const uint32_t i = reference.as_index(hierarchy.parent.size(), "nodes");
-    if (hierarchy.parent[i] != none)
-      reference.fail("node " + std::to_string(i) + " is not a root: it is a child of node " +
-                     std::to_string(hierarchy.parent[i]));
-    if (is_listed[i]) reference.fail("node " + std::to_string(i) + " is listed twice");
+    const uint32_t i = list->element(k).as_index(hierarchy.parent.size(), "nodes");
+    if (is_listed[i]) warnings.add("a node is listed twice in the scene; it is shown once");
+    if (!is_listed[i]) roots.push_back(i);
     is_listed[i] = true;
-    roots.push_back(i);
   }
+  // One below another that is listed comes with that.
+  std::vector<bool> is_below(hierarchy.parent.size(), false);
+  for (const uint32_t i : hierarchy.in_order) {
+    const uint32_t parent = hierarchy.parent[i];
+    is_below[i] = parent != none && (is_below[parent] || is_listed[parent]);
+    if (is_listed[i] && parent != none)
+      warnings.add("a node listed in the scene is no root; it is shown where its parents place it");
+  }
+  std::erase_if(roots, [&](uint32_t i) { return is_below[i]; });
   return roots;
 }
 
 }  // namespace
 
-std::vector<GltfNode> gltf_nodes(const JsonNode& root, WarningLog& warnings) {
+GltfNodes gltf_nodes(const JsonNode& root, WarningLog& warnings) {
   const auto nodes = root.find("nodes");
   if (!nodes) return {};
   const Hierarchy hierarchy = read_hierarchy(*nodes);
-  const std::vector<uint32_t> roots = roots_of_scene(root, hierarchy, warnings);
-
-  struct Pending {
-    uint32_t index;
-    Affine world_from_parent;
-  };
-  std::vector<Pending> stack;  // the next one on top
-  for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, Affine{}});
-  std::vector<GltfNode> shown;
-  while (!stack.empty()) {
-    const Pending next = stack.back();
-    stack.pop_back();
-    const Affine world = next.world_from_parent * local_transform(nodes->element(next.index));
-    shown.push_back({next.index, world});
-    const auto& below = hierarchy.children[next.index];
-    for (auto it = below.rbegin(); it != below.rend(); ++it) stack.push_back({*it, world});
+  GltfNodes out;
+  out.world.resize(hierarchy.parent.size());
+  for (const uint32_t i : hierarchy.in_order) {
+    const Affine local = local_transform(nodes->element(i));
+    const uint32_t parent = hierarchy.parent[i];
+    out.world[i] = parent == none ? local : out.world[parent] * local;
   }
-  return shown;
+  std::vector<uint32_t> stack = roots_of_scene(root, hierarchy, warnings);  // the next one on top
+  std::reverse(stack.begin(), stack.end());
+  while (!stack.empty()) {
+    const uint32_t next = stack.back();
+    stack.pop_back();
+    out.shown.push_back({next, out.world[next]});
+    const auto& below = hierarchy.children[next];
+    stack.insert(stack.end(), below.rbegin(), below.rend());
+  }
+  return out;
 }
 
 }  // namespace troffer

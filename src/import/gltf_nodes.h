@@ -16,9 +16,16 @@ struct GltfNode {
   Affine world_from_node;  // metres
 };
 
-// The nodes of the default scene (of scene 0 if none is named, all roots if there is no scene),
-// parents before children, siblings in order of appearance. Fails where any node of the file has
-// two parents, is its own ancestor, or has a matrix that is not affine.
-std::vector<GltfNode> gltf_nodes(const JsonNode& root, WarningLog& warnings);
+struct GltfNodes {
+  // The nodes of the default scene (of scene 0 if none is named, all roots if there is no scene),
+  // parents before children, siblings in order of appearance. What a scene lists though it is no
+  // root, or twice, is shown once, where its ancestors place it, with a warning.
+  std::vector<GltfNode> shown;
+  std::vector<Affine> world;  // of all nodes of the file: world from node
+};
+
+// Fails where any node of the file has two parents, is its own ancestor, or has a matrix that is
+// not affine.
+GltfNodes gltf_nodes(const JsonNode& root, WarningLog& warnings);
 
 }  // namespace troffer

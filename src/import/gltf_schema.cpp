@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
 
 namespace troffer {
@@ -111,6 +112,8 @@ constexpr auto rules = std::to_array<Rule>({
     {"meshes", Is::array},
     {"meshes/*", Is::object},
     {"meshes/*/name", Is::string},
+    {"meshes/*/weights", Is::array},
+    {"meshes/*/weights/*", Is::number},
     {"meshes/*/primitives", Is::array, required},
     {"meshes/*/primitives/*", Is::object},
     {"meshes/*/primitives/*/attributes", Is::object},
@@ -144,6 +147,8 @@ constexpr auto rules = std::to_array<Rule>({
     index_rule("nodes/*/mesh", "meshes"),
     index_rule("nodes/*/camera", "cameras"),
     index_rule("nodes/*/skin", "skins"),
+    {"nodes/*/weights", Is::array},
+    {"nodes/*/weights/*", Is::number},
     {"nodes/*/matrix", Is::numbers, optional, 16},
     {"nodes/*/translation", Is::numbers, optional, 3},
     {"nodes/*/rotation", Is::numbers, optional, 4},
@@ -266,9 +271,10 @@ void check_light_references(const JsonNode& root) {
 }
 
 constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
-     "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume",
-     "KHR_mesh_quantization", "KHR_texture_transform"});
+    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",
+     "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_emissive_strength",
+     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
+     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform"});
 
 bool is_supported(const std::string& name) {
   return std::find(supported_extensions.begin(), supported_extensions.end(), name) !=
@@ -287,18 +293,18 @@ void check_gltf_document(const JsonNode& root, WarningLog& warnings) {
 }
 
 void check_gltf_extensions(const JsonNode& root, WarningLog& warnings) {
-  if (const auto names = root.find("extensionsRequired"))
-    for (size_t i = 0; i < names->size(); ++i) {
-      const JsonNode name = names->element(i);
-      if (!is_supported(name.as_string()))
-        name.fail("the required extension '" + printable(name.as_string()) + "' is not supported");
-    }
-  if (const auto names = root.find("extensionsUsed"))
-    for (size_t i = 0; i < names->size(); ++i) {
+  std::set<std::string> told;
+  const auto tell = [&](const char* list, const char* what) {
+    const auto names = root.find(list);
+    for (size_t i = 0; names && i < names->size(); ++i) {
       const std::string& name = names->element(i).as_string();
-      if (!is_supported(name))
-        warnings.add("the extension '" + printable(name) + "' is not supported and ignored");
+      if (!is_supported(name) && told.insert(name).second)
+        warnings.add("the extension '" + printable(name) + "' " + what);
     }
+  };
+  tell("extensionsRequired",
+       "is not supported, though the file requires it: what it says is missing in the picture");
+  tell("extensionsUsed", "is not supported and ignored");
 }
 
 }  // namespace troffer

@@ -1,5 +1,7 @@
 #include "import/gltf_texture.h"
 
+#include <optional>
+
 #include "import/file.h"
 #include "import/gltf_uri.h"
 #include "import/uri.h"
@@ -50,8 +52,7 @@ int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers
                    TextureLoader& loader) {
   const std::string key = image.file() + "#" + image.pointer();
   if (const auto view = image.find("bufferView"))
-    return loader.from_memory(buffers.buffer_view(view->as_index(~uint32_t(0), "bufferViews")), key,
-                              look);
+    return loader.from_memory(buffers.buffer_view(*view), key, look);
   const auto uri = image.find("uri");
   if (!uri) return loader.missing(key, "has neither a uri nor a buffer view", look);
   if (!is_data_uri(uri->as_string()))
@@ -60,6 +61,14 @@ int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers
   const auto data = parse_data_uri(uri->as_string());
   if (!data) uri->fail("is a malformed data URI");
   return loader.from_memory(data->bytes, key, look);
+}
+
+// WebP where there is one; of images that are not read (KHR_texture_basisu) the plain one that may
+// stand beside them.
+std::optional<JsonNode> source_of(const JsonNode& texture) {
+  if (const auto webp = texture.extension("EXT_texture_webp"))
+    if (auto source = webp->find("source")) return source;
+  return texture.find("source");
 }
 
 }  // namespace
@@ -79,17 +88,22 @@ GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_
     const JsonNode samplers = root.member("samplers");
     read_sampler(samplers.element(sampler->as_index(samplers.size(), "samplers")), look);
   }
-  const auto source = texture.find("source");
+  const auto source = source_of(texture);
   if (!source) {
     // An extension may hold one, in an image format that is not read.
-    scene.warnings.add(printable(texture.pointer()) + ": has no PNG or JPEG image; left out");
+    scene.warnings.add(printable(texture.pointer()) +
+                       ": has no image of a format that is read; grey stands for it");
+    use.stand_in = stand_in_for_missing(is_srgb);
     return use;
   }
   const JsonNode images = root.member("images");
   const JsonNode image = images.element(source->as_index(images.size(), "images"));
   const int32_t loaded = load_image(image, look, buffers, loader);
-  // A missing image stands as a white constant, which as a factor is no texture at all.
-  if (scene.textures[size_t(loaded)].kind == TextureKind::image) use.texture = loaded;
+  const Texture& made = scene.textures[size_t(loaded)];
+  if (made.kind == TextureKind::image)
+    use.texture = loaded;
+  else
+    use.stand_in = made.value;
   return use;
 }
 

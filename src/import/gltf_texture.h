@@ -15,6 +15,7 @@ namespace troffer {
 struct GltfTextureUse {
   int32_t texture = no_texture;  // none also where the image cannot be had (with a warning)
   int uv_set = 0;
+  Rgb stand_in{1};  // where an image cannot be had: what to take for it
 };
 
 // The texture that `info` (a textureInfo [1] §5.30) names, with its sampler and transform [2].

@@ -56,10 +56,12 @@ int32_t TextureLoader::remember(const std::string& key, const Texture& look, Tex
 
 int32_t TextureLoader::missing(const std::string& key, const std::string& problem,
                                const Texture& look) {
-  scene_.warnings.add(key + ": " + problem + "; a white texture stands for it");
-  Texture white;
-  white.name = look.name.empty() ? key : look.name;
-  return remember(key, look, std::move(white));
+  scene_.warnings.add(key + ": " + problem +
+                      (look.is_srgb ? "; grey stands for it" : "; left out"));
+  Texture constant;
+  constant.name = look.name.empty() ? key : look.name;
+  constant.value = look.value * stand_in_for_missing(look.is_srgb);
+  return remember(key, look, std::move(constant));
 }
 
 // Any texture already made of the image whose texels are those that `look` asks for. 8-bit texels

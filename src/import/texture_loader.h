@@ -12,9 +12,15 @@
 
 namespace troffer {
 
+// Middle grey for colours, so that nothing becomes a white that blinds the room; 1 for data, which
+// is a factor.
+inline Rgb stand_in_for_missing(bool is_color) {
+  return Rgb{is_color ? 0.5f : 1.0f};
+}
+
 // Appends textures to a scene. Equal requests share one texture, and an image is decoded once
 // however many textures show it. An image that is missing or cannot be decoded becomes a warning
-// in Scene::warnings and a constant texture of value 1: never an exception.
+// in Scene::warnings and a constant texture, of stand_in_for_missing(): never an exception.
 class TextureLoader {
  public:
   // The scene must outlive the loader.
@@ -29,7 +35,7 @@ class TextureLoader {
   // and must differ between images, and from all paths.
   int32_t from_memory(std::span<const uint8_t> bytes, const std::string& key, const Texture& look);
 
-  // A constant texture of value 1 and the warning "KEY: PROBLEM; a white texture stands for it".
+  // That constant texture and the warning "KEY: PROBLEM; grey stands for it".
   int32_t missing(const std::string& key, const std::string& problem, const Texture& look);
 
  private:

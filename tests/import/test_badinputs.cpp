@@ -24,8 +24,6 @@ const std::map<std::string, std::string> exceptions{
     {"gltf-validator/base/data/image/invalid_image_data.gltf",
      "nothing shows the broken image, and one that is shown would be a warning"},
     {"gltf-validator/base/data/image/png_eos.gltf", "likewise"},
-    {"magnum/GltfImporter/image-basis.glb", "requires an extension that is not supported"},
-    {"magnum/GltfImporter/image-basis.gltf", "likewise"},
     {"magnum/GltfImporter/mesh-sparse.gltf",
      "its sparse indices do not ascend, as they must (glTF 2.0, 3.6.2.3)"},
     {"magnum/GltfImporter/version-legacy.gltf",

@@ -168,17 +168,31 @@ TEST_CASE("a hierarchy of any depth is read without recursion") {
   CHECK(scene.meshes.size() == 1);
 }
 
-TEST_CASE("extensions: required ones that are unknown are named errors, optional ones warnings") {
-  const InputError e = error_of(
-      "{\"asset\":{\"version\":\"2.0\"},\n \"extensionsRequired\":[\"KHR_materials_ior\",\n"
-      "  \"KHR_draco_mesh_compression\"]}");
-  CHECK(e.reason().find("KHR_draco_mesh_compression") != std::string::npos);
-  CHECK(e.line() == 3);
-  CHECK(e.column() == 3);
-  const Scene scene =
-      import_text(gltf_text("'extensionsUsed':['EXT_mesh_gpu_instancing','KHR_materials_ior']"));
-  CHECK(has_warning(scene, "EXT_mesh_gpu_instancing"));
+TEST_CASE("extensions that are not known are warnings, stronger ones where a file requires them") {
+  const Scene scene = import_text(square_scene(
+      "[{'mesh':0}]", plain_material + ",'extensionsUsed':['ABC_clouds','KHR_materials_ior',"
+                                       "'ABC_rain'],'extensionsRequired':['ABC_rain']"));
+  CHECK(scene.meshes.size() == 1);
+  CHECK(has_warning(scene, "'ABC_clouds' is not supported and ignored"));
+  CHECK(has_warning(scene, "'ABC_rain' is not supported, though the file requires it"));
+  CHECK_FALSE(has_warning(scene, "'ABC_rain' is not supported and"));
   CHECK_FALSE(has_warning(scene, "KHR_materials_ior"));
+}
+
+TEST_CASE("what a scene lists is shown once, and where its parents place it") {
+  const std::string nodes =
+      "[{'translation':[0,0,5],'children':[1]},{'mesh':0,'translation':[0,0,2]}]";
+  const auto heights = [&](const std::string& listed) {
+    const Scene scene =
+        import_text(square_scene(nodes, plain_material + ",'scenes':[{'nodes':[" + listed + "]}]"));
+    REQUIRE(scene.meshes.size() == 1);
+    CHECK(scene.meshes[0].positions[0].z == 7);
+    return scene;
+  };
+  CHECK(heights("0").warnings.total() == 0);
+  CHECK(has_warning(heights("1"), "is no root"));
+  CHECK(has_warning(heights("1,0"), "is no root"));
+  CHECK(has_warning(heights("0,0"), "listed twice"));
 }
 
 TEST_CASE("errors name line and column of the offending value") {

@@ -129,7 +129,7 @@ TEST_CASE("textures: sampler, transform, colour or data, and one decoding for al
   CHECK(data.wrap_u == WrapMode::repeat);
 }
 
-TEST_CASE("missing and broken images are warnings; the factor alone stands") {
+TEST_CASE("missing and broken images are warnings; grey stands for colours, the factor for data") {
   for (const std::string image : {"{'uri':'nothing.png'}", "{'uri':'data:image/png;base64,AAAA'}",
                                   "{'bufferView':1}", "{}"}) {
     CAPTURE(image);
@@ -139,10 +139,11 @@ TEST_CASE("missing and broken images are warnings; the factor alone stands") {
         ",'images':[" + image + "],'textures':[{'source':0}]");
     CHECK(only_material(scene).base_color.texture == no_texture);
     CHECK(only_material(scene).normal_texture == no_texture);
-    CHECK(has_warning(scene, "white texture"));
+    CHECK(only_material(scene).base_color.value == Rgb{0.5f});
+    CHECK(has_warning(scene, "grey stands for it"));
   }
   const Scene none = with_material("{'normalTexture':{'index':0}}", ",'textures':[{}]");
-  CHECK(has_warning(none, "no PNG or JPEG"));
+  CHECK(has_warning(none, "no image of a format that is read"));
   error_of(square_scene("[{'mesh':0}]",
                         "'materials':[{'normalTexture':{'index':0}}],'textures':[{'source':0}],"
                         "'images':[{'uri':'../a.png'}]"));

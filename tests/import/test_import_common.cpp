@@ -165,7 +165,7 @@ TEST_CASE("textures are shared by equal requests and decoded once") {
   CHECK(scene.warnings.entries().empty());
 }
 
-TEST_CASE("images that cannot be had become white textures and warnings") {
+TEST_CASE("images that cannot be had become constant textures and warnings: grey for colours") {
   const TempFolder folder;
   Scene scene;
   TextureLoader loader(scene);
@@ -175,9 +175,12 @@ TEST_CASE("images that cannot be had become white textures and warnings") {
         loader.from_memory({}, "empty", {}), loader.from_file(folder.path(""), {})}) {
     REQUIRE(i >= 0);
     CHECK(scene.textures[size_t(i)].kind == TextureKind::constant);
-    CHECK(scene.textures[size_t(i)].value == Rgb{1});
+    CHECK(scene.textures[size_t(i)].value == Rgb{0.5f});
   }
   CHECK(scene.warnings.total() == 4);
+  Texture data;
+  data.is_srgb = false;
+  CHECK(scene.textures[size_t(loader.from_memory(junk, "data", data))].value == Rgb{1});
 }
 
 TEST_CASE("the format is chosen by the ending, in any case") {

@@ -160,7 +160,7 @@ TEST_CASE("imagemap parameters") {
       "Material \"diffuse\" \"texture reflectance\" \"t\"\n" +
       triangle);
   CHECK(has_warning(missing, "gone.png"));
-  CHECK(color_at(missing, {0, 0}) == Rgb(1));
+  CHECK(color_at(missing, {0, 0}) == Rgb(0.5f));  // grey
 }
 
 TEST_CASE("constant and scaled textures, with images and without") {

@@ -170,8 +170,9 @@ TEST_CASE("unknown parameters and unsupported directives are warnings that name 
       "MediumInterface \"fog\" \"\"\nWorldEnd\n");
   for (const char* part :
        {"disablepixeljitter", "rec2020", "Camera \"perspective\": parameter \"fof\"",
-        "LightSource \"projection\"", "shape \"cylinder\"", "Shape \"sphere\": parameter \"raduis\"",
-        "MediumInterface", "MakeNamedMedium", "WorldEnd"}) {
+        "LightSource \"projection\"", "shape \"cylinder\"",
+        "Shape \"sphere\": parameter \"raduis\"", "MediumInterface", "MakeNamedMedium",
+        "WorldEnd"}) {
     CAPTURE(part);
     CHECK(has_warning(scene, part));
   }
