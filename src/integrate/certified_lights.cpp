@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "integrate/far_draws.h"
 #include "light/light.h"
+#include "shadow/far_pilot.h"
 #include "trace/occluders.h"
 
 namespace troffer {
@@ -32,7 +33,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      far_{FarCells(scene.scene, scene.primitives), 0, {}},
+      far_{FarCells(scene.scene, scene.primitives), 0, {}, {}},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
@@ -169,6 +170,7 @@ void CertifiedLights::add_far_lights(const PreparedScene& scene) {
     before_.push_back(-1);
     has_light_[scene.primitives[cell.primitive].light] = true;
   }
+  far_.points = FarPoints(std::span(sources_).subspan(far_.first_source));
 }
 
 const CertifiedSource* CertifiedLights::source_towards(uint32_t primitive,
@@ -207,6 +209,8 @@ void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
 void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
                                  Counters& counters) const {
   if (s.hits.size() == 0) return;
+  if (!far_.points.is_empty())
+    s.far_open = open_share_of_batch({scene_, competition_, s.hits, far_.points}, s.drawn);
   cluster_receivers(s.hits.positions, s.hits.horizons, reach_, s.clusters);
   for (size_t c = 0; c < s.clusters.size(); ++c)
     illuminate_cluster(s.clusters.members(c), s, out, counters);
@@ -228,7 +232,12 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
   }
   choose_lights(groups_, ball_about(s.hits, members), members.size(), budget_, s.chosen);
   draw(members, s, out, counters);
-  set_requests(s);
+  const bool has_far =
+      !far_.points.is_empty() && is_proof_of_far_worth(members, s, out.typical > 0);
+  if (!has_far && !far_.points.is_empty())
+    draw_points({scene_, competition_, s.hits, far_.points}, members, double(s.far_open), budget_,
+                s.drawn, out, counters);
+  set_requests(s, has_far);
   if (s.cluster.requests.empty()) return;
   s.cluster.shadow.set(s.cluster.receivers);
   certified_light(s.cluster.shadow, s.cluster.requests, &s.integrand, s.world, s.options,
@@ -247,7 +256,22 @@ void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScr
               counters);
 }
 
-void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
+// Whether rays to far sources would cost more than a look at their cells. Points of `measure` can
+// wait.
+bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
+                                            const CertifiedLightsScratch& s,
+                                            bool is_picture) const {
+  constexpr double cost_of_look = 4000;      // in rays
+  constexpr double share_of_further = 0.25;  // a further viewing ray of a pixel gets fewer
+  if (!is_picture) return true;
+  const double rays = rays_for_error(double(s.far_open), double(s.options.mask_error));
+  double all = 0;
+  for (const uint32_t m : members)
+    all += s.hits.samples[m] < uint32_t(budget_.viewing_rays) ? rays : rays * share_of_further;
+  return all > cost_of_look;
+}
+
+void CertifiedLights::set_requests(CertifiedLightsScratch& s, bool has_far) const {
   s.cluster.requests.clear();
   s.requested.clear();
   s.integrand.sources().clear();
@@ -273,6 +297,7 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s) const {
   };
   for (const uint32_t g : s.chosen.certified)
     for (uint32_t i = groups_[g].first_source; i < groups_[g].last_source; ++i) add(i);
+  if (!has_far) return;
   for (auto i = far_.first_source; i < uint32_t(sources_.size()); ++i) add(i);
 }
 

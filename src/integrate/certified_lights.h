@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "integrate/drawn_lights.h"
+#include "integrate/far_points.h"
 #include "integrate/light_groups.h"
 #include "integrate/shadow_world.h"
 #include "integrate/source_integrand.h"
@@ -38,6 +39,7 @@ struct CertifiedLightsScratch {
   std::vector<uint32_t> requested;  // sources of the cluster's requests
   std::vector<uint32_t> drawing;    // hits of the cluster
   DrawnLightsScratch drawn;
+  float far_open = 0.5f;  // of the light of far sources, what arrives at the hits, about
 };
 
 class CertifiedLights {
@@ -75,7 +77,9 @@ class CertifiedLights {
   void add_far_lights(const PreparedScene& scene);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
-  void set_requests(CertifiedLightsScratch& s) const;
+  bool is_proof_of_far_worth(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
+                             bool is_picture) const;
+  void set_requests(CertifiedLightsScratch& s, bool has_far) const;
   void draw(std::span<const uint32_t> members, CertifiedLightsScratch& s, RadianceBatch& out,
             Counters& counters) const;
   void add_answers(uint32_t request, std::span<const uint32_t> members,
@@ -94,6 +98,7 @@ class CertifiedLights {
     FarCells cells;
     uint32_t first_source = 0;  // those of the cells are the last ones
     FarScene scene;             // what hides much of them
+    FarPoints points;           // … where proofs are not worth while
   } far_;
   DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart

@@ -203,7 +203,7 @@ void Drawing::connect(size_t n) {
   for (size_t i = 0; i < n; ++i) {
     const uint32_t m = s.hits[i];
     DrawnLightsScratch::Draw& d = s.draws.emplace_back();
-    d = {m, s.places[i], {}, -1};
+    d = {m, s.places[i], {}, -1, {}};
     if (s.is_valid[i] == 0) continue;
     const LightSample& light = s.points[i];
     const float density = light.pdf_solid_angle * s.pmfs[i] * float(lights.draws);
@@ -257,7 +257,7 @@ void tell_variance(const WaitingHits& hits, std::span<const DrawnLightsScratch::
   for (const auto& d : run) {
     if (hits.is_direct[d.hit] == 0) continue;
     const bool arrives = d.ray >= 0 && s.is_occluded[size_t(d.ray)] == 0;
-    s.terms.emplace_back(d.place, arrives ? luminance(d.light) : 0.0f);
+    s.terms.emplace_back(d.place, (arrives ? luminance(d.light) : 0.0f) - luminance(d.expected));
   }
   if (s.terms.empty()) return;
   std::sort(s.terms.begin(), s.terms.end());
@@ -290,11 +290,14 @@ void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLig
   s.is_occluded.resize(s.rays.size());
   scene.tracer.occluded(s.rays, s.is_occluded, Coherence::coherent, s.factors);
   for (auto& d : s.draws) {
-    if (d.ray < 0) continue;
-    d.light *= s.factors[size_t(d.ray)];
     const uint32_t index = hits.indices[d.hit];
-    ++out.shadow_rays[index];
-    if (s.is_occluded[size_t(d.ray)] == 0) out.add(index, hits.is_direct[d.hit] != 0, d.light, 0);
+    Rgb light = d.expected * -1.0f;
+    if (d.ray >= 0) {
+      d.light *= s.factors[size_t(d.ray)];
+      ++out.shadow_rays[index];
+      if (s.is_occluded[size_t(d.ray)] == 0) light += d.light;
+    }
+    if (!light.is_black()) out.add(index, hits.is_direct[d.hit] != 0, light, 0);
   }
   if (!out.direct_variance.empty())
     for (size_t r = 0; r < s.runs.size(); ++r) {

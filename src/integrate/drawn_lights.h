@@ -48,6 +48,7 @@ struct DrawnLightsScratch {
     float place;   // among the lights, in [0,1)
     Rgb light;     // that arrives if nothing is in the way
     int32_t ray;   // -1: none arrives
+    Rgb expected;  // what has been counted of it beforehand: taken off again
   };
   std::vector<Draw> draws;
   std::vector<size_t> runs;  // where draws of another pixel, or cluster, begin

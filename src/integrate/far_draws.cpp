@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "integrate/far_counts.h"
+#include "integrate/far_points.h"
 #include "shadow/cell_points.h"
 
 namespace troffer {
@@ -11,7 +13,7 @@ namespace troffer {
 namespace {
 
 // As for other lights (drawn_lights.cpp).
-constexpr double most_draws = 256, clutter = 2;
+constexpr double clutter = 2;
 constexpr size_t most_waiting = 16384;
 // Less than this share of the light is not taken to arrive, when numbers of draws are chosen.
 constexpr double least_open = 0.02;
@@ -32,6 +34,7 @@ class Drawing {
       points_.emplace_back(part.cell);
       brightness_.push_back(double(luminance(d_.sources[part.request]->radiance)));
     }
+    expected_ = float(std::max(2 * d_.cluster.memory.far_open - 1, 0.0));
   }
 
   // Points of a pixel. N of a Sobol sequence over a light of which the share p arrives err by about
@@ -48,21 +51,22 @@ class Drawing {
     return clutter * std::pow(of_left * std::sqrt(open * (1 - open)) / (error * arrives), 4.0 / 3);
   }
 
-  void of_member(size_t i, uint32_t n) {
+  void of_member(size_t i, uint32_t n, uint32_t before, RadianceBatch& out) {
     const uint32_t m = d_.members[i];
     const double all = left_of(i);
     if (!(all > 0)) return;
-    set_numbers(m, n);
+    set_numbers(m, n, before);
+    if (expected_ > 0 && d_.hits.glossy[m] < 0) expect(i, out);
     for (uint32_t j = 0; j < n; ++j) {
       DrawnLightsScratch::Draw& draw = s_.draws.emplace_back();
-      draw = {m, s_.numbers[2 * n + j], {}, -1};
+      draw = {m, s_.numbers[2 * n + j], {}, -1, {}};
       const double target = double(draw.place) * all;
-      double before = 0;
+      double below = 0;
       size_t part = 0;
       for (; part + 1 < left_.size(); ++part) {
         const double own = light_of(part, i);
-        if (target < before + own) break;
-        before += own;
+        if (target < below + own) break;
+        below += own;
       }
       if (light_of(part, i) > 0)
         connect(draw, part, light_of(part, i) / all * n, s_.numbers[j], s_.numbers[n + j]);
@@ -79,12 +83,21 @@ class Drawing {
     return sum;
   }
 
-  void set_numbers(uint32_t m, uint32_t n) {
+  void set_numbers(uint32_t m, uint32_t n, uint32_t before) {
     s_.streams.assign(n, hash_combine(d_.hits.draw_streams[m], purpose_far));
     s_.samples.resize(n);
     s_.numbers.resize(3 * size_t(n));
-    for (uint32_t j = 0; j < n; ++j) s_.samples[j] = d_.hits.samples[m] * n + j;
+    for (uint32_t j = 0; j < n; ++j) s_.samples[j] = before + j;
     sobol_groups(s_.streams.data(), s_.samples.data(), n, 0, 3, s_.numbers.data());
+  }
+
+  // Counts the share of the unoccluded light that is taken to arrive; draws bring the difference.
+  void expect(size_t i, RadianceBatch& out) const {
+    const uint32_t m = d_.members[i];
+    Rgb sum;
+    for (size_t p = 0; p < left_.size(); ++p)
+      sum += d_.sources[left_[p].request]->radiance * left_[p].unoccluded[i];
+    out.add(d_.hits.indices[m], d_.hits.is_direct[m] != 0, d_.hits.weights[m] * sum * expected_, 0);
   }
 
   // points: expected number of them in the part.
@@ -95,25 +108,23 @@ class Drawing {
     const double distance = length(d);
     const Vec3 wi(d * (1 / distance));
     const float cosine = dot(wi, r.normal);
-    if (!(cosine > 0) || !(dot(wi, r.horizon) > 0)) return;
+    const bool is_above = dot(wi, r.horizon) > 0;
+    // The unoccluded light of a disk knows the horizon of the normal alone.
+    if (!(cosine > 0) || !(is_above || source.flat.is_disk)) return;
     const Parallelogram& plane = source.flat.plane;
     const double steradians =
         dot(plane.normal, x - plane.origin) / distance * points_[part].area() / sqr(distance);
-    draw.light = d_.hits.weights[draw.hit] * radiance(source, Vec3(d)) *
-                 value(source, draw.hit, wi, cosine) * float(steradians / points);
+    const Rgb weight = d_.hits.weights[draw.hit] * float(steradians / points);
+    if (expected_ > 0 && d_.hits.glossy[draw.hit] < 0)
+      draw.expected = weight * source.radiance * (cosine * expected_);
+    if (!is_above) return;
+    draw.light = weight * far_radiance_of(source, Vec3(d)) * value(source, draw.hit, wi, cosine);
     if (draw.light.is_black()) return;
     draw.ray = int32_t(s_.rays.size());
     Ray ray;
     ray.origin = r.origin;
     ray.direction = wi;
     s_.rays.push_back(ray);
-  }
-
-  static Rgb radiance(const CertifiedSource& source, const Vec3& d) {
-    if (!source.is_textured) return source.radiance;
-    Rgb l;
-    far_radiance(*source.far, 1, &d.x, &d.y, &d.z, &l.r, &l.g, &l.b);
-    return l;
   }
 
   // BRDF × cosine, of what does not compete or wins.
@@ -129,6 +140,7 @@ class Drawing {
   DrawnLightsScratch& s_;
   std::vector<CellPoints> points_;  // per part
   std::vector<double> brightness_;
+  float expected_ = 0;  // share of the unoccluded light of matte hits that is counted beforehand
 };
 
 }  // namespace
@@ -152,12 +164,17 @@ void draw_left(const FarDraws& draws, const DrawingBudget& budget, DrawnLightsSc
   Drawing drawing(draws, s);
   const double of_pixel =
       drawing.points_of_pixel(double(budget.error), draws.cluster.memory.far_open);
-  const auto n = uint32_t(std::ceil(std::min(of_pixel / double(budget.viewing_rays), most_draws)));
-  if (n == 0) return;
+  FarCounts numbers(draws.hits, draws.members, budget, out.typical > 0, of_pixel,
+                    draws.cluster.memory.far_open);
+  if (numbers.usual() == 0) return;
   for (size_t i = 0; i < draws.members.size(); ++i) {
-    if (i == 0 || draws.hits.pixels[draws.members[i]] != draws.hits.pixels[draws.members[i - 1]])
+    if (numbers.is_first_of_pixel(i)) {
+      numbers.look_at_pixel(i);
       s.runs.push_back(s.draws.size());
-    drawing.of_member(i, n);
+    }
+    uint32_t before = 0;
+    const uint32_t n = numbers.of(i, before);
+    drawing.of_member(i, n, before, out);
   }
   if (s.rays.size() >= most_waiting) resolve_draws(draws.scene, draws.hits, s, out, counters);
 }

@@ -339,6 +339,11 @@ void far_radiance(const FarCell& cell, size_t n, const float* x, const float* y,
                   float* r, float* g, float* b) {
   if (cell.table != nullptr) return look_up(cell, n, x, y, z, r, g, b);
   evaluate_fit(cell, cell.fit[0], n, x, y, z, r);
+  if (cell.fit[1] == cell.fit[0] && cell.fit[2] == cell.fit[0]) {  // grey, as most skies are
+    std::copy_n(r, n, g);
+    std::copy_n(r, n, b);
+    return;
+  }
   evaluate_fit(cell, cell.fit[1], n, x, y, z, g);
   evaluate_fit(cell, cell.fit[2], n, x, y, z, b);
 }

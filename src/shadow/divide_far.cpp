@@ -16,7 +16,13 @@ constexpr int most_halvings = 4;
 // a few times that, by the share of the light. A gather costs about so many facets, and so many for
 // each that it finds; a large facet is tried once.
 constexpr double facets_per_ray = 12;
-constexpr double cost_of_gather = 1000, cost_of_found = 10, cost_of_large = 5, cost_of_part = 15;
+constexpr double cost_of_gather = 1000, cost_of_found = 10, cost_of_large = 5, cost_of_mask = 60;
+// … of which proofs may lose this share where most of the light arrives; where little does they may
+// lose all: rays err by more there than they should.
+constexpr double least_lost = 0.05, lost_by_open = 2.5;
+// … and masks, which err by much less than they may, may cost so many times as much.
+constexpr double worth_of_mask = 2;
+constexpr size_t always_masked = 16;  // facets
 // A list costs masks, pilots and halvings of clusters: so many times its length. But blinds and
 // plants before a window are to be masked.
 constexpr double cost_of_list = 120, most_facets = 4096, fewest_facets = 64, usual_members = 32;
@@ -31,28 +37,37 @@ class FarDivision {
         scene_(scene),
         memory_(memory),
         counters_(counters),
-        work_(allowed_work()),
+        allowed_(allowed_work()),
+        work_(allowed_),
         most_(longest_list()) {}
 
-  void divide(const FlatCell& cell, bool is_whole, int halvings) {
-    if (!is_whole && work_ <= 0) return add_hopeless(cell, is_whole);
+  // share: of the whole cell.
+  void divide(const FlatCell& cell, bool is_whole, int halvings, double share = 1) {
+    if (!is_whole && !is_worth_more()) return add_hopeless(cell, is_whole);
     gather_facets(hull_, cell.all_corners(), task_.request.flat->plane.normal, most_, scene_,
                   memory_.candidates, counters_);
     work_ -= cost_of_gather + cost_of_found * double(length_of_list());
     FlatCell first, second;
-    if (!memory_.candidates.is_too_long) {
-      work_ -= double(members_.size()) * (cost_of_part + double(length_of_list()));
+    const size_t length = length_of_list();
+    const double masks = double(members_.size()) * (cost_of_mask + double(length));
+    if (!memory_.candidates.is_too_long && length > always_masked &&
+        masks > worth_of_mask * share * allowed_) {
+      add_hopeless(cell, is_whole);  // rays are cheaper
+    } else if (!memory_.candidates.is_too_long) {
+      work_ -= length > 0 ? masks : 0;
+      won_ += share * allowed_;
       add_part(cell, is_whole);
     } else if (is_dark(cell)) {
       clear_list();
       memory_.candidates.is_complete = true;
       memory_.candidates.is_too_long = false;
+      won_ += share * allowed_;
       add_part(cell, is_whole).is_dark = true;
-    } else if (halvings == 0 || work_ <= 0 || cell.is_disk || !halve(cell, first, second)) {
+    } else if (halvings == 0 || !is_worth_more() || cell.is_disk || !halve(cell, first, second)) {
       add_hopeless(cell, is_whole);
     } else {
-      divide(first, false, halvings - 1);
-      divide(second, false, halvings - 1);
+      divide(first, false, halvings - 1, share / 2);
+      divide(second, false, halvings - 1, share / 2);
     }
   }
 
@@ -61,6 +76,13 @@ class FarDivision {
   double work() const { return work_; }
 
  private:
+  double most_lost() const {
+    return std::max(least_lost, 1 - lost_by_open * task_.promise.far_open);
+  }
+  // What proofs cost beyond what they have won is to be a small part of what rays would.
+  bool is_worth_more() const {
+    return work_ > 0 && allowed_ - work_ <= most_lost() * allowed_ + won_;
+  }
   size_t length_of_list() const {
     return memory_.candidates.facets.size() + memory_.candidates.rounds.size();
   }
@@ -129,8 +151,10 @@ class FarDivision {
   ShadowScene& scene_;
   GatherMemory& memory_;
   CertifiedCounters& counters_;
-  double work_;  // that is left
-  size_t most_;  // facets in a list
+  double allowed_;  // what rays to the whole cell would cost, in facets of a mask
+  double work_;     // of that is left
+  double won_ = 0;  // by parts that need no rays
+  size_t most_;     // facets in a list
 };
 
 double radius_of(const ReceiverHull& hull) {

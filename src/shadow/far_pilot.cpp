@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t rays = 64;
+constexpr size_t most_rays = 64, rays_of_receiver = 4;
 constexpr uint64_t purpose_pilot = 0x7069'6c6f'7400;
 
 // A ray from a receiver to a point of a source, and what the point would send.
@@ -36,11 +36,11 @@ Pilot pilot_of(const ShadowReceiver& r, const FlatSource& source, double light, 
 
 double far_open_share(const ShadowCluster& cluster, std::span<const LightRequest> requests,
                       std::span<const float> unoccluded, ShadowScene& scene) {
-  const size_t n = cluster.size();
-  std::array<ShadowSegment, rays> segments;
-  std::array<float, rays> before;
-  std::array<uint8_t, rays> is_hidden{};
-  std::array<double, rays> weights{};
+  const size_t n = cluster.size(), rays = std::min(rays_of_receiver * n, most_rays);
+  std::array<ShadowSegment, most_rays> segments;
+  std::array<float, most_rays> before;
+  std::array<uint8_t, most_rays> is_hidden{};
+  std::array<double, most_rays> weights{};
   size_t count = 0;
   for (size_t k = 0; k < rays; ++k) {
     const size_t i = (2 * k + 1) * n / (2 * rays);

@@ -135,3 +135,64 @@ TEST_CASE("a thicket before a window: the mean of rays, and the same bytes for a
   }
   CHECK(std::abs(sum) < 4 * std::sqrt(variance));
 }
+
+namespace {
+
+// A thousand leaves over a plain that reflects like a matte or a coated surface.
+Scene tree(bool is_glossy) {
+  Scene s;
+  const uint32_t m = add_diffuse(s, Rgb{0.6f});
+  if (is_glossy) {
+    s.materials[m].kind = MaterialKind::coated_diffuse;
+    s.materials[m].roughness.value = 0.3f;
+  }
+  add_quad(s, m, {Vec3{-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0}});
+  Random random(5);
+  const auto about_zero = [&] { return random.next_float() + random.next_float() - 1; };
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 at{3 * about_zero(), 3 * about_zero(), 3 + 1.6f * about_zero()};
+    const Vec3 a = normalize(Vec3{about_zero(), about_zero(), about_zero()}) * 0.12f;
+    const Vec3 b = normalize(Vec3{about_zero(), about_zero(), about_zero()}) * 0.12f;
+    add_quad(s, m, {at + a, at + b, at - a, at - b});
+  }
+  return s;
+}
+
+}  // namespace
+
+// What proofs are no help with: they must not cost more than the rays that they would save.
+TEST_CASE("a tree in the open: the mean of fixed rays, by few rays and hardly any proofs") {
+  for (const bool is_glossy : {false, true}) {
+    Scene s = tree(is_glossy);
+    add_environment(s, Rgb{2});
+    Light& sun = add_light(s, LightKind::sun, Rgb{5e4f});
+    sun.direction = normalize(Vec3{-1, 0.4f, -1});
+    sun.angular_radius = 0.00465f;
+    const PreparedScene scene(std::move(s));
+    const Camera camera = look_at({0, -7, 1.7f}, {0, 0, 1.5f}, {0, 0, 1}, 60);
+    RenderOptions o;
+    o.width = 24;
+    o.height = 18;
+    o.indirect = Indirect::none;
+    o.max_spp = 16;
+    const RenderResult once = render_now(scene, camera, o);
+    o.threads = 1;
+    CHECK(is_identical(once.layers, render_now(scene, camera, o).layers));
+    o.threads = 2;
+    const Counters& c = once.statistics.counters;
+    CAPTURE(is_glossy);
+    CAPTURE(c.shadow_rays);
+    CAPTURE(c.viewing_rays);
+    CAPTURE(c.masked);
+    CHECK(c.shadow_rays < 45 * c.viewing_rays);
+    const Ensemble mine = render_ensemble(scene, camera, o, 16);
+    o.method = Method::fixed;
+    o.spp = o.max_spp = 16;
+    const Ensemble fixed = render_ensemble(scene, camera, o, 16);
+    CHECK(p_of_difference(mine.mean, fixed.mean) > 1e-4);
+    size_t off = 0;
+    for (size_t i = 0; i < mine.pixels.size(); ++i)
+      off += p_of_difference(mine.pixels[i], fixed.pixels[i], 1e-6) < 1e-6 ? 1 : 0;
+    CHECK(off == 0);
+  }
+}

@@ -1,0 +1,59 @@
+// How many points of far sources each hit of a cluster gets.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "integrate/drawn_lights.h"
+
+namespace troffer {
+
+// In pictures pixels whose viewing rays meet different things err by these, and get further viewing
+// rays: neither those nor these get as many points as the error alone would want.
+class FarCounts {
+ public:
+  // of_pixel: points of a pixel, all of its usual viewing rays together; open: the share of the
+  // light that arrives.
+  FarCounts(const WaitingHits& hits, std::span<const uint32_t> members, const DrawingBudget& budget,
+            bool is_picture, double of_pixel, double open)
+      : hits_(hits),
+        members_(members),
+        first_(uint32_t(budget.viewing_rays)),
+        is_picture_(is_picture) {
+    constexpr double most_points = 256;
+    const double each = std::min(of_pixel / double(budget.viewing_rays), most_points);
+    usual_ = uint32_t(std::ceil(each));
+    constexpr double most_fewer = 4, least_most_few = 16, much = 0.4;
+    const double fewer = std::clamp(most_fewer * open / much, 1.0, most_fewer);
+    const double most_few = least_most_few * sqr(most_fewer / fewer);
+    few_ = uint32_t(std::ceil(std::min(each / fewer, most_few)));
+  }
+
+  uint32_t usual() const { return usual_; }
+  bool is_first_of_pixel(size_t i) const {
+    return i == 0 || hits_.pixels[members_[i]] != hits_.pixels[members_[i - 1]];
+  }
+  // The pixel's hits begin at i.
+  void look_at_pixel(size_t i) {
+    size_t end = i + 1;
+    while (end < members_.size() && !is_first_of_pixel(end)) ++end;
+    is_divided_ = 2 * (end - i) <= first_;
+  }
+  // Points of hit i, and the first of them in the pixel's sequence.
+  uint32_t of(size_t i, uint32_t& first_point) const {
+    const uint32_t sample = hits_.samples[members_[i]];
+    const bool is_further = is_picture_ && sample >= first_;
+    first_point = is_further ? first_ * usual_ + (sample - first_) * few_ : sample * usual_;
+    return is_further || (is_picture_ && is_divided_) ? few_ : usual_;
+  }
+
+ private:
+  const WaitingHits& hits_;
+  std::span<const uint32_t> members_;
+  uint32_t first_, usual_ = 0, few_ = 0;
+  bool is_picture_, is_divided_ = false;
+};
+
+}  // namespace troffer
