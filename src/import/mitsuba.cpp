@@ -59,7 +59,8 @@ void MitsubaReader::read_element(const MitsubaNode& node) {
   if (node.tag == "shape") {
     add_shape(node, Affine(), false);
   } else if (node.tag == "emitter") {
-    add_mitsuba_light(node, tree_, scene_);
+    // An area light that stands by itself waits for shapes that refer to it.
+    if (node.type != "area") add_mitsuba_light(node, tree_, scene_);
   } else if (node.tag == "sensor") {
     add_mitsuba_camera(node, tree_, scene_);
   } else if (node.tag == "medium") {

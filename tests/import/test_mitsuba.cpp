@@ -207,6 +207,15 @@ TEST_CASE("defaults, includes, aliases and references") {
   CHECK(scene.materials.at(scene.spheres.at(0).material).base_color.value == Rgb{0.25f, 0, 0});
 }
 
+TEST_CASE("an area light that shapes refer to") {
+  const Scene scene = import_world(
+      "<shape type='disk'><ref id='a'/></shape><emitter type='area' id='a'><rgb name='radiance' "
+      "value='3'/></emitter>");
+  CHECK(scene.warnings.entries().empty());
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].name == "a");
+}
+
 TEST_CASE("lights without surface") {
   const Scene scene = import_world(
       "<emitter type='point'><point name='position' x='1' y='2' z='3'/><rgb name='intensity' "

@@ -1,0 +1,248 @@
+// Radiance's scene files: syntax, surfaces and their fronts, materials, commands, views.
+#include "import/radiance.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "import/import.h"
+#include "import/mesh_clean.h"
+#include "mutations.h"
+#include "temp_folder.h"
+
+using namespace troffer;
+
+namespace {
+
+Scene import_text(const std::string& text) {
+  const TempFolder folder;
+  return import_radiance(folder.write("scene.rad", text));
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    import_text(text);
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    return what.substr(what.find("scene.rad"));
+  }
+  return "";
+}
+
+bool has_warning(const Scene& scene, const std::string& part) {
+  for (const Warning& w : scene.warnings.entries())
+    if (w.text.find(part) != std::string::npos) return true;
+  return false;
+}
+
+bool is_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
+  return length(a - b) <= tolerance;
+}
+
+const std::string grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
+const std::string bright = "void light bright 0 0 3 10 20 30\n";
+
+// Area and, for closed fronts, volume inside them.
+std::pair<double, double> area_and_volume(const Scene& scene) {
+  double area = 0, volume = 0;
+  for (const Mesh& m : scene.meshes)
+    for (const Triangle& t : m.triangles) {
+      const Vec3d n = area_vector(m, t);
+      area += length(n) / 2;
+      volume += dot(n, Vec3d(m.positions[t[0]])) / 6;
+    }
+  return {area, volume};
+}
+
+}  // namespace
+
+TEST_CASE("polygons emit to the side from which they run counterclockwise") {
+  const Scene scene = import_text("# a comment\n" + bright +
+                                  "bright polygon top\n0\n0\n9 0 0 3  0 1 3  1 0 3  # down\n");
+  REQUIRE(scene.lights.size() == 1);
+  const Light& e = scene.lights[0];
+  CHECK(e.name == "top");
+  CHECK(e.radiance == Rgb{10, 20, 30});
+  CHECK_FALSE(e.is_two_sided);
+  CHECK_FALSE(scene.is_photometric);
+  const Mesh& m = scene.meshes.at(e.geometry);
+  CHECK(area_vector(m, m.triangles.at(0)).z < 0);
+  CHECK(scene.materials.at(m.material).base_color.value == Rgb{0});
+}
+
+TEST_CASE("closed surfaces have their fronts outside, their counterparts inside") {
+  const auto [cone_area, cone] =
+      area_and_volume(import_text(grey + "grey cone c 0 0 8 0 0 0 0 0 3 1 0"));
+  CHECK(cone_area == doctest::Approx(pi * std::sqrt(10)).epsilon(0.01));
+  CHECK(cone == doctest::Approx(pi).epsilon(0.01));
+  CHECK(area_and_volume(import_text(grey + "grey cup c 0 0 8 0 0 0 0 0 3 1 0")).second < 0);
+  const auto [tube_area, tube] =
+      area_and_volume(import_text(grey + "grey tube c 0 0 7 1 1 1 1 4 1 .5"));
+  CHECK(tube_area == doctest::Approx(pi * 3).epsilon(0.01));
+  CHECK(tube < 0);
+  const Scene balls =
+      import_text(grey + "grey sphere s 0 0 4 1 2 3 2\ngrey bubble b 0 0 4 0 0 0 1");
+  REQUIRE(balls.spheres.size() == 2);
+  CHECK_FALSE(balls.spheres[0].is_inside_out);
+  CHECK(balls.spheres[1].is_inside_out);
+  CHECK(balls.spheres[0].radius == 2);
+  const Scene rings = import_text(grey + "grey ring r 0 0 8 1 2 3 0 0 -2 0 1.5\n" +
+                                  "grey ring q 0 0 8 0 0 0 0 1 0 1 2");
+  REQUIRE(rings.disks.size() == 1);
+  CHECK(is_near(rings.disks[0].normal, {0, 0, -1}));
+  CHECK(rings.disks[0].radius == 1.5f);
+  CHECK(area_and_volume(rings).first == doctest::Approx(3 * pi).epsilon(0.01));
+  CHECK(area_vector(rings.meshes[0], rings.meshes[0].triangles[0]).y > 0);
+}
+
+TEST_CASE("xform: order, arrays, mirrors and pipes") {
+  const TempFolder folder;
+  folder.write("sub/ball.rad", grey + "grey sphere s 0 0 4 1 0 0 .25\n");
+  const Scene scene = import_radiance(
+      folder.write("scene.rad",
+                   "!xform -t 1 0 0 -rz 90 sub/ball.rad\n!xform -a 3 -t 0 0 2 -a 2 -t 0 5 0 \\\n "
+                   "sub/ball.rad\n!cat sub/ball.rad | xform -s 2 | xform -t 0 0 1\n"));
+  REQUIRE(scene.spheres.size() == 8);
+  CHECK(is_near(scene.spheres[0].centre, {0, 2, 0}));
+  CHECK(is_near(scene.spheres[1].centre, {1, 0, 0}));
+  CHECK(is_near(scene.spheres[6].centre, {1, 5, 4}));
+  CHECK(is_near(scene.spheres[7].centre, {2, 0, 1}));
+  CHECK(scene.spheres[7].radius == 0.5f);
+  for (const char* option : {"", " | xform -mx", " | xform -my -rx 30 -i 2 -ry 10"}) {
+    CAPTURE(option);
+    const auto [area, volume] =
+        area_and_volume(import_text(grey + "!genbox grey box 1 2 3" + option));
+    CHECK(area == doctest::Approx(22));
+    CHECK(volume == doctest::Approx(6));
+  }
+  CHECK(area_and_volume(import_text(grey + "!genbox grey box 1 2 3 -i")).second ==
+        doctest::Approx(-6));
+}
+
+TEST_CASE("commands are never run") {
+  const TempFolder folder;
+  const std::string trace = folder.path("trace");
+  const Scene scene = import_radiance(folder.write(
+      "scene.rad",
+      grey + "!touch " + trace + "\n!genbox grey b 1 1 1 | tee " + trace + "\n!gensky 6 21 12\n"));
+  CHECK_FALSE(std::filesystem::exists(trace));
+  CHECK(has_warning(scene, "\"!touch\" is not run"));
+  CHECK(has_warning(scene, "\"!tee\" is not run"));
+  CHECK(has_warning(scene, "\"!gensky\" is not run"));
+}
+
+TEST_CASE("Radiance's materials") {
+  const auto material = [](const std::string& text) {
+    const Scene scene = import_text(text + "\nm sphere s 0 0 4 0 0 0 1");
+    REQUIRE(scene.spheres.size() == 1);
+    return scene.materials.at(scene.spheres[0].material);
+  };
+  Material m = material("void plastic m 0 0 5 .1 .2 .3 0 0");
+  CHECK(m.kind == MaterialKind::diffuse);
+  CHECK(m.base_color.value == Rgb{0.1f, 0.2f, 0.3f});
+  m = material("void plastic m 0 0 5 .1 .2 .3 .04 .1");
+  CHECK(m.ior == doctest::Approx(1.5));  // reflects .04 along the normal
+  CHECK(m.roughness.value == 0.1f);
+  m = material("void metal m 0 0 5 .8 .7 .6 .9 .05");
+  CHECK(m.metallic.value == 0.9f);
+  m = material("void mirror m 0 0 3 .8 .7 .6");
+  CHECK(m.is_reflectance);
+  m = material("void dielectric m 0 0 5 1 1 1 1.33 0");
+  CHECK(m.ior == 1.33f);
+  CHECK_FALSE(m.is_thin);
+  // The reference manual's example: transmissivity 0.96 is a transmittance of 0.88.
+  m = material("void glass m 0 0 3 .96 .96 .96");
+  REQUIRE(m.is_thin);
+  const double r = sqr(0.52 / 2.52);
+  CHECK((1 - r) / (1 + r) * double(m.base_color.value.r) == doctest::Approx(0.88).epsilon(0.002));
+  // Aliases, and patterns that are not shown.
+  m = material(
+      "void colorpict p 7 red green blue x.hdr . u v 0 0\np metal q 0 0 5 .1 .2 .3 0 0\n"
+      "void alias m q");
+  CHECK(m.base_color.value == Rgb{0.1f, 0.2f, 0.3f});
+  CHECK(import_text("void sphere s 0 0 4 0 0 0 1").spheres.empty());
+}
+
+TEST_CASE("what a pane of trans sends back and lets through") {
+  const Scene scene =
+      import_text("void trans m 0 0 7 1 1 1 0 0 .6 .5\nm polygon p 0 0 9 0 0 0 1 0 0 0 1 0");
+  const Material& m = scene.materials.at(0);
+  const float t = m.transmission.value, base = m.base_color.value.r;
+  CHECK(base * (1 - t) == doctest::Approx(0.4));
+  CHECK(base * t == doctest::Approx(0.3));
+  CHECK(has_warning(scene, "absorbed"));
+}
+
+TEST_CASE("sun, sky and ground as gensky writes them") {
+  const Scene scene = import_text(
+      "# gensky 3 20 12\nvoid light solar 0 0 3 6e6 6e6 6e6\n"
+      "solar source sun 0 0 4 0 -0.6 0.8 0.5\n"
+      "void brightfunc skyfunc 2 skybright skybright.cal 0 7 1 8.4 5.8 0.9 0 -0.6 0.8\n"
+      "skyfunc glow sky_glow 0 0 4 1 1 1 0\nsky_glow source sky 0 0 4 0 0 1 180\n"
+      "skyfunc glow ground_glow 0 0 4 .5 .5 .5 0\nground_glow source ground 0 0 4 0 0 -1 180\n");
+  REQUIRE(scene.lights.size() == 3);
+  CHECK(scene.lights[0].kind == LightKind::sun);
+  CHECK(scene.lights[0].angular_radius == doctest::Approx(rad_from_deg(0.25)));
+  CHECK(is_near(scene.lights[0].direction, {0, 0.6f, -0.8f}));
+  CHECK(scene.lights[1].kind == LightKind::sky);
+  CHECK(is_near(scene.lights[1].axes[2], {0, 0, 1}));
+  CHECK(scene.lights[1].radiance.r == doctest::Approx(8.4 / 0.9));
+  CHECK(scene.lights[2].radiance.r == doctest::Approx(0.5 * 5.8));
+  CHECK(is_near(scene.lights[2].axes[2], {0, 0, -1}));
+}
+
+TEST_CASE("views of comments and of the file beside") {
+  const Scene scene =
+      import_text("#@rpict -vtv -vp 1 2 3 -vd 0 2 0 -vu 0 0 1 -vh 90 -vv 53.1301\n");
+  const Camera& c = scene.cameras.at(0);
+  CHECK(is_near(c.position, {1, 2, 3}));
+  CHECK(is_near(c.forward, {0, 1, 0}));
+  CHECK(is_near(c.right, {1, 0, 0}));
+  CHECK(is_near(c.up, {0, 0, 1}));
+  CHECK(c.half_extent == doctest::Approx(0.5));
+  CHECK(c.aspect == doctest::Approx(2));
+  const TempFolder folder;
+  folder.write("a.vf", "rvu -vtl -vp 0 0 9 -vd 0 0 -1 -vu 0 1 0 -vh 4 -vv 2\nrvu -vtv -vp 0 0 1\n");
+  const Scene beside = import_radiance(folder.write("a.rad", grey));
+  REQUIRE(beside.cameras.size() == 2);
+  CHECK(beside.cameras[0].kind == CameraKind::orthographic);
+  CHECK(beside.cameras[0].half_extent == 1);
+}
+
+TEST_CASE("what cannot be read is an error with its place") {
+  CHECK(error_of("grey polygon p 0 0 9 0 0 0 1 0 0 0 1 0") ==
+        "scene.rad:1:1: no modifier 'grey' is defined");
+  CHECK(error_of(grey + "grey sphere s 0 0 4 1 x") == "scene.rad:2:23: 'x' is no number");
+  CHECK(error_of(grey + "grey sphere s 0 0 4 1").find("the file ends within") != std::string::npos);
+  CHECK(error_of("void wood w 0 0 0").find("'wood' is no type") != std::string::npos);
+  CHECK(error_of("!xform ../x.rad").find("leads out of the scene's folder") != std::string::npos);
+  CHECK(error_of("!xform scene.rad").find("without end") != std::string::npos);
+  CHECK(error_of("void alias a b\nvoid alias b a\na sphere s 0 0 4 0 0 0 1").find("without end") !=
+        std::string::npos);
+  CHECK(error_of(grey + "!genbox grey b 1 1 1 | xform -a 1000 -t 1 0 0 -a 1000 -t 0 1 0")
+            .find("100000 copies") != std::string::npos);
+  CHECK(error_of(grey + "grey polygon p 0 0 99999999999").find("number of arguments") !=
+        std::string::npos);
+  const TempFolder folder;
+  CHECK_THROWS_WITH_AS(import_scene(folder.write("a.oct", "#?RADIANCE\n")),
+                       doctest::Contains("give the .rad file"), InputError);
+}
+
+TEST_CASE("changed Radiance files load or are refused") {
+  const TempFolder folder;
+  const std::string text =
+      grey + bright +
+      "void glass pane 0 0 3 .9 .9 .9\nvoid trans t 0 0 7 .8 .8 .8 .1 .05 .4 .5\n"
+      "void mixfunc mix 4 grey pane .5 . 0 0\nvoid spotlight spot 0 0 7 5 5 5 60 0 0 -1\n"
+      "void brightfunc sf 2 skybright skybright.cal 0 7 2 8 5 1 0 0 1\nsf glow sg 0 0 4 1 1 1 0\n"
+      "bright polygon l 0 0 12 0 0 3 0 1 3 1 1 3 1 0 3\nmix ring r 0 0 8 0 0 0 0 0 1 .5 1\n"
+      "spot polygon sp 0 0 9 0 0 2 0 1 2 1 0 2\nsg source sky 0 0 4 0 0 1 180\n"
+      "t cone c 0 0 8 0 0 0 0 0 3 1 .5\n!genbox grey b 1 2 3 | xform -rz 30 -a 3 -t 4 0 0\n"
+      "pane bubble u 0 0 4 1 1 1 1\n# rvu -vp 0 0 1 -vd 1 0 0 -vh 60 -vv 40\n";
+  test::check_mutations(text, 4000, [&](const std::string& changed) {
+    import_radiance(folder.write("scene.rad", changed));
+  });
+}
