@@ -112,18 +112,17 @@ void add_luminaire_list(Scene& scene, const std::string& path, const Vec3& down)
   for (const Row& row : read_rows(path, down)) {
     auto at = known.find(row.file);
     if (at == known.end()) {
-      const auto web = int32_t(scene.webs.size());
       at = known
                .emplace(row.file,
-                        Known{read_luminaire((folder / row.file).string(), scene.warnings), web})
+                        Known{read_luminaire((folder / row.file).string(), scene.warnings), 0})
                .first;
-      scene.webs.push_back(at->second.luminaire.web);
+      at->second.web = add_web(scene, at->second.luminaire);
     }
     const std::string name = "luminaire" + std::to_string(n++);
     if (row.dimming > 0)
       add_luminaire(scene, name, at->second.luminaire, at->second.web,
-                    Rgb{float(unit * row.dimming)}, row.position - scene.origin, row.down,
-                    along_of(row));
+                    Rgb{float(unit * row.dimming)},
+                    {row.position - scene.origin, row.down, along_of(row), Vec3d(down)});
   }
 }
 

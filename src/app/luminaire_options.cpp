@@ -115,8 +115,9 @@ std::string luminaire_info(const std::string& path, bool is_json) {
   j["largest_candela"] = largest_intensity(l.web);
   j["beam_angle"] = {full_angle_deg(l.web, 0.5, 0), full_angle_deg(l.web, 0.5, pi / 2)};
   j["field_angle"] = {full_angle_deg(l.web, 0.1, 0), full_angle_deg(l.web, 0.1, pi / 2)};
-  j["opening"] = {l.width, l.length, l.height};
-  j["is_round"] = l.is_round;
+  const Vec3d& size = l.opening.size;
+  j["opening"] = {size.x, size.y, size.z};
+  j["is_round"] = l.opening.is_round[0] || l.opening.is_round[1];
   j["warnings"] = nlohmann::ordered_json::array();
   for (const Warning& w : warnings.entries()) j["warnings"].push_back(w.text);
   if (is_json)
@@ -124,11 +125,11 @@ std::string luminaire_info(const std::string& path, bool is_json) {
   std::string text = fmt::format(
       "luminaire  {}\nflux       {:.5g} lm (lamps {:.5g} lm)\npower      {:.4g} W, {:.4g} lm/W\n"
       "intensity  {:.5g} cd at most\nbeam       {:.1f} x {:.1f} degrees (half), {:.1f} x {:.1f} "
-      "(a tenth)\nopening    {:.3g} x {:.3g} x {:.3g} m{}\n",
+      "(a tenth)\nopening    {:.3g} (C0) x {:.3g} (C90) x {:.3g} m{}\n",
       printable(l.description), lumens, l.lamp_lumens, l.watts, j["efficacy"].get<double>(),
       largest_intensity(l.web), j["beam_angle"][0].get<double>(), j["beam_angle"][1].get<double>(),
-      j["field_angle"][0].get<double>(), j["field_angle"][1].get<double>(), l.width, l.length,
-      l.height, l.is_round ? ", round" : "");
+      j["field_angle"][0].get<double>(), j["field_angle"][1].get<double>(), size.x, size.y, size.z,
+      j["is_round"].get<bool>() ? ", round" : "");
   for (const Warning& w : warnings.entries()) text += "warning    " + printable(w.text) + "\n";
   return text;
 }

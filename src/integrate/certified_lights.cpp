@@ -98,6 +98,7 @@ bool CertifiedLights::add_light(const PreparedScene& scene, uint32_t light) {
     CertifiedSource source;
     source.primitive = p;
     source.is_textured = piece.is_textured;
+    source.is_by_web = scene.scene.lights[light].web != no_web;
     source.radiance = piece.is_textured ? piece.mean_radiance : scene.scene.lights[light].radiance;
     if (piece.shape == PrimitiveShape::sphere) {
       source.is_round = true;

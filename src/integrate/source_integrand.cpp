@@ -84,6 +84,9 @@ Rgb SourceIntegrand::radiance_at(const CertifiedSource& source, const Vec3& poin
     return l;
   }
   const LightPrimitive& p = scene_.primitives[source.primitive];
+  if (source.is_by_web)
+    return emitted_radiance(scene_.scene, scene_.scene.lights[p.light], !source.is_back, {},
+                            normalize(receiver - point));
   const Vec3d a(p.vertices[0]), ab = Vec3d(p.vertices[1]) - a, ac = Vec3d(p.vertices[2]) - a;
   const Vec3d n = cross(ab, ac), d = Vec3d(point) - a;
   const double area2 = length_squared(n);
@@ -207,6 +210,10 @@ void SourceIntegrand::multiply_by_radiance(const CertifiedSource& source, const 
                                            PointArrays& p) {
   const size_t n = p.size();
   const bool varies = source.far != nullptr && source.is_textured;
+  if (source.is_by_web) {
+    multiply_by_web(source, hit, p);
+    return;
+  }
   if (hit.glossy == nullptr) {
     if (varies)
       return far_radiance(*source.far, n, p.x.data(), p.y.data(), p.z.data(), p.r.data(),
@@ -223,6 +230,34 @@ void SourceIntegrand::multiply_by_radiance(const CertifiedSource& source, const 
   multiply(r, n, p.r.data());
   multiply(r + n, n, p.g.data());
   multiply(r + 2 * n, n, p.b.data());
+}
+
+namespace {
+
+void scale_by(const Rgb& factor, PointArrays& p) {
+  for (size_t i = 0; i < p.size(); ++i) {
+    p.r[i] *= factor.r;
+    p.g[i] *= factor.g;
+    p.b[i] *= factor.b;
+  }
+}
+
+}  // namespace
+
+void SourceIntegrand::multiply_by_web(const CertifiedSource& source, const IntegrandHit& hit,
+                                      PointArrays& p) {
+  const Light& light = scene_.scene.lights[scene_.primitives[source.primitive].light];
+  far_values_.resize(p.size());
+  radiance_many(scene_.scene.webs[size_t(light.web)], light.axes, p.size(), p.x.data(), p.y.data(),
+                p.z.data(), web_lanes_, far_values_.data());
+  if (hit.glossy == nullptr) {
+    p.r.assign(p.size(), light.radiance.r);
+    p.g.assign(p.size(), light.radiance.g);
+    p.b.assign(p.size(), light.radiance.b);
+  } else {
+    scale_by(light.radiance, p);
+  }
+  for (auto* a : {&p.r, &p.g, &p.b}) multiply(far_values_.data(), p.size(), a->data());
 }
 
 // Of a source whose radiance varies what the surface does with it alone.

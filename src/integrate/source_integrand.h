@@ -10,6 +10,7 @@
 #include "integrate/surface_scattering.h"
 #include "integrate/vertex.h"
 #include "light/far_cells.h"
+#include "light/web.h"
 #include "shadow/source_task.h"
 
 namespace troffer {
@@ -20,10 +21,12 @@ struct CertifiedSource {
   bool is_round = false;
   FlatSource flat;
   SphereSource sphere;
-  Rgb radiance;              // mean, where it varies
-  bool is_textured = false;  // a triangle with texture coordinates, or a far cell that is not even
-  bool is_back = false;      // the light is seen from its back
-  uint32_t primitive = 0;    // (one) of LightPrimitives
+  Rgb radiance;  // mean, where it varies
+  // A triangle with texture coordinates, a web's opening, or a far cell that is not even
+  bool is_textured = false;
+  bool is_by_web = false;  // varies by direction alone
+  bool is_back = false;    // the light is seen from its back
+  uint32_t primitive = 0;  // (one) of LightPrimitives
   uint64_t stream = 0;
   const FarCell* far = nullptr;  // of a light at infinity; it has `radiance`, or varies
 
@@ -102,10 +105,14 @@ class SourceIntegrand final : public ShadowIntegrand {
   void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
                 std::span<Rgb> values) override;
   bool is_smooth(uint32_t request, uint32_t member) const override {
-    return sources_[request]->far != nullptr ||
+    return sources_[request]->far != nullptr || sources_[request]->is_by_web ||
            (hits_[member].glossy != nullptr && !varies(request));
   }
   void evaluate_many(uint32_t request, uint32_t member, PointArrays& points) override;
+  bool is_gentle(uint32_t request, uint32_t member) const override {
+    return sources_[request]->is_by_web && hits_[member].glossy == nullptr &&
+           !is_behind_panes(request);
+  }
 
  private:
   bool is_behind_panes(uint32_t request) const {
@@ -118,6 +125,7 @@ class SourceIntegrand final : public ShadowIntegrand {
   void evaluate_gloss(const CertifiedSource& source, const IntegrandHit& hit, PointArrays& points);
   void multiply_by_radiance(const CertifiedSource& source, const IntegrandHit& hit,
                             PointArrays& points);
+  void multiply_by_web(const CertifiedSource& source, const IntegrandHit& hit, PointArrays& points);
   void take_by_panes(uint32_t request, const Vec3& receiver, std::span<const Vec3> points,
                      std::span<Rgb> values) const;
   // To the receiver, from so far away.
@@ -131,6 +139,7 @@ class SourceIntegrand final : public ShadowIntegrand {
   std::vector<PanesBetween> behind_panes_;
   GlossyLanes lanes_;
   std::vector<float> far_values_;
+  WebLanes web_lanes_;
 };
 
 }  // namespace troffer

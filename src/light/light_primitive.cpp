@@ -91,21 +91,32 @@ Rgb mean_over_triangle(const Scene& scene, const Light& e, const Vec2 (&uv)[3]) 
   return mean_over_triangle(scene, e, uv, std::min(wanted, 128));
 }
 
-// Of a piece of a flat light that shines as a web says: as if diffuse, the flux of an area over pi
-// and the sides. All else is by direction (surface_light.h).
-void set_web(const Scene& scene, const Light& e, LightPrimitive& p) {
+}  // namespace
+
+// Of a piece that shines as a web says: the mean of a diffuse one of the same flux. All else is by
+// direction (surface_light.h).
+void LightPrimitives::set_web(const Scene& scene, const Light& e, LightPrimitive& p) {
   if (e.web == no_web) return;
   p.is_textured = true;
-  const auto total = float(flux(scene.webs[size_t(e.web)]));
-  p.mean_radiance = e.radiance * (total / (e.is_two_sided ? 2 * pi_f : pi_f));
+  const LightWeb& web = scene.webs[size_t(e.web)];
+  if (web.faces.empty()) {  // a sphere, whose surface is four times its cross-section
+    p.mean_radiance = e.radiance * float(flux(web) / (pi * 4 * double(web.cross_section)));
+    return;
+  }
+  std::unique_ptr<const WebSamples>& samples = web_samples_[size_t(e.web)];
+  if (!samples) samples = std::make_unique<const WebSamples>(web);
+  const Vec3 front(p.normal);
+  const Vec3 n{dot(front, e.axes[0]), dot(front, e.axes[1]), dot(front, e.axes[2])};
+  double exitance = samples->exitance(n);
+  if (e.is_two_sided) exitance = (exitance + samples->exitance(-n)) / 2;
+  p.mean_radiance = e.radiance * float(exitance / pi);
 }
-
-}  // namespace
 
 LightPrimitives::LightPrimitives(const Scene& scene)
     : disk_table_(scene.disks.size(), no_primitive),
       sphere_table_(scene.spheres.size(), no_primitive) {
   triangle_table_.resize(scene.meshes.size());
+  web_samples_.resize(scene.webs.size());
   ranges_.reserve(scene.lights.size());
   Box scene_bounds;
   for (const Light& e : scene.lights)
@@ -133,6 +144,7 @@ LightPrimitives::LightPrimitives(const Scene& scene)
     }
     ranges_.push_back({first, uint32_t(primitives_.size())});
   }
+  web_samples_.clear();
 }
 
 int32_t LightPrimitives::append(LightPrimitive p, const Light& e) {
@@ -220,6 +232,7 @@ void LightPrimitives::add_disk(const Scene& scene, uint32_t light) {
   p.bounds.grow(disk.centre + half);
   p.cone_axis = Vec3(p.normal);
   p.cos_cone = 1;
+  set_web(scene, e, p);
   disk_table_[e.geometry] = append(p, e);
 }
 
@@ -237,6 +250,7 @@ void LightPrimitives::add_sphere(const Scene& scene, uint32_t light) {
   p.centroid = sphere.centre;
   p.bounds.grow(sphere.centre - Vec3{sphere.radius});
   p.bounds.grow(sphere.centre + Vec3{sphere.radius});
+  set_web(scene, e, p);
   sphere_table_[e.geometry] = append(p, e);
 }
 

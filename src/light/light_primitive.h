@@ -11,6 +11,7 @@
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "light/direction_table.h"
+#include "light/web.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -41,7 +42,7 @@ struct LightPrimitive {
 
   uint32_t light = 0;        // index into Scene::lights
   int32_t triangle = -1;     // of a mesh source: index into that mesh's triangles
-  bool is_textured = false;  // radiance varies over it: a texture, or holes of an alpha mask
+  bool is_textured = false;  // radiance varies: a texture, holes of an alpha mask, or a web
   Rgb mean_radiance;         // over the surface, W/(m² sr) or cd/m²
   float power = 0;           // luminance of the flux that leaves: pi area L, twice if two-sided
   // What light trees take for power: that of a light as strong in all its directions as this one is
@@ -103,6 +104,7 @@ class LightPrimitives {
   void add_disk(const Scene& scene, uint32_t light);
   void add_sphere(const Scene& scene, uint32_t light);
   void add_without_surface(const Scene& scene, uint32_t light, const Box& scene_bounds);
+  void set_web(const Scene& scene, const Light& e, LightPrimitive& p);
   int32_t append(LightPrimitive p, const Light& e);
 
   std::vector<LightPrimitive> primitives_;
@@ -112,6 +114,7 @@ class LightPrimitives {
   std::vector<uint32_t> at_infinity_;
   std::vector<std::vector<int32_t>> triangle_table_;  // per mesh: empty, or per triangle
   std::vector<int32_t> disk_table_, sphere_table_;
+  std::vector<std::unique_ptr<const WebSamples>> web_samples_;  // per web, while pieces are made
 };
 
 }  // namespace troffer

@@ -1,10 +1,6 @@
-// Polygons, disks, spheres and meshes that emit diffusely, or flat ones as a web says (its z is
-// their front's normal, and Light::radiance 1 / m² of their area): their pieces are sampled by
-// light_sample.h.
+// Polygons, disks, spheres and meshes that emit diffusely, or as a web says whose opening they are
+// (Light::radiance is a factor on its own): their pieces are sampled by light_sample.h.
 #pragma once
-
-#include <algorithm>
-#include <cmath>
 
 #include "light/light.h"
 #include "light/web.h"
@@ -16,11 +12,8 @@ struct SurfaceLight {
                      const Vec3& towards) {
     if (e.web == no_web) return emitted_radiance(scene, e, is_front, uv);  // in all directions
     if (!is_front && !e.is_two_sided) return Rgb{0};
-    // Intensity over projected area. Edge on, where a flat opening has no area, a bound.
-    constexpr float least_cosine = 0.01f;
     const Vec3 w{dot(towards, e.axes[0]), dot(towards, e.axes[1]), dot(towards, e.axes[2])};
-    return e.radiance *
-           (intensity(scene.webs[size_t(e.web)], w) / std::max(std::abs(w.z), least_cosine));
+    return e.radiance * radiance(scene.webs[size_t(e.web)], w);
   }
 
   // The radiance of a point that light_sample.h has chosen.
@@ -49,7 +42,6 @@ struct SurfaceLight {
   }  // has more than one piece
 
   static CertificateShape certificate(const Scene& scene, const Light& e) {
-    if (e.web != no_web) return CertificateShape::none;  // exact terms are those of diffuse sources
     if (e.kind != LightKind::sphere) return CertificateShape::flat;
     const bool is_inwards = e.is_two_sided || scene.spheres[e.geometry].is_inside_out;
     return is_inwards ? CertificateShape::none : CertificateShape::sphere;

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/simd.h"
 #include "base/units.h"
+#include "light/arctangent.h"
 
 namespace troffer {
 
 namespace {
+
+constexpr float least_area_share = 0.01f;  // of its largest face, of an opening seen edge on
 
 // i with angles[i] <= x <= angles[i + 1], and how far x is between them.
 size_t step_of(const std::vector<float>& angles, float x, float& t) {
@@ -21,11 +25,14 @@ size_t step_of(const std::vector<float>& angles, float x, float& t) {
 }  // namespace
 
 float intensity(const LightWeb& web, const Vec3& w) {
-  const float height = std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+  const auto axes = axes_of(web.pole);
+  const Vec3 v{dot(w, axes[0]), dot(w, axes[1]), dot(w, axes[2])};
+  const float height = std::atan2(std::sqrt(v.x * v.x + v.y * v.y), v.z);
   constexpr float slack = 1e-5f;
   if (height < web.heights_rad.front() - slack || height > web.heights_rad.back() + slack) return 0;
-  float turn = std::atan2(w.y, w.x);
-  if (turn < 0) turn += 2 * pi_f;
+  float turn = std::atan2(v.y, v.x);
+  if (turn < web.turns_rad.front() - slack) turn += 2 * pi_f;
+  if (turn > web.turns_rad.back() + slack) return 0;
   float s = 0, t = 0;
   const size_t i = step_of(web.turns_rad, turn, s), j = step_of(web.heights_rad, height, t);
   const size_t n = web.heights_rad.size();
@@ -55,6 +62,125 @@ double flux(const LightWeb& web) {
 
 float largest_intensity(const LightWeb& web) {
   return *std::max_element(web.intensities.begin(), web.intensities.end());
+}
+
+float projected_area(const LightWeb& web, const Vec3& w) {
+  if (web.faces.empty()) return web.cross_section;
+  float sum = 0, largest = 0;
+  for (const Vec3& face : web.faces) {
+    sum += std::max(0.0f, dot(face, w));
+    largest = std::max(largest, length_squared(face));
+  }
+  return std::max(sum, least_area_share * std::sqrt(largest));
+}
+
+namespace {
+
+// The same as step_of(), beginning where the step would be if all were as wide.
+size_t quick_step_of(const std::vector<float>& angles, float x, float& t) {
+  const auto last = angles.size() - 2;
+  const float share = (x - angles.front()) / (angles.back() - angles.front());
+  auto i = size_t(std::clamp(share * float(last + 1), 0.0f, float(last)));
+  while (i > 0 && x < angles[i]) --i;
+  while (i < last && x >= angles[i + 1]) ++i;
+  t = std::clamp((x - angles[i]) / (angles[i + 1] - angles[i]), 0.0f, 1.0f);
+  return i;
+}
+
+// Angles of the directions in which light leaves the points for the receiver; turns from -pi.
+TROFFER_MULTIVERSION
+void angles_of(const Vec3& first, const Vec3& second, const Vec3& pole, size_t n,
+               const float* __restrict x, const float* __restrict y, const float* __restrict z,
+               float* __restrict height, float* __restrict turn) {
+  for (size_t i = 0; i < n; ++i) {
+    const float a = -(x[i] * first.x + y[i] * first.y + z[i] * first.z);
+    const float b = -(x[i] * second.x + y[i] * second.y + z[i] * second.z);
+    const float c = -(x[i] * pole.x + y[i] * pole.y + z[i] * pole.z);
+    height[i] = upper_angle(std::sqrt(a * a + b * b), c);
+    const float angle = upper_angle(std::abs(b), a);
+    turn[i] = b < 0 ? -angle : angle;
+  }
+}
+
+// Adds what of a face is seen.
+TROFFER_MULTIVERSION
+void add_seen(const Vec3& face, size_t n, const float* __restrict x, const float* __restrict y,
+              const float* __restrict z, float* __restrict area) {
+  for (size_t i = 0; i < n; ++i) {
+    const float seen = -(x[i] * face.x + y[i] * face.y + z[i] * face.z);
+    area[i] += seen > 0 ? seen / std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]) : 0.0f;
+  }
+}
+
+}  // namespace
+
+void radiance_many(const LightWeb& web, const std::array<Vec3, 3>& axes, size_t n, const float* x,
+                   const float* y, const float* z, WebLanes& lanes, float* out) {
+  const auto world = [&](const Vec3& v) { return axes[0] * v.x + axes[1] * v.y + axes[2] * v.z; };
+  lanes.height.resize(n);
+  lanes.turn.resize(n);
+  lanes.area.assign(n, web.cross_section);
+  const auto own = axes_of(web.pole);
+  angles_of(world(own[0]), world(own[1]), world(own[2]), n, x, y, z, lanes.height.data(),
+            lanes.turn.data());
+  float least = 0;
+  for (const Vec3& face : web.faces) {
+    add_seen(world(face), n, x, y, z, lanes.area.data());
+    least = std::max(least, least_area_share * length(face));
+  }
+  constexpr float slack = 1e-5f;
+  const size_t heights = web.heights_rad.size();
+  for (size_t k = 0; k < n; ++k) {
+    const float height = lanes.height[k];
+    float turn = lanes.turn[k], s = 0, t = 0;
+    if (turn < web.turns_rad.front() - slack) turn += 2 * pi_f;
+    out[k] = 0;
+    if (height < web.heights_rad.front() - slack || height > web.heights_rad.back() + slack ||
+        turn > web.turns_rad.back() + slack)
+      continue;
+    const size_t i = quick_step_of(web.turns_rad, turn, s),
+                 j = quick_step_of(web.heights_rad, height, t);
+    const float* at = web.intensities.data() + i * heights + j;
+    out[k] = lerp(lerp(at[0], at[1], t), lerp(at[heights], at[heights + 1], t), s) /
+             std::max(lanes.area[k], least);
+  }
+}
+
+WebSamples::WebSamples(const LightWeb& web) {
+  const auto axes = axes_of(web.pole);
+  // Each cell of the web in parts of at most 3 degrees.
+  const auto most = float(rad_from_deg(3.0));
+  const auto parts_of = [&](float from, float to) { return int((to - from) / most) + 1; };
+  for (size_t j = 0; j + 1 < web.heights_rad.size(); ++j) {
+    const float h0 = web.heights_rad[j], h1 = web.heights_rad[j + 1];
+    const int rows = parts_of(h0, h1);
+    for (int row = 0; row < rows; ++row) {
+      const float a = lerp(h0, h1, float(row) / float(rows)),
+                  b = lerp(h0, h1, float(row + 1) / float(rows));
+      const float middle = 0.5f * (a + b), zone = std::cos(a) - std::cos(b);
+      const float z = std::cos(middle), r = std::sin(middle);
+      for (size_t i = 0; i + 1 < web.turns_rad.size(); ++i) {
+        const float t0 = web.turns_rad[i], step = web.turns_rad[i + 1] - t0;
+        const int columns = parts_of(0, step);
+        for (int column = 0; column < columns; ++column) {
+          const float turn = t0 + step * (float(column) + 0.5f) / float(columns);
+          const Vec3 w =
+              axes[0] * (r * std::cos(turn)) + axes[1] * (r * std::sin(turn)) + axes[2] * z;
+          const float weight = radiance(web, w) * zone * step / float(columns);
+          if (!(weight > 0)) continue;
+          directions_.push_back(w);
+          weights_.push_back(weight);
+        }
+      }
+    }
+  }
+}
+
+double WebSamples::exitance(const Vec3& n) const {
+  double sum = 0;
+  for (size_t i = 0; i < directions_.size(); ++i)
+    sum += double(std::max(0.0f, dot(n, directions_[i])) * weights_[i]);
+  return sum;
 }
 
 }  // namespace troffer

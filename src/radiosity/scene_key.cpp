@@ -60,6 +60,10 @@ void add_web(Hasher& h, const LightWeb& web) {
     h.add(values->size());
     for (const float v : *values) h.add(v);
   }
+  h.add(uint64_t(web.pole));
+  h.add(web.faces.size());
+  for (const Vec3& face : web.faces) h.add(face);
+  h.add(web.cross_section);
 }
 
 }  // namespace

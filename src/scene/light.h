@@ -48,7 +48,7 @@ struct Light {
   LightKind kind = LightKind::polygon;
   // W/(m² sr), or cd/m² where Scene::is_photometric; point, spot: radiant intensity (largest), W/sr
   // or cd; distant: irradiance of a surface that faces it, W/m² or lx. A factor on what varies: an
-  // environment's image, a sky's shape, a point's web.
+  // environment's image, a sky's shape, a web.
   Rgb radiance;
 
   // Kinds with a surface: it emits from the front, or from both sides where is_two_sided.
@@ -71,9 +71,10 @@ struct Light {
   int32_t environment = no_environment;  // environment: an image, of Scene::environments
   SkyShape sky;                          // sky
   float angular_radius = 0;              // sun: of its disc, rad
-  int32_t web = no_web;                  // point: how it shines by direction, of Scene::webs
+  // point, kinds with a surface: how it shines by direction, of Scene::webs
+  int32_t web = no_web;
   // World directions of its own x, y, z, unit, orthogonal, of any handedness: of the environment's
-  // image; sky: z is up; point: of the web
+  // image; sky: z is up; of the luminaire whose web it has
   std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 };
 

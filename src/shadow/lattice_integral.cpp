@@ -13,6 +13,8 @@ namespace {
 // Lattices of more samples are looked at in every other row and column: which, is random, so that
 // each sample is as probable as any other.
 constexpr int most_samples = 256;
+// … or in every fourth, where what is integrated is gentle and so many are open then.
+constexpr size_t gentle_samples = 16;
 
 // Sets points, weights and places to the open samples of every stride-th row and column.
 void set_points(const CellTask& cell, uint32_t member, const OpenSamples& s, int stride,
@@ -25,8 +27,12 @@ void set_points(const CellTask& cell, uint32_t member, const OpenSamples& s, int
   m.points.clear();
   m.weights.clear();
   m.places.clear();
-  const int row_of = stride == 1 ? 0 : int(random & 1);
-  const uint32_t columns = stride == 1 ? ~0u : (random & 2) != 0 ? 0xaaaaaaaau : 0x55555555u;
+  constexpr uint32_t every_fourth = 0x11111111u;
+  const int row_of = int(random & uint64_t(stride - 1));
+  const auto column = uint32_t(random >> 8) & uint32_t(stride - 1);
+  const uint32_t columns = stride == 1   ? ~0u
+                           : stride == 2 ? (every_fourth | every_fourth << 2) << column
+                                         : every_fourth << column;
   for (int j = row_of; j < frame.lattice().rows; j += stride) {
     const Vec3 row = first + j_step * float(j);
     for (uint32_t bits = s.rows.row[j] & columns; bits != 0; bits &= bits - 1) {
@@ -94,7 +100,10 @@ void add_lattice_integral(const CellTask& cell, uint32_t member, const OpenSampl
                           float light, float share_variance, uint32_t rays, uint64_t random,
                           LatticeMemory& m, SourceResults& results) {
   const int stride = cell.frame.lattice().samples() > most_samples ? 2 : 1;
-  set_points(cell, member, samples, stride, random, m);
+  const bool is_gentle = cell.source.integrand->is_gentle(cell.source.number, member);
+  if (is_gentle) set_points(cell, member, samples, 4, random, m);
+  if (!is_gentle || m.weights.size() < gentle_samples)
+    set_points(cell, member, samples, stride, random, m);
   if (m.weights.empty()) set_points(cell, member, samples, 1, random, m);
   if (m.weights.empty()) return;
   cell.source.integrand->evaluate_many(cell.source.number, member, m.points);

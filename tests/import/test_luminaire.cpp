@@ -51,6 +51,21 @@ std::string ldt(int symmetry, int planes, const std::vector<std::string>& values
   return text;
 }
 
+// Type A (3) or B (2); value 1000 + 10 × horizontal + vertical angle.
+std::string beam_ies(int type, const std::vector<int>& vertical,
+                     const std::vector<int>& horizontal) {
+  std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 " + std::to_string(vertical.size()) +
+                     " " + std::to_string(horizontal.size()) + " " + std::to_string(type) +
+                     " 2 0 0 0 1 1 10\n";
+  for (const auto* angles : {&vertical, &horizontal}) {
+    for (const int a : *angles) text += std::to_string(a) + " ";
+    text += "\n";
+  }
+  for (const int h : horizontal)
+    for (const int v : vertical) text += std::to_string(1000 + 10 * h + v) + "\n";
+  return text;
+}
+
 Luminaire read(const std::string& text, const std::string& name = "a.ies") {
   const TempFolder folder;
   WarningLog warnings;
@@ -67,7 +82,9 @@ double nadir(const Luminaire& l, double turn_deg) {
 
 bool is_whole(const LightWeb& web) {
   if (web.heights_rad.size() < 2 || web.turns_rad.size() < 2) return false;
-  if (web.turns_rad.front() != 0 || web.turns_rad.back() != 2 * pi_f) return false;
+  if (web.pole == WebPole::nadir &&
+      (web.turns_rad.front() != 0 || web.turns_rad.back() != 2 * pi_f))
+    return false;
   for (size_t i = 1; i < web.turns_rad.size(); ++i)
     if (!(web.turns_rad[i] > web.turns_rad[i - 1])) return false;
   for (size_t i = 1; i < web.heights_rad.size(); ++i)
@@ -85,9 +102,9 @@ TEST_CASE("LM-63: what stands in a file of any edition") {
     CHECK(l.description == "even disc");
     CHECK(l.lamp_lumens == 4000);
     CHECK(l.watts == 40);
-    CHECK(l.width == doctest::Approx(0.6));
-    CHECK(l.length == doctest::Approx(1.2));
-    CHECK_FALSE(l.is_round);
+    CHECK(l.opening.size.x == doctest::Approx(1.2));
+    CHECK(l.opening.size.y == doctest::Approx(0.6));
+    CHECK_FALSE(l.opening.is_round[0]);
     CHECK(is_whole(l.web));
     CHECK(l.web.heights_rad.size() == 19);
     CHECK(double(l.web.intensities[12]) == doctest::Approx(500));
@@ -133,7 +150,8 @@ TEST_CASE("planes that symmetry leaves out are there") {
 TEST_CASE("EULUMDAT: symmetries, lumens, decimal commas") {
   Luminaire l = read(ldt(1, 4, {"250,5", "0"}), "a.LDT");
   CHECK(l.description == "name of it");
-  CHECK(l.length == doctest::Approx(0.55));
+  CHECK(l.opening.size.y == doctest::Approx(0.55));  // in C90
+  CHECK(l.opening.size.x == doctest::Approx(0.5));
   CHECK(nadir(l, 0) == 501);
   l = read(ldt(0, 4, {"1", "0", "2", "0", "3", "0", "4", "0"}), "a.ldt");
   CHECK(nadir(l, 90) == 4);
@@ -151,6 +169,35 @@ TEST_CASE("EULUMDAT: symmetries, lumens, decimal commas") {
   CHECK(is_whole(l.web));
 }
 
+TEST_CASE("factors of tilted lamps: in the file, beside it, nowhere") {
+  const std::string factors = "1\n3\n0 45 90\n.9 .8 .6\n";
+  const TempFolder folder;
+  folder.write("lamp.tlt", factors);
+  WarningLog warnings;
+  for (const std::string& tilt : {"INCLUDE\n" + factors, std::string("lamp.tlt\n")}) {
+    const Luminaire l = read_luminaire(
+        folder.write("a.ies", "TILT=" + tilt + "1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n5 5\n"),
+        warnings);
+    CHECK(tilt_factor(l, 0) == doctest::Approx(.9));
+    CHECK(tilt_factor(l, 60) == doctest::Approx(.8 - .2 / 3));
+    CHECK(tilt_factor(l, 180) == doctest::Approx(.6));
+    Scene s;
+    const int32_t web = add_web(s, l);
+    add_luminaire(s, "one", l, web, Rgb{1}, {{}, {1, 0, -1}, {0, 1, 0}, {0, 0, -1}});
+    CHECK(double(s.lights[0].radiance.g) == doctest::Approx(.8));
+  }
+  CHECK(warnings.entries().empty());
+  for (const char* name : {"gone.tlt", "../lamp.tlt"}) {
+    WarningLog one;
+    const Luminaire l =
+        read_luminaire(folder.write("a.ies", "TILT=" + std::string(name) +
+                                                 "\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n5 5\n"),
+                       one);
+    CHECK(tilt_factor(l, 0) == 1);
+    CHECK(one.entries().size() == 1);
+  }
+}
+
 TEST_CASE("photometric files that cannot be used are errors with a place") {
   const TempFolder folder;
   WarningLog warnings;
@@ -164,7 +211,9 @@ TEST_CASE("photometric files that cannot be used are errors with a place") {
   };
   CHECK(line_of("", "a.ies") >= 1);
   CHECK(line_of("hello\nworld\n", "a.ies") == 2);
-  CHECK(line_of("TILT=NONE\n1 1 1 2 1 2 1 1 1 1 1 1 1\n0 90\n0\n1 1\n", "a.ies") == 2);
+  CHECK(line_of("TILT=NONE\n1 1 1 2 1 4 1 1 1 1 1 1 1\n0 90\n0\n1 1\n", "a.ies") == 2);
+  CHECK(line_of("TILT=NONE\n1 1 1 2 1 2 1 1 1 1 1 1 1\n0 120\n0\n1 1\n", "a.ies") == 3);
+  CHECK(line_of("TILT=INCLUDE\n1\n2\n90 0\n1 1\n", "a.ies") == 5);
   CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n0 90\n0\n0 0\n", "a.ies") == 5);
   CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n90 0\n0\n1 0\n", "a.ies") == 3);
   CHECK(line_of("TILT=NONE\n1 1 1 99999 99999 1 1 1 1 1 1 1 1\n0 90\n", "a.ies") == 2);
@@ -176,8 +225,12 @@ TEST_CASE("photometric files that cannot be used are errors with a place") {
 
 TEST_CASE("ten thousand mutated files load whole or fail as they should") {
   const TempFolder folder;
-  const std::string originals[] = {cosine_ies(), planes_ies({0, 30, 90}),
+  const std::string originals[] = {cosine_ies(),
+                                   planes_ies({0, 30, 90}),
                                    planes_ies({0, 90, 180, 270, 360}),
+                                   beam_ies(2, {-90, -45, 0, 45, 90}, {-90, 0, 90}),
+                                   beam_ies(3, {0, 45, 90}, {0}),
+                                   cosine_ies("TILT=INCLUDE\n1\n3\n0 45 90\n1 .9 .8\n"),
                                    ldt(0, 4, {"1", "0", "2", "0", "3", "0", "4", "0"}),
                                    ldt(3, 4, {"1", "0", "2", "0", "3", "0"})};
   const char alphabet[] = "0123456789.,-+eE \n\t=xTILT\xff\0[]";
@@ -200,7 +253,7 @@ TEST_CASE("ten thousand mutated files load whole or fail as they should") {
     WarningLog warnings;
     try {
       const Luminaire l =
-          read_luminaire(folder.write(which < 3 ? "m.ies" : "m.ldt", text), warnings);
+          read_luminaire(folder.write(which < 6 ? "m.ies" : "m.ldt", text), warnings);
       REQUIRE(is_whole(l.web));
       ++loaded;
     } catch (const InputError&) {
@@ -235,7 +288,9 @@ TEST_CASE("a luminaire takes the place of a point, of a flat mesh, and of nothin
   const Light& e = s.lights[1];
   CHECK(e.web == 1);
   CHECK(e.kind == LightKind::polygon);
-  CHECK(e.radiance == Rgb{1});  // 2 over 2 m²
+  CHECK(e.radiance == Rgb{2});
+  REQUIRE(s.webs[1].faces.size() == 1);
+  CHECK(s.webs[1].faces[0] == Vec3{0, 0, 2});  // m²
   CHECK(e.axes[2] == Vec3{0, 0, -1});
   CHECK_FALSE(e.is_two_sided);
   CHECK_THROWS_AS(attach_luminaire(s, "roof", l, Rgb{1}, {0, 0, -1}), UsageError);

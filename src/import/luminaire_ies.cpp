@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "import/file.h"
+#include "import/luminaire_formats.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double metres_per_foot = 0.3048;
+
+std::string_view after_equals(std::string_view line) {
+  line.remove_prefix(std::min(line.size(), line.find('=') + 1));
+  return trimmed(line);
+}
+
+// What follows TILT=INCLUDE, and is all that a file of tilt factors holds.
+TiltFactors read_tilt(PhotometricText& text) {
+  TiltFactors tilt;
+  text.number("lamp to luminaire geometry", -1e9, 1e9);
+  const int pairs = text.integer("number of tilt angles", 0, 10'000);
+  for (int i = 0; i < pairs; ++i) tilt.angles_deg.push_back(text.number("tilt angle", -360, 360));
+  for (int i = 0; i < pairs; ++i) tilt.factors.push_back(text.number("tilt factor", 0, 1000));
+  check_ascending(tilt.angles_deg, text, "tilt angles");
+  return tilt;
+}
+
+TiltFactors read_tilt_file(const std::string& path, const std::string& folder,
+                           const std::string& name, WarningLog& warnings) {
+  const auto leave = [&](const std::string& why) {
+    warnings.add(path + ": tilt factors of '" + name + "': " + why + "; left aside");
+    return TiltFactors{};
+  };
+  if (folder.empty()) return leave("no file may be named here");
+  const ConfinedPath tilt = confined_path(folder, name);
+  if (!tilt.is_fine()) return leave(tilt.problem);
+  try {
+    const std::string bytes = read_text_file(tilt.path, max_luminaire_bytes);
+    PhotometricText text(tilt.path, bytes);
+    return read_tilt(text);
+  } catch (const InputError& error) {
+    return leave(error.reason());
+  }
+}
+
+struct Labels {
+  bool is_before_2002 = true;  // by the file's first line
+  std::string description;
+};
+
+bool has_before_2002(std::string_view first_line) {
+  for (const char* edition : {"LM-63-2002", "LM-63-02", "LM-63-19", "LM-63-2019"})
+    if (first_line.find(edition) != std::string_view::npos) return false;
+  return true;
+}
+
+// Up to the line TILT=, whose value is returned; what stands before it is text for people.
+std::string_view read_labels(PhotometricText& text, Labels& labels) {
+  std::string_view line;
+  constexpr size_t most_labels = 10'000;
+  for (size_t n = 0; text.next_line(line) && n <= most_labels; ++n) {
+    if (n == 0) labels.is_before_2002 = has_before_2002(line);
+    if (line.starts_with("TILT")) return after_equals(line);
+    for (const char* label : {"[LUMINAIRE]", "[LUMCAT]"})
+      if (line.starts_with(label) && labels.description.empty())
+        labels.description = std::string(trimmed(line.substr(std::string_view(label).size(), 200)));
+  }
+  text.fail("no line begins with TILT=");
+}
+
+// The ten numbers of the two lines before the angles, as far as they are needed.
+struct Header {
+  double factor = 1;
+  size_t heights = 0, turns = 0;
+  int type = 1;
+};
+
+Header read_header(PhotometricText& text, Luminaire& l, bool is_before_2002) {
+  Header h;
+  const int lamps = text.integer("number of lamps", 0, 1'000'000);
+  const double lumens = text.number("lumens per lamp", -1, most_lumens);
+  if (lumens > 0) l.lamp_lumens = lumens * lamps;
+  h.factor = text.number("multiplier", 0, 1e9);
+  h.heights = size_t(text.integer("number of vertical angles", 2, 100'000));
+  h.turns = size_t(text.integer("number of horizontal angles", 1, 100'000));
+  if (h.heights * h.turns > max_intensities) text.fail("too many intensities");
+  h.type = text.integer("photometric type", 1, 3);
+  const double unit = text.integer("type of units", 1, 2) == 1 ? metres_per_foot : 1;
+  const double width = text.number("width", -most_metres, most_metres) * unit;
+  const double length = text.number("length", -most_metres, most_metres) * unit;
+  const double height = text.number("height", -most_metres, most_metres) * unit;
+  l.opening = ies_opening(width, length, height, is_before_2002);
+  h.factor *= text.number("ballast factor", 0, 1e6);
+  const double future = text.number("ballast-lamp factor", 0, 1e6);
+  if (future > 0) h.factor *= future;
+  l.watts = text.number("watts", 0, 1e9);
+  return h;
+}
+
+}  // namespace
+
+Luminaire read_ies(const std::string& path, std::string_view bytes, const std::string& folder,
+                   WarningLog& warnings) {
+  PhotometricText text(path, bytes);
+  Luminaire l;
+  Labels labels;
+  const std::string tilt(read_labels(text, labels));
+  l.description = labels.description;
+  if (tilt == "INCLUDE")
+    l.tilt = read_tilt(text);
+  else if (tilt != "NONE" && !tilt.empty())
+    l.tilt = read_tilt_file(path, folder, tilt, warnings);
+  const Header h = read_header(text, l, labels.is_before_2002);
+  const bool is_round = h.type == 1;  // type C; 2: B, 3: A
+  Planes planes;
+  for (size_t i = 0; i < h.heights; ++i)
+    planes.heights_deg.push_back(
+        text.number("vertical angle", is_round ? 0 : -90, is_round ? 180 : 90));
+  check_ascending(planes.heights_deg, text, "vertical angles");
+  for (size_t i = 0; i < h.turns; ++i)
+    planes.turns_deg.push_back(
+        text.number("horizontal angle", is_round ? 0 : -90, is_round ? 360 : 90));
+  check_ascending(planes.turns_deg, text, "horizontal angles");
+  for (size_t i = 0; i < h.heights * h.turns; ++i)
+    planes.candela.push_back(h.factor * text.number("intensity", -most_candela, most_candela));
+  clean_intensities(planes, text, path, warnings);
+  l.web = is_round
+              ? unfold_planes(planes, path, warnings)
+              : unfold_beam(planes, h.type == 2 ? WebPole::right : WebPole::up, path, warnings);
+  return l;
+}
+
+}  // namespace troffer
