@@ -250,6 +250,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
 void add_info(CLI::App& app, InfoCommand& c) {
   CLI::App* s = app.add_subcommand("info", "Tell what a scene file holds");
   s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  s->add_option("--polar", c.polar, "Of an .ies or .ldt: draw its polar curves, .svg or .png");
   s->add_flag("--json", c.is_json, "Print JSON");
 }
 

@@ -7,6 +7,7 @@
 #include "app/luminaire_options.h"
 #include "app/printable.h"
 #include "base/box.h"
+#include "base/error.h"
 #include "import/import.h"
 #include "render/source_info.h"
 
@@ -95,9 +96,10 @@ void print_text(const Scene& scene, const Json& j) {
 
 int run_info(const InfoCommand& command) {
   if (is_luminaire(command.scene)) {
-    fmt::print("{}", luminaire_info(command.scene, command.is_json));
+    fmt::print("{}", luminaire_info(command.scene, command.is_json, command.polar));
     return exit_done;
   }
+  if (!command.polar.empty()) throw UsageError("--polar goes with an .ies or .ldt file");
   Scene scene = import_scene(command.scene);
   if (scene.lights.empty()) scene.warnings.add("the scene has no light");
   const Json j = info_json(scene);

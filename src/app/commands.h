@@ -82,6 +82,7 @@ int run_radiosity(const RadiosityCommand& command);
 
 struct InfoCommand {
   std::string scene;
+  std::string polar;  // a drawing to make of a luminaire; empty: none
   bool is_json = false;
 };
 int run_info(const InfoCommand& command);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "app/polar_curve.h"
 #include "app/printable.h"
 #include "base/error.h"
 #include "base/units.h"
@@ -102,9 +103,10 @@ bool is_luminaire(const std::string& path) {
   return ending == "ies" || ending == "ldt";
 }
 
-std::string luminaire_info(const std::string& path, bool is_json) {
+std::string luminaire_info(const std::string& path, bool is_json, const std::string& polar) {
   WarningLog warnings;
   const Luminaire l = read_luminaire(path, warnings);
+  if (!polar.empty()) write_polar_curve(polar, l.web);
   const double lumens = flux(l.web);
   nlohmann::ordered_json j;
   j["luminaire"] = l.description;
