@@ -11,10 +11,12 @@
 
 #include "app/luminaire_list.h"
 #include "app/luminaire_options.h"
+#include "app/weather.h"
 #include "base/error.h"
 #include "daylight/sky_lights.h"
 #include "daylight/sun_position.h"
 #include "import/environment_file.h"
+#include "import/light_radius.h"
 
 namespace troffer {
 
@@ -126,6 +128,27 @@ bool is_mirrored(const Scene& scene) {
   return dot(cross(c.forward, c.up), c.right) < 0;
 }
 
+// Nothing at night.
+void add_weather(Scene& scene, const DaylightOptions& o, const Compass& compass) {
+  if (!o.sky.empty() || !o.sun.empty() || !o.at.empty())
+    throw UsageError("--weather excludes --sky, --sun and --at");
+  if (o.date.empty()) throw UsageError("--weather needs --date MM-DDTHH:MM");
+  const Weather weather = read_weather(o.weather, o.date);
+  const SunPosition p =
+      sun_position(weather.latitude_deg, weather.longitude_deg, weather.julian_day_ut);
+  if (!(weather.diffuse_horizontal > 0) || !(p.altitude_deg > 0)) {
+    scene.warnings.add("--weather: no light comes from the sky at that hour");
+    return;
+  }
+  SkyRequest request;
+  request.kind = SkyKind::perez;
+  request.direct_normal = weather.direct_normal;
+  request.diffuse_horizontal = weather.diffuse_horizontal;
+  request.sun = SunRequest{p.azimuth_deg, p.altitude_deg, p.distance_au, {}};
+  request.ground_reflectance = o.ground;
+  add_sky(scene, request, compass);
+}
+
 void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compass) {
   SkyRequest request;
   request.sun = parse_sun(o);
@@ -205,6 +228,9 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
   command.add_option("--at", o.at,
                      "The sun by LATITUDE,LONGITUDE,TIME, such as "
                      "48.2,16.4,2026-06-21T12:00+02:00");
+  command.add_option("--weather", o.weather,
+                     "Sky and sun of an hour of a weather file (.epw), by Perez' model and --date");
+  command.add_option("--date", o.date, "Of --weather: MM-DDTHH:MM, in the file's standard time");
   command
       .add_option("--north", o.north_deg,
                   "Where north lies: degrees clockwise, seen from above, from -z; +y where z is "
@@ -231,6 +257,10 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
       ->allow_extra_args(false);
   command.add_option("--luminaires", o.luminaire_list,
                      "LIST.csv of luminaires to add: file,x,y,z[,dx,dy,dz[,rotation[,dimming]]]");
+  command
+      .add_option("--light-radius", o.light_radius,
+                  "Makes points and spots spheres of this radius, in metres: soft shadows")
+      ->check(CLI::Range(1e-6, 1e6));
   if (command.get_option_no_throw("--up") == nullptr)
     command.add_option("--up", o.up, "Upward direction x,y,z, for what comes from the sky");
 }
@@ -244,6 +274,7 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
   const Compass compass = make_compass(up, o.north_deg, is_mirrored(scene));
   attach_luminaires(scene, o.luminaires, Vec3(-compass.up));
   if (!o.luminaire_list.empty()) add_luminaire_list(scene, o.luminaire_list, Vec3(-compass.up));
+  if (o.light_radius > 0) give_radius(scene, o.light_radius);
   const bool had_light = !scene.lights.empty();
   if (!o.environment.empty()) {
     const size_t comma = o.environment.rfind(',');
@@ -257,7 +288,10 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
         scale.value_or(1), o.environment_rotation_deg, compass);
   }
   const bool is_asked = !o.sky.empty() || !o.sun.empty() || !o.at.empty();
-  if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {
+  if (!o.date.empty() && o.weather.empty()) throw UsageError("--date goes with --weather");
+  if (!o.weather.empty()) {
+    add_weather(scene, o, compass);
+  } else if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {
     add_asked_sky(scene, o, compass);
   } else if (!had_light && o.environment.empty() && o.sky != "none" && !bounds(scene).is_empty()) {
     SkyRequest even;

@@ -18,6 +18,8 @@ struct DaylightOptions {
   std::vector<std::string> luminaires;  // light of the scene's own: app/luminaire_options.h
   std::string luminaire_list;           // app/luminaire_list.h
   std::string sky, sun, at;
+  std::string weather, date;  // app/weather.h
+  double light_radius = 0;    // m; 0: points stay points
   std::string environment;
   std::string up;  // x,y,z; empty: guessed
   double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;

@@ -7,6 +7,7 @@
 
 #include "image/raster.h"
 #include "import/file.h"
+#include "scene/environment_lookup.h"
 
 namespace troffer {
 
@@ -101,21 +102,25 @@ EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
 }
 
 Rgb irradiance_from_above(const EnvironmentMap& map) {
+  // Small images vary within their texels as lights do.
+  constexpr int least_rows = 256;
+  const int parts = (least_rows + map.height - 1) / map.height;
+  const int columns = map.width * parts, rows = map.height * parts;
   double r = 0, g = 0, b = 0;
-  for (int y = 0; y < map.height; ++y) {
-    const float v = (float(y) + 0.5f) / float(map.height);
-    for (int x = 0; x < map.width; ++x) {
-      const Vec2 uv{(float(x) + 0.5f) / float(map.width), v};
+  for (int y = 0; y < rows; ++y) {
+    const float v = (float(y) + 0.5f) / float(rows);
+    for (int x = 0; x < columns; ++x) {
+      const Vec2 uv{(float(x) + 0.5f) / float(columns), v};
       const Vec3 w = direction_from_square(map.projection, uv);
       if (!(w.z > 0)) continue;
       const double weight = double(w.z * solid_angle_per_area(map.projection, v));
-      const Rgb texel = map.texels[size_t(y) * size_t(map.width) + size_t(x)];
+      const Rgb texel = value_at(map, uv);
       r += weight * double(texel.r);
       g += weight * double(texel.g);
       b += weight * double(texel.b);
     }
   }
-  const double n = double(map.width) * double(map.height);
+  const double n = double(columns) * double(rows);
   return {float(r / n), float(g / n), float(b / n)};
 }
 

@@ -7,6 +7,7 @@
 #include "import/gltf_accessor.h"
 #include "import/gltf_camera.h"
 #include "import/gltf_file.h"
+#include "import/gltf_ies.h"
 #include "import/gltf_json.h"
 #include "import/gltf_light.h"
 #include "import/gltf_material.h"
@@ -87,6 +88,9 @@ class Importer {
     if (const auto camera = json.find("camera")) add_camera(json, *camera, node.world_from_node);
     if (const auto light = json.extension(lights_extension))
       add_light(json, light->member("light"), node.world_from_node);
+    if (const auto instance = json.extension("EXT_lights_ies"))
+      add_gltf_ies_light(root_, *instance, node.world_from_node, json.string_or("name", ""),
+                         buffers_, scene_);
     const auto mesh = mesh_of(json);
     if (!mesh) return;
     const JsonNode mesh_json = root_.member("meshes").element(*mesh);

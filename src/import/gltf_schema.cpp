@@ -262,16 +262,18 @@ void check_cameras(const JsonNode& root) {
 
 // Also of nodes that are not shown.
 void check_light_references(const JsonNode& root) {
-  const auto extension = root.extension("KHR_lights_punctual");
-  const auto lights = extension ? extension->find("lights") : std::nullopt;
-  const auto nodes = root.find("nodes");
-  for (size_t i = 0; nodes && i < nodes->size(); ++i)
-    if (const auto of_node = nodes->element(i).extension("KHR_lights_punctual"))
-      of_node->member("light").as_index(lights ? lights->size() : 0, "lights");
+  for (const char* name : {"KHR_lights_punctual", "EXT_lights_ies"}) {
+    const auto extension = root.extension(name);
+    const auto lights = extension ? extension->find("lights") : std::nullopt;
+    const auto nodes = root.find("nodes");
+    for (size_t i = 0; nodes && i < nodes->size(); ++i)
+      if (const auto of_node = nodes->element(i).extension(name))
+        of_node->member("light").as_index(lights ? lights->size() : 0, "lights");
+  }
 }
 
 constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",
+    {"EXT_lights_ies", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",
      "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_emissive_strength",
      "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
      "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform"});

@@ -1,11 +1,14 @@
 #include "import/pbrt_light.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/units.h"
 #include "import/environment_file.h"
 #include "import/file.h"
+#include "import/texture_loader.h"
+#include "scene/projected_image.h"
 
 namespace troffer {
 
@@ -45,6 +48,56 @@ class LightReader {
     e.radiance = emission("L") * scale_with("illuminance", 1);
     const Vec3d from = vector("from", {}), to = vector("to", {0, 0, 1});
     return turn(e, to - from) ? std::optional(e) : std::nullopt;
+  }
+
+  // Intensity by an equal-area image of all directions, whose z is the light's own y [1].
+  std::optional<Light> goniometric() {
+    Light e;
+    e.kind = LightKind::point;
+    const std::string file = params_.get_string("filename", "");
+    if (!read_image(file) || !set_axes(e)) return std::nullopt;
+    std::swap(e.axes[1], e.axes[2]);
+    EnvironmentMap& map = scene_.environments.back();
+    if (map.projection != SphereMap::equal_area) {
+      context_.warnings.add("image '" + file + "' of a goniometric light is not square: left out");
+      return std::nullopt;
+    }
+    Rgb sum;
+    for (Rgb& texel : map.texels) {
+      texel = Rgb{(texel.r + texel.g + texel.b) / 3};
+      sum += texel;
+    }
+    const double mean = double(sum.g) / double(map.texels.size());
+    e.environment = int32_t(scene_.environments.size()) - 1;
+    e.radiance = emission("I") * scale_with("power", mean > 0 ? 4 * pi * mean : 1);
+    return place(e, {}) ? std::optional(e) : std::nullopt;
+  }
+
+  // A slide: the shorter side spans `fov`, and its top is towards the light's own y [1].
+  std::optional<Light> projection() {
+    Light e;
+    e.kind = LightKind::point;
+    const std::string file = params_.get_string("filename", "");
+    const double fov = params_.get_float("fov", 90);
+    if (!(fov > 0 && fov < 180)) fail_at(params_.find("fov")->place, "fov must lie in (0, 180)");
+    const ConfinedPath path = confined_path(context_.folder, file);
+    if (!path.is_fine() || !set_axes(e)) {
+      context_.warnings.add("image '" + file + "' of a projection light: " + path.problem +
+                            "; the light is left out");
+      return std::nullopt;
+    }
+    Texture look;
+    look.is_srgb = true;
+    look.wrap_u = look.wrap_v = WrapMode::clamp;
+    e.texture = TextureLoader(scene_).from_file(path.path, look);
+    const Texture& t = scene_.textures[size_t(e.texture)];
+    if (t.kind != TextureKind::image) return std::nullopt;
+    const double half = std::tan(rad_from_deg(fov / 2)), aspect = double(t.width) / t.height;
+    e.axes[0] = e.axes[0] * float(1 / (half * std::max(aspect, 1.0)));
+    e.axes[1] = e.axes[1] * float(-1 / (half * std::max(1 / aspect, 1.0)));
+    const auto all = double(luminance(projected_flux(scene_, e)));
+    e.radiance = emission("I") * scale_with("power", all > 0 ? all : 1);
+    return place(e, {}) ? std::optional(e) : std::nullopt;
   }
 
   std::optional<Light> infinite() {
@@ -123,7 +176,7 @@ class LightReader {
     if (!is_usable(is_finite(x) && is_finite(y) && is_finite(z))) return false;
     if (length(normalize(c[1]) - y) > 1e-3 || std::abs(dot(normalize(c[0]), z)) > 1e-3)
       context_.warnings.add(
-          "infinite light under a transform that is more than a rotation: shown "
+          "light of an image under a transform that is more than a rotation: shown "
           "unbent");
     e.axes = {Vec3(x), Vec3(y), Vec3(z)};
     return true;
@@ -145,7 +198,7 @@ class LightReader {
         problem = error.reason();
       }
     }
-    context_.warnings.add("image '" + file + "' of an infinite light: " + problem +
+    context_.warnings.add("image '" + file + "' of a light: " + problem +
                           "; the light is left out");
     return false;
   }
@@ -171,6 +224,10 @@ std::optional<Light> read_pbrt_light(const std::string& type, const PbrtParams& 
     light = reader.spot();
   } else if (type == "distant") {
     light = reader.distant();
+  } else if (type == "goniometric") {
+    light = reader.goniometric();
+  } else if (type == "projection") {
+    light = reader.projection();
   } else if (type == "infinite") {
     light = reader.infinite();
   } else {

@@ -14,8 +14,9 @@
 namespace troffer {
 
 // What a LightSource directive says, in a world that counts from the scene's origin: point, spot,
-// distant or infinite; an image goes to Scene::environments. Nothing, and a warning that says why,
-// for other kinds and what cannot be shown. InputError: parameters that cannot be used.
+// distant, infinite, goniometric or projection; an image goes to Scene::environments. Nothing, and
+// a warning that says why, for other kinds and what cannot be shown. InputError: parameters that
+// cannot be used.
 std::optional<Light> read_pbrt_light(const std::string& type, const PbrtParams& params,
                                      const Affine& world_from_light,
                                      const PbrtSpectrumContext& context, Scene& scene);

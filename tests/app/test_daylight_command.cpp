@@ -218,3 +218,38 @@ TEST_CASE("warnings tell of a hidden sun and of options without effect, and of n
   CHECK(contains(dark, "--ground does nothing"));
   CHECK(contains(dark, "there is no light"));
 }
+
+TEST_CASE("an hour of a weather file is Perez' sky with the sun of that place and time") {
+  const Folder folder;
+  std::string epw =
+      "LOCATION,Wien,-,AUT,none,110350,48.2,16.4,1.0,203.0\n"
+      "COMMENTS 1,none\nDATA PERIODS,1,1,Data,Sunday,1/1,12/31\n";
+  for (int hour = 1; hour <= 24; ++hour) {
+    const bool is_day = hour > 5 && hour < 20;
+    epw += "2005,6,21," + std::to_string(hour) + ",60,?9,20,10,50,99000,900,1300,350,500," +
+           (hour == 13 ? "9999"
+            : is_day   ? "600"
+                       : "0") +
+           "," + (is_day ? "150" : "0") + ",0,0\n";
+  }
+  const std::string file = folder.write("w.epw", epw);
+  const Measured by_file = measure(folder, {"--weather", file, "--date", "06-21T11:30"});
+  const Measured by_hand =
+      measure(folder, {"--sky", "perez:600,150", "--at", "48.2,16.4,2005-06-21T11:30+01:00"});
+  CHECK(by_file.lx == doctest::Approx(by_hand.lx).epsilon(1e-6));
+  CHECK(by_file.lx > 50'000);
+  const auto status = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words{"measure", folder.path("plain.obj"), "--points",
+                                   folder.path("p.csv")};
+    words.insert(words.end(), options.begin(), options.end());
+    return run_program(folder, words).status;
+  };
+  CHECK(status({"--weather", file, "--date", "06-21T02:00"}) == 0);  // night: dark, and told
+  CHECK(status({"--weather", file, "--date", "06-21T12:30"}) == 1);  // missing
+  CHECK(status({"--weather", file, "--date", "07-21T12:30"}) == 1);
+  CHECK(status({"--weather", file, "--date", "noon"}) == 2);
+  CHECK(status({"--weather", file}) == 2);
+  CHECK(status({"--date", "06-21T12:30"}) == 2);
+  CHECK(status({"--weather", file, "--date", "06-21T11:30", "--sky", "clear"}) == 2);
+  CHECK(status({"--weather", folder.write("no.epw", "hello\n"), "--date", "06-21T11:30"}) == 1);
+}

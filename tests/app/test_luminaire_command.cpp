@@ -327,3 +327,41 @@ TEST_CASE("openings of every shape: the measured light far away, subdivided sums
     }
   }
 }
+
+TEST_CASE("polar curves are drawn; other files and endings are refused") {
+  const Folder folder;
+  const std::string file = folder.write("even.ies", ies(1));
+  CHECK(run_program(folder, {"info", file, "--polar", folder.path("c.svg")}).status == 0);
+  CHECK(run_program(folder, {"info", file, "--polar", folder.path("c.png")}).status == 0);
+  const std::string svg = read_file(folder.path("c.svg"));
+  CHECK(svg.starts_with("<svg"));
+  CHECK(svg.find("C90") != std::string::npos);
+  // 1000 cd at the nadir reach the outermost ring, 200 below the middle.
+  CHECK(svg.find("240.00,440.00") != std::string::npos);
+  CHECK(read_file(folder.path("c.png")).starts_with("\x89PNG"));
+  CHECK(run_program(folder, {"info", file, "--polar", folder.path("c.gif")}).status == 2);
+  const std::string scene = folder.write("floor.obj", "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nf 1 2 3\n");
+  CHECK(run_program(folder, {"info", scene, "--polar", folder.path("c.svg")}).status == 2);
+}
+
+TEST_CASE("points of a radius light what they lit, and their shadows are soft") {
+  const Folder folder;
+  folder.write("p.pbrt",
+               "WorldBegin\nLightSource \"point\" \"rgb I\" [10 10 10] \"point3 from\" [0 0 2]\n"
+               "Shape \"trianglemesh\" \"point3 P\" [-1 -1 1  1 -1 1  1 0 1  -1 0 1]\n"
+               "  \"integer indices\" [0 1 2 0 2 3]\n");
+  const std::string at = folder.write("p.csv", "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n0,0.01,0,0,0,1\n");
+  const auto lit = [&](std::vector<std::string> options) {
+    std::vector<std::string> words{"measure", folder.path("p.pbrt"), "--points",
+                                   at,        "--indirect",          "none"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Finished f = run_program(folder, words);
+    CAPTURE(f.err);
+    REQUIRE(f.status == 0);
+    return measured(f);
+  };
+  const auto hard = lit({}), soft = lit({"--light-radius", "0.2"});
+  CHECK(hard[1].lx == doctest::Approx(10 * luminous_efficacy / 4).epsilon(1e-3));
+  CHECK(soft[0].lx == doctest::Approx(hard[0].lx).epsilon(2e-3));
+  CHECK(soft[1].lx == doctest::Approx(hard[1].lx * .53).epsilon(.03));  // half of the sphere
+}

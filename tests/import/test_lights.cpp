@@ -9,7 +9,9 @@
 #include "gltf_builder.h"
 #include "import/environment_file.h"
 #include "import/gltf.h"
+#include "import/light_radius.h"
 #include "import/pbrt.h"
+#include "scene/projected_image.h"
 #include "temp_folder.h"
 
 using namespace troffer;
@@ -242,4 +244,121 @@ TEST_CASE("KHR_lights_punctual: what cannot be is an error at its place") {
   const Scene other = import_light("{'type':'ambient'}");
   CHECK(other.lights.empty());
   CHECK(has_text(other, "'ambient' is not known; left out"));
+}
+
+TEST_CASE("pbrt's goniometric and projection lights") {
+  const TempFolder folder;
+  folder.write("web.pfm", pfm(4, 4, std::vector<float>(48, 2)));
+  folder.write("slide.pfm", pfm(4, 2, std::vector<float>(24, 1)));
+  const auto import = [&](const std::string& world) {
+    return import_pbrt(folder.write("scene.pbrt", "WorldBegin\n" + world));
+  };
+  Scene s = import(
+      "Translate 1 2 3 LightSource \"goniometric\" \"string filename\" \"web.pfm\" \"rgb I\" [1 2 "
+      "3]");
+  Light e = only_light(s);
+  CHECK(e.kind == LightKind::point);
+  CHECK(e.position == Vec3{1, 2, 3});
+  CHECK(e.environment == 0);
+  CHECK(e.axes[2] == Vec3{0, 1, 0});
+  CHECK(e.radiance == Rgb{1, 2, 3});
+  e = only_light(
+      import("LightSource \"goniometric\" \"string filename\" \"web.pfm\" \"float power\" [8]"));
+  CHECK(double(e.radiance.g) == doctest::Approx(8 / (8 * pi)));
+
+  s = import("LightSource \"projection\" \"string filename\" \"slide.pfm\" \"float fov\" [90]");
+  e = only_light(s);
+  CHECK(e.kind == LightKind::point);
+  CHECK(projected(s, e, {dot(e.axes[0], Vec3{1.9f, 0, 1}), 0, 1}) == Rgb{1});
+  CHECK(projected(s, e, {dot(e.axes[0], Vec3{2.1f, 0, 1}), 0, 1}).is_black());
+  CHECK(projected(s, e, {0, dot(e.axes[1], Vec3{0, 1.1f, 1}), 1}).is_black());
+  CHECK(projected(s, e, {0, 0, -1}).is_black());
+  // A rectangle of 4 × 2 seen from 1 before its middle.
+  CHECK(double(projected_flux(s, e).g) ==
+        doctest::Approx(4 * std::asin(2 * 1 / std::sqrt(5.0 * 2))).epsilon(1e-4));
+  CHECK(import("LightSource \"goniometric\" \"string filename\" \"slide.pfm\"").lights.empty());
+  CHECK(import("LightSource \"projection\" \"string filename\" \"gone.pfm\"").lights.empty());
+}
+
+TEST_CASE("illuminance of images of few texels is what lights give") {
+  // Bilinear between two rows, 3 at the top and 1 below: by height h from the zenith over pi,
+  // 3 to 1/4, then down to 1 at 3/4.
+  EnvironmentMap map;
+  map.width = 4;
+  map.height = 2;
+  map.texels.assign(8, Rgb{1});
+  for (size_t i = 0; i < 4; ++i) map.texels[i] = Rgb{3};
+  double sum = 0;
+  constexpr int n = 100'000;
+  for (int i = 0; i < n; ++i) {
+    const double height = (i + .5) / n * pi / 2, v = height / pi;
+    sum += (v < .25 ? 3 : 3 - 2 * (v - .25) / .5) * std::cos(height) * std::sin(height);
+  }
+  CHECK(double(irradiance_from_above(map).g) ==
+        doctest::Approx(sum * 2 * pi * (pi / 2) / n).epsilon(1e-4));
+}
+
+TEST_CASE("glTF's measured luminaires: files, data, buffer views; places and factors") {
+  const TempFolder folder;
+  const std::string ies = "TILT=NONE\n1 -1 1 2 1 1 2 1 1 0\n1 1 9\n0 90\n0\n50 50\n";
+  folder.write("lamp.ies", ies);
+  const auto import = [&](const std::string& light, const std::string& instance) {
+    std::string text =
+        "{'asset':{'version':'2.0'},'extensionsUsed':['EXT_lights_ies'],'extensionsRequired':"
+        "['EXT_lights_ies'],'extensions':{'EXT_lights_ies':{'lights':[" +
+        light +
+        "]}},'nodes':[{'name':'one','translation':[1,2,3],'extensions':{'EXT_lights_ies':{" +
+        instance + "}}}]}";
+    for (char& c : text)
+      if (c == '\'') c = '"';
+    return import_gltf(folder.write("scene.gltf", text));
+  };
+  for (const std::string& uri :
+       {std::string("lamp.ies"),
+        std::string(
+            "data:application/x-ies-lm-63;base64,VElMVD1OT05FCjEgLTEgMSAyIDEgMSAyIDEgMSAwCjEg"
+            "MSA5CjAgOTAKMAo1MCA1MAo=")}) {
+    const Scene s = import("{'uri':'" + uri + "'}", "'light':0,'multiplier':2,'color':[1,0.5,2]");
+    const Light e = only_light(s);
+    CHECK(e.name == "one");
+    CHECK(e.kind == LightKind::point);
+    CHECK(e.position == Vec3{1, 2, 3});
+    CHECK(e.radiance == Rgb{2, 1, 2});
+    REQUIRE(e.web >= 0);
+    CHECK(s.webs[size_t(e.web)].intensities[0] == 50);
+    CHECK(e.axes[0] == Vec3{1, 0, 0});
+    CHECK(e.axes[1] == Vec3{0, 1, 0});
+    CHECK(e.axes[2] == Vec3{0, 0, -1});
+  }
+  CHECK_THROWS_AS(import("{'uri':'gone.ies'}", "'light':0"), InputError);
+  CHECK_THROWS_AS(import("{'uri':'lamp.ies'}", "'light':1"), InputError);
+  CHECK_THROWS_AS(import("{'name':'nothing'}", "'light':0"), InputError);
+  CHECK_THROWS_AS(import("{'uri':'lamp.ies'}", "'light':0,'multiplier':-1"), InputError);
+}
+
+TEST_CASE("a radius makes spheres of points and spots, as strong from far away") {
+  Scene s;
+  Light e;
+  e.kind = LightKind::point;
+  e.radiance = Rgb{10};
+  s.lights.push_back(e);
+  e.kind = LightKind::spot;
+  e.cos_outer = .5f;
+  e.cos_inner = .8f;
+  s.lights.push_back(e);
+  e.kind = LightKind::distant;
+  s.lights.push_back(e);
+  give_radius(s, .1);
+  REQUIRE(s.spheres.size() == 2);
+  CHECK(s.lights[0].kind == LightKind::sphere);
+  CHECK(double(s.lights[0].radiance.g) == doctest::Approx(10 / (pi * .01)));
+  CHECK(s.lights[1].kind == LightKind::sphere);
+  CHECK(s.lights[1].radiance == Rgb{10});
+  const LightWeb& web = s.webs[size_t(s.lights[1].web)];
+  CHECK(double(web.cross_section) == doctest::Approx(pi * .01));
+  CHECK(web.intensities[0] == 1);
+  CHECK(web.heights_rad.back() == doctest::Approx(std::acos(.5f)));
+  CHECK(web.intensities.back() == doctest::Approx(0));
+  CHECK(s.lights[2].kind == LightKind::distant);
+  CHECK(s.spheres[1].light == 1);
 }

@@ -165,19 +165,19 @@ TEST_CASE("unknown parameters and unsupported directives are warnings that name 
       "Sampler \"halton\" \"integer pixelsamples\" 4\n"
       "Camera \"perspective\" \"float fof\" 3\nMakeNamedMedium \"fog\" \"float scale\" "
       "1\nWorldBegin\n"
-      "LightSource \"projection\" \"rgb I\" [1 1 1]\nLightSource \"projection\"\n"
+      "LightSource \"glow\" \"rgb I\" [1 1 1]\nLightSource \"glow\"\n"
       "Shape \"cylinder\"\nShape \"sphere\" \"float raduis\" 2\n"
       "MediumInterface \"fog\" \"\"\nWorldEnd\n");
   for (const char* part :
        {"disablepixeljitter", "rec2020", "Camera \"perspective\": parameter \"fof\"",
-        "LightSource \"projection\"", "shape \"cylinder\"",
+        "LightSource \"glow\"", "shape \"cylinder\"",
         "Shape \"sphere\": parameter \"raduis\"", "MediumInterface", "MakeNamedMedium",
         "WorldEnd"}) {
     CAPTURE(part);
     CHECK(has_warning(scene, part));
   }
   for (const Warning& w : scene.warnings.entries())
-    if (w.text.find("projection") != std::string::npos) CHECK(w.count == 2);
+    if (w.text.find("glow") != std::string::npos) CHECK(w.count == 2);
   CHECK(scene.spheres.size() == 1);
 }
 

@@ -1,0 +1,101 @@
+#include "app/weather.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "daylight/sun_position.h"
+#include "import/file.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr uint64_t max_file_bytes = uint64_t(64) << 20;
+// Columns of a row [1].
+constexpr size_t month = 1, day = 2, hour = 3, direct = 14, diffuse = 15;
+constexpr double missing = 9999;
+
+std::vector<std::string> fields_of(std::string_view line) {
+  std::vector<std::string> fields{""};
+  for (const char c : line) {
+    if (c == ',')
+      fields.emplace_back();
+    else if (c != '\r')
+      fields.back() += c;
+  }
+  return fields;
+}
+
+double number(const std::vector<std::string>& fields, size_t i, double least, double most,
+              const std::string& path, int line) {
+  char* end = nullptr;
+  const double v = i < fields.size() ? std::strtod(fields[i].c_str(), &end) : double(NAN);
+  if (end == nullptr || end == fields[i].c_str() || !(v >= least && v <= most))
+    throw InputError(path, line, 1,
+                     "field " + std::to_string(i + 1) + ": a number between " +
+                         std::to_string(int(least)) + " and " + std::to_string(int(most)) +
+                         " expected");
+  return v;
+}
+
+struct Date {
+  int month = 0, day = 0, hour = 0, minute = 0;
+};
+
+Date parse_date(const std::string& text) {
+  Date d;
+  int used = 0;
+  const bool is_read = std::sscanf(text.c_str(), "%2d-%2dT%2d:%2d%n", &d.month, &d.day, &d.hour,
+                                   &d.minute, &used) == 4;
+  if (!is_read || size_t(used) != text.size() || d.month < 1 || d.month > 12 || d.day < 1 ||
+      d.day > 31 || d.hour < 0 || d.hour > 23 || d.minute < 0 || d.minute > 59)
+    throw UsageError("--date: cannot read '" + text + "' as MM-DDTHH:MM");
+  return d;
+}
+
+}  // namespace
+
+Weather read_weather(const std::string& path, const std::string& date) {
+  const Date wanted = parse_date(date);
+  const std::string text = read_text_file(path, max_file_bytes);
+  std::string_view rest = text;
+  Weather weather;
+  double zone_hours = 0;
+  bool has_data = false;
+  for (int line = 1; !rest.empty(); ++line) {
+    const size_t end = rest.find('\n');
+    const auto fields = fields_of(rest.substr(0, end));
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    if (line == 1) {
+      if (fields[0] != "LOCATION") throw InputError(path, 1, 1, "does not begin with LOCATION");
+      weather.latitude_deg = number(fields, 6, -90, 90, path, line);
+      weather.longitude_deg = number(fields, 7, -180, 180, path, line);
+      zone_hours = number(fields, 8, -14, 14, path, line);
+    }
+    if (!has_data) {
+      has_data = fields[0].starts_with("DATA PERIODS");
+      continue;
+    }
+    if (fields.size() <= diffuse) continue;
+    // Hour 1 ends at 01:00.
+    if (int(number(fields, month, 1, 12, path, line)) != wanted.month ||
+        int(number(fields, day, 1, 31, path, line)) != wanted.day ||
+        int(number(fields, hour, 1, 24, path, line)) != wanted.hour + 1)
+      continue;
+    weather.direct_normal = number(fields, direct, 0, missing, path, line);
+    weather.diffuse_horizontal = number(fields, diffuse, 0, missing, path, line);
+    if (weather.direct_normal >= missing || weather.diffuse_horizontal >= missing)
+      throw InputError(path, line, 1, "the irradiances of this hour are missing");
+    const auto year = int(number(fields, 0, 1900, 2200, path, line));
+    weather.julian_day_ut =
+        julian_day(year, wanted.month, wanted.day, wanted.hour + wanted.minute / 60.0 - zone_hours);
+    return weather;
+  }
+  throw InputError(path, 0, 0, "has no row for " + date);
+}
+
+}  // namespace troffer
