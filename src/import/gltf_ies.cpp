@@ -20,8 +20,7 @@ Luminaire read_profile(const JsonNode& profile, const GltfBuffers& buffers, Warn
     const std::string text(bytes.begin(), bytes.end());
     return read_luminaire_text(name, text, warnings);
   };
-  if (const auto view = profile.find("bufferView"))
-    return parse(buffers.buffer_view(*view));
+  if (const auto view = profile.find("bufferView")) return parse(buffers.buffer_view(*view));
   const auto uri = profile.find("uri");
   if (!uri) profile.fail("has neither a uri nor a buffer view");
   if (!is_data_uri(uri->as_string()))

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "base/units.h"
-#include "base/vec.h"
 #include "program.h"
 
 using namespace troffer;
@@ -202,130 +201,6 @@ TEST_CASE("a list hangs luminaires: points and openings, turned and dimmed") {
     CHECK(run_program(folder, {"measure", scene, "--points", at, "--luminaires",
                                folder.write("bad.csv", bad)})
               .status == 1);
-}
-
-namespace {
-
-// Points, and the normals there times the area that each stands for.
-using Surface = std::vector<std::pair<Vec3d, Vec3d>>;
-
-// Midpoints of n × n parts of a rectangle.
-void add_rectangle(const Vec3d& middle, const Vec3d& u, const Vec3d& v, int n, Surface& out) {
-  for (int k = 0; k < n * n; ++k)
-    out.emplace_back(middle + u * ((k % n + .5) / n - .5) + v * ((k / n + .5) / n - .5),
-                     cross(u, v) / double(n * n));
-}
-
-Surface box_points(int n) {
-  Surface p;
-  for (const double s : {1.0, -1.0}) {
-    add_rectangle({0, 0, -.1 * s}, {1, 0, 0}, {0, -.6 * s, 0}, n, p);
-    add_rectangle({.5 * s, 0, 0}, {0, .6 * s, 0}, {0, 0, .2}, n, p);
-    add_rectangle({0, .3 * s, 0}, {0, 0, .2}, {1 * s, 0, 0}, n, p);
-  }
-  return p;
-}
-Surface sphere_points(int n) {
-  Surface p;
-  for (int k = 0; k < n * n; ++k) {
-    const double z = 1 - 2 * (k / n + .5) / n, turn = 2 * pi * (k % n + .5) / n;
-    const Vec3d d{std::sqrt(1 - z * z) * std::cos(turn), std::sqrt(1 - z * z) * std::sin(turn), z};
-    p.emplace_back(d * .2, d * (4 * pi * .04 / (n * n)));
-  }
-  return p;
-}
-Surface cylinder_points(int n) {
-  Surface p;
-  for (int k = 0; k < n * n; ++k) {
-    const double turn = 2 * pi * (k % n + .5) / n, r = .2 * std::sqrt((k / n + .5) / n);
-    const Vec3d d{std::cos(turn), std::sin(turn), 0};
-    p.emplace_back(d * .2 + Vec3d{0, 0, (k / n + .5) / n - .5}, d * (2 * pi * .2 / (n * n)));
-    for (const double s : {1.0, -1.0})
-      p.emplace_back(d * r + Vec3d{0, 0, .5 * s}, Vec3d{0, 0, s * pi * .04 / (n * n)});
-  }
-  return p;
-}
-Surface disc_points(int n) {
-  Surface p;
-  for (int k = 0; k < n * n; ++k) {
-    const double turn = 2 * pi * (k % n + .5) / n, r = .2 * std::sqrt((k / n + .5) / n);
-    p.emplace_back(Vec3d{r * std::cos(turn), r * std::sin(turn), 0},
-                   Vec3d{0, 0, -pi * .04 / (n * n)});
-  }
-  return p;
-}
-
-// 1000 (.4 + .6 cos²γ): a web that is smooth, and light in all directions.
-double candela(double cosine) {
-  return 1000 * (.4 + .6 * cosine * cosine);
-}
-
-double seen_area(const Surface& surface, const Vec3d& w) {
-  double area = 0;
-  for (const auto& [p, n] : surface) area += std::max(0.0, dot(n, w));
-  return area;
-}
-
-}  // namespace
-
-TEST_CASE("openings of every shape: the measured light far away, subdivided sums near") {
-  const Folder folder;
-  folder.write("floor.obj", "v -5 -5 -9\nv 5 -5 -9\nv 5 5 -9\nf 1 2 3\n");
-  struct Opening {
-    const char* dimensions;  // width, length, height
-    Surface (*surface_of)(int);
-    bool is_flat;
-  };
-  for (const auto& [dimensions, surface_of, is_flat] :
-       {Opening{"0.6 1 0.2", box_points, false}, Opening{"-0.4 -0.4 -0.4", sphere_points, false},
-        Opening{"-0.4 -0.4 1", cylinder_points, false},
-        Opening{"-0.4 -0.4 0", disc_points, true}}) {
-    std::string text =
-        fmt::format("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 181 1 1 2 {}\n1 1 25\n", dimensions);
-    for (int i = 0; i <= 180; ++i) text += fmt::format("{}\n", i);
-    text += "0\n";
-    for (int i = 0; i <= 180; ++i)
-      text += fmt::format("{:.9g}\n", candela(std::cos(rad_from_deg(double(i)))));
-    folder.write("body.ies", text);
-    const std::string list = folder.write("list.csv", "file,x,y,z\nbody.ies,0,0,0\n");
-    const std::vector<Vec3d> receivers{{.2, .1, -.9}, {.9, .3, -.3}, {.3, -.8, .7}, {20, 9, -31}};
-    std::string rows = "x,y,z,nx,ny,nz\n";
-    for (const Vec3d& x : receivers)
-      rows += fmt::format("{},{},{},{},{},{}\n", x.x, x.y, x.z, -x.x, -x.y, -x.z);
-    const std::string at = folder.write("p.csv", rows);
-    const auto surface = surface_of(150);
-    const auto coarse = surface_of(40);
-    std::vector<double> sums;
-    for (const Vec3d& x : receivers) {
-      double sum = 0;
-      for (const auto& [p, n] : surface) {
-        const Vec3d d = x - p;
-        const Vec3d w = normalize(d);
-        const double out = is_flat ? std::abs(dot(n, w)) : std::max(0.0, dot(n, w));
-        if (!(out > 0)) continue;
-        const double area = is_flat ? pi * .04 * std::abs(w.z) : seen_area(coarse, w);
-        sum += candela(w.z) / area * out * dot(w, normalize(x)) / dot(d, d);
-      }
-      sums.push_back(sum);
-    }
-    const Vec3d& far = receivers.back();
-    CHECK(sums.back() ==
-          doctest::Approx(candela(far.z / length(far)) / dot(far, far)).epsilon(2e-3));
-    for (const char* method : {"certified", "path"}) {
-      const Finished f =
-          run_program(folder, {"measure", folder.path("floor.obj"), "--points", at, "--indirect",
-                               "none", "--luminaires", list, "--method", method, "--spp", "4096"});
-      CAPTURE(f.err);
-      REQUIRE(f.status == 0);
-      const auto lit = measured(f);
-      for (size_t i = 0; i < receivers.size(); ++i) {
-        CAPTURE(dimensions);
-        CAPTURE(method);
-        CAPTURE(i);
-        CHECK(std::abs(lit[i].lx - sums[i]) < 3e-3 * sums[i] + 5 * lit[i].error);
-      }
-    }
-  }
 }
 
 TEST_CASE("polar curves are drawn; other files and endings are refused") {
