@@ -313,6 +313,11 @@ Rgb straight_transmittance(const Bsdf& b, float cos_o) {
   return split_at(b, std::min(cos_o, 1.0f)).transmitted;
 }
 
+Rgb mirrored_reflectance(const Bsdf& b, float cos_o) {
+  if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
+  return split_at(b, std::min(cos_o, 1.0f)).reflected;
+}
+
 LobeConstants lobe_constants(const Bsdf& b, float cos_o) {
   const Gains g = b.has_separable ? gains_at(b, cos_o) : Gains{};
   const Choice c = choice_at(b, g, cos_o);

@@ -7,10 +7,13 @@
 #include "import/obj.h"
 #include "import/pbrt.h"
 #include "import/radiance.h"
+#include "import/thin_glass.h"
 
 namespace troffer {
 
-Scene import_scene(const std::string& path) {
+namespace {
+
+Scene import_file(const std::string& path) {
   const std::string ending = lower_case_ending(path);
   if (ending == "oct")
     throw InputError(path, 0, 0,
@@ -24,6 +27,14 @@ Scene import_scene(const std::string& path) {
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path);
   return is_gltf ? import_gltf(path) : ending == "pbrt" ? import_pbrt(path) : import_obj(path);
+}
+
+}  // namespace
+
+Scene import_scene(const std::string& path) {
+  Scene scene = import_file(path);
+  replace_thin_glass(scene);
+  return scene;
 }
 
 }  // namespace troffer

@@ -254,6 +254,7 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
     m.kind = MaterialKind::metallic_roughness;
     m.is_thin = true;
     m.transmission.value = 1 - mtl.opacity;
+    if (!mtl.roughness) m.roughness.value = 0;  // dissolved is not frosted
   }
 }
 

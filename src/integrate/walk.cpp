@@ -83,6 +83,22 @@ bool pass_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
   return true;
 }
 
+bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
+  const Vec3 local{-v.wo.x, -v.wo.y, v.wo.z}, wi = v.frame.to_world(local);
+  if (!v.is_consistent(wi, local)) return false;
+  walk.throughput *= mirrored_reflectance(bsdf, v.wo.z);
+  if (walk.throughput.is_black()) return false;
+  walk.ray = {};
+  walk.ray.origin = offset_origin(v.surface, wi);
+  walk.ray.direction = wi;
+  walk.pdf = 0;
+  walk.last_position = v.surface.position;
+  walk.last_normal = v.geometric_normal;
+  walk.last_both_sides = bsdf.has_transmission;
+  ++walk.vertex;
+  return true;
+}
+
 bool survives_spawning(Walk& walk) {
   constexpr float threshold = 0.1f;
   const float survival = max_component(walk.throughput) * walk.eta_squared / threshold;

@@ -63,6 +63,8 @@ bool step(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, float lobe, const 
 
 // Sends a walk straight on through a pane at v, with what this leaves; false for what is no pane.
 bool pass_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
+// Sends a walk back as the pane at v mirrors it.
+bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
 
 // Spawned walks that carry less than a tenth of the light go on as rarely as they are weak, and
 // carry more: false where the walk ends.

@@ -12,6 +12,7 @@ namespace {
 
 // Mirrors facing each other would reflect for ever.
 constexpr uint32_t longest_chain = 64;
+constexpr uint32_t most_divisions = 3;  // of a viewing ray at panes, one after the other
 // Hits that go to a method at a time: few enough for what is known of them to stay in the caches.
 constexpr size_t hits_at_a_time = 64;
 
@@ -218,7 +219,9 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   w.vertices.resize(kept);
 }
 
-// The next viewing rays: those that the hits' surfaces spawn.
+// The next viewing rays: those that the hits' surfaces spawn. At the first panes both that which
+// goes straight on and that which is reflected, each by its share: what is seen through a window is
+// not to be noisy for what it mirrors.
 void WaveIntegrator::step_on(Scratch& s) const {
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
   CheckItems items;
@@ -227,8 +230,15 @@ void WaveIntegrator::step_on(Scratch& s) const {
     items.at(walk.index);
     if (walk.vertex >= longest_chain) continue;
     const Vertex& v = s.wave.vertices[i];
+    const Bsdf& sent = is_whole ? s.wave.bsdfs[i] : s.wave.scatterings[i].specular;
+    if (sent.is_pane && walk.vertex < most_divisions && is_purely_delta(sent)) {
+      Walk mirrored = walk;
+      if (pass_pane(walk, v, sent)) s.next_walks.push_back(walk);
+      if (mirror_at_pane(mirrored, v, sent)) s.next_walks.push_back(mirrored);
+      continue;
+    }
     if (is_whole) {
-      const Bsdf& bsdf = s.wave.bsdfs[i];
+      const Bsdf& bsdf = sent;
       if (!is_lambertian(bsdf, nullptr) &&
           step(walk, v, bsdf, lobe_number(walk), direction_number(walk)))
         s.next_walks.push_back(walk);

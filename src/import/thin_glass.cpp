@@ -1,0 +1,166 @@
+#include "import/thin_glass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "base/frame.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double most_thickness = 1.0 / 30;  // of the smaller side
+constexpr double flatness = 1e-3;            // of the thickness
+constexpr size_t most_triangles = 1 << 17;   // of a mesh that is looked at
+
+bool is_clear_solid_glass(const Material& m) {
+  const bool is_glass =
+      m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
+                                             m.transmission.value >= 1 && m.metallic.value <= 0);
+  return is_glass && !m.is_thin && !m.is_alpha_masked && m.roughness.value <= 0 &&
+         m.normal_texture < 0 && !has_textured_input(m);
+}
+
+// The same glass as a sheet; what tints light tints it at both faces of the body.
+Material sheet_of(const Material& solid) {
+  Material m = solid;
+  m.is_thin = true;
+  m.base_color.value *= m.base_color.value;
+  return m;
+}
+
+// A mesh in bodies that share no corner.
+class Bodies {
+ public:
+  explicit Bodies(const Mesh& mesh) : mesh_(mesh), corner_(mesh.positions.size()) {
+    std::map<std::array<float, 3>, uint32_t> first;
+    for (uint32_t i = 0; i < corner_.size(); ++i) {
+      const Vec3& p = mesh.positions[i];
+      corner_[i] = first.emplace(std::array<float, 3>{p.x, p.y, p.z}, i).first->second;
+    }
+    parent_ = corner_;
+    for (const Triangle& t : mesh.triangles)
+      for (const uint32_t i : {t[1], t[2]}) parent_[root(corner_[i])] = root(corner_[t[0]]);
+    std::map<uint32_t, std::vector<uint32_t>> of_root;
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      of_root[root(corner_[mesh.triangles[t][0]])].push_back(t);
+    for (auto& [r, triangles] : of_root) bodies_.push_back(std::move(triangles));
+  }
+  const std::vector<std::vector<uint32_t>>& all() const { return bodies_; }
+
+  // Each edge belongs to two triangles, which run along it in opposite directions.
+  bool is_closed(const std::vector<uint32_t>& triangles) const {
+    std::map<std::pair<uint32_t, uint32_t>, int> edges;
+    for (const uint32_t t : triangles)
+      for (size_t i = 0; i < 3; ++i) {
+        const uint32_t a = corner_[mesh_.triangles[t][i]],
+                       b = corner_[mesh_.triangles[t][(i + 1) % 3]];
+        if (a == b || ++edges[{a, b}] > 1) return false;
+      }
+    return std::all_of(edges.begin(), edges.end(), [&](const auto& e) {
+      return edges.count({e.first.second, e.first.first}) == 1;
+    });
+  }
+
+ private:
+  uint32_t root(uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  const Mesh& mesh_;
+  std::vector<uint32_t> corner_, parent_;  // per vertex: the first one in its place; …
+  std::vector<std::vector<uint32_t>> bodies_;
+};
+
+// The sheet in the middle of a thin prism: one of its faces, shifted. Empty: it is none.
+std::vector<std::array<Vec3, 3>> sheet_in(const Mesh& mesh, const std::vector<uint32_t>& body) {
+  const auto corners = [&](uint32_t t) {
+    const Triangle& v = mesh.triangles[t];
+    return std::array<Vec3, 3>{mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]};
+  };
+  Vec3d largest;
+  for (const uint32_t t : body) {
+    const auto c = corners(t);
+    const Vec3d n = cross(Vec3d(c[1]) - Vec3d(c[0]), Vec3d(c[2]) - Vec3d(c[0]));
+    if (length_squared(n) > length_squared(largest)) largest = n;
+  }
+  if (!(length_squared(largest) > 0)) return {};
+  const Framed frame(normalize(largest));
+  const Vec3d axes[3] = {frame.normal, frame.tangent, frame.bitangent};
+  Vec3d low{1e300, 1e300, 1e300}, high = low * -1.0;
+  for (const uint32_t t : body)
+    for (const Vec3& p : corners(t))
+      for (size_t a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], dot(Vec3d(p), axes[a]));
+        high[a] = std::max(high[a], dot(Vec3d(p), axes[a]));
+      }
+  const double thickness = high[0] - low[0];
+  if (!(thickness > 0) || thickness > most_thickness * std::min(high[1] - low[1], high[2] - low[2]))
+    return {};
+  double upper = 0, lower = 0;  // areas
+  std::vector<std::array<Vec3, 3>> sheet;
+  for (const uint32_t t : body) {
+    auto c = corners(t);
+    int above = 0;
+    for (const Vec3& p : c) {
+      const double h = dot(Vec3d(p), axes[0]);
+      const bool is_high = high[0] - h < flatness * thickness;
+      if (!is_high && h - low[0] >= flatness * thickness) return {};
+      above += is_high ? 1 : 0;
+    }
+    const double area =
+        0.5 * dot(cross(Vec3d(c[1]) - Vec3d(c[0]), Vec3d(c[2]) - Vec3d(c[0])), axes[0]);
+    if (above == 0) lower -= area;
+    if (above != 3) continue;
+    upper += area;
+    for (Vec3& p : c) p = Vec3(Vec3d(p) - axes[0] * (0.5 * thickness));
+    sheet.push_back(c);
+  }
+  if (!(upper > 0) || std::abs(upper - lower) > 0.01 * upper) return {};
+  return sheet;
+}
+
+}  // namespace
+
+void replace_thin_glass(Scene& scene) {
+  std::map<uint32_t, uint32_t> sheets;  // materials of sheets by those of bodies
+  const size_t n = scene.meshes.size();
+  for (size_t i = 0; i < n; ++i) {
+    const uint32_t material = scene.meshes[i].material;
+    if (!scene.meshes[i].lights.empty() || scene.meshes[i].triangles.size() > most_triangles ||
+        !is_clear_solid_glass(scene.materials[material]))
+      continue;
+    Bodies bodies(scene.meshes[i]);
+    Mesh panes;
+    std::vector<Triangle> kept;
+    for (const std::vector<uint32_t>& body : bodies.all()) {
+      const auto sheet = bodies.is_closed(body) ? sheet_in(scene.meshes[i], body)
+                                                : std::vector<std::array<Vec3, 3>>{};
+      for (const auto& t : sheet) {
+        const auto first = uint32_t(panes.positions.size());
+        panes.positions.insert(panes.positions.end(), t.begin(), t.end());
+        panes.triangles.push_back({first, first + 1, first + 2});
+      }
+      if (sheet.empty())
+        for (const uint32_t t : body) kept.push_back(scene.meshes[i].triangles[t]);
+    }
+    if (panes.triangles.empty()) continue;
+    if (sheets.count(material) == 0) {
+      sheets[material] = uint32_t(scene.materials.size());
+      scene.materials.push_back(sheet_of(scene.materials[material]));
+    }
+    panes.name = scene.meshes[i].name;
+    panes.material = sheets[material];
+    if (kept.empty()) {
+      scene.meshes[i] = std::move(panes);
+      continue;
+    }
+    scene.meshes[i].triangles = std::move(kept);
+    scene.meshes.push_back(std::move(panes));
+  }
+}
+
+}  // namespace troffer
