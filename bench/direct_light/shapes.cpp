@@ -115,7 +115,8 @@ void compare_with_exact(const Shape& shape, const Arguments& a) {
   s.materials.resize(1);
   shape.build(s);
   const PreparedScene scene(std::move(s));
-  const MethodSettings settings;
+  MethodSettings settings;
+  settings.indirect = Indirect::none;
   const std::unique_ptr<Integrator> made = make_integrator(Method::certified, {scene, settings});
   const Integrator& integrator = *made;
   const auto scratch = integrator.make_scratch();

@@ -310,11 +310,12 @@ bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, 
 
 Rgb straight_transmittance(const Bsdf& b, float cos_o) {
   if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
-  return split_at(b, std::min(cos_o, 1.0f)).transmitted;
+  const Split s = split_at(b, std::min(cos_o, 1.0f));
+  return b.has_transmission ? s.transmitted : s.reflected;
 }
 
 Rgb mirrored_reflectance(const Bsdf& b, float cos_o) {
-  if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
+  if (!b.is_smooth || !(cos_o > 0)) return Rgb{0};
   return split_at(b, std::min(cos_o, 1.0f)).reflected;
 }
 

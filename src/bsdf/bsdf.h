@@ -160,7 +160,7 @@ Bsdf specular_part(const Bsdf& bsdf);
 
 // What a pane lets through straight on, seen at a cosine > 0; 0 of all else.
 Rgb straight_transmittance(const Bsdf& bsdf, float cos_o);
-// … and what it reflects as a mirror.
+// What a smooth surface, such as a pane, reflects as a mirror; 0 of all else.
 Rgb mirrored_reflectance(const Bsdf& bsdf, float cos_o);
 
 // Nothing for next-event estimation to do.

@@ -198,6 +198,7 @@ bool can_be_rough(const Material& m) {
 }  // namespace
 
 bool is_pane(const Material& m) {
+  if (m.is_image) return true;
   const bool is_glass =
       m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
                                              m.transmission.value > 0 && m.metallic.value < 1);

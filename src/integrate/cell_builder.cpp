@@ -39,10 +39,10 @@ struct Place {
 
 class Builder {
  public:
-  Builder(const PreparedScene& scene, const CellBuilderOptions& options, CellStore* store,
-          const StopFlag& stop, Counters& counters)
+  Builder(const PreparedScene& scene, const DirectLight& direct, const CellBuilderOptions& options,
+          CellStore* store, const StopFlag& stop, Counters& counters)
       : scene_(scene),
-        walks_(scene),
+        walks_(scene, direct.images()),
         options_(options),
         stop_(stop),
         counters_(counters),
@@ -307,7 +307,7 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_po
   statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit.irradiance),
                                  std::move(light.irradiance), std::move(light.half_difference),
-                                 statistics_);
+                                 statistics_, direct.images());
 }
 
 }  // namespace
@@ -317,7 +317,7 @@ std::unique_ptr<Cells> make_cells(const PreparedScene& scene, const DirectLight&
                                   CellStore* store, const std::function<void(double)>& progress,
                                   const StopFlag& stop, Counters& counters) {
   const Clock::time_point start = Clock::now();
-  Builder builder(scene, options, store, stop, counters);
+  Builder builder(scene, direct, options, store, stop, counters);
   builder.ask(pilot);
   if (!builder.make_rows(progress)) return nullptr;
   return builder.finish(direct, start);

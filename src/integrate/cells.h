@@ -44,13 +44,13 @@ class Cells {
  public:
   Cells(const PreparedScene& scene, std::shared_ptr<const CellMap> map, std::vector<Rgb> direct,
         std::vector<Rgb> irradiance, std::vector<float> half_difference,
-        const CellStatistics& statistics)
+        const CellStatistics& statistics, std::shared_ptr<const MirrorImages> images)
       : map_(std::move(map)),
         direct_(std::move(direct)),
         irradiance_(std::move(irradiance)),
         half_difference_(std::move(half_difference)),
         statistics_(statistics),
-        walks_(scene) {}
+        walks_(scene, std::move(images)) {}
 
   const CellStatistics& statistics() const { return statistics_; }
   const GatherWalks& walks() const { return walks_; }

@@ -11,6 +11,8 @@
 
 namespace troffer {
 
+class MirrorImages;  // mirror_images.h
+
 // Memory that one thread reuses from batch to batch.
 struct DirectLightScratch {
   virtual ~DirectLightScratch() = default;
@@ -30,6 +32,10 @@ class DirectLight {
   virtual WalkedPart walked_part() const = 0;
   // The variance of what is added is told (RadianceBatch::direct_variance).
   virtual bool tells_variance() const { return false; }
+
+  // Images of lights in mirrors, whose light is added too, where a surface's diffuse part gets it:
+  // walks that run into such a light by way of such a mirror do not count it. Null: none.
+  virtual std::shared_ptr<const MirrorImages> images() const { return nullptr; }
 
   // Before the first hits of a batch: what was learnt from another one is forgotten.
   virtual void begin(DirectLightScratch&) const {}

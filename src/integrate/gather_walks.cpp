@@ -1,6 +1,9 @@
 #include "integrate/gather_walks.h"
 
+#include <span>
+
 #include "base/error.h"
+#include "base/random.h"
 #include "base/warp.h"
 
 namespace troffer {
@@ -9,8 +12,10 @@ namespace {
 
 // Surfaces that a ray is followed to.
 constexpr uint32_t longest_walk = 24;
-// A walk's note about where it comes from: what shines on a matte surface is not for it to say.
+// A walk's note about where it comes from: what shines on a matte surface is not for it to say;
 constexpr uint32_t from_matte = 1;
+// nor what image i shines on it: first_image + i, from there by way of its mirror.
+constexpr uint32_t first_image = 2;
 
 }  // namespace
 
@@ -42,6 +47,12 @@ void set_out(const CellHit& from, const Vec2& number, Walk& walk) {
   ++walk.scatterings;
 }
 
+GatherWalks::GatherWalks(const PreparedScene& scene, std::shared_ptr<const MirrorImages> images)
+    : scene_(scene), tree_(scene), images_(std::move(images)) {
+  if (!images_) return;
+  for (const MirrorImages::Image& image : images_->all()) image_trees_.emplace_back(*image.scene);
+}
+
 void GatherWalks::follow(size_t rays, Coherence coherence, GatherScratch& s,
                          Counters& counters) const {
   s.arrivals.clear();
@@ -69,18 +80,33 @@ void GatherWalks::see(const Walk& walk, Rgb radiance, float weight, GatherScratc
   s.light.direct[walk.index] += walk.throughput * radiance * weight;
 }
 
+// Whether light that a walk runs into is for it to tell of.
+bool GatherWalks::counts(const Walk& walk, uint32_t light) const {
+  if (walk.last_place == from_matte) return false;
+  return walk.last_place < first_image || !images_->shows(walk.last_place - first_image, light);
+}
+
+void GatherWalks::note_step(const Walk& before, const Vertex& v, Walk& next) const {
+  if (next.panes != before.panes) return;
+  next.last_place = 0;
+  // A mirror: it has not been scattered, nor has it gone through.
+  if (before.last_place != from_matte || !images_ || next.scatterings != before.scatterings) return;
+  const int32_t image = images_->at(v);
+  if (image >= 0 && dot(next.ray.direction, v.geometric_normal) > 0)
+    next.last_place = first_image + uint32_t(image);
+}
+
 void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) const {
-  const bool counts = walk.last_place != from_matte;
   if (!hit.is_valid()) {
-    if (!counts) return;
     for (const uint32_t p : scene_.primitives.at_infinity())
-      see(walk, radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction),
-          walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, s);
+      if (counts(walk, scene_.primitives[p].light))
+        see(walk, radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction),
+            walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, s);
     return;
   }
   Vertex v;
   make_vertex(scene_.scene, walk.ray, hit, v);
-  if (counts && v.surface.light >= 0)
+  if (v.surface.light >= 0 && counts(walk, uint32_t(v.surface.light)))
     see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
   const Bsdf bsdf =
       make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
@@ -100,7 +126,7 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
       next.length += distance;
       if (step(next, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
           survives_spawning(next)) {
-        if (next.panes == walk.panes) next.last_place = 0;
+        note_step(walk, v, next);
         s.next.push_back(next);
       }
     }
@@ -125,20 +151,35 @@ void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s)
 
 void GatherWalks::light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
                            Counters& counters) const {
-  Bsdf white = sensor_bsdf();
-  white.diffuse = Rgb{1};
   // in groups of as many vertices behind them
   for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
-    s.rough.clear();
-    while (end < arrivals.size() && arrivals[end].walk.vertex == arrivals[first].walk.vertex) {
-      s.rough.walks.push_back(arrivals[end].walk);
-      s.rough.vertices.push_back(vertex_of(arrivals[end].hit));
-      s.rough.bsdfs.push_back(white);
-      ++end;
-    }
-    tree_.queue(s.rough, s.tree, s.light, counters);
-    tree_.flush(s.tree, s.light, counters);
+    while (end < arrivals.size() && arrivals[end].walk.vertex == arrivals[first].walk.vertex) ++end;
+    const auto group = std::span(arrivals).subspan(first, end - first);
+    light_up_by(tree_, nullptr, group, s, counters);
+    for (size_t i = 0; i < image_trees_.size(); ++i)
+      light_up_by(image_trees_[i], &images_->all()[i].mirror, group, s, counters);
   }
+}
+
+// mirror: of the image whose tree it is; null: of none.
+void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,
+                              std::span<const GatherArrival> arrivals, GatherScratch& s,
+                              Counters& counters) const {
+  Bsdf white = sensor_bsdf();
+  white.diffuse = Rgb{1};
+  s.rough.clear();
+  for (const GatherArrival& a : arrivals) {
+    if (mirror != nullptr && mirror->above(a.hit.position) <= mirror->tolerance) continue;
+    s.rough.walks.push_back(a.walk);
+    if (mirror != nullptr)
+      s.rough.walks.back().stream =
+          hash_of(a.walk.stream, uint64_t{0x696d'6167}, uint64_t(mirror->mesh));
+    s.rough.vertices.push_back(vertex_of(a.hit));
+    s.rough.bsdfs.push_back(white);
+  }
+  if (s.rough.size() == 0) return;
+  tree.queue(s.rough, s.tree, s.light, counters);
+  tree.flush(s.tree, s.light, counters);
 }
 
 }  // namespace troffer

@@ -2,14 +2,18 @@
 // of mirrors, glass and gloss too, and what light reaches them along the way.
 //
 // Emission that a ray runs into first is not counted: light straight from sources is somebody
-// else's. Behind a mirror, glass or gloss it is, in competition with one sample of the light tree
-// at the gloss, as in path tracing.
+// else's, and so is that of lights whose image in the mirror that it meets first is one of
+// `images`. Behind other mirrors, glass or gloss it is, in competition with one sample of the light
+// tree at the gloss, as in path tracing.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "cells/cell_hit.h"
 #include "integrate/light_tree_direct.h"
+#include "integrate/mirror_images.h"
 #include "integrate/walk.h"
 
 namespace troffer {
@@ -33,23 +37,31 @@ struct GatherScratch {
 
 class GatherWalks {
  public:
-  explicit GatherWalks(const PreparedScene& scene) : scene_(scene), tree_(scene) {}
+  // images: those whose light is somebody else's to count; null: none.
+  GatherWalks(const PreparedScene& scene, std::shared_ptr<const MirrorImages> images);
 
   // Follows s.walks, whose indices are below `rays`, to the end.
   void follow(size_t rays, Coherence coherence, GatherScratch& s, Counters& counters) const;
   // One ray of each arrival by cosine, in s.walks; the walks have left the arrivals' surfaces.
   void bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const;
   // Light straight from sources at arrivals, as irradiance times the walks' throughput, over π, in
-  // `light`: one sample each.
+  // `light`: one sample each, and one of each image.
   void light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
                 Counters& counters) const;
 
  private:
   void arrive(const Walk& walk, const Hit& hit, GatherScratch& s) const;
   void see(const Walk& walk, Rgb radiance, float weight, GatherScratch& s) const;
+  bool counts(const Walk& walk, uint32_t light) const;
+  void light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,
+                   std::span<const GatherArrival> arrivals, GatherScratch& s,
+                   Counters& counters) const;
+  void note_step(const Walk& before, const Vertex& v, Walk& next) const;
 
   const PreparedScene& scene_;
   LightTreeDirect tree_;
+  std::shared_ptr<const MirrorImages> images_;
+  std::vector<LightTreeDirect> image_trees_;
 };
 
 // Where a ray has hit a surface, as cells want it.

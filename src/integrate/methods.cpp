@@ -9,6 +9,7 @@
 #include "integrate/cells_indirect.h"
 #include "integrate/certified_direct.h"
 #include "integrate/fixed_direct.h"
+#include "integrate/imaged_direct.h"
 #include "integrate/path.h"
 #include "integrate/radiosity_indirect.h"
 #include "integrate/staged_direct.h"
@@ -54,14 +55,30 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
   return std::make_unique<CellsIndirect>(std::move(cells), std::move(records));
 }
 
+// Lights in mirrors, for both.
+void add_images(const MethodInput& in, const CertifiedSettings& settings,
+                std::unique_ptr<DirectLight>& direct, std::unique_ptr<DirectLight>& beyond) {
+  const std::shared_ptr<const MirrorImages> images = MirrorImages::make(in.scene);
+  if (!images) return;
+  std::vector<std::shared_ptr<const Occluders>> occluders;
+  for (const MirrorImages::Image& image : images->all())
+    occluders.push_back(std::make_shared<const Occluders>(image.scene->scene, &image.scene->glass));
+  direct = std::make_unique<ImagedDirect>(std::move(direct), images, occluders, settings);
+  beyond =
+      std::make_unique<ImagedDirect>(std::move(beyond), images, occluders, settings_beyond(in));
+}
+
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   const CertifiedSettings settings =
       certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
   const auto occluders = std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
-  auto direct = std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
+  std::unique_ptr<DirectLight> direct =
+      std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
   std::unique_ptr<IndirectLight> indirect;
   if (needs_cells(Method::certified, in.settings.indirect)) {
-    auto beyond = std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
+    std::unique_ptr<DirectLight> beyond =
+        std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
+    add_images(in, settings, direct, beyond);
     indirect = make_cells_indirect(in, *beyond);
     if (!indirect) return nullptr;
     constexpr auto all = std::numeric_limits<uint32_t>::max();

@@ -59,6 +59,8 @@ struct Material {
   bool is_alpha_masked = false;  // hits with alpha < cutoff are not there
   FloatInput alpha{1, no_texture, 3};
   float alpha_cutoff = 0.5f;
+  // What it would mirror goes straight through instead: scene/mirror_image.h.
+  bool is_image = false;
 };
 
 // Calls visit(input) for every input that says how a material scatters light: what may be textured.

@@ -244,8 +244,9 @@ Rgb Tracer::transmittance(const Ray& ray) const {
     const Hit hit = closest_of(embree_->panes, context, rest);
     if (!hit.is_valid()) return left;
     left *= glass_->transmittance(ray, hit);
-    // Clear of this pane: where two of its triangles meet it counts once.
-    const Vec3 at = abs(ray.origin + ray.direction * hit.t);
+    // Clear of this pane: where two of its triangles meet it counts once. By the ray's own
+    // coordinates too, for its rounding: the pane may lie where all coordinates are zero.
+    const Vec3 at = max(abs(ray.origin), abs(ray.origin + ray.direction * hit.t));
     rest.t_min = hit.t + per_metre * ray_offset(std::max({at.x, at.y, at.z}));
     if (left.is_black() || !(rest.t_min < rest.t_max)) return left;
   }

@@ -1,0 +1,43 @@
+// Lights seen in flat mirrors, as lights of scenes of their own (scene/mirror_image.h).
+//
+// Light that comes from a small source by way of a mirror is what random rays find worst: few of
+// them meet the source, and those bring all of it. Asked for in the mirror's image, it is light
+// straight from a source like any other: certificates, masks and exact terms hold there.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "integrate/prepared_scene.h"
+#include "integrate/vertex.h"
+#include "scene/mirror_image.h"
+
+namespace troffer {
+
+class MirrorImages {
+ public:
+  struct Image {
+    FlatMirror mirror;
+    std::unique_ptr<const PreparedScene> scene;
+    std::vector<bool> shows;  // per light of the scene that is mirrored
+  };
+
+  // Of the mirrors that bring most light, a few at most; null where none brings any. Mirrors: what
+  // reflects much of the light, evenly and sharply, by flat parts of meshes, and lets none through.
+  // Deterministic.
+  static std::shared_ptr<const MirrorImages> make(const PreparedScene& scene);
+
+  const std::vector<Image>& all() const { return images_; }
+  // The one that a ray looks into which has come to v and is mirrored there; -1: none.
+  int32_t at(const Vertex& v) const;
+  bool shows(uint32_t image, uint32_t light) const { return images_[image].shows[light]; }
+
+ private:
+  // Per mesh, empty or per triangle: its polygon's image, seen from the front and from behind; -1:
+  // none.
+  std::vector<std::vector<std::array<int32_t, 2>>> of_triangle_;
+  std::vector<Image> images_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,323 @@
+#include "scene/mirror_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/frame.h"
+
+namespace troffer {
+
+namespace {
+
+enum class Side : uint8_t { front, behind, both };
+
+Side side_of(const FlatMirror& m, float least, float most) {
+  if (most <= m.tolerance) return Side::behind;
+  return least >= -m.tolerance ? Side::front : Side::both;
+}
+
+// The part of a mesh that lies in front of the plane.
+struct CutMesh {
+  Mesh mesh;                      // of the same material; no lights, no normals
+  std::vector<int32_t> triangle;  // per triangle of the whole one: this one's, where it is not cut
+};
+
+class MeshCutter {
+ public:
+  MeshCutter(const Mesh& mesh, const FlatMirror& mirror) : mesh_(mesh), mirror_(mirror) {
+    above_.reserve(mesh.positions.size());
+    for (const Vec3& p : mesh.positions) above_.push_back(mirror.above(p));
+    number_.assign(mesh.positions.size(), none);
+    out_.mesh.name = mesh.name;
+    out_.mesh.material = mesh.material;
+    out_.triangle.assign(mesh.triangles.size(), -1);
+  }
+
+  CutMesh run() {
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const Triangle& t = mesh_.triangles[i];
+      const auto [least, most] = std::minmax({above_[t[0]], above_[t[1]], above_[t[2]]});
+      const Side side = side_of(mirror_, least, most);
+      if (side == Side::behind) continue;
+      if (side == Side::both) {
+        cut(t);
+        continue;
+      }
+      out_.triangle[i] = int32_t(out_.mesh.triangles.size());
+      out_.mesh.triangles.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
+    }
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr uint32_t none = 0xffffffffu;
+
+  uint32_t add(const Vec3& p, const Vec2& uv) {
+    out_.mesh.positions.push_back(p);
+    if (!mesh_.uvs.empty()) out_.mesh.uvs.push_back(uv);
+    return uint32_t(out_.mesh.positions.size() - 1);
+  }
+  Vec2 uv(uint32_t v) const { return mesh_.uvs.empty() ? Vec2{} : mesh_.uvs[v]; }
+  uint32_t vertex(uint32_t v) {
+    if (number_[v] == none) number_[v] = add(mesh_.positions[v], uv(v));
+    return number_[v];
+  }
+  // Where an edge meets the plane: the same for both triangles beside it.
+  uint32_t crossing(uint32_t a, uint32_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    const auto [it, is_new] = crossings_.try_emplace({low, high}, 0);
+    if (is_new) {
+      const float s = above_[low] / (above_[low] - above_[high]);
+      it->second = add(mesh_.positions[low] + (mesh_.positions[high] - mesh_.positions[low]) * s,
+                       uv(low) + (uv(high) - uv(low)) * s);
+    }
+    return it->second;
+  }
+  void cut(const Triangle& t) {
+    std::array<uint32_t, 4> corners{};
+    size_t n = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t a = t[k], b = t[(k + 1) % 3];
+      if (above_[a] >= 0) corners[n++] = vertex(a);
+      if ((above_[a] >= 0) != (above_[b] >= 0)) corners[n++] = crossing(a, b);
+    }
+    for (size_t k = 2; k < n; ++k)
+      out_.mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+  }
+
+  const Mesh& mesh_;
+  const FlatMirror& mirror_;
+  std::vector<float> above_;
+  std::vector<uint32_t> number_;  // of a vertex in the part
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> crossings_;
+  CutMesh out_;
+};
+
+// What becomes of a scene's parts.
+class ImageMaker {
+ public:
+  ImageMaker(const Scene& scene, const FlatMirror& mirror) : scene_(scene), mirror_(mirror) {
+    out_.scene.file = scene.file;
+    out_.scene.origin = scene.origin;
+    out_.scene.webs = scene.webs;
+    out_.scene.environments = scene.environments;
+    out_.scene.is_photometric = scene.is_photometric;
+  }
+
+  std::optional<MirrorImage> run() {
+    add_materials();
+    add_meshes();
+    if (!add_spheres() || !add_disks()) return std::nullopt;
+    add_lights_without_surface();
+    add_wall();
+    add_textures();
+    return std::move(out_);
+  }
+
+ private:
+  void add_materials();
+  void add_textures();
+  void add_meshes();
+  void add_mesh_image(size_t mesh, const CutMesh& front);
+  bool add_spheres();
+  bool add_disks();
+  void add_lights_without_surface();
+  void add_wall();
+  void add_quad(uint32_t material, const std::array<Vec3, 4>& corners);
+  int32_t light_of_image(uint32_t light, uint32_t geometry, const CutMesh* front);
+  uint32_t black() const { return uint32_t(scene_.materials.size()); }
+  uint32_t pane() const { return black() + 1; }
+
+  const Scene& scene_;
+  const FlatMirror& mirror_;
+  MirrorImage out_;
+  std::map<uint32_t, int32_t> lights_;  // of the scene, with a surface: the image's, or no_light
+};
+
+bool is_clear(const Material& m) {
+  return m.kind == MaterialKind::dielectric ||
+         (m.kind == MaterialKind::metallic_roughness && m.transmission.value > 0);
+}
+
+// Nothing reflects: glass stays, for some of it are panes, and so do holes.
+void ImageMaker::add_materials() {
+  Material dark;
+  dark.base_color = {Rgb{0}, no_texture};
+  for (const Material& m : scene_.materials) {
+    Material& copy = out_.scene.materials.emplace_back(is_clear(m) ? m : dark);
+    copy.normal_texture = no_texture;
+    copy.is_alpha_masked = m.is_alpha_masked;
+    copy.alpha = m.alpha;
+    copy.alpha_cutoff = m.alpha_cutoff;
+  }
+  out_.scene.materials.push_back(dark);
+  out_.scene.materials.push_back(scene_.materials[mirror_.material]);
+  out_.scene.materials.back().is_image = true;
+}
+
+// The texels that are still asked for.
+void ImageMaker::add_textures() {
+  const std::vector<Texture>& all = scene_.textures;
+  std::vector<bool> is_used(all.size(), false);
+  const auto use = [&](int32_t t) {
+    if (t >= 0) is_used[size_t(t)] = true;
+  };
+  for (const Material& m : out_.scene.materials) {
+    for_each_input(m, [&](const auto& input) { use(input.texture); });
+    if (m.is_alpha_masked) use(m.alpha.texture);
+  }
+  for (const Light& e : out_.scene.lights) use(e.texture);
+  for (size_t t = all.size(); t-- > 0;)
+    if (is_used[t] && all[t].kind == TextureKind::product)
+      is_used[all[t].factor_a] = is_used[all[t].factor_b] = true;
+  out_.scene.textures.resize(all.size());
+  for (size_t t = 0; t < all.size(); ++t)
+    if (is_used[t]) out_.scene.textures[t] = all[t];
+}
+
+// The number of a light's image; no_light where it has none. front: the light's mesh, cut.
+int32_t ImageMaker::light_of_image(uint32_t light, uint32_t geometry, const CutMesh* front) {
+  const auto [it, is_new] = lights_.try_emplace(light, no_light);
+  if (!is_new) return it->second;
+  Light image = scene_.lights[light];
+  image.geometry = geometry;
+  for (uint32_t& t : image.triangles) {
+    const int32_t number = front->triangle[t];
+    if (number < 0) return no_light;
+    t = uint32_t(number);
+  }
+  for (Vec3& p : image.polygon) p = mirror_.reflected(p);
+  std::reverse(image.polygon.begin(), image.polygon.end());
+  it->second = int32_t(out_.scene.lights.size());
+  out_.scene.lights.push_back(std::move(image));
+  out_.lights.push_back(light);
+  return it->second;
+}
+
+void ImageMaker::add_mesh_image(size_t mesh, const CutMesh& front) {
+  const Mesh& whole = scene_.meshes[mesh];
+  const auto number = uint32_t(out_.scene.meshes.size());
+  Mesh image = front.mesh;
+  for (Vec3& p : image.positions) p = mirror_.reflected(p);
+  for (Triangle& t : image.triangles) std::swap(t[1], t[2]);
+  if (!whole.lights.empty()) {
+    image.lights.assign(image.triangles.size(), no_light);
+    for (size_t t = 0; t < whole.lights.size(); ++t)
+      if (whole.lights[t] >= 0 && front.triangle[t] >= 0)
+        image.lights[size_t(front.triangle[t])] =
+            light_of_image(uint32_t(whole.lights[t]), number, &front);
+  }
+  out_.scene.meshes.push_back(std::move(image));
+}
+
+void ImageMaker::add_meshes() {
+  for (size_t m = 0; m < scene_.meshes.size(); ++m) {
+    CutMesh front = MeshCutter(scene_.meshes[m], mirror_).run();
+    if (front.mesh.triangles.empty()) continue;
+    add_mesh_image(m, front);
+    out_.scene.meshes.push_back(std::move(front.mesh));
+  }
+}
+
+bool ImageMaker::add_spheres() {
+  for (const Sphere& s : scene_.spheres) {
+    const float height = mirror_.above(s.centre);
+    const Side side = side_of(mirror_, height - s.radius, height + s.radius);
+    if (side == Side::both) return false;
+    if (side == Side::behind) continue;
+    Sphere image = s;
+    image.centre = mirror_.reflected(s.centre);
+    const auto number = uint32_t(out_.scene.spheres.size());
+    if (s.light >= 0) image.light = light_of_image(uint32_t(s.light), number, nullptr);
+    out_.scene.spheres.push_back(image);
+    out_.scene.spheres.push_back(s);
+    out_.scene.spheres.back().light = no_light;
+  }
+  return true;
+}
+
+bool ImageMaker::add_disks() {
+  for (const Disk& d : scene_.disks) {
+    const float height = mirror_.above(d.centre);
+    const float cosine = dot(d.normal, mirror_.normal);
+    const float reach = d.radius * std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+    const Side side = side_of(mirror_, height - reach, height + reach);
+    if (side == Side::both) return false;
+    if (side == Side::behind) continue;
+    Disk image = d;
+    image.centre = mirror_.reflected(d.centre);
+    image.normal = mirror_.reflected_direction(d.normal);
+    const auto number = uint32_t(out_.scene.disks.size());
+    if (d.light >= 0) image.light = light_of_image(uint32_t(d.light), number, nullptr);
+    out_.scene.disks.push_back(image);
+    out_.scene.disks.push_back(d);
+    out_.scene.disks.back().light = no_light;
+  }
+  return true;
+}
+
+void ImageMaker::add_lights_without_surface() {
+  for (uint32_t l = 0; l < scene_.lights.size(); ++l) {
+    const Light& e = scene_.lights[l];
+    if (has_surface(e.kind)) continue;
+    const bool is_placed = e.kind == LightKind::point || e.kind == LightKind::spot;
+    if (is_placed && mirror_.above(e.position) <= mirror_.tolerance) continue;
+    Light image = e;
+    image.position = mirror_.reflected(e.position);
+    image.direction = mirror_.reflected_direction(e.direction);
+    for (Vec3& axis : image.axes) axis = mirror_.reflected_direction(axis);
+    out_.scene.lights.push_back(std::move(image));
+    out_.lights.push_back(l);
+  }
+}
+
+void ImageMaker::add_quad(uint32_t material, const std::array<Vec3, 4>& corners) {
+  Mesh& mesh = out_.scene.meshes.emplace_back();
+  mesh.material = material;
+  mesh.positions.assign(corners.begin(), corners.end());
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+}
+
+// In the plane, half planes outside each edge of the outline: all of it but the mirror. Around the
+// front, five sides of a box.
+void ImageMaker::add_wall() {
+  const std::vector<Vec3>& outline = mirror_.outline;
+  const Box box = bounds(scene_);
+  const float size = box.diagonal();
+  Vec3 middle;
+  for (const Vec3& p : outline) middle = middle + p * (1 / float(outline.size()));
+  const float reach = 2 * size;
+  for (size_t i = 0; i < outline.size(); ++i) {
+    const Vec3 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    const Vec3 along = normalize(b - a);
+    Vec3 out = normalize(cross(along, mirror_.normal));
+    if (dot(out, a - middle) < 0) out = -out;
+    add_quad(black(), {a - along * reach, b + along * reach, b + along * reach + out * reach,
+                       a - along * reach + out * reach});
+  }
+  Mesh& mirror = out_.scene.meshes.emplace_back();
+  mirror.material = pane();
+  mirror.positions = outline;
+  for (uint32_t i = 2; i < outline.size(); ++i) mirror.triangles.push_back({0, i - 1, i});
+
+  const Frame frame(mirror_.normal);
+  const float half = 1.25f * size, low = -1e-3f * size, high = 1.25f * size;
+  const auto corner = [&](float x, float y, float z) { return middle + frame.to_world({x, y, z}); };
+  for (const float s : {-half, half}) {
+    add_quad(black(), {corner(s, -half, low), corner(s, half, low), corner(s, half, high),
+                       corner(s, -half, high)});
+    add_quad(black(), {corner(-half, s, low), corner(half, s, low), corner(half, s, high),
+                       corner(-half, s, high)});
+  }
+  add_quad(black(), {corner(-half, -half, high), corner(half, -half, high),
+                     corner(half, half, high), corner(-half, half, high)});
+}
+
+}  // namespace
+
+std::optional<MirrorImage> image_in(const Scene& scene, const FlatMirror& mirror) {
+  return ImageMaker(scene, mirror).run();
+}
+
+}  // namespace troffer

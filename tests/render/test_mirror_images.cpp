@@ -1,0 +1,207 @@
+// Lights in flat mirrors: the default asks their images, against closed forms and paths.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "light/irradiance.h"
+#include "pictures.h"
+#include "render/measure.h"
+#include "scene/mirror_image.h"
+#include "support/light_scenes.h"
+#include "support/surfaceless_lights.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+uint32_t add_mirror(Scene& s, float reflectance = 1) {
+  Material m;
+  m.kind = MaterialKind::conductor;
+  m.is_reflectance = true;
+  m.base_color = {Rgb{reflectance}, no_texture};
+  s.materials.push_back(m);
+  return uint32_t(s.materials.size() - 1);
+}
+
+// In the plane z = 0, to be seen from above; of several triangles, to be merged.
+void add_mirror_square(Scene& s, uint32_t material, float half) {
+  Mesh m;
+  m.material = material;
+  for (int i = 0; i <= 2; ++i)
+    for (int j = 0; j <= 2; ++j)
+      m.positions.push_back({half * float(i - 1), half * float(j - 1), 0});
+  for (uint32_t i = 0; i < 2; ++i)
+    for (uint32_t j = 0; j < 2; ++j) {
+      const uint32_t a = 3 * i + j;
+      m.triangles.push_back({a, a + 3, a + 4});
+      m.triangles.push_back({a, a + 4, a + 1});
+    }
+  s.meshes.push_back(std::move(m));
+}
+
+// Facing down, with its middle at (x, y, z).
+void add_lamp(Scene& s, uint32_t material, const Vec3& c, float half, Rgb radiance) {
+  make_light(s,
+             add_quad(s, material,
+                      {c + Vec3{-half, -half, 0}, c + Vec3{-half, half, 0}, c + Vec3{half, half, 0},
+                       c + Vec3{half, -half, 0}}),
+             radiance, false);
+}
+
+Measurement at(const PreparedScene& scene, const Vec3d& point, const Vec3& normal,
+               Method method = Method::certified, int spp = 0) {
+  MeasureOptions o;
+  o.method = method;
+  o.spp = spp;
+  o.error = 0.004;
+  o.threads = 2;
+  return measure(scene, {{point, normal}}, o, {}, never_stopped).values.at(0);
+}
+
+}  // namespace
+
+TEST_CASE("a lamp whole in a mirror sends what its image would, and no noise") {
+  Scene s;
+  const uint32_t black = add_diffuse(s, Rgb{0});
+  add_mirror_square(s, add_mirror(s), 3);
+  add_lamp(s, black, {0.3f, -0.2f, 2}, 0.1f, Rgb{50});
+  const PreparedScene scene(std::move(s));
+  const Vec3d image[4] = {{0.2, -0.3, -2}, {0.4, -0.3, -2}, {0.4, -0.1, -2}, {0.2, -0.1, -2}};
+  for (const Vec3d point : {Vec3d{-0.5, 0.4, 1}, Vec3d{1.2, 0.1, 2.5}, Vec3d{0.1, 0.1, 0.05}}) {
+    const Measurement m = at(scene, point, {0, 0, -1});
+    const double expected = 50 * polygon_irradiance(image, point, {0, 0, -1}, Sides::both);
+    CAPTURE(point.z);
+    CHECK(double(m.irradiance.g) == doctest::Approx(expected).epsilon(1e-3));
+    CHECK(m.standard_error / luminous_efficacy < 1e-3 * expected);
+  }
+}
+
+TEST_CASE("in a mirror that shows nothing but a lamp, the mirror shines as the lamp does") {
+  Scene s;
+  const uint32_t black = add_diffuse(s, Rgb{0});
+  add_mirror_square(s, add_mirror(s, 1), 0.4f);
+  add_lamp(s, black, {0, 0, 3}, 30, Rgb{2});
+  const PreparedScene scene(std::move(s));
+  const Vec3d mirror[4] = {{-0.4, -0.4, 0}, {0.4, -0.4, 0}, {0.4, 0.4, 0}, {-0.4, 0.4, 0}};
+  for (const Vec3d point : {Vec3d{0.2, 0.1, 0.7}, Vec3d{1, 0.5, 0.5}}) {
+    const double expected = 2 * polygon_irradiance(mirror, point, {0, 0, -1}, Sides::both);
+    const Measurement m = at(scene, point, {0, 0, -1});
+    CHECK(double(m.irradiance.g) == doctest::Approx(expected).epsilon(2e-3));
+    CHECK(m.standard_error / luminous_efficacy < 2e-3 * expected);
+  }
+}
+
+TEST_CASE("what stands before a mirror hides lamps in it, on either way") {
+  for (const float z : {0.5f, 1.5f}) {
+    Scene s;
+    const uint32_t black = add_diffuse(s, Rgb{0});
+    add_mirror_square(s, add_mirror(s), 3);
+    add_lamp(s, black, {1, 0, 2}, 0.1f, Rgb{50});
+    // from (-1,0,2) to the image at (1,0,-2) and back up: at x = -.25 and .75 for z = .5, 1.5
+    const float x = z < 1 ? -0.25f : 0.75f;
+    add_quad(s, black,
+             {Vec3{x - 0.15f, -0.2f, z},
+              {x + 0.15f, -0.2f, z},
+              {x + 0.15f, 0.2f, z},
+              {x - 0.15f, 0.2f, z}});
+    const PreparedScene scene(std::move(s));
+    const Measurement hidden = at(scene, {-1, 0, 2}, {0, 0, -1});
+    CHECK(hidden.irradiance.g == 0);
+    const Measurement beside = at(scene, {-1, 1.5, 2}, {0, 0, -1});
+    CHECK(beside.irradiance.g > 0);
+  }
+}
+
+TEST_CASE("every kind of light is seen in a mirror as by paths") {
+  for (int kind = 0; kind < 3; ++kind) {
+    Scene s;
+    const uint32_t black = add_diffuse(s, Rgb{0});
+    add_mirror_square(s, add_mirror(s, 0.6f), 1);
+    if (kind == 0) add_sphere_light(s, black, {0.2f, 0.1f, 1.5f}, 0.4f, Rgb{9});
+    if (kind == 1) add_disk_light(s, black, {0.2f, 0.1f, 1.5f}, {0, 0, -1}, 0.5f, Rgb{9});
+    if (kind == 2) add_environment(s, Rgb{1.5f});
+    const PreparedScene scene(std::move(s));
+    const Vec3d point{0.9, 0.6, 1};
+    const Measurement found = at(scene, point, normalize(Vec3{-0.3f, -0.2f, -1}));
+    const Measurement paths =
+        at(scene, point, normalize(Vec3{-0.3f, -0.2f, -1}), Method::path, 1 << 16);
+    CAPTURE(kind);
+    const double spread = std::hypot(found.standard_error, paths.standard_error);
+    CHECK(std::abs(found.illuminance_lx - paths.illuminance_lx) < 4 * spread);
+    CHECK(spread < 0.02 * paths.illuminance_lx);
+  }
+}
+
+TEST_CASE("a point light, which no path finds, is seen in a mirror by the inverse square") {
+  Scene s;
+  add_diffuse(s, Rgb{0});
+  add_mirror_square(s, add_mirror(s, 1), 2);
+  add_point(s, {0, 0, 1}, Rgb{5});
+  const PreparedScene scene(std::move(s));
+  // from (0,0,2), which faces down: the light itself at 1 m, its image at 3 m
+  const Measurement m = at(scene, {0, 0, 2}, {0, 0, -1});
+  CHECK(double(m.irradiance.g) == doctest::Approx(5 + 5.0 / 9).epsilon(1e-4));
+}
+
+TEST_CASE("rooms with mirrors, in pictures: the mean of paths, and the same for any threads") {
+  Scene s;
+  const uint32_t white = add_diffuse(s, Rgb{0.6f});
+  const uint32_t mirror = add_mirror(s, 0.9f);
+  add_box_inside(s, white, {0, 0, 0}, {4, 4, 3});
+  add_box_inside(s, white, {1.5f, 1.2f, 0}, {2.1f, 2, 0.8f});
+  // two that see each other
+  add_quad(s, mirror, {Vec3{0.01f, 0.8f, 0.5f}, {0.01f, 3, 0.5f}, {0.01f, 3, 2}, {0.01f, 0.8f, 2}});
+  add_quad(s, mirror, {Vec3{3.99f, 1, 0.5f}, {3.99f, 1, 2}, {3.99f, 2.5f, 2}, {3.99f, 2.5f, 0.5f}});
+  add_lamp(s, white, {1.2f, 2, 2.9f}, 0.35f, Rgb{20});
+  const PreparedScene scene(std::move(s));
+  Camera camera = look_at({3.5f, 3.6f, 1.6f}, {1, 1, 0.8f}, {0, 0, 1}, 70);
+  RenderOptions o;
+  o.width = 32;
+  o.height = 24;
+  o.threads = 1;
+  const RenderResult one = render_now(scene, camera, o);
+  o.threads = 2;
+  const RenderResult two = render_now(scene, camera, o);
+  CHECK(is_identical(one.layers, two.layers));
+  o.method = Method::path;
+  o.spp = 2048;
+  const RenderResult paths = render_now(scene, camera, o);
+  CHECK(mean(one.layers.at(0).image) ==
+        doctest::Approx(mean(paths.layers.at(0).image)).epsilon(0.006));
+}
+
+TEST_CASE("the image of a scene: what is cut, what is behind, what cannot be cut") {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.5f});
+  const uint32_t material = add_mirror(s);
+  add_mirror_square(s, material, 1);
+  add_quad(s, grey, {Vec3{2, 0, -1}, {2, 1, -1}, {2, 1, 1}, {2, 0, 1}});    // through the plane
+  add_quad(s, grey, {Vec3{0, 0, -1}, {1, 0, -1}, {1, 1, -1}, {0, 1, -1}});  // behind
+  add_lamp(s, grey, {0, 0, 2}, 0.1f, Rgb{1});
+  make_light(s, add_quad(s, grey, {Vec3{3, 0, -1}, {3, 1, -1}, {3, 1, 1}, {3, 0, 1}}), Rgb{1},
+             false);  // shines on both sides of the plane
+  FlatMirror m;
+  m.normal = {0, 0, 1};
+  m.tolerance = 1e-5f;
+  m.outline = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  m.material = material;
+  const auto image = image_in(s, m);
+  REQUIRE(image.has_value());
+  REQUIRE(image->lights == std::vector<uint32_t>{0});
+  CHECK(image->scene.lights[0].polygon.at(0).z == doctest::Approx(-2));
+  double front = 0, behind = 0;  // area of what was cut, of plane x = 2
+  for (const Mesh& mesh : image->scene.meshes)
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+      if (a.x != 2 || b.x != 2 || c.x != 2) continue;
+      const double area = 0.5 * double(length(cross(b - a, c - a)));
+      (a.z + b.z + c.z > 0 ? front : behind) += area;
+    }
+  CHECK(front == doctest::Approx(1));
+  CHECK(behind == doctest::Approx(1));
+  Scene with_sphere = s;
+  with_sphere.spheres.push_back({{5, 5, 0.2f}, 0.5f, false, grey, no_light});
+  CHECK(!image_in(with_sphere, m).has_value());
+}
