@@ -62,6 +62,9 @@ struct RadianceBatch {
   // What the luminance of `indirect` may be off by and all samples of a pixel or a point share:
   // standard errors; of points, signed. Empty where the method does not tell.
   std::vector<float> shared_error;
+  // Luminance of that part of `indirect` whose error is told by either of these; how far the rest
+  // is off, samples tell by how far they differ. Empty where nothing is told.
+  std::vector<float> told_indirect;
   // The first surface hit; zero where nothing is.
   std::vector<Rgb> albedo;
   std::vector<Vec3> normal, position;
@@ -83,6 +86,7 @@ struct RadianceBatch {
     shadow_rays.assign(n, 0);
     direct_variance.clear();
     shared_error.clear();
+    told_indirect.clear();
     albedo.assign(n, Rgb{0});
     normal.assign(n, Vec3{});
     position.assign(n, Vec3{});
@@ -92,7 +96,10 @@ struct RadianceBatch {
     known.clear();
   }
   // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
-  void tell_shared_error() { shared_error.resize(direct.size(), 0); }
+  void tell_shared_error() {
+    shared_error.resize(direct.size(), 0);
+    told_indirect.resize(direct.size(), 0);
+  }
   void tell_variance() { direct_variance.assign(direct.size(), 0); }
   void add(size_t i, bool is_direct, Rgb light, float variance) {
     (is_direct ? direct : indirect)[i] += light;

@@ -8,21 +8,30 @@ namespace troffer {
 
 namespace {
 
-// Gather rays from what a viewing ray hits; four viewing rays a pixel make 16.
-constexpr uint32_t rays_of_hit = 4;
+// Gather rays from what a viewing ray hits, of which a pixel has about four.
+constexpr uint32_t least_rays = 4, most_rays = 64;
+constexpr float usual_hits = 4;
+
+// As many as the pixel wants, in powers of two.
+uint32_t rays_of_hit(float wanted) {
+  uint32_t n = least_rays;
+  while (n < most_rays && float(n) * usual_hits < wanted) n *= 2;
+  return n;
+}
 
 }  // namespace
 
 struct CellsIndirect::Scratch final : IndirectLightScratch {
   CellsScratch cells;
-  // Per hit whose rays are in cells.gather.walks: of which viewing ray, and reflectance / π times
-  // what the walk carries.
-  std::vector<uint32_t> indices;
+  // Per hit whose rays are in cells.gather.walks: of which viewing ray, and where its rays end.
+  std::vector<uint32_t> indices, ends;
+  // Per ray: what the hit makes of irradiance by it, times what the walk carries.
   std::vector<Rgb> weights;
 
   void clear() {
     cells.gather.walks.clear();
     indices.clear();
+    ends.clear();
     weights.clear();
   }
 };
@@ -30,6 +39,28 @@ struct CellsIndirect::Scratch final : IndirectLightScratch {
 std::unique_ptr<IndirectLightScratch> CellsIndirect::make_scratch() const {
   return std::make_unique<Scratch>();
 }
+
+namespace {
+
+// What a hit sends on: of irradiance, and of the mean radiance that its gloss shows.
+struct Weights {
+  Rgb matte, gloss;
+};
+
+Weights weights_of(const Walk& at, const Vertex& v, const SurfaceScattering& scattering) {
+  if (!scattering.is_gathered)
+    return {at.throughput * albedo(scattering.diffuse, v.wo.z) * inv_pi_f, {}};
+  const Rgb gloss = albedo(scattering.specular, v.wo.z);
+  const Rgb rest = albedo(scattering.whole, v.wo.z) - gloss;
+  const Rgb matte{std::max(rest.r, 0.0f), std::max(rest.g, 0.0f), std::max(rest.b, 0.0f)};
+  return {at.throughput * matte * inv_pi_f, at.throughput * gloss};
+}
+
+uint32_t gloss_of(const Vertex& v, const SurfaceScattering& scattering) {
+  return scattering.is_gathered ? v.surface.material : GlossPlace::no_material;
+}
+
+}  // namespace
 
 void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
                           Counters&) const {
@@ -42,33 +73,44 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
     const Walk& at = wave.walks[i];
     items.at(at.index);
     const Vertex& v = wave.vertices[i];
-    const Rgb weight = at.throughput * albedo(scattering.diffuse, v.wo.z) * inv_pi_f;
+    const Weights weights = weights_of(at, v, scattering);
     const CellHit hit = cell_hit_of(v);
     Rgb irradiance;
     if (at.scatterings > 0 &&
         cells_->indirect_at(hit, wave.hits[i].t * length(at.ray.direction), irradiance)) {
-      out.indirect[at.index] += weight * irradiance;
+      out.indirect[at.index] += weights.matte * irradiance;
       continue;
     }
     FittedRecord fitted;
     if (at.scatterings == 0 && records_ && !wave.viewing->pixels.empty()) {
       const PixelAt& pixel = wave.viewing->pixels[at.index];
-      if (records_->irradiance_at(pixel.x, pixel.y, hit, false, fitted)) {
-        out.indirect[at.index] += weight * fitted.irradiance;
-        out.shared_error[at.index] += luminance(weight) * fitted.error;
+      if (records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), false, fitted)) {
+        const Rgb light = weights.matte * fitted.irradiance + weights.gloss * fitted.gloss;
+        out.indirect[at.index] += light;
+        out.told_indirect[at.index] += luminance(light);
+        out.shared_error[at.index] +=
+            luminance(weights.matte) * fitted.error + luminance(weights.gloss) * fitted.gloss_error;
         continue;
       }
+      records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
     }
-    for (uint32_t k = 0; k < rays_of_hit; ++k) {
+    const uint32_t rays = rays_of_hit(fitted.rays);
+    for (uint32_t k = 0; k < rays; ++k) {
       Walk walk = at;
       walk.throughput = Rgb{1};
-      walk.index = uint32_t(s.indices.size()) * rays_of_hit + k;
-      walk.sample = at.sample * rays_of_hit + k;
+      walk.index = uint32_t(s.weights.size());
+      walk.sample = at.sample * rays + k;
       set_out(hit, direction_number(walk), walk);
+      s.weights.push_back(weights.matte);
+      if (scattering.is_gathered) {
+        const Vec3 wi = v.frame.to_local(walk.ray.direction);
+        if (wi.z > 0)
+          s.weights.back() += at.throughput * evaluate(scattering.specular, v.wo, wi) * (1 / wi.z);
+      }
       if (!walk.throughput.is_black()) s.cells.gather.walks.push_back(walk);
     }
     s.indices.push_back(at.index);
-    s.weights.push_back(weight);
+    s.ends.push_back(uint32_t(s.weights.size()));
   }
 }
 
@@ -80,33 +122,41 @@ void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
     const Walk& at = wave.walks[i];
     if (!scattering.has_diffuse || at.vertex > 0) continue;
     items.at(at.index);
-    const Rgb weight = albedo(scattering.diffuse, wave.vertices[i].wo.z) * inv_pi_f;
-    const CellHit hit = cell_hit_of(wave.vertices[i]);
+    const Vertex& v = wave.vertices[i];
+    const Weights weights = weights_of(at, v, scattering);
+    const CellHit hit = cell_hit_of(v);
     const CellLightAt cell = cells_->light_at(hit);
     const PixelAt& pixel = wave.viewing->pixels[at.index];
     FittedRecord fitted;
-    const bool is_fitted = records_->irradiance_at(pixel.x, pixel.y, hit, true, fitted);
-    out.known[at.index].direct += weight * cell.direct;
-    out.known[at.index].indirect += weight * (is_fitted ? fitted.irradiance : cell.indirect);
+    const bool is_fitted =
+        records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
+    out.known[at.index].direct += weights.matte * cell.direct;
+    out.known[at.index].indirect +=
+        is_fitted ? weights.matte * fitted.irradiance + weights.gloss * fitted.gloss
+                  : weights.matte * cell.indirect;
   }
 }
 
 void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
                           Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
-  cells_->gather(s.indices.size() * rays_of_hit, s.cells, counters);
+  cells_->gather(s.weights.size(), s.cells, counters);
+  size_t first = 0;
   for (size_t i = 0; i < s.indices.size(); ++i) {
     Rgb sum;
     float squares = 0;
-    for (size_t k = i * rays_of_hit; k < (i + 1) * rays_of_hit; ++k) {
-      sum += s.cells.light.irradiance[k];
-      squares += sqr(luminance(s.cells.light.irradiance[k]));
+    for (size_t k = first; k < s.ends[i]; ++k) {
+      const Rgb light = s.weights[k] * s.cells.light.irradiance[k];
+      sum += light;
+      squares += sqr(luminance(light));
     }
-    constexpr float n = float(rays_of_hit);
-    out.indirect[s.indices[i]] += s.weights[i] * sum * (1 / n);
+    const auto n = float(s.ends[i] - first);
+    first = s.ends[i];
+    out.indirect[s.indices[i]] += sum * (1 / n);
+    out.told_indirect[s.indices[i]] += luminance(sum) / n;
     if (out.direct_variance.empty()) continue;
     const float variance = std::max(squares / n - sqr(luminance(sum) / n), 0.0f) / (n - 1);
-    out.direct_variance[s.indices[i]] += sqr(luminance(s.weights[i])) * variance;
+    out.direct_variance[s.indices[i]] += variance;
   }
   s.clear();
 }

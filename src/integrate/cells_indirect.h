@@ -17,6 +17,7 @@ class CellsIndirect final : public IndirectLight {
   std::unique_ptr<IndirectLightScratch> make_scratch() const override;
   void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;
+  bool gathers_gloss() const override { return records_ != nullptr; }
   bool is_known() const override { return records_ != nullptr; }
   void know(const WaveHits& wave, RadianceBatch& out) const override;
   void flush(IndirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;

@@ -1,7 +1,6 @@
 #include "integrate/gather_pass.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -11,27 +10,43 @@ namespace troffer {
 namespace {
 
 constexpr int tile_side = 16;
-constexpr uint32_t first_rays = 8;
-constexpr float unit = 16;  // rays of a neighbour of weight 1 in fits
-// Gathers that follow a curve on one sequence of numbers err by less, together, than as many
-// independent ones, as which their spread counts them (measured: docs/cells.md).
-constexpr double gain_of_order = 2;
-constexpr uint32_t most_rays = 256;
-// Radii in harmonic mean distances: within the first, light is nearly linear; beyond the second the
-// fit's own error is more than it saves.
-constexpr float near_radius = 0.06f, far_radius = 0.12f;
-constexpr float least_pixels = 1.5f;
-// Fits hold within this share of the distance, times the root of the asked error; at most so far.
-constexpr float reach_of_error = 2, most_reach = 0.2f;
-// Neighbours on either side that a fit looks at, of those within its radius.
-constexpr int few_along = 4, many_along = 8;
-
 // The place of a pixel on a Z curve through its tile.
 uint32_t on_curve(uint32_t x, uint32_t y) {
   const auto spread = [](uint32_t v) {
     return (v & 1) | (v & 2) << 1 | (v & 4) << 2 | (v & 8) << 3;
   };
   return spread(x) | spread(y) << 1;
+}
+
+// What a record's gloss makes of light from one direction.
+struct Lobe {
+  Lobe(const GatherWalks& walks, GatherRecord& r) {
+    if (!r.place.is_there()) return;
+    specular = walks.scattering_at(r.place).specular;
+    frame = Frame(r.hit.normal);
+    wo = r.place.wo;
+    r.width = glossy_alpha(specular);
+    const Rgb all = albedo(specular, wo.z);
+    const auto inverse = [](float x) { return x > 0 ? 1 / x : 0.0f; };
+    scale = {inverse(all.r), inverse(all.g), inverse(all.b)};
+  }
+  // Of a ray drawn by its cosine: mean radiance shown, over its π × radiance.
+  Rgb share_of(const Vec3& world) const {
+    const Vec3 wi = frame.to_local(world);
+    return wi.z > 0 ? evaluate(specular, wo, wi) * scale * (1 / wi.z) : Rgb{0};
+  }
+
+  Bsdf specular;
+  Frame frame;
+  Vec3 wo;
+  Rgb scale;
+};
+
+void add(GatherSums& sums, const Rgb& light, float half, float nearness) {
+  sums.sum += light;
+  sums.squares += sqr(luminance(light));
+  sums.half += half;
+  sums.bright_nearness += luminance(light) * nearness;
 }
 
 std::string name_of_record(const void*, size_t i) {
@@ -85,7 +100,11 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
         out_.of_pixel(x, y, [&](uint32_t r) { act(x, y, r); });
   };
   if (!over_tiles(tiles, counters, [&](Tile& t, Worker&) {
-        of_all(t, [&](int x, int y, uint32_t r) { wanted_[r] = further_rays(x, y, r); });
+        of_all(t, [&](int x, int y, uint32_t r) {
+          wanted_[r] = further_rays(x, y, r, &GatherRecord::matte);
+          if (out_.records_[r].place.is_there())
+            wanted_[r] = std::max(wanted_[r], further_rays(x, y, r, &GatherRecord::gloss));
+        });
       }))
     return false;
   tell(0.4);
@@ -132,7 +151,9 @@ void GatherPass::see(Tile& tile, Worker& w) const {
     if (a.walk.scatterings > 0) continue;  // seen in gloss: its cell does
     GatherRecord& r = tile.records.emplace_back();
     r.hit = a.hit;
-    r.weight = luminance(a.walk.throughput) * inv_pi_f;
+    r.matte.weight = luminance(a.walk.throughput) * inv_pi_f;
+    r.gloss.weight = a.gloss_weight;
+    r.place = a.gloss;
     r.spacing = spreads[a.walk.index] * std::max(a.length, 1e-6f);
     const int x = tile.pixels.x0 + int(a.walk.index) % tile.pixels.width(),
               y = tile.pixels.y0 + int(a.walk.index) / tile.pixels.width();
@@ -150,7 +171,10 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   std::vector<Walk>& walks = w.cells.gather.walks;
   walks.clear();
   std::vector<uint32_t> owners;
-  for (uint32_t r = 0; r < records.size(); ++r)
+  std::vector<Vec3> directions;
+  std::vector<Lobe> lobes;
+  for (uint32_t r = 0; r < records.size(); ++r) {
+    lobes.emplace_back(cells_.walks(), records[r]);
     for (uint32_t k = 0; k < counts[r]; ++k) {
       Walk walk;
       walk.index = uint32_t(owners.size());
@@ -159,8 +183,10 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
       walk.sample = (places[r] & 255) * (is_further ? most_rays : first_rays) + k;
       owners.push_back(r);
       set_out(records[r].hit, direction_number(walk), walk);
+      directions.push_back(walk.ray.direction);
       if (!walk.throughput.is_black()) walks.push_back(walk);
     }
+  }
   const CheckContext context(&w, owners.size(), name_of_record);
   cells_.gather(owners.size(), w.cells, w.counters);
   const GatheredLight& light = w.cells.light;
@@ -168,13 +194,13 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
     GatherRecord& r = records[owners[i]];
     r.rays += 1;
     if (!is_finite(light.irradiance[i])) continue;
-    r.sum += light.irradiance[i];
-    r.squares += sqr(luminance(light.irradiance[i]));
-    r.half += light.half_difference[i];
-    if (light.distance[i] > 0) {
-      r.nearness += 1 / light.distance[i];
-      r.bright_nearness += luminance(light.irradiance[i]) / light.distance[i];
-    }
+    const float nearness = light.distance[i] > 0 ? 1 / light.distance[i] : 0;
+    r.nearness += nearness;
+    add(r.matte, light.irradiance[i], light.half_difference[i], nearness);
+    if (!r.place.is_there()) continue;
+    const Rgb share = lobes[owners[i]].share_of(directions[i]);
+    add(r.gloss, light.irradiance[i] * share, light.half_difference[i] * luminance(share),
+        nearness);
   }
 }
 
@@ -205,77 +231,6 @@ void GatherPass::join(std::vector<Tile>& tiles) {
   }
 }
 
-GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r) const {
-  const GatherRecord& at = out_.records_[r];
-  float nearness = 0, bright_nearness = 0, light = 0, rays = 0, variance = 0, records = 0;
-  for (int j = y - 2; j <= y + 2; ++j)
-    for (int i = x - 2; i <= x + 2; ++i)
-      out_.of_pixel(i, j, [&](uint32_t o) {
-        const GatherRecord& n = out_.records_[o];
-        if (!is_one_surface(at.hit, n.hit, at.spacing)) return;
-        nearness += n.nearness;
-        bright_nearness += n.bright_nearness;
-        light += luminance(n.sum);
-        rays += n.rays;
-        const float mean = luminance(n.sum) / n.rays;
-        variance += std::max(n.squares / n.rays - mean * mean, 0.0f) * n.rays / (n.rays - 1) / unit;
-        records += 1;
-      });
-  // Rays that bring much light tell more of how it changes than others do.
-  return {std::max(nearness / std::max(rays, 1.0f), bright_nearness / std::max(light, 1e-30f)),
-          variance / std::max(records, 1.0f)};
-}
-
-LinearFit GatherPass::fit(int x, int y, uint32_t r, float radius, int along) const {
-  const GatherRecord& at = out_.records_[r];
-  const int pixels = std::clamp(int(std::ceil(radius / at.spacing)), 1, most_pixels);
-  const int step = std::max(1, pixels / along);
-  const Frame frame(at.hit.horizon);
-  const float scale = 1 / radius;
-  LinearFit sums;
-  for (int j = -pixels / step; j <= pixels / step; ++j)
-    for (int i = -pixels / step; i <= pixels / step; ++i)
-      out_.of_pixel(x + i * step, y + j * step, [&](uint32_t o) {
-        const GatherRecord& n = out_.records_[o];
-        const Vec3 d = (n.hit.position - at.hit.position) * scale;
-        const float d2 = length_squared(d);
-        if (d2 >= 1 || !is_one_surface(at.hit, n.hit, at.spacing)) return;
-        sums.add(dot(d, frame.tangent), dot(d, frame.bitangent), 1 - d2, n.rays / unit,
-                 n.sum / n.rays);
-      });
-  return sums;
-}
-
-// Few neighbours do not tell how far they are spread; their rays do.
-FittedLight GatherPass::solved(const LinearFit& fit, const Surroundings& s) {
-  constexpr int enough = 12;
-  FittedLight light;
-  fit.solve(light);
-  if (fit.count() < enough) light.spread = std::max(light.spread, double(s.variance));
-  return light;
-}
-
-// Of the luminance of irradiance at a record.
-float GatherPass::allowed_error(const GatherRecord& r) const {
-  const float own = luminance(r.sum) / r.rays;
-  const float typical = float(options_.typical) / std::max(r.weight, 1e-4f);
-  return float(options_.error) * 0.5f * (own + typical) + 1e-20f;
-}
-
-uint32_t GatherPass::further_rays(int x, int y, uint32_t r) const {
-  const GatherRecord& at = out_.records_[r];
-  const Surroundings s = around(x, y, r);
-  const float radius =
-      std::max(near_radius / std::max(s.nearness, 1e-20f), least_pixels * at.spacing);
-  const FittedLight light =
-      solved(fit(x, y, r, std::min(radius, most_pixels * at.spacing), few_along), s);
-  const double wanted = light.spread / std::max(light.neighbours, 1.0) /
-                        sqr(gain_of_order * double(allowed_error(at)));
-  if (!(wanted > 1)) return 0;
-  const double rays = std::min(first_rays * (wanted - 1), double(most_rays - first_rays));
-  return uint32_t(rays / 4 + 0.999) * 4;
-}
-
 void GatherPass::gather_further(const Tile& tile, Worker& w) {
   std::vector<GatherRecord> records;
   std::vector<uint32_t> counts, places, numbers;
@@ -293,33 +248,6 @@ void GatherPass::gather_further(const Tile& tile, Worker& w) {
     }
   gather(records, counts, tile, places, true, w);
   for (size_t i = 0; i < numbers.size(); ++i) out_.records_[numbers[i]] = records[i];
-}
-
-// As far as the noise asks for, and no farther.
-FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
-  const GatherRecord& at = out_.records_[r];
-  const Surroundings s = around(x, y, r);
-  const float distance = 1 / std::max(s.nearness, 1e-20f);
-  const float least = least_pixels * at.spacing, most = most_pixels * at.spacing;
-  float radius = std::clamp(near_radius * distance, least, most);
-  const FittedLight light = solved(fit(x, y, r, radius, few_along), s);
-  const double allowed = double(allowed_error(at));
-  const double excess = light.spread / std::max(light.neighbours, 1.0) / (allowed * allowed);
-  radius *= float(std::clamp(std::sqrt(excess), 0.5, 2.0));
-  radius = std::clamp(radius, least, std::clamp(far_radius * distance, least, most));
-  const FittedLight fine = solved(fit(x, y, r, radius, many_along), s);
-  const double noise = fine.spread / std::max(fine.neighbours, 1.0);
-  // What is bent shows in a narrower fit, if its noise lets it: the error goes with the radius²
-  const FittedLight narrow = solved(fit(x, y, r, 0.5f * radius, few_along), s);
-  const double apart = double(luminance(narrow.value)) - double(luminance(fine.value));
-  const double chance = 2 * narrow.spread / std::max(narrow.neighbours, 1.0);
-  const double bend2 = std::max(apart * apart - chance, 0.0) * 16 / 9;
-  const double half = double(at.half) / double(at.rays);
-  // What it errs by elsewhere goes with the square of how far.
-  const float reach =
-      std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
-  return {fine.value, float(std::sqrt(noise + bend2 + half * half)),
-          at.spacing > reach ? 0 : reach};
 }
 
 }  // namespace troffer

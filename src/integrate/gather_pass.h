@@ -11,7 +11,8 @@ namespace troffer {
 
 class GatherPass {
  public:
-  static constexpr int most_pixels = 16;  // radius of a fit
+  static constexpr int most_pixels = 16;                      // radius of a fit
+  static constexpr uint32_t first_rays = 8, most_rays = 256;  // of a record
 
   GatherPass(const Cells& cells, const PictureView& view, const GatherOptions& options,
              const StopFlag& stop, GatherRecords& out);
@@ -25,10 +26,13 @@ class GatherPass {
     std::vector<uint16_t> counts;       // of each pixel
   };
   struct Worker {
+    Worker() { viewing.is_view = true; }
     GatherScratch viewing;
     CellsScratch cells;
     Counters counters;
   };
+  // Of a record's two sums, one.
+  using Part = GatherSums GatherRecord::*;
   // What is known of a record's surroundings.
   struct Surroundings {
     float nearness = 0;  // mean of 1 / distance
@@ -41,11 +45,14 @@ class GatherPass {
               const Tile& tile, const std::vector<uint32_t>& places, bool is_further,
               Worker& w) const;
   void join(std::vector<Tile>& tiles);
-  Surroundings around(int x, int y, uint32_t r) const;
-  LinearFit fit(int x, int y, uint32_t r, float radius, int along) const;
+  bool is_neighbour(const GatherRecord& at, const GatherRecord& other, Part part) const;
+  Surroundings around(int x, int y, uint32_t r, Part part) const;
+  LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along) const;
   static FittedLight solved(const LinearFit& fit, const Surroundings& s);
-  float allowed_error(const GatherRecord& r) const;
-  uint32_t further_rays(int x, int y, uint32_t r) const;
+  float allowed_error(const GatherRecord& r, Part part) const;
+  uint32_t further_rays(int x, int y, uint32_t r, Part part) const;
+  float fit_part(int x, int y, uint32_t r, Part part, Rgb& value, float& error) const;
+  float own_rays(int x, int y, uint32_t r, Part part) const;
   FittedRecord fitted(int x, int y, uint32_t r) const;
   void gather_further(const Tile& tile, Worker& w);
   template <class Do>

@@ -32,7 +32,7 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   return records;
 }
 
-bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, bool is_rough,
+bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                                   FittedRecord& out) const {
   float weights = 0;
   out = {};
@@ -40,6 +40,7 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, bool is_roug
     for (int i = x - 1; i <= x + 1; ++i)
       of_pixel(i, j, [&](uint32_t r) {
         const GatherRecord& record = records_[r];
+        if (gloss != GlossPlace::no_material && gloss != record.place.material) return;
         const float d2 = length_squared(record.hit.position - hit.position);
         // As far as pixels are apart where one looks along a surface, and no farther.
         if (d2 > sqr(16 * record.spacing) || !is_one_surface(record.hit, hit, record.spacing))
@@ -49,11 +50,16 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, bool is_roug
         const float w = 1 / sqr(d2 / sqr(record.spacing) + 0.03f);
         out.irradiance += fitted_[r].irradiance * w;
         out.error += fitted_[r].error * w;
+        out.gloss += fitted_[r].gloss * w;
+        out.gloss_error += fitted_[r].gloss_error * w;
+        out.rays = std::max(out.rays, fitted_[r].rays);
         weights += w;
       });
   if (weights == 0) return false;
   out.irradiance *= 1 / weights;
   out.error /= weights;
+  out.gloss *= 1 / weights;
+  out.gloss_error /= weights;
   return true;
 }
 

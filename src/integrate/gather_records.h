@@ -38,24 +38,36 @@ struct GatherOptions {
   uint64_t seed = 0;
 };
 
-// Of one matte surface that a pixel sees.
+// What rays bring, over them.
+struct GatherSums {
+  Rgb sum;
+  float squares = 0;          // of luminance
+  float bright_nearness = 0;  // luminance / distance
+  float half = 0;             // difference by halves of cells' rays (CellLight)
+  float weight = 0;           // luminance that a unit of it brings the pixel
+};
+
+// Of one surface that a pixel sees.
 struct GatherRecord {
   CellHit hit;
-  float weight = 0;   // luminance that unit irradiance there brings the pixel
   float spacing = 0;  // metres between neighbouring pixels, at right angles to the ray
-  // Over its rays:
   float rays = 0;
-  Rgb sum;
-  float squares = 0;   // of luminance
-  float nearness = 0;  // 1 / distance
-  float bright_nearness = 0;  // … times luminance
-  float half = 0;      // difference by halves of cells' rays (CellLight)
+  float nearness = 0;  // 1 / distance, over the rays
+  GatherSums matte;    // irradiance
+  // The mean radiance that wide gloss shows: what it sends to the eye, over what it would send if
+  // radiance was 1 all around.
+  GlossPlace place;
+  GatherSums gloss;
+  float width = 1;  // of the gloss
 };
 
 struct FittedRecord {
   Rgb irradiance;
   float error = 0;  // standard error of its luminance
-  float reach = 0;  // metres over which it holds
+  float reach = 0;  // metres over which both hold
+  Rgb gloss;        // mean radiance that wide gloss shows, and its error
+  float gloss_error = 0;
+  float rays = 0;  // wanted of a pixel that gathers for itself
 };
 
 class GatherRecords {
@@ -66,9 +78,11 @@ class GatherRecords {
                                              const std::function<void(double)>& progress,
                                              const StopFlag& stop, Counters& counters);
 
-  // Irradiance at a place that pixel (x, y) sees; false where the pixels around see another
-  // surface. is_rough: what is too far away to hold there is better than nothing.
-  bool irradiance_at(int x, int y, const CellHit& hit, bool is_rough, FittedRecord& out) const;
+  // Irradiance at a place that pixel (x, y) sees, and what its gloss shows if it is of that
+  // material (GlossPlace); false where the pixels around see another surface. is_rough: what is too
+  // far away to hold there is better than nothing.
+  bool irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
+                     FittedRecord& out) const;
   size_t bytes() const {
     return records_.capacity() * sizeof(GatherRecord) + fitted_.capacity() * sizeof(FittedRecord) +
            first_.capacity() * sizeof(uint32_t);

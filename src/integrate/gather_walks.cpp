@@ -111,13 +111,18 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
   const Bsdf bsdf =
       make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
   const float distance = hit.t * length(walk.ray.direction);
+  GlossPlace gloss;
+  float gloss_weight = 0;
   Rgb reflectance = bsdf.diffuse;
   const bool is_matte = is_lambertian(bsdf, nullptr);
   if (!is_matte) {
     const SurfaceScattering scattering(bsdf);
     reflectance = scattering.has_diffuse ? albedo(scattering.diffuse, v.wo.z) : Rgb{0};
-    if (scattering.has_specular && walk.vertex < longest_walk) {
-      if (scattering.has_rough) {
+    if (s.is_view && scattering.is_wide()) {
+      gloss = {v.surface.material, v.is_front, v.surface.uv, v.wo};
+      gloss_weight = luminance(walk.throughput * albedo(scattering.specular, v.wo.z));
+    } else if (scattering.has_specular && walk.vertex < longest_walk) {
+      if (scattering.has_rough && !s.is_view) {
         s.rough.walks.push_back(walk);
         s.rough.vertices.push_back(v);
         s.rough.bsdfs.push_back(scattering.specular);
@@ -125,19 +130,26 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
       Walk next = walk;
       next.length += distance;
       if (step(next, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
-          survives_spawning(next)) {
+          !(s.is_view && next.scatterings > 0) && survives_spawning(next)) {
         note_step(walk, v, next);
         s.next.push_back(next);
       }
     }
   }
-  if (reflectance.is_black()) return;
+  if (reflectance.is_black() && !gloss.is_there()) return;
   GatherArrival& a = s.arrivals.emplace_back();
   a.walk = walk;
   a.walk.throughput *= reflectance;
   a.hit = cell_hit_of(v);
+  a.gloss = gloss;
+  a.gloss_weight = gloss_weight;
   a.distance = distance;
   a.length = walk.length + distance;
+}
+
+SurfaceScattering GatherWalks::scattering_at(const GlossPlace& p) const {
+  return SurfaceScattering(
+      make_bsdf(scene_.bsdf_tables, scene_.scene, p.material, p.uv, p.is_front));
 }
 
 void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const {

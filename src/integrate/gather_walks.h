@@ -18,15 +18,30 @@
 
 namespace troffer {
 
-// A matte surface seen by a ray.
+// What a surface of wide gloss is, so that its scattering function can be made again.
+struct GlossPlace {
+  uint32_t material = no_material;  // no_material: there is no wide gloss
+  bool is_front = true;
+  Vec2 uv;
+  Vec3 wo;
+
+  static constexpr uint32_t no_material = 0xffffffffu;
+  bool is_there() const { return material != no_material; }
+};
+
+// A matte surface seen by a ray, or, of a view, one of wide gloss.
 struct GatherArrival {
-  Walk walk;           // throughput: times the surface's reflectance towards the ray
-  CellHit hit;         // where
-  float distance = 0;  // from where the ray last left a surface
-  float length = 0;    // … from where it set out
+  Walk walk;               // throughput: times the surface's reflectance towards the ray
+  CellHit hit;             // where
+  GlossPlace gloss;        // of a view
+  float gloss_weight = 0;  // luminance that the gloss brings, of the same radiance all around
+  float distance = 0;      // from where the ray last left a surface
+  float length = 0;        // … from where it set out
 };
 
 struct GatherScratch {
+  // Rays of a view end where gloss would spread them.
+  bool is_view = false;
   std::vector<Walk> walks, next;
   std::vector<GatherArrival> arrivals;  // the result …
   RadianceBatch light;                  // … and radiance from sources: direct + indirect
@@ -44,6 +59,7 @@ class GatherWalks {
   void follow(size_t rays, Coherence coherence, GatherScratch& s, Counters& counters) const;
   // One ray of each arrival by cosine, in s.walks; the walks have left the arrivals' surfaces.
   void bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const;
+  SurfaceScattering scattering_at(const GlossPlace& place) const;
   // Light straight from sources at arrivals, as irradiance times the walks' throughput, over π, in
   // `light`: one sample each, and one of each image.
   void light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,

@@ -51,7 +51,9 @@ void ImagedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBa
       walk.stream = hash_of(walk.stream, uint64_t{0x696d'6167}, uint64_t(m));
       s.wave.walks.push_back(walk);
       s.wave.vertices.push_back(wave.vertices[i]);
+      const bool is_gathered = wave.scatterings[i].is_gathered;
       s.wave.scatterings.emplace_back(wave.scatterings[i].diffuse);
+      if (is_gathered) s.wave.scatterings.back().gather_gloss();
     }
     if (s.wave.size() > 0) of_image_[m]->queue(s.wave, *s.of_image[m], out, counters);
   }

@@ -25,6 +25,8 @@ class IndirectLight {
   // it; the specular parts are the walks'.
   virtual void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
                      Counters& counters) const = 0;
+  // Whether queue() wants wide gloss of first hits as well (SurfaceScattering::gather_gloss).
+  virtual bool gathers_gloss() const { return false; }
   // Whether know() knows anything.
   virtual bool is_known() const { return false; }
   // Adds to out.known what first hits reflect, by what is at hand: no rays.

@@ -15,6 +15,8 @@ struct SurfaceScattering {
   bool has_specular = false;  // anything to spawn viewing rays for
   bool has_rough = false;     // … of which some is not a mirror: sources are sampled for it too
 
+  bool is_gathered = false;  // gather_gloss() was called
+
   // Light that arrives from behind goes through, other than straight on.
   bool is_transmitting() const { return has_rough && specular.has_transmission; }
 
@@ -26,6 +28,20 @@ struct SurfaceScattering {
     specular = specular_part(bsdf);
     has_specular = has_glossy(specular) || specular.has_separable;
     has_rough = has_specular && !is_purely_delta(specular);
+  }
+
+  // Whether the specular part is so wide that directions by a cosine sample it well: their second
+  // moment is about (1 + 1 / (4 alpha²)) times that of directions of its own.
+  bool is_wide() const {
+    constexpr float least_width = 0.2f;
+    return has_rough && !whole.has_transmission && glossy_alpha(specular) >= least_width;
+  }
+  // No ray is spawned: what `specular` does is asked for with the diffuse part, which then is the
+  // whole.
+  void gather_gloss() {
+    is_gathered = has_diffuse = true;
+    has_specular = has_rough = false;
+    diffuse = whole;
   }
 };
 

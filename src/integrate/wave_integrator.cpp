@@ -192,6 +192,7 @@ void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {
 void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   WaveHits& w = s.wave;
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
+  const bool gathers_gloss = indirect_ && indirect_->gathers_gloss();
   size_t kept = 0;
   CheckItems items;
   for (size_t i = 0; i < w.size(); ++i) {
@@ -208,11 +209,13 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
     const Bsdf bsdf =
         make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
     if (w.walks[kept].vertex == 0) record_first_hit(w.walks[kept], v, bsdf, out);
-    if (is_whole)
-      w.bsdfs.push_back(bsdf);
-    else
-      w.scatterings.emplace_back(bsdf);
     ++kept;
+    if (is_whole) {
+      w.bsdfs.push_back(bsdf);
+      continue;
+    }
+    SurfaceScattering& scattering = w.scatterings.emplace_back(bsdf);
+    if (walk.scatterings == 0 && gathers_gloss && scattering.is_wide()) scattering.gather_gloss();
   }
   w.walks.resize(kept);
   w.hits.resize(kept);

@@ -81,10 +81,12 @@ double Film::standard_error(const Pixel& p) {
 }
 
 // What the method tells of its sampling, where it does: samples' errors that are independent add up
-// by their squares, those that they share add up. Else the spread of the samples.
+// by their squares, those that they share add up; of light that it does not tell of (what gloss
+// shows), and where it tells of none, the spread of the samples.
 double Film::told_error(const Pixel& p) {
   if (!p.has_source_variance) return standard_error(p);
-  return std::sqrt(p.source_variance + p.shared_error * p.shared_error) / p.samples;
+  const double untold = error_of_mean(p.untold, p.untold_squared, p.samples) * p.samples;
+  return std::sqrt(p.source_variance + sqr(p.shared_error) + sqr(untold)) / p.samples;
 }
 
 PixelEstimate Film::estimate(int x, int y) const {
@@ -184,6 +186,11 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
     p.has_source_variance = true;
   }
   if (!batch.shared_error.empty()) p.shared_error += double(batch.shared_error[i]);
+  if (!batch.told_indirect.empty()) {
+    const double untold = double(luminance(indirect)) - double(batch.told_indirect[i]);
+    p.untold += untold;
+    p.untold_squared += untold * untold;
+  }
   return true;
 }
 

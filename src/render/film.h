@@ -79,6 +79,7 @@ class Film {
     double sum_luminance = 0, sum_luminance_squared = 0;
     double source_variance = 0;  // of the samples' direct light, as far as the method tells it
     double shared_error = 0;     // … of their indirect light, likewise
+    double untold = 0, untold_squared = 0;  // luminance of light of which it does not tell
     uint32_t samples = 0;
     bool has_source_variance = false;
   };

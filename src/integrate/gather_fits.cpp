@@ -1,0 +1,158 @@
+// What records make of one another's gathers: how many rays they want, and linear fits.
+#include "integrate/gather_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace troffer {
+
+namespace {
+
+constexpr float unit = 16;  // rays of a neighbour of weight 1 in fits
+// Gathers that follow a curve on one sequence of numbers err by less, together, than as many
+// independent ones, as which their spread counts them (measured: docs/cells.md).
+constexpr double gain_of_order = 2;
+// Radii in harmonic mean distances: within the first, light is nearly linear; beyond the second the
+// fit's own error is more than it saves.
+constexpr float near_radius = 0.06f, far_radius = 0.12f;
+constexpr float least_pixels = 1.5f;
+// Fits hold within this share of the distance, times the root of the asked error; at most so far.
+constexpr float reach_of_error = 2, most_reach = 0.2f;
+// A lobe of this width or more shows what changes no faster than irradiance does: one over it.
+constexpr float full_width = 2;
+// Neighbours on either side that a fit looks at, of those within its radius.
+constexpr int few_along = 4, many_along = 8;
+
+}  // namespace
+
+// Whether what one gathers says something of the other.
+bool GatherPass::is_neighbour(const GatherRecord& at, const GatherRecord& n, Part part) const {
+  if (part == &GatherRecord::gloss && n.place.material != at.place.material) return false;
+  return is_one_surface(at.hit, n.hit, at.spacing);
+}
+
+GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part) const {
+  const GatherRecord& at = out_.records_[r];
+  float nearness = 0, bright_nearness = 0, light = 0, rays = 0, variance = 0, records = 0;
+  for (int j = y - 2; j <= y + 2; ++j)
+    for (int i = x - 2; i <= x + 2; ++i)
+      out_.of_pixel(i, j, [&](uint32_t o) {
+        const GatherRecord& n = out_.records_[o];
+        if (!is_neighbour(at, n, part)) return;
+        const GatherSums& sums = n.*part;
+        nearness += n.nearness;
+        bright_nearness += sums.bright_nearness;
+        light += luminance(sums.sum);
+        rays += n.rays;
+        const float mean = luminance(sums.sum) / n.rays;
+        variance +=
+            std::max(sums.squares / n.rays - mean * mean, 0.0f) * n.rays / (n.rays - 1) / unit;
+        records += 1;
+      });
+  // Rays that bring much light tell more of how it changes than others do. What a narrower lobe
+  // shows changes faster.
+  const float width = part == &GatherRecord::gloss ? std::min(full_width * at.width, 1.0f) : 1.0f;
+  return {
+      std::max(nearness / std::max(rays, 1.0f), bright_nearness / std::max(light, 1e-30f)) / width,
+      variance / std::max(records, 1.0f)};
+}
+
+LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int along) const {
+  const GatherRecord& at = out_.records_[r];
+  const int pixels = std::clamp(int(std::ceil(radius / at.spacing)), 1, most_pixels);
+  const int step = std::max(1, pixels / along);
+  const Frame frame(at.hit.horizon);
+  const float scale = 1 / radius;
+  LinearFit sums;
+  for (int j = -pixels / step; j <= pixels / step; ++j)
+    for (int i = -pixels / step; i <= pixels / step; ++i)
+      out_.of_pixel(x + i * step, y + j * step, [&](uint32_t o) {
+        const GatherRecord& n = out_.records_[o];
+        const Vec3 d = (n.hit.position - at.hit.position) * scale;
+        const float d2 = length_squared(d);
+        if (d2 >= 1 || !is_neighbour(at, n, part)) return;
+        sums.add(dot(d, frame.tangent), dot(d, frame.bitangent), 1 - d2, n.rays / unit,
+                 (n.*part).sum / n.rays);
+      });
+  return sums;
+}
+
+// Few neighbours do not tell how far they are spread; their rays do.
+FittedLight GatherPass::solved(const LinearFit& fit, const Surroundings& s) {
+  constexpr int enough = 12;
+  FittedLight light;
+  fit.solve(light);
+  if (fit.count() < enough) light.spread = std::max(light.spread, double(s.variance));
+  return light;
+}
+
+// Of the luminance of either sum's light, by that of all that the pixel sees there.
+float GatherPass::allowed_error(const GatherRecord& r, Part part) const {
+  const float own =
+      (luminance(r.matte.sum) * r.matte.weight + luminance(r.gloss.sum) * r.gloss.weight) / r.rays;
+  const float weight = std::max((r.*part).weight, 1e-4f);
+  return float(options_.error) * 0.5f * (own + float(options_.typical)) / weight + 1e-20f;
+}
+
+uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
+  const GatherRecord& at = out_.records_[r];
+  const Surroundings s = around(x, y, r, part);
+  const float radius =
+      std::max(near_radius / std::max(s.nearness, 1e-20f), least_pixels * at.spacing);
+  const FittedLight light =
+      solved(fit(x, y, r, part, std::min(radius, most_pixels * at.spacing), few_along), s);
+  const double wanted = light.spread / std::max(light.neighbours, 1.0) /
+                        sqr(gain_of_order * double(allowed_error(at, part)));
+  if (!(wanted > 1)) return 0;
+  const double rays = std::min(first_rays * (wanted - 1), double(most_rays - first_rays));
+  return uint32_t(rays / 4 + 0.999) * 4;
+}
+
+// One of the sums, as far as the noise asks for, and no farther. Returns how far from there
+// irradiance would be about linear.
+float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Rgb& value, float& error) const {
+  const GatherRecord& at = out_.records_[r];
+  const Surroundings s = around(x, y, r, part);
+  const float distance = 1 / std::max(s.nearness, 1e-20f);
+  const float least = least_pixels * at.spacing, most = most_pixels * at.spacing;
+  float radius = std::clamp(near_radius * distance, least, most);
+  const FittedLight light = solved(fit(x, y, r, part, radius, few_along), s);
+  const double allowed = double(allowed_error(at, part));
+  const double excess = light.spread / std::max(light.neighbours, 1.0) / (allowed * allowed);
+  radius *= float(std::clamp(std::sqrt(excess), 0.5, 2.0));
+  radius = std::clamp(radius, least, std::clamp(far_radius * distance, least, most));
+  const FittedLight fine = solved(fit(x, y, r, part, radius, many_along), s);
+  const double noise = fine.spread / std::max(fine.neighbours, 1.0);
+  // What is bent shows in a narrower fit, if its noise lets it: the error goes with the radius²
+  const FittedLight narrow = solved(fit(x, y, r, part, 0.5f * radius, few_along), s);
+  const double apart = double(luminance(narrow.value)) - double(luminance(fine.value));
+  const double chance = 2 * narrow.spread / std::max(narrow.neighbours, 1.0);
+  const double bend2 = std::max(apart * apart - chance, 0.0) * 16 / 9;
+  const double half = double((at.*part).half) / double(at.rays);
+  value = fine.value;
+  error = float(std::sqrt(noise + bend2 + half * half));
+  return distance;
+}
+
+// Of a pixel that shares nobody's.
+float GatherPass::own_rays(int x, int y, uint32_t r, Part part) const {
+  return unit * around(x, y, r, part).variance / sqr(allowed_error(out_.records_[r], part));
+}
+
+FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
+  const GatherRecord& at = out_.records_[r];
+  FittedRecord f;
+  float distance = fit_part(x, y, r, &GatherRecord::matte, f.irradiance, f.error);
+  if (at.place.is_there())
+    distance = std::min(distance, fit_part(x, y, r, &GatherRecord::gloss, f.gloss, f.gloss_error));
+  // What it errs by elsewhere goes with the square of how far.
+  const float reach =
+      std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
+  f.reach = at.spacing > reach ? 0 : reach;
+  f.rays = std::min(std::max(own_rays(x, y, r, &GatherRecord::matte),
+                             at.place.is_there() ? own_rays(x, y, r, &GatherRecord::gloss) : 0.0f),
+                    float(most_rays));
+  return f;
+}
+
+}  // namespace troffer
