@@ -1,10 +1,13 @@
 #include "import/file.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <system_error>
 
 #include "base/error.h"
@@ -33,6 +36,46 @@ Bytes read_whole(const std::string& path, uint64_t max_bytes) {
   return bytes;
 }
 
+// Scenes are text and numbers, which shrink to a tenth; a bomb by a thousand.
+constexpr uint64_t always_unpacked = uint64_t(1) << 28, max_gzip_ratio = 200;
+
+// The contents of a file whose name ends in .gz; others as they are. Grows with what comes out, so
+// that a length that lies costs nothing.
+template <class Bytes>
+Bytes unpacked(const std::string& path, Bytes packed, uint64_t max_bytes) {
+  if (lower_case_ending(path) != "gz") return packed;
+  const auto fail = [&](const std::string& what) { throw InputError(path, 0, 0, what); };
+  constexpr int any_gzip = 15 + 16;  // the largest window, gzip's header
+  z_stream stream{};
+  if (inflateInit2(&stream, any_gzip) != Z_OK) fail("cannot start to decompress");
+  max_bytes = std::min(max_bytes, std::max(always_unpacked, packed.size() * max_gzip_ratio));
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> owner(&stream, inflateEnd);
+  Bytes out;
+  std::vector<unsigned char> block(size_t(1) << 18);
+  size_t at = 0;
+  int status = Z_OK;
+  while (status != Z_STREAM_END || at < packed.size() || stream.avail_in > 0) {
+    if (stream.avail_in == 0) {
+      const size_t n = std::min(packed.size() - at, size_t(1) << 30);
+      if (n == 0) fail("the compressed data ends early");
+      stream.next_in = reinterpret_cast<unsigned char*>(packed.data()) + at;
+      stream.avail_in = uInt(n);
+      at += n;
+    }
+    if (status == Z_STREAM_END && inflateReset(&stream) != Z_OK) fail("cannot be decompressed");
+    stream.next_out = block.data();
+    stream.avail_out = uInt(block.size());
+    status = inflate(&stream, Z_NO_FLUSH);
+    const size_t made = block.size() - stream.avail_out;
+    if (made > max_bytes - out.size())
+      fail("becomes more than " + std::to_string(max_bytes) + " bytes");
+    out.insert(out.end(), block.begin(), block.begin() + std::ptrdiff_t(made));
+    if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
+      fail("the compressed data is broken");
+  }
+  return out;
+}
+
 }  // namespace
 
 uint64_t size_of_file(const std::string& path) {
@@ -50,11 +93,15 @@ uint64_t size_of_file(const std::string& path) {
 }
 
 std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes) {
-  return read_whole<std::vector<uint8_t>>(path, max_bytes);
+  return unpacked(path, read_whole<std::vector<uint8_t>>(path, max_bytes), max_bytes);
 }
 
 std::string read_text_file(const std::string& path, uint64_t max_bytes) {
-  return read_whole<std::string>(path, max_bytes);
+  return unpacked(path, read_whole<std::string>(path, max_bytes), max_bytes);
+}
+
+std::string without_gz(const std::string& path) {
+  return lower_case_ending(path) == "gz" ? path.substr(0, path.size() - 3) : path;
 }
 
 std::string folder_of(const std::string& path) {
@@ -70,6 +117,13 @@ std::string lower_case_ending(const std::string& path) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
   return ending;
+}
+
+std::string path_beside(const std::string& folder, const std::string& name) {
+  const std::string bare = name.substr(name.find_last_of("/\\:") + 1);
+  const ConfinedPath path = confined_path(folder, bare);
+  std::error_code error;
+  return path.is_fine() && fs::is_regular_file(path.path, error) ? path.path : std::string();
 }
 
 ConfinedPath confined_path(const std::string& folder, std::string_view relative) {

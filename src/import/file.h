@@ -14,7 +14,8 @@ constexpr uint64_t default_max_file_bytes = uint64_t(4) << 30;
 // regular file (a folder, a pipe, a device).
 uint64_t size_of_file(const std::string& path);
 
-// Contents of a regular file. InputError as above, and where it is larger than max_bytes.
+// Contents of a regular file; of one whose name ends in .gz, decompressed. InputError as above,
+// where it is, or becomes, larger than max_bytes, and where compressed data is broken.
 std::vector<uint8_t> read_file(const std::string& path,
                                uint64_t max_bytes = default_max_file_bytes);
 std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
@@ -24,6 +25,9 @@ std::string folder_of(const std::string& path);
 
 // The part after the last dot of the last path component, in lower case; "" where there is none.
 std::string lower_case_ending(const std::string& path);
+
+// The path without ".gz" at its end.
+std::string without_gz(const std::string& path);
 
 // `path`, or the reason why it may not be used, in words that finish "cannot use 'NAME': …".
 struct ConfinedPath {
@@ -36,5 +40,9 @@ struct ConfinedPath {
 // Refused: an empty name, NUL characters, absolute paths, and whatever ends outside `folder` by
 // ".." or by symbolic links. Whether the file exists is not looked at.
 ConfinedPath confined_path(const std::string& folder, std::string_view relative);
+
+// Of a name that cannot be used as it is (it comes from another machine): the path of the file of
+// that name, without its folders, in `folder`; "" where there is none.
+std::string path_beside(const std::string& folder, const std::string& name);
 
 }  // namespace troffer

@@ -16,6 +16,7 @@
 #include "import/gltf_pose.h"
 #include "import/gltf_schema.h"
 #include "import/recentre.h"
+#include "import/vertex_paint.h"
 
 namespace troffer {
 
@@ -32,7 +33,8 @@ class Importer {
         scene_(scene),
         bounds_(bounds),
         buffers_(root, file),
-        materials_(root_, buffers_, scene) {}
+        materials_(root_, buffers_, scene),
+        painter_(scene) {}
 
   void run() {
     read_primitives();
@@ -41,6 +43,7 @@ class Importer {
     for (Affine& world : nodes_.world) world.translation -= scene_.origin;
     check_triangle_count();
     for (const GltfNode& node : nodes_.shown) add_node(node);
+    materials_.check_unused_images();
     if (scene_.meshes.empty()) scene_.warnings.add("the scene shows no triangles");
     if (const auto animations = root_.find("animations"))
       if (animations->size() > 0)
@@ -112,9 +115,11 @@ class Importer {
   void add_mesh(const GltfPrimitive& p, const GltfPose& pose, const std::string& name,
                 const std::string& node_name) {
     const GltfMaterial& material = materials_.get(p.material);
-    Mesh mesh = make_gltf_mesh(p, pose, material.uv_set, scene_.warnings, bounds_);
+    std::vector<TextureValue> colors;
+    Mesh mesh = make_gltf_mesh(p, pose, material.uv_set, scene_.warnings, bounds_, &colors);
     mesh.name = name;
     mesh.material = material.material;
+    painter_.paint(mesh, colors, material.is_textured);
     const bool is_empty = mesh.triangles.empty();
     if (material.is_textured && mesh.uvs.empty() && !is_empty)
       scene_.warnings.add("textured meshes without TEXCOORD_" + std::to_string(material.uv_set) +
@@ -158,6 +163,7 @@ class Importer {
   PlacedBounds& bounds_;
   GltfBuffers buffers_;
   GltfMaterials materials_;
+  VertexPainter painter_;
   std::vector<std::vector<GltfPrimitive>> primitives_;  // by mesh
   GltfNodes nodes_;
   size_t emissive_count_ = 0;
@@ -171,6 +177,8 @@ Scene import_gltf(const std::string& path) {
     const JsonDocument document(path, std::move(file.json_text));
     scene.file = path;
     scene.is_photometric = true;
+    if (file.is_out_of_order)
+      scene.warnings.add("the binary chunk is not the second one; it is read all the same");
     check_gltf_document(document.root(), scene.warnings);
     check_gltf_extensions(document.root(), scene.warnings);
     Importer(document.root(), file, scene, bounds).run();

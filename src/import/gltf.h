@@ -13,14 +13,9 @@ namespace troffer {
 // Fails with InputError at the line and column of the JSON value that is wrong; of a GLB these
 // count within its JSON chunk.
 //
-// Besides the core format: KHR_draco_mesh_compression, EXT_meshopt_compression, EXT_texture_webp,
-// EXT_mesh_gpu_instancing, KHR_lights_punctual, KHR_materials_emissive_strength, _specular, _ior,
-// _transmission, _volume, KHR_texture_transform, KHR_mesh_quantization. Another extension is a
-// warning, also where the file requires it. Also with a warning each: alphaMode BLEND is shown as
-// MASK at 0.5, a missing or broken image as grey, textures of one material with different sets of
-// coordinates with the first one's set; left out are points, lines, vertex colours, attenuation
-// inside volumes, and triangles that cannot be drawn. Skins and morph targets stand as the nodes
-// and weights of the file say; animations are not played.
+// What becomes of each part of the format and of each extension stands in docs/formats.md; none is
+// refused because a file requires it. Skins and morph targets stand as the nodes and weights of the
+// file say; animations are not played.
 Scene import_gltf(const std::string& path);
 
 }  // namespace troffer

@@ -65,6 +65,7 @@ GltfFile read_chunks(const std::string& path, std::span<const uint8_t> bytes) {
       throw InputError(path, 0, 0, "has two JSON chunks");
     } else if (type == chunk_binary && !file.binary_chunk) {
       file.binary_chunk.emplace(content.begin(), content.end());
+      file.is_out_of_order = index > 1;
     }  // chunks of other types are to be ignored [1] §4.4.3
   }
   return file;

@@ -13,6 +13,7 @@ struct GltfFile {
   std::string json_text;
   std::optional<std::vector<uint8_t>> binary_chunk;  // GLB only
   bool is_glb = false;
+  bool is_out_of_order = false;  // the binary chunk is not the second one, as it must be
 };
 
 // Told apart by content; InputError where the file is missing, empty, no glTF, or a GLB of which

@@ -1,9 +1,11 @@
 #include "import/gltf_material.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "import/gltf_texture.h"
+#include "import/uri.h"
 
 namespace troffer {
 
@@ -16,11 +18,16 @@ class GltfMaterials::Reader {
     material_.kind = MaterialKind::metallic_roughness;
     material_.roughness_meaning = RoughnessMeaning::alpha_is_square;
     material_.name = node_.string_or("name", "");
-    read_base();
+    if (const auto old = node_.extension("KHR_materials_pbrSpecularGlossiness"))
+      read_specular_glossiness(*old);
+    else
+      read_base();
     read_normal();
     read_alpha();
     read_specular();
     read_transmission();
+    read_clearcoat();
+    tell_what_is_left_out();
     read_emission();
     result_.is_two_sided = node_.bool_or("doubleSided", false);
     result_.is_textured = uv_set_ >= 0;
@@ -87,6 +94,83 @@ class GltfMaterials::Reader {
     material_.roughness.texture = material_.metallic.texture = both;
   }
 
+  // The older model as a dielectric of that normal reflectance, which is KHR_materials_specular's
+  // with ior 1.5: its specularColor may be above 1.
+  void read_specular_glossiness(const JsonNode& old) {
+    material_.base_color = {Rgb{1}, no_texture};
+    material_.metallic = {0, no_texture, 2};
+    if (const auto color = old.find("diffuseFactor")) {
+      color->as_numbers(4);
+      material_.base_color.value = unit_color(*color);
+      material_.alpha.value = unit_number(color->element(3));
+    }
+    material_.base_color.texture = texture(old, "diffuseTexture", true);
+    material_.base_color.value *= stand_in_;
+    Rgb f0{1};
+    if (const auto specular = old.find("specularFactor")) {
+      specular->as_numbers(3);
+      f0 = unit_color(*specular);
+    }
+    material_.specular_color.value = f0 * 25.0f;  // 1 / 0.04
+    material_.specular_color.texture = texture(old, "specularGlossinessTexture", true);
+    const float glossiness = unit_number(old, "glossinessFactor", 1);
+    const int32_t image = rough_from_glossy(material_.specular_color.texture, glossiness);
+    material_.roughness = {image == no_texture ? 1 - glossiness : 1.0f, image, 0};
+  }
+
+  // An image of 1 - glossiness times alpha; none where the image has no alpha.
+  int32_t rough_from_glossy(int32_t glossy, float factor) {
+    if (glossy == no_texture) return no_texture;
+    const Texture& from = all_.scene_.textures[size_t(glossy)];
+    const auto n = size_t(from.channels);
+    if (n != 2 && n != 4) return no_texture;
+    Texture to = from;
+    to.channels = 1;
+    to.is_srgb = false;
+    to.texels8.clear();
+    to.texels_float.clear();
+    for (size_t i = n - 1; i < from.texels8.size(); i += n)
+      to.texels8.push_back(uint8_t(255 - std::lround(factor * float(from.texels8[i]))));
+    for (size_t i = n - 1; i < from.texels_float.size(); i += n)
+      to.texels_float.push_back(1 - factor * std::clamp(from.texels_float[i], 0.0f, 1.0f));
+    all_.scene_.textures.push_back(std::move(to));
+    return int32_t(all_.scene_.textures.size() - 1);
+  }
+
+  // A second gloss on top is not modelled. On what is no metal it stands in for the material's own,
+  // which reflects as much.
+  void read_clearcoat() {
+    const auto coat = node_.extension("KHR_materials_clearcoat");
+    if (!coat) return;
+    const float factor = unit_number(*coat, "clearcoatFactor", 0);
+    if (factor == 0) return;
+    if (material_.metallic.value >= 0.5f || factor < 0.5f) {
+      warn("the clear coat is left out");
+      return;
+    }
+    material_.roughness = {unit_number(*coat, "clearcoatRoughnessFactor", 0), no_texture, 1};
+    warn("the clear coat replaces the gloss below it");
+  }
+
+  void tell_what_is_left_out() {
+    struct Told {
+      const char *extension, *what;
+    };
+    constexpr std::array<Told, 7> list{
+        {{"KHR_materials_unlit", "unlit: shown diffuse, as lit as its place is"},
+         {"KHR_materials_sheen", "sheen is left out"},
+         {"KHR_materials_iridescence", "iridescence is left out"},
+         {"KHR_materials_anisotropy", "anisotropy is left out: gloss is even in all directions"},
+         {"KHR_materials_dispersion", "dispersion is left out"},
+         {"KHR_materials_diffuse_transmission", "diffuse transmission is left out"},
+         {"KHR_materials_volume_scatter", "scattering inside a volume is left out"}}};
+    for (const Told& told : list)
+      if (node_.extension(told.extension)) warn(told.what);
+    if (!node_.extension("KHR_materials_unlit")) return;
+    material_.metallic = {0, no_texture, 2};
+    material_.specular.value = 0;
+  }
+
   void read_normal() {
     material_.normal_texture = texture(node_, "normalTexture", false);
     if (material_.normal_texture != no_texture)
@@ -106,9 +190,7 @@ class GltfMaterials::Reader {
       material_.is_alpha_masked = true;
       material_.alpha_cutoff = float(node_.number_or("alphaCutoff", 0.5));
     } else if (mode == "BLEND" && base_has_alpha()) {
-      warn("alphaMode BLEND is shown as MASK with a cutoff of 0.5");
-      material_.is_alpha_masked = true;
-      material_.alpha_cutoff = 0.5f;
+      material_.is_alpha_masked = material_.is_alpha_blended = true;
     } else if (mode != "OPAQUE" && mode != "BLEND") {
       node_.member("alphaMode").fail("'" + printable(mode) + "' is no alpha mode");
     }
@@ -124,7 +206,7 @@ class GltfMaterials::Reader {
         warn("an ior that is neither 0 nor in [1,100) is read as 1.5");
     }
     const auto specular = node_.extension("KHR_materials_specular");
-    if (!specular) return;
+    if (!specular || node_.extension("KHR_materials_pbrSpecularGlossiness")) return;
     material_.specular.value = unit_number(*specular, "specularFactor", 1);
     material_.specular.texture = texture(*specular, "specularTexture", false);
     const auto color = specular->numbers_or("specularColorFactor", {1, 1, 1});
@@ -197,6 +279,18 @@ const GltfMaterial& GltfMaterials::get(std::optional<uint32_t> index) {
     scene_.materials.push_back(std::move(material));
   }
   return done_.emplace(key, made).first->second;
+}
+
+void GltfMaterials::check_unused_images() {
+  const auto images = root_.find("images");
+  for (size_t i = 0; images && i < images->size(); ++i) {
+    const JsonNode image = images->element(i);
+    const auto uri = image.find("uri");
+    if (!uri || !is_data_uri(uri->as_string()) || loader_.was_asked_for(gltf_image_key(image)))
+      continue;
+    if (!parse_data_uri(uri->as_string()))
+      scene_.warnings.add(printable(uri->pointer()) + ": is a malformed data URI");
+  }
 }
 
 }  // namespace troffer

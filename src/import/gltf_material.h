@@ -1,7 +1,7 @@
 // glTF materials and textures.
 // References: [1] Khronos, glTF 2.0 Specification, §3.9 (Materials), §3.8 (Texture Data), and its
 //   extensions KHR_materials_specular, _ior, _transmission, _volume, _emissive_strength,
-//   KHR_texture_transform.
+//   _clearcoat, _pbrSpecularGlossiness, KHR_texture_transform.
 #pragma once
 
 #include <cstdint>
@@ -34,6 +34,9 @@ class GltfMaterials {
 
   // The material of that index in /materials, or the default material [1] §3.9.6.
   const GltfMaterial& get(std::optional<uint32_t> index);
+
+  // Warns of images that nothing shows and that could not be shown. To be called last.
+  void check_unused_images();
 
  private:
   class Reader;

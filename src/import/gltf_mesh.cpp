@@ -131,6 +131,17 @@ void read_uvs(const AccessorView& uvs, const std::vector<uint32_t>& used, Mesh& 
   }
 }
 
+std::vector<TextureValue> read_colors(const AccessorView& colors,
+                                      const std::vector<uint32_t>& used) {
+  std::vector<TextureValue> out;
+  out.reserve(used.size());
+  for (const uint32_t v : used) {
+    const auto c = colors.read(v);
+    out.push_back({{c[0], c[1], c[2]}, colors.components == 4 ? c[3] : 1.0f});
+  }
+  return out;
+}
+
 // Exporters that mirror sometimes leave the winding behind. Where every normal of a mesh lies on
 // the back of its triangles, the normals are believed: the side that is shaded is the side that
 // emits.
@@ -149,7 +160,7 @@ void wind_by_normals(Mesh& mesh, WarningLog& warnings) {
 }  // namespace
 
 Mesh make_gltf_mesh(const GltfPrimitive& p, const GltfPose& pose, int uv_set, WarningLog& warnings,
-                    PlacedBounds& bounds) {
+                    PlacedBounds& bounds, std::vector<TextureValue>* colors) {
   const Poser poser(p, pose);
   Mesh mesh;
   mesh.triangles = read_triangles(p, poser, warnings, bounds);
@@ -162,6 +173,7 @@ Mesh make_gltf_mesh(const GltfPrimitive& p, const GltfPose& pose, int uv_set, Wa
   }
   const auto uvs = p.uvs.find(uv_set);
   if (uvs != p.uvs.end()) read_uvs(uvs->second, used, mesh);
+  if (colors && p.colors) *colors = read_colors(*p.colors, used);
   clean_mesh(mesh, warnings);  // replaces normals and (u,v) that are not finite
   wind_by_normals(mesh, warnings);
   return mesh;

@@ -23,8 +23,10 @@ struct GltfPose {
 // or with vertices that are not finite are left out, with a warning. Under a mirroring transform
 // triangles are turned round, so that the front stays the front [1] §3.7.4; a mesh all of whose
 // normals contradict its winding is wound by them, with a warning. `uv_set`: which TEXCOORD_n
-// becomes Mesh::uvs (none if it is not there). Counts its triangles into `bounds`.
+// becomes Mesh::uvs (none if it is not there). Counts its triangles into `bounds`. `colors` becomes
+// those of the vertices, if they have any.
 Mesh make_gltf_mesh(const GltfPrimitive& primitive, const GltfPose& pose, int uv_set,
-                    WarningLog& warnings, PlacedBounds& bounds);
+                    WarningLog& warnings, PlacedBounds& bounds,
+                    std::vector<TextureValue>* colors = nullptr);
 
 }  // namespace troffer

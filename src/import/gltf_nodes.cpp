@@ -124,6 +124,8 @@ GltfNodes gltf_nodes(const JsonNode& root, WarningLog& warnings) {
   while (!stack.empty()) {
     const uint32_t next = stack.back();
     stack.pop_back();
+    const auto visibility = nodes->element(next).extension("KHR_node_visibility");
+    if (visibility && !visibility->bool_or("visible", true)) continue;  // nor what is below
     out.shown.push_back({next, out.world[next]});
     const auto& below = hierarchy.children[next];
     stack.insert(stack.end(), below.rbegin(), below.rend());

@@ -272,11 +272,31 @@ void check_light_references(const JsonNode& root) {
   }
 }
 
-constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {"EXT_lights_ies", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",
-     "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_emissive_strength",
-     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
-     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform"});
+// Read, or warned about at what uses them.
+constexpr auto supported_extensions =
+    std::to_array<std::string_view>({"EXT_lights_ies",
+                                     "EXT_mesh_gpu_instancing",
+                                     "EXT_meshopt_compression",
+                                     "EXT_texture_webp",
+                                     "KHR_draco_mesh_compression",
+                                     "KHR_lights_punctual",
+                                     "KHR_materials_anisotropy",
+                                     "KHR_materials_clearcoat",
+                                     "KHR_materials_diffuse_transmission",
+                                     "KHR_materials_dispersion",
+                                     "KHR_materials_emissive_strength",
+                                     "KHR_materials_ior",
+                                     "KHR_materials_iridescence",
+                                     "KHR_materials_pbrSpecularGlossiness",
+                                     "KHR_materials_sheen",
+                                     "KHR_materials_specular",
+                                     "KHR_materials_transmission",
+                                     "KHR_materials_unlit",
+                                     "KHR_materials_volume",
+                                     "KHR_materials_volume_scatter",
+                                     "KHR_mesh_quantization",
+                                     "KHR_node_visibility",
+                                     "KHR_texture_transform"});
 
 bool is_supported(const std::string& name) {
   return std::find(supported_extensions.begin(), supported_extensions.end(), name) !=

@@ -50,7 +50,7 @@ void read_transform(const JsonNode& transform, Texture& look, int& uv_set) {
 
 int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers& buffers,
                    TextureLoader& loader) {
-  const std::string key = image.file() + "#" + image.pointer();
+  const std::string key = gltf_image_key(image);
   if (const auto view = image.find("bufferView"))
     return loader.from_memory(buffers.buffer_view(*view), key, look);
   const auto uri = image.find("uri");
@@ -72,6 +72,10 @@ std::optional<JsonNode> source_of(const JsonNode& texture) {
 }
 
 }  // namespace
+
+std::string gltf_image_key(const JsonNode& image) {
+  return image.file() + "#" + image.pointer();
+}
 
 GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_srgb,
                             const GltfBuffers& buffers, TextureLoader& loader, Scene& scene) {

@@ -18,6 +18,9 @@ struct GltfTextureUse {
   Rgb stand_in{1};  // where an image cannot be had: what to take for it
 };
 
+// What stands for an image in warnings and for the loader.
+std::string gltf_image_key(const JsonNode& image);
+
 // The texture that `info` (a textureInfo [1] §5.30) names, with its sampler and transform [2].
 // `is_srgb`: colour as against data. A URI that leads out of the scene's folder fails.
 GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_srgb,

@@ -7,6 +7,7 @@
 #include "import/obj.h"
 #include "import/pbrt.h"
 #include "import/radiance.h"
+#include "import/stl.h"
 #include "import/thin_glass.h"
 
 namespace troffer {
@@ -14,18 +15,21 @@ namespace troffer {
 namespace {
 
 Scene import_file(const std::string& path) {
-  const std::string ending = lower_case_ending(path);
+  const std::string ending = lower_case_ending(without_gz(path));
   if (ending == "oct")
     throw InputError(path, 0, 0,
                      "is a Radiance octree, which is not read: give the .rad file that it was made "
                      "from");
   const bool is_gltf = ending == "gltf" || ending == "glb";
-  if (!is_gltf && ending != "pbrt" && ending != "obj" && ending != "xml" && ending != "rad")
-    throw InputError(path, 0, 0,
-                     "is no scene: its name should end in .gltf, .glb, .pbrt, .obj, .xml or .rad");
+  if (!is_gltf && ending != "pbrt" && ending != "obj" && ending != "xml" && ending != "rad" &&
+      ending != "stl")
+    throw InputError(
+        path, 0, 0,
+        "is no scene: its name should end in .gltf, .glb, .pbrt, .obj, .stl, .xml or .rad");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path);
+  if (ending == "stl") return import_stl(path);
   return is_gltf ? import_gltf(path) : ending == "pbrt" ? import_pbrt(path) : import_obj(path);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "import/file.h"
 #include "import/text_lines.h"
@@ -199,7 +201,8 @@ void MtlReader::read() {
 }
 
 // An image, or no texture. OBJ's v points up.
-int32_t load(const MtlMap& map, bool is_srgb, const std::string& folder, TextureLoader& loader) {
+int32_t load(const MtlMap& map, bool is_srgb, const std::string& folder, TextureLoader& loader,
+             WarningLog& warnings) {
   if (map.file.empty()) return no_texture;
   Texture look;
   look.is_srgb = is_srgb;
@@ -207,6 +210,14 @@ int32_t load(const MtlMap& map, bool is_srgb, const std::string& folder, Texture
   look.uv_offset = {map.offset.x, 1 - map.offset.y};
   if (map.is_clamped) look.wrap_u = look.wrap_v = WrapMode::clamp;
   const ConfinedPath path = confined_path(folder, map.file);
+  std::error_code error;
+  if (!path.is_fine() || !std::filesystem::exists(path.path, error)) {
+    const std::string beside = path_beside(folder, map.file);
+    if (!beside.empty()) {
+      warnings.add("MTL: images that are not where they should be are taken from beside the scene");
+      return loader.from_file(beside, look);
+    }
+  }
   return path.is_fine() ? loader.from_file(path.path, look)
                         : loader.missing(map.file, path.problem, look);
 }
@@ -262,7 +273,7 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
 
 void read_mtl(const std::string& path, const std::string& subfolder, MtlLibrary& library,
               WarningLog& warnings) {
-  const std::string text = read_text_file(path, uint64_t(1) << 28);
+  const std::string text = as_utf8(read_text_file(path, uint64_t(1) << 28));
   MtlReader(path, text, subfolder, library, warnings).read();
 }
 
@@ -275,19 +286,19 @@ MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, Text
   Rgb kd = mtl.diffuse.value_or(has_image ? Rgb{1} : Rgb{0.5f});
   if (has_image && kd.is_black()) kd = Rgb{1};
   set_surface(mtl, clamped_reflectance(kd, warnings), m, warnings);
-  m.base_color.texture = load(mtl.map_diffuse, true, folder, loader);
-  m.roughness.texture = load(mtl.map_roughness, false, folder, loader);
-  m.metallic.texture = load(mtl.map_metallic, false, folder, loader);
-  m.normal_texture = load(mtl.map_normal, false, folder, loader);
+  m.base_color.texture = load(mtl.map_diffuse, true, folder, loader, warnings);
+  m.roughness.texture = load(mtl.map_roughness, false, folder, loader, warnings);
+  m.metallic.texture = load(mtl.map_metallic, false, folder, loader, warnings);
+  m.normal_texture = load(mtl.map_normal, false, folder, loader, warnings);
   if (!mtl.map_opacity.file.empty()) {
-    m.is_alpha_masked = true;
+    m.is_alpha_masked = m.is_alpha_blended = true;
     // The image of the colour itself holds opacity in its alpha channel.
     const bool is_color_image = mtl.map_opacity.file == mtl.map_diffuse.file;
-    m.alpha = {1, load(mtl.map_opacity, false, folder, loader), is_color_image ? 3 : 0};
+    m.alpha = {1, load(mtl.map_opacity, false, folder, loader, warnings), is_color_image ? 3 : 0};
   }
   out.emission = mtl.emission;
   if (!mtl.emission.is_black())
-    out.emission_texture = load(mtl.map_emission, true, folder, loader);
+    out.emission_texture = load(mtl.map_emission, true, folder, loader, warnings);
   else if (!mtl.map_emission.file.empty())
     warnings.add("MTL: map_Ke without Ke is ignored");
   return out;

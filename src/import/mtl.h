@@ -5,7 +5,7 @@
 // - illum 3, 5, 8 (mirror): metallic_roughness with base colour Kd + Ks, metallic by the share of
 // Ks.
 // - d < 1 (or Tr > 0): with illum 6, 7, solid glass of index Ni; else a thin sheet that lets the
-//   share 1 - d through. map_d cuts holes where it is below 0.5.
+//   share 1 - d through. map_d is the share of rays that meet the surface.
 // - illum 2, or none given, with Ks: coated diffuse of base colour Kd, whose 4 % reflection is
 //   scaled by max(Ks) (1 = all of it), alpha = sqrt(2 / (Ns + 2)).
 // - else diffuse Kd.

@@ -44,7 +44,7 @@ class ObjReader {
       : path_(path),
         folder_(folder_of(path)),
         scene_(scene),
-        text_(read_text_file(path)),
+        text_(as_utf8(read_text_file(path))),
         lines_(path_, text_),
         loader_(scene) {
     vertices_.bounds = &bounds;
@@ -103,6 +103,7 @@ class ObjReader {
   uint32_t vertex_of(const Corner& corner);
   void read_libraries(std::string names);
   bool read_library(const std::string& name);
+  bool read_beside(const std::string& name);
   const MtlConverted& material_named(const std::string& name);
   void finish();
   void finish_part(Part& part);
@@ -277,10 +278,20 @@ void ObjReader::read_libraries(std::string names) {
     name += names.substr(at, end - at);
     at = std::min(names.find_first_not_of(" \t", end), names.size());
     if (lower_case_ending(name) != "mtl" && at < names.size()) continue;
-    if (name == names || !read_library(name))
+    if ((name == names || !read_library(name)) && !read_beside(name))
       scene_.warnings.add("material library '" + name.substr(0, 200) + "' is missing");
     name.clear();
   }
+}
+
+// Paths of another machine: the file may lie beside the scene.
+bool ObjReader::read_beside(const std::string& name) {
+  const std::string path = path_beside(folder_, name);
+  if (path.empty()) return false;
+  scene_.warnings.add("material library '" + name.substr(0, 200) +
+                      "' cannot be read there; the one beside the scene is");
+  read_mtl(path, "", materials_.library, scene_.warnings);
+  return true;
 }
 
 // False: there is no such file, or it must not be read.

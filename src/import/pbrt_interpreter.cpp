@@ -131,8 +131,6 @@ void PbrtInterpreter::on_include(const PbrtToken& word, PbrtTokenizer& tokens) {
   const std::string name = parse_string(word, tokens);
   const ConfinedPath path = confined_path(folder_of(path_), name);
   if (!path.is_fine()) fail_at(place, "cannot use '" + name + "': " + path.problem);
-  if (lower_case_ending(name) == "gz")
-    fail_at(place, "compressed files are not supported: " + name);
   run_file(path.path, &place);
 }
 

@@ -139,8 +139,6 @@ AnchoredMesh read_ply_mesh(const PbrtParams& params, const std::string& folder,
   if (params.has("displacement"))
     warnings.add(params.owner + ": displacement is not supported; ignored");
   params.ignore({"edgelength"});
-  if (lower_case_ending(name) == "gz")
-    fail_at(file->place, "compressed PLY files are not supported: " + name);
   const ConfinedPath path = confined_path(folder, name);
   if (!path.is_fine()) fail_at(file->place, "cannot use '" + name + "': " + path.problem);
   return read_ply(path.path, warnings, max_scene_triangles);

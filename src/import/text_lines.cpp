@@ -1,6 +1,7 @@
 #include "import/text_lines.h"
 
 #include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -15,7 +16,66 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
+void append_utf8(std::string& out, uint32_t c) {
+  const auto put = [&](uint32_t bits) { out += char(static_cast<unsigned char>(bits)); };
+  if (c < 0x80) {
+    put(c);
+  } else if (c < 0x800) {
+    put(0xc0 | c >> 6);
+    put(0x80 | (c & 63));
+  } else if (c < 0x10000) {
+    put(0xe0 | c >> 12);
+    put(0x80 | (c >> 6 & 63));
+    put(0x80 | (c & 63));
+  } else {
+    put(0xf0 | c >> 18);
+    put(0x80 | (c >> 12 & 63));
+    put(0x80 | (c >> 6 & 63));
+    put(0x80 | (c & 63));
+  }
+}
+
+// By the number of bytes that each character has; overlong forms are let through.
+bool is_utf8(std::string_view text) {
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c < 0x80) continue;
+    const size_t more = c >= 0xf0 && c < 0xf8 ? 3 : c >= 0xe0 ? 2 : 1;
+    if (c < 0xc2 || c >= 0xf8 || more >= text.size() - i) return false;
+    for (size_t k = 1; k <= more; ++k)
+      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
+    i += more;
+  }
+  return true;
+}
+
 }  // namespace
+
+std::string as_utf8(std::string text) {
+  const bool is_little = text.starts_with("\xff\xfe"), is_big = text.starts_with("\xfe\xff");
+  if (!is_little && !is_big) {
+    if (is_utf8(text)) return text;
+    std::string out;
+    for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
+    return out;
+  }
+  const auto unit_at = [&](size_t i) {
+    const auto a = static_cast<unsigned char>(text[i]), b = static_cast<unsigned char>(text[i + 1]);
+    return is_little ? uint32_t(a | b << 8) : uint32_t(a << 8 | b);
+  };
+  std::string out;
+  out.reserve(text.size() / 2);
+  for (size_t i = 2; i + 1 < text.size(); i += 2) {
+    uint32_t c = unit_at(i);
+    const bool is_high = (c & 0xfc00) == 0xd800;
+    if (is_high && i + 3 < text.size() && (unit_at(i + 2) & 0xfc00) == 0xdc00) {
+      c = 0x10000 + ((c & 0x3ff) << 10) + (unit_at(i + 2) & 0x3ff);
+      i += 2;
+    }
+    append_utf8(out, (c & 0xf800) == 0xd800 ? 0xfffd : c);  // half a pair is no character
+  }
+  return out;
+}
 
 TextLines::TextLines(const std::string& file, std::string_view text) : file_(file), text_(text) {
   if (text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark

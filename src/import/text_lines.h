@@ -6,6 +6,9 @@
 
 namespace troffer {
 
+// The text as UTF-8: from UTF-16 where it has a byte order mark; from Latin-1 where it is no UTF-8.
+std::string as_utf8(std::string text);
+
 // Takes lines apart. A backslash at the end of a line joins it with the next one; lines end with
 // "\n", "\r\n" or "\r".
 class TextLines {

@@ -54,6 +54,12 @@ int32_t TextureLoader::remember(const std::string& key, const Texture& look, Tex
   return index;
 }
 
+bool TextureLoader::was_asked_for(const std::string& image) const {
+  const std::string beginning = image + '\0';  // of request_key()
+  const auto it = by_request_.lower_bound(beginning);
+  return it != by_request_.end() && it->first.starts_with(beginning);
+}
+
 int32_t TextureLoader::missing(const std::string& key, const std::string& problem,
                                const Texture& look) {
   scene_.warnings.add(key + ": " + problem +

@@ -38,6 +38,9 @@ class TextureLoader {
   // That constant texture and the warning "KEY: PROBLEM; grey stands for it".
   int32_t missing(const std::string& key, const std::string& problem, const Texture& look);
 
+  // Whether an image of that path or key was.
+  bool was_asked_for(const std::string& image) const;
+
  private:
   using Bytes = std::function<std::span<const uint8_t>()>;
 

@@ -55,8 +55,11 @@ int32_t primitive_at(const PreparedScene& scene, const Surface& s) {
 Rgb emission_at(const PreparedScene& scene, const Vertex& v) {
   const Surface& s = v.surface;
   if (s.light < 0) return Rgb{0};
-  return emitted_radiance(scene.scene, scene.scene.lights[size_t(s.light)], v.is_front, s.uv,
-                          v.frame.to_world(v.wo));
+  const Light& light = scene.scene.lights[size_t(s.light)];
+  const Rgb mean = emitted_radiance(scene.scene, light, v.is_front, s.uv, v.frame.to_world(v.wo));
+  // A ray that met a blended surface has paid for those that did not.
+  const float share = coverage(scene.scene, light, s.uv);
+  return share > 0 && share < 1 ? mean / share : mean;
 }
 
 }  // namespace troffer

@@ -41,7 +41,7 @@ Vec2 uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t triangle, uin
 
 struct ElementSurface {
   Reflectances sides[2];
-  float coverage = 1;  // share that is not cut away by an alpha mask
+  float coverage = 1;  // share that alpha does not take away
 };
 
 ElementSurface average_surface(const Scene& scene, const BsdfTables& tables,
@@ -72,12 +72,14 @@ ElementSurface average_surface(const Scene& scene, const BsdfTables& tables,
     for (const Vec3& w : weights) {
       const Vec2 uv = uv_at(scene, mesh, e.base_triangle[f], f, w);
       total += share;
-      if (m.is_alpha_masked && evaluate(scene.textures, m.alpha, uv) < m.alpha_cutoff) continue;
-      solid += share;
+      const double there =
+          m.is_alpha_masked ? double(coverage(scene.textures, m, uv)) * share : share;
+      if (there <= 0) continue;
+      solid += there;
       for (size_t side = 0; side < 2; ++side) {
         const Reflectances r = reflectances(tables, scene, material, uv, side == 0);
-        sums[side][0] += r.diffuse * float(share);
-        sums[side][1] += r.other * float(share);
+        sums[side][0] += r.diffuse * float(there);
+        sums[side][1] += r.other * float(there);
       }
     }
   }

@@ -56,7 +56,8 @@ struct Material {
   Rgb eta{0.2f}, k{3.9f};                         // conductor
   int32_t normal_texture = no_texture;            // tangent space, linear
   float normal_scale = 1;
-  bool is_alpha_masked = false;  // hits with alpha < cutoff are not there
+  bool is_alpha_masked = false;   // hits with alpha < cutoff are not there …
+  bool is_alpha_blended = false;  // … or, where it is masked: alpha is the share of rays that hit
   FloatInput alpha{1, no_texture, 3};
   float alpha_cutoff = 0.5f;
   // What it would mirror goes straight through instead: scene/mirror_image.h.
@@ -79,7 +80,8 @@ void for_each_value(const Material& m, const Visit& visit) {
   for_each_input(m, visit);
   visit(m.alpha);
   visit(m.ior);
-  visit(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2);
+  visit(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2 |
+        uint64_t(m.is_alpha_blended) << 3);
   visit(m.eta);
   visit(m.k);
   visit(m.alpha_cutoff);
@@ -101,9 +103,17 @@ inline float evaluate(const std::vector<Texture>& textures, const FloatInput& in
   return in.value * (in.channel == 3 ? v.alpha : v.rgb[size_t(in.channel)]);
 }
 
-// Whether an alpha mask makes a hole at uv. Of a material that is_alpha_masked.
+// The share of rays that meet the surface at uv: 0 where a mask makes a hole, 1 where it does not,
+// between where alpha blends. Of a material that is_alpha_masked.
+inline float coverage(const std::vector<Texture>& textures, const Material& m, const Vec2& uv) {
+  const float alpha = evaluate(textures, m.alpha, uv);
+  if (!m.is_alpha_blended) return alpha < m.alpha_cutoff ? 0.0f : 1.0f;
+  return alpha > 0 ? (alpha < 1 ? alpha : 1.0f) : 0.0f;
+}
+
+// Whether no ray meets it there.
 inline bool is_cut_out(const std::vector<Texture>& textures, const Material& m, const Vec2& uv) {
-  return evaluate(textures, m.alpha, uv) < m.alpha_cutoff;
+  return coverage(textures, m, uv) <= 0;
 }
 
 }  // namespace troffer

@@ -96,15 +96,22 @@ Boxd bounds_in_file(const Scene& scene);  // in the file's coordinates
 // A copy of which only lights named in `names` emit; UsageError names one that does not exist.
 Scene with_only_lights(Scene scene, const std::vector<std::string>& names);
 
+// The share of rays that meet a light with a surface at uv: alpha masks and blends.
+inline float coverage(const Scene& scene, const Light& e, const Vec2& uv) {
+  return e.is_alpha_masked
+             ? coverage(scene.textures, scene.materials[scene.meshes[e.geometry].material], uv)
+             : 1.0f;
+}
+
 // Emission of a light that has a surface towards a viewer on its front (or back), where the surface
-// has texture coordinates uv.
+// has texture coordinates uv; where alpha blends, the mean over rays that meet it and rays that do
+// not.
 inline Rgb emitted_radiance(const Scene& scene, const Light& e, bool is_front, const Vec2& uv) {
   if (!is_front && !e.is_two_sided) return Rgb{0};
-  if (e.is_alpha_masked &&
-      is_cut_out(scene.textures, scene.materials[scene.meshes[e.geometry].material], uv))
-    return Rgb{0};
-  return e.texture < 0 ? e.radiance
-                       : e.radiance * evaluate(scene.textures, uint32_t(e.texture), uv).rgb;
+  const Rgb radiance = e.radiance * coverage(scene, e, uv);
+  return e.texture < 0 || radiance.is_black()
+             ? radiance
+             : radiance * evaluate(scene.textures, uint32_t(e.texture), uv).rgb;
 }
 
 }  // namespace troffer

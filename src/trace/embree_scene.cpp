@@ -1,32 +1,49 @@
 #include "trace/embree_scene.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/random.h"
 
 namespace troffer {
 
 namespace {
 
-bool is_transparent(const AlphaTest& test, uint32_t primitive, float u, float v) {
+float coverage_at(const AlphaTest& test, uint32_t primitive, float u, float v) {
   const Triangle& t = test.mesh->triangles[primitive];
   Vec2 uv{0, 0};
   if (!test.mesh->uvs.empty()) {
     const auto& c = test.mesh->uvs;
     uv = c[t[0]] * (1 - u - v) + c[t[1]] * u + c[t[2]] * v;
   }
-  const Material& m = test.scene->materials[test.mesh->material];
-  return evaluate(test.scene->textures, m.alpha, uv) < m.alpha_cutoff;
+  return coverage(test.scene->textures, test.scene->materials[test.mesh->material], uv);
+}
+
+// Uniform in [0,1), of a ray and a triangle: the same however often and in whatever company Embree
+// asks.
+float draw_of(const RTCFilterFunctionNArguments* args, unsigned i) {
+  const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
+  const auto pair = [&](float f, float g) { return bits(f) << 32 | bits(g); };
+  RTCRayN* const ray = args->ray;
+  const unsigned n = args->N;
+  const uint64_t hash =
+      hash_of(pair(RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i)),
+              pair(RTCRayN_org_z(ray, n, i), RTCRayN_dir_x(ray, n, i)),
+              pair(RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)),
+              uint64_t(RTCHitN_geomID(args->hit, n, i)) << 32 | RTCHitN_primID(args->hit, n, i));
+  return unit_float(uint32_t(hash >> 32));
 }
 
 void alpha_filter(const RTCFilterFunctionNArguments* args) {
   const auto& test = *static_cast<const AlphaTest*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
-    if (is_transparent(test, RTCHitN_primID(args->hit, args->N, i),
-                       RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)))
-      args->valid[i] = 0;
+    const float share =
+        coverage_at(test, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                    RTCHitN_v(args->hit, args->N, i));
+    if (share <= 0 || (share < 1 && draw_of(args, i) >= share)) args->valid[i] = 0;
   }
 }
 

@@ -214,6 +214,9 @@ TEST_CASE("GLB: chunks, extra data, and every cut") {
   const TempFolder folder;
   for (size_t size = 0; size < good.size(); size += size < 64 ? 1 : 13)
     CHECK_THROWS_AS(import_gltf(folder.write("a.glb", good.substr(0, size))), InputError);
+  const Scene late = import_bytes("a.glb", glb(chunk("JSON", json) + chunk("ABCD", "1234") +
+                                               chunk(std::string("BIN\0", 4), square)));
+  CHECK(has_warning(late, "not the second one"));
   CHECK_THROWS_AS(import_bytes("a.glb", glb(chunk("JSON", json))), InputError);  // no data
   CHECK_THROWS_AS(import_bytes("a.glb", glb(chunks + chunk("JSON", json))), InputError);
   CHECK_THROWS_AS(import_bytes("a.glb", glb(chunk(std::string("BIN\0", 4), square))), InputError);

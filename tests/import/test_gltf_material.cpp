@@ -75,9 +75,11 @@ TEST_CASE("alpha modes") {
   const Scene blend =
       with_material("{'alphaMode':'BLEND','pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.3]}}");
   CHECK(only_material(blend).is_alpha_masked);
-  CHECK(only_material(blend).alpha_cutoff == 0.5f);
+  CHECK(only_material(blend).is_alpha_blended);
+  CHECK_FALSE(only_material(mask).is_alpha_blended);
   CHECK(only_material(blend).alpha.value == 0.3f);
-  CHECK(has_warning(blend, "BLEND"));
+  CHECK(coverage(blend.textures, only_material(blend), {0, 0}) == 0.3f);
+  CHECK(blend.warnings.total() == 0);
   const Scene opaque_blend = with_material("{'alphaMode':'BLEND'}");
   CHECK_FALSE(only_material(opaque_blend).is_alpha_masked);
   error_of(square_scene("[{'mesh':0}]", "'materials':[{'alphaMode':'GLASS'}]"));
@@ -178,4 +180,59 @@ TEST_CASE("the set of texture coordinates is the base colour's") {
   text.replace(text.find("TEXCOORD_0"), 10, "TEXCOORD_1");
   scene = import_gltf(folder.write("scene.gltf", text));
   CHECK(scene.meshes[0].uvs.size() == 4);
+}
+
+TEST_CASE("KHR_materials_pbrSpecularGlossiness: a dielectric of that reflectance") {
+  const auto extension = [](const std::string& members) {
+    return "{'extensions':{'KHR_materials_pbrSpecularGlossiness':{" + members + "}}}";
+  };
+  const Scene plain =
+      with_material(extension("'diffuseFactor':[0.5,0.25,0,1],'specularFactor':[0.2,0.4,0.1],"
+                              "'glossinessFactor':0.75"));
+  const Material& m = only_material(plain);
+  CHECK(m.base_color.value == Rgb{0.5f, 0.25f, 0});
+  CHECK(m.metallic.value == 0);
+  CHECK(m.roughness.value == 0.25f);
+  // (ior - 1)² / (ior + 1)² = 0.04, tinted to the factor
+  CHECK(m.specular_color.value.g * 0.04f == doctest::Approx(0.4));
+  CHECK(m.ior == 1.5f);
+  error_of(square_scene("[{'mesh':0}]", "'materials':[" + extension("'specularFactor':[1]") + "]"));
+
+  const TempFolder folder;
+  folder.write("g.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x08", 18) +
+                            std::string("\x10\x20\x30\x66", 4));
+  const Scene textured = import_gltf(folder.write(
+      "s.gltf", square_scene("[{'mesh':0}]",
+                             "'images':[{'uri':'g.tga'}],'textures':[{'source':0}],'materials':[" +
+                                 extension("'specularGlossinessTexture':{'index':0},"
+                                           "'glossinessFactor':0.5") +
+                                 "]")));
+  const Material& t = textured.materials.at(0);
+  CHECK(evaluate(textured.textures, t.roughness, {0, 0}) ==
+        doctest::Approx(1 - 0.5 * 0x66 / 255.0).epsilon(0.005));
+}
+
+TEST_CASE("what materials cannot show is told, and approximated where that is nearer") {
+  const Scene coated = with_material(
+      "{'pbrMetallicRoughness':{'metallicFactor':0,'roughnessFactor':0.9},'extensions':{"
+      "'KHR_materials_clearcoat':{'clearcoatFactor':1,'clearcoatRoughnessFactor':0.1}}}");
+  CHECK(only_material(coated).roughness.value == 0.1f);
+  CHECK(has_warning(coated, "clear coat replaces"));
+  const Scene metal =
+      with_material("{'extensions':{'KHR_materials_clearcoat':{'clearcoatFactor':1}}}");
+  CHECK(only_material(metal).roughness.value == 1);
+  CHECK(has_warning(metal, "clear coat is left out"));
+  const Scene unlit = with_material("{'extensions':{'KHR_materials_unlit':{}}}");
+  CHECK(only_material(unlit).kind == MaterialKind::diffuse);
+  CHECK(has_warning(unlit, "unlit"));
+  for (const std::string name : {"sheen", "iridescence", "anisotropy", "dispersion"})
+    CHECK(has_warning(with_material("{'extensions':{'KHR_materials_" + name + "':{}}}"), name));
+}
+
+TEST_CASE("a data URI that is broken is told of though nothing shows its image") {
+  const Scene scene = with_material("{}",
+                                    ",'images':[{'uri':'data:image/png;base64,A'},"
+                                    "{'uri':'data:image/png;base64,AAAA'}]");
+  CHECK(has_warning(scene, "/images/0/uri: is a malformed data URI"));
+  CHECK(scene.warnings.total() == 1);
 }

@@ -304,3 +304,35 @@ TEST_CASE("damaged OBJ and MTL files load or fail cleanly") {
     }
   }
 }
+
+TEST_CASE(
+    "libraries and images named by paths of another machine are taken from beside the scene") {
+  const TempFolder folder;
+  folder.write("m.mtl", "newmtl a\nmap_Kd C:\\\\work\\\\red.pfm\n");
+  folder.write("red.pfm", "PF\n1 1\n-1.0\n" + std::string(12, '\0'));
+  const Scene scene = import_obj(
+      folder.write("s.obj", "mtllib /home/somebody/m.mtl\n" + square + "usemtl a\nf 1 2 3\n"));
+  CHECK(has_warning(scene, "the one beside the scene is"));
+  CHECK(has_warning(scene, "taken from beside the scene"));
+  CHECK(scene.textures.at(0).kind == TextureKind::image);
+}
+
+TEST_CASE("UTF-16 of both kinds, and Latin-1 in one file where the other has UTF-8") {
+  const TempFolder folder;
+  const std::string obj = "mtllib m.mtl\n" + square + "usemtl gr\xc3\xbcn\nf 1 2 3\n";
+  folder.write("m.mtl", "newmtl gr\xfcn\nKd 0 1 0\n");
+  const auto green = [](const Scene& scene) {
+    return scene.materials.at(0).base_color.value == Rgb{0, 1, 0} && scene.warnings.total() == 0;
+  };
+  CHECK(green(import_obj(folder.write("s.obj", obj))));
+  for (const bool is_little : {true, false}) {
+    std::string wide = is_little ? "\xff\xfe" : "\xfe\xff";
+    for (size_t i = 0; i < obj.size(); ++i) {
+      const bool is_umlaut = obj[i] == '\xc3';
+      const char low = is_umlaut ? '\xfc' : obj[i];
+      wide += is_little ? std::string{low, '\0'} : std::string{'\0', low};
+      i += is_umlaut ? 1 : 0;
+    }
+    CHECK(green(import_obj(folder.write("s.obj", wide))));
+  }
+}

@@ -64,3 +64,36 @@ TEST_CASE("a source with holes lights as much as what is left of it") {
     }
   }
 }
+
+TEST_CASE("a blended sheet takes its share of the light, a blended source sends its share") {
+  Scene sheet = source_from(-1);
+  Material m = sheet.materials[0];
+  m.is_alpha_masked = m.is_alpha_blended = true;
+  m.alpha.value = 0.3f;
+  add_quad(sheet, add_material(sheet, m),
+           {Vec3{-9, -9, 0.5f}, {9, -9, 0.5f}, {9, 9, 0.5f}, {-9, 9, 0.5f}});
+  Scene source = source_from(-1);
+  source.materials[0].is_alpha_masked = source.materials[0].is_alpha_blended = true;
+  source.materials[0].alpha.value = 0.25f;
+  source.lights[0].is_alpha_masked = true;
+  const PreparedScene plain(source_from(-1));
+  const PreparedScene covered(std::move(sheet)), faint(std::move(source));
+
+  const StopFlag never_stop = false;
+  const std::vector<MeasuringPoint> points{{{0, 0, 0}, {0, 0, 1}}, {{0.4f, 0.5f, 0}, {1, 0, 1}}};
+  for (const Method method : {Method::path, Method::fixed, Method::certified})
+    for (const bool is_sheet : {true, false}) {
+      MeasureOptions o;
+      o.method = method;
+      const MeasureResult result = measure(is_sheet ? covered : faint, points, o, {}, never_stop);
+      for (size_t i = 0; i < points.size(); ++i) {
+        CAPTURE(is_sheet);
+        const double expected = (is_sheet ? 0.7 : 0.25) * 3 *
+                                irradiance(plain.primitives, 0, Vec3d(points[i].position),
+                                           Vec3d(normalize(points[i].normal)));
+        const double error = result.values[i].standard_error / luminous_efficacy;
+        CHECK(error < 0.02 * expected);
+        CHECK(std::abs(double(result.values[i].irradiance.g) - expected) < 4.5 * error + 1e-5);
+      }
+    }
+}

@@ -61,6 +61,7 @@ TEST_CASE("any change of a material that changes what it scatters changes its va
       [](Material& m) { m.eta.r = 1; },
       [](Material& m) { m.k.b = 1; },
       [](Material& m) { m.is_alpha_masked = true; },
+      [](Material& m) { m.is_alpha_blended = true; },
       [](Material& m) { m.alpha.texture = 1; },
       [](Material& m) { m.alpha_cutoff = 0.75f; },
   };

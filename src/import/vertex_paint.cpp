@@ -1,0 +1,144 @@
+#include "import/vertex_paint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "import/mesh_clean.h"
+
+namespace troffer {
+
+namespace {
+
+// Of all images made so: about a gigabyte.
+constexpr uint64_t max_texels = uint64_t(1) << 26;
+
+float unit(float v) {
+  return v >= 0 ? std::min(v, 1.0f) : v < 0 ? 0.0f : 1.0f;  // 1 for NaN
+}
+
+TextureValue usable(const TextureValue& c) {
+  return {{unit(c.rgb.r), unit(c.rgb.g), unit(c.rgb.b)}, unit(c.alpha)};
+}
+
+bool are_equal(const TextureValue& a, const TextureValue& b) {
+  return a.rgb == b.rgb && a.alpha == b.alpha;
+}
+
+TextureValue mean_over(const Mesh& mesh, const std::vector<TextureValue>& colors) {
+  std::array<double, 4> sum{};
+  double total = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const double area = length(area_vector(mesh, t));
+    total += 3 * area;
+    for (const uint32_t v : t) {
+      const TextureValue c = usable(colors[v]);
+      for (size_t k = 0; k < 3; ++k) sum[k] += area * double(c.rgb[k]);
+      sum[3] += area * double(c.alpha);
+    }
+  }
+  if (!(total > 0)) return {};
+  return {{float(sum[0] / total), float(sum[1] / total), float(sum[2] / total)},
+          float(sum[3] / total)};
+}
+
+// Vertices of its own for every triangle.
+void separate_triangles(Mesh& mesh) {
+  std::vector<Vec3> positions, normals;
+  positions.reserve(3 * mesh.triangles.size());
+  for (Triangle& t : mesh.triangles) {
+    for (uint32_t& v : t) {
+      positions.push_back(mesh.positions[v]);
+      if (!mesh.normals.empty()) normals.push_back(mesh.normals[v]);
+      v = uint32_t(positions.size() - 1);
+    }
+  }
+  mesh.positions = std::move(positions);
+  mesh.normals = std::move(normals);
+}
+
+}  // namespace
+
+uint32_t VertexPainter::tinted(uint32_t material, const TextureValue& factor) {
+  if (are_equal(factor, {})) return material;
+  const std::array<float, 4> key{factor.rgb.r, factor.rgb.g, factor.rgb.b, factor.alpha};
+  const auto known = tinted_.find({material, key});
+  if (known != tinted_.end()) return known->second;
+  Material m = scene_.materials[material];
+  m.base_color.value *= factor.rgb;
+  m.alpha.value *= factor.alpha;
+  scene_.materials.push_back(std::move(m));
+  return tinted_[{material, key}] = uint32_t(scene_.materials.size() - 1);
+}
+
+uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& colors) {
+  Material m = scene_.materials[mesh.material];
+  Texture image;
+  image.name = "colours of the vertices of '" + mesh.name + "'";
+  image.kind = TextureKind::image;
+  image.is_srgb = false;
+  image.wrap_u = image.wrap_v = WrapMode::clamp;
+  image.channels = m.is_alpha_masked ? 4 : 3;
+  const size_t n = mesh.triangles.size();
+  const auto columns = size_t(std::ceil(std::sqrt(double(n)))), rows = (n + columns - 1) / columns;
+  image.width = int(2 * columns);
+  image.height = int(2 * rows);
+  const auto channels = size_t(image.channels);
+  image.texels_float.resize(4 * columns * rows * channels);
+  std::vector<Vec2> uvs;
+  uvs.reserve(3 * n);
+  for (size_t i = 0; i < n; ++i) {
+    const size_t x = 2 * (i % columns), y = 2 * (i / columns);
+    const std::array<TextureValue, 3> c{usable(colors[mesh.triangles[i][0]]),
+                                        usable(colors[mesh.triangles[i][1]]),
+                                        usable(colors[mesh.triangles[i][2]])};
+    const auto put = [&](size_t dx, size_t dy, const Rgb& rgb, float alpha) {
+      float* const texel =
+          &image.texels_float[((y + dy) * size_t(image.width) + x + dx) * channels];
+      for (size_t k = 0; k < 3; ++k) texel[k] = rgb[k];
+      if (channels == 4) texel[3] = alpha;
+    };
+    put(0, 0, c[0].rgb, c[0].alpha);
+    put(1, 0, c[1].rgb, c[1].alpha);
+    put(0, 1, c[2].rgb, c[2].alpha);
+    // So that the mixed term of the bilinear mean vanishes.
+    put(1, 1, c[1].rgb + c[2].rgb - c[0].rgb, c[1].alpha + c[2].alpha - c[0].alpha);
+    for (const auto& [dx, dy] : {std::pair{0.5, 0.5}, {1.5, 0.5}, {0.5, 1.5}})
+      uvs.emplace_back(float((double(x) + dx) / double(image.width)),
+                       float((double(y) + dy) / double(image.height)));
+  }
+  separate_triangles(mesh);
+  mesh.uvs = std::move(uvs);
+  const auto texture = int32_t(scene_.textures.size());
+  scene_.textures.push_back(std::move(image));
+  m.base_color.texture = texture;
+  if (m.is_alpha_masked) m.alpha = {m.alpha.value, texture, 3};
+  scene_.materials.push_back(std::move(m));
+  return uint32_t(scene_.materials.size() - 1);
+}
+
+void VertexPainter::paint(Mesh& mesh, const std::vector<TextureValue>& colors, bool needs_uvs) {
+  if (colors.empty() || colors.size() != mesh.positions.size() || mesh.triangles.empty()) return;
+  const TextureValue first = usable(colors[mesh.triangles[0][0]]);
+  const bool is_one = std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](auto& t) {
+    return std::all_of(t.begin(), t.end(),
+                       [&](uint32_t v) { return are_equal(usable(colors[v]), first); });
+  });
+  if (is_one) {
+    mesh.material = tinted(mesh.material, first);
+    return;
+  }
+  const Material& m = scene_.materials[mesh.material];
+  const bool is_textured =
+      needs_uvs || has_textured_input(m) || m.normal_texture >= 0 || m.alpha.texture >= 0;
+  if (is_textured || 4 * mesh.triangles.size() > max_texels - texels_) {
+    scene_.warnings.add(is_textured
+                            ? "colours of the vertices of textured meshes are shown as their mean"
+                            : "too many coloured vertices: the mean of a mesh is shown");
+    mesh.material = tinted(mesh.material, mean_over(mesh, colors));
+    return;
+  }
+  texels_ += 4 * mesh.triangles.size();
+  mesh.material = add_image(mesh, colors);
+}
+
+}  // namespace troffer
