@@ -263,12 +263,14 @@ int parse_and_run(int argc, const char* const* argv) {
   MeasureCommand measure;
   RadiosityCommand radiosity;
   InfoCommand info;
+  ConvertCommand convert;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
   add_measure(app, measure, measure_raw);
   add_radiosity(app, radiosity);
   add_info(app, info);
+  add_convert(app, convert);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -306,6 +308,7 @@ int parse_and_run(int argc, const char* const* argv) {
     return run_measure(measure);
   }
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
+  if (app.got_subcommand("convert")) return run_convert(convert);
   return run_info(info);
 }
 

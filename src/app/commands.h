@@ -87,6 +87,13 @@ struct InfoCommand {
 };
 int run_info(const InfoCommand& command);
 
+struct ConvertCommand {
+  std::string scene, output;
+  bool is_quiet = false;
+};
+void add_convert(CLI::App& app, ConvertCommand& command);  // its options
+int run_convert(const ConvertCommand& command);
+
 // The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
 // emitting (all if empty), warnings printed to standard error unless is_quiet.
 Scene load_scene(const std::string& path, const std::vector<std::string>& lights,

@@ -18,4 +18,11 @@ std::vector<uint8_t> encode_hdr(const Image& image);
 std::vector<uint8_t> encode_pfm(const Image& image);
 std::vector<uint8_t> encode_png(const Image& image, const Display& display, int threads);
 
+// Texels as they are, channels interleaved (1 grey, 2 with alpha, 3 rgb, 4 with alpha), row 0 on
+// top: of 8 bits, or of numbers in [0,1] at 16 bits.
+std::vector<uint8_t> encode_png_texels(int width, int height, int channels,
+                                       std::span<const uint8_t> texels);
+std::vector<uint8_t> encode_png_texels(int width, int height, int channels,
+                                       std::span<const float> texels);
+
 }  // namespace troffer

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/coat.h"
 #include "import/mitsuba_values.h"
 #include "import/spectra.h"
 
@@ -12,26 +13,6 @@ namespace {
 
 constexpr int max_depth = 16;
 constexpr float default_alpha = 0.1f;
-
-// Mean reflectance, over diffuse light from within, of the inside of a boundary of that index: what
-// Lambertian reflection under a coat loses on its way out. Exact Fresnel terms, midpoint rule.
-float mean_reflectance_inside(double index) {
-  constexpr int steps = 2000;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double cos2 = (i + 0.5) / steps;  // uniform in cos²: cosine-weighted directions
-    const double sin2_out = (1 - cos2) * index * index;
-    if (sin2_out >= 1) {
-      sum += 1;
-      continue;
-    }
-    const double in = std::sqrt(cos2), out = std::sqrt(1 - sin2_out);
-    const double s = (index * in - out) / (index * in + out);
-    const double p = (in - index * out) / (in + index * out);
-    sum += (s * s + p * p) / 2;
-  }
-  return float(sum / steps);
-}
 
 bool is_texture(const ColorInput& c) {
   return c.texture >= 0;
@@ -185,7 +166,8 @@ Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
     if (is_texture(m.base_color))
       m.base_color.texture = textures_.with_brightened_texels(m.base_color.texture, f);
     else
-      m.base_color.value = m.base_color.value / (Rgb{1 - f} + m.base_color.value * f);
+      for (size_t c = 0; c < 3; ++c)
+        m.base_color.value[c] = from_white_base(m.base_color.value[c], f);
   }
   return m;
 }

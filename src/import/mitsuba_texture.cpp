@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/coat.h"
 #include "import/file.h"
 #include "import/mitsuba_values.h"
 
@@ -172,7 +173,7 @@ int32_t MitsubaTextures::raw_image(const MitsubaNode& given) {
 int32_t MitsubaTextures::with_brightened_texels(int32_t index, float f) {
   if (scene_.textures[size_t(index)].kind != TextureKind::image) return index;
   Texture t = scene_.textures[size_t(index)];
-  const auto brightened = [&](float v) { return v / (1 - f + f * v); };
+  const auto brightened = [&](float v) { return from_white_base(v, f); };
   const auto channels = size_t(t.channels);
   const bool has_alpha = channels == 2 || channels == 4;
   const auto is_alpha = [&](size_t i) { return has_alpha && i % channels == channels - 1; };

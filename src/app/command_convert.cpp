@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "app/commands.h"
+#include "app/printable.h"
+#include "base/error.h"
+#include "export/export_scene.h"
+#include "import/import.h"
+
+namespace troffer {
+
+void add_convert(CLI::App& app, ConvertCommand& c) {
+  CLI::App* s = app.add_subcommand("convert", "Write a scene in another format");
+  s->add_option("scene", c.scene, "scene file")->required();
+  s->add_option("output", c.output, "file to write: .pbrt, .gltf or .glb")->required();
+  s->add_flag("--quiet", c.is_quiet, "no warnings");
+}
+
+int run_convert(const ConvertCommand& command) {
+  check_scene_format(command.output);
+  const Scene scene = import_scene(command.scene);
+  const std::vector<Warning> lost = export_scene(scene, command.output);
+  if (command.is_quiet) return exit_done;
+  const auto tell = [](const Warning& w) {
+    fmt::print(stderr, "warning: {}", printable(w.text));
+    if (w.count > 1) fmt::print(stderr, " ({} times)", w.count);
+    fmt::print(stderr, "\n");
+  };
+  for (const Warning& w : scene.warnings.entries()) tell(w);
+  for (const Warning& w : lost) tell(w);
+  return exit_done;
+}
+
+}  // namespace troffer

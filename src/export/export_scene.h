@@ -1,0 +1,20 @@
+// Scenes -> files: pbrt-v4 (.pbrt), glTF 2.0 (.gltf, .glb), chosen by ending. The layout of what is
+// written follows the scene as it is in memory: instances have become copies.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace troffer {
+
+// UsageError where the ending is none that is written.
+void check_scene_format(const std::string& path);
+
+// Writes the scene, emission, lights, cameras and materials included, with the files it needs
+// beside it. Returns what the format cannot hold, in words. UsageError as above; EnvironmentError:
+// what cannot be written.
+std::vector<Warning> export_scene(const Scene& scene, const std::string& path);
+
+}  // namespace troffer

@@ -1,0 +1,224 @@
+#include "export/gltf_materials.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/coat.h"
+
+namespace troffer {
+
+namespace {
+
+using Json = GltfMaterialWriter::Json;
+
+Json list(Rgb c) {
+  return {c.r, c.g, c.b};
+}
+
+int wrap_code(WrapMode mode) {
+  return mode == WrapMode::repeat ? 10497 : mode == WrapMode::mirror ? 33648 : 33071;
+}
+
+// glTF's roughness is the root of the width of ggx.
+float power_of(RoughnessMeaning meaning) {
+  return meaning == RoughnessMeaning::alpha           ? 0.5f
+         : meaning == RoughnessMeaning::alpha_is_sqrt ? 0.25f
+                                                      : 1;
+}
+
+Rgb normal_reflectance(const Material& m) {
+  const Rgb one{1}, below = m.eta - one, above = m.eta + one, k2 = m.k * m.k;
+  return (below * below + k2) / (above * above + k2);
+}
+
+}  // namespace
+
+Json GltfMaterialWriter::reference(size_t texture, const Texture& look) const {
+  Json out{{"index", texture}};
+  Json t = Json::object();
+  if (look.uv_scale.x != 1 || look.uv_scale.y != 1) t["scale"] = {look.uv_scale.x, look.uv_scale.y};
+  if (look.uv_offset.x != 0 || look.uv_offset.y != 0)
+    t["offset"] = {look.uv_offset.x, look.uv_offset.y};
+  if (look.uv_rotation_rad != 0) t["rotation"] = look.uv_rotation_rad;
+  if (!t.empty()) out["extensions"]["KHR_texture_transform"] = t;
+  return out;
+}
+
+size_t GltfMaterialWriter::texture(const std::string& key, const BakedImage& image,
+                                   const Texture& look) {
+  const auto found = texture_by_key_.find(key);
+  if (found != texture_by_key_.end()) return found->second;
+  images_.push_back({{"bufferView", buffer_.add_view(png_of(image))}, {"mimeType", "image/png"}});
+  const int filter = look.is_filtered ? 9729 : 9728;
+  samplers_.push_back({{"magFilter", filter},
+                       {"minFilter", filter},
+                       {"wrapS", wrap_code(look.wrap_u)},
+                       {"wrapT", wrap_code(look.wrap_v)}});
+  textures_.push_back({{"source", images_.size() - 1}, {"sampler", samplers_.size() - 1}});
+  return texture_by_key_[key] = textures_.size() - 1;
+}
+
+// Base colour, and with it alpha.
+void GltfMaterialWriter::add_base(const Material& m, Json& out) {
+  Json& pbr = out["pbrMetallicRoughness"];
+  const Texture* look = image_of(scene_, m.base_color.texture);
+  const Texture* alpha = m.is_alpha_masked ? image_of(scene_, m.alpha.texture) : nullptr;
+  ColorInput base = m.base_color;
+  if (m.kind == MaterialKind::conductor && !m.is_reflectance)
+    base = {normal_reflectance(m), no_texture};
+  ColorChange change;
+  if (m.kind == MaterialKind::coated_diffuse)
+    change = [f = mean_reflectance_inside(double(m.ior))](float v) {
+      return as_of_white_base(v, f);
+    };
+  float factor = 1;
+  if (m.is_alpha_masked) {
+    out["alphaMode"] = "MASK";
+    out["alphaCutoff"] = m.alpha_cutoff;
+    const bool is_same = alpha && alpha == look && m.alpha.channel == 3;
+    factor = alpha ? m.alpha.value : evaluate(scene_.textures, m.alpha, {0, 0});
+    if (alpha && !is_same) {
+      // Numbers that cut holes become the alpha of the colour's image, by the holes' own (u,v).
+      BakedImage colors = baked_color(scene_, {base.value, no_texture}, true, change);
+      const BakedImage holes = baked_number(scene_, {1, m.alpha.texture, m.alpha.channel}, 1);
+      if (look) warnings_.add("colours under alpha masks of another image are written even");
+      const std::vector<float> one = colors.texels_float;
+      colors.width = holes.width;
+      colors.height = holes.height;
+      colors.texels_float.clear();
+      for (const float a : holes.texels_float)
+        colors.texels_float.insert(colors.texels_float.end(), {one[0], one[1], one[2], a});
+      const std::string key =
+          fmt::format("holes {} {} {}", m.alpha.texture, m.alpha.channel, m.name);
+      pbr["baseColorTexture"] = reference(texture(key, colors, *alpha), *alpha);
+      pbr["baseColorFactor"] = {1, 1, 1, std::min(factor, 1.0f)};
+      return;
+    }
+  }
+  const Rgb even = look ? Rgb{1} : clamp01(color_at(scene_, base, {0, 0}, change));
+  pbr["baseColorFactor"] = {even.r, even.g, even.b, std::clamp(factor, 0.0f, 1.0f)};
+  if (!look) return;
+  const Rgb v = base.value;
+  const std::string key = fmt::format("color {} {} {} {} {} {}", base.texture, v.r, v.g, v.b,
+                                      alpha != nullptr, change ? change(0.5f) : 0.0f);
+  pbr["baseColorTexture"] =
+      reference(texture(key, baked_color(scene_, base, alpha != nullptr, change), *look), *look);
+}
+
+void GltfMaterialWriter::add_roughness(const Material& m, Json& pbr) {
+  const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
+  const float power = power_of(m.roughness_meaning);
+  FloatInput metal = is_mixed ? m.metallic : FloatInput{0, no_texture, 0};
+  if (m.kind == MaterialKind::conductor) metal.value = 1;
+  const Texture* rough_image = image_of(scene_, m.roughness.texture);
+  const Texture* metal_image = image_of(scene_, metal.texture);
+  const Texture* look = rough_image ? rough_image : metal_image;
+  if (look) {
+    const std::string key =
+        fmt::format("rough {} {} {} {} metal {} {} {}", m.roughness.texture, m.roughness.channel,
+                    m.roughness.value, power, metal.texture, metal.channel, metal.value);
+    pbr["metallicRoughnessTexture"] =
+        reference(texture(key, baked_pair(scene_, m.roughness, power, metal), *look), *look);
+    return;
+  }
+  pbr["roughnessFactor"] =
+      std::pow(std::clamp(evaluate(scene_.textures, m.roughness, {0, 0}), 0.0f, 1.0f), power);
+  pbr["metallicFactor"] = std::clamp(evaluate(scene_.textures, metal, {0, 0}), 0.0f, 1.0f);
+}
+
+void GltfMaterialWriter::add_glass(const Material& m, Json& out) {
+  const bool is_glass = m.kind == MaterialKind::dielectric;
+  const float share = is_glass ? 1 : m.transmission.value;
+  if (share <= 0) return;
+  if (!is_glass && m.transmission.texture >= 0)
+    warnings_.add("textures of transmission are written as one value");
+  out["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", share}};
+  if (!m.is_thin) out["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+}
+
+Json GltfMaterialWriter::surface(const Material& m) {
+  Json out;
+  if (!m.name.empty()) out["name"] = m.name;
+  add_base(m, out);
+  if (m.normal_texture >= 0) {
+    const Texture* look = image_of(scene_, m.normal_texture);
+    if (look) {
+      const std::string key = fmt::format("raw {}", m.normal_texture);
+      out["normalTexture"] =
+          reference(texture(key, baked_raw(scene_, uint32_t(m.normal_texture)), *look), *look);
+      if (m.normal_scale != 1) out["normalTexture"]["scale"] = m.normal_scale;
+    }
+  }
+  Json& pbr = out["pbrMetallicRoughness"];
+  if (m.kind == MaterialKind::diffuse) {  // without specular reflection: Lambert's model
+    pbr["metallicFactor"] = 0;
+    out["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+    return out;
+  }
+  add_roughness(m, pbr);
+  if (m.kind == MaterialKind::conductor) {
+    if (!m.is_reflectance)
+      warnings_.add("metals are written by their reflectance at normal incidence");
+    return out;
+  }
+  if (m.kind == MaterialKind::coated_diffuse)
+    warnings_.add("coats over diffuse bases are written as glTF's, which differ a little");
+  out["extensions"]["KHR_materials_ior"] = {{"ior", m.ior >= 1 ? m.ior : 1.5f}};
+  if (m.kind == MaterialKind::metallic_roughness) {
+    const bool is_plain =
+        m.specular.value == 1 && m.specular_color.value == Rgb{1} && m.specular.texture < 0;
+    if (m.specular.texture >= 0 || m.specular_color.texture >= 0)
+      warnings_.add("textures of specular reflection are written as one value");
+    if (!is_plain)
+      out["extensions"]["KHR_materials_specular"] = {
+          {"specularFactor", m.specular.value},
+          {"specularColorFactor", list(m.specular_color.value)}};
+  }
+  add_glass(m, out);
+  return out;
+}
+
+void GltfMaterialWriter::add_emission(const Light& light, Rgb radiance, Json& out) {
+  const Texture* look = image_of(scene_, light.texture);
+  double strength = double(max_component(radiance)) * unit_;
+  Rgb color = radiance / std::max(max_component(radiance), 1e-30f);
+  if (look) {
+    const BakedImage image = baked_color(scene_, {color, light.texture}, false);
+    strength *= double(image.scale);
+    const std::string key =
+        fmt::format("emission {} {} {} {}", light.texture, color.r, color.g, color.b);
+    out["emissiveTexture"] = reference(texture(key, image, *look), *look);
+    color = Rgb{1};
+  }
+  out["emissiveFactor"] = list(color);
+  out["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
+  if (light.is_two_sided) out["doubleSided"] = true;
+}
+
+size_t GltfMaterialWriter::index_of(uint32_t material, const Light* light, Rgb radiance) {
+  std::string emission;
+  if (light)
+    emission = fmt::format("{} {} {} {} {}", radiance.r, radiance.g, radiance.b, light->texture,
+                           light->is_two_sided);
+  const auto key = std::pair{material, emission};
+  const auto found = made_.find(key);
+  if (found != made_.end()) return found->second;
+  Json out = surface(scene_.materials[material]);
+  if (light)
+    add_emission(*light, radiance, out);
+  else
+    out["doubleSided"] = true;
+  materials_.push_back(std::move(out));
+  return made_[key] = materials_.size() - 1;
+}
+
+void GltfMaterialWriter::finish(Json& file) const {
+  for (const auto& [name, rows] : {std::pair<const char*, const Json&>{"materials", materials_},
+                                   {"textures", textures_},
+                                   {"images", images_},
+                                   {"samplers", samplers_}})
+    if (!rows.empty()) file[name] = rows;
+}
+
+}  // namespace troffer

@@ -1,0 +1,46 @@
+// Materials, textures and emission -> glTF's.
+#pragma once
+
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "export/baked_image.h"
+#include "export/gltf_buffer.h"
+
+namespace troffer {
+
+class GltfMaterialWriter {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  // All must outlive this. `unit`: cd/m² per the scene's radiance.
+  GltfMaterialWriter(const Scene& scene, GltfBuffer& buffer, double unit, WarningLog& warnings)
+      : scene_(scene), buffer_(buffer), unit_(unit), warnings_(warnings) {}
+
+  // Index of the material with the emission of a light (null: none), of that radiance.
+  size_t index_of(uint32_t material, const Light* light, Rgb radiance);
+
+  // Adds "materials", "textures", "images", "samplers" to a file.
+  void finish(Json& file) const;
+
+ private:
+  const Scene& scene_;
+  GltfBuffer& buffer_;
+  double unit_;
+  WarningLog& warnings_;
+  std::map<std::pair<uint32_t, std::string>, size_t> made_;
+  std::map<std::string, size_t> texture_by_key_;
+  Json materials_ = Json::array(), textures_ = Json::array(), images_ = Json::array(),
+       samplers_ = Json::array();
+
+  Json surface(const Material& m);
+  void add_base(const Material& m, Json& out);
+  void add_roughness(const Material& m, Json& pbr);
+  void add_glass(const Material& m, Json& out);
+  void add_emission(const Light& light, Rgb radiance, Json& out);
+  size_t texture(const std::string& key, const BakedImage& image, const Texture& look);
+  Json reference(size_t texture, const Texture& look) const;
+};
+
+}  // namespace troffer

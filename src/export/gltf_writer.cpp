@@ -1,0 +1,238 @@
+#include "export/gltf_writer.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/frame.h"
+#include "base/units.h"
+#include "export/gltf_materials.h"
+#include "export/output_folder.h"
+#include "export/scene_parts.h"
+#include "image/atomic_file.h"
+
+namespace troffer {
+
+namespace {
+
+using Json = GltfBuffer::Json;
+
+constexpr uint64_t max_bytes = 0xfffffff0u;
+
+class GltfWriter {
+ public:
+  explicit GltfWriter(const Scene& scene)
+      : scene_(scene),
+        unit_(scene.is_photometric ? 1 : luminous_efficacy),
+        materials_(scene, buffer_, unit_, warnings_) {}
+  std::vector<Warning> write(const std::string& path);
+
+ private:
+  const Scene& scene_;
+  double unit_;  // cd/m² per the scene's radiance
+  WarningLog warnings_;
+  GltfBuffer buffer_;
+  GltfMaterialWriter materials_;
+  Json nodes_ = Json::array(), meshes_ = Json::array(), cameras_ = Json::array(),
+       lights_ = Json::array();
+
+  void add_part(const ScenePart& part, Rgb radiance);
+  void add_node(const std::string& name, Json node);
+  void add_light(const Light& e);
+  void add_camera(const Camera& c);
+  Json file();
+  void write_glb(const std::string& path, Json json);
+  void write_text(const std::string& path, Json json);
+};
+
+// From scene's origin; columns are the images of the axes.
+Json matrix(const Vec3& x, const Vec3& y, const Vec3& z, const Vec3& at) {
+  return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, at.x, at.y, at.z, 1};
+}
+
+void GltfWriter::add_node(const std::string& name, Json node) {
+  if (!name.empty()) node["name"] = name;
+  nodes_.push_back(std::move(node));
+}
+
+void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
+  const Light* light = part.light >= 0 ? &scene_.lights[size_t(part.light)] : nullptr;
+  const Mesh& m = part.mesh;
+  Json attributes{{"POSITION", buffer_.add(m.positions, true)}};
+  if (!m.normals.empty()) attributes["NORMAL"] = buffer_.add(m.normals, false);
+  if (!m.uvs.empty()) attributes["TEXCOORD_0"] = buffer_.add(m.uvs);
+  const size_t indices = buffer_.add(m.triangles);
+  const size_t material = materials_.index_of(m.material, light, radiance);
+  Json mesh;
+  mesh["primitives"] =
+      Json::array({Json{{"attributes", attributes}, {"indices", indices}, {"material", material}}});
+  meshes_.push_back(std::move(mesh));
+  add_node(light ? light->name : m.name, {{"mesh", meshes_.size() - 1}});
+}
+
+void GltfWriter::add_light(const Light& e) {
+  Json light;
+  if (e.kind == LightKind::distant || e.kind == LightKind::sun) {
+    light["type"] = "directional";
+  } else if (e.kind == LightKind::point || e.kind == LightKind::spot) {
+    light["type"] = e.kind == LightKind::point ? "point" : "spot";
+    if (e.range > 0) light["range"] = e.range;
+    if (e.web >= 0) warnings_.add("distributions of luminaires are left out: glTF has none");
+  } else {
+    if (!has_surface(e.kind))
+      warnings_.add(std::string("a light of kind '") + name_of(e.kind) +
+                    "' is left out: glTF has none (see --sky, --environment)");
+    return;
+  }
+  Rgb radiance = e.radiance;
+  if (e.kind == LightKind::sun) {
+    radiance *= float(pi * sqr(std::sin(double(e.angular_radius))));
+    warnings_.add("the sun's disc is written as a directional light of the same illuminance");
+  }
+  if (e.kind == LightKind::spot) {
+    light["spot"] = {{"innerConeAngle", std::acos(std::min(1.0, double(e.cos_inner)))},
+                     {"outerConeAngle", std::min(pi / 2, std::acos(double(e.cos_outer)))}};
+    if (e.falloff != SpotFalloff::square)
+      warnings_.add("glTF's spots fade by the square between their angles");
+    if (e.cos_outer < 0) warnings_.add("glTF's spots are at most 90 degrees wide to each side");
+  }
+  const float largest = std::max(max_component(radiance), 1e-30f);
+  const Rgb color = radiance / largest;
+  light["color"] = {color.r, color.g, color.b};
+  light["intensity"] = double(largest) * unit_;
+  lights_.push_back(std::move(light));
+  const Frame f(-e.direction);
+  Json node{{"matrix", matrix(f.tangent, f.bitangent, f.normal, e.position)}};
+  node["extensions"]["KHR_lights_punctual"]["light"] = lights_.size() - 1;
+  add_node(e.name, std::move(node));
+}
+
+void GltfWriter::add_camera(const Camera& c) {
+  const double aspect = c.width > 0 ? double(c.width) / c.height : double(c.aspect);
+  double half = double(c.half_extent);
+  if (!c.fov_is_vertical && aspect > 0 && aspect < 1) half /= aspect;
+  if (c.has_screen_window) {
+    const auto& w = c.screen_window;
+    if (std::abs(w[0] + w[1]) > 1e-4f * w[1] || std::abs(w[2] + w[3]) > 1e-4f * w[3])
+      warnings_.add("glTF's cameras look straight ahead: a screen window is centred");
+    half = double(c.half_extent) * double(w[3] - w[2]) / 2;
+  }
+  if (c.lens_radius > 0) warnings_.add("glTF's cameras have no lens: all is sharp");
+  Json camera;
+  if (c.kind == CameraKind::perspective) {
+    camera["type"] = "perspective";
+    camera["perspective"] = {{"yfov", 2 * std::atan(half)}, {"znear", 1e-3}};
+    if (aspect > 0) camera["perspective"]["aspectRatio"] = aspect;
+  } else {
+    camera["type"] = "orthographic";
+    camera["orthographic"] = {
+        {"xmag", half * (aspect > 0 ? aspect : 1)}, {"ymag", half}, {"zfar", 1e6}, {"znear", 0}};
+  }
+  cameras_.push_back(std::move(camera));
+  add_node(c.name, {{"camera", cameras_.size() - 1},
+                    {"matrix", matrix(c.right, c.up, -c.forward, c.position)}});
+}
+
+Json GltfWriter::file() {
+  Json json;
+  json["asset"] = {{"version", "2.0"}, {"generator", "troffer"}};
+  json["scene"] = 0;
+  Json top = Json::array();
+  for (size_t i = 0; i < nodes_.size(); ++i) top.push_back(i);
+  if (scene_.origin != Vec3d{}) {
+    // Far from the file's origin: one node that moves all.
+    const Vec3d& o = scene_.origin;
+    nodes_.push_back({{"translation", {o.x, o.y, o.z}}, {"children", top}});
+    top = Json::array({nodes_.size() - 1});
+  }
+  json["scenes"] = Json::array({Json{{"nodes", top}}});
+  for (const auto& [name, rows] : {std::pair<const char*, const Json&>{"nodes", nodes_},
+                                   {"meshes", meshes_},
+                                   {"cameras", cameras_}})
+    if (!rows.empty()) json[name] = rows;
+  if (nodes_.empty()) json["scenes"][0].erase("nodes");
+  materials_.finish(json);
+  if (!buffer_.accessors().empty()) json["accessors"] = buffer_.accessors();
+  if (!buffer_.views().empty()) json["bufferViews"] = buffer_.views();
+  if (!lights_.empty()) json["extensions"]["KHR_lights_punctual"]["lights"] = lights_;
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json used = Json::array();
+  for (const char* name :
+       {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
+        "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume",
+        "KHR_texture_transform"})
+    if (text.find(std::string("\"") + name + "\"") != std::string::npos) used.push_back(name);
+  if (!used.empty()) json["extensionsUsed"] = used;
+  return json;
+}
+
+void append_number(std::string& to, uint32_t n) {
+  for (int i = 0; i < 4; ++i) to += char((n >> (8 * i)) & 255);
+}
+
+// [1] §4.4: a header, the JSON padded by blanks, the data padded by zeros.
+void GltfWriter::write_glb(const std::string& path, Json json) {
+  std::vector<uint8_t> data = buffer_.bytes();
+  data.resize((data.size() + 3) / 4 * 4);
+  if (!data.empty()) json["buffers"] = Json::array({Json{{"byteLength", buffer_.bytes().size()}}});
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const uint64_t size = 20 + text.size() + (data.empty() ? 0 : 8 + uint64_t(data.size()));
+  if (size > max_bytes)
+    throw EnvironmentError("cannot write " + path + ": it would be above 4 GiB");
+  std::string head = "glTF";
+  append_number(head, 2);
+  append_number(head, uint32_t(size));
+  append_number(head, uint32_t(text.size()));
+  head += "JSON" + text;
+  if (!data.empty()) {
+    append_number(head, uint32_t(data.size()));
+    head += std::string("BIN\0", 4);
+  }
+  AtomicFile file(path);
+  file.write(head);
+  file.write(std::span<const uint8_t>(data));
+  file.commit();
+}
+
+void GltfWriter::write_text(const std::string& path, Json json) {
+  if (!buffer_.bytes().empty()) {
+    OutputFolder files(path);
+    files.write("data.bin", buffer_.bytes());
+    std::string uri;
+    for (const char c : files.relative("data.bin")) {
+      const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+                            (c >= 'A' && c <= 'Z') || c == '/' || c == '_' || c == '.' || c == '-';
+      uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    json["buffers"] = Json::array({Json{{"uri", uri}, {"byteLength", buffer_.bytes().size()}}});
+  }
+  write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::vector<Warning> GltfWriter::write(const std::string& path) {
+  if (!scene_.spheres.empty() || !scene_.disks.empty())
+    warnings_.add("spheres and disks are written as triangles, sources with their power");
+  const SceneParts parts = parts_of(scene_, true);
+  for (const ScenePart& part : parts.parts)
+    add_part(part, part.light >= 0 ? parts.radiances[size_t(part.light)] : Rgb{});
+  for (const Light& e : scene_.lights) add_light(e);
+  for (const Camera& c : scene_.cameras) add_camera(c);
+  Json json = file();
+  if (std::filesystem::path(path).extension() == ".glb")
+    write_glb(path, std::move(json));
+  else
+    write_text(path, std::move(json));
+  return warnings_.entries();
+}
+
+}  // namespace
+
+std::vector<Warning> write_gltf(const Scene& scene, const std::string& path) {
+  return GltfWriter(scene).write(path);
+}
+
+}  // namespace troffer

@@ -1,0 +1,145 @@
+#include "export/pbrt_lights.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "image/encode.h"
+#include "light/sky_light.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr int sky_width = 1024, sky_height = 512;
+
+class Writer {
+ public:
+  Writer(const Scene& scene, double unit, OutputFolder& files, WarningLog& warnings)
+      : scene_(scene), unit_(unit), files_(files), warnings_(warnings) {}
+  std::string text(const Light& e);
+
+ private:
+  const Scene& scene_;
+  double unit_;
+  OutputFolder& files_;
+  WarningLog& warnings_;
+  size_t images_ = 0;
+
+  std::string rgb(const char* name, const Light& e, double factor = 1) const {
+    return fmt::format(" \"rgb {}\" [ {} {} {} ]", name, double(e.radiance.r) * unit_ * factor,
+                       double(e.radiance.g) * unit_ * factor,
+                       double(e.radiance.b) * unit_ * factor);
+  }
+  std::string point(const char* name, const Vec3d& p) const {
+    return fmt::format(" \"point3 {}\" [ {} {} {} ]", name, p.x, p.y, p.z);
+  }
+  std::string spot(const Light& e);
+  std::string image(const Light& e, const Image& picture);
+  std::string environment(const Light& e);
+  std::string sky(const Light& e);
+};
+
+std::string Writer::spot(const Light& e) {
+  const double outer = deg_from_rad(std::acos(double(e.cos_outer)));
+  const double inner = deg_from_rad(std::acos(std::min(1.0, double(e.cos_inner))));
+  if (e.falloff == SpotFalloff::square)
+    warnings_.add("pbrt's spots fade smoothly between their angles, not by the square");
+  const Vec3d from = Vec3d(e.position) + scene_.origin;
+  return "\"spot\"" + rgb("I", e) + point("from", from) + point("to", from + Vec3d(e.direction)) +
+         fmt::format(" \"float coneangle\" {} \"float conedeltaangle\" {}", outer, outer - inner);
+}
+
+std::string Writer::image(const Light& e, const Image& picture) {
+  const std::string name = fmt::format("surroundings{}.pfm", images_++);
+  files_.write(name, encode_pfm(picture));
+  const Rgb c = e.radiance;
+  if (c.r != c.g || c.g != c.b) warnings_.add("tints of images of the surroundings are averaged");
+  return fmt::format("\"infinite\" \"string filename\" \"{}\" \"float scale\" {}",
+                     files_.relative(name), double(average(c)) * unit_);
+}
+
+std::string Writer::environment(const Light& e) {
+  if (e.environment < 0) return "\"infinite\"" + rgb("L", e);
+  const EnvironmentMap& map = scene_.environments[size_t(e.environment)];
+  Image picture(map.width, map.height);
+  picture.pixels = map.texels;
+  if (map.projection == SphereMap::lat_long)
+    warnings_.add(
+        "an image of the surroundings is written by azimuth and height: troffer reads it, "
+        "pbrt-v4 wants a square equal-area one");
+  return image(e, picture);
+}
+
+// As an image of what the formula says, white.
+std::string Writer::sky(const Light& e) {
+  warnings_.add("skies are written as images of 1024 x 512");
+  Image picture(sky_width, sky_height);
+  for (int y = 0; y < sky_height; ++y) {
+    for (int x = 0; x < sky_width; ++x) {
+      const Vec3 w = lat_long_direction(
+          {(float(x) + 0.5f) / float(sky_width), (float(y) + 0.5f) / float(sky_height)});
+      const Vec3 wi = e.axes[0] * w.x + e.axes[1] * w.y + e.axes[2] * w.z;
+      picture.pixels[size_t(y) * size_t(sky_width) + size_t(x)] =
+          SkyLight::radiance_at_infinity(scene_, e, wi);
+    }
+  }
+  Light even = e;
+  even.radiance = Rgb{1};
+  return image(even, picture);
+}
+
+std::string Writer::text(const Light& e) {
+  std::string out;
+  switch (e.kind) {
+    case LightKind::point:
+      if (e.web >= 0) warnings_.add("distributions of luminaires are left out: pbrt has none");
+      out = "\"point\"" + rgb("I", e) + point("from", Vec3d(e.position) + scene_.origin);
+      break;
+    case LightKind::spot:
+      out = spot(e);
+      break;
+    case LightKind::distant:
+      out = "\"distant\"" + rgb("L", e) + point("from", {}) + point("to", Vec3d(e.direction));
+      break;
+    case LightKind::sun: {
+      warnings_.add("the sun's disc is written as a distant light of the same illuminance");
+      const double solid_angle = pi * sqr(std::sin(double(e.angular_radius)));
+      out = "\"distant\"" + rgb("L", e, solid_angle) + point("from", {}) +
+            point("to", Vec3d(e.direction));
+      break;
+    }
+    case LightKind::environment:
+      out = environment(e);
+      break;
+    case LightKind::sky:
+      out = sky(e);
+      break;
+    default:
+      return "";  // has a surface
+  }
+  if (e.range > 0) warnings_.add("the range of lights is left out: pbrt has none");
+  // The image's axes, for those that have one.
+  const bool has_axes =
+      (e.kind == LightKind::environment && e.environment >= 0) || e.kind == LightKind::sky;
+  if (!has_axes) return fmt::format("# {}\nLightSource {}\n", printable_comment(e.name), out);
+  const auto& a = e.axes;
+  return fmt::format(
+      "# {}\nAttributeBegin\n  Transform [ {} {} {} 0 {} {} {} 0 {} {} {} 0 0 0 0 1 ]\n  "
+      "LightSource {}\nAttributeEnd\n",
+      printable_comment(e.name), a[0].x, a[0].y, a[0].z, a[1].x, a[1].y, a[1].z, a[2].x, a[2].y,
+      a[2].z, out);
+}
+
+}  // namespace
+
+std::string pbrt_lights(const Scene& scene, double unit, OutputFolder& files,
+                        WarningLog& warnings) {
+  Writer writer(scene, unit, files, warnings);
+  std::string text;
+  for (const Light& e : scene.lights) text += writer.text(e);
+  return text;
+}
+
+}  // namespace troffer

@@ -1,0 +1,14 @@
+// Meshes -> PLY files, binary, little endian.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace troffer {
+
+// Positions from `origin`, in doubles unless that is zero. (u,v) as they are.
+std::vector<uint8_t> ply_of(const Mesh& mesh, const Vec3d& origin);
+
+}  // namespace troffer
