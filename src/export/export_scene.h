@@ -15,6 +15,6 @@ void check_scene_format(const std::string& path);
 // Writes the scene, emission, lights, cameras and materials included, with the files it needs
 // beside it. Returns what the format cannot hold, in words. UsageError as above; EnvironmentError:
 // what cannot be written.
-std::vector<Warning> export_scene(const Scene& scene, const std::string& path);
+std::vector<Warning> export_scene(Scene scene, const std::string& path);
 
 }  // namespace troffer

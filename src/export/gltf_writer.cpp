@@ -80,7 +80,6 @@ void GltfWriter::add_light(const Light& e) {
   } else if (e.kind == LightKind::point || e.kind == LightKind::spot) {
     light["type"] = e.kind == LightKind::point ? "point" : "spot";
     if (e.range > 0) light["range"] = e.range;
-    if (e.web >= 0) warnings_.add("distributions of luminaires are left out: glTF has none");
   } else {
     if (!has_surface(e.kind))
       warnings_.add(std::string("a light of kind '") + name_of(e.kind) +

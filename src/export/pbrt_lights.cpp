@@ -94,7 +94,6 @@ std::string Writer::text(const Light& e) {
   std::string out;
   switch (e.kind) {
     case LightKind::point:
-      if (e.web >= 0) warnings_.add("distributions of luminaires are left out: pbrt has none");
       out = "\"point\"" + rgb("I", e) + point("from", Vec3d(e.position) + scene_.origin);
       break;
     case LightKind::spot:

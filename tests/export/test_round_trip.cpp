@@ -184,6 +184,27 @@ TEST_CASE("textures, masks and scenes far from the origin survive") {
   }
 }
 
+TEST_CASE("a measured luminaire keeps its flux") {
+  const TempFolder folder;
+  Scene scene;
+  LightWeb web;  // 3 cd below, nothing above
+  web.heights_rad = {0, pi_f / 2, pi_f / 2 + 1e-4f, pi_f};
+  web.turns_rad = {0, 2 * pi_f};
+  web.intensities = {3, 3, 0, 0, 3, 3, 0, 0};
+  scene.webs.push_back(web);
+  Light e;
+  e.kind = LightKind::point;
+  e.radiance = Rgb{2};
+  e.web = 0;
+  scene.lights.push_back(e);
+  for (const std::string name : {"out.pbrt", "out.glb"}) {
+    CHECK(has_warning(export_scene(scene, folder.path(name)), "measured luminaires"));
+    const Scene back = import_scene(folder.path(name));
+    const double unit = back.is_photometric ? luminous_efficacy : 1;
+    check_near(back.lights.at(0).radiance, Rgb{float(3 * unit)}, 1e-3);
+  }
+}
+
 TEST_CASE("only endings that can be written are taken, and folders that are there") {
   CHECK_THROWS_AS(check_scene_format("a.obj"), UsageError);
   const TempFolder folder;
