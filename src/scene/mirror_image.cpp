@@ -148,6 +148,7 @@ void ImageMaker::add_materials() {
     Material& copy = out_.scene.materials.emplace_back(is_clear(m) ? m : dark);
     copy.normal_texture = no_texture;
     copy.is_alpha_masked = m.is_alpha_masked;
+    copy.is_alpha_blended = m.is_alpha_blended;
     copy.alpha = m.alpha;
     copy.alpha_cutoff = m.alpha_cutoff;
   }
