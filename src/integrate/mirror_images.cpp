@@ -14,9 +14,10 @@ namespace {
 constexpr size_t most_images = 8;
 constexpr size_t most_corners = 8;            // of a mirror
 constexpr size_t most_candidates = 256;       // the largest
-constexpr size_t most_triangles = 8'000'000;  // of all images
+constexpr size_t most_triangles = 2'000'000;  // of all images
 constexpr size_t points_of_mirror = 64;       // at which light is looked at
 constexpr float least_reflectance = 0.2f;     // at normal incidence; else rays do
+constexpr float least_area_of_scene = 1e-4f;  // of a mirror, over the scene's diagonal squared
 constexpr float least_share = 1e-3f;          // of the light that the strongest brings
 
 struct Candidate {
@@ -36,11 +37,12 @@ float mirrored_share(const PreparedScene& scene, uint32_t material) {
   return luminance(mirrored_reflectance(bsdf, 1));
 }
 
-float area_of(const std::vector<Vec3>& outline) {
+// Along the normal of its front, as long as the area is large.
+Vec3 vector_area(const std::vector<Vec3>& outline) {
   Vec3 sum;
   for (size_t i = 2; i < outline.size(); ++i)
     sum = sum + cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
-  return 0.5f * length(sum);
+  return sum * 0.5f;
 }
 
 // Shading normals of smooth shapes bend what is seen.
@@ -51,7 +53,8 @@ bool is_flat_at(const Mesh& mesh, const Triangle& t, const Vec3& normal) {
   return true;
 }
 
-void add_polygons(const PreparedScene& scene, uint32_t number, std::vector<Candidate>& out) {
+void add_polygons(const PreparedScene& scene, uint32_t number, float least_area,
+                  std::vector<Candidate>& out) {
   const Mesh& mesh = scene.scene.meshes[number];
   const std::vector<uint32_t> welded = weld(mesh.positions);
   PolygonList pieces;
@@ -59,30 +62,34 @@ void add_polygons(const PreparedScene& scene, uint32_t number, std::vector<Candi
     pieces.add(std::array<uint32_t, 3>{welded[t[0]], welded[t[1]], welded[t[2]]});
   const MergedPolygons merged = merge_polygons(
       mesh.positions, pieces, sorted_edges(pieces, mesh.positions.size()), most_corners);
-  std::vector<Candidate> all(merged.polygons.size());
-  for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    if (merged.of_piece[t] != no_polygon) all[merged.of_piece[t]].triangles.push_back(t);
-  for (size_t p = 0; p < all.size(); ++p) {
-    Candidate& c = all[p];
-    FlatMirror& m = c.mirror;
-    for (const uint32_t v : merged.polygons[p]) m.outline.push_back(mesh.positions[v]);
-    c.area = area_of(m.outline);
-    if (!(c.area > 0)) continue;
-    Vec3 normal;
-    for (size_t i = 2; i < m.outline.size(); ++i)
-      normal = normal + cross(m.outline[i - 1] - m.outline[0], m.outline[i] - m.outline[0]);
-    m.normal = normalize(normal);
+  // Only large ones are looked at: there may be millions.
+  std::vector<int32_t> number_of(merged.polygons.size(), -1);
+  std::vector<Candidate> all;
+  for (size_t p = 0; p < merged.polygons.size(); ++p) {
+    Candidate c;
+    for (const uint32_t v : merged.polygons[p]) c.mirror.outline.push_back(mesh.positions[v]);
+    const Vec3 area = vector_area(c.mirror.outline);
+    c.area = length(area);
+    if (!(c.area >= least_area)) continue;
+    c.mirror.normal = area * (1 / c.area);
+    c.mirror.mesh = number;
+    c.mirror.material = mesh.material;
+    number_of[p] = int32_t(all.size());
+    all.push_back(std::move(c));
+  }
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uint32_t p = merged.of_piece[t];
+    if (p != no_polygon && number_of[p] >= 0) all[size_t(number_of[p])].triangles.push_back(t);
+  }
+  for (Candidate& c : all) {
     bool is_flat = true;
     for (const uint32_t t : c.triangles)
-      is_flat = is_flat && is_flat_at(mesh, mesh.triangles[t], m.normal);
+      is_flat = is_flat && is_flat_at(mesh, mesh.triangles[t], c.mirror.normal);
     if (!is_flat) continue;
-    m.mesh = number;
-    m.material = mesh.material;
-    for (const bool is_front : {true, false}) {
-      out.push_back(c);
-      out.back().is_front = is_front;
-      if (!is_front) out.back().mirror.normal = -m.normal;
-    }
+    out.push_back(c);
+    out.push_back(std::move(c));
+    out.back().is_front = false;
+    out.back().mirror.normal = -out.back().mirror.normal;
   }
 }
 
@@ -140,9 +147,10 @@ float light_from(const PreparedScene& scene, const Candidate& c, float share) {
 
 std::vector<Candidate> best_of(const PreparedScene& scene) {
   std::vector<Candidate> all;
+  const float least_area = least_area_of_scene * sqr(bounds(scene.scene).diagonal());
   for (uint32_t m = 0; m < scene.scene.meshes.size(); ++m)
     if (mirrored_share(scene, scene.scene.meshes[m].material) >= least_reflectance)
-      add_polygons(scene, m, all);
+      add_polygons(scene, m, least_area, all);
   std::stable_sort(all.begin(), all.end(),
                    [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
   all.resize(std::min(all.size(), most_candidates));
@@ -164,6 +172,7 @@ std::vector<Candidate> best_of(const PreparedScene& scene) {
 std::shared_ptr<const MirrorImages> MirrorImages::make(const PreparedScene& scene) {
   auto images = std::make_shared<MirrorImages>();
   images->of_triangle_.resize(scene.scene.meshes.size());
+  if (scene.primitives.size() == 0) return nullptr;
   size_t triangles = 0;
   for (Candidate& c : best_of(scene)) {
     std::optional<MirrorImage> made = image_in(scene.scene, c.mirror);
