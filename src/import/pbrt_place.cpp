@@ -4,6 +4,7 @@
 
 #include "import/emissive.h"
 #include "import/mesh_clean.h"
+#include "import/placed_geometry.h"
 #include "import/tessellate.h"
 
 namespace troffer {
@@ -11,36 +12,9 @@ namespace troffer {
 namespace {
 
 constexpr size_t smallest_cost = 20;  // of a shape, in triangles
-constexpr double similarity_tolerance = 1e-5;
 
-// Lengths equal and directions orthogonal, so that a circle in that plane stays one.
-bool is_similar(const Vec3d& a, const Vec3d& b) {
-  const double la = length(a), lb = length(b);
-  return la > 0 && lb > 0 && std::abs(la - lb) <= similarity_tolerance * la &&
-         std::abs(dot(a, b)) <= similarity_tolerance * la * lb;
-}
 bool is_similarity(const Affine& t) {
-  const auto& c = t.columns;
-  return is_similar(c[0], c[1]) && is_similar(c[1], c[2]) && is_similar(c[2], c[0]);
-}
-
-// Inverse transpose up to a positive factor: keeps the side that a normal points to.
-Vec3d covector(const Affine& t, const Vec3d& n) {
-  return t.swaps_handedness() ? -t.normal(n) : t.normal(n);
-}
-
-// The front of each triangle: the side of its normals where there are some, else of its winding,
-// turned where `is_flipped`.
-void orient(Mesh& mesh, bool is_flipped) {
-  for (Triangle& t : mesh.triangles) {
-    double side = 0;
-    if (!mesh.normals.empty()) {
-      const Vec3d n =
-          Vec3d(mesh.normals[t[0]]) + Vec3d(mesh.normals[t[1]]) + Vec3d(mesh.normals[t[2]]);
-      side = dot(area_vector(mesh, t), n);
-    }
-    if (side < 0 || (!(side > 0) && is_flipped)) std::swap(t[1], t[2]);
-  }
+  return keeps_circles(t, 0, 1) && keeps_circles(t, 1, 2) && keeps_circles(t, 2, 0);
 }
 
 // In triangles; vertices without triangles cost memory too.
@@ -94,7 +68,6 @@ void PbrtPlacer::place(Placing placing) {
     return;
   }
   const PbrtShape& shape = placing.shape;
-  const auto& columns = placing.world_from_object.columns;
   if (shape.kind == PbrtShapeKind::mesh) {
     place_mesh(placing, *shape.mesh, shape.is_quadric);
   } else if (shape.kind == PbrtShapeKind::sphere) {
@@ -103,7 +76,7 @@ void PbrtPlacer::place(Placing placing) {
     else
       place_mesh(placing,
                  {tessellate_sphere(shape.radius, -shape.radius, shape.radius, 2 * pi), {}}, true);
-  } else if (is_similar(columns[0], columns[1])) {
+  } else if (keeps_circles(placing.world_from_object, 0, 1)) {
     place_disk(placing);
   } else {
     place_mesh(placing, {tessellate_disk(shape.height, shape.radius, 0, 2 * pi), {}}, true);

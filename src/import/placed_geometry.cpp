@@ -13,7 +13,8 @@ constexpr size_t max_triangles = 60'000'000;
 constexpr size_t smallest_cost = 20;  // of a shape, in triangles
 constexpr double circle_tolerance = 1e-5;
 
-// Inverse transpose up to a positive factor: keeps the side that a normal points to.
+}  // namespace
+
 Vec3d covector(const Affine& t, const Vec3d& n) {
   return t.swaps_handedness() ? -t.normal(n) : t.normal(n);
 }
@@ -29,8 +30,6 @@ void orient(Mesh& mesh, bool is_turned) {
     if (side < 0 || (!(side > 0) && is_turned)) std::swap(t[1], t[2]);
   }
 }
-
-}  // namespace
 
 bool keeps_circles(const Affine& t, size_t axis_a, size_t axis_b) {
   const Vec3d &a = t.columns[axis_a], &b = t.columns[axis_b];

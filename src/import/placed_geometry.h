@@ -48,6 +48,14 @@ class GeometryPlacer {
   int32_t add_light(const PlacedLook& look, LightKind kind, size_t geometry);
 };
 
+// A normal taken along: inverse transpose up to a positive factor, which keeps the side that it
+// points to.
+Vec3d covector(const Affine& t, const Vec3d& n);
+
+// The front of each triangle: the side of its normals where there are some, else of its winding,
+// turned where is_turned.
+void orient(Mesh& mesh, bool is_turned);
+
 // Whether that transform takes circles in the plane of those two axes to circles.
 bool keeps_circles(const Affine& t, size_t axis_a, size_t axis_b);
 

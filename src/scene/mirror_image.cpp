@@ -120,6 +120,8 @@ class ImageMaker {
   void add_textures();
   void add_meshes();
   void add_mesh_image(size_t mesh, const CutMesh& front);
+  template <class Shape, class Reflect>
+  bool add_round(const Shape& shape, float reach, std::vector<Shape>& out, const Reflect& reflect);
   bool add_spheres();
   bool add_disks();
   void add_lights_without_surface();
@@ -221,39 +223,37 @@ void ImageMaker::add_meshes() {
   }
 }
 
+// A sphere or disk that reaches so far from its centre's height; false: it crosses the plane.
+template <class Shape, class Reflect>
+bool ImageMaker::add_round(const Shape& shape, float reach, std::vector<Shape>& out,
+                           const Reflect& reflect) {
+  const float height = mirror_.above(shape.centre);
+  const Side side = side_of(mirror_, height - reach, height + reach);
+  if (side == Side::both) return false;
+  if (side == Side::behind) return true;
+  Shape image = shape;
+  image.centre = mirror_.reflected(shape.centre);
+  reflect(image);
+  if (shape.light >= 0)
+    image.light = light_of_image(uint32_t(shape.light), uint32_t(out.size()), nullptr);
+  out.push_back(image);
+  out.push_back(shape);
+  out.back().light = no_light;
+  return true;
+}
+
 bool ImageMaker::add_spheres() {
-  for (const Sphere& s : scene_.spheres) {
-    const float height = mirror_.above(s.centre);
-    const Side side = side_of(mirror_, height - s.radius, height + s.radius);
-    if (side == Side::both) return false;
-    if (side == Side::behind) continue;
-    Sphere image = s;
-    image.centre = mirror_.reflected(s.centre);
-    const auto number = uint32_t(out_.scene.spheres.size());
-    if (s.light >= 0) image.light = light_of_image(uint32_t(s.light), number, nullptr);
-    out_.scene.spheres.push_back(image);
-    out_.scene.spheres.push_back(s);
-    out_.scene.spheres.back().light = no_light;
-  }
+  for (const Sphere& s : scene_.spheres)
+    if (!add_round(s, s.radius, out_.scene.spheres, [](Sphere&) {})) return false;
   return true;
 }
 
 bool ImageMaker::add_disks() {
   for (const Disk& d : scene_.disks) {
-    const float height = mirror_.above(d.centre);
     const float cosine = dot(d.normal, mirror_.normal);
     const float reach = d.radius * std::sqrt(std::max(0.0f, 1 - cosine * cosine));
-    const Side side = side_of(mirror_, height - reach, height + reach);
-    if (side == Side::both) return false;
-    if (side == Side::behind) continue;
-    Disk image = d;
-    image.centre = mirror_.reflected(d.centre);
-    image.normal = mirror_.reflected_direction(d.normal);
-    const auto number = uint32_t(out_.scene.disks.size());
-    if (d.light >= 0) image.light = light_of_image(uint32_t(d.light), number, nullptr);
-    out_.scene.disks.push_back(image);
-    out_.scene.disks.push_back(d);
-    out_.scene.disks.back().light = no_light;
+    const auto turn = [&](Disk& image) { image.normal = mirror_.reflected_direction(d.normal); };
+    if (!add_round(d, reach, out_.scene.disks, turn)) return false;
   }
   return true;
 }

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "import/gltf.h"
+#include "import/scene_checks.h"
 #include "import/temp_folder.h"
 
 namespace troffer {
@@ -63,12 +64,6 @@ inline InputError error_of(const std::string& text) {
   }
   FAIL("no error");
   return InputError("", 0, 0, "");
-}
-
-inline bool has_warning(const Scene& scene, const std::string& part) {
-  for (const Warning& w : scene.warnings.entries())
-    if (w.text.find(part) != std::string::npos) return true;
-  return false;
 }
 
 // The unit square in the plane z = 0, front to +z, as buffer 0: 4 float positions, 6 u16 indices

@@ -9,9 +9,11 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "import/attach_luminaire.h"
+#include "support/beam_ies.h"
 #include "temp_folder.h"
 
 using namespace troffer;
+using namespace troffer::test;
 
 namespace {
 
@@ -48,21 +50,6 @@ std::string ldt(int symmetry, int planes, const std::vector<std::string>& values
   for (int i = 0; i < planes; ++i) text += std::to_string(i * 360 / planes) + "\n";
   text += "0\n90\n";
   for (const std::string& v : values) text += v + "\n";
-  return text;
-}
-
-// Type A (3) or B (2); value 1000 + 10 × horizontal + vertical angle.
-std::string beam_ies(int type, const std::vector<int>& vertical,
-                     const std::vector<int>& horizontal) {
-  std::string text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 " + std::to_string(vertical.size()) +
-                     " " + std::to_string(horizontal.size()) + " " + std::to_string(type) +
-                     " 2 0 0 0 1 1 10\n";
-  for (const auto* angles : {&vertical, &horizontal}) {
-    for (const int a : *angles) text += std::to_string(a) + " ";
-    text += "\n";
-  }
-  for (const int h : horizontal)
-    for (const int v : vertical) text += std::to_string(1000 + 10 * h + v) + "\n";
   return text;
 }
 

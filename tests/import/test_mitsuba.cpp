@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "import/mesh_clean.h"
 #include "mutations.h"
+#include "scene_checks.h"
 #include "temp_folder.h"
 
 using namespace troffer;
@@ -30,22 +31,6 @@ std::string error_of(const std::string& world) {
     return what.substr(what.find("scene.xml"));
   }
   return "";
-}
-
-bool has_warning(const Scene& scene, const std::string& part) {
-  for (const Warning& w : scene.warnings.entries())
-    if (w.text.find(part) != std::string::npos) return true;
-  return false;
-}
-
-bool is_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
-  return length(a - b) <= tolerance;
-}
-
-Vec3 front_of(const Scene& scene, const Light& e) {
-  if (e.kind == LightKind::disk) return scene.disks.at(e.geometry).normal;
-  const Mesh& mesh = scene.meshes.at(e.geometry);
-  return Vec3(normalize(area_vector(mesh, mesh.triangles.at(e.triangles.at(0)))));
 }
 
 const std::string area = "<emitter type='area'><rgb name='radiance' value='2 3 4'/></emitter>";

@@ -10,6 +10,7 @@
 #include "import/mesh_clean.h"
 #include "import/obj.h"
 #include "import/polygon.h"
+#include "scene_checks.h"
 #include "temp_folder.h"
 
 using namespace troffer;
@@ -23,12 +24,6 @@ Scene import_text(const std::string& obj, const std::string& mtl = "") {
 }
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-
-bool has_warning(const Scene& scene, const std::string& part) {
-  for (const Warning& w : scene.warnings.entries())
-    if (w.text.find(part) != std::string::npos) return true;
-  return false;
-}
 
 Material material_of(const std::string& mtl) {
   const Scene scene = import_text(square + "usemtl a\nf 1 2 3\n", "newmtl a\n" + mtl);

@@ -7,6 +7,7 @@
 #include "image/write_image.h"
 #include "import/pbrt.h"
 #include "import/spectra.h"
+#include "scene_checks.h"
 #include "temp_folder.h"
 
 using namespace troffer;
@@ -31,12 +32,6 @@ Scene import_world(const std::string& world) {
 Material material_of(const std::string& material) {
   const Scene scene = import_world(material + "\n" + triangle);
   return scene.materials.at(scene.meshes.at(0).material);
-}
-
-bool has_warning(const Scene& scene, const std::string& part) {
-  for (const Warning& w : scene.warnings.entries())
-    if (w.text.find(part) != std::string::npos) return true;
-  return false;
 }
 
 void check_near(Rgb a, Rgb b, float tolerance = 1e-4f) {

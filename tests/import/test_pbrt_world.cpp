@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "import/mesh_clean.h"
 #include "import/pbrt.h"
+#include "scene_checks.h"
 #include "temp_folder.h"
 
 using namespace troffer;
@@ -15,16 +16,6 @@ namespace {
 Scene import_world(const std::string& world, const std::string& options = "") {
   const TempFolder folder;
   return import_pbrt(folder.write("scene.pbrt", options + "\nWorldBegin\n" + world));
-}
-
-bool is_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
-  return length(a - b) <= tolerance;
-}
-
-Vec3 front_of(const Scene& scene, const Light& e) {
-  if (e.kind == LightKind::disk) return scene.disks.at(e.geometry).normal;
-  const Mesh& mesh = scene.meshes.at(e.geometry);
-  return Vec3(normalize(area_vector(mesh, mesh.triangles.at(e.triangles.at(0)))));
 }
 
 const std::string light = "AreaLightSource \"diffuse\" \"rgb L\" [2 3 4]\n";

@@ -11,6 +11,7 @@
 #include "import/import.h"
 #include "import/mesh_clean.h"
 #include "mutations.h"
+#include "scene_checks.h"
 #include "temp_folder.h"
 
 using namespace troffer;
@@ -30,16 +31,6 @@ std::string error_of(const std::string& text) {
     return what.substr(what.find("scene.rad"));
   }
   return "";
-}
-
-bool has_warning(const Scene& scene, const std::string& part) {
-  for (const Warning& w : scene.warnings.entries())
-    if (w.text.find(part) != std::string::npos) return true;
-  return false;
-}
-
-bool is_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
-  return length(a - b) <= tolerance;
 }
 
 const std::string grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
