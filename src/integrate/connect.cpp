@@ -8,13 +8,10 @@ namespace troffer {
 Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal) {
   Ray ray;
   ray.origin = offset_origin(s, point - s.position);
-  // The target moves off the light, towards this side of it, by twice what a ray that starts
-  // there would: the light itself must not count.
   const float magnitude =
       std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), std::abs(s.position.x),
                 std::abs(s.position.y), std::abs(s.position.z)});
-  const Vec3 target = point + normal * (2 * ray_offset(magnitude));
-  ray.direction = target - ray.origin;
+  ray.direction = ended_before_light(point - ray.origin, normal, 2 * ray_offset(magnitude));
   ray.t_max = 1;
   return ray;
 }

@@ -169,7 +169,7 @@ Ray ray_between(const ShadowReceiver& r, const LightSample& light) {
   const float magnitude =
       std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), std::abs(r.position.x),
                 std::abs(r.position.y), std::abs(r.position.z)});
-  ray.direction = p + light.normal * (2 * ray_offset(magnitude)) - ray.origin;
+  ray.direction = ended_before_light(p - ray.origin, light.normal, 2 * ray_offset(magnitude));
   ray.t_max = 1;
   return ray;
 }

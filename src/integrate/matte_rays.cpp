@@ -10,8 +10,8 @@ namespace troffer {
 
 namespace {
 
-// Weights and rays of all points. A ray ends off the light, towards this side of it, by twice what
-// one that starts there would: the light itself must not count (connect.h). Returns the smallest
+// Weights and rays of all points. A ray ends before the light by twice what one that
+// starts there would: the light itself must not count (ended_before_light()). Returns the smallest
 // weight.
 TROFFER_MULTIVERSION
 float aim(const MatteReceiver& receiver, size_t n, const float* __restrict x,
@@ -35,13 +35,14 @@ float aim(const MatteReceiver& receiver, size_t n, const float* __restrict x,
     const float magnitude =
         std::max(std::max(std::abs(r.position.x + d.x), std::abs(r.position.y + d.y)),
                  std::max(std::abs(r.position.z + d.z), here));
-    const float off = 2 * ray_offset(magnitude);
+    const Vec3 way =
+        ended_before_light(d + shift, {nx[i], ny[i], nz[i]}, 2 * ray_offset(magnitude));
     ox[i] = r.origin.x;
     oy[i] = r.origin.y;
     oz[i] = r.origin.z;
-    dx[i] = d.x + shift.x + nx[i] * off;
-    dy[i] = d.y + shift.y + ny[i] * off;
-    dz[i] = d.z + shift.z + nz[i] * off;
+    dx[i] = way.x;
+    dy[i] = way.y;
+    dz[i] = way.z;
   }
   return least;
 }

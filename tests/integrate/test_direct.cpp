@@ -1,6 +1,7 @@
 // Light straight from sources against closed forms and quadrature, for both methods.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -145,6 +146,41 @@ TEST_CASE("a matte floor shows reflectance × exact irradiance / pi") {
         CHECK(p.indirect.mean() == 0);
       }
     }
+  }
+}
+
+// Half a millimetre of a strip is seen over an edge 5 m away: rays that end elsewhere than at the
+// strip see another half. All that is seen is a narrow rectangle whose light is in closed form.
+TEST_CASE("a strip of light behind an edge that leaves half a millimetre of it") {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.5f});
+  make_light(s, add_quad(s, grey, {Vec3{0, -5, 0}, {0.06f, -5, 0}, {0.06f, 5, 0}, {0, 5, 0}}),
+             Rgb{100});
+  // From the ceiling's point (1, 0, 0.5), the edge at (x, 0, 0.1) shows what is right of .0595.
+  const float edge = 0.0595f + 0.2f * (1 - 0.0595f);
+  add_quad(s, grey, {Vec3{-0.5f, -9, 0.1f}, {edge, -9, 0.1f}, {edge, 9, 0.1f}, {-0.5f, 9, 0.1f}});
+  Scene seen;
+  add_diffuse(seen, Rgb{0.5f});
+  make_light(
+      seen,
+      add_quad(seen, grey, {Vec3{0.0595f, -5, 0}, {0.06f, -5, 0}, {0.06f, 5, 0}, {0.0595f, 5, 0}}),
+      Rgb{100});
+  const PreparedScene narrow(std::move(seen));
+  const double expected =
+      irradiance(narrow.primitives, 0, {1, 0, 0.5}, {0, 0, -1}) * 100 * 0.5 / pi;
+  add_quad(s, grey, {Vec3{0.8f, -1, 0.5f}, {0.8f, 1, 0.5f}, {1.2f, 1, 0.5f}, {1.2f, -1, 0.5f}});
+  const PreparedScene scene(std::move(s));
+  const Ray ray = ray_towards({1.2f, 0.1f, 0.2f}, {1, 0, 0.5f});
+  const std::unique_ptr<Integrator> path = direct_path(scene), rays = fixed(scene, 256);
+  const WaveIntegrator certified = certified_integrator(scene);
+  const std::array<const Integrator*, 3> all{path.get(), rays.get(), &certified};
+  for (const Integrator* i : all) {
+    const Probed p = probe(*i, ray, i == path.get() ? 2048 : 64, 64);
+    CAPTURE(expected);
+    CAPTURE(p.total.mean());
+    CAPTURE(p.total.standard_error());
+    CHECK(std::abs(p.total.mean() - expected) < 4 * p.total.standard_error() + 0.01 * expected);
+    CHECK(p.total.standard_error() < 0.02 * expected);
   }
 }
 
