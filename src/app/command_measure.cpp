@@ -46,6 +46,11 @@ int run_measure(const MeasureCommand& c) {
   if (!c.is_quiet && result.counters.nan_samples > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as 0\n",
                result.counters.nan_samples);
+  if (!c.is_quiet && !result.in_surfaces.empty())
+    fmt::print(stderr,
+               "warning: {} of {} points (the first is number {}) stand exactly in a surface that "
+               "is not theirs; measured just before its front\n",
+               result.in_surfaces.size(), points.size(), result.in_surfaces.front() + 1);
   if (result.is_complete) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   const std::string csv = measurements_csv(points, result);
   if (c.output.empty())

@@ -91,16 +91,6 @@ CellPilot picture_pilot(const ViewingCamera& camera, const ImageSize& size, uint
   return pilot;
 }
 
-CellPilot points_pilot(const PreparedScene& scene, const std::vector<MeasuringPoint>& points) {
-  CellPilot pilot;
-  const Box box = bounds(scene.scene);
-  for (const MeasuringPoint& p : points) {
-    const Vec3 position(p.position - scene.scene.origin), n = normalize(p.normal);
-    pilot.places.push_back({position, n, n, offset_of_point(position, box)});
-  }
-  return pilot;
-}
-
 CellPilot surfaces_pilot(const PreparedScene& scene, uint64_t seed) {
   CellPilot pilot;
   const std::vector<Area> areas = areas_of(scene.scene);

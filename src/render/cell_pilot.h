@@ -5,14 +5,11 @@
 
 #include "integrate/cell_builder.h"
 #include "render/camera.h"
-#include "render/measure.h"
 
 namespace troffer {
 
 // Viewing rays all over the picture, the same for every crop of it.
 CellPilot picture_pilot(const ViewingCamera& camera, const ImageSize& size, uint64_t seed);
-
-CellPilot points_pilot(const PreparedScene& scene, const std::vector<MeasuringPoint>& points);
 
 // Places all over the surfaces of the scene, as many on every square metre of either side.
 CellPilot surfaces_pilot(const PreparedScene& scene, uint64_t seed);

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
-#include "render/cell_pilot.h"
+#include "render/measuring_places.h"
 
 namespace troffer {
 
@@ -44,8 +44,8 @@ struct Sums {
 };
 
 struct Worker {
-  size_t point = 0;     // its number in the list
-  Vec3 position;        // from the scene's origin
+  size_t point = 0;  // its number in the list
+  MeasuringPlace place;
   SensorBatch sensors;  // of this point
   RadianceBatch out;
   double shared_error = 0;  // of the point's mean
@@ -58,16 +58,15 @@ std::string name_of_sensor(const void* worker, size_t i) {
   return "point " + std::to_string(w.point) + ", sample " + std::to_string(w.sensors.samples[i]);
 }
 
-// Sum of `samples` estimates of one replicate at one point; cut short by a stop.
-Sums sum_of_replicate(const Integrator& integrator, const MeasuringPoint& point, uint64_t stream,
-                      int samples, const StopFlag& stop, Worker& w, Counters& counters) {
-  const Vec3 n = normalize(point.normal);
+// Sum of `samples` estimates of one replicate at the worker's point; cut short by a stop.
+Sums sum_of_replicate(const Integrator& integrator, uint64_t stream, int samples,
+                      const StopFlag& stop, Worker& w, Counters& counters) {
   Sums sums;
   for (int first = 0; first < samples; first += w.samples_per_batch) {
     if (stop.load(std::memory_order_relaxed)) break;
     const auto count = size_t(std::min(w.samples_per_batch, samples - first));
-    w.sensors.positions.assign(count, w.position);
-    w.sensors.normals.assign(count, n);
+    w.sensors.positions.assign(count, w.place.position);
+    w.sensors.normals.assign(count, w.place.normal);
     w.sensors.streams.assign(count, stream);
     w.sensors.samples.resize(count);
     for (size_t i = 0; i < count; ++i) w.sensors.samples[i] = uint32_t(first) + uint32_t(i);
@@ -96,9 +95,8 @@ struct PointPlan {
   double lx_per_unit = 1;
 };
 
-Measurement measure_point(const Integrator& integrator, const MeasuringPoint& point,
-                          uint64_t stream, const PointPlan& plan, const StopFlag& stop, Worker& w,
-                          Counters& counters) {
+Measurement measure_point(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
+                          const StopFlag& stop, Worker& w, Counters& counters) {
   const int spp = plan.samples, samples_per_estimate = plan.samples_per_estimate;
   const int replicates = std::min(most_replicates, spp);
   const int samples = (spp + replicates - 1) / replicates;
@@ -106,7 +104,7 @@ Measurement measure_point(const Integrator& integrator, const MeasuringPoint& po
   double mean = 0, sum_squares = 0;
   w.shared_error = 0;
   for (int r = 0; r < replicates; ++r) {
-    const Sums s = sum_of_replicate(integrator, point, hash_combine(stream, uint64_t(r)),
+    const Sums s = sum_of_replicate(integrator, hash_combine(stream, uint64_t(r)),
                                     std::max(1, samples / samples_per_estimate), stop, w, counters);
     const double weight = 1.0 / std::max(1, samples / samples_per_estimate);
     irradiance += s.irradiance * (weight / replicates);
@@ -129,15 +127,14 @@ Measurement measure_point(const Integrator& integrator, const MeasuringPoint& po
 // The same, and once more where the error is larger than the plan has it. The first samples only
 // say how many are taken then: were they used again, a sum that is small by chance, with a small
 // error, would stay, and one that is large would not.
-Measurement measure_to_error(const Integrator& integrator, const MeasuringPoint& point,
-                             uint64_t stream, PointPlan plan, const StopFlag& stop, Worker& w,
-                             Counters& counters) {
-  const Measurement first = measure_point(integrator, point, stream, plan, stop, w, counters);
+Measurement measure_to_error(const Integrator& integrator, uint64_t stream, PointPlan plan,
+                             const StopFlag& stop, Worker& w, Counters& counters) {
+  const Measurement first = measure_point(integrator, stream, plan, stop, w, counters);
   const double aim = plan.error * first.illuminance_lx;
   if (!(aim > 0) || first.standard_error <= aim) return first;
   const double times = std::min(sqr(first.standard_error / aim), most_times_usual);
   plan.samples = int(double(plan.samples) * std::exp2(std::ceil(std::log2(times))));
-  return measure_point(integrator, point, hash_of(stream, 1u), plan, stop, w, counters);
+  return measure_point(integrator, hash_of(stream, 1u), plan, stop, w, counters);
 }
 
 // What the method knows of errors that no spread of its samples shows: half the difference between
@@ -164,6 +161,20 @@ MeasureResult nothing_measured(size_t points) {
   result.is_measured.assign(points, false);
   result.is_complete = false;
   return result;
+}
+
+std::vector<size_t> in_others(const std::vector<MeasuringPlace>& places) {
+  std::vector<size_t> which;
+  for (size_t i = 0; i < places.size(); ++i)
+    if (places[i].is_in_other) which.push_back(i);
+  return which;
+}
+
+CellPilot points_pilot(const std::vector<MeasuringPlace>& places) {
+  CellPilot pilot;
+  for (const MeasuringPlace& p : places)
+    pilot.places.push_back({p.position, p.normal, p.normal, p.offset});
+  return pilot;
 }
 
 MethodSettings settings_of(const MeasureOptions& options) {
@@ -198,8 +209,9 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     preparation = own.get();
   }
   const MethodSettings settings = settings_of(options);
-  CellInput cells{
-      points_pilot(scene, points), nullptr, options.seed, nullptr, stop, {}, {}, options.cells};
+  const std::vector<MeasuringPlace> places = measuring_places(scene, points);
+  CellInput cells{points_pilot(places), nullptr, options.seed, nullptr, stop, {}, {},
+                  options.cells};
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene, options.method, settings, preparation, &cells);
   if (!integrator) return nothing_measured(points.size());
@@ -207,13 +219,13 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   const int samples_per_batch =
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 
-  const Box box = bounds(scene.scene);
   PointPlan plan{spp, row.rays_of_measuring_sample, 0,
                  scene.scene.is_photometric ? 1.0 : luminous_efficacy};
   if (row.measures_to_error && options.spp == 0) plan.error = share_of_error * options.error;
 
   MeasureResult result;
   result.values.resize(points.size());
+  result.in_surfaces = in_others(places);
   std::vector<uint8_t> is_measured(points.size(), 0);
   std::vector<Counters> counters(points.size());
   std::vector<double> shared_errors(points.size(), 0);
@@ -224,12 +236,12 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
     if (stop.load(std::memory_order_relaxed)) return;
     Worker& w = workers[slot];
     if (!w.scratch) w.scratch = integrator->make_scratch();
-    w.position = Vec3(points[i].position - scene.scene.origin);
-    w.sensors.offset = offset_of_point(w.position, box);
+    w.place = places[i];
+    w.sensors.offset = w.place.offset;
     w.samples_per_batch = samples_per_batch;
     w.point = i;
-    result.values[i] = measure_to_error(*integrator, points[i], hash_of(options.seed, i), plan,
-                                        stop, w, counters[i]);
+    result.values[i] =
+        measure_to_error(*integrator, hash_of(options.seed, i), plan, stop, w, counters[i]);
     shared_errors[i] = w.shared_error;
     if (stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
     is_measured[i] = 1;

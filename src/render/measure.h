@@ -47,6 +47,8 @@ struct MeasureResult {
   std::vector<bool> is_measured;    // false where a stop was requested before
   Counters counters;
   bool is_complete = true;
+  // Points that stood exactly in a surface not their own; measured just before its front.
+  std::vector<size_t> in_surfaces;
 };
 
 MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,

@@ -1,6 +1,7 @@
 // Irradiance at points against closed forms, and standard errors against what they promise.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/random.h"
@@ -107,6 +108,40 @@ TEST_CASE("a closed white-ish room: mean irradiance is flux / (area (1 - reflect
   for (const Measurement& m : r.values) {
     CHECK(m.irradiance.g == doctest::Approx(expected).epsilon(0.005));
     CHECK(std::abs(m.illuminance_lx - expected * luminous_efficacy) < 4.5 * m.standard_error);
+  }
+}
+
+// The foot of a wall whose front, then whose back, has the light; the corner of two; a table's leg.
+TEST_CASE("points exactly in another surface are measured before its front by every method") {
+  for (const bool is_front_lit : {true, false}) {
+    Scene s = lit_floor();
+    std::array<Vec3, 4> wall{Vec3{2, -9, 0}, {2, -9, 1}, {2, 9, 1}, {2, 9, 0}};
+    if (!is_front_lit) std::swap(wall[1], wall[3]);
+    add_quad(s, 0, wall);
+    std::array<Vec3, 4> across{Vec3{-9, 2, 0}, {-9, 2, 1}, {9, 2, 1}, {9, 2, 0}};
+    if (is_front_lit) std::swap(across[1], across[3]);
+    add_quad(s, 0, across);
+    const PreparedScene scene(std::move(s));
+    const std::vector<MeasuringPoint> points{{{2, 1, 0}, {0, 0, 1}},
+                                             {{2, 2, 0}, {0, 0, 1}},
+                                             {{1, 2, 0.5}, {0, 0, 1}},
+                                             {{1, 1, 0}, {0, 0, 1}}};
+    for (const Method m : {Method::certified, Method::fixed, Method::path}) {
+      MeasureOptions o;
+      o.method = m;
+      o.indirect = Indirect::none;
+      o.depth = 1;
+      o.spp = 4096;
+      const MeasureResult r = measure(scene, points, o, {}, never_stop);
+      CHECK(r.in_surfaces == std::vector<size_t>{0, 1, 2});
+      for (size_t i = 0; i < points.size(); ++i) {
+        const double expected = is_front_lit || i == 3 ? exact(scene, points[i]) * 179 : 0;
+        CAPTURE(i);
+        CAPTURE(expected);
+        CHECK(std::abs(r.values[i].illuminance_lx - expected) <=
+              4 * r.values[i].standard_error + 2e-4 * expected);
+      }
+    }
   }
 }
 
