@@ -151,7 +151,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
 
 void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   CLI::App* r = app.add_subcommand("render", "Render an image of a scene");
-  r->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  add_scene_choice(*r, c.scene);
   r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
       ->required()
       ->allow_extra_args(false);
@@ -221,7 +221,7 @@ void add_compare(CLI::App& app, CompareCommand& c) {
 
 void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   CLI::App* s = app.add_subcommand("measure", "Measure irradiance and illuminance at points");
-  s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  add_scene_choice(*s, c.scene);
   s->add_option("--points", c.points, "CSV file with header x,y,z,nx,ny,nz")->required();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
   s->add_option("--method", c.method, "How light is computed: " + Method::names())
@@ -249,7 +249,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
 
 void add_info(CLI::App& app, InfoCommand& c) {
   CLI::App* s = app.add_subcommand("info", "Tell what a scene file holds");
-  s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  add_scene_choice(*s, c.scene);
   s->add_option("--polar", c.polar, "Of an .ies or .ldt: draw its polar curves, .svg or .png");
   s->add_flag("--json", c.is_json, "Print JSON");
 }

@@ -13,14 +13,14 @@ namespace troffer {
 
 void add_convert(CLI::App& app, ConvertCommand& c) {
   CLI::App* s = app.add_subcommand("convert", "Write a scene in another format");
-  s->add_option("scene", c.scene, "scene file")->required();
+  add_scene_choice(*s, c.scene);
   s->add_option("output", c.output, "file to write: .pbrt, .gltf or .glb")->required();
   s->add_flag("--quiet", c.is_quiet, "no warnings");
 }
 
 int run_convert(const ConvertCommand& command) {
   check_scene_format(command.output);
-  const Scene scene = import_scene(command.scene);
+  const Scene scene = import_scene(command.scene.file, command.scene.options);
   const std::vector<Warning> lost = export_scene(scene, command.output);
   if (command.is_quiet) return exit_done;
   const auto tell = [](const Warning& w) {

@@ -95,12 +95,12 @@ void print_text(const Scene& scene, const Json& j) {
 }  // namespace
 
 int run_info(const InfoCommand& command) {
-  if (is_luminaire(command.scene)) {
-    fmt::print("{}", luminaire_info(command.scene, command.is_json, command.polar));
+  if (is_luminaire(command.scene.file)) {
+    fmt::print("{}", luminaire_info(command.scene.file, command.is_json, command.polar));
     return exit_done;
   }
   if (!command.polar.empty()) throw UsageError("--polar goes with an .ies or .ldt file");
-  Scene scene = import_scene(command.scene);
+  Scene scene = import_scene(command.scene.file, command.scene.options);
   if (scene.lights.empty()) scene.warnings.add("the scene has no light");
   const Json j = info_json(scene);
   if (command.is_json)

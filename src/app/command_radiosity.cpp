@@ -138,7 +138,7 @@ std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
 
 void add_radiosity(CLI::App& app, RadiosityCommand& c) {
   CLI::App* s = app.add_subcommand("radiosity", "Spread light over a scene's surfaces, coarsely");
-  s->add_option("scene", c.scene, "Scene: .gltf .glb .pbrt .obj")->required();
+  add_scene_choice(*s, c.scene);
   s->add_option("-o,--output", c.outputs,
                 ".gltf, .glb: mesh and light to look at; any other ending (.trad): the solution, "
                 "for render --solution; may be repeated")

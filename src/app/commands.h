@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/daylight_options.h"
+#include "import/import_options.h"
 #include "render/radiosity.h"
 #include "render/render.h"
 
@@ -23,8 +24,15 @@ constexpr int exit_bad_input = 1;
 constexpr int exit_usage = 2;
 constexpr int exit_interrupted = 130;
 
+// Which scene, as typed.
+struct SceneChoice {
+  std::string file;
+  ImportOptions options;
+};
+void add_scene_choice(CLI::App& app, SceneChoice& choice);  // its options
+
 struct RenderCommand {
-  std::string scene;
+  SceneChoice scene;
   std::vector<std::string> outputs;
   RenderOptions options;
   std::string method = "certified";
@@ -51,7 +59,8 @@ struct CompareCommand {
 int run_compare(const CompareCommand& command);
 
 struct MeasureCommand {
-  std::string scene, points, output;
+  SceneChoice scene;
+  std::string points, output;
   std::string method = "certified";
   std::vector<std::string> lights;
   DaylightOptions daylight;
@@ -67,7 +76,7 @@ struct MeasureCommand {
 int run_measure(const MeasureCommand& command);
 
 struct RadiosityCommand {
-  std::string scene;
+  SceneChoice scene;
   std::vector<std::string> outputs;
   RadiosityOptions options;
   std::vector<std::string> lights;
@@ -81,14 +90,15 @@ void add_radiosity(CLI::App& app, RadiosityCommand& command);  // its options
 int run_radiosity(const RadiosityCommand& command);
 
 struct InfoCommand {
-  std::string scene;
+  SceneChoice scene;
   std::string polar;  // a drawing to make of a luminaire; empty: none
   bool is_json = false;
 };
 int run_info(const InfoCommand& command);
 
 struct ConvertCommand {
-  std::string scene, output;
+  SceneChoice scene;
+  std::string output;
   bool is_quiet = false;
 };
 void add_convert(CLI::App& app, ConvertCommand& command);  // its options
@@ -96,7 +106,7 @@ int run_convert(const ConvertCommand& command);
 
 // The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
 // emitting (all if empty), warnings printed to standard error unless is_quiet.
-Scene load_scene(const std::string& path, const std::vector<std::string>& lights,
+Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
                  const DaylightOptions* daylight, bool is_quiet);
 
 // "certified", "kj92", "fixed" and "path"; UsageError for others.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "app/commands.h"
@@ -10,9 +11,18 @@
 
 namespace troffer {
 
-Scene load_scene(const std::string& path, const std::vector<std::string>& lights,
+void add_scene_choice(CLI::App& app, SceneChoice& choice) {
+  app.add_option("scene", choice.file, "Scene: .gltf .glb .pbrt .obj .stl .xml .rad")->required();
+  app.add_option("--variant", choice.options.variant,
+                 "glTF: materials of the variant of this name");
+  app.add_option("--time", choice.options.time, "glTF: seconds into the animation [at rest]")
+      ->check(CLI::Range(-1e9, 1e9));
+  app.add_option("--animation", choice.options.animation, "glTF: animation by name [the first]");
+}
+
+Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
                  const DaylightOptions* daylight, bool is_quiet) {
-  Scene scene = import_scene(path);
+  Scene scene = import_scene(choice.file, choice.options);
   if (daylight != nullptr) add_daylight(scene, *daylight);
   if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);

@@ -5,6 +5,7 @@
 
 #include "import/emissive.h"
 #include "import/gltf_accessor.h"
+#include "import/gltf_animation.h"
 #include "import/gltf_camera.h"
 #include "import/gltf_file.h"
 #include "import/gltf_ies.h"
@@ -15,6 +16,7 @@
 #include "import/gltf_nodes.h"
 #include "import/gltf_pose.h"
 #include "import/gltf_schema.h"
+#include "import/gltf_variant.h"
 #include "import/recentre.h"
 #include "import/vertex_paint.h"
 
@@ -28,8 +30,10 @@ constexpr const char* lights_extension = "KHR_lights_punctual";
 
 class Importer {
  public:
-  Importer(const JsonNode& root, GltfFile& file, Scene& scene, PlacedBounds& bounds)
+  Importer(const JsonNode& root, GltfFile& file, const ImportOptions& options, Scene& scene,
+           PlacedBounds& bounds)
       : root_(root),
+        options_(options),
         scene_(scene),
         bounds_(bounds),
         buffers_(root, file),
@@ -38,19 +42,29 @@ class Importer {
 
   void run() {
     read_primitives();
-    nodes_ = gltf_nodes(root_, scene_.warnings);
+    read_poses();
+    nodes_ = gltf_nodes(root_, poses_, scene_.warnings);
     for (GltfNode& node : nodes_.shown) node.world_from_node.translation -= scene_.origin;
     for (Affine& world : nodes_.world) world.translation -= scene_.origin;
     check_triangle_count();
     for (const GltfNode& node : nodes_.shown) add_node(node);
     materials_.check_unused_images();
     if (scene_.meshes.empty()) scene_.warnings.add("the scene shows no triangles");
-    if (const auto animations = root_.find("animations"))
-      if (animations->size() > 0)
-        scene_.warnings.add("animations are not played: nodes stand where the file has them");
   }
 
  private:
+  void read_poses() {
+    if (options_.time || options_.animation) {
+      poses_ = gltf_poses(root_, buffers_, options_.time.value_or(0), options_.animation,
+                          scene_.warnings);
+      return;
+    }
+    const auto animations = root_.find("animations");
+    if (animations && animations->size() > 0)
+      scene_.warnings.add(
+          "animations are not played: nodes stand where the file has them (--time shows a moment)");
+  }
+
   JsonNode node_json(const GltfNode& node) const {
     return root_.member("nodes").element(node.index);
   }
@@ -61,13 +75,18 @@ class Importer {
   }
 
   void read_primitives() {
+    const auto variant = find_gltf_variant(root_, options_.variant, scene_.warnings);
     const auto meshes = root_.find("meshes");
     for (size_t i = 0; meshes && i < meshes->size(); ++i) {
       const JsonNode list = meshes->element(i).member("primitives");
       auto& of_mesh = primitives_.emplace_back();
       for (size_t k = 0; k < list.size(); ++k)
-        if (auto p = read_gltf_primitive(list.element(k), buffers_, scene_.warnings))
+        if (auto p = read_gltf_primitive(list.element(k), buffers_, scene_.warnings)) {
+          if (variant)
+            if (const auto other = gltf_variant_material(root_, list.element(k), *variant))
+              p->material = other;
           of_mesh.push_back(std::move(*p));
+        }
     }
   }
 
@@ -98,7 +117,10 @@ class Importer {
     if (!mesh) return;
     const JsonNode mesh_json = root_.member("meshes").element(*mesh);
     GltfPose pose;
-    pose.target_weights = gltf_target_weights(json, mesh_json);
+    const auto moved = poses_.find(node.index);
+    pose.target_weights = moved != poses_.end() && moved->second.weights
+                              ? *moved->second.weights
+                              : gltf_target_weights(json, mesh_json);
     if (const auto skin = json.find("skin")) {
       const JsonNode skins = root_.member("skins");
       pose.joints =
@@ -159,19 +181,21 @@ class Importer {
   }
 
   const JsonNode root_;
+  const ImportOptions& options_;
   Scene& scene_;
   PlacedBounds& bounds_;
   GltfBuffers buffers_;
   GltfMaterials materials_;
   VertexPainter painter_;
   std::vector<std::vector<GltfPrimitive>> primitives_;  // by mesh
+  GltfPoses poses_;
   GltfNodes nodes_;
   size_t emissive_count_ = 0;
 };
 
 }  // namespace
 
-Scene import_gltf(const std::string& path) {
+Scene import_gltf(const std::string& path, const ImportOptions& options) {
   return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
     GltfFile file = read_gltf_file(path);
     const JsonDocument document(path, std::move(file.json_text));
@@ -181,7 +205,7 @@ Scene import_gltf(const std::string& path) {
       scene.warnings.add("the binary chunk is not the second one; it is read all the same");
     check_gltf_document(document.root(), scene.warnings);
     check_gltf_extensions(document.root(), scene.warnings);
-    Importer(document.root(), file, scene, bounds).run();
+    Importer(document.root(), file, options, scene, bounds).run();
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "import/import_options.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -15,7 +16,7 @@ namespace troffer {
 //
 // What becomes of each part of the format and of each extension stands in docs/formats.md; none is
 // refused because a file requires it. Skins and morph targets stand as the nodes and weights of the
-// file say; animations are not played.
-Scene import_gltf(const std::string& path);
+// file say, or as its animation has them at `options.time`.
+Scene import_gltf(const std::string& path, const ImportOptions& options = {});
 
 }  // namespace troffer

@@ -11,8 +11,11 @@ namespace {
 
 constexpr uint32_t none = 0xffffffffu;
 
-Affine local_transform(const JsonNode& node) {
-  if (const auto matrix = node.find("matrix")) {
+// A node that an animation moves should have no matrix [1] §3.11; one that has stands as the
+// animation says.
+Affine local_transform(const JsonNode& node, const GltfNodePose& pose) {
+  const auto matrix = node.find("matrix");
+  if (matrix && !pose.moves()) {
     const std::vector<double> m = matrix->as_numbers(16);
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
       matrix->fail("is not affine: its last row should be 0 0 0 1");
@@ -21,14 +24,19 @@ Affine local_transform(const JsonNode& node) {
     a.translation = {m[12], m[13], m[14]};
     return a;
   }
-  const std::vector<double> t = node.numbers_or("translation", {0, 0, 0});
-  const std::vector<double> s = node.numbers_or("scale", {1, 1, 1});
-  Affine a = Affine::translate({t[0], t[1], t[2]});
-  if (const auto rotation = node.find("rotation")) {
-    const std::vector<double> q = rotation->as_numbers(4);
-    a = a * gltf_rotation(*rotation, q[0], q[1], q[2], q[3]);
+  const auto vector = [&](const char* key, const auto& posed, double rest) {
+    if (posed) return Vec3d{(*posed)[0], (*posed)[1], (*posed)[2]};
+    const std::vector<double> v = node.numbers_or(key, {rest, rest, rest});
+    return Vec3d{v[0], v[1], v[2]};
+  };
+  Affine a = Affine::translate(vector("translation", pose.translation, 0));
+  if (const auto& q = pose.rotation) {
+    a = a * gltf_rotation(node, (*q)[0], (*q)[1], (*q)[2], (*q)[3]);
+  } else if (const auto rotation = node.find("rotation")) {
+    const std::vector<double> r = rotation->as_numbers(4);
+    a = a * gltf_rotation(*rotation, r[0], r[1], r[2], r[3]);
   }
-  return a * Affine::scale({s[0], s[1], s[2]});
+  return a * Affine::scale(vector("scale", pose.scale, 1));
 }
 
 struct Hierarchy {
@@ -108,14 +116,16 @@ std::vector<uint32_t> roots_of_scene(const JsonNode& root, const Hierarchy& hier
 
 }  // namespace
 
-GltfNodes gltf_nodes(const JsonNode& root, WarningLog& warnings) {
+GltfNodes gltf_nodes(const JsonNode& root, const GltfPoses& poses, WarningLog& warnings) {
   const auto nodes = root.find("nodes");
   if (!nodes) return {};
   const Hierarchy hierarchy = read_hierarchy(*nodes);
   GltfNodes out;
   out.world.resize(hierarchy.parent.size());
   for (const uint32_t i : hierarchy.in_order) {
-    const Affine local = local_transform(nodes->element(i));
+    const auto pose = poses.find(i);
+    const Affine local =
+        local_transform(nodes->element(i), pose == poses.end() ? GltfNodePose{} : pose->second);
     const uint32_t parent = hierarchy.parent[i];
     out.world[i] = parent == none ? local : out.world[parent] * local;
   }

@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "base/transform.h"
+#include "import/gltf_animation.h"
 #include "import/gltf_json.h"
 
 namespace troffer {
@@ -24,8 +25,8 @@ struct GltfNodes {
   std::vector<Affine> world;  // of all nodes of the file: world from node
 };
 
-// Fails where any node of the file has two parents, is its own ancestor, or has a matrix that is
-// not affine.
-GltfNodes gltf_nodes(const JsonNode& root, WarningLog& warnings);
+// Nodes stand as `poses` say, others as the file has them. Fails where any node of the file has two
+// parents, is its own ancestor, or has a matrix that is not affine.
+GltfNodes gltf_nodes(const JsonNode& root, const GltfPoses& poses, WarningLog& warnings);
 
 }  // namespace troffer

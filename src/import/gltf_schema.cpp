@@ -292,6 +292,7 @@ constexpr auto supported_extensions =
                                      "KHR_materials_specular",
                                      "KHR_materials_transmission",
                                      "KHR_materials_unlit",
+                                     "KHR_materials_variants",
                                      "KHR_materials_volume",
                                      "KHR_materials_volume_scatter",
                                      "KHR_mesh_quantization",

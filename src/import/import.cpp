@@ -14,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-Scene import_file(const std::string& path) {
+Scene import_file(const std::string& path, const ImportOptions& options) {
   const std::string ending = lower_case_ending(without_gz(path));
   if (ending == "oct")
     throw InputError(path, 0, 0,
@@ -26,17 +26,21 @@ Scene import_file(const std::string& path) {
     throw InputError(
         path, 0, 0,
         "is no scene: its name should end in .gltf, .glb, .pbrt, .obj, .stl, .xml or .rad");
+  if (!is_gltf && options.is_any())
+    throw UsageError("--variant, --time and --animation go with .gltf and .glb");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path);
   if (ending == "stl") return import_stl(path);
-  return is_gltf ? import_gltf(path) : ending == "pbrt" ? import_pbrt(path) : import_obj(path);
+  return is_gltf            ? import_gltf(path, options)
+         : ending == "pbrt" ? import_pbrt(path)
+                            : import_obj(path);
 }
 
 }  // namespace
 
-Scene import_scene(const std::string& path) {
-  Scene scene = import_file(path);
+Scene import_scene(const std::string& path, const ImportOptions& options) {
+  Scene scene = import_file(path, options);
   replace_thin_glass(scene);
   return scene;
 }

@@ -5,10 +5,12 @@
 
 #include <string>
 
+#include "import/import_options.h"
 #include "scene/scene.h"
 
 namespace troffer {
 
-Scene import_scene(const std::string& path);
+// UsageError where `options` ask for what a format does not have: all are glTF's.
+Scene import_scene(const std::string& path, const ImportOptions& options = {});
 
 }  // namespace troffer

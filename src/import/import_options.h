@@ -1,0 +1,17 @@
+// What a user may choose among what one file holds.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace troffer {
+
+struct ImportOptions {
+  std::optional<std::string> variant;    // of the materials: KHR_materials_variants
+  std::optional<double> time;            // seconds into an animation; none: at rest
+  std::optional<std::string> animation;  // by name; none: the first
+
+  bool is_any() const { return variant || time || animation; }
+};
+
+}  // namespace troffer
