@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "integrate/far_draws.h"
+#include "integrate/lit_places.h"
 #include "light/light.h"
 #include "shadow/far_pilot.h"
 #include "trace/occluders.h"
@@ -33,7 +34,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      far_{FarCells(scene.scene, scene.primitives), 0, {}, {}},
+      far_{FarCells(scene.scene, scene.primitives), 0, {}, {}, {}, false},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
@@ -153,7 +154,10 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
 }
 
 void CertifiedLights::set_occluders(const Occluders& occluders) {
-  if (!far_.cells.all().empty()) far_.scene = far_scene(occluders);
+  if (far_.cells.all().empty()) return;
+  far_.scene = far_scene(occluders);
+  far_.shells = ClosedShells(scene_.scene, scene_.panes.is_empty() ? nullptr : &scene_.glass);
+  far_.is_shut_out = are_lit_places_closed(scene_, far_.points, far_.shells);
 }
 
 void CertifiedLights::add_far_lights(const PreparedScene& scene) {
@@ -210,8 +214,8 @@ void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
 void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
                                  Counters& counters) const {
   if (s.hits.size() == 0) return;
-  if (!far_.points.is_empty())
-    s.far_open = open_share_of_batch({scene_, competition_, s.hits, far_.points}, s.drawn);
+  if (!find_closed_off(s))
+    s.far = open_share_of_batch({scene_, competition_, s.hits, far_.points}, far_.is_shut_out);
   cluster_receivers(s.hits.positions, s.hits.horizons, reach_, s.clusters);
   for (size_t c = 0; c < s.clusters.size(); ++c)
     illuminate_cluster(s.clusters.members(c), s, out, counters);
@@ -233,21 +237,48 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
   }
   choose_lights(groups_, ball_about(s.hits, members), members.size(), budget_, s.chosen);
   draw(members, s, out, counters);
-  const bool has_far =
-      !far_.points.is_empty() && is_proof_of_far_worth(members, s, out.typical > 0);
-  if (!has_far && !far_.points.is_empty())
-    draw_points({scene_, competition_, s.hits, far_.points}, members, double(s.far_open), budget_,
-                s.drawn, out, counters);
+  const bool is_closed_off = std::all_of(members.begin(), members.end(),
+                                         [&](uint32_t m) { return s.is_closed_off[m] != 0; });
+  const bool has_far = !is_closed_off && is_proof_of_far_worth(members, s, out.typical > 0);
+  if (is_closed_off) count_closed_off(members, s, out, counters);
   set_requests(s, has_far);
-  if (s.cluster.requests.empty()) return;
-  s.cluster.shadow.set(s.cluster.receivers);
-  certified_light(s.cluster.shadow, s.cluster.requests, &s.integrand, s.world, s.options,
-                  s.cluster.memory,
-                  [&](uint32_t request, std::span<const SourceVisibility> answers) {
-                    add_answers(request, members, answers, s, out, counters);
-                  });
-  draw_left({scene_, competition_, s.hits, members, s.cluster, s.integrand.sources()}, budget_,
-            s.drawn, out, counters);
+  std::span<const float> seen;
+  if (!s.cluster.requests.empty()) {
+    s.cluster.shadow.set(s.cluster.receivers);
+    certified_light(s.cluster.shadow, s.cluster.requests, &s.integrand, s.world, s.options,
+                    s.cluster.memory,
+                    [&](uint32_t request, std::span<const SourceVisibility> answers) {
+                      add_answers(request, members, answers, s, out, counters);
+                    });
+    draw_left({scene_, competition_, s.hits, members, s.cluster, s.integrand.sources()}, budget_,
+              s.drawn, out, counters);
+    seen = s.cluster.memory.light;
+  }
+  if (!is_closed_off && !has_far)
+    draw_points({scene_, competition_, s.hits, far_.points}, members, s.far, seen, budget_, s.drawn,
+                out, counters);
+}
+
+bool CertifiedLights::find_closed_off(CertifiedLightsScratch& s) const {
+  s.is_closed_off.assign(s.hits.size(), far_.points.is_empty() ? 1 : 0);
+  if (far_.points.is_empty()) return true;
+  if (far_.shells.is_empty()) return false;
+  bool are_all = true;
+  for (size_t i = 0; i < s.hits.size(); ++i) {
+    s.is_closed_off[i] = far_.shells.hold(s.hits.receivers[i].origin) ? 1 : 0;
+    are_all = are_all && s.is_closed_off[i] != 0;
+  }
+  return are_all;
+}
+
+// All far sources are dark.
+void CertifiedLights::count_closed_off(std::span<const uint32_t> members,
+                                       const CertifiedLightsScratch& s, RadianceBatch& out,
+                                       Counters& counters) const {
+  const size_t far = far_.cells.all().size();
+  counters.dark_certified += members.size() * far;
+  for (const uint32_t m : members)
+    if (s.hits.is_first[m] != 0) out.sources[s.hits.indices[m]] += Rgb{0, 0, float(far)};
 }
 
 void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
@@ -264,8 +295,9 @@ bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
                                             bool is_picture) const {
   constexpr double cost_of_look = 4000;      // in rays
   constexpr double share_of_further = 0.25;  // a further viewing ray of a pixel gets fewer
+  if (s.far.seems_closed) return false;
   if (!is_picture) return true;
-  const double rays = rays_for_error(double(s.far_open), double(s.options.mask_error));
+  const double rays = rays_for_error(s.far.open, double(s.options.mask_error));
   double all = 0;
   for (const uint32_t m : members)
     all += s.hits.samples[m] < uint32_t(budget_.viewing_rays) ? rays : rays * share_of_further;

@@ -21,6 +21,7 @@
 #include "shadow/certified_light.h"
 #include "shadow/receiver_clusters.h"
 #include "shadow/source_pieces.h"
+#include "trace/closed_shells.h"
 
 namespace troffer {
 
@@ -39,7 +40,8 @@ struct CertifiedLightsScratch {
   std::vector<uint32_t> requested;  // sources of the cluster's requests
   std::vector<uint32_t> drawing;    // hits of the cluster
   DrawnLightsScratch drawn;
-  float far_open = 0.5f;  // of the light of far sources, what arrives at the hits, about
+  FarShare far;                        // of the light of far sources, what arrives at the hits
+  std::vector<uint8_t> is_closed_off;  // per hit, surely: from all that is far away
 };
 
 class CertifiedLights {
@@ -77,6 +79,10 @@ class CertifiedLights {
   void add_far_lights(const PreparedScene& scene);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
+  // False: some hit may get light from far away.
+  bool find_closed_off(CertifiedLightsScratch& s) const;
+  void count_closed_off(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
+                        RadianceBatch& out, Counters& counters) const;
   bool is_proof_of_far_worth(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
                              bool is_picture) const;
   void set_requests(CertifiedLightsScratch& s, bool has_far) const;
@@ -99,6 +105,8 @@ class CertifiedLights {
     uint32_t first_source = 0;  // those of the cells are the last ones
     FarScene scene;             // what hides much of them
     FarPoints points;           // … where proofs are not worth while
+    ClosedShells shells;        // … and what none of it gets into
+    bool is_shut_out = false;   // … nor, as it seems, anything that other lights shine on
   } far_;
   DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/simd.h"
 #include "integrate/far_counts.h"
 #include "shadow/far_pilot.h"
 
@@ -17,6 +18,11 @@ constexpr uint64_t purpose_points = 0x6661'7270, purpose_pilot = 0x6661'7271;
 constexpr double most_share = 1.0 / 48, most_sine = 0.3;
 constexpr int most_halvings = 8;
 constexpr size_t most_waiting = 16384, pilots = 64;
+// Where none of these arrives, so many; and where none of those does, so little light can that
+// more points of a hit are not worth their time.
+constexpr size_t few_pilots = 1024, most_pilots = 8192;
+constexpr double most_of_closed = 16, most_of_closed_cell = 4;
+constexpr size_t block = 16;  // of parts
 
 Vec3d middle_of(const Parallelogram& p) {
   return p.origin + (p.u + p.v) * 0.5;
@@ -40,6 +46,8 @@ FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
     all += double(luminance(s.radiance)) * length(cross(s.flat.plane.u, s.flat.plane.v)) /
            sqr(s.far->height);
   for (const CertifiedSource& s : sources) add(s, s.flat.plane, all, most_halvings);
+  for (auto* a : {&x_, &y_, &z_, &sine_, &strength_})
+    a->resize((a->size() + block - 1) / block * block, 0);
 }
 
 void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, double all,
@@ -76,26 +84,58 @@ void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, d
   strength_.push_back(float(strength * (source.flat.is_disk ? 0.25 * pi : 1)));
 }
 
-bool FarPoints::set_chances(const ShadowReceiver& r, std::vector<float>& sums) const {
-  const size_t n = parts_.size();
-  sums.resize(n);
-  const Vec3 normal = r.normal;
+namespace {
+
+TROFFER_MULTIVERSION
+void set_chances_of_parts(const Vec3& normal, size_t n, const float* __restrict x,
+                          const float* __restrict y, const float* __restrict z,
+                          const float* __restrict sine, const float* __restrict strength,
+                          float* __restrict out) {
+  const float nx = normal.x, ny = normal.y, nz = normal.z;
   for (size_t i = 0; i < n; ++i) {
-    const float cosine = normal.x * x_[i] + normal.y * y_[i] + normal.z * z_[i];
+    const float cosine = nx * x[i] + ny * y[i] + nz * z[i];
     // 1.01: no part of which some is above the horizon is left out
-    const float reach = 1.01f * sine_[i] + 1e-3f;
-    sums[i] = cosine + reach > 0 ? strength_[i] * std::max(cosine, 0.3f * reach) : 0.0f;
+    const float reach = 1.01f * sine[i] + 1e-3f, least = 0.3f * reach;
+    const float height = cosine > least ? cosine : least;
+    out[i] = cosine + reach > 0 ? strength[i] * height : 0.0f;
   }
-  for (size_t i = 1; i < n; ++i) sums[i] += sums[i - 1];
-  return sums.back() > 0;
 }
 
-FarPoints::Point FarPoints::point(const ShadowReceiver& r, const std::vector<float>& sums, float u,
-                                  float v, float place) const {
-  const float target = place * sums.back();
-  const size_t k = std::min(
-      size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
-  const float own = k == 0 ? sums[0] : sums[k] - sums[k - 1];
+}  // namespace
+
+bool FarPoints::set_chances(const ShadowReceiver& r, Chances& c) const {
+  const size_t n = x_.size();
+  if (c.of_part_.size() == n && c.normal_.x == r.normal.x && c.normal_.y == r.normal.y &&
+      c.normal_.z == r.normal.z)
+    return c.all() > 0;
+  c.normal_ = r.normal;
+  c.of_part_.resize(n);
+  c.sums_.resize(n / block);
+  set_chances_of_parts(r.normal, n, x_.data(), y_.data(), z_.data(), sine_.data(), strength_.data(),
+                       c.of_part_.data());
+  float sum = 0;
+  for (size_t b = 0; b < c.sums_.size(); ++b) {
+    const float* p = &c.of_part_[b * block];
+    float own = 0;
+    for (size_t i = 0; i < block; ++i) own += p[i];
+    c.sums_[b] = sum += own;
+  }
+  return sum > 0;
+}
+
+FarPoints::Point FarPoints::point(const ShadowReceiver& r, const Chances& c, float u, float v,
+                                  float place) const {
+  const float all = c.all(), target = place * all;
+  const auto above = std::upper_bound(c.sums_.begin(), c.sums_.end(), target);
+  const size_t in = std::min(size_t(above - c.sums_.begin()), c.sums_.size() - 1);
+  float below = in == 0 ? 0 : c.sums_[in - 1];
+  size_t k = in * block;  // in the end, of the parts that have a chance
+  for (size_t i = k; i < (in + 1) * block && !(target < below); ++i) {
+    if (!(c.of_part_[i] > 0)) continue;
+    k = i;
+    below += c.of_part_[i];
+  }
+  const float own = c.of_part_[k];
   if (!(own > 0)) return {};
   const Part& part = parts_[k];
   const Parallelogram& p = part.plane;
@@ -111,44 +151,99 @@ FarPoints::Point FarPoints::point(const ShadowReceiver& r, const std::vector<flo
   out.source = part.source;
   out.way = Vec3(way);
   out.wi = Vec3(way * (1 / distance));
-  out.pdf = own / sums.back() * float(sqr(distance) * distance / (height * part.area));
+  out.pdf = own / all * float(sqr(distance) * distance / (height * part.area));
   return out;
 }
 
-float open_share_of_batch(const FarPointDraws& d, DrawnLightsScratch& s) {
-  const size_t hits = d.hits.size(), n = std::min(pilots, 4 * hits);
-  std::vector<Ray> rays;
-  std::vector<float> weights;
-  for (size_t k = 0; k < n; ++k) {
-    const ShadowReceiver& r = d.hits.receivers[(2 * k + 1) * hits / (2 * n)];
-    if (!d.points.set_chances(r, s.sums)) continue;
-    const uint64_t a = hash_of(r.stream, k, purpose_pilot), b = mix64(a);
-    const FarPoints::Point p = d.points.point(
-        r, s.sums, unit_float(uint32_t(a)), unit_float(uint32_t(a >> 32)), unit_float(uint32_t(b)));
-    if (p.source == nullptr) continue;
-    const float cosine = dot(p.wi, r.normal);
-    if (!(cosine > 0) || !(dot(p.wi, r.horizon) > 0)) continue;
-    weights.push_back(luminance(far_radiance_of(*p.source, p.way)) * cosine / p.pdf);
-    Ray& ray = rays.emplace_back();
-    ray.origin = r.origin;
-    ray.direction = p.wi;
+namespace {
+
+// Of rays from the hits, those from number `first` to `last` of `all`: what they would bring.
+struct Pilots {
+  double all = 0, open = 0;  // light
+  size_t count = 0;
+  FarPoints::Chances chances;
+
+  void cast(const FarPointDraws& d, size_t first, size_t last) {
+    std::vector<Ray> rays;
+    std::vector<float> weights;
+    const size_t hits = d.hits.size();
+    for (size_t k = first; k < last; ++k) {
+      const ShadowReceiver& r =
+          d.hits.receivers[(2 * (k - first) + 1) * hits / (2 * (last - first))];
+      if (!d.points.set_chances(r, chances)) continue;
+      const uint64_t a = hash_of(r.stream, k, purpose_pilot), b = mix64(a);
+      const FarPoints::Point p =
+          d.points.point(r, chances, unit_float(uint32_t(a)), unit_float(uint32_t(a >> 32)),
+                         unit_float(uint32_t(b)));
+      if (p.source == nullptr) continue;
+      const float cosine = dot(p.wi, r.normal);
+      if (!(cosine > 0) || !(dot(p.wi, r.horizon) > 0)) continue;
+      weights.push_back(luminance(far_radiance_of(*p.source, p.way)) * cosine / p.pdf);
+      Ray& ray = rays.emplace_back();
+      ray.origin = r.origin;
+      ray.direction = p.wi;
+    }
+    std::vector<uint8_t> is_occluded(rays.size());
+    d.scene.tracer.occluded(rays, is_occluded, Coherence::coherent);
+    for (size_t k = 0; k < rays.size(); ++k) {
+      all += double(weights[k]);
+      if (is_occluded[k] == 0) open += double(weights[k]);
+    }
+    count += rays.size();
   }
-  std::vector<uint8_t> is_occluded(rays.size());
-  d.scene.tracer.occluded(rays, is_occluded, Coherence::coherent);
-  double all = 0, open = 0;
-  for (size_t k = 0; k < rays.size(); ++k) {
-    all += double(weights[k]);
-    if (is_occluded[k] == 0) open += double(weights[k]);
-  }
-  const double count = double(rays.size()), share = all > 0 ? open / all : 0.5;
-  return float((share * count + 1) / (count + 2));  // as if two more had met one of each
+};
+
+// So many points of a pixel, or of a point's samples, err by the error of what arrives.
+double points_of_pixel(const FarPointDraws& d, std::span<const uint32_t> members,
+                       const FarShare& share, std::span<const float> seen, double error) {
+  if (seen.empty()) return clutter * rays_for_error(share.open, error);
+  constexpr size_t most_looks = 16;
+  const size_t looks = std::min(members.size(), most_looks);
+  double far = 0;
+  FarPoints::Chances chances;
+  for (size_t k = 0; k < looks; ++k)
+    if (d.points.set_chances(d.hits.receivers[members[k * members.size() / looks]], chances))
+      far += double(chances.all()) / double(looks);
+  // as the darker half of them has it
+  std::vector<float> sorted(seen.begin(), seen.end());
+  std::sort(sorted.begin(), sorted.end());
+  const size_t half = (sorted.size() + 1) / 2;
+  double others = 0;
+  for (size_t i = 0; i < half; ++i) others += double(sorted[i]) / double(half);
+  const double arrives = share.open * far + others;
+  if (!(arrives > 0)) return 0;
+  return clutter * rays_for_error(share.open, error * arrives / (share.open * far));
 }
 
-void draw_points(const FarPointDraws& d, std::span<const uint32_t> members, double open,
-                 const DrawingBudget& budget, DrawnLightsScratch& s, RadianceBatch& out,
-                 Counters& counters) {
-  FarCounts counts(d.hits, members, budget, out.typical > 0,
-                   clutter * rays_for_error(open, double(budget.error)), open);
+}  // namespace
+
+FarShare open_share_of_batch(const FarPointDraws& d, bool is_shut_out) {
+  Pilots p;
+  size_t n = std::min(pilots, 4 * d.hits.size());
+  p.cast(d, 0, n);
+  const size_t most = std::clamp(2 * d.hits.size(), few_pilots, most_pilots);
+  while (is_shut_out && !(p.open > 0) && p.all > 0 && n < most) {
+    const size_t next = std::min(4 * n, most);
+    p.cast(d, n, next);
+    n = next;
+  }
+  const double count = double(p.count), share = p.all > 0 ? p.open / p.all : 0.5;
+  // as if two more had met one of each
+  return {(share * count + 1) / (count + 2),
+          is_shut_out && !(p.open > 0) && p.count >= few_pilots / 2};
+}
+
+void draw_points(const FarPointDraws& d, std::span<const uint32_t> members, const FarShare& share,
+                 std::span<const float> seen, const DrawingBudget& budget, DrawnLightsScratch& s,
+                 RadianceBatch& out, Counters& counters) {
+  double of_pixel = points_of_pixel(d, members, share, seen, double(budget.error));
+  if (share.seems_closed)
+    of_pixel = std::min(of_pixel, (out.typical > 0 ? most_of_closed : most_of_closed_cell) *
+                                      double(budget.viewing_rays));
+  // What little gets into what seems closed is left to a pixel's first rays, as if much did.
+  FarCounts counts(d.hits, members, budget, out.typical > 0, std::max(of_pixel, 1.0),
+                   share.seems_closed ? 0.5 : share.open);
+  FarPoints::Chances chances;
   for (size_t i = 0; i < members.size(); ++i) {
     if (counts.is_first_of_pixel(i)) {
       counts.look_at_pixel(i);
@@ -160,7 +255,7 @@ void draw_points(const FarPointDraws& d, std::span<const uint32_t> members, doub
     const uint32_t n = counts.of(i, first);
     ++counters.mixed;
     if (d.hits.is_first[m] != 0) out.sources[d.hits.indices[m]] += Rgb{1, 0, 0};
-    if (!d.points.set_chances(r, s.sums)) continue;
+    if (!d.points.set_chances(r, chances)) continue;
     s.streams.assign(n, hash_combine(d.hits.draw_streams[m], purpose_points));
     s.samples.resize(n);
     s.numbers.resize(3 * size_t(n));
@@ -170,7 +265,7 @@ void draw_points(const FarPointDraws& d, std::span<const uint32_t> members, doub
       DrawnLightsScratch::Draw& draw = s.draws.emplace_back();
       draw = {m, s.numbers[2 * n + j], {}, -1, {}};
       const FarPoints::Point p =
-          d.points.point(r, s.sums, s.numbers[j], s.numbers[n + j], draw.place);
+          d.points.point(r, chances, s.numbers[j], s.numbers[n + j], draw.place);
       if (p.source == nullptr) continue;
       const float cosine = dot(p.wi, r.normal);
       if (!(cosine > 0) || !(dot(p.wi, r.horizon) > 0)) continue;
