@@ -48,6 +48,21 @@ void read_transform(const JsonNode& transform, Texture& look, int& uv_set) {
   uv_set = int(transform.integer_or("texCoord", uint64_t(uv_set), max_uv_set));
 }
 
+// An image outside the scene's folder, where nothing is read, may lie beside the scene all the
+// same; else it is missing, as one that is not there.
+int32_t load_file(const JsonNode& uri, const std::string& folder, const Texture& look,
+                  TextureLoader& loader) {
+  const std::string name = percent_decoded(uri.as_string()).value_or(uri.as_string());
+  const bool is_elsewhere = has_uri_scheme(uri.as_string());
+  const ConfinedPath path = confined_path(folder, name);
+  if (!is_elsewhere && path.is_fine()) return loader.from_file(path.path, look);
+  const std::string beside = path_beside(folder, name);
+  if (!beside.empty()) return loader.from_file(beside, look);
+  return loader.missing(printable(uri.as_string()),
+                        is_elsewhere ? "only files in the scene's folder are read" : path.problem,
+                        look);
+}
+
 int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers& buffers,
                    TextureLoader& loader) {
   const std::string key = gltf_image_key(image);
@@ -55,8 +70,7 @@ int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers
     return loader.from_memory(buffers.buffer_view(*view), key, look);
   const auto uri = image.find("uri");
   if (!uri) return loader.missing(key, "has neither a uri nor a buffer view", look);
-  if (!is_data_uri(uri->as_string()))
-    return loader.from_file(path_of_uri(*uri, folder_of(image.file())), look);
+  if (!is_data_uri(uri->as_string())) return load_file(*uri, folder_of(image.file()), look, loader);
   // Decoding base64 again for a second use is cheaper than keeping it.
   const auto data = parse_data_uri(uri->as_string());
   if (!data) uri->fail("is a malformed data URI");

@@ -6,6 +6,7 @@
 #include "import/mitsuba.h"
 #include "import/obj.h"
 #include "import/pbrt.h"
+#include "import/ply_scene.h"
 #include "import/radiance.h"
 #include "import/stl.h"
 #include "import/thin_glass.h"
@@ -22,16 +23,17 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
                      "from");
   const bool is_gltf = ending == "gltf" || ending == "glb";
   if (!is_gltf && ending != "pbrt" && ending != "obj" && ending != "xml" && ending != "rad" &&
-      ending != "stl")
+      ending != "stl" && ending != "ply")
     throw InputError(
         path, 0, 0,
-        "is no scene: its name should end in .gltf, .glb, .pbrt, .obj, .stl, .xml or .rad");
+        "is no scene: its name should end in .gltf, .glb, .pbrt, .obj, .ply, .stl, .xml or .rad");
   if (!is_gltf && options.is_any())
     throw UsageError("--variant, --time and --animation go with .gltf and .glb");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path);
   if (ending == "stl") return import_stl(path);
+  if (ending == "ply") return import_ply(path);
   return is_gltf            ? import_gltf(path, options)
          : ending == "pbrt" ? import_pbrt(path)
                             : import_obj(path);

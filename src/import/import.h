@@ -1,6 +1,7 @@
 // Files -> Scene: glTF 2.0 (.gltf, .glb), pbrt-v4 (.pbrt), Wavefront OBJ (.obj), Mitsuba (.xml),
-// Radiance (.rad), chosen by ending. Everything that cannot be used throws InputError with file,
-// line and column; everything that is merely odd becomes a counted warning in Scene::warnings.
+// Radiance (.rad), STL and PLY meshes, chosen by ending. Everything that cannot be used throws
+// InputError with file, line and column; everything that is merely odd becomes a counted warning in
+// Scene::warnings.
 #pragma once
 
 #include <string>

@@ -1,6 +1,7 @@
 // The world: shapes, materials, lights and objects; and the table of all directives.
 #include "import/pbrt.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "import/pbrt_interpreter.h"
@@ -35,11 +36,29 @@ void PbrtInterpreter::on_object_instance(const PbrtToken& word, PbrtTokenizer& t
     placer_.place_instance(shape, state_.transform, place);
 }
 
+// The materials that a mix names must be there already, which keeps it from containing itself.
+void PbrtInterpreter::resolve_mix(PbrtMaterial& material) const {
+  constexpr int most_depth = 8;  // each may double the parts
+  if (material.type != "mix") return;
+  const PbrtParam* names = material.params.find("materials");
+  if (!names || names->strings.size() != 2)
+    fail_at(material.params.place, "a mix needs two names as \"string materials\"");
+  for (const std::string& name : names->strings) {
+    const auto found = named_.materials.find(name);
+    if (found == named_.materials.end())
+      fail_at(names->place, "no material \"" + name + "\" is defined before this point");
+    material.mixed.push_back(found->second);
+    material.depth = std::max(material.depth, found->second->depth + 1);
+  }
+  if (material.depth > most_depth) fail_at(names->place, "mixes are nested too deeply");
+}
+
 void PbrtInterpreter::on_material(const PbrtToken& word, PbrtTokenizer& tokens) {
   need_world(word, tokens);
   auto material = std::make_shared<PbrtMaterial>();
   material->type = parse_string(word, tokens);
   material->params = parse_typed(word, tokens, material->type, "material");
+  resolve_mix(*material);
   state_.material = std::move(material);
 }
 
@@ -51,6 +70,7 @@ void PbrtInterpreter::on_make_named_material(const PbrtToken& word, PbrtTokenize
   if (!material->params.has("type"))
     fail_at(tokens.place(word), "material \"" + material->name + "\" needs a \"string type\"");
   material->type = material->params.get_string("type", "");
+  resolve_mix(*material);
   if (named_.materials.contains(material->name))
     scene_.warnings.add(
         at_place(tokens.place(word), "material \"" + material->name + "\" is defined again"));

@@ -92,6 +92,7 @@ class PbrtInterpreter {
   void on_active_transform(const PbrtToken& word, PbrtTokenizer& tokens);
   void on_transform_times(const PbrtToken& word, PbrtTokenizer& tokens);
   void on_reverse_orientation(const PbrtToken& word, PbrtTokenizer& tokens);
+  void resolve_mix(PbrtMaterial& material) const;
   void on_material(const PbrtToken& word, PbrtTokenizer& tokens);
   void on_make_named_material(const PbrtToken& word, PbrtTokenizer& tokens);
   void on_named_material(const PbrtToken& word, PbrtTokenizer& tokens);

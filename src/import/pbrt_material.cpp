@@ -1,5 +1,6 @@
 #include "import/pbrt_material.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "import/spectra.h"
@@ -20,22 +21,22 @@ uint32_t PbrtMaterials::index_with_alpha(PbrtMaterial& material, const FloatInpu
   const auto found = material.with_alpha.find(key);
   if (found != material.with_alpha.end()) return found->second;
   Material masked = scene_.materials[index_of(material)];
-  masked.is_alpha_masked = true;
+  masked.is_alpha_masked = masked.is_alpha_blended = true;
   masked.alpha = alpha;
-  masked.alpha_cutoff = 0.5f;
   const auto index = uint32_t(scene_.materials.size());
   scene_.materials.push_back(std::move(masked));
   material.with_alpha[key] = index;
   return index;
 }
 
-void PbrtMaterials::read_roughness(const PbrtParams& params, Material& m) {
-  const FloatInput both = textures.real(params, "roughness", 0);
-  const bool has_both = params.has("roughness");
-  const auto along = [&](const char* name) {
+void PbrtMaterials::read_roughness(const PbrtParams& params, Material& m,
+                                   const std::string& prefix) {
+  const FloatInput both = textures.real(params, prefix + "roughness", 0);
+  const bool has_both = params.has(prefix + "roughness");
+  const auto along = [&](const std::string& name) {
     return params.has(name) || !has_both ? textures.real(params, name, 0) : both;
   };
-  const FloatInput u = along("uroughness"), v = along("vroughness");
+  const FloatInput u = along(prefix + "uroughness"), v = along(prefix + "vroughness");
   m.roughness = u;
   if (u.texture != v.texture || u.value != v.value) {
     m.roughness.value = std::sqrt(std::max(u.value, 0.0f) * std::max(v.value, 0.0f));
@@ -56,25 +57,55 @@ float PbrtMaterials::read_ior(const PbrtParams& params) {
   return eta ? ior_value(*eta, textures.spectrum_context()) : 1.5f;
 }
 
-void PbrtMaterials::read_conductor(const PbrtParams& params, Material& m) {
+void PbrtMaterials::read_conductor(const PbrtParams& params, Material& m,
+                                   const std::string& prefix) {
   m.kind = MaterialKind::conductor;
-  read_roughness(params, m);
+  read_roughness(params, m, prefix);
   if (params.has("reflectance")) {
     m.is_reflectance = true;
     m.base_color = textures.color(params, "reflectance", Rgb{1});
     return;
   }
-  const PbrtParam* eta = params.find("eta");
-  const PbrtParam* k = params.find("k");
+  const PbrtParam* eta = params.find(prefix + "eta");
+  const PbrtParam* k = params.find(prefix + "k");
   m.eta = eta ? conductor_value(*eta, textures.spectrum_context()) : *named_metal("metal-Cu-eta");
   m.k = k ? conductor_value(*k, textures.spectrum_context()) : *named_metal("metal-Cu-k");
+}
+
+// The metal alone: a clear coat takes little from it, but adds a sharp reflection of a few per
+// cent.
+Material PbrtMaterials::make_coated_conductor(const PbrtParams& params) {
+  Material m;
+  read_conductor(params, m, "conductor.");
+  params.ignore({"interface.roughness", "interface.uroughness", "interface.vroughness",
+                 "interface.eta", "thickness", "albedo", "g", "maxdepth", "nsamples"});
+  scene_.warnings.add("material \"coatedconductor\": the metal is shown without its coat");
+  return m;
+}
+
+// Two diffuse ones are exactly one of the mixed colour.
+Material PbrtMaterials::make_mix(const PbrtMaterial& material) {
+  const FloatInput amount = textures.real(material.params, "amount", 0.5f);
+  material.params.ignore({"materials"});
+  Material first = make(*material.mixed[0]), second = make(*material.mixed[1]);
+  const float share = std::clamp(amount.value, 0.0f, 1.0f);
+  const auto is_plain = [](const Material& m) {
+    return m.kind == MaterialKind::diffuse && !is_textured(m);
+  };
+  if (amount.texture < 0 && is_plain(first) && is_plain(second)) {
+    first.base_color.value = first.base_color.value * (1 - share) + second.base_color.value * share;
+    return first;
+  }
+  const bool is_first = amount.texture < 0 && share < 0.5f;
+  if (amount.texture >= 0 || (share > 0 && share < 1))
+    scene_.warnings.add("material \"mix\": the one of more weight is shown alone");
+  return is_first ? first : second;
 }
 
 Material PbrtMaterials::make(const PbrtMaterial& material) {
   const PbrtParams& params = material.params;
   const std::string& type = material.type;
   Material m;
-  m.name = material.name;
   params.ignore({"type"});
   if (type == "diffuse") {
     m.kind = MaterialKind::diffuse;
@@ -94,11 +125,22 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
     m.is_thin = type == "thindielectric";
     if (!m.is_thin) read_roughness(params, m);
     m.ior = read_ior(params);
+  } else if (type == "coatedconductor") {
+    m = make_coated_conductor(params);
+  } else if (type == "mix") {
+    m = make_mix(material);
+  } else if (type == "diffusetransmission") {
+    m.base_color = textures.color(params, "reflectance", Rgb{0.25f});
+    m.base_color.value *= float(params.get_float("scale", 1));
+    params.ignore({"transmittance"});
+    scene_.warnings.add(
+        "material \"diffusetransmission\": the light that comes through is left out");
   } else {
     scene_.warnings.add("material \"" + type + "\" is not supported: shown as diffuse");
     m.base_color = textures.color(params, "reflectance", Rgb{0.5f});
     params.ignore_all();
   }
+  m.name = material.name;
   if (params.has("displacement"))
     scene_.warnings.add("displacement of materials is not supported: ignored");
   const std::string normal_map = params.get_string("normalmap", "");

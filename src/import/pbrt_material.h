@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "import/pbrt_texture.h"
 
@@ -16,6 +17,8 @@ namespace troffer {
 struct PbrtMaterial {
   std::string name, type;
   PbrtParams params;
+  std::vector<std::shared_ptr<const PbrtMaterial>> mixed;    // the two of a mix
+  int depth = 0;                                             // of mixes within it
   int32_t index = -1;                                        // in Scene::materials, once made
   std::map<std::pair<int32_t, float>, uint32_t> with_alpha;  // copies, by texture × factor
 
@@ -32,15 +35,18 @@ class PbrtMaterials {
 
   // Index in Scene::materials. InputError: parameters of wrong type, unknown textures.
   uint32_t index_of(PbrtMaterial& material);
-  // The same material with hits left out where `alpha` < 0.5.
+  // The same material, met by the share `alpha` of rays.
   uint32_t index_with_alpha(PbrtMaterial& material, const FloatInput& alpha);
 
  private:
   Scene& scene_;
 
   Material make(const PbrtMaterial& material);
-  void read_roughness(const PbrtParams& params, Material& m);
-  void read_conductor(const PbrtParams& params, Material& m);
+  // Of parameters whose names begin with `prefix`.
+  void read_roughness(const PbrtParams& params, Material& m, const std::string& prefix = "");
+  void read_conductor(const PbrtParams& params, Material& m, const std::string& prefix = "");
+  Material make_coated_conductor(const PbrtParams& params);
+  Material make_mix(const PbrtMaterial& material);
   float read_ior(const PbrtParams& params);
 };
 

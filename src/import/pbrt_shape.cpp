@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "import/file.h"
+#include "import/pbrt_curve.h"
 #include "import/ply.h"
+#include "import/subdivide_loop.h"
 #include "import/tessellate.h"
 
 namespace troffer {
@@ -91,6 +93,20 @@ AnchoredMesh read_triangle_mesh(const PbrtParams& params, WarningLog& warnings) 
   return std::move(data.vertices);
 }
 
+AnchoredMesh read_subdivision(const PbrtParams& params, WarningLog& warnings) {
+  constexpr int most_levels = 12;
+  VertexData data = read_vertices(params, 3, warnings);
+  const int levels = params.get_int("levels", 3);
+  params.ignore({"scheme"});
+  if (levels < 0 || levels > most_levels ||
+      data.indices.size() / 3 > (max_scene_triangles >> (2 * levels)))
+    fail_at(params.place, params.owner + ": too many levels, or less than none");
+  AnchoredMesh& control = data.vertices;
+  for (size_t i = 0; i < data.indices.size(); i += 3)
+    control.mesh.triangles.push_back({data.indices[i], data.indices[i + 1], data.indices[i + 2]});
+  return {subdivide_loop(control.mesh, levels), control.anchor};
+}
+
 // Planar patches become two triangles each, which share the vertices of the file; where one is
 // curved, every patch is cut into cells, so that neighbours meet.
 AnchoredMesh read_bilinear_mesh(const PbrtParams& params, WarningLog& warnings) {
@@ -162,6 +178,19 @@ bool read_sphere(const PbrtParams& params, PbrtShape& shape) {
   return true;
 }
 
+bool read_cylinder(const PbrtParams& params, PbrtShape& shape) {
+  const double r = params.get_float("radius", 1);
+  const double z0 = params.get_float("zmin", -1), z1 = params.get_float("zmax", 1);
+  const double phi_deg = params.get_float("phimax", 360);
+  if (!(r > 0) || z0 == z1 || !(phi_deg > 0)) return false;
+  shape.is_quadric = true;
+  shape.mesh = std::make_shared<const AnchoredMesh>(
+      AnchoredMesh{tessellate_cylinder(r, std::min(z0, z1), std::max(z0, z1),
+                                       rad_from_deg(std::min(phi_deg, 360.0))),
+                   {}});
+  return true;
+}
+
 bool read_disk(const PbrtParams& params, PbrtShape& shape) {
   const double r = params.get_float("radius", 1), height = params.get_float("height", 0);
   const double inner = params.get_float("innerradius", 0);
@@ -185,15 +214,10 @@ bool read_alpha(const PbrtParams& params, PbrtTextures& textures, WarningLog& wa
                 PbrtShape& shape) {
   if (!params.has("alpha")) return true;
   const FloatInput alpha = textures.real(params, "alpha", 1);
-  if (alpha.texture >= 0) {
-    shape.alpha = alpha;
-    warnings.add("alpha texture of a shape: holes where alpha < 0.5, opaque elsewhere");
-    return true;
-  }
-  if (alpha.value < 1)
-    warnings.add(alpha.value < 0.5f ? "shape with constant alpha below 0.5 is left out"
-                                    : "shape with constant alpha below 1 is shown opaque");
-  return alpha.value >= 0.5f;
+  if (alpha.texture >= 0 || alpha.value < 1) shape.alpha = alpha;
+  if (alpha.texture >= 0 || alpha.value > 0) return true;
+  warnings.add("shape with constant alpha 0 is left out");
+  return false;
 }
 
 }  // namespace
@@ -209,6 +233,13 @@ bool read_pbrt_shape(const std::string& type, const PbrtParams& params, PbrtText
         std::make_shared<const AnchoredMesh>(read_ply_mesh(params, textures.folder(), warnings));
   } else if (type == "bilinearmesh") {
     shape.mesh = std::make_shared<const AnchoredMesh>(read_bilinear_mesh(params, warnings));
+  } else if (type == "loopsubdiv") {
+    shape.mesh = std::make_shared<const AnchoredMesh>(read_subdivision(params, warnings));
+  } else if (type == "curve") {
+    shape.mesh = std::make_shared<const AnchoredMesh>(
+        read_pbrt_curve(params, max_scene_triangles, warnings));
+  } else if (type == "cylinder") {
+    has_area = read_cylinder(params, shape);
   } else if (type == "sphere") {
     has_area = read_sphere(params, shape);
   } else if (type == "disk") {

@@ -32,7 +32,7 @@ struct PbrtShape {
   double radius = 1, height = 0;             // whole spheres and disks
   std::shared_ptr<const AnchoredMesh> mesh;  // everything else
   bool is_quadric = false;                   // normals of the mesh follow the rule of quadrics
-  std::optional<FloatInput> alpha;           // texture that cuts holes
+  std::optional<FloatInput> alpha;           // the share of rays that meet it, where below 1
   Affine world_from_object;
   bool is_reversed = false;  // ReverseOrientation
   std::shared_ptr<PbrtMaterial> material;

@@ -105,7 +105,8 @@ void PbrtTextures::make(Named& texture, const std::string& name) {
     make_image(texture, name);
   } else if (texture.kind == "scale") {
     make_scale(texture, name);
-  } else {
+  } else if (!(texture.kind == "checkerboard" && make_checkerboard(texture, name)) &&
+             !(texture.kind == "mix" && make_mix(texture))) {
     make_mean(texture);
   }
   texture.params.warn_unread(scene_.warnings);
@@ -207,6 +208,45 @@ void PbrtTextures::make_scale(Named& texture, const std::string& name) {
   product.factor_b = uint32_t(b.texture);
   texture.value.texture = int32_t(scene_.textures.size());
   scene_.textures.push_back(std::move(product));
+}
+
+// Squares of two colours, as an image of four texels.
+bool PbrtTextures::make_checkerboard(Named& texture, const std::string& name) {
+  const PbrtParams& params = texture.params;
+  size_t images = 0;
+  const ColorInput a = argument(params, "tex1", texture.is_float, Rgb{1}, images);
+  const ColorInput b = argument(params, "tex2", texture.is_float, Rgb{0}, images);
+  if (a.texture >= 0 || b.texture >= 0 || params.get_int("dimension", 2) != 2 ||
+      params.get_string("mapping", "uv") != "uv")
+    return false;
+  Texture image;
+  image.name = name;
+  image.kind = TextureKind::image;
+  image.width = image.height = 2;
+  image.channels = 3;
+  image.is_filtered = image.is_srgb = false;
+  for (const Rgb& c : {b.value, a.value, a.value, b.value})  // v points down: the top row first
+    image.texels_float.insert(image.texels_float.end(), {c.r, c.g, c.b});
+  turn_upside_down(
+      image,
+      Vec2(float(params.get_float("uscale", 1) / 2), float(params.get_float("vscale", 1) / 2)),
+      Vec2(float(params.get_float("udelta", 0) / 2), float(params.get_float("vdelta", 0) / 2)));
+  texture.value = {Rgb{1}, int32_t(scene_.textures.size())};
+  texture.images = 1;
+  scene_.textures.push_back(std::move(image));
+  return true;
+}
+
+// Of two plain values the value between them.
+bool PbrtTextures::make_mix(Named& texture) {
+  const PbrtParams& params = texture.params;
+  size_t images = 0;
+  const ColorInput a = argument(params, "tex1", texture.is_float, Rgb{0}, images);
+  const ColorInput b = argument(params, "tex2", texture.is_float, Rgb{1}, images);
+  const ColorInput amount = argument(params, "amount", true, Rgb{0.5f}, images);
+  if (a.texture >= 0 || b.texture >= 0 || amount.texture >= 0) return false;
+  texture.value = {a.value * (1 - amount.value.r) + b.value * amount.value.r, no_texture};
+  return true;
 }
 
 void PbrtTextures::make_mean(Named& texture) {

@@ -53,6 +53,9 @@ class PbrtTextures {
   void make(Named& texture, const std::string& name);
   void make_image(Named& texture, const std::string& name);
   void make_scale(Named& texture, const std::string& name);
+  // False: not of that kind of argument.
+  bool make_checkerboard(Named& texture, const std::string& name);
+  bool make_mix(Named& texture);
   void make_mean(Named& texture);
   ColorInput argument(const PbrtParams& params, std::string_view name, bool is_float, Rgb fallback,
                       size_t& images);

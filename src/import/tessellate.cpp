@@ -84,6 +84,17 @@ Mesh tessellate_disk(double height, double radius, double inner_radius, double p
   return mesh;
 }
 
+Mesh tessellate_cylinder(double radius, double z_min, double z_max, double phi_max_rad) {
+  const int nu = azimuth_count(phi_max_rad);
+  Mesh mesh;
+  append_grid(mesh, nu, 1, [&](int i, int j) {
+    const Vec2d a = azimuth(i, nu, phi_max_rad);
+    return SurfacePoint{Vec3(Vec3d(a.x * radius, a.y * radius, j == 0 ? z_min : z_max)),
+                        Vec3(Vec3d(a.x, a.y, 0))};
+  });
+  return mesh;
+}
+
 bool is_planar(const BilinearPatch& patch) {
   const Vec3d p(patch.corners[0]);
   const Vec3d a = Vec3d(patch.corners[1]) - p, b = Vec3d(patch.corners[2]) - p;

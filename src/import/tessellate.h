@@ -17,6 +17,10 @@ Mesh tessellate_sphere(double radius, double z_min, double z_max, double phi_max
 // azimuth in [0, phi_max_rad]; the front is +z.
 Mesh tessellate_disk(double height, double radius, double inner_radius, double phi_max_rad);
 
+// The part of a cylinder about the z axis with z in [z_min, z_max] and azimuth in [0, phi_max_rad];
+// the front is outside.
+Mesh tessellate_cylinder(double radius, double z_min, double z_max, double phi_max_rad);
+
 // Corners, normals (is_smooth) and (u,v) of a bilinear patch in pbrt's order: 00, 10, 01, 11.
 struct BilinearPatch {
   std::array<Vec3, 4> corners;

@@ -146,9 +146,25 @@ TEST_CASE("missing and broken images are warnings; grey stands for colours, the 
   }
   const Scene none = with_material("{'normalTexture':{'index':0}}", ",'textures':[{}]");
   CHECK(has_warning(none, "no image of a format that is read"));
-  error_of(square_scene("[{'mesh':0}]",
-                        "'materials':[{'normalTexture':{'index':0}}],'textures':[{'source':0}],"
-                        "'images':[{'uri':'../a.png'}]"));
+}
+
+TEST_CASE("images outside the scene's folder are not read: one beside the scene, or grey") {
+  const TempFolder folder;
+  folder.write("a.pfm", "PF\n1 1\n-1.0\n" + bytes_of<float>({1, 0, 0}));
+  const auto color_of = [&](const std::string& uri) {
+    const Scene scene = import_gltf(folder.write(
+        "scene.gltf",
+        square_scene("[{'mesh':0}]",
+                     "'materials':[{'pbrMetallicRoughness':{'baseColorTexture':{'index':0}}}],"
+                     "'textures':[{'source':0}],'images':[{'uri':'" +
+                         uri + "'}]")));
+    return evaluate(scene.textures, scene.materials.at(scene.meshes.at(0).material).base_color,
+                    {0.5f, 0.5f});
+  };
+  CHECK(color_of("../textures/a.pfm") == Rgb{1, 0, 0});
+  CHECK(color_of("../textures/b.pfm") == Rgb{0.5f});
+  CHECK(color_of("http://example.org/b.pfm") == Rgb{0.5f});
+  CHECK(color_of("%2e%2e/%2e%2e/etc/hostname") == Rgb{0.5f});
 }
 
 TEST_CASE("an emissive texture keeps the mesh a mesh source") {

@@ -160,11 +160,11 @@ TEST_CASE("unknown parameters and unsupported directives are warnings that name 
       "Camera \"perspective\" \"float fof\" 3\nMakeNamedMedium \"fog\" \"float scale\" "
       "1\nWorldBegin\n"
       "LightSource \"glow\" \"rgb I\" [1 1 1]\nLightSource \"glow\"\n"
-      "Shape \"cylinder\"\nShape \"sphere\" \"float raduis\" 2\n"
+      "Shape \"paraboloid\"\nShape \"sphere\" \"float raduis\" 2\n"
       "MediumInterface \"fog\" \"\"\nWorldEnd\n");
   for (const char* part :
        {"disablepixeljitter", "rec2020", "Camera \"perspective\": parameter \"fof\"",
-        "LightSource \"glow\"", "shape \"cylinder\"", "Shape \"sphere\": parameter \"raduis\"",
+        "LightSource \"glow\"", "shape \"paraboloid\"", "Shape \"sphere\": parameter \"raduis\"",
         "MediumInterface", "MakeNamedMedium", "WorldEnd"}) {
     CAPTURE(part);
     CHECK(has_warning(scene, part));

@@ -270,7 +270,7 @@ TEST_CASE("emission of area lights") {
 
 TEST_CASE("shapes that emit are numbered in order, whatever becomes of them") {
   const Scene scene = import_world(
-      triangle + light + "Shape \"cylinder\"\n" + triangle +
+      triangle + light + "Shape \"paraboloid\"\n" + triangle +
       "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 2 0 0]\nShape \"sphere\"\n"
       "AttributeBegin Material \"interface\" Shape \"sphere\" AttributeEnd Shape \"disk\"");
   REQUIRE(scene.lights.size() == 3);

@@ -116,3 +116,19 @@ TEST_CASE("compressed files that are cut, damaged, or become too much are errors
   CHECK(read_text_file(bomb).size() == 1 << 20);
   CHECK_THROWS_AS(read_text_file(bomb, 100'000), InputError);
 }
+
+TEST_CASE("a PLY file is a scene of one grey mesh") {
+  const TempFolder folder;
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const Scene scene = import_scene(folder.write("a.ply", head + "0 0 0\n2 0 0\n0 1 0\n3 0 1 2\n"));
+  REQUIRE(scene.meshes.size() == 1);
+  CHECK(area_of(scene.meshes[0]) == doctest::Approx(1));
+  CHECK(scene.lights.empty());
+  // Far from the origin, where floats are coarse.
+  const Scene far = import_scene(
+      folder.write("b.ply", head + "90000000 0 0\n90000002 0 0\n90000000 1 0\n3 0 1 2\n"));
+  CHECK(far.origin.x != 0);
+  CHECK(reason_of(folder.write("c.ply", "plywood")) != "");
+}

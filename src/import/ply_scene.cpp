@@ -1,0 +1,35 @@
+#include "import/ply_scene.h"
+
+#include "import/mesh_clean.h"
+#include "import/ply.h"
+#include "import/recentre.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr size_t max_triangles = 60'000'000;
+
+}  // namespace
+
+Scene import_ply(const std::string& path) {
+  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
+    scene.file = path;
+    AnchoredMesh read = read_ply(path, scene.warnings, max_triangles);
+    Mesh& mesh = read.mesh;
+    const Vec3d shift = read.anchor - scene.origin;
+    const auto placed = [&](uint32_t v) { return Vec3d(mesh.positions[v]) + shift; };
+    for (const Triangle& t : mesh.triangles)
+      bounds.add_triangle(placed(t[0]), placed(t[1]), placed(t[2]));
+    for (Vec3& p : mesh.positions) p = Vec3(Vec3d(p) + shift);
+    clean_mesh(mesh, scene.warnings);
+    scene.materials.emplace_back();
+    if (mesh.triangles.empty()) {
+      scene.warnings.add("the scene shows no triangles");
+      return;
+    }
+    scene.meshes.push_back(std::move(mesh));
+  });
+}
+
+}  // namespace troffer

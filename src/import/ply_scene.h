@@ -1,0 +1,13 @@
+// PLY files (.ply) as scenes of their own.
+#pragma once
+
+#include <string>
+
+#include "scene/scene.h"
+
+namespace troffer {
+
+// One diffuse grey mesh without light and camera, in the file's units: what read_ply() reads.
+Scene import_ply(const std::string& path);
+
+}  // namespace troffer
