@@ -94,6 +94,19 @@ SkyRequest parse_sky(const std::string& text) {
   return r;
 }
 
+struct PlaceAndTime {
+  double latitude_deg = 0, longitude_deg = 0, julian_day_ut = 0;
+};
+
+PlaceAndTime parse_at(const std::string& text) {
+  static constexpr const char* expected = "LATITUDE,LONGITUDE,TIME";
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3) fail("--at", text, expected);
+  const auto v = numbers({parts[0], parts[1]}, 0, 2, 2, "--at", text, expected);
+  if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360) fail("--at", text, expected);
+  return {v[0], v[1], parse_time(parts[2], "--at")};
+}
+
 std::optional<SunRequest> parse_sun(const DaylightOptions& o) {
   if (!o.sun.empty() && !o.at.empty()) throw UsageError("--sun and --at exclude each other");
   SunRequest sun;
@@ -108,12 +121,8 @@ std::optional<SunRequest> parse_sun(const DaylightOptions& o) {
     return sun;
   }
   if (o.at.empty()) return std::nullopt;
-  static constexpr const char* expected = "LATITUDE,LONGITUDE,TIME";
-  const std::vector<std::string> parts = split(o.at, ',');
-  if (parts.size() != 3) fail("--at", o.at, expected);
-  const auto v = numbers({parts[0], parts[1]}, 0, 2, 2, "--at", o.at, expected);
-  if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360) fail("--at", o.at, expected);
-  const SunPosition p = sun_position(v[0], v[1], parse_time(parts[2], "--at"));
+  const PlaceAndTime at = parse_at(o.at);
+  const SunPosition p = sun_position(at.latitude_deg, at.longitude_deg, at.julian_day_ut);
   sun.azimuth_deg = p.azimuth_deg;
   sun.altitude_deg = p.altitude_deg;
   sun.distance_au = p.distance_au;
@@ -130,12 +139,20 @@ bool is_mirrored(const Scene& scene) {
 
 // Nothing at night.
 void add_weather(Scene& scene, const DaylightOptions& o, const Compass& compass) {
-  if (!o.sky.empty() || !o.sun.empty() || !o.at.empty())
-    throw UsageError("--weather excludes --sky, --sun and --at");
-  if (o.date.empty()) throw UsageError("--weather needs --date MM-DDTHH:MM");
-  const Weather weather = read_weather(o.weather, o.date);
-  const SunPosition p =
-      sun_position(weather.latitude_deg, weather.longitude_deg, weather.julian_day_ut);
+  if (!o.sky.empty() || !o.sun.empty() || o.turbidity > 0)
+    throw UsageError("--weather excludes --sky, --sun and --turbidity");
+  if (o.date.empty() == o.at.empty())
+    throw UsageError("--weather needs --date MM-DDTHH:MM, or --at LATITUDE,LONGITUDE,TIME");
+  Weather weather;
+  SunPosition p;
+  if (o.at.empty()) {
+    weather = read_weather(o.weather, o.date);
+    p = sun_position(weather.latitude_deg, weather.longitude_deg, weather.julian_day_ut);
+  } else {
+    const PlaceAndTime at = parse_at(o.at);
+    weather = read_weather(o.weather, at.julian_day_ut);
+    p = sun_position(at.latitude_deg, at.longitude_deg, at.julian_day_ut);
+  }
   if (!(weather.diffuse_horizontal > 0) || !(p.altitude_deg > 0)) {
     scene.warnings.add("--weather: no light comes from the sky at that hour");
     return;
@@ -162,6 +179,13 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
     request.cie_type = 12;
     // An image of the surroundings has a sky and a ground of its own.
     if (o.sky == "none" || !o.environment.empty()) request.diffuse_lx = 0;
+  }
+  if (o.turbidity > 0) {
+    const bool is_clear = request.kind == SkyKind::cie && request.cie_type >= 11;
+    if (!request.sun || !is_clear)
+      throw UsageError(
+          "--turbidity goes with --sun or --at and a clear sky (clear, cie:11 … cie:15)");
+    request.turbidity = o.turbidity;
   }
   const bool has_own_ground = !has_sky && !o.environment.empty();
   request.ground_reflectance = has_own_ground ? 0 : o.ground;
@@ -228,8 +252,13 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
   command.add_option("--at", o.at,
                      "The sun by LATITUDE,LONGITUDE,TIME, such as "
                      "48.2,16.4,2026-06-21T12:00+02:00");
+  command
+      .add_option("--turbidity", o.turbidity,
+                  "Linke's turbidity of a clear sky: how much light it and the sun bring")
+      ->check(CLI::Range(1.0, 10.0));
   command.add_option("--weather", o.weather,
-                     "Sky and sun of an hour of a weather file (.epw), by Perez' model and --date");
+                     "Sky and sun of an hour of a weather file (.epw), by Perez' model and --date "
+                     "or --at");
   command.add_option("--date", o.date, "Of --weather: MM-DDTHH:MM, in the file's standard time");
   command
       .add_option("--north", o.north_deg,
@@ -289,6 +318,8 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
   }
   const bool is_asked = !o.sky.empty() || !o.sun.empty() || !o.at.empty();
   if (!o.date.empty() && o.weather.empty()) throw UsageError("--date goes with --weather");
+  if (o.turbidity > 0 && o.weather.empty() && o.sun.empty() && o.at.empty())
+    throw UsageError("--turbidity goes with --sun or --at");
   if (!o.weather.empty()) {
     add_weather(scene, o, compass);
   } else if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {

@@ -1,5 +1,5 @@
-// Options that bring light from beyond a scene: --sky, --sun, --at, --north, --ground,
-// --environment.
+// Options that bring light from beyond a scene: --sky, --sun, --at, --turbidity, --weather,
+// --north, --ground, --environment.
 #pragma once
 
 #include <string>
@@ -23,6 +23,7 @@ struct DaylightOptions {
   std::string environment;
   std::string up;  // x,y,z; empty: guessed
   double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;
+  double turbidity = 0;  // Linke's; 0: what is typical
 };
 
 void add_daylight_options(CLI::App& command, DaylightOptions& options);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "app/commands.h"
@@ -7,6 +8,7 @@
 #include "app/solution_file.h"
 #include "base/error.h"
 #include "image/read_image.h"
+#include "render/framing.h"
 #include "render/radiosity.h"
 
 namespace troffer {
@@ -33,6 +35,22 @@ void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet) {
   if (!is_quiet && !text.empty()) fmt::print(stderr, "warning: {}\n", text);
 }
 
+namespace {
+
+// What its first rays do not find, kj92 takes for dark.
+void warn_of_openings(const PreparedScene& scene, const Kj92Settings& settings) {
+  const bool has_far = std::any_of(
+      scene.scene.lights.begin(), scene.scene.lights.end(),
+      [](const Light& e) { return e.kind == LightKind::sky || e.kind == LightKind::environment; });
+  const BintreeOptions& tree = settings.sampling.tree;
+  if (has_far && tree.allowed_variance > 0 && is_room(scene))
+    fmt::print(stderr,
+               "warning: kj92 loses much of a sky's light that comes through openings (two fifths "
+               "through a window); another method has all of it\n");
+}
+
+}  // namespace
+
 std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method method,
                                             const Kj92Settings& settings, Indirect indirect,
                                             const std::string& solution, int threads, bool is_quiet,
@@ -42,6 +60,7 @@ std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method m
   if (!solution.empty())
     loaded = load_radiosity(scene, read_file_bytes(solution), solution, nullptr, threads);
   warn_of_lights_left_out(scene, is_quiet);
+  if (!is_quiet && method == Method::kj92) warn_of_openings(scene, settings);
   std::unique_ptr<Preparation> made;
   {
     ProgressBar bar("radiosity", is_quiet);

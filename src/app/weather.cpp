@@ -57,10 +57,31 @@ Date parse_date(const std::string& text) {
   return d;
 }
 
-}  // namespace
+// Hours after midnight of the moment's day become day and time; of the Gregorian calendar.
+Date date_of(double julian_day_at) {
+  // Days of a leap year and a common one are told apart by looking for the day.
+  const double noon_based = julian_day_at + 0.5, days = std::floor(noon_based);
+  Date d;
+  const double minutes = std::floor((noon_based - days) * 1440 + 1e-4);
+  d.hour = std::min(int(minutes / 60), 23);
+  d.minute = int(minutes) % 60;
+  const int year = int(std::floor((days - 1721425.5) / 365.2425)) + 1;
+  for (int y = year - 1; y <= year + 1; ++y)
+    for (int m = 1; m <= 12; ++m) {
+      const double first = julian_day(y, m, 1, 0) + 0.5;
+      const double next = (m < 12 ? julian_day(y, m + 1, 1, 0) : julian_day(y + 1, 1, 1, 0)) + 0.5;
+      if (days < first || days >= next) continue;
+      d.month = m;
+      d.day = int(days - first) + 1;
+      return d;
+    }
+  return d;
+}
 
-Weather read_weather(const std::string& path, const std::string& date) {
-  const Date wanted = parse_date(date);
+// wanted(zone_hours): the date in the file's standard time.
+template <class Wanted>
+Weather read_hour(const std::string& path, const std::string& name, const Wanted& wanted_in) {
+  Date wanted;
   const std::string text = read_text_file(path, max_file_bytes);
   std::string_view rest = text;
   Weather weather;
@@ -75,6 +96,7 @@ Weather read_weather(const std::string& path, const std::string& date) {
       weather.latitude_deg = number(fields, 6, -90, 90, path, line);
       weather.longitude_deg = number(fields, 7, -180, 180, path, line);
       zone_hours = number(fields, 8, -14, 14, path, line);
+      wanted = wanted_in(zone_hours);
     }
     if (!has_data) {
       has_data = fields[0].starts_with("DATA PERIODS");
@@ -95,7 +117,22 @@ Weather read_weather(const std::string& path, const std::string& date) {
         julian_day(year, wanted.month, wanted.day, wanted.hour + wanted.minute / 60.0 - zone_hours);
     return weather;
   }
-  throw InputError(path, 0, 0, "has no row for " + date);
+  throw InputError(path, 0, 0, "has no row for " + name);
+}
+
+}  // namespace
+
+Weather read_weather(const std::string& path, const std::string& date) {
+  const Date wanted = parse_date(date);
+  return read_hour(path, date, [&](double) { return wanted; });
+}
+
+Weather read_weather(const std::string& path, double julian_day_ut) {
+  Weather weather = read_hour(path, "that hour", [&](double zone_hours) {
+    return date_of(julian_day_ut + zone_hours / 24);
+  });
+  weather.julian_day_ut = julian_day_ut;
+  return weather;
 }
 
 }  // namespace troffer

@@ -19,5 +19,8 @@ struct Weather {
 // in counts [1], and the year is that row's. UsageError for dates that are none; InputError with
 // the line for files that are no EPW or lack that hour or its irradiances.
 Weather read_weather(const std::string& path, const std::string& date);
+// The hour of a moment (universal time, as a Julian day), whatever its year; julian_day_ut is that
+// moment.
+Weather read_weather(const std::string& path, double julian_day_ut);
 
 }  // namespace troffer

@@ -32,6 +32,13 @@ Amounts amounts_of(const SkyRequest& request) {
       a.direct_lx = typical_direct_lx(request.cie_type, altitude, distance);
     }
   }
+  if (request.turbidity && request.sun) {
+    const Irradiance clear = clear_irradiance(*request.turbidity, altitude, distance);
+    const PerezSky sky =
+        perez_sky(clear.direct_normal, clear.diffuse_horizontal, zenith_rad, distance);
+    a.diffuse_lx = sky.diffuse_lx;
+    a.direct_lx = sky.direct_lx;
+  }
   if (request.diffuse_lx) a.diffuse_lx = *request.diffuse_lx;
   if (request.sun && request.sun->direct_lx) a.direct_lx = *request.sun->direct_lx;
   return a;

@@ -33,6 +33,7 @@ struct SkyRequest {
   double direct_normal = 0, diffuse_horizontal = 0;  // perez: W/m² of all wavelengths
   std::optional<double> diffuse_lx;                  // on a horizontal plane; else what is typical
   std::optional<SunRequest> sun;                     // must be above the horizon
+  std::optional<double> turbidity;                   // Linke's; of clear types, with a sun
   double ground_reflectance = 0.2;
 };
 

@@ -192,6 +192,22 @@ PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_z
   return sky;
 }
 
+Irradiance clear_irradiance(double turbidity, double altitude_deg, double sun_distance_au) {
+  const double t = turbidity, m = air_mass(altitude_deg);
+  const double s = std::sin(rad_from_deg(altitude_deg));
+  const double extraterrestrial = solar_constant / (sun_distance_au * sun_distance_au);
+  const double thickness_of_dry_air =
+      m <= 20 ? 1 / (6.6296 + m * (1.7513 + m * (-0.1202 + m * (0.0065 - m * 0.00013))))
+              : 1 / (10.4 + 0.718 * m);
+  // At the zenith, and by altitude.
+  const double at_zenith = -1.5843e-2 + t * (3.0543e-2 + t * 3.797e-4);
+  const double a0 = std::max(2.6463e-1 + t * (-6.1581e-2 + t * 3.1408e-3), 2e-3 / at_zenith);
+  const double a1 = 2.0402 + t * (1.8945e-2 - t * 1.1161e-2);
+  const double a2 = -1.3025 + t * (3.9231e-2 + t * 8.5079e-3);
+  return {extraterrestrial * std::exp(-0.8662 * t * m * thickness_of_dry_air),
+          extraterrestrial * at_zenith * std::max(a0 + s * (a1 + s * a2), 0.0)};
+}
+
 double typical_diffuse_lx(int cie_type, double altitude_deg) {
   const double sine = std::max(0.0, std::sin(rad_from_deg(altitude_deg)));
   if (cie_type <= 5) return 300 + 21'000 * sine;

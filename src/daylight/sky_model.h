@@ -8,6 +8,9 @@
 //   [3] Perez, Ineichen, Seals, Michalsky & Stewart, "Modeling daylight availability and irradiance
 //   components from direct and global irradiance", Solar Energy 44(5), 1990.
 //   [4] IES RP-21-84, "Calculation of daylight availability".
+//   [5] Rigollier, Bauer & Wald, "On the clear sky model of the ESRA", Solar Energy 68(1), 2000;
+//   Kasten, "The Linke turbidity factor based on improved values of the integral Rayleigh optical
+//   thickness", Solar Energy 56(3), 1996.
 #pragma once
 
 #include "scene/light.h"
@@ -37,6 +40,13 @@ struct PerezSky {
 // water. Clearness and brightness outside the model's range are moved to its ends.
 PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_zenith_rad,
                    double sun_distance_au);
+
+struct Irradiance {
+  double direct_normal = 0, diffuse_horizontal = 0;  // W/m² of all wavelengths
+};
+// Under a cloudless sky whose air weakens the sun as `linke_turbidity` (1 to 10) times as much dry
+// clean air would [5]; the sun is above the horizon.
+Irradiance clear_irradiance(double linke_turbidity, double altitude_deg, double sun_distance_au);
 
 // Illuminance by type of sky (1 to 5 overcast, to 10 partly cloudy, to 15 clear) and the sun's
 // altitude [4]: diffuse on a horizontal plane, and direct on one that faces the sun.

@@ -9,6 +9,7 @@
 #include "import/gltf_camera.h"
 #include "import/gltf_file.h"
 #include "import/gltf_ies.h"
+#include "import/gltf_image_light.h"
 #include "import/gltf_json.h"
 #include "import/gltf_light.h"
 #include "import/gltf_material.h"
@@ -48,6 +49,7 @@ class Importer {
     for (Affine& world : nodes_.world) world.translation -= scene_.origin;
     check_triangle_count();
     for (const GltfNode& node : nodes_.shown) add_node(node);
+    add_gltf_image_light(root_, buffers_, scene_);
     materials_.check_unused_images();
     if (scene_.meshes.empty()) scene_.warnings.add("the scene shows no triangles");
   }

@@ -275,6 +275,7 @@ void check_light_references(const JsonNode& root) {
 // Read, or warned about at what uses them.
 constexpr auto supported_extensions =
     std::to_array<std::string_view>({"EXT_lights_ies",
+                                     "EXT_lights_image_based",
                                      "EXT_mesh_gpu_instancing",
                                      "EXT_meshopt_compression",
                                      "EXT_texture_webp",

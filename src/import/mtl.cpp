@@ -144,6 +144,8 @@ bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
     if (read_color(lines_, color, warnings_)) m.specular = color;
   } else if (keyword == "Ke") {
     if (read_color(lines_, color, warnings_)) m.emission = color;
+  } else if (keyword == "Tf") {
+    if (read_color(lines_, color, warnings_)) m.filter = color;
   } else if (keyword == "Ns") {
     m.exponent = std::max(finite_number(lines_), 0.0f);
   } else if (keyword == "Ni") {
@@ -190,8 +192,8 @@ void MtlReader::read() {
       continue;
     }
     // What concerns ambient light and old renderers needs no mention.
-    if (keyword == "Ka" || keyword == "map_Ka" || keyword == "Tf" || keyword == "Kt" ||
-        keyword == "sharpness" || keyword == "map_aat")
+    if (keyword == "Ka" || keyword == "map_Ka" || keyword == "Kt" || keyword == "sharpness" ||
+        keyword == "map_aat")
       continue;
     if (!current)
       warnings_.add("MTL: '" + std::string(keyword.substr(0, 40)) + "' before newmtl is ignored");
@@ -266,6 +268,9 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
     m.is_thin = true;
     m.transmission.value = 1 - mtl.opacity;
     if (!mtl.roughness) m.roughness.value = 0;  // dissolved is not frosted
+    // One colour is for what goes through and for what does not: that of the larger part.
+    if (mtl.filter && mtl.opacity < 0.5f && !mtl.filter->is_black())
+      m.base_color.value = clamp01(*mtl.filter);
   }
 }
 

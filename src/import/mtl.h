@@ -40,6 +40,7 @@ struct MtlMaterial {
   Rgb emission{0};                           // Ke
   float exponent = 0;                        // Ns
   float opacity = 1;                         // d, 1 - Tr
+  std::optional<Rgb> filter;                 // Tf: colour of what goes through
   float ior = 1.5f;                          // Ni
   int illumination = -1;                     // illum; -1 = not given
   std::optional<float> roughness, metallic;  // Pr, Pm

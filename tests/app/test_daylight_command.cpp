@@ -150,6 +150,10 @@ TEST_CASE("options of daylight that make no sense are told") {
       {"--at", "10,20"},
       {"--at", "100,20,2026-06-21T12:00Z"},
       {"--at", "10,20,noon"},
+      {"--turbidity", "3"},
+      {"--turbidity", "0.5", "--sun", "10,20"},
+      {"--turbidity", "3", "--sky", "overcast"},
+      {"--turbidity", "3", "--sky", "overcast", "--sun", "10,20"},
       {"--ground", "2"},
       {"--north", "nan"},
       {"--environment", "a,-2"},
@@ -219,6 +223,44 @@ TEST_CASE("warnings tell of a hidden sun and of options without effect, and of n
   CHECK(contains(dark, "there is no light"));
 }
 
+TEST_CASE("kj92 tells of the sky that it misses through openings, and of no other") {
+  const Folder folder;
+  // A box without a wall, seen from within.
+  const std::string room = folder.write(
+      "room.obj",
+      "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2.5\nv 4 0 2.5\nv 4 3 2.5\nv 0 3 2.5\n"
+      "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\n");
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n1,1,.8,0,0,1\n");
+  const auto warns = [&](const std::vector<std::string>& options, const std::string& scene) {
+    std::vector<std::string> words{"measure", scene, "--points", points, "--method", "kj92"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Finished f = run_program(folder, words);
+    CAPTURE(f.err);
+    CHECK(f.status == 0);
+    return contains(f.err, "openings");
+  };
+  CHECK(warns({"--sky", "overcast"}, room));
+  CHECK_FALSE(warns({"--sky", "overcast"}, folder.write("plain.obj", plain_obj)));
+}
+
+TEST_CASE("turbid air takes of the sun and adds to the sky") {
+  const Folder folder;
+  folder.write("plain.obj", plain_obj);
+  folder.write("p.csv", one_point);
+  const auto lx = [&](const char* turbidity, bool has_sky) {
+    std::vector<std::string> options{"--sun", "120,40", "--turbidity", turbidity};
+    if (!has_sky) options.insert(options.end(), {"--sky", "none"});
+    return measure(folder, options).lx;
+  };
+  const double clear = lx("2", true), clear_sun = lx("2", false);
+  const double turbid = lx("6", true), turbid_sun = lx("6", false);
+  CHECK(turbid_sun < 0.7 * clear_sun);
+  CHECK(turbid - turbid_sun > 1.5 * (clear - clear_sun));
+  CHECK(turbid < clear);
+  CHECK(clear > 50'000);
+  CHECK(clear < 90'000);
+}
+
 TEST_CASE("an hour of a weather file is Perez' sky with the sun of that place and time") {
   const Folder folder;
   std::string epw =
@@ -244,6 +286,15 @@ TEST_CASE("an hour of a weather file is Perez' sky with the sun of that place an
     words.insert(words.end(), options.begin(), options.end());
     return run_program(folder, words).status;
   };
+  // By a moment anywhere: the file's hour, the place's sun.
+  const Measured by_moment =
+      measure(folder, {"--weather", file, "--at", "48.2,16.4,2005-06-21T12:30+02:00"});
+  CHECK(by_moment.lx == doctest::Approx(by_file.lx).epsilon(1e-6));
+  CHECK(status({"--weather", file, "--at", "48.2,16.4,2024-06-20T23:30Z"}) == 0);
+  CHECK(status({"--weather", file, "--at", "48.2,16.4,2024-06-21T11:30Z"}) == 1);  // missing
+  CHECK(status({"--weather", file, "--at", "48.2,16.4,2024-06-22T11:30Z"}) == 1);
+  CHECK(status({"--weather", file, "--at", "48.2,16.4,2024-06-21T09:30Z", "--date",
+                "06-21T10:30"}) == 2);
   CHECK(status({"--weather", file, "--date", "06-21T02:00"}) == 0);  // night: dark, and told
   CHECK(status({"--weather", file, "--date", "06-21T12:30"}) == 1);  // missing
   CHECK(status({"--weather", file, "--date", "07-21T12:30"}) == 1);

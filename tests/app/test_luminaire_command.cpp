@@ -47,6 +47,43 @@ std::vector<Measured> measure(const Folder& folder, std::vector<std::string> opt
 
 }  // namespace
 
+// The C planes' figure of CIE 121 and LM-63 (type C): a street luminaire throws towards C90, its
+// C0 to the right of that as seen from above: x and y on a map.
+TEST_CASE("C angles run counterclockwise seen from above: C90 lies to the left of C0") {
+  const Folder folder;
+  std::string ies = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 9 1 2 0 0 0\n1 1 25\n0 90\n";
+  std::string ldt =
+      "maker\n1\n0\n8\n45\n2\n90\nreport\nname\nnumber\nfile\ndate\n0\n0\n0\n0\n0\n0\n0\n0\n"
+      "0\n100\n100\n1\n0\n1\n1\nLED\n1000\n4000\n80\n20\n";
+  for (int i = 0; i < 10; ++i) ldt += "0.5\n";
+  std::string intensities;
+  for (int c = 0; c < 360; c += 45) {
+    ies += fmt::format("{} ", c);
+    ldt += fmt::format("{}\n", c);
+    intensities += c == 90 ? "100\n100\n" : c == 45 ? "30\n30\n" : "0\n0\n";
+  }
+  folder.write("a.ies", ies.substr(0, ies.rfind(' ')) + " 360\n" + intensities + "0\n0\n");
+  folder.write("b.ldt", ldt + "0\n90\n" + intensities);
+  folder.write("panel.obj", "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3 4\n");
+  const std::string at =
+      folder.write("at.csv",
+                   "x,y,z,nx,ny,nz\n0,2,0,0,0,1\n1.414,1.414,0,0,0,1\n0,-2,0,0,0,1\n"
+                   "-1.414,1.414,0,0,0,1\n2,0,0,0,0,1\n");
+  for (const char* file : {"a.ies", "b.ldt"}) {
+    const std::string list = folder.write("list.csv", fmt::format("file,x,y,z\n{},0,0,2\n", file));
+    const Finished f =
+        run_program(folder, {"measure", folder.path("panel.obj"), "--points", at, "--up", "0,0,1",
+                             "--luminaires", list, "--indirect", "none"});
+    CAPTURE(file);
+    CAPTURE(f.err);
+    REQUIRE(f.status == 0);
+    const auto lx = measured(f);
+    CHECK(lx[0].lx > 0);
+    CHECK(lx[1].lx == doctest::Approx(0.3 * lx[0].lx).epsilon(1e-2));
+    for (size_t i = 2; i < 5; ++i) CHECK(lx[i].lx == doctest::Approx(0));
+  }
+}
+
 TEST_CASE(
     "a panel that shines by the cosine is a diffuse one; a narrow one as subdivided sums say") {
   const Folder folder;

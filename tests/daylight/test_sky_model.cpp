@@ -58,6 +58,23 @@ TEST_CASE("the horizontal integral of every general sky is that of quadrature") 
     }
 }
 
+TEST_CASE("clear air by Linke's turbidity: worked by hand from the published formulas") {
+  // T = 3 at 60 degrees: air mass 1.1540, Rayleigh thickness .11774, exp(-.8662 T m d) = .7025
+  const Irradiance high = clear_irradiance(3, 60, 1);
+  CHECK(high.direct_normal == doctest::Approx(1367 * 0.7026).epsilon(1e-3));
+  CHECK(high.diffuse_horizontal == doctest::Approx(1367 * 0.079203 * 1.00607).epsilon(1e-3));
+  for (const double altitude : {0.5, 5.0, 30.0, 90.0})
+    for (double t = 1; t < 10; t += 0.5) {
+      const Irradiance less = clear_irradiance(t, altitude, 1),
+                       more = clear_irradiance(t + 0.5, altitude, 1);
+      CHECK(more.direct_normal < less.direct_normal);
+      CHECK(less.diffuse_horizontal >= 0);
+      CHECK(less.direct_normal < 1367);
+    }
+  CHECK(clear_irradiance(5, 40, 1).diffuse_horizontal >
+        clear_irradiance(2, 40, 1).diffuse_horizontal);
+}
+
 TEST_CASE("what the standard says of its skies") {
   // Type 5 is even: pi. Type 1, overcast: the zenith about three times as bright as the horizon.
   CHECK(horizontal_integral(cie_sky(5), 0.3) == doctest::Approx(pi).epsilon(1e-5));

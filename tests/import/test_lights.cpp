@@ -11,6 +11,7 @@
 #include "import/gltf.h"
 #include "import/light_radius.h"
 #include "import/pbrt.h"
+#include "scene/environment_lookup.h"
 #include "scene/projected_image.h"
 #include "temp_folder.h"
 
@@ -334,6 +335,74 @@ TEST_CASE("glTF's measured luminaires: files, data, buffer views; places and fac
   CHECK_THROWS_AS(import("{'uri':'lamp.ies'}", "'light':1"), InputError);
   CHECK_THROWS_AS(import("{'name':'nothing'}", "'light':0"), InputError);
   CHECK_THROWS_AS(import("{'uri':'lamp.ies'}", "'light':0,'multiplier':-1"), InputError);
+}
+
+namespace {
+
+std::string data_image(const std::string& bytes) {
+  return "{'uri':'data:application/octet-stream;base64," + base64(bytes) + "'}";
+}
+
+// 2 × 2 texels of one grey, but for the upper right one, which is ten times as bright.
+std::string pfm_face(float grey) {
+  std::vector<float> texels(12, grey);
+  for (size_t i = 9; i < 12; ++i) texels[i] = 10 * grey;  // rows from below
+  return "PF\n2 2\n-1\n" + bytes_of(texels);
+}
+
+std::string image_light(const std::string& images, const std::string& more = "") {
+  return gltf_text("'extensionsUsed':['EXT_lights_image_based'],'images':[" + images +
+                   "],'extensions':{'EXT_lights_image_based':{'lights':[{'intensity':3,"
+                   "'specularImageSize':2,'specularImages':[[0,1,2,3,4,5]]" +
+                   more +
+                   "}]}},'scene':0,'scenes':[{'extensions':{'EXT_lights_image_based':{'light':0}"
+                   "}}]");
+}
+
+float image_towards(const Scene& s, const Vec3& world) {
+  const Light e = only_light(s);
+  CHECK(e.kind == LightKind::environment);
+  const EnvironmentMap& map = s.environments.at(size_t(e.environment));
+  const Vec3 own{dot(world, e.axes[0]), dot(world, e.axes[1]), dot(world, e.axes[2])};
+  return e.radiance.g * value_at(map, square_from_direction(map.projection, normalize(own))).g;
+}
+
+}  // namespace
+
+TEST_CASE("glTF's image-based light: six faces as they look from within, turned and scaled") {
+  std::string images;
+  for (int i = 0; i < 6; ++i) images += (i > 0 ? "," : "") + data_image(pfm_face(float(i + 1)));
+  const Scene plain = import_text(image_light(images));
+  // Towards the lower left of each face, whose upper right is brighter: right of +z is -x.
+  const std::array<Vec3, 6> lower_left{Vec3{1, -.3f, -.3f}, {-1, -.3f, .3f}, {.3f, 1, .3f},
+                                       {.3f, -1, -.3f},     {.3f, -.3f, 1},  {-.3f, -.3f, -1}};
+  const std::array<Vec3, 6> upper_right{Vec3{1, .5f, .5f}, {-1, .5f, -.5f}, {-.5f, 1, -.5f},
+                                        {-.5f, -1, .5f},   {-.5f, .5f, 1},  {.5f, .5f, -1}};
+  for (size_t i = 0; i < 6; ++i) {
+    CAPTURE(i);
+    CHECK(image_towards(plain, lower_left[i]) == doctest::Approx(3 * float(i + 1)).epsilon(1e-4));
+    CHECK(image_towards(plain, upper_right[i]) == doctest::Approx(30 * float(i + 1)).epsilon(1e-4));
+  }
+  // A quarter turn about y takes +z to +x.
+  const Scene turned = import_text(image_light(images, ",'rotation':[0,0.70710678,0,0.70710678]"));
+  CHECK(image_towards(turned, {1, -.3f, -.3f}) == doctest::Approx(15).epsilon(1e-4));
+
+  // RGBD: grey of 128 over an alpha of 51, a fifth.
+  std::string tga(18, '\0');
+  tga[2] = 2;
+  tga[12] = tga[14] = 1;
+  tga[16] = 32;
+  tga[17] = 8;
+  tga += std::string("\x80\x80\x80\x33", 4);
+  std::string packed;
+  for (int i = 0; i < 6; ++i) packed += (i > 0 ? "," : "") + data_image(tga);
+  CHECK(image_towards(import_text(image_light(packed)), {0, 1, 0}) ==
+        doctest::Approx(3 * 5 * 0.2158605).epsilon(1e-4));
+
+  const Scene broken = import_text(image_light(images + ",{'uri':'x'}", ",'name':'sky'"));
+  CHECK(broken.lights.size() == 1);
+  CHECK(import_text(image_light("{'uri':'gone.png'}")).lights.empty());
+  CHECK_THROWS_AS(import_text(image_light(images, ",'rotation':[0,0,0,0]")), InputError);
 }
 
 TEST_CASE("a radius makes spheres of points and spots, as strong from far away") {

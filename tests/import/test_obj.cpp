@@ -160,6 +160,13 @@ TEST_CASE("materials of an MTL library") {
   CHECK(m.transmission.value == 0.25f);
   CHECK(m.is_thin);
 
+  m = material_of("Kd .5 .5 .5\nd .1\nTf .2 .9 1.5\n");  // a pane of coloured glass
+  CHECK(m.base_color.value == Rgb(0.2f, 0.9f, 1));
+  CHECK(m.transmission.value == doctest::Approx(0.9));
+  m = material_of("Kd .5 .5 .5\nTf 1 1 1\nillum 4\n");  // what some programs write everywhere
+  CHECK(m.transmission.value == 0);
+  CHECK(m.base_color.value == Rgb(0.5f));
+
   m = material_of("Kd 1 .5 0\nPr .4\nPm .7\n");
   CHECK(m.kind == MaterialKind::metallic_roughness);
   CHECK(m.roughness.value == 0.4f);
