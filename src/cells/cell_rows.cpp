@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "cells/balance_solver.h"
 
 namespace troffer {
 
@@ -13,23 +14,14 @@ namespace {
 constexpr size_t cells_at_a_time = 1024;
 constexpr int most_iterations = 400;
 constexpr int bounces_of_noise = 6;
-constexpr double smallest_change = 1e-6;  // of the sum of all light
+constexpr double most_unbalanced = 1e-6;  // of the sum of all light
 
-// Σ D and Σ (E - W E) per channel, over all cells: E times their quotient gives and takes as much
-// light in all. It is the slowest mode of a bright room that this removes.
-void scale_to_balance(const std::vector<Rgb>& direct, const std::vector<Rgb>& e,
-                      std::vector<Rgb>& next) {
-  for (size_t c = 0; c < 3; ++c) {
-    double given = 0, kept = 0;
-    for (size_t i = 0; i < e.size(); ++i) {
-      given += double(direct[i][c]);
-      kept += double(e[i][c]) - (double(next[i][c]) - double(direct[i][c]));
-    }
-    if (!(kept > 1e-3 * given)) continue;
-    const auto factor = float(std::clamp(given / kept, 0.25, 4.0));
-    for (size_t i = 0; i < e.size(); ++i)
-      next[i][c] = direct[i][c] + (next[i][c] - direct[i][c]) * factor;
-  }
+template <typename F>
+void by_cells(size_t n, int threads, const F& f) {
+  parallel_for((n + cells_at_a_time - 1) / cells_at_a_time, threads, [&](size_t chunk) {
+    const size_t end = std::min(n, (chunk + 1) * cells_at_a_time);
+    for (size_t i = chunk * cells_at_a_time; i < end; ++i) f(i);
+  });
 }
 
 }  // namespace
@@ -55,26 +47,45 @@ void CellRows::finish(size_t cells) {
   for (uint32_t p = 0; p < parts_.size(); ++p) order_[next[parts_[p].cell]++] = p;
 }
 
-// out = D + W e
+// Σ over the rays of a cell, of what the cells they see have; and how many rays.
+template <typename Taken>
+Rgb CellRows::gather(size_t cell, const std::vector<Rgb>& e, const Taken& is_taken,
+                     uint32_t& rays) const {
+  Rgb sum;
+  for (size_t o = begin_[cell]; o < begin_[cell + 1]; ++o) {
+    const RowPart& p = parts_[order_[o]];
+    if (!is_taken(p, sum)) continue;
+    rays += p.rays;
+    const RowEntry* k = &entries_[first_entry_[order_[o]]];
+    for (uint32_t t = 0; t < p.entries; ++t) sum += k[t].weight * e[k[t].cell];
+  }
+  return sum;
+}
+
+// out = D + emission + W e
 void CellRows::apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half,
                      int threads, std::vector<Rgb>& out) const {
-  const size_t n = direct.size();
-  out.resize(n);
-  parallel_for((n + cells_at_a_time - 1) / cells_at_a_time, threads, [&](size_t chunk) {
-    const size_t end = std::min(n, (chunk + 1) * cells_at_a_time);
-    for (size_t i = chunk * cells_at_a_time; i < end; ++i) {
-      Rgb sum;
-      uint32_t rays = 0;
-      for (size_t o = begin_[i]; o < begin_[i + 1]; ++o) {
-        const RowPart& p = parts_[order_[o]];
-        if (half != Half::both && p.is_second_half != (half == Half::second)) continue;
-        sum += p.emission;
-        rays += p.rays;
-        const RowEntry* k = &entries_[first_entry_[order_[o]]];
-        for (uint32_t t = 0; t < p.entries; ++t) sum += k[t].weight * e[k[t].cell];
-      }
-      out[i] = rays > 0 ? direct[i] + sum / float(rays) : direct[i];
-    }
+  out.resize(direct.size());
+  by_cells(direct.size(), threads, [&](size_t i) {
+    uint32_t rays = 0;
+    const auto is_taken = [&](const RowPart& p, Rgb& sum) {
+      if (half != Half::both && p.is_second_half != (half == Half::second)) return false;
+      sum += p.emission;
+      return true;
+    };
+    const Rgb sum = gather(i, e, is_taken, rays);
+    out[i] = rays > 0 ? direct[i] + sum / float(rays) : direct[i];
+  });
+}
+
+// out = W e
+void CellRows::reflect(const std::vector<Rgb>& e, int threads, std::vector<Rgb>& out) const {
+  out.resize(e.size());
+  by_cells(e.size(), threads, [&](size_t i) {
+    uint32_t rays = 0;
+    const Rgb sum = gather(
+        i, e, [](const RowPart&, Rgb&) { return true; }, rays);
+    out[i] = rays > 0 ? sum / float(rays) : Rgb{0};
   });
 }
 
@@ -84,17 +95,14 @@ void CellRows::spread(std::vector<float>& differences, int threads) const {
   std::vector<float> next(source.size());
   const size_t n = source.size();
   for (int bounce = 0; bounce < bounces_of_noise; ++bounce) {
-    parallel_for((n + cells_at_a_time - 1) / cells_at_a_time, threads, [&](size_t chunk) {
-      const size_t end = std::min(n, (chunk + 1) * cells_at_a_time);
-      for (size_t i = chunk * cells_at_a_time; i < end; ++i) {
-        float sum = 0;
-        for (size_t o = begin_[i]; o < begin_[i + 1]; ++o) {
-          const RowEntry* k = &entries_[first_entry_[order_[o]]];
-          for (uint32_t t = 0; t < parts_[order_[o]].entries; ++t)
-            sum += luminance(k[t].weight) * differences[k[t].cell];
-        }
-        next[i] = source[i] + (rays_[i] > 0 ? sum / float(rays_[i]) : 0.0f);
+    by_cells(n, threads, [&](size_t i) {
+      float sum = 0;
+      for (size_t o = begin_[i]; o < begin_[i + 1]; ++o) {
+        const RowEntry* k = &entries_[first_entry_[order_[o]]];
+        for (uint32_t t = 0; t < parts_[order_[o]].entries; ++t)
+          sum += luminance(k[t].weight) * differences[k[t].cell];
       }
+      next[i] = source[i] + (rays_[i] > 0 ? sum / float(rays_[i]) : 0.0f);
     });
     differences.swap(next);
   }
@@ -103,23 +111,15 @@ void CellRows::spread(std::vector<float>& differences, int threads) const {
 CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<float>& of_direct,
                           int threads) const {
   CellLight light;
-  std::vector<Rgb> e = direct, next;
-  double before = 0;
-  while (light.iterations < most_iterations) {
-    apply(direct, e, Half::both, threads, next);
-    ++light.iterations;
-    if (light.iterations % 4 == 0) scale_to_balance(direct, e, next);
-    double sum = 0, change = 0;
-    for (size_t i = 0; i < e.size(); ++i) {
-      sum += double(luminance(next[i]));
-      change += std::abs(double(luminance(next[i])) - double(luminance(e[i])));
-    }
-    e.swap(next);
-    // what is still to come is a geometric series of the changes
-    const double ratio = before > 0 ? std::min(change / before, 0.99) : 0.99;
-    before = change;
-    if (light.iterations % 4 != 0 && change / (1 - ratio) <= smallest_change * sum) break;
-  }
+  std::vector<Rgb> given, next;
+  apply(direct, std::vector<Rgb>(direct.size()), Half::both, threads, given);
+  const LightOperator reflected = [&](const std::vector<Rgb>& v, std::vector<Rgb>& out) {
+    reflect(v, threads, out);
+  };
+  Balance balance = solve_balance(reflected, given, most_unbalanced, most_iterations, threads);
+  light.iterations = balance.iterations;
+  std::vector<Rgb> e = std::move(balance.light);
+  for (Rgb& x : e) x = {std::max(x.r, 0.0f), std::max(x.g, 0.0f), std::max(x.b, 0.0f)};
   light.half_difference = of_direct;
   for (const Half half : {Half::first, Half::second}) {
     apply(direct, e, half, threads, next);

@@ -64,7 +64,9 @@ class CellRows {
   enum class Half { both, first, second };
   void apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half, int threads,
              std::vector<Rgb>& out) const;
-
+  void reflect(const std::vector<Rgb>& e, int threads, std::vector<Rgb>& out) const;
+  template <typename Taken>
+  Rgb gather(size_t cell, const std::vector<Rgb>& e, const Taken& is_taken, uint32_t& rays) const;
   void spread(std::vector<float>& differences, int threads) const;
 
   std::vector<RowPart> parts_;
