@@ -1,20 +1,19 @@
 #include "import/texture_loader.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
 #include "base/error.h"
 #include "image/raster.h"
 #include "import/file.h"
+#include "import/halve_texture.h"
 
 namespace troffer {
 
 namespace {
 
-// All texels of a scene together; what comes beyond is missing.
-constexpr uint64_t max_texel_bytes = uint64_t(4) << 30;
 constexpr uint64_t max_image_file_bytes = uint64_t(1) << 30;
-const char* const too_much_memory = "the images of this scene need too much memory";
 
 // Equal for requests that give equal textures. Exact bits of the numbers, so that nothing that
 // differs is taken for equal.
@@ -82,6 +81,18 @@ const Texture* TextureLoader::decoded(const std::string& key, const Texture& loo
   return nullptr;
 }
 
+// A single texel always fits: the image's mean.
+Texture TextureLoader::reduced(Texture texture) {
+  const uint64_t left = max_texel_bytes_ - std::min(max_texel_bytes_, texel_bytes_);
+  if (texel_bytes(texture) <= left) return texture;
+  scene_.warnings.add(
+      "images are shown at half their size or less: those of the scene together need too much "
+      "memory");
+  while (texel_bytes(texture) > left && (texture.width > 1 || texture.height > 1))
+    texture = halved(std::move(texture));
+  return texture;
+}
+
 int32_t TextureLoader::add(const std::string& key, const Texture& look, const Bytes& bytes) {
   const auto same = by_request_.find(request_key(key, look));
   if (same != by_request_.end()) return same->second;
@@ -91,8 +102,6 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
   texture.kind = TextureKind::image;
   try {
     if (const Texture* other = decoded(key, look)) {
-      if (texel_bytes_ + texel_bytes(*other) > max_texel_bytes)
-        return missing(key, too_much_memory, look);
       texture.width = other->width;
       texture.height = other->height;
       texture.channels = other->channels;
@@ -111,8 +120,7 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
   } catch (const InputError& e) {
     return missing(key, e.reason(), look);
   }
-  if (texel_bytes_ + texel_bytes(texture) > max_texel_bytes)
-    return missing(key, too_much_memory, look);
+  texture = reduced(std::move(texture));
   texel_bytes_ += texel_bytes(texture);
   const int32_t index = remember(key, look, std::move(texture));
   by_image_.emplace(std::pair{key, look.is_srgb}, index);

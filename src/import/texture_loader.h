@@ -23,8 +23,10 @@ inline Rgb stand_in_for_missing(bool is_color) {
 // in Scene::warnings and a constant texture, of stand_in_for_missing(): never an exception.
 class TextureLoader {
  public:
-  // The scene must outlive the loader.
-  explicit TextureLoader(Scene& scene) : scene_(scene) {}
+  // The scene must outlive the loader. All texels of a scene together take `max_texel_bytes` at
+  // most: an image that does not fit any more is halved until it does, with a warning.
+  explicit TextureLoader(Scene& scene, uint64_t max_texel_bytes = uint64_t(4) << 30)
+      : scene_(scene), max_texel_bytes_(max_texel_bytes) {}
 
   // Index in Scene::textures of the image at `path`, looked up as `look` says: its name, value,
   // is_srgb (of 8-bit images), is_inverted, is_filtered, wrap and uv fields are kept; kind, size
@@ -46,12 +48,13 @@ class TextureLoader {
 
   int32_t add(const std::string& key, const Texture& look, const Bytes& bytes);
   const Texture* decoded(const std::string& key, const Texture& look) const;
+  Texture reduced(Texture texture);
   int32_t remember(const std::string& key, const Texture& look, Texture texture);
 
   Scene& scene_;
   std::map<std::string, int32_t> by_request_;                 // image and look -> texture
   std::map<std::pair<std::string, bool>, int32_t> by_image_;  // image, read as sRGB -> texture
-  uint64_t texel_bytes_ = 0;
+  uint64_t texel_bytes_ = 0, max_texel_bytes_;
 };
 
 }  // namespace troffer

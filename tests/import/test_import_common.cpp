@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "import/file.h"
+#include "import/halve_texture.h"
 #include "import/import.h"
 #include "import/json_location.h"
 #include "import/temp_folder.h"
@@ -197,4 +198,42 @@ TEST_CASE("the format is chosen by the ending, in any case") {
     CHECK(reason_of_import(folder.write("empty." + ending, "")) == "is empty");
   }
   CHECK(import_scene(folder.write("a.GLTF", "{\"asset\":{\"version\":\"2.0\"}}")).meshes.empty());
+}
+
+TEST_CASE("halving an image averages light, not bytes; alpha plainly") {
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = 2;
+  t.height = 1;
+  t.channels = 4;
+  t.texels8 = {0, 255, 10, 0, 255, 255, 10, 255};
+  const Texture h = halved(t);
+  CHECK(h.width == 1);
+  CHECK(h.height == 1);
+  CHECK(int(h.texels8.at(0)) == 188);  // half the light of white
+  CHECK(int(h.texels8[1]) == 255);
+  CHECK(int(h.texels8[2]) == 10);
+  CHECK(int(h.texels8[3]) == 128);
+  Texture odd;
+  odd.kind = TextureKind::image;
+  odd.width = 3;
+  odd.height = odd.channels = 1;
+  odd.texels_float = {1, 3, 7};
+  odd.wrap_u = WrapMode::mirror;
+  const Texture small = halved(odd);
+  CHECK(small.texels_float == std::vector<float>{2, 7});
+  CHECK(small.wrap_u == WrapMode::mirror);
+  CHECK(halved(halved(small)).texels_float == std::vector<float>{4.5f});
+}
+
+TEST_CASE("images that do not fit together are shown smaller, down to one texel") {
+  const TempFolder folder;
+  const std::string first = folder.write("a.pfm", pfm()), second = folder.write("b.pfm", pfm());
+  Scene scene;
+  TextureLoader loader(scene, 30);  // one of them takes 24 bytes
+  const auto a = size_t(loader.from_file(first, {})), b = size_t(loader.from_file(second, {}));
+  CHECK(scene.textures.at(a).width == 2);
+  CHECK(scene.warnings.total() == 1);
+  CHECK(scene.textures.at(b).width == 1);
+  CHECK(scene.textures[b].texels_float == std::vector<float>{0.5f, 0, 0.5f});
 }
