@@ -41,12 +41,13 @@ class FarCounts {
     while (end < members_.size() && !is_first_of_pixel(end)) ++end;
     is_divided_ = 2 * (end - i) <= first_;
   }
-  // Points of hit i, and the first of them in the pixel's sequence.
-  uint32_t of(size_t i, uint32_t& first_point) const {
+  // Points of hit i, one of each `per`, and the first of them in the pixel's sequence.
+  uint32_t of(size_t i, uint32_t per, uint32_t& first_point) const {
     const uint32_t sample = hits_.samples[members_[i]];
+    const uint32_t usual = std::max(usual_ / per, 1u), few = std::max(few_ / per, 1u);
     const bool is_further = is_picture_ && sample >= first_;
-    first_point = is_further ? first_ * usual_ + (sample - first_) * few_ : sample * usual_;
-    return is_further || (is_picture_ && is_divided_) ? few_ : usual_;
+    first_point = is_further ? first_ * usual + (sample - first_) * few : sample * usual;
+    return is_further || (is_picture_ && is_divided_) ? few : usual;
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "integrate/far_points.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/random.h"
@@ -22,7 +23,8 @@ constexpr size_t most_waiting = 16384, pilots = 64;
 // more points of a hit are not worth their time.
 constexpr size_t few_pilots = 1024, most_pilots = 8192;
 constexpr double most_of_closed = 16, most_of_closed_cell = 4;
-constexpr size_t block = 16;  // of parts
+// Of a hit's points, so many are a sun's.
+constexpr uint32_t per_point_of_sun = 4;
 
 Vec3d middle_of(const Parallelogram& p) {
   return p.origin + (p.u + p.v) * 0.5;
@@ -46,8 +48,36 @@ FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
     all += double(luminance(s.radiance)) * length(cross(s.flat.plane.u, s.flat.plane.v)) /
            sqr(s.far->height);
   for (const CertifiedSource& s : sources) add(s, s.flat.plane, all, most_halvings);
-  for (auto* a : {&x_, &y_, &z_, &sine_, &strength_})
-    a->resize((a->size() + block - 1) / block * block, 0);
+  std::vector<Part> parts;
+  parts.swap(parts_);
+  if (parts.empty()) return;
+  const size_t leaves = std::bit_ceil(std::max(parts.size(), size_t(2)));
+  parts_.resize(leaves);
+  plant(parts, 0, leaves);
+  for (const Part& p : parts_) {
+    x_.push_back(p.middle.x);
+    y_.push_back(p.middle.y);
+    z_.push_back(p.middle.z);
+    sine_.push_back(p.sine);
+    strength_.push_back(p.strength);
+  }
+}
+
+void FarPoints::plant(std::span<Part> parts, size_t leaf, size_t leaves) {
+  if (parts.empty()) return;
+  if (leaves == 1) {
+    parts_[leaf] = parts[0];
+    return;
+  }
+  Box box;
+  for (const Part& p : parts) box.grow(p.middle);
+  const Vec3 e = box.extent();
+  const size_t axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+  std::stable_sort(parts.begin(), parts.end(),
+                   [&](const Part& a, const Part& b) { return a.middle[axis] < b.middle[axis]; });
+  const size_t half = (parts.size() + 1) / 2;
+  plant(parts.first(half), leaf, leaves / 2);
+  plant(parts.subspan(half), leaf + leaves / 2, leaves / 2);
 }
 
 void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, double all,
@@ -75,13 +105,10 @@ void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, d
     add(source, half, all, halvings - 1);
     return;
   }
-  parts_.push_back({plane, source.flat.is_disk ? area * 0.25 * pi : area, &source});
-  const Vec3d d = way * (1 / distance);
-  x_.push_back(float(d.x));
-  y_.push_back(float(d.y));
-  z_.push_back(float(d.z));
-  sine_.push_back(float(sine));
-  strength_.push_back(float(strength * (source.flat.is_disk ? 0.25 * pi : 1)));
+  const double share = source.flat.is_disk ? 0.25 * pi : 1;
+  const Part part{plane,       area * share,           &source, Vec3(way * (1 / distance)),
+                  float(sine), float(strength * share)};
+  (source.flat.is_disk ? suns_ : parts_).push_back(part);
 }
 
 namespace {
@@ -104,40 +131,50 @@ void set_chances_of_parts(const Vec3& normal, size_t n, const float* __restrict 
 }  // namespace
 
 bool FarPoints::set_chances(const ShadowReceiver& r, Chances& c) const {
-  const size_t n = x_.size();
-  if (c.of_part_.size() == n && c.normal_.x == r.normal.x && c.normal_.y == r.normal.y &&
-      c.normal_.z == r.normal.z)
-    return c.all() > 0;
+  const size_t n = parts_.size();
+  const bool is_known = c.of_node_.size() == 2 * n && c.of_sun_.size() == suns_.size() &&
+                        c.normal_.x == r.normal.x && c.normal_.y == r.normal.y &&
+                        c.normal_.z == r.normal.z;
+  if (is_known) return c.all() + c.suns() > 0;
   c.normal_ = r.normal;
-  c.of_part_.resize(n);
-  c.sums_.resize(n / block);
-  set_chances_of_parts(r.normal, n, x_.data(), y_.data(), z_.data(), sine_.data(), strength_.data(),
-                       c.of_part_.data());
-  float sum = 0;
-  for (size_t b = 0; b < c.sums_.size(); ++b) {
-    const float* p = &c.of_part_[b * block];
-    float own = 0;
-    for (size_t i = 0; i < block; ++i) own += p[i];
-    c.sums_[b] = sum += own;
+  c.of_node_.resize(2 * n);
+  float* node = c.of_node_.data();
+  if (n > 0)
+    set_chances_of_parts(r.normal, n, x_.data(), y_.data(), z_.data(), sine_.data(),
+                         strength_.data(), node + n);
+  for (size_t i = n; i-- > 1;) node[i] = node[2 * i] + node[2 * i + 1];
+  c.suns_ = 0;
+  c.of_sun_.clear();
+  for (const Part& p : suns_) {
+    const float cosine = dot(r.normal, p.middle), reach = 1.01f * p.sine + 1e-3f;
+    c.of_sun_.push_back(cosine + reach > 0 ? p.strength * std::max(cosine, 0.3f * reach) : 0.0f);
+    c.suns_ += c.of_sun_.back();
   }
-  return sum > 0;
+  return c.all() + c.suns() > 0;
 }
 
-FarPoints::Point FarPoints::point(const ShadowReceiver& r, const Chances& c, float u, float v,
-                                  float place) const {
-  const float all = c.all(), target = place * all;
-  const auto above = std::upper_bound(c.sums_.begin(), c.sums_.end(), target);
-  const size_t in = std::min(size_t(above - c.sums_.begin()), c.sums_.size() - 1);
-  float below = in == 0 ? 0 : c.sums_[in - 1];
-  size_t k = in * block;  // in the end, of the parts that have a chance
-  for (size_t i = k; i < (in + 1) * block && !(target < below); ++i) {
-    if (!(c.of_part_[i] > 0)) continue;
-    k = i;
-    below += c.of_part_[i];
+FarPoints::Point FarPoints::point(const ShadowReceiver& r, const Chances& c, float u,
+                                  float v) const {
+  const float* node = c.of_node_.data();
+  const size_t n = parts_.size();
+  size_t i = 1;
+  for (bool is_u = true; i < n; is_u = !is_u) {
+    float& x = is_u ? u : v;
+    const float left = node[2 * i], right = node[2 * i + 1], share = left / (left + right);
+    const bool is_left = left > 0 && (x < share || !(right > 0));
+    x = is_left ? x / share : (x - share) / (1 - share);
+    x = std::clamp(x, 0.0f, one_minus_epsilon);
+    i = 2 * i + (is_left ? 0 : 1);
   }
-  const float own = c.of_part_[k];
-  if (!(own > 0)) return {};
-  const Part& part = parts_[k];
+  if (!(node[i] > 0)) return {};
+  Point out = point_of_part(parts_[i - n], r, u, v);
+  out.pdf *= node[i] / c.all();
+  out.place = (float(i - n) + u) / float(n);
+  return out;
+}
+
+FarPoints::Point FarPoints::point_of_part(const Part& part, const ShadowReceiver& r, float u,
+                                          float v) const {
   const Parallelogram& p = part.plane;
   double a = double(u), b = double(v);
   if (part.source->flat.is_disk) {
@@ -151,7 +188,32 @@ FarPoints::Point FarPoints::point(const ShadowReceiver& r, const Chances& c, flo
   out.source = part.source;
   out.way = Vec3(way);
   out.wi = Vec3(way * (1 / distance));
-  out.pdf = own / all * float(sqr(distance) * distance / (height * part.area));
+  out.pdf = float(sqr(distance) * distance / (height * part.area));
+  return out;
+}
+
+FarPoints::Point FarPoints::point_of_sun(size_t sun, const ShadowReceiver& r, float u,
+                                         float v) const {
+  Point out = point_of_part(suns_[sun], r, u, v);
+  out.place = u;
+  return out;
+}
+
+FarPoints::Point FarPoints::point_of_any(const ShadowReceiver& r, const Chances& c, float u,
+                                         float v, float place) const {
+  float target = place * (c.all() + c.suns());
+  const float all = c.all() + c.suns();
+  for (size_t k = 0; k < suns_.size(); ++k) {
+    if (target < c.of_sun_[k] || (k + 1 == suns_.size() && !(c.all() > 0))) {
+      Point out = point_of_sun(k, r, u, v);
+      out.pdf *= c.of_sun_[k] / all;
+      return out;
+    }
+    target -= c.of_sun_[k];
+  }
+  if (!(c.all() > 0)) return {};
+  Point out = point(r, c, u, v);
+  out.pdf *= c.all() / all;
   return out;
 }
 
@@ -173,8 +235,8 @@ struct Pilots {
       if (!d.points.set_chances(r, chances)) continue;
       const uint64_t a = hash_of(r.stream, k, purpose_pilot), b = mix64(a);
       const FarPoints::Point p =
-          d.points.point(r, chances, unit_float(uint32_t(a)), unit_float(uint32_t(a >> 32)),
-                         unit_float(uint32_t(b)));
+          d.points.point_of_any(r, chances, unit_float(uint32_t(a)), unit_float(uint32_t(a >> 32)),
+                                unit_float(uint32_t(b)));
       if (p.source == nullptr) continue;
       const float cosine = dot(p.wi, r.normal);
       if (!(cosine > 0) || !(dot(p.wi, r.horizon) > 0)) continue;
@@ -203,7 +265,7 @@ double points_of_pixel(const FarPointDraws& d, std::span<const uint32_t> members
   FarPoints::Chances chances;
   for (size_t k = 0; k < looks; ++k)
     if (d.points.set_chances(d.hits.receivers[members[k * members.size() / looks]], chances))
-      far += double(chances.all()) / double(looks);
+      far += double(chances.all() + chances.suns()) / double(looks);
   // as the darker half of them has it
   std::vector<float> sorted(seen.begin(), seen.end());
   std::sort(sorted.begin(), sorted.end());
@@ -233,6 +295,82 @@ FarShare open_share_of_batch(const FarPointDraws& d, bool is_shut_out) {
           is_shut_out && !(p.open > 0) && p.count >= few_pilots / 2};
 }
 
+namespace {
+
+// Points of the sky and images, or of a sun, from hits.
+class PointDrawing {
+ public:
+  PointDrawing(const FarPointDraws& d, std::span<const uint32_t> members, FarCounts& counts,
+               DrawnLightsScratch& s)
+      : d_(d), members_(members), counts_(counts), s_(s) {}
+
+  // sun: -1: of the sky and images.
+  void draw(int sun, RadianceBatch& out, Counters& counters) {
+    for (size_t i = 0; i < members_.size(); ++i) {
+      if (counts_.is_first_of_pixel(i)) {
+        counts_.look_at_pixel(i);
+        s_.runs.push_back(s_.draws.size());
+      }
+      const uint32_t m = members_[i];
+      const ShadowReceiver& r = d_.hits.receivers[m];
+      uint32_t first = 0;
+      const uint32_t n = counts_.of(i, sun < 0 ? 1 : per_point_of_sun, first);
+      if (!d_.points.set_chances(r, chances_)) continue;
+      if (!((sun < 0 ? chances_.all() : chances_.suns()) > 0)) continue;
+      set_numbers(hash_combine(d_.hits.draw_streams[m], purpose_points + uint64_t(sun + 1)), n,
+                  first);
+      for (uint32_t j = 0; j < n; ++j) {
+        const float u = s_.numbers[j], v = s_.numbers[n + j];
+        connect(m,
+                sun < 0 ? d_.points.point(r, chances_, u, v)
+                        : d_.points.point_of_sun(size_t(sun), r, u, v),
+                n);
+      }
+      if (s_.rays.size() < most_waiting) continue;
+      resolve_draws(d_.scene, d_.hits, s_, out, counters);
+      s_.runs.push_back(0);
+    }
+  }
+
+ private:
+  void set_numbers(uint64_t stream, uint32_t n, uint32_t first) {
+    s_.streams.assign(n, stream);
+    s_.samples.resize(n);
+    s_.numbers.resize(2 * size_t(n));
+    for (uint32_t j = 0; j < n; ++j) s_.samples[j] = first + j;
+    sobol_groups(s_.streams.data(), s_.samples.data(), n, 0, 2, s_.numbers.data());
+  }
+
+  void connect(uint32_t m, const FarPoints::Point& p, uint32_t n) {
+    DrawnLightsScratch::Draw& draw = s_.draws.emplace_back();
+    draw = {m, p.place, {}, -1, {}};
+    if (p.source == nullptr) return;
+    const ShadowReceiver& r = d_.hits.receivers[m];
+    const float cosine = dot(p.wi, r.normal);
+    if (!(cosine > 0) || !(dot(p.wi, r.horizon) > 0)) return;
+    const Rgb value =
+        d_.hits.glossy[m] < 0
+            ? Rgb{cosine}
+            : glossy_value(d_.hits.glossy_hits[size_t(d_.hits.glossy[m])], p.wi,
+                           d_.competition.density(*p.source, r.position, r.horizon, p.wi));
+    draw.light =
+        d_.hits.weights[m] * far_radiance_of(*p.source, p.way) * value * (1 / (p.pdf * float(n)));
+    if (draw.light.is_black()) return;
+    draw.ray = int32_t(s_.rays.size());
+    Ray& ray = s_.rays.emplace_back();
+    ray.origin = r.origin;
+    ray.direction = p.wi;
+  }
+
+  const FarPointDraws& d_;
+  std::span<const uint32_t> members_;
+  FarCounts& counts_;
+  DrawnLightsScratch& s_;
+  FarPoints::Chances chances_;
+};
+
+}  // namespace
+
 void draw_points(const FarPointDraws& d, std::span<const uint32_t> members, const FarShare& share,
                  std::span<const float> seen, const DrawingBudget& budget, DrawnLightsScratch& s,
                  RadianceBatch& out, Counters& counters) {
@@ -243,50 +381,11 @@ void draw_points(const FarPointDraws& d, std::span<const uint32_t> members, cons
   // What little gets into what seems closed is left to a pixel's first rays, as if much did.
   FarCounts counts(d.hits, members, budget, out.typical > 0, std::max(of_pixel, 1.0),
                    share.seems_closed ? 0.5 : share.open);
-  FarPoints::Chances chances;
-  for (size_t i = 0; i < members.size(); ++i) {
-    if (counts.is_first_of_pixel(i)) {
-      counts.look_at_pixel(i);
-      s.runs.push_back(s.draws.size());
-    }
-    const uint32_t m = members[i];
-    const ShadowReceiver& r = d.hits.receivers[m];
-    uint32_t first = 0;
-    const uint32_t n = counts.of(i, first);
-    ++counters.mixed;
+  counters.mixed += members.size();
+  for (const uint32_t m : members)
     if (d.hits.is_first[m] != 0) out.sources[d.hits.indices[m]] += Rgb{1, 0, 0};
-    if (!d.points.set_chances(r, chances)) continue;
-    s.streams.assign(n, hash_combine(d.hits.draw_streams[m], purpose_points));
-    s.samples.resize(n);
-    s.numbers.resize(3 * size_t(n));
-    for (uint32_t j = 0; j < n; ++j) s.samples[j] = first + j;
-    sobol_groups(s.streams.data(), s.samples.data(), n, 0, 3, s.numbers.data());
-    for (uint32_t j = 0; j < n; ++j) {
-      DrawnLightsScratch::Draw& draw = s.draws.emplace_back();
-      draw = {m, s.numbers[2 * n + j], {}, -1, {}};
-      const FarPoints::Point p =
-          d.points.point(r, chances, s.numbers[j], s.numbers[n + j], draw.place);
-      if (p.source == nullptr) continue;
-      const float cosine = dot(p.wi, r.normal);
-      if (!(cosine > 0) || !(dot(p.wi, r.horizon) > 0)) continue;
-      const Rgb value =
-          d.hits.glossy[m] < 0
-              ? Rgb{cosine}
-              : glossy_value(d.hits.glossy_hits[size_t(d.hits.glossy[m])], p.wi,
-                             d.competition.density(*p.source, r.position, r.horizon, p.wi));
-      draw.light =
-          d.hits.weights[m] * far_radiance_of(*p.source, p.way) * value * (1 / (p.pdf * float(n)));
-      if (draw.light.is_black()) continue;
-      draw.ray = int32_t(s.rays.size());
-      Ray& ray = s.rays.emplace_back();
-      ray.origin = r.origin;
-      ray.direction = p.wi;
-    }
-    if (s.rays.size() >= most_waiting) {
-      resolve_draws(d.scene, d.hits, s, out, counters);
-      s.runs.push_back(0);
-    }
-  }
+  PointDrawing drawing(d, members, counts, s);
+  for (int sun = -1; sun < int(d.points.suns()); ++sun) drawing.draw(sun, out, counters);
 }
 
 }  // namespace troffer

@@ -1,6 +1,6 @@
 // Points of all lights at infinity for hits that proofs are not worth: few of them, scattered, or
 // where most of the sky is open anyway. No shafts, no lists, no exact light: small parts of the
-// cells, chosen by the cosine of their middles, and a ray to a point of each.
+// cells, chosen by the cosine of their middles, a few points of every sun, and a ray to each.
 //
 // Unbiased. How many points a hit gets is chosen by rays of its batch, which count for nothing
 // else: 64, or more where none of these arrives.
@@ -20,42 +20,58 @@ class FarPoints {
   FarPoints() = default;
   // sources: those of lights at infinity, which must stay.
   explicit FarPoints(std::span<const CertifiedSource> sources);
-  bool is_empty() const { return parts_.empty(); }
+  bool is_empty() const { return parts_.empty() && suns_.empty(); }
 
-  // One point for a receiver, by u, v, place in [0,1).
+  // One point for a receiver.
   struct Point {
     const CertifiedSource* source = nullptr;  // null: none
     Vec3 way, wi;                             // from the receiver, metres; and the unit direction
     float pdf = 0;                            // per sr
+    float place = 0;                          // of its part among all, in [0,1)
   };
-  // The parts' chances for receivers of one normal, with sums over blocks of them.
+  // The parts' chances for receivers of one normal, as a tree: nodes of a heap, the root being 1.
   class Chances {
    public:
-    float all() const { return sums_.empty() ? 0 : sums_.back(); }
+    // Of skies and images, and of suns: light that nothing hides, about.
+    float all() const { return of_node_.empty() ? 0 : of_node_[1]; }
+    float suns() const { return suns_; }
 
    private:
     friend class FarPoints;
     Vec3 normal_;
-    std::vector<float> of_part_, sums_;  // padded with zeros; over the blocks so far
+    std::vector<float> of_node_, of_sun_;
+    float suns_ = 0;
   };
   // False where all parts are below the receiver's horizon. What is there for the same normal
   // stays.
   bool set_chances(const ShadowReceiver& receiver, Chances& chances) const;
-  Point point(const ShadowReceiver& receiver, const Chances& chances, float u, float v,
-              float place) const;
+  // Of skies and images, by (u, v) in [0,1)²: even points become points that are as even, since
+  // every branch of the tree goes on with its share of u or v. chances.all() is over 0.
+  Point point(const ShadowReceiver& receiver, const Chances& chances, float u, float v) const;
+  // Of one of the suns.
+  size_t suns() const { return suns_.size(); }
+  Point point_of_sun(size_t sun, const ShadowReceiver& receiver, float u, float v) const;
+  // Of either, suns by `place` in [0,1).
+  Point point_of_any(const ShadowReceiver& receiver, const Chances& chances, float u, float v,
+                     float place) const;
 
  private:
   struct Part {
     Parallelogram plane;
     double area = 0;
     const CertifiedSource* source = nullptr;
+    Vec3 middle;         // direction from the scene
+    float sine = 0;      // of the angle within which the part lies about it
+    float strength = 0;  // luminance × sr
   };
   void add(const CertifiedSource& source, const Parallelogram& plane, double all, int halvings);
-  std::vector<Part> parts_;
-  // Per part; padded to whole blocks with parts of no strength.
-  std::vector<float> x_, y_, z_;  // of the directions of the middles
-  std::vector<float> sine_;       // of the angle within which a part lies about its middle
-  std::vector<float> strength_;   // luminance × sr
+  // Puts parts into leaves from `leaf` on, neighbours together.
+  void plant(std::span<Part> parts, size_t leaf, size_t leaves);
+  Point point_of_part(const Part& part, const ShadowReceiver& receiver, float u, float v) const;
+  std::vector<Part> parts_;  // by leaf of the tree, some of them empty
+  std::vector<Part> suns_;
+  // Per leaf.
+  std::vector<float> x_, y_, z_, sine_, strength_;
 };
 
 // The radiance that a point of a source at infinity sends.

@@ -79,7 +79,7 @@ class Walks {
     const Vec2 u = random.next_vec2();
     const float place = random.next_float();
     if (points_.set_chances(r, chances_)) {
-      const FarPoints::Point p = points_.point(r, chances_, u.x, u.y, place);
+      const FarPoints::Point p = points_.point_of_any(r, chances_, u.x, u.y, place);
       if (p.source != nullptr && dot(p.wi, r.normal) > 0) {
         Ray& asking = asking_.emplace_back();
         asking.origin = r.origin;
