@@ -60,6 +60,7 @@ CellMap::CellMap(const Tracer& tracer, float size) : tracer_(tracer), size_(size
 
 size_t CellMap::bytes() const {
   return anchors_.capacity() * sizeof(Anchor) + hits_.capacity() * sizeof(Hits) +
+         more_hits_.size() * hits_of_asked_cell * sizeof(CellHit) +
          slots_.capacity() * sizeof(Slot);
 }
 
@@ -109,7 +110,21 @@ uint32_t CellMap::find(const CellHit& hit, float distance) const {
   return slot.first == no_cell ? no_cell : search(slot.first, hit).cell;
 }
 
-uint32_t CellMap::add(const CellHit& hit, float distance) {
+void CellMap::keep(const CellHit& hit, bool is_asked, Hits& h) {
+  if (h.count < hits_per_cell) {
+    h.hits[h.count++] = hit;
+    return;
+  }
+  if (!is_asked) return;
+  if (h.more == no_cell) {
+    h.more = uint32_t(more_hits_.size());
+    more_hits_.emplace_back(h.hits.begin(), h.hits.end()).reserve(hits_of_asked_cell);
+  }
+  std::vector<CellHit>& hits = more_hits_[h.more];
+  if (hits.size() < hits_of_asked_cell) hits.push_back(hit);
+}
+
+uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
   const bool is_near = distance < near();
   const float size = is_near ? 0.5f * size_ : size_;
   const uint64_t key = key_of(hit, size, is_near ? 1 : 0);
@@ -117,8 +132,7 @@ uint32_t CellMap::add(const CellHit& hit, float distance) {
   Found found;
   if (slot.first != no_cell) found = search(slot.first, hit);
   if (found.cell != no_cell) {
-    Hits& h = hits_[found.cell];
-    if (found.cell >= frozen_ && h.count < hits_per_cell) h.hits[h.count++] = hit;
+    if (found.cell >= frozen_) keep(hit, is_asked, hits_[found.cell]);
     return found.cell;
   }
   const uint32_t cell = make(hit, size);

@@ -23,6 +23,9 @@ namespace troffer {
 constexpr uint32_t no_cell = 0xffffffffu;
 // Hits of a cell that are kept: those from which its rays start and at which it is lit.
 constexpr size_t hits_per_cell = 8;
+// … of one to which a picture's own rays come (CellMap::add, is_asked). Light changes much within a
+// cell at the edge of a shadow, and some pictures get theirs from few cells.
+constexpr size_t hits_of_asked_cell = 32;
 
 class CellMap {
  public:
@@ -38,19 +41,24 @@ class CellMap {
   // The cell of what a ray of this length has hit, or no_cell. Any number of threads may call it
   // while nothing is added.
   uint32_t find(const CellHit& hit, float distance) const;
-  // The same, made if there is none.
-  uint32_t add(const CellHit& hit, float distance);
+  // The same, made if there is none. is_asked: by one of the rays that the picture will send.
+  uint32_t add(const CellHit& hit, float distance, bool is_asked = false);
   // From here on the cells that there are keep the hits that they have.
   void freeze() { frozen_ = anchors_.size(); }
   size_t frozen() const { return frozen_; }
 
   // Of one cell; empty after forget_hits().
   std::span<const CellHit> hits(size_t cell) const {
-    return hits_.empty() ? std::span<const CellHit>{}
-                         : std::span(hits_[cell].hits.data(), size_t(hits_[cell].count));
+    if (hits_.empty()) return {};
+    const Hits& h = hits_[cell];
+    return h.more == no_cell ? std::span(h.hits.data(), size_t(h.count))
+                             : std::span<const CellHit>(more_hits_[h.more]);
   }
   const Vec3& position(size_t cell) const { return anchors_[cell].position; }
-  void forget_hits() { hits_ = {}; }
+  void forget_hits() {
+    hits_ = {};
+    more_hits_ = {};
+  }
 
  private:
   friend struct CellMapParts;  // cell_store.cpp: to and from bytes
@@ -64,6 +72,7 @@ class CellMap {
   struct Hits {
     std::array<CellHit, hits_per_cell> hits;
     uint32_t count = 0;
+    uint32_t more = no_cell;  // where all of them are, if they are more
   };
   struct Slot {
     uint64_t key = 0;
@@ -79,12 +88,14 @@ class CellMap {
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, float size) const;
   uint32_t make(const CellHit& hit, float size);
+  void keep(const CellHit& hit, bool is_asked, Hits& hits);
   void grow();
 
   const Tracer& tracer_;
   float size_;
   std::vector<Anchor> anchors_;
   std::vector<Hits> hits_;
+  std::vector<std::vector<CellHit>> more_hits_;
   std::vector<Slot> slots_;  // open addressing; a power of two of them
   size_t used_ = 0;
   size_t frozen_ = 0;  // cells from 0 that get no more hits

@@ -137,7 +137,7 @@ void Builder::ask(const CellPilot& pilot) {
   }
   start_map(seen);
   for (const CellSeen& c : seen.seen) {
-    const uint32_t cell = map_->add(c.hit, c.distance);
+    const uint32_t cell = map_->add(c.hit, c.distance, true);
     asked_.resize(map_->size(), 0);
     asked_[cell] += tasks[c.task].weight * luminance(c.weight);
   }

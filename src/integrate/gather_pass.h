@@ -12,7 +12,7 @@ namespace troffer {
 class GatherPass {
  public:
   static constexpr int most_pixels = 16;                      // radius of a fit
-  static constexpr uint32_t first_rays = 8, most_rays = 256;  // of a record
+  static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record
 
   GatherPass(const Cells& cells, const PictureView& view, const GatherOptions& options,
              const StopFlag& stop, GatherRecords& out);

@@ -47,6 +47,26 @@ TEST_CASE("hits in one voxel share a cell, those of another side, plane or dista
   CHECK(map.find(on_floor(0.3f, 0.2f), 5) == cell);
 }
 
+TEST_CASE("cells keep more of the hits that a picture asks for") {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  const Tracer tracer(s);
+  CellMap map(tracer, 1);
+  for (int i = 0; i < 100; ++i) {
+    map.add(on_floor(0.1f, 0.001f * float(i)), 5, i % 2 == 1);
+    map.add(on_floor(1.1f, 0.001f * float(i)), 5);
+  }
+  const uint32_t asked = map.find(on_floor(0.1f, 0.1f), 5);
+  REQUIRE(map.hits(asked).size() == hits_of_asked_cell);
+  CHECK(map.hits(asked)[7].position.y == 0.001f * 7.0f);
+  CHECK(map.hits(asked)[8].position.y == 0.001f * 9.0f);  // the next that was asked for
+  CHECK(map.hits(map.find(on_floor(1.1f, 0.1f), 5)).size() == hits_per_cell);
+  const CellMap copy = map;
+  CHECK(copy.hits(asked).size() == hits_of_asked_cell);
+  map.forget_hits();
+  CHECK(map.hits(asked).empty());
+}
+
 TEST_CASE("a wall parts the cells of the floor that it stands on, wherever it crosses them") {
   const Scene scene = parted_floor();
   const Tracer tracer(scene);
