@@ -13,6 +13,8 @@ namespace {
 // From this error on the coarse lattice does, whose own error is up to .005 (docs/certified.md);
 // specks and wires that fall between its samples would show below.
 constexpr double coarse_from = 0.02;
+// Where nothing but a mean over many hits counts.
+constexpr double rough_error = 0.3;
 
 }  // namespace
 
@@ -35,6 +37,8 @@ CertifiedSettings certified_settings(double error, size_t lights, int viewing_ra
   s.estimator.rays.pair_error = float(2 * error);
   s.estimator.rays.most_rays =
       uint32_t(std::clamp(2.56 / error, 256.0, double(most_rays_of_receiver)));
+  s.estimator.rays.most_direct_rays =
+      uint32_t(std::clamp(40 / error, 128.0, double(most_rays_of_receiver)));
   s.estimator.rays.most_share_rays = 2 * s.estimator.rays.most_rays;
   return s;
 }
@@ -52,6 +56,7 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
     : scene_(scene),
       occluders_(std::move(occluders)),
       settings_(settings),
+      rough_(certified_settings(std::max(rough_error, settings.error), 1, 1)),
       lights_(scene, {float(settings.error), float(settings.viewing_rays)},
               uint32_t(settings.gloss_samples)),
       sampler_(scene) {
@@ -86,6 +91,7 @@ void CertifiedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
 void CertifiedDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
                             Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
+  s.lights.options = (out.is_rough ? rough_ : settings_).estimator;
   lights_.illuminate(s.lights, out, counters);
   sampler_.resolve(s.rays, out, counters);
 }

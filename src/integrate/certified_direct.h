@@ -55,7 +55,7 @@ class CertifiedDirect final : public DirectLight {
 
   const PreparedScene& scene_;
   std::shared_ptr<const Occluders> occluders_;
-  CertifiedSettings settings_;
+  CertifiedSettings settings_, rough_;
   CertifiedLights lights_;
   SourceSampler sampler_;
   // Lights that get rays of their own: on opaque surfaces, and where light goes through.

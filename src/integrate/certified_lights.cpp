@@ -6,7 +6,7 @@
 #include "integrate/far_draws.h"
 #include "integrate/lit_places.h"
 #include "light/light.h"
-#include "shadow/far_pilot.h"
+#include "shadow/pilot_rays.h"
 #include "trace/occluders.h"
 
 namespace troffer {
@@ -322,6 +322,7 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s, bool has_far) cons
     r.stream = source.stream;
     r.brightness = luminance(source.radiance);
     r.found = &s.found[i];
+    r.batch = s.hits.receivers;
     if (source.far != nullptr) r.far = &far_.scene;
     s.requested.push_back(i);
     s.integrand.sources().push_back(&source);

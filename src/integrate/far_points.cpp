@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "base/simd.h"
 #include "integrate/far_counts.h"
-#include "shadow/far_pilot.h"
+#include "shadow/pilot_rays.h"
 
 namespace troffer {
 

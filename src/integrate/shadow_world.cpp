@@ -60,19 +60,15 @@ void ShadowWorld::set_rays(std::span<const ShadowSegment> segments) {
   }
 }
 
-void ShadowWorld::occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
-                           std::span<uint8_t> is_hidden) {
+void ShadowWorld::occluded(const SegmentArrays& segments, std::span<uint8_t> is_hidden) {
+  const size_t n = segments.size();
   segments_.clear();
-  segments_.make_room(segments.size());
+  segments_.make_room(n);
   for (size_t a = 0; a < 3; ++a) {
-    float* from = segments_.end(a);
-    float* way = segments_.end(a + 3);
-    for (size_t i = 0; i < segments.size(); ++i) {
-      from[i] = segments[i].from[a];
-      way[i] = (segments[i].to[a] - segments[i].from[a]) * before[i];
-    }
+    std::copy_n(segments.from[a].data(), n, segments_.end(a));
+    std::copy_n(segments.way[a].data(), n, segments_.end(a + 3));
   }
-  segments_.grow(segments.size());
+  segments_.grow(n);
   tracer_.occluded(segments_, is_hidden);
 }
 

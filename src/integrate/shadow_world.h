@@ -19,8 +19,7 @@ class ShadowWorld final : public ShadowScene {
   void candidates(std::span<const Plane> planes, const Box& receivers, const Box& source,
                   size_t most, uint64_t own, ShadowCandidates& out) override;
   void trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) override;
-  void occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
-                std::span<uint8_t> is_hidden) override;
+  void occluded(const SegmentArrays& segments, std::span<uint8_t> is_hidden) override;
   Quad facet(uint32_t id) const override { return occluders_.facet(id); }
   double magnitude() const override { return magnitude_; }
   // Of the hierarchy, by all calls of candidates so far: for benchmarks.

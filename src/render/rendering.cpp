@@ -281,7 +281,9 @@ double Rendering::typical_luminance() {
   const CheckContext context(&w, w.rays.size(), name_of_ray);
   w.radiance.reset(w.rays.size());
   Counters uncounted;
+  w.radiance.is_rough = true;
   integrator_.radiance(w.rays, *w.scratch, w.radiance, uncounted);
+  w.radiance.is_rough = false;
   std::vector<double> values;
   for (size_t i = 0; i < w.rays.size(); ++i) {
     const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];

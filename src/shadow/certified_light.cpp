@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "shadow/divide_far.h"
-#include "shadow/far_pilot.h"
+#include "shadow/pilot_rays.h"
 
 namespace troffer {
 

@@ -13,10 +13,11 @@ namespace troffer {
 constexpr uint32_t most_rays_of_receiver = 4096;
 
 struct RayLimits {
-  uint32_t most_rays = 256;        // of a receiver, for its allowed error
-  float pair_error = 0.02f;        // allowed standard error of each source's visible share …
-  uint32_t most_pair_rays = 64;    // … unless that takes more rays than this,
-  uint32_t most_share_rays = 512;  // or for all pairs of a receiver more than this
+  uint32_t most_rays = 256;         // of a receiver, for its allowed error
+  uint32_t most_direct_rays = 256;  // … straight to one source
+  float pair_error = 0.02f;         // allowed standard error of each source's visible share …
+  uint32_t most_pair_rays = 64;     // … unless that takes more rays than this,
+  uint32_t most_share_rays = 512;   // or for all pairs of a receiver more than this
 };
 
 struct CertifiedOptions {

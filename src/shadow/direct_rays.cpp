@@ -7,6 +7,7 @@
 
 #include "base/simd.h"
 #include "shadow/cell_points.h"
+#include "shadow/pilot_rays.h"
 #include "shadow/trace_rays.h"
 
 namespace troffer {
@@ -15,7 +16,10 @@ namespace {
 
 // Rays are traced when so many have gathered.
 constexpr size_t batch = 4096;
-constexpr uint32_t fewest_rays = 4;
+// Behind clutter rays of a sequence keep about so much of the variance of independent ones.
+constexpr double variance_kept = 0.8;
+// Where rays begin that bring nothing, whatever they meet: out of what is traced (Tracer).
+constexpr float nowhere = 4e18f;
 constexpr uint32_t purpose_direct = 0x64697265u;
 
 // A cell of four right angles, of which points are drawn evenly by solid angle: what a ray brings
@@ -53,6 +57,18 @@ void weigh_points(size_t n, const float* __restrict x, const float* __restrict y
     const float square = std::max(dot(d, d), 1e-30f);
     const float f = std::max(dot(d, a), 0.0f) * inverse_pdf[i] / std::sqrt(square);
     weights[i] = dot(d, b) > 0 ? f : below * f;
+  }
+}
+
+// Makes points as seen from the receiver `end` of the way from an origin that is off it by `shift`.
+TROFFER_MULTIVERSION
+void make_ways(size_t n, const Vec3& shift, float end, float* __restrict x, float* __restrict y,
+               float* __restrict z) {
+  const Vec3 s = shift;
+  for (size_t i = 0; i < n; ++i) {
+    x[i] = (x[i] + s.x) * end;
+    y[i] = (y[i] + s.y) * end;
+    z[i] = (z[i] + s.z) * end;
   }
 }
 
@@ -94,6 +110,7 @@ RaySums add_up(size_t n, const float* __restrict weights, const uint8_t* __restr
   return sums;
 }
 
+// One stage for one part, over in one call: hence its members.
 class Caster {
  public:
   Caster(const SourceTask& task, const SourcePart& part, std::span<const uint32_t> members,
@@ -113,24 +130,24 @@ class Caster {
       cut_cells(part.cell, part.hull, task.options.cells, m_.cells);
     for (const FlatCell& c : m_.cells) points_.emplace_back(c);
     set_unoccluded(part);
-    rays_ = rays_for_error();
-    if (m_.blocks.size() != rays_) m_.blocks = SobolBlocks(rays_);
-    m_.numbers.resize(2 * size_t(rays_));
-    control_ = std::clamp(found_.dense.open_share(), 0.0f, 1.0f);
+    set_rays();
+    control_ = float(found_.dense.open_share);
   }
 
   void run() {
     m_.answers.clear();
-    for (size_t first = 0, end = 0; first < members_.size(); first = end) {
-      m_.segments.clear();
-      m_.before.clear();
-      m_.weights.clear();
-      for (; end < members_.size() && m_.segments.size() < batch; ++end) add_rays(members_[end]);
+    const size_t at_once = std::max<size_t>(batch / rays_, 1);
+    for (size_t first = 0; first < members_.size(); first += at_once) {
+      const std::span<const uint32_t> some =
+          members_.subspan(first, std::min(at_once, members_.size() - first));
+      m_.segments.resize(some.size() * rays_);
+      m_.weights.resize(some.size() * rays_);
+      m_.ends.resize(some.size());
+      for (size_t i = 0; i < some.size(); ++i) add_rays(i, some[i]);
       trace();
-      for (size_t i = first, ray = 0; i < end; ++i, ray += rays_) note_answer(members_[i], ray);
+      for (size_t i = 0; i < some.size(); ++i) note_answer(i, some[i]);
     }
     add_answers();
-    found_.dense.note(sums_.light, sums_.unoccluded, sums_.variance, sums_.random_variance);
   }
 
  private:
@@ -149,30 +166,34 @@ class Caster {
     return m_.unoccluded[cell * task_.cluster.size() + member];
   }
 
-  // Of the source's rays a part of it gets its share. As many as make the variance k p (1 - p) U² /
-  // n what the masks' may be (Promise), for the mean share p that is open and the mean gain k over
-  // random numbers, a power of two.
-  uint32_t rays_for_error() {
-    const auto most = double(task_.options.rays.most_rays);
-    const Promise& promise = task_.promise;
-    if (!(promise.error > 0)) return uint32_t(std::bit_floor(unsigned(most)));
-    double seen = 0, own = 0, part = 0, floor = 0;
+  // Of the source's rays a part of it gets its share: one block of a sequence, or three.
+  void set_rays() {
+    double own = 0, part = 0;
     for (const uint32_t m : members_) {
-      seen += double(promise.seen[m]);
       own += double(task_.unoccluded[m]);
-      floor += double(promise.floor[m]);
       for (size_t c = 0; c < m_.cells.size(); ++c) part += double(unoccluded(c, m));
     }
-    const double p = std::max(double(found_.dense.open_share()), 0.02);
-    const double all = std::max(own, 1e-300);
-    const double allowed = std::max((seen / all + p) * p, sqr(floor / all));
-    const double wanted = double(found_.dense.gain()) * p * (1 - std::min(p, 0.98)) /
-                          (sqr(double(promise.error)) * allowed);
-    const double kept = std::clamp(wanted, double(fewest_rays), most);
-    found_.dense.note_wanted(double(members_.size()), kept);
-    const double n = std::clamp(found_.dense.spread(kept), double(fewest_rays), most) *
-                     (own > 0 ? part / own : 1);
-    return uint32_t(std::bit_floor(unsigned(std::max(n * std::sqrt(2.0), 4.0))));
+    const double n = direct_rays_of(task_, scene_) * (own > 0 ? part / own : 1);
+    // the nearest of 2^k and 3 · 2^k, in ratio
+    const unsigned below = std::bit_floor(unsigned(std::max(n * std::sqrt(4 / 3.0), 4.0)));
+    blocks_ = n > below * std::sqrt(1.5) ? 3 : 1;
+    const uint32_t of_block = blocks_ == 3 ? below / 2 : below;
+    rays_ = blocks_ * of_block;
+    if (m_.blocks.size() != of_block) m_.blocks = SobolBlocks(of_block);
+    m_.block.resize(2 * size_t(of_block));
+    m_.numbers.resize(2 * size_t(rays_));
+  }
+
+  // Those of a receiver: the blocks of one viewing ray of a pixel follow those of the one before.
+  void draw_numbers(const ShadowReceiver& r) {
+    const size_t n = m_.blocks.size();
+    for (uint32_t b = 0; b < blocks_; ++b) {
+      m_.blocks.draw(hash_combine(r.pixel != 0 ? r.pixel : r.stream, task_.request.stream),
+                     purpose_direct, (r.pixel != 0 ? r.sample : 0) * blocks_ + b, 2,
+                     m_.block.data());
+      for (size_t d = 0; d < 2; ++d)
+        std::copy_n(m_.block.data() + d * n, n, m_.numbers.data() + d * rays_ + b * n);
+    }
   }
 
   // Where a ray goes: which cell, and where on it.
@@ -194,78 +215,82 @@ class Caster {
     return {c, points_[c].area() * double(all / own), std::min(wanted / own, 0.99999994f)};
   }
 
-  void add_rays(uint32_t member) {
+  // The rays of the batch's receiver i.
+  void add_rays(size_t i, uint32_t member) {
+    const size_t first = i * rays_;
     const ShadowReceiver& r = task_.cluster.receivers[member];
-    m_.blocks.draw(hash_combine(r.pixel != 0 ? r.pixel : r.stream, task_.request.stream),
-                   purpose_direct, r.pixel != 0 ? r.sample : 0, 2, m_.numbers.data());
-    // as trace_rays.cpp has it
-    const double origin_height = dot(source_.normal, Vec3d(r.origin) - source_.point);
-    const double end = std::max(1 - 1.25 * source_.tolerance / origin_height, 1e-3);
-    const size_t first = m_.segments.size();
-    m_.segments.resize(first + rays_);
-    m_.weights.resize(first + rays_);
-    m_.before.resize(first + rays_, float(end));
-    if (rectangle_)
-      aim_by_angle(r, first);
-    else
-      aim_by_area(member, first);
-  }
-
-  // A horizon of the receiver's own hides what round sources have below it: such points have
-  // negative weights.
-  void aim_by_angle(const ShadowReceiver& r, size_t first) {
+    draw_numbers(r);
     LightPoints& p = m_.points;
-    const float* numbers = m_.numbers.data();
-    if (!sample_points(*rectangle_, r.position, rays_, numbers, numbers + rays_, p))
+    if (!rectangle_)
+      choose_by_area(member);
+    else if (!sample_points(*rectangle_, r.position, rays_, m_.numbers.data(),
+                            m_.numbers.data() + rays_, p))
       std::fill_n(p.inverse_pdf.begin(), rays_, 0.0f);
+    // A horizon of the receiver's own hides what round sources have below it: such points have
+    // negative weights.
     weigh_points(rays_, p.x.data(), p.y.data(), p.z.data(), p.inverse_pdf.data(), r.normal,
                  r.horizon, task_.does_horizon_hide() ? -1.0f : 0.0f, m_.weights.data() + first);
-    for (uint32_t i = 0; i < rays_; ++i)
-      m_.segments[first + i] = {r.origin, r.position + Vec3{p.x[i], p.y[i], p.z[i]},
-                                no_round_source};
+    // as trace_rays.cpp has it
+    const double origin_height = dot(source_.normal, Vec3d(r.origin) - source_.point);
+    m_.ends[i] = float(std::max(1 - 1.25 * source_.tolerance / origin_height, 1e-3));
+    make_ways(rays_, r.position - r.origin, m_.ends[i], p.x.data(), p.y.data(), p.z.data());
+    for (size_t a = 0; a < 3; ++a) {
+      const std::vector<float>& way = a == 0 ? p.x : a == 1 ? p.y : p.z;
+      std::fill_n(m_.segments.from[a].data() + first, rays_, r.origin[a]);
+      std::copy_n(way.data(), rays_, m_.segments.way[a].data() + first);
+    }
+    for (uint32_t k = 0; k < rays_; ++k)
+      if (m_.weights[first + k] == 0) m_.segments.from[0][first + k] = nowhere;
   }
 
-  void aim_by_area(uint32_t member, size_t first) {
+  void choose_by_area(uint32_t member) {
     const ShadowReceiver& r = task_.cluster.receivers[member];
-    const Vec3d x(r.position), normal(r.normal), horizon(r.horizon);
+    const Vec3d x(r.position);
     const double height = dot(source_.normal, x - source_.point);
+    LightPoints& p = m_.points;
+    p.resize(rays_);
     float all = 0;
     for (size_t c = 0; c < m_.cells.size(); ++c) all += unoccluded(c, member);
     for (uint32_t i = 0; i < rays_; ++i) {
       const Choice choice = choose(member, all, m_.numbers[i]);
-      const Vec3d y = points_[choice.cell].at(choice.u, m_.numbers[rays_ + i]), d = y - x;
-      const double f =
-          height * std::max(dot(normal, d), 0.0) / sqr(length_squared(d)) * choice.inverse_density;
-      const bool is_below = dot(horizon, d) <= 0;
-      m_.weights[first + i] = !is_below ? float(f) : task_.does_horizon_hide() ? -float(f) : 0;
-      m_.segments[first + i] = {r.origin, Vec3(y), no_round_source};
+      const Vec3d d = points_[choice.cell].at(choice.u, m_.numbers[rays_ + i]) - x;
+      const double square = std::max(length_squared(d), 1e-30);
+      p.x[i] = float(d.x);
+      p.y[i] = float(d.y);
+      p.z[i] = float(d.z);
+      p.inverse_pdf[i] = float(height * choice.inverse_density / (square * std::sqrt(square)));
     }
   }
 
-  // m_.is_hidden of all segments.
+  // is_hidden of the batch's segments.
   void trace() {
     m_.is_hidden.resize(m_.segments.size());
-    scene_.occluded(m_.segments, m_.before, m_.is_hidden);
+    scene_.occluded(m_.segments, m_.is_hidden);
     if (found_.rim == FoundFacets::Rim::none) return;
     m_.rest.clear();
     m_.rest_of.clear();
-    for (uint32_t i = 0; i < m_.segments.size(); ++i) {
-      if (m_.is_hidden[i] != 0 || !(m_.weights[i] > 0)) continue;
-      m_.rest.push_back(m_.segments[i]);
-      m_.rest.back().first = m_.before[i];
-      m_.rest_of.push_back(i);
-    }
+    for (uint32_t at = 0; at < m_.segments.size(); ++at)
+      if (m_.is_hidden[at] == 0 && m_.weights[at] > 0) add_rest(at, m_.ends[at / rays_]);
     m_.hits.resize(m_.rest.size());
     scene_.trace(m_.rest, m_.hits);
     for (size_t k = 0; k < m_.rest.size(); ++k)
       m_.is_hidden[m_.rest_of[k]] = is_free(source_, m_.rest[k], m_.hits[k], scene_) ? 0 : 1;
   }
 
-  // Keeps what the rays of a member say, for add_answers.
-  void note_answer(uint32_t member, size_t first) {
+  // What is left of a segment that was cut short at `end`.
+  void add_rest(uint32_t at, float end) {
+    const SegmentArrays& s = m_.segments;
+    const Vec3 from{s.from[0][at], s.from[1][at], s.from[2][at]};
+    const Vec3 way{s.way[0][at], s.way[1][at], s.way[2][at]};
+    m_.rest.push_back({from, from + way / end, no_round_source, end});
+    m_.rest_of.push_back(at);
+  }
+
+  // Keeps what the rays of a member, the batch's receiver i, say, for add_answers.
+  void note_answer(size_t i, uint32_t member) {
     m_.values.resize(rays_ + 1);
-    const RaySums sums = add_up(rays_, m_.weights.data() + first, m_.is_hidden.data() + first,
-                                control_, m_.values.data());
+    const RaySums sums = add_up(rays_, m_.weights.data() + i * rays_,
+                                m_.is_hidden.data() + i * rays_, control_, m_.values.data());
     const auto squares = double(sums.squares), changes = double(sums.changes);
     double all = 0;
     for (size_t c = 0; c < m_.cells.size(); ++c) all += double(unoccluded(c, member));
@@ -276,11 +301,11 @@ class Caster {
     // the root of their number, as N^-3/4; what is told here will be taken for independent.
     const double neighbours = changes / (2 * n * n);
     const double random = std::max(squares / n - sqr(mean), 0.0) / n;
-    const double order = random > 0 ? std::min(neighbours / random, 1.0) : 1;
+    const double by_chance = random > 0 ? std::min(neighbours / random, 1.0) : 1;
     const bool is_shared = task_.cluster.receivers[member].pixel != 0;
     const double shared = is_shared ? 1 / std::sqrt(double(task_.options.viewing_rays)) : 1;
-    const double gain = (0.25 + 0.75 * sqr(order)) * (shared + (1 - shared) * order);
-    m_.answers.push_back({member, all, mean + double(control_) * all, neighbours * gain, random});
+    const double gain = (0.25 + 0.75 * sqr(by_chance)) * (shared + (1 - shared) * by_chance);
+    m_.answers.push_back({member, all, mean + double(control_) * all, neighbours * gain});
   }
 
   // A member's own rays may all have met the same: the spread of all members' counts for one of n +
@@ -296,10 +321,6 @@ class Caster {
       s.add(float(a.unoccluded), float(a.light / a.unoccluded), float(variance / sqr(a.unoccluded)),
             ShadowAnswer::mixed);
       s.rays += rays_;
-      sums_.light += a.light;
-      sums_.unoccluded += a.unoccluded;
-      sums_.variance += variance;
-      sums_.random_variance += a.random_variance;
     }
   }
 
@@ -312,14 +333,30 @@ class Caster {
   std::span<CellSum> sums_of_;  // per receiver
   std::vector<CellPoints> points_;
   std::optional<LightPrimitive> rectangle_;
-  uint32_t rays_ = 0;
+  uint32_t rays_ = 0, blocks_ = 1;
   float control_ = 0;
-  struct Sums {
-    double light = 0, unoccluded = 0, variance = 0, random_variance = 0;
-  } sums_;
 };
 
 }  // namespace
+
+double direct_rays_of(const SourceTask& task, ShadowScene& scene) {
+  FoundFacets::Dense& dense = task.request.found->dense;
+  if (dense.is_known()) return dense.rays;
+  const LightRequest& request = task.request;
+  dense.open_share =
+      open_share(request, request.batch.empty() ? task.cluster.receivers : request.batch, scene);
+  dense.rays = double(task.options.rays.most_direct_rays);
+  const Promise& promise = task.promise;
+  if (!(promise.error > 0)) return dense.rays;
+  double own = 0, others = 0;
+  for (size_t i = 0; i < task.cluster.size(); ++i) {
+    own += double(task.unoccluded[i]);
+    others += double(promise.seen[i] + promise.rest[i]);
+  }
+  const double wanted = variance_kept * own / ((own + others) * sqr(double(promise.error)));
+  dense.rays = std::clamp(wanted, fewest_rays, dense.rays);
+  return dense.rays;
+}
 
 void cast_direct_rays(const SourceTask& task, const SourcePart& part,
                       std::span<const uint32_t> members, ShadowScene& scene,

@@ -6,8 +6,7 @@
 // exact unoccluded light, and evenly over each. With f the unoccluded term over the points'
 // density, V what a ray says and b any number that does not depend on them, the mean of f V - b (f
 // - U) is unbiased, U being the exact unoccluded light: where nothing hides the source b = 1 leaves
-// no noise, and where all does b = 0. What b is, and how many rays are cast, comes from what rays
-// of earlier clusters to this source have found.
+// no noise, and where all does b = 0. What b is comes from pilots (pilot_rays.h).
 #pragma once
 
 #include <cstdint>
@@ -24,21 +23,31 @@ struct DirectRayMemory {
   std::vector<float> unoccluded;  // per cell and receiver, sr
   std::vector<float> values;      // of a cell, or of a receiver's rays
   SobolBlocks blocks;
-  std::vector<float> numbers;
+  std::vector<float> block, numbers;
   LightPoints points;
-  std::vector<ShadowSegment> segments, rest;
-  std::vector<float> before;
-  std::vector<float> weights;  // per segment: f, sr
+  std::vector<float> weights;  // receiver by receiver: f, sr
+  SegmentArrays segments;
+  std::vector<float> ends;  // per receiver: how much of the way rays go
   std::vector<uint8_t> is_hidden;
+  std::vector<ShadowSegment> rest;
   std::vector<uint32_t> rest_of;
   std::vector<ShadowHit> hits;
   struct Answer {
     uint32_t member;
-    double unoccluded, light;          // sr
-    double variance, random_variance;  // sr²; the latter: of as many independent rays
+    double unoccluded, light;  // sr
+    double variance;           // sr²
   };
   std::vector<Answer> answers;
 };
+
+constexpr double fewest_rays = 16;
+
+// So many rays from each receiver of a batch: as many as make the error what the masks' may be
+// (Promise) where the source is half open, by its share of the unoccluded light. Not by what is
+// open here: batches in which little is would take rays from those in which much is, where they
+// count for more of the picture's light; and a pixel's viewing rays share a sequence. The first
+// cluster that asks has pilots cast, which find what is open.
+double direct_rays_of(const SourceTask& task, ShadowScene& scene);
 
 // Answers `members` of the part.
 void cast_direct_rays(const SourceTask& task, const SourcePart& part,

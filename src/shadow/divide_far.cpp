@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shadow/far_pilot.h"
+#include "shadow/pilot_rays.h"
 #include "shadow/settle_cell.h"
 
 namespace troffer {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shadow/direct_rays.h"
+#include "shadow/pilot_rays.h"
 #include "shadow/sphere_outline.h"
 
 namespace troffer {
@@ -110,6 +112,13 @@ double radius_of(const ReceiverHull& hull) {
 // Facets and round bodies before a sphere that make halving a cluster worth while.
 constexpr size_t fewest_to_halve = 8;
 
+// A ray straight to a source costs as much as so many facets of a mask, a mask with its
+// certificates and pilots as so many rays beside them, a ray as to gather so many facets
+// (docs/certified.md).
+constexpr double facets_per_ray = 6, rays_per_mask = 25, gathered_per_ray = 4;
+// So many facets are worth a mask whatever is asked.
+constexpr double fewest_facets = 384;
+
 // What a division carries along.
 struct Division {
   const SourceTask& task;
@@ -126,6 +135,16 @@ struct Division {
     size_t most = o.longest_list;
     if (task.promise.error > 0) most = std::min(most, size_t(task.promise.longest_list));
     return is_last ? std::min(most, o.most_found) : most;
+  }
+  // Before a flat source lists may be as long as masks are worth that save a receiver all its rays,
+  // and no longer than gathering them is worth.
+  size_t most_before_flat(size_t members, bool is_last) const {
+    const size_t longest = most_facets(is_last);
+    if (is_last || !(task.promise.error > 0)) return longest;
+    const FoundFacets::Dense& dense = task.request.found->dense;
+    const double worth = dense.is_known() ? facets_per_ray * (dense.rays - rays_per_mask) : 0;
+    const double shared = gathered_per_ray * double(members) * std::max(dense.rays, fewest_rays);
+    return std::min(longest, size_t(std::min(std::max(worth, fewest_facets), shared)));
   }
   void cut_list(const ReceiverHull& hull) {
     task.request.found->note_hopeless(hull.centre, radius_of(hull));
@@ -149,18 +168,9 @@ struct Division {
     return part;
   }
 
-  void flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
-            bool is_whole, int halvings);
-  void sphere(std::span<uint32_t> members, const ReceiverHull& hull, int halvings);
-};
-
-// Where there are too many facets, halves the larger of the two, receivers or source.
-void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
-                    bool is_whole, int halvings) {
-  const bool is_last = is_last_try(halvings, hull);
-  const FlatSource& source = *task.request.flat;
-  if (is_last && halvings > 0 && task.request.found->dense.is_partly_open()) {
-    // No single facet will prove it all dark: nothing is worth gathering.
+  // Nothing is known of what stands before the cell.
+  void add_unknown(std::span<const uint32_t> members, const ReceiverHull& hull,
+                   const FlatCell& cell, bool is_whole) {
     memory.candidates.facets.clear();
     memory.candidates.rounds.clear();
     memory.candidates.is_complete = false;
@@ -168,17 +178,48 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
     SourcePart& part = add_part(members, hull);
     part.cell = cell;
     part.is_whole = is_whole;
-    return;
   }
-  gather_facets(hull, cell.all_corners(), source.plane.normal, most_facets(is_last), scene,
-                memory.candidates, counters);
-  if (is_last && memory.candidates.is_too_long) cut_list(hull);
-  if (is_last || !memory.candidates.is_too_long) {
-    SourcePart& part = add_part(members, hull);
-    part.cell = cell;
-    part.is_whole = is_whole;
-    return;
+  void flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
+            bool is_whole, int halvings);
+  void halves(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
+              bool is_whole, int halvings);
+  void sphere(std::span<uint32_t> members, const ReceiverHull& hull, int halvings);
+};
+
+// Where there are too many facets, halves the larger of the two, receivers or source.
+void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
+                    bool is_whole, int halvings) {
+  const bool is_last = is_last_try(halvings, hull);
+  FoundFacets& found = *task.request.found;
+  // No single facet will prove it all dark: nothing is worth gathering.
+  if (is_last && halvings > 0 && found.dense.is_partly_open())
+    return add_unknown(members, hull, cell, is_whole);
+  const auto gather = [&](size_t most) {
+    gather_facets(hull, cell.all_corners(), task.request.flat->plane.normal, most, scene,
+                  memory.candidates, counters);
+    return memory.candidates.is_too_long;
+  };
+  size_t most = most_before_flat(members.size(), is_last);
+  bool is_too_long = gather(most);
+  if (is_too_long && !is_last && task.promise.error > 0) {
+    // What rays would cost tells how long lists may be.
+    direct_rays_of(task, scene);
+    const size_t worth = most_before_flat(members.size(), is_last);
+    if (worth > most) is_too_long = gather(worth);
+    if (is_too_long && found.dense.is_partly_open()) {
+      found.note_hopeless(hull.centre, radius_of(hull));
+      return add_unknown(members, hull, cell, is_whole);
+    }
   }
+  if (is_last && is_too_long) cut_list(hull);
+  if (!is_last && is_too_long) return halves(members, hull, cell, is_whole, halvings);
+  SourcePart& part = add_part(members, hull);
+  part.cell = cell;
+  part.is_whole = is_whole;
+}
+
+void Division::halves(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
+                      bool is_whole, int halvings) {
   FlatCell first, second;
   const double hull_size = diameter({hull.corners.data(), size_t(hull.count)});
   const bool can_halve_members = members.size() >= 2 * task.options.smallest_cluster;

@@ -1,6 +1,7 @@
 // What certified visibility asks of a scene: who stands in a shaft, and what a ray meets.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,24 @@ struct ShadowSegment {
   Vec3 from, to;
   uint64_t own = no_round_source;
   float first = 0;  // what lies before, as a share of the way, is known to be free
+};
+
+// Segments coordinate by coordinate: where each begins, and the way to where it ends.
+struct SegmentArrays {
+  std::array<std::vector<float>, 3> from, way;
+
+  size_t size() const { return from[0].size(); }
+  void resize(size_t n) {
+    for (auto* arrays : {&from, &way})
+      for (std::vector<float>& a : *arrays) a.resize(n);
+  }
+  // The segment as far as `share` of its way.
+  void add(const ShadowSegment& s, float share) {
+    for (size_t a = 0; a < 3; ++a) {
+      from[a].push_back(s.from[a]);
+      way[a].push_back((s.to[a] - s.from[a]) * share);
+    }
+  }
 };
 
 // The first thing on a segment: ray_is_free, ray_is_stopped, or the id of a facet, and where.
@@ -54,9 +73,8 @@ class ShadowScene {
                           size_t most, uint64_t own, ShadowCandidates& out) = 0;
   // hits[i]: the first thing on segments[i] but for segments[i].own, at which a segment ends free.
   virtual void trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) = 0;
-  // is_hidden[i]: whether anything lies on segments[i] between 0 and before[i] < 1: cheaper.
-  virtual void occluded(std::span<const ShadowSegment> segments, std::span<const float> before,
-                        std::span<uint8_t> is_hidden) = 0;
+  // is_hidden[i]: whether anything lies on segment i: cheaper.
+  virtual void occluded(const SegmentArrays& segments, std::span<uint8_t> is_hidden) = 0;
   virtual Quad facet(uint32_t id) const = 0;
   // Largest absolute coordinate of all facets, metres.
   virtual double magnitude() const = 0;

@@ -62,6 +62,9 @@ struct LightRequest {
   float brightness = 1;           // luminance of its radiance
   FoundFacets* found = nullptr;   // what earlier clusters have learnt; this one adds to it
   const FarScene* far = nullptr;  // of a flat source at infinity
+  // Receivers that this cluster is one of several of: rays straight to the source are as many for
+  // all of them. None: the cluster's own.
+  std::span<const ShadowReceiver> batch{};
 };
 
 // What the masks of one of n sources may err by, and may cost. Where receivers see the light `seen`

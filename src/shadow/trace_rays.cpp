@@ -24,7 +24,7 @@ void trace_without_names(std::span<const RaySource> sources, RayPlan& plan, Shad
   t.before.clear();
   t.has_rim.clear();
   t.picked.clear();
-  t.picked_segments.clear();
+  t.picked_arrays.resize(0);
   for (const RayGroup& g : plan.groups) {
     const RaySource& s = sources[g.source];
     if (!s.found->is_hopeless() || s.is_round) continue;
@@ -33,13 +33,13 @@ void trace_without_names(std::span<const RaySource> sources, RayPlan& plan, Shad
       const double end = 1 - 1.25 * s.tolerance / height;
       if (!(end > 0)) continue;
       t.picked.push_back(i);
-      t.picked_segments.push_back(plan.segments[i]);
+      t.picked_arrays.add(plan.segments[i], float(end));
       t.before.push_back(float(end));
       t.has_rim.push_back(s.found->rim == FoundFacets::Rim::none ? 0 : 1);
     }
   }
   t.is_hidden.resize(t.picked.size());
-  scene.occluded(t.picked_segments, t.before, t.is_hidden);
+  scene.occluded(t.picked_arrays, t.is_hidden);
   for (size_t k = 0; k < t.picked.size(); ++k) {
     const uint32_t i = t.picked[k];
     plan.segments[i].first = t.before[k];

@@ -32,6 +32,7 @@ struct TracedRays {
   std::vector<ShadowHit> hits;
   std::vector<uint32_t> picked;  // indices of segments that go into one call
   std::vector<ShadowSegment> picked_segments;
+  SegmentArrays picked_arrays;
   std::vector<ShadowHit> picked_hits;
   std::vector<float> before;
   std::vector<uint8_t> is_hidden, has_rim;

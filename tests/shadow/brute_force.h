@@ -68,11 +68,11 @@ class BruteForceScene final : public ShadowScene {
         if (meets(Vec3d(s[i].from), Vec3d(s[i].to), facets[f], 0) == 1) hits[i] = {f, 0.5f};
     }
   }
-  void occluded(std::span<const ShadowSegment> s, std::span<const float> before,
-                std::span<uint8_t> is_hidden) override {
+  void occluded(const SegmentArrays& s, std::span<uint8_t> is_hidden) override {
     segments += s.size();
     for (size_t i = 0; i < s.size(); ++i) {
-      const Vec3d from(s[i].from), end = from + (Vec3d(s[i].to) - from) * double(before[i]);
+      const Vec3d from(s.from[0][i], s.from[1][i], s.from[2][i]);
+      const Vec3d end = from + Vec3d(s.way[0][i], s.way[1][i], s.way[2][i]);
       is_hidden[i] = 0;
       for (const Quad& q : facets) is_hidden[i] |= meets(from, end, q, 0) == 1 ? 1 : 0;
     }

@@ -1,5 +1,5 @@
-// How much of what far sources would send arrives at a cluster, by a few rays, which count for
-// nothing else: it decides what proofs may cost.
+// How much of what sources would send arrives at a cluster, by a few rays, which count for nothing
+// else: it decides what proofs may cost.
 #pragma once
 
 #include <span>
@@ -15,6 +15,10 @@ namespace troffer {
 // theirs, ½.
 double far_open_share(const ShadowCluster& cluster, std::span<const LightRequest> requests,
                       std::span<const float> unoccluded, ShadowScene& scene);
+
+// The share of the flat source's light that arrives at the receivers, between 1/130 and 129/130.
+double open_share(const LightRequest& request, std::span<const ShadowReceiver> receivers,
+                  ShadowScene& scene);
 
 // So many rays to sources of which the share p arrives err by `error` of that: N of a Sobol
 // sequence by about √(p (1 - p)) N^-¾.
