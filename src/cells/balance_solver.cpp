@@ -11,7 +11,7 @@ namespace troffer {
 namespace {
 
 // Directions that the next one is made orthogonal to.
-constexpr size_t kept_directions = 6;
+constexpr size_t kept_directions = 8;
 constexpr size_t cells_at_a_time = 8192;
 
 using Field = std::vector<Rgb>;
@@ -24,8 +24,11 @@ struct Direction {
 
 class Solver {
  public:
-  Solver(const LightOperator& w, const Field& d, int threads)
-      : w_(w), threads_(threads), partial_((d.size() + cells_at_a_time - 1) / cells_at_a_time) {
+  Solver(const LightOperator& w, const Field& d, const std::vector<float>& weights, int threads)
+      : w_(w),
+        weights_(weights),
+        threads_(threads),
+        partial_((d.size() + cells_at_a_time - 1) / cells_at_a_time) {
     result_.light.assign(d.size(), Rgb{0});
     residual_ = d;
   }
@@ -89,10 +92,11 @@ class Solver {
     return all;
   }
 
-  double sum(const Field& a) {
+  double sum(const Field& a) const {
     double all = 0;
-    for (const Rgb& x : a)
-      all += std::abs(double(x.r)) + std::abs(double(x.g)) + std::abs(double(x.b));
+    for (size_t i = 0; i < a.size(); ++i)
+      all += double(weights_[i]) *
+             (std::abs(double(a[i].r)) + std::abs(double(a[i].g)) + std::abs(double(a[i].b)));
     return all;
   }
 
@@ -111,6 +115,7 @@ class Solver {
   }
 
   const LightOperator& w_;
+  const std::vector<float>& weights_;
   int threads_;
   std::vector<Channels> partial_;
   Balance result_;
@@ -121,9 +126,9 @@ class Solver {
 
 }  // namespace
 
-Balance solve_balance(const LightOperator& w, const Field& d, double most_left, int most_iterations,
-                      int threads) {
-  return Solver(w, d, threads).solve(most_left, most_iterations);
+Balance solve_balance(const LightOperator& w, const Field& d, const std::vector<float>& weights,
+                      double most_left, int most_iterations, int threads) {
+  return Solver(w, d, weights, threads).solve(most_left, most_iterations);
 }
 
 }  // namespace troffer

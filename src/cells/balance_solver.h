@@ -23,7 +23,8 @@ struct Balance {
 // where reflectances are near one, so that bounce after bounce would take hundreds, a few dozen do.
 // [1] Eisenstat, Elman & Schultz, "Variational Iterative Methods for Nonsymmetric Systems of Linear
 // Equations", SIAM J. Numer. Anal. 20(2), 1983 (ORTHOMIN).
-Balance solve_balance(const LightOperator& w, const std::vector<Rgb>& d, double most_left,
-                      int most_iterations, int threads);
+Balance solve_balance(const LightOperator& w, const std::vector<Rgb>& d,
+                      const std::vector<float>& weights, double most_left, int most_iterations,
+                      int threads);
 
 }  // namespace troffer

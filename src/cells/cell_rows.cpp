@@ -14,7 +14,7 @@ namespace {
 constexpr size_t cells_at_a_time = 1024;
 constexpr int most_iterations = 400;
 constexpr int bounces_of_noise = 6;
-constexpr double most_unbalanced = 1e-6;  // of the sum of all light
+constexpr double most_unbalanced = 2e-6;  // of the light, both by what is asked
 
 template <typename F>
 void by_cells(size_t n, int threads, const F& f) {
@@ -109,14 +109,16 @@ void CellRows::spread(std::vector<float>& differences, int threads) const {
 }
 
 CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<float>& of_direct,
-                          int threads) const {
+                          std::vector<float> importance, int threads) const {
+  importance.resize(direct.size(), 0);
   CellLight light;
   std::vector<Rgb> given, next;
   apply(direct, std::vector<Rgb>(direct.size()), Half::both, threads, given);
   const LightOperator reflected = [&](const std::vector<Rgb>& v, std::vector<Rgb>& out) {
     reflect(v, threads, out);
   };
-  Balance balance = solve_balance(reflected, given, most_unbalanced, most_iterations, threads);
+  Balance balance =
+      solve_balance(reflected, given, importance, most_unbalanced, most_iterations, threads);
   light.iterations = balance.iterations;
   std::vector<Rgb> e = std::move(balance.light);
   for (Rgb& x : e) x = {std::max(x.r, 0.0f), std::max(x.g, 0.0f), std::max(x.b, 0.0f)};

@@ -53,9 +53,10 @@ class CellRows {
   bool has_row(size_t cell) const { return cell < rays_.size() && rays_[cell] > 0; }
   uint32_t rays(size_t cell) const { return rays_[cell]; }
 
-  // Solves for E; direct: D, per cell; of_direct: half the difference of two halves of it.
+  // Solves for E; direct: D, per cell; of_direct: half the difference of two halves of it;
+  // importance: of each cell, for what is asked (those beyond its end have none).
   CellLight solve(const std::vector<Rgb>& direct, const std::vector<float>& of_direct,
-                  int threads) const;
+                  std::vector<float> importance, int threads) const;
   // How much of what is asked for each cell's light is, all bounces counted: y = c + Wᵀ y. Not more
   // than `iterations` bounces.
   std::vector<float> importance(const std::vector<float>& asked, int iterations) const;

@@ -37,6 +37,13 @@ struct Place {
   bool is_gloss = false;  // seen by way of gloss: its cell itself is asked
 };
 
+// What is asked for, by all that look at cells first.
+struct Asked {
+  size_t askers = 0;              // viewing rays, and points
+  std::vector<float> light;       // per cell
+  std::vector<float> importance;  // per cell, all bounces counted, as last looked at
+};
+
 class Builder {
  public:
   Builder(const PreparedScene& scene, const DirectLight& direct, const CellBuilderOptions& options,
@@ -73,9 +80,8 @@ class Builder {
   CellStore* store_;  // null: nothing is kept
   std::shared_ptr<CellMap> map_;
   CellRows rows_;
-  std::vector<float> asked_;  // per cell
-  size_t askers_ = 0;         // viewing rays, and points
-  size_t entries_kept_ = 0;   // of rows_, from the store
+  Asked asked_;
+  size_t entries_kept_ = 0;  // of rows_, from the store
   CellStatistics statistics_;
 };
 
@@ -116,7 +122,7 @@ void Builder::start_map(const CellsSeen& seen) {
 
 void Builder::ask(const CellPilot& pilot) {
   const std::vector<Place> places = places_of(pilot);
-  askers_ = pilot.viewing.size() + pilot.places.size();
+  asked_.askers = pilot.viewing.size() + pilot.places.size();
   std::vector<CellTask> tasks;
   const auto rays = uint32_t(
       std::clamp<size_t>(pilot_rays / std::max<size_t>(places.size(), 1), rays_of_row, 2048));
@@ -138,8 +144,8 @@ void Builder::ask(const CellPilot& pilot) {
   start_map(seen);
   for (const CellSeen& c : seen.seen) {
     const uint32_t cell = map_->add(c.hit, c.distance, true);
-    asked_.resize(map_->size(), 0);
-    asked_[cell] += tasks[c.task].weight * luminance(c.weight);
+    asked_.light.resize(map_->size(), 0);
+    asked_.light[cell] += tasks[c.task].weight * luminance(c.weight);
   }
   rows_.finish(map_->size());
 }
@@ -194,14 +200,15 @@ bool Builder::run(const std::vector<CellTask>& tasks) {
     trace_cell_rays(walks_, map_.get(), some, options_.threads, seen, counters_);
     note(some, seen);
   }
-  asked_.resize(map_->size(), 0);
+  asked_.light.resize(map_->size(), 0);
   rows_.finish(map_->size());
   return true;
 }
 
 // Cells without a row, the most important first, but for those that hardly matter.
 std::vector<uint32_t> Builder::cells_to_resolve() {
-  const std::vector<float> y = rows_.importance(asked_, bounces_of_importance);
+  asked_.importance = rows_.importance(asked_.light, bounces_of_importance);
+  const std::vector<float>& y = asked_.importance;
   double all = 0, open = 0;
   std::vector<uint32_t> cells;
   for (uint32_t c = 0; c < y.size(); ++c) {
@@ -225,7 +232,8 @@ std::vector<uint32_t> Builder::cells_to_resolve() {
 // As many rays again as the first ones of the cells that matter, in proportion to what is asked of
 // them; less what they have had already, for other views.
 std::vector<CellTask> Builder::further_tasks() {
-  const std::vector<float> y = rows_.importance(asked_, bounces_of_importance);
+  asked_.importance = rows_.importance(asked_.light, bounces_of_importance);
+  const std::vector<float>& y = asked_.importance;
   const double all = std::accumulate(y.begin(), y.end(), 0.0);
   std::vector<CellTask> tasks;
   if (!(all > 0)) return tasks;
@@ -292,12 +300,13 @@ void Builder::keep(const CellDirectLight& lit) {
 std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_point start) {
   CellDirectLight lit;
   if (!add_direct(direct, lit)) return nullptr;
-  CellLight light = rows_.solve(lit.irradiance, lit.half_difference, options_.threads);
+  CellLight light = rows_.solve(lit.irradiance, lit.half_difference, std::move(asked_.importance),
+                                options_.threads);
   statistics_.cells = map_->size();
   double sum = 0;
-  for (size_t c = 0; c < asked_.size(); ++c)
-    sum += double(asked_[c]) * double(luminance(light.irradiance[c]));
-  statistics_.typical = sum / pi / double(std::max<size_t>(askers_, 1));
+  for (size_t c = 0; c < asked_.light.size(); ++c)
+    sum += double(asked_.light[c]) * double(luminance(light.irradiance[c]));
+  statistics_.typical = sum / pi / double(std::max<size_t>(asked_.askers, 1));
   statistics_.entries = rows_.entry_count();
   statistics_.rays = rows_.ray_count();
   statistics_.iterations = light.iterations;

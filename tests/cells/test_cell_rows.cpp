@@ -34,7 +34,7 @@ TEST_CASE("two cells that see half of each other") {
   rows.add({1, 4, 0, false, Rgb{4, 0, 0}}, std::vector<RowEntry>{{0, Rgb{0.8f}}, {0, Rgb{0.8f}}});
   rows.finish(2);
   // E0 = 1 + E1 / 4, E1 = 1 (red) + .4 E0
-  const CellLight light = rows.solve({Rgb{1}, Rgb{0}}, {0, 0}, 1);
+  const CellLight light = rows.solve({Rgb{1}, Rgb{0}}, {0, 0}, {1, 1}, 1);
   const double red = (1 + 0.25) / (1 - 0.25 * 0.4), green = 1 / (1 - 0.25 * 0.4);
   CHECK(double(light.irradiance[0].r) == doctest::Approx(red).epsilon(1e-5));
   CHECK(double(light.irradiance[0].g) == doctest::Approx(green).epsilon(1e-5));
@@ -45,7 +45,8 @@ TEST_CASE("a room of reflectance .95 and more keeps its light, and is solved in 
   for (const float rho : {0.5f, 0.95f, 0.99f}) {
     const CellRows rows = random_rows(2000, rho);
     const std::vector<Rgb> direct(2000, Rgb{1});
-    const CellLight light = rows.solve(direct, std::vector<float>(direct.size(), 0), 2);
+    const CellLight light = rows.solve(direct, std::vector<float>(direct.size(), 0),
+                                       std::vector<float>(direct.size(), 1), 2);
     CAPTURE(rho);
     for (const Rgb& e : light.irradiance)
       CHECK(double(e.r) == doctest::Approx(1 / (1 - double(rho))).epsilon(2e-4));
@@ -72,7 +73,8 @@ TEST_CASE("two bright rooms with a chink between them are solved in few rounds")
   rows.finish(2 * n);
   std::vector<Rgb> direct(2 * n, Rgb{0});
   for (uint32_t i = 0; i < n; ++i) direct[i] = Rgb{1};
-  const CellLight light = rows.solve(direct, std::vector<float>(2 * n, 0), 2);
+  const CellLight light =
+      rows.solve(direct, std::vector<float>(2 * n, 0), std::vector<float>(2 * n, 1), 2);
   CHECK(light.iterations <= 40);
   // What does not balance, by rows again in double precision.
   double worst = 0;
@@ -105,7 +107,7 @@ TEST_CASE("importance is the adjoint of light") {
     grey.add({i, 16, 0, i % 2 == 0, Rgb{0}}, entries);
   }
   grey.finish(n);
-  const CellLight light = grey.solve(direct, std::vector<float>(n, 0), 1);
+  const CellLight light = grey.solve(direct, std::vector<float>(n, 0), std::vector<float>(n, 1), 1);
   const std::vector<float> y = grey.importance(asked, 200);
   double forward = 0, backward = 0;
   for (size_t i = 0; i < n; ++i) {
@@ -120,8 +122,8 @@ TEST_CASE("the same light for any number of threads") {
   const CellRows rows = random_rows(5000, 0.8f);
   const std::vector<Rgb> direct(5000, Rgb{1, 2, 3});
   const std::vector<float> differences(5000, 0.1f);
-  const CellLight one = rows.solve(direct, differences, 1),
-                  many = rows.solve(direct, differences, 5);
+  const CellLight one = rows.solve(direct, differences, differences, 1),
+                  many = rows.solve(direct, differences, differences, 5);
   CHECK(one.irradiance == many.irradiance);
   CHECK(one.half_difference == many.half_difference);
 }
@@ -132,7 +134,7 @@ TEST_CASE("what halves differ by goes on to the cells that see it") {
   const std::vector<RowEntry> entries(4, RowEntry{1, Rgb{0.5f}});
   for (const bool is_second : {false, true}) rows.add({0, 4, 0, is_second, Rgb{0}}, entries);
   rows.finish(2);
-  const CellLight light = rows.solve({Rgb{0}, Rgb{2}}, {0, 0.2f}, 1);
+  const CellLight light = rows.solve({Rgb{0}, Rgb{2}}, {0, 0.2f}, {1, 1}, 1);
   CHECK(light.irradiance[0].g == doctest::Approx(1));
   CHECK(light.half_difference[1] == doctest::Approx(0.2f));
   CHECK(light.half_difference[0] == doctest::Approx(0.1f));

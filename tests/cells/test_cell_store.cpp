@@ -81,8 +81,9 @@ TEST_CASE("kept cells come back the same: the same bytes, and every hit finds it
     }
   }
   CHECK(found > 5000);
-  const CellLight a = store.rows.solve(store.direct, store.direct_half_difference, 1);
-  const CellLight b = back.rows.solve(back.direct, back.direct_half_difference, 1);
+  const std::vector<float> even(store.direct.size(), 1);
+  const CellLight a = store.rows.solve(store.direct, store.direct_half_difference, even, 1);
+  const CellLight b = back.rows.solve(back.direct, back.direct_half_difference, even, 1);
   CHECK(a.irradiance == b.irradiance);
 }
 
