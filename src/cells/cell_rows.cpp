@@ -47,17 +47,15 @@ void CellRows::finish(size_t cells) {
   for (uint32_t p = 0; p < parts_.size(); ++p) order_[next[parts_[p].cell]++] = p;
 }
 
-// Σ over the rays of a cell, of what the cells they see have; and how many rays.
-template <typename Taken>
-Rgb CellRows::gather(size_t cell, const std::vector<Rgb>& e, const Taken& is_taken,
-                     uint32_t& rays) const {
-  Rgb sum;
+CellRows::RowSum CellRows::sum_of(size_t cell, const std::vector<Rgb>& e, Half half) const {
+  RowSum sum;
   for (size_t o = begin_[cell]; o < begin_[cell + 1]; ++o) {
     const RowPart& p = parts_[order_[o]];
-    if (!is_taken(p, sum)) continue;
-    rays += p.rays;
+    if (half != Half::both && p.is_second_half != (half == Half::second)) continue;
+    sum.emitted += p.emission;
+    sum.rays += p.rays;
     const RowEntry* k = &entries_[first_entry_[order_[o]]];
-    for (uint32_t t = 0; t < p.entries; ++t) sum += k[t].weight * e[k[t].cell];
+    for (uint32_t t = 0; t < p.entries; ++t) sum.reflected += k[t].weight * e[k[t].cell];
   }
   return sum;
 }
@@ -67,14 +65,9 @@ void CellRows::apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, 
                      int threads, std::vector<Rgb>& out) const {
   out.resize(direct.size());
   by_cells(direct.size(), threads, [&](size_t i) {
-    uint32_t rays = 0;
-    const auto is_taken = [&](const RowPart& p, Rgb& sum) {
-      if (half != Half::both && p.is_second_half != (half == Half::second)) return false;
-      sum += p.emission;
-      return true;
-    };
-    const Rgb sum = gather(i, e, is_taken, rays);
-    out[i] = rays > 0 ? direct[i] + sum / float(rays) : direct[i];
+    const RowSum sum = sum_of(i, e, half);
+    out[i] = direct[i];
+    if (sum.rays > 0) out[i] += (sum.emitted + sum.reflected) / float(sum.rays);
   });
 }
 
@@ -82,10 +75,8 @@ void CellRows::apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, 
 void CellRows::reflect(const std::vector<Rgb>& e, int threads, std::vector<Rgb>& out) const {
   out.resize(e.size());
   by_cells(e.size(), threads, [&](size_t i) {
-    uint32_t rays = 0;
-    const Rgb sum = gather(
-        i, e, [](const RowPart&, Rgb&) { return true; }, rays);
-    out[i] = rays > 0 ? sum / float(rays) : Rgb{0};
+    const RowSum sum = sum_of(i, e, Half::both);
+    out[i] = sum.rays > 0 ? sum.reflected / float(sum.rays) : Rgb{0};
   });
 }
 

@@ -63,11 +63,15 @@ class CellRows {
 
  private:
   enum class Half { both, first, second };
+  // Over a cell's rays: what the cells that they see reflect, and sources that they ran into.
+  struct RowSum {
+    Rgb reflected, emitted;
+    uint32_t rays = 0;
+  };
   void apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half, int threads,
              std::vector<Rgb>& out) const;
   void reflect(const std::vector<Rgb>& e, int threads, std::vector<Rgb>& out) const;
-  template <typename Taken>
-  Rgb gather(size_t cell, const std::vector<Rgb>& e, const Taken& is_taken, uint32_t& rays) const;
+  RowSum sum_of(size_t cell, const std::vector<Rgb>& e, Half half) const;
   void spread(std::vector<float>& differences, int threads) const;
 
   std::vector<RowPart> parts_;

@@ -67,6 +67,16 @@ void clean_mesh(Mesh& mesh, WarningLog& warnings) {
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
 }
 
+void show_alone(Mesh mesh, Scene& scene) {
+  clean_mesh(mesh, scene.warnings);
+  scene.materials.emplace_back();
+  if (mesh.triangles.empty()) {
+    scene.warnings.add("the scene shows no triangles");
+    return;
+  }
+  scene.meshes.push_back(std::move(mesh));
+}
+
 double area_of(const Mesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) sum += 0.5 * length(area_vector(mesh, t));

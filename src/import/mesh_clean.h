@@ -15,6 +15,10 @@ namespace troffer {
 // Triangle indices must be in range.
 void clean_mesh(Mesh& mesh, WarningLog& warnings);
 
+// Makes a mesh, cleaned, all that a scene without materials shows, with one of the usual kind; a
+// warning where nothing is left of it.
+void show_alone(Mesh mesh, Scene& scene);
+
 // Twice the area times the unit normal of the front.
 inline Vec3d area_vector(const Mesh& mesh, const Triangle& t) {
   const Vec3d p0(mesh.positions[t[0]]), p1(mesh.positions[t[1]]), p2(mesh.positions[t[2]]);

@@ -22,13 +22,7 @@ Scene import_ply(const std::string& path) {
     for (const Triangle& t : mesh.triangles)
       bounds.add_triangle(placed(t[0]), placed(t[1]), placed(t[2]));
     for (Vec3& p : mesh.positions) p = Vec3(Vec3d(p) + shift);
-    clean_mesh(mesh, scene.warnings);
-    scene.materials.emplace_back();
-    if (mesh.triangles.empty()) {
-      scene.warnings.add("the scene shows no triangles");
-      return;
-    }
-    scene.meshes.push_back(std::move(mesh));
+    show_alone(std::move(mesh), scene);
   });
 }
 

@@ -100,13 +100,7 @@ Scene import_stl(const std::string& path) {
     scene.file = path;
     const std::string text = read_text_file(path);
     Mesh mesh = mesh_of(read_corners(path, text), scene.origin, bounds);
-    clean_mesh(mesh, scene.warnings);
-    scene.materials.emplace_back();
-    if (mesh.triangles.empty()) {
-      scene.warnings.add("the scene shows no triangles");
-      return;
-    }
-    scene.meshes.push_back(std::move(mesh));
+    show_alone(std::move(mesh), scene);
   });
 }
 

@@ -42,8 +42,8 @@ constexpr float ray_offset(float magnitude) {
 // A way to a point of a light, made to end just before it, so that the light itself does not count:
 // shortened, not turned, until it ends `off` metres above the light's plane. `normal`: of the
 // light, unit, on this side; zero if the light is without extent. An end moved along the normal
-// would see over an edge what the point does not: 50 µm off a strip behind a low edge are 10 % of
-// the light where only .5 mm of the strip are seen.
+// would see over an edge what the point does not: 50 µm off a strip behind a low edge were 12 % of
+// the light where 1 mm of the strip is seen.
 inline Vec3 ended_before_light(const Vec3& way, const Vec3& normal, float off) {
   const float height = std::max(-dot(way, normal), 2 * off);
   return way * (1 - dot(normal, normal) * off / std::max(height, 1e-30f));

@@ -172,4 +172,15 @@ std::vector<Measured> measured(const Finished& finished) {
   return values;
 }
 
+std::vector<Measured> measure_direct(const Folder& folder, const std::string& scene,
+                                     const std::string& points,
+                                     const std::vector<std::string>& options) {
+  std::vector<std::string> words{"measure", scene, "--points", points, "--indirect", "none"};
+  words.insert(words.end(), options.begin(), options.end());
+  const Finished f = run_program(folder, words);
+  CAPTURE(f.err);
+  REQUIRE(f.status == 0);
+  return measured(f);
+}
+
 }  // namespace troffer::test

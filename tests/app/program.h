@@ -63,6 +63,10 @@ struct Measured {
   double lx, error;
 };
 std::vector<Measured> measured(const Finished& finished);
+// Of direct light: `measure --indirect none` of a scene at a CSV's points, which must succeed.
+std::vector<Measured> measure_direct(const Folder& folder, const std::string& scene,
+                                     const std::string& points,
+                                     const std::vector<std::string>& options);
 
 // A floor of 4 × 4 m under a 1 × 1 m source of radiance 5, two metres up, 40 × 30 pixels.
 extern const char* const lit_floor_pbrt;

@@ -81,14 +81,8 @@ std::string points(const Place& p) {
 
 std::vector<Measured> measure(const Place& place, const std::vector<std::string>& options) {
   const Folder folder;
-  std::vector<std::string> words{"measure",    folder.write("s.pbrt", room(place)),
-                                 "--points",   folder.write("p.csv", points(place)),
-                                 "--indirect", "none"};
-  words.insert(words.end(), options.begin(), options.end());
-  const Finished f = run_program(folder, words);
-  CAPTURE(f.err);
-  REQUIRE(f.status == 0);
-  return measured(f);
+  return measure_direct(folder, folder.write("s.pbrt", room(place)),
+                        folder.write("p.csv", points(place)), options);
 }
 
 std::vector<std::string> with(std::vector<std::string> options, std::vector<std::string> more) {

@@ -34,15 +34,8 @@ const char* const geometry =
 const char* const points =
     "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1.5,0,0.5,0,0,1\n0.2,0.1,1.7,0,0,1\n0,0,-28,0,0,1\n";
 
-std::vector<Measured> measure(const Folder& folder, std::vector<std::string> options) {
-  std::vector<std::string> words{"measure",    folder.path("panel.obj"),
-                                 "--points",   folder.write("p.csv", points),
-                                 "--indirect", "none"};
-  words.insert(words.end(), options.begin(), options.end());
-  const Finished f = run_program(folder, words);
-  CAPTURE(f.err);
-  REQUIRE(f.status == 0);
-  return measured(f);
+std::vector<Measured> measure(const Folder& folder, const std::vector<std::string>& options) {
+  return measure_direct(folder, folder.path("panel.obj"), folder.write("p.csv", points), options);
 }
 
 }  // namespace

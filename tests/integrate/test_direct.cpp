@@ -149,8 +149,8 @@ TEST_CASE("a matte floor shows reflectance × exact irradiance / pi") {
   }
 }
 
-// Half a millimetre of a strip is seen over an edge 5 m away: rays that end elsewhere than at the
-// strip see another half. All that is seen is a narrow rectangle whose light is in closed form.
+// Half a millimetre of a strip is seen over an edge 10 cm above it: rays that end elsewhere than at
+// the strip see another half. All that is seen is a narrow rectangle whose light is in closed form.
 TEST_CASE("a strip of light behind an edge that leaves half a millimetre of it") {
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
