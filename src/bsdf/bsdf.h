@@ -73,6 +73,8 @@ struct Bsdf {
   Rgb glass_transmit;      // … on 1 - glass_scale × reflectance
   float glass_weight = 0;  // share of the surface that is glass
   float glass_scale = 1;
+  Rgb absorbed;               // of a sheet: Material::absorption
+  bool is_absorbing = false;  // what goes through comes into a body that absorbs, or out of one
 
   SoftLobe soft;
 
@@ -103,12 +105,12 @@ struct BsdfValue {
 };
 
 // The scattering function of material `material` at texture coordinates uv, for a viewer on the
-// outside (is_front) or the inside. The side matters to dielectrics and to glTF's transmission
-// only: all else reflects alike on both.
-Bsdf make_bsdf(const BsdfTables& tables, const Scene& scene, uint32_t material, const Vec2& uv,
-               bool is_front);
+// outside (is_front) or the inside. The side matters to dielectrics, to glTF's transmission and to
+// materials with black backs only: all else reflects alike on both.
+Bsdf make_bsdf(const BsdfTables& tables, const Scene& scene, uint32_t material,
+               const TexturePlace& uv, bool is_front);
 Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
-               const std::vector<Texture>& textures, uint32_t material, const Vec2& uv,
+               const std::vector<Texture>& textures, uint32_t material, const TexturePlace& uv,
                bool is_front);
 
 // For Bsdfs that are more than Lambertian; call those below.

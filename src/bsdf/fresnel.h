@@ -41,6 +41,24 @@ inline float plate_reflectance(float cos_i, float eta) {
   return parallel / (1 + parallel) + perpendicular / (1 + perpendicular);
 }
 
+// The same with an absorbing inside that leaves the share `a` of light on each way through it.
+struct PlateShares {
+  float reflected, transmitted;
+};
+inline PlateShares absorbing_plate(float cos_i, float eta, float a) {
+  const float c = std::max(cos_i, 1e-9f);
+  const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (eta * eta)));
+  PlateShares sum{0, 0};
+  for (const float amplitude :
+       {(eta * c - cos_t) / (eta * c + cos_t), (c - eta * cos_t) / (c + eta * cos_t)}) {
+    const float r = amplitude * amplitude;
+    const float through = (1 - r) * (1 - r) * a / (1 - r * r * a * a);
+    sum.transmitted += 0.5f * through;
+    sum.reflected += 0.5f * (r + r * a * through);
+  }
+  return sum;
+}
+
 // Reflectance of a conductor of complex index eta + i k seen from vacuum [1].
 inline float fresnel_conductor(float cos_i, float eta, float k) {
   const float c2 = cos_i * cos_i, s2 = 1 - c2;

@@ -20,12 +20,17 @@ Rgb safe_index(Rgb v) {
   return {safe(v.r), safe(v.g), safe(v.b)};
 }
 
+Rgb safe_depth(Rgb v) {
+  const auto safe = [](float x) { return x > 0 ? std::min(x, 1e6f) : 0.0f; };
+  return {safe(v.r), safe(v.g), safe(v.b)};
+}
+
 struct Inputs {
   const BsdfTables& tables;
   const std::vector<Texture>& textures;
   const Material& material;
   const PreparedMaterial& prepared;
-  Vec2 uv;
+  const TexturePlace& uv;
   bool is_front;
 
   float value(const FloatInput& in) const { return safe01(evaluate(textures, in, uv)); }
@@ -104,6 +109,10 @@ void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
   b.glass_transmit = tint * weight;
   const float ior = in.prepared.ior;
   b.is_thin = in.material.is_thin || std::abs(ior - 1) < index_matched;
+  if (in.material.is_thin)
+    b.absorbed = safe_depth(in.material.absorption);
+  else
+    b.is_absorbing = !in.material.absorption.is_black();
   // A thin sheet has the same on both of its sides and reflects as a plate of its own index.
   b.eta = in.is_front || b.is_thin ? ior : 1 / ior;
   if (!b.is_smooth && b.is_thin) b.near = b.far = b.one;
@@ -235,11 +244,15 @@ TableNeeds table_needs(const Material& m) {
 }
 
 Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
-               const std::vector<Texture>& textures, uint32_t material, const Vec2& uv,
+               const std::vector<Texture>& textures, uint32_t material, const TexturePlace& uv,
                bool is_front) {
   const Inputs in{tables, textures, materials[material], tables.material(material), uv, is_front};
   Bsdf b;
   b.is_pane = in.prepared.is_pane;
+  if (!is_front && in.material.back_faces == BackFaces::black) {
+    set_lambertian(b, Rgb{0});
+    return b;
+  }
   switch (in.material.kind) {
     case MaterialKind::diffuse:
       set_lambertian(b, in.base());
@@ -260,8 +273,8 @@ Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
   return b;
 }
 
-Bsdf make_bsdf(const BsdfTables& tables, const Scene& scene, uint32_t material, const Vec2& uv,
-               bool is_front) {
+Bsdf make_bsdf(const BsdfTables& tables, const Scene& scene, uint32_t material,
+               const TexturePlace& uv, bool is_front) {
   return make_bsdf(tables, scene.materials, scene.textures, material, uv, is_front);
 }
 

@@ -41,7 +41,7 @@ const Texture* image_of(const Scene& scene, int32_t texture) {
   if (texture < 0) return nullptr;
   const Texture& t = scene.textures[size_t(texture)];
   if (t.kind == TextureKind::image) return &t;
-  if (t.kind == TextureKind::constant) return nullptr;
+  if (t.kind != TextureKind::product) return nullptr;
   // Factors have lower indices, so this ends.
   const Texture* a = image_of(scene, int32_t(t.factor_a));
   return a ? a : image_of(scene, int32_t(t.factor_b));

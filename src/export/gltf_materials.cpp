@@ -77,7 +77,7 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
     out["alphaMode"] = "MASK";
     out["alphaCutoff"] = m.alpha_cutoff;
     const bool is_same = alpha && alpha == look && m.alpha.channel == 3;
-    factor = alpha ? m.alpha.value : evaluate(scene_.textures, m.alpha, {0, 0});
+    factor = alpha ? m.alpha.value : evaluate(scene_.textures, m.alpha, Vec2{0, 0});
     if (alpha && !is_same) {
       // Numbers that cut holes become the alpha of the colour's image, by the holes' own (u,v).
       BakedImage colors = baked_color(scene_, {base.value, no_texture}, true, change);
@@ -123,8 +123,8 @@ void GltfMaterialWriter::add_roughness(const Material& m, Json& pbr) {
     return;
   }
   pbr["roughnessFactor"] =
-      std::pow(std::clamp(evaluate(scene_.textures, m.roughness, {0, 0}), 0.0f, 1.0f), power);
-  pbr["metallicFactor"] = std::clamp(evaluate(scene_.textures, metal, {0, 0}), 0.0f, 1.0f);
+      std::pow(std::clamp(evaluate(scene_.textures, m.roughness, Vec2{0, 0}), 0.0f, 1.0f), power);
+  pbr["metallicFactor"] = std::clamp(evaluate(scene_.textures, metal, Vec2{0, 0}), 0.0f, 1.0f);
 }
 
 void GltfMaterialWriter::add_glass(const Material& m, Json& out) {

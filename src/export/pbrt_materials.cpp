@@ -82,7 +82,8 @@ std::string PbrtMaterialWriter::color(const char* parameter, const ColorInput& i
 std::string PbrtMaterialWriter::roughness(const Material& m, float power) {
   const Texture* look = image_of(scene_, m.roughness.texture);
   if (!look) {
-    const float r = std::pow(std::max(evaluate(scene_.textures, m.roughness, {0, 0}), 0.0f), power);
+    const float r =
+        std::pow(std::max(evaluate(scene_.textures, m.roughness, Vec2{0, 0}), 0.0f), power);
     return fmt::format(" \"float roughness\" {} \"bool remaproughness\" false", r);
   }
   const std::string key = fmt::format("number {} {} {} {}", m.roughness.texture,
@@ -96,8 +97,8 @@ std::string PbrtMaterialWriter::roughness(const Material& m, float power) {
 
 // glTF's mixture by the part of it that has most weight.
 std::string PbrtMaterialWriter::mixed_text(const Material& m) {
-  const float metallic = evaluate(scene_.textures, m.metallic, {0.5f, 0.5f});
-  const float transmission = evaluate(scene_.textures, m.transmission, {0.5f, 0.5f});
+  const float metallic = evaluate(scene_.textures, m.metallic, Vec2{0.5f, 0.5f});
+  const float transmission = evaluate(scene_.textures, m.transmission, Vec2{0.5f, 0.5f});
   const float power = power_of(m.roughness_meaning);
   const bool is_mixed = (metallic > 0 && metallic < 1) || (transmission > 0 && transmission < 1);
   warnings_.add(is_mixed ? "mixtures of metal, coat and glass are written as the one that has most "

@@ -30,6 +30,9 @@ class GltfMaterials::Reader {
     tell_what_is_left_out();
     read_emission();
     result_.is_two_sided = node_.bool_or("doubleSided", false);
+    // What shines may show its back: the light, not the surface, is one-sided there.
+    if (!result_.is_two_sided && result_.emission.is_black())
+      material_.back_faces = BackFaces::unseen;
     result_.is_textured = uv_set_ >= 0;
     result_.uv_set = std::max(uv_set_, 0);
     reduce_to_diffuse();
@@ -224,10 +227,23 @@ class GltfMaterials::Reader {
     const auto volume = node_.extension("KHR_materials_volume");
     // Without a thickness the surface is an infinitely thin sheet (KHR_materials_volume).
     material_.is_thin = !volume || volume->number_or("thicknessFactor", 0) <= 0;
-    if (!volume || !volume->find("attenuationDistance")) return;
-    const auto color = volume->numbers_or("attenuationColor", {1, 1, 1});
-    if (std::any_of(color.begin(), color.end(), [](double c) { return c != 1; }))
-      warn("attenuation inside a volume is ignored");
+    if (volume && volume->find("attenuationDistance")) read_attenuation(*volume);
+  }
+
+  // That color is left after that distance.
+  void read_attenuation(const JsonNode& volume) {
+    constexpr double darkest = 1e-6;
+    const auto color = volume.numbers_or("attenuationColor", {1, 1, 1});
+    const double distance = volume.number_or("attenuationDistance", 0);
+    if (color.size() != 3 || !(distance > 0)) {
+      warn("the attenuation of a volume needs three numbers and a distance above 0; left out");
+      return;
+    }
+    const double thickness = volume.number_or("thicknessFactor", 0);
+    if (thickness <= 0) return;  // a sheet
+    for (size_t c = 0; c < 3; ++c)
+      material_.absorption[c] =
+          float(std::min(-std::log(std::clamp(color[c], darkest, 1.0)) / distance, 1e6));
   }
 
   void read_emission() {

@@ -1,5 +1,6 @@
 #include "import/mitsuba.h"
 
+#include "import/absorption.h"
 #include "import/mitsuba_bsdf.h"
 #include "import/mitsuba_light.h"
 #include "import/mitsuba_sensor.h"
@@ -29,6 +30,7 @@ class MitsubaReader {
   struct Attached {
     const MitsubaNode* bsdf = nullptr;
     const MitsubaNode* emitter = nullptr;
+    Rgb absorption{0};  // of the medium inside
   };
 
   Scene& scene_;
@@ -47,6 +49,7 @@ class MitsubaReader {
   void add_instance(const MitsubaNode& node, const Affine& parent);
   void add_children(const MitsubaNode& group, const Affine& parent, bool is_instance);
   Attached attached_to(const MitsubaNode& node);
+  Rgb absorption_of(const MitsubaNode& medium);
   std::optional<EmissionSpec> emission_of(const MitsubaNode& shape, const MitsubaNode& emitter);
   void place(const MitsubaShape& shape, const Affine& world, const PlacedLook& look);
 };
@@ -64,12 +67,34 @@ void MitsubaReader::read_element(const MitsubaNode& node) {
   } else if (node.tag == "sensor") {
     add_mitsuba_camera(node, tree_, scene_);
   } else if (node.tag == "medium") {
-    scene_.warnings.add("participating media are not supported: left out");
+    // Those of shapes are read where shapes name them.
   } else if (node.tag != "bsdf" && node.tag != "texture" && node.tag != "integrator" &&
              node.tag != "sampler" && node.tag != "film" && node.tag != "spectrum" &&
              node.tag != "boolean" && node.tag != "ref" && node.tag != "rfilter") {
     scene_.warnings.add("<" + shortened(node.tag) + "> is not known: left out");
   }
+}
+
+// What a medium absorbs per metre; that it scatters is left out.
+Rgb MitsubaReader::absorption_of(const MitsubaNode& medium) {
+  medium.is_used = true;
+  if (medium.type != "homogeneous") {
+    scene_.warnings.add("a medium that is not homogeneous is left out");
+    return Rgb{0};
+  }
+  const auto color = [&](const char* name, Rgb fallback) {
+    const MitsubaNode* p = find_parameter(medium, name);
+    if (!p || !is_color(tree_.resolved(*p))) return fallback;
+    return color_of(tree_.resolved(*p), tree_.folder(), scene_.warnings, false);
+  };
+  const float scale = float(get_number(medium, "scale", 1));
+  const Rgb albedo = clamp01(color("albedo", Rgb{0.75f})), all = color("sigma_t", Rgb{1});
+  const bool is_split = find_parameter(medium, "sigma_a") != nullptr;
+  const Rgb absorbed = is_split ? color("sigma_a", Rgb{0}) : all * (Rgb{1} - albedo);
+  const bool scatters = is_split ? !color("sigma_s", Rgb{0}).is_black() : !albedo.is_black();
+  if (scatters) scene_.warnings.add("media inside things absorb, but do not scatter");
+  for (const char* name : {"material", "sample_emitters", "phase"}) find_parameter(medium, name);
+  return usable_absorption(absorbed * scale);
 }
 
 MitsubaReader::Attached MitsubaReader::attached_to(const MitsubaNode& node) {
@@ -82,9 +107,12 @@ MitsubaReader::Attached MitsubaReader::attached_to(const MitsubaNode& node) {
     } else if (inner.tag == "emitter") {
       child->is_used = true;
       out.emitter = &inner;
+    } else if (inner.tag == "medium" && child->name == "interior") {
+      child->is_used = true;
+      out.absorption = absorption_of(inner);
     } else if (inner.tag == "medium" || inner.tag == "subsurface") {
       child->is_used = true;
-      scene_.warnings.add("participating media are not supported: left out");
+      scene_.warnings.add("participating media around things are not supported: left out");
     }
   }
   return out;
@@ -161,6 +189,12 @@ void MitsubaReader::add_shape(const MitsubaNode& node, const Affine& parent, boo
     if (!material && look.emission) {
       scene_.warnings.add("a shape of bsdf \"null\" that emits is shown black");
       material = bsdfs_.default_index(true);
+    }
+    if (material && !with.absorption.is_black()) {
+      if (scene_.materials[*material].kind == MaterialKind::dielectric)
+        material = bsdfs_.with_medium(*material, with.absorption);
+      else
+        scene_.warnings.add("media inside anything but \"dielectric\" are left out");
     }
     warn_of_unused(node, scene_.warnings);
     if (material && *shape) {

@@ -18,6 +18,12 @@ bool is_texture(const ColorInput& c) {
   return c.texture >= 0;
 }
 
+// Its back reflects nothing.
+Material one_sided(Material m) {
+  m.back_faces = BackFaces::black;
+  return m;
+}
+
 float mean_of(const ColorInput& c) {
   return average(c.value);
 }
@@ -34,6 +40,7 @@ uint32_t MitsubaBsdfs::default_index(bool is_emitting) {
     Material m;
     m.name = is_emitting ? "black" : "default";
     if (is_emitting) m.base_color.value = Rgb{0};
+    m.back_faces = BackFaces::black;
     index = uint32_t(scene_.materials.size());
     scene_.materials.push_back(std::move(m));
   }
@@ -181,6 +188,8 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
   m.metallic = textures_.real(node, {"metallic"}, 0);
   m.transmission = textures_.real(node, {"spec_trans"}, 0);
   m.is_thin = node.type == "principledthin";
+  const bool is_opaque = m.transmission.texture < 0 && m.transmission.value <= 0;
+  if (is_opaque && !m.is_thin) m.back_faces = BackFaces::black;
   if (find_parameter(node, "eta")) {
     m.ior = float(index_of_refraction(node, "eta", "bk7"));
   } else {
@@ -286,17 +295,42 @@ std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
   return m;
 }
 
+// Of bumps the texture is heights in metres, times `scale`.
 std::optional<Material> MitsubaBsdfs::bumped(const MitsubaNode& node) {
   std::optional<Material> m = nested(node);
-  if (node.type != "normalmap") {
-    approximate(node, "without the bumps");
-    return m;
-  }
+  const double scale = get_number(node, "scale", 1);
   if (!m) return m;
   for (const MitsubaNode* child : node.children) {
     if (tree_.resolved(*child).tag != "texture") continue;
     child->is_used = true;
-    m->normal_texture = textures_.raw_image(*child);
+    if (node.type == "normalmap")
+      m->normal_texture = textures_.raw_image(*child);
+    else
+      m->bump = {float(scale), textures_.raw_image(*child), 0};
+  }
+  return m;
+}
+
+// A copy whose inside absorbs as `medium` does.
+uint32_t MitsubaBsdfs::with_medium(uint32_t material, Rgb absorption) {
+  const std::array<float, 4> key{float(material), absorption.r, absorption.g, absorption.b};
+  const auto found = with_medium_.find(key);
+  if (found != with_medium_.end()) return found->second;
+  Material m = scene_.materials[material];
+  m.absorption = absorption;
+  scene_.materials.push_back(std::move(m));
+  return with_medium_[key] = uint32_t(scene_.materials.size() - 1);
+}
+
+// The same on both sides; with a second bsdf for the back, that one is left out.
+std::optional<Material> MitsubaBsdfs::two_sided(const MitsubaNode& node) {
+  std::optional<Material> m = nested(node);
+  if (m) m->back_faces = BackFaces::shown;
+  size_t sides = 0;
+  for (const MitsubaNode* child : node.children) {
+    if (tree_.resolved(*child).tag != "bsdf") continue;
+    child->is_used = true;
+    if (++sides == 2) approximate(node, "its back as its front");
   }
   return m;
 }
@@ -306,17 +340,17 @@ std::optional<Material> MitsubaBsdfs::convert_simple(const MitsubaNode& node) {
   const auto is_any = [&](std::initializer_list<const char*> names) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return type == n; });
   };
-  if (is_any({"diffuse", "roughdiffuse"})) return diffuse(node);
-  if (is_any({"conductor", "roughconductor"})) return conductor(node);
+  if (is_any({"diffuse", "roughdiffuse"})) return one_sided(diffuse(node));
+  if (is_any({"conductor", "roughconductor"})) return one_sided(conductor(node));
   if (is_any({"dielectric", "thindielectric", "roughdielectric"})) return dielectric(node);
-  if (is_any({"plastic", "roughplastic"})) return plastic(node);
+  if (is_any({"plastic", "roughplastic"})) return one_sided(plastic(node));
   if (is_any({"principled", "principledthin"})) return principled(node);
-  if (is_any({"phong", "ward"})) return phong(node);
+  if (is_any({"phong", "ward"})) return one_sided(phong(node));
   if (is_any({"mask"})) return masked(node);
   if (is_any({"blendbsdf", "mixturebsdf"})) return blended(node);
   if (is_any({"coating", "roughcoating"})) return coated(node);
   if (is_any({"bumpmap", "bump", "normalmap"})) return bumped(node);
-  if (is_any({"twosided"})) return nested(node);
+  if (is_any({"twosided"})) return two_sided(node);
   if (is_any({"null"})) return std::nullopt;
   scene_.warnings.add("bsdf \"" + shortened(type) + "\" is not supported: shown diffuse grey");
   for (const MitsubaNode* child : node.children) child->is_used = true;

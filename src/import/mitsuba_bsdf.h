@@ -4,6 +4,7 @@
 //   Documentation", §8.2 (Surface scattering models).
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 
@@ -20,6 +21,8 @@ class MitsubaBsdfs {
   // Index in Scene::materials of what a <bsdf> says, made when it is first asked for; nothing for
   // surfaces that are not there for light (null). InputError: parameters that cannot be used.
   std::optional<uint32_t> index_of(const MitsubaNode& bsdf);
+  // That material with a medium inside that absorbs so much per metre.
+  uint32_t with_medium(uint32_t material, Rgb absorption);
   // Of shapes without bsdf: grey; black where they emit.
   uint32_t default_index(bool is_emitting);
 
@@ -28,6 +31,7 @@ class MitsubaBsdfs {
   const MitsubaTree& tree_;
   MitsubaTextures& textures_;
   std::map<const MitsubaNode*, std::optional<uint32_t>> made_;
+  std::map<std::array<float, 4>, uint32_t> with_medium_;
   std::optional<uint32_t> grey_, black_;
   int depth_ = 0;
 
@@ -44,6 +48,7 @@ class MitsubaBsdfs {
   std::optional<Material> blended(const MitsubaNode& node);
   std::optional<Material> coated(const MitsubaNode& node);
   std::optional<Material> bumped(const MitsubaNode& node);
+  std::optional<Material> two_sided(const MitsubaNode& node);
   void read_alpha(const MitsubaNode& node, Material& m);
   void approximate(const MitsubaNode& node, const std::string& how);
 };

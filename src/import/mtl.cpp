@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
@@ -79,6 +80,11 @@ Vec2 read_vector(TextLines& lines, Vec2 value) {
   return value;
 }
 
+float strength_of(std::string_view word) {
+  const float v = std::strtof(std::string(word).c_str(), nullptr);
+  return std::isfinite(v) ? v : 1.0f;
+}
+
 void read_option(TextLines& lines, const MapOption& option, MtlMap& map) {
   if (option.name == "-o") {
     map.offset = read_vector(lines, map.offset);
@@ -90,6 +96,7 @@ void read_option(TextLines& lines, const MapOption& option, MtlMap& map) {
     for (int i = 0; i < option.words; ++i) {
       const std::string_view word = lines.word();
       if (option.name == "-clamp") map.is_clamped = word == "on";
+      if (option.name == "-bm") map.strength = strength_of(word);
     }
   }
 }
@@ -174,7 +181,8 @@ bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
                 : keyword == "map_Pr"                      ? &m.map_roughness
                 : keyword == "map_Pm"                      ? &m.map_metallic
                 : keyword == "norm" || keyword == "map_Kn" ? &m.map_normal
-                                                           : nullptr;
+                : keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump" ? &m.map_bump
+                                                                                      : nullptr;
   if (map) *map = read_map(lines_, subfolder_);
   return map != nullptr;
 }
@@ -222,6 +230,37 @@ int32_t load(const MtlMap& map, bool is_srgb, const std::string& folder, Texture
   }
   return path.is_fine() ? loader.from_file(path.path, look)
                         : loader.missing(map.file, path.problem, look);
+}
+
+// Exporters write maps of normals as bumps: bluish where a map of heights is grey.
+bool looks_like_normals(const std::vector<Texture>& textures, int32_t image) {
+  const Texture& t = textures[size_t(image)];
+  if (t.kind != TextureKind::image || t.channels < 3) return false;
+  constexpr int steps = 16;
+  Rgb sum;
+  for (int y = 0; y < steps; ++y)
+    for (int x = 0; x < steps; ++x) {
+      const Vec2 at{(float(x) + 0.5f) / steps, (float(y) + 0.5f) / steps};
+      sum += evaluate(textures, uint32_t(image), at).rgb * (1.0f / (steps * steps));
+    }
+  return sum.b > 0.7f && std::abs(sum.r - 0.5f) < 0.15f && std::abs(sum.g - 0.5f) < 0.15f;
+}
+
+// The format does not say how high a height of 1 is: a centimetre, times -bm.
+void set_bump(const MtlMap& map, const std::string& folder, TextureLoader& loader,
+              const std::vector<Texture>& textures, Material& m, WarningLog& warnings) {
+  constexpr float height = 0.01f;
+  const int32_t image = load(map, false, folder, loader, warnings);
+  if (image == no_texture) return;
+  if (looks_like_normals(textures, image)) {
+    if (m.normal_texture >= 0) return;
+    m.normal_texture = image;
+    m.normal_scale = map.strength;
+    warnings.add("MTL: a bluish bump map is read as one of normals");
+  } else if (textures[size_t(image)].kind == TextureKind::image) {
+    m.bump = {map.strength * height, image, 0};
+    warnings.add("MTL: bump maps are approximated: a height of 1 is 1 cm times -bm");
+  }
 }
 
 Rgb clamped_reflectance(Rgb c, WarningLog& warnings) {
@@ -283,7 +322,7 @@ void read_mtl(const std::string& path, const std::string& subfolder, MtlLibrary&
 }
 
 MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
-                         WarningLog& warnings) {
+                         const std::vector<Texture>& textures, WarningLog& warnings) {
   MtlConverted out;
   Material& m = out.material;
   m.name = mtl.name;
@@ -295,6 +334,7 @@ MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, Text
   m.roughness.texture = load(mtl.map_roughness, false, folder, loader, warnings);
   m.metallic.texture = load(mtl.map_metallic, false, folder, loader, warnings);
   m.normal_texture = load(mtl.map_normal, false, folder, loader, warnings);
+  set_bump(mtl.map_bump, folder, loader, textures, m, warnings);
   if (!mtl.map_opacity.file.empty()) {
     m.is_alpha_masked = m.is_alpha_blended = true;
     // The image of the colour itself holds opacity in its alpha channel.

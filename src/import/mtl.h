@@ -31,6 +31,7 @@ struct MtlMap {
   std::string file;  // relative to the scene's folder; "" = none
   Vec2 scale{1, 1}, offset{0, 0};
   bool is_clamped = false;
+  float strength = 1;  // -bm
 };
 
 struct MtlMaterial {
@@ -44,7 +45,7 @@ struct MtlMaterial {
   float ior = 1.5f;                          // Ni
   int illumination = -1;                     // illum; -1 = not given
   std::optional<float> roughness, metallic;  // Pr, Pm
-  MtlMap map_diffuse, map_emission, map_opacity, map_roughness, map_metallic, map_normal;
+  MtlMap map_diffuse, map_emission, map_opacity, map_roughness, map_metallic, map_normal, map_bump;
 };
 
 using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;
@@ -62,6 +63,6 @@ struct MtlConverted {
   int32_t emission_texture = no_texture;
 };
 MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
-                         WarningLog& warnings);
+                         const std::vector<Texture>& textures, WarningLog& warnings);
 
 }  // namespace troffer

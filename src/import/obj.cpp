@@ -315,7 +315,7 @@ const MtlConverted& ObjReader::material_named(const std::string& name) {
   MtlConverted made;
   const auto found = materials_.library.find(name);
   if (found != materials_.library.end()) {
-    made = convert_mtl(found->second, folder_, loader_, scene_.warnings);
+    made = convert_mtl(found->second, folder_, loader_, scene_.textures, scene_.warnings);
   } else {
     made.material.name = name.empty() ? "default" : name;
     if (!name.empty())

@@ -98,7 +98,7 @@ void PbrtInterpreter::on_texture(const PbrtToken& word, PbrtTokenizer& tokens) {
     fail_at(place, "texture type \"" + value_type + "\" is neither float nor spectrum");
   const std::string kind = parse_string(word, tokens);
   materials_.textures.define(name, value_type == "float", kind,
-                             parse_typed(word, tokens, kind, "texture"));
+                             parse_typed(word, tokens, kind, "texture"), state_.transform);
 }
 
 void PbrtInterpreter::on_shape(const PbrtToken& word, PbrtTokenizer& tokens) {
@@ -114,6 +114,7 @@ void PbrtInterpreter::on_shape(const PbrtToken& word, PbrtTokenizer& tokens) {
   shape.is_reversed = state_.is_reversed;
   shape.material = state_.material;
   shape.light = state_.light;
+  shape.absorption = state_.absorption;
   if (!open_object_) {
     placer_.place(shape, params.place);
     return;
@@ -167,14 +168,20 @@ void PbrtInterpreter::on_medium_interface(const PbrtToken& word, PbrtTokenizer& 
   const std::string inside = parse_string(word, tokens);
   std::string outside = inside;
   if (tokens.peek().kind == PbrtTokenKind::string) outside = parse_string(word, tokens);
-  if (!inside.empty() || !outside.empty())
-    scene_.warnings.add("MediumInterface: participating media are not supported: left out");
+  if (!outside.empty() && outside != inside)
+    scene_.warnings.add("MediumInterface: media around things are not supported: left out");
+  state_.absorption = Rgb{0};
+  if (inside.empty()) return;
+  const auto found = named_.media.find(inside);
+  if (found == named_.media.end())
+    fail_at(tokens.place(word), "no medium \"" + inside + "\" is defined before this point");
+  state_.absorption = found->second;
 }
 
 void PbrtInterpreter::on_make_named_medium(const PbrtToken& word, PbrtTokenizer& tokens) {
   const std::string name = parse_string(word, tokens);
-  parse_typed(word, tokens, name, "medium");
-  scene_.warnings.add("MakeNamedMedium: participating media are not supported: left out");
+  const PbrtParams params = parse_typed(word, tokens, name, "medium");
+  named_.media[name] = materials_.read_medium(params.get_string("type", ""), params);
 }
 
 const std::map<std::string_view, PbrtInterpreter::Handler>& PbrtInterpreter::handlers() {

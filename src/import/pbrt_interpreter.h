@@ -31,6 +31,7 @@ class PbrtInterpreter {
     std::shared_ptr<const PbrtAreaLight> light;
     std::shared_ptr<const Defaults> defaults;
     bool is_start_active = true, is_end_active = true;
+    Rgb absorption{0};  // of the medium inside shapes
   };
   enum class Block { attribute, object };
   struct Saved {
@@ -52,6 +53,7 @@ class PbrtInterpreter {
     std::map<std::string, Affine> coordinate_systems;
     std::map<std::string, std::shared_ptr<PbrtMaterial>> materials;
     std::map<std::string, std::vector<PbrtShape>> objects;
+    std::map<std::string, Rgb> media;  // by what they absorb
   } named_;
   std::vector<PbrtShape>* open_object_ = nullptr;
   struct Files {

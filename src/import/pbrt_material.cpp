@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/absorption.h"
 #include "import/spectra.h"
 
 namespace troffer {
@@ -16,17 +17,50 @@ uint32_t PbrtMaterials::index_of(PbrtMaterial& material) {
   return uint32_t(material.index);
 }
 
-uint32_t PbrtMaterials::index_with_alpha(PbrtMaterial& material, const FloatInput& alpha) {
-  const std::pair key{alpha.texture, alpha.value};
-  const auto found = material.with_alpha.find(key);
-  if (found != material.with_alpha.end()) return found->second;
-  Material masked = scene_.materials[index_of(material)];
-  masked.is_alpha_masked = masked.is_alpha_blended = true;
-  masked.alpha = alpha;
+uint32_t PbrtMaterials::index_of_copy(PbrtMaterial& material,
+                                      const std::optional<FloatInput>& alpha, Rgb absorption) {
+  uint32_t plain = index_of(material);
+  const bool is_glass = scene_.materials[plain].kind == MaterialKind::dielectric;
+  if (!absorption.is_black() && (!is_glass || scene_.materials[plain].is_thin)) {
+    scene_.warnings.add("MediumInterface: media inside anything but \"dielectric\" are left out");
+    absorption = Rgb{0};
+  }
+  if (!alpha && absorption.is_black()) return plain;
+  const FloatInput share = alpha.value_or(FloatInput{1, no_texture, 0});
+  const std::array key{float(share.texture), share.value, absorption.r, absorption.g, absorption.b};
+  const auto found = material.copies.find(key);
+  if (found != material.copies.end()) return found->second;
+  Material copy = scene_.materials[plain];
+  copy.absorption = absorption;
+  if (alpha) {
+    copy.is_alpha_masked = copy.is_alpha_blended = true;
+    copy.alpha = *alpha;
+  }
   const auto index = uint32_t(scene_.materials.size());
-  scene_.materials.push_back(std::move(masked));
-  material.with_alpha[key] = index;
-  return index;
+  scene_.materials.push_back(std::move(copy));
+  return material.copies[key] = index;
+}
+
+Rgb PbrtMaterials::read_medium(const std::string& type, const PbrtParams& params) {
+  if (type != "homogeneous") {
+    params.ignore_all();
+    scene_.warnings.add("MakeNamedMedium: \"" + type + "\" is not supported: left out");
+    return Rgb{0};
+  }
+  const auto color = [&](const char* name, Rgb fallback) {
+    const PbrtParam* p = params.find(name);
+    return p ? factor_value(*p, textures.spectrum_context()) : fallback;
+  };
+  // Without numbers pbrt takes those of a substance.
+  const Rgb absorbed = color("sigma_a", Rgb{0.0011f, 0.0024f, 0.014f}),
+            scattered = color("sigma_s", Rgb{2.55f, 3.21f, 3.77f});
+  const auto scale = float(params.get_float("scale", 1));
+  params.ignore({"type"});
+  if (!scattered.is_black())
+    scene_.warnings.add(
+        "MakeNamedMedium: \"homogeneous\": what it absorbs is shown, not what it scatters");
+  params.warn_unread(scene_.warnings);
+  return usable_absorption(absorbed * scale);
 }
 
 void PbrtMaterials::read_roughness(const PbrtParams& params, Material& m,
@@ -102,6 +136,12 @@ Material PbrtMaterials::make_mix(const PbrtMaterial& material) {
   return is_first ? first : second;
 }
 
+// Heights in metres, shown by the shading normal, as pbrt does. Even ones change nothing.
+void PbrtMaterials::read_bump(const PbrtParams& params, Material& m) {
+  const FloatInput height = textures.real(params, "displacement", 0);
+  if (height.texture >= 0) m.bump = height;
+}
+
 Material PbrtMaterials::make(const PbrtMaterial& material) {
   const PbrtParams& params = material.params;
   const std::string& type = material.type;
@@ -141,8 +181,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
     params.ignore_all();
   }
   m.name = material.name;
-  if (params.has("displacement"))
-    scene_.warnings.add("displacement of materials is not supported: ignored");
+  read_bump(params, m);
   const std::string normal_map = params.get_string("normalmap", "");
   if (!normal_map.empty()) m.normal_texture = textures.image(normal_map, false);
   params.warn_unread(scene_.warnings);
@@ -150,7 +189,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
 }
 
 bool is_textured(const Material& m) {
-  return has_textured_input(m) || m.normal_texture >= 0 ||
+  return has_textured_input(m) || m.normal_texture >= 0 || m.bump.texture >= 0 ||
          (m.is_alpha_masked && m.alpha.texture >= 0);
 }
 

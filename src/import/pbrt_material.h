@@ -3,8 +3,10 @@
 // References: [1] pbrt-v4 Input File Format, section "Materials", pbrt.org/fileformat-v4.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,10 +19,11 @@ namespace troffer {
 struct PbrtMaterial {
   std::string name, type;
   PbrtParams params;
-  std::vector<std::shared_ptr<const PbrtMaterial>> mixed;    // the two of a mix
-  int depth = 0;                                             // of mixes within it
-  int32_t index = -1;                                        // in Scene::materials, once made
-  std::map<std::pair<int32_t, float>, uint32_t> with_alpha;  // copies, by texture × factor
+  std::vector<std::shared_ptr<const PbrtMaterial>> mixed;  // the two of a mix
+  int depth = 0;                                           // of mixes within it
+  int32_t index = -1;                                      // in Scene::materials, once made
+  // Copies, by texture × factor of alpha and by what is absorbed inside.
+  std::map<std::array<float, 5>, uint32_t> copies;
 
   // An interface between media: not there for light.
   bool is_interface() const { return type.empty() || type == "none" || type == "interface"; }
@@ -35,8 +38,12 @@ class PbrtMaterials {
 
   // Index in Scene::materials. InputError: parameters of wrong type, unknown textures.
   uint32_t index_of(PbrtMaterial& material);
-  // The same material, met by the share `alpha` of rays.
-  uint32_t index_with_alpha(PbrtMaterial& material, const FloatInput& alpha);
+  // The same material, met by the share `alpha` of rays, around a medium that absorbs so much per
+  // metre.
+  uint32_t index_of_copy(PbrtMaterial& material, const std::optional<FloatInput>& alpha,
+                         Rgb absorption);
+  // What a medium absorbs per metre; nothing of those that are left out, with a warning.
+  Rgb read_medium(const std::string& type, const PbrtParams& params);
 
  private:
   Scene& scene_;
@@ -48,6 +55,7 @@ class PbrtMaterials {
   Material make_coated_conductor(const PbrtParams& params);
   Material make_mix(const PbrtMaterial& material);
   float read_ior(const PbrtParams& params);
+  void read_bump(const PbrtParams& params, Material& m);
 };
 
 // Whether anything in that material depends on (u,v).

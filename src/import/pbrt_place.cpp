@@ -31,7 +31,7 @@ double mean_luminance(const Scene& scene, int32_t texture) {
     for (int x = 0; x < t.width; ++x)
       sum += double(luminance(
           evaluate(scene.textures, uint32_t(texture),
-                   {(float(x) + 0.5f) / float(t.width), (float(y) + 0.5f) / float(t.height)})
+                   Vec2{(float(x) + 0.5f) / float(t.width), (float(y) + 0.5f) / float(t.height)})
               .rgb));
   return sum / (double(t.width) * double(t.height));
 }
@@ -85,8 +85,7 @@ void PbrtPlacer::place(Placing placing) {
 
 uint32_t PbrtPlacer::material_of(const Placing& placing) {
   PbrtMaterial& material = *placing.shape.material;
-  return placing.shape.alpha ? materials_.index_with_alpha(material, *placing.shape.alpha)
-                             : materials_.index_of(material);
+  return materials_.index_of_copy(material, placing.shape.alpha, placing.shape.absorption);
 }
 
 Light PbrtPlacer::next_light(const PbrtAreaLight& light, double area) {

@@ -33,6 +33,7 @@ struct PbrtShape {
   std::shared_ptr<const AnchoredMesh> mesh;  // everything else
   bool is_quadric = false;                   // normals of the mesh follow the rule of quadrics
   std::optional<FloatInput> alpha;           // the share of rays that meet it, where below 1
+  Rgb absorption{0};                         // of the medium inside
   Affine world_from_object;
   bool is_reversed = false;  // ReverseOrientation
   std::shared_ptr<PbrtMaterial> material;

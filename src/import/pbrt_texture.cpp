@@ -67,7 +67,7 @@ Texture gamma_copy(const Texture& t, float gamma) {
 }  // namespace
 
 void PbrtTextures::define(const std::string& name, bool is_float, const std::string& kind,
-                          PbrtParams params) {
+                          PbrtParams params, const Affine& world_from_texture) {
   auto& named = is_float ? floats_ : colors_;
   if (named.contains(name))
     scene_.warnings.add(at_place(params.place, "texture \"" + name + "\" is defined again"));
@@ -75,6 +75,7 @@ void PbrtTextures::define(const std::string& name, bool is_float, const std::str
   texture.kind = kind;
   texture.is_float = is_float;
   texture.params = std::move(params);
+  texture.world_from_texture = world_from_texture;
   named[name] = std::move(texture);
 }
 
@@ -106,7 +107,7 @@ void PbrtTextures::make(Named& texture, const std::string& name) {
   } else if (texture.kind == "scale") {
     make_scale(texture, name);
   } else if (!(texture.kind == "checkerboard" && make_checkerboard(texture, name)) &&
-             !(texture.kind == "mix" && make_mix(texture))) {
+             !(texture.kind == "mix" && make_mix(texture)) && !make_pattern(texture, name)) {
     make_mean(texture);
   }
   texture.params.warn_unread(scene_.warnings);
@@ -158,9 +159,7 @@ void PbrtTextures::make_image(Named& texture, const std::string& name) {
     warnings.add(params.owner + ": invert with a scale is read as scale × (1 - image)");
   look.is_filtered = params.get_string("filter", "bilinear") != "point";
   look.wrap_u = look.wrap_v = wrap_mode(params, warnings);
-  const std::string mapping = params.get_string("mapping", "uv");
-  if (mapping != "uv")
-    warnings.add(params.owner + ": mapping \"" + mapping + "\" is not supported; (u,v) is used");
+  const bool is_mapped = params.get_string("mapping", "uv") != "uv";
   const Vec2 scale(float(params.get_float("uscale", 1)), float(params.get_float("vscale", 1)));
   const Vec2 offset(float(params.get_float("udelta", 0)), float(params.get_float("vdelta", 0)));
   turn_upside_down(look, scale, offset);
@@ -185,6 +184,12 @@ void PbrtTextures::make_image(Named& texture, const std::string& name) {
     append(gamma_copy(scene_.textures[size_t(index)], float(gamma)));
   if (is_image() && texture.is_float && scene_.textures[size_t(index)].channels > 1)
     append(grey_copy(scene_.textures[size_t(index)]));
+  if (is_image() && is_mapped) {  // by a place in space instead
+    append(scene_.textures[size_t(index)]);
+    Texture& mapped = scene_.textures.back();
+    turn_upside_down(mapped, {1, 1}, {0, 0});
+    read_mapping(texture, false, mapped);
+  }
   texture.value = {Rgb{1}, index};
   texture.images = 1;
 }
@@ -251,16 +256,11 @@ bool PbrtTextures::make_mix(Named& texture) {
 
 void PbrtTextures::make_mean(Named& texture) {
   const PbrtParams& params = texture.params;
-  const bool is_two_colored = texture.kind == "checkerboard" || texture.kind == "dots" ||
-                              texture.kind == "mix" || texture.kind == "directionmix";
   Rgb mean{0.5f};
-  if (is_two_colored) {
-    const bool is_dots = texture.kind == "dots";
+  if (texture.kind == "directionmix") {
     size_t images = 0;
-    const ColorInput a =
-        argument(params, is_dots ? "inside" : "tex1", texture.is_float, Rgb{1}, images);
-    const ColorInput b =
-        argument(params, is_dots ? "outside" : "tex2", texture.is_float, Rgb{0}, images);
+    const ColorInput a = argument(params, "tex1", texture.is_float, Rgb{0}, images);
+    const ColorInput b = argument(params, "tex2", texture.is_float, Rgb{1}, images);
     mean = (a.value + b.value) * 0.5f;
   }
   scene_.warnings.add("texture \"" + texture.kind + "\" is not supported: shown as one colour");

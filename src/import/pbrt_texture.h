@@ -20,7 +20,9 @@ class PbrtTextures {
       : scene_(scene), folder_(std::move(folder)), loader_(scene) {}
 
   // A Texture directive. A name that exists already is replaced, with a warning.
-  void define(const std::string& name, bool is_float, const std::string& kind, PbrtParams params);
+  // world_from_texture: what places in space are counted by.
+  void define(const std::string& name, bool is_float, const std::string& kind, PbrtParams params,
+              const Affine& world_from_texture);
 
   // The value of a material's parameter: a constant, a named texture, or `fallback`.
   // InputError: wrong types, unknown textures, textures that contain themselves.
@@ -38,6 +40,7 @@ class PbrtTextures {
     std::string kind;
     bool is_float = false;
     PbrtParams params;
+    Affine world_from_texture;
     bool is_being_made = false, is_made = false;
     ColorInput value{Rgb{1}, no_texture};
     size_t images = 0;  // images that one look-up reads
@@ -56,6 +59,11 @@ class PbrtTextures {
   // False: not of that kind of argument.
   bool make_checkerboard(Named& texture, const std::string& name);
   bool make_mix(Named& texture);
+  // Patterns and noise; false: not of a kind that is known.
+  bool make_pattern(Named& texture, const std::string& name);
+  void read_mapping(const Named& texture, bool is_solid, Texture& look);
+  void set_operands(Named& texture, std::string_view first, std::string_view second,
+                    Texture& pattern);
   void make_mean(Named& texture);
   ColorInput argument(const PbrtParams& params, std::string_view name, bool is_float, Rgb fallback,
                       size_t& images);

@@ -210,8 +210,11 @@ Material RadianceMaterials::convert_surface(const RadianceModifier& m) {
     const double inside = v[3], outside = is_interface ? v[7] : 1;
     if (!(inside > 0) || !(outside > 0)) m.place.fail("an index of refraction must be positive");
     out.ior = float(inside / outside);
-    if (rgb_at(v) != Rgb{1})
-      scene_.warnings.add("\"" + type + "\": absorption inside is not supported: clear");
+    // The numbers are what is left after a metre.
+    const Rgb left = rgb_at(v);
+    for (size_t c = 0; c < 3; ++c) out.absorption[c] = -std::log(std::clamp(left[c], 1e-6f, 1.0f));
+    if (is_interface && rgb_at(v, 4) != Rgb{1})
+      scene_.warnings.add("\"interface\": absorption on its outer side is left out");
     return out;
   }
   const bool has_color = v.size() >= 3;

@@ -25,12 +25,33 @@ bool is_clear_solid_glass(const Material& m) {
 }
 
 // The same glass as a sheet; what tints light tints it at both faces of the body.
-Material sheet_of(const Material& solid) {
+Material sheet_of(const Material& solid, float thickness) {
   Material m = solid;
   m.is_thin = true;
   m.base_color.value *= m.base_color.value;
+  m.absorption *= thickness;
   return m;
 }
+
+// The sheets of bodies of one material: as many materials as thicknesses, where it absorbs.
+class SheetMaterials {
+ public:
+  explicit SheetMaterials(Scene& scene) : scene_(scene) {}
+  uint32_t of(uint32_t solid, double thickness) {
+    const bool is_absorbing = !scene_.materials[solid].absorption.is_black();
+    const auto steps = int64_t(std::lround(std::log(thickness) * 1000));  // .1 %
+    const std::pair key{solid, is_absorbing ? steps : 0};
+    const auto found = made_.find(key);
+    if (found != made_.end()) return found->second;
+    const auto index = uint32_t(scene_.materials.size());
+    scene_.materials.push_back(sheet_of(scene_.materials[solid], float(thickness)));
+    return made_[key] = index;
+  }
+
+ private:
+  Scene& scene_;
+  std::map<std::pair<uint32_t, int64_t>, uint32_t> made_;
+};
 
 // A mesh in bodies that share no corner.
 class Bodies {
@@ -75,8 +96,13 @@ class Bodies {
   std::vector<std::vector<uint32_t>> bodies_;
 };
 
-// The sheet in the middle of a thin prism: one of its faces, shifted. Empty: it is none.
-std::vector<std::array<Vec3, 3>> sheet_in(const Mesh& mesh, const std::vector<uint32_t>& body) {
+struct Sheet {
+  std::vector<std::array<Vec3, 3>> triangles;  // empty: there is none
+  double thickness = 0;
+};
+
+// The sheet in the middle of a thin prism: one of its faces, shifted.
+Sheet sheet_in(const Mesh& mesh, const std::vector<uint32_t>& body) {
   const auto corners = [&](uint32_t t) {
     const Triangle& v = mesh.triangles[t];
     return std::array<Vec3, 3>{mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]};
@@ -101,7 +127,7 @@ std::vector<std::array<Vec3, 3>> sheet_in(const Mesh& mesh, const std::vector<ui
   if (!(thickness > 0) || thickness > most_thickness * std::min(high[1] - low[1], high[2] - low[2]))
     return {};
   double upper = 0, lower = 0;  // areas
-  std::vector<std::array<Vec3, 3>> sheet;
+  Sheet sheet{{}, thickness};
   for (const uint32_t t : body) {
     auto c = corners(t);
     int above = 0;
@@ -117,16 +143,24 @@ std::vector<std::array<Vec3, 3>> sheet_in(const Mesh& mesh, const std::vector<ui
     if (above != 3) continue;
     upper += area;
     for (Vec3& p : c) p = Vec3(Vec3d(p) - axes[0] * (0.5 * thickness));
-    sheet.push_back(c);
+    sheet.triangles.push_back(c);
   }
   if (!(upper > 0) || std::abs(upper - lower) > 0.01 * upper) return {};
   return sheet;
 }
 
+void add_sheet(const Sheet& sheet, Mesh& mesh) {
+  for (const auto& t : sheet.triangles) {
+    const auto first = uint32_t(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), t.begin(), t.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+}
+
 }  // namespace
 
 void replace_thin_glass(Scene& scene) {
-  std::map<uint32_t, uint32_t> sheets;  // materials of sheets by those of bodies
+  SheetMaterials sheets(scene);
   const size_t n = scene.meshes.size();
   for (size_t i = 0; i < n; ++i) {
     const uint32_t material = scene.meshes[i].material;
@@ -134,32 +168,27 @@ void replace_thin_glass(Scene& scene) {
         !is_clear_solid_glass(scene.materials[material]))
       continue;
     Bodies bodies(scene.meshes[i]);
-    Mesh panes;
+    std::map<uint32_t, Mesh> panes;  // by material
     std::vector<Triangle> kept;
     for (const std::vector<uint32_t>& body : bodies.all()) {
-      const auto sheet = bodies.is_closed(body) ? sheet_in(scene.meshes[i], body)
-                                                : std::vector<std::array<Vec3, 3>>{};
-      for (const auto& t : sheet) {
-        const auto first = uint32_t(panes.positions.size());
-        panes.positions.insert(panes.positions.end(), t.begin(), t.end());
-        panes.triangles.push_back({first, first + 1, first + 2});
-      }
-      if (sheet.empty())
+      const Sheet sheet = bodies.is_closed(body) ? sheet_in(scene.meshes[i], body) : Sheet{};
+      if (!sheet.triangles.empty()) add_sheet(sheet, panes[sheets.of(material, sheet.thickness)]);
+      if (sheet.triangles.empty())
         for (const uint32_t t : body) kept.push_back(scene.meshes[i].triangles[t]);
     }
-    if (panes.triangles.empty()) continue;
-    if (sheets.count(material) == 0) {
-      sheets[material] = uint32_t(scene.materials.size());
-      scene.materials.push_back(sheet_of(scene.materials[material]));
+    if (panes.empty()) continue;
+    const std::string name = scene.meshes[i].name;
+    bool is_free = kept.empty();  // the mesh's place in the scene
+    if (!is_free) scene.meshes[i].triangles = std::move(kept);
+    for (auto& [pane_material, mesh] : panes) {
+      mesh.name = name;
+      mesh.material = pane_material;
+      if (is_free)
+        scene.meshes[i] = std::move(mesh);
+      else
+        scene.meshes.push_back(std::move(mesh));
+      is_free = false;
     }
-    panes.name = scene.meshes[i].name;
-    panes.material = sheets[material];
-    if (kept.empty()) {
-      scene.meshes[i] = std::move(panes);
-      continue;
-    }
-    scene.meshes[i].triangles = std::move(kept);
-    scene.meshes.push_back(std::move(panes));
   }
 }
 

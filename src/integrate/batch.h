@@ -24,6 +24,8 @@ struct ViewingRays {
   // Empty, or for each ray what is known of the rays around it (methods that compare patterns).
   std::vector<NeighbourRecords> neighbours;
 
+  RayCone cone;  // of each: about a pixel, kept by clear()
+
   size_t size() const { return rays.size(); }
   void clear() {
     rays.clear();

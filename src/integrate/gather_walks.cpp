@@ -16,6 +16,9 @@ constexpr uint32_t longest_walk = 24;
 constexpr uint32_t from_matte = 1;
 // nor what image i shines on it: first_image + i, from there by way of its mirror.
 constexpr uint32_t first_image = 2;
+// Width of what a gather's ray stands for, per metre: some 60 rays share a hemisphere, each .3
+// wide; narrower, so that images of other parts of a surface do not come in.
+constexpr float gather_spread = 0.1f;
 
 }  // namespace
 
@@ -43,6 +46,7 @@ void set_out(const CellHit& from, const Vec2& number, Walk& walk) {
   walk.last_normal = from.horizon;
   walk.last_both_sides = false;
   walk.last_place = from_matte;
+  walk.cone = {0, gather_spread};
   ++walk.vertex;
   ++walk.scatterings;
 }
@@ -96,7 +100,7 @@ void GatherWalks::note_step(const Walk& before, const Vertex& v, Walk& next) con
     next.last_place = first_image + uint32_t(image);
 }
 
-void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) const {
+void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
   if (!hit.is_valid()) {
     for (const uint32_t p : scene_.primitives.at_infinity())
       if (counts(walk, scene_.primitives[p].light))
@@ -105,7 +109,7 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, GatherScratch& s) con
     return;
   }
   Vertex v;
-  make_vertex(scene_.scene, walk.ray, hit, v);
+  arrive_at(scene_.scene, hit, walk, v);
   if (v.surface.light >= 0 && counts(walk, uint32_t(v.surface.light)))
     see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
   const Bsdf bsdf =

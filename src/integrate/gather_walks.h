@@ -22,7 +22,7 @@ namespace troffer {
 struct GlossPlace {
   uint32_t material = no_material;  // no_material: there is no wide gloss
   bool is_front = true;
-  Vec2 uv;
+  TexturePlace uv;
   Vec3 wo;
 
   static constexpr uint32_t no_material = 0xffffffffu;
@@ -66,7 +66,7 @@ class GatherWalks {
                 Counters& counters) const;
 
  private:
-  void arrive(const Walk& walk, const Hit& hit, GatherScratch& s) const;
+  void arrive(Walk& walk, const Hit& hit, GatherScratch& s) const;
   void see(const Walk& walk, Rgb radiance, float weight, GatherScratch& s) const;
   bool counts(const Walk& walk, uint32_t light) const;
   void light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,

@@ -54,7 +54,7 @@ class Walks {
     std::vector<uint8_t> is_hidden;
     for (int i = 0; i < most_segments && !rays.empty(); ++i) {
       hits.assign(rays.size(), {});
-      scene_.tracer.closest_but_panes(rays, hits, Coherence::none);
+      scene_.tracer.closest(rays, hits, Coherence::none, Meeting::no_panes);
       asking_.clear();
       for (size_t k = 0; k < rays.size(); ++k) {
         if (!hits[k].is_valid()) return false;

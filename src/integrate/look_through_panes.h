@@ -21,7 +21,7 @@ void look_through_panes(const PreparedScene& scene, Walk walk, Vertex v, const S
       see(walk, nullptr);
       return;
     }
-    make_vertex(scene.scene, walk.ray, hit, v);
+    arrive_at(scene.scene, hit, walk, v);
     see(walk, &v);
   }
 }

@@ -117,14 +117,14 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
   CheckItems items;
   for (size_t i = 0; i < n; ++i) {
     const Hit& hit = s.trace.hits[i];
-    const Walk& walk = walks[i];
+    Walk& walk = walks[i];
     items.at(walk.index);
     if (!hit.is_valid()) {
       add_miss(walk, out);
       continue;
     }
     Vertex& v = vertices[alive];
-    make_vertex(scene_.scene, walk.ray, hit, v);
+    arrive_at(scene_.scene, hit, walk, v);
     if (v.surface.light >= 0) add_emission(walk, v, out);
     if (is_last(walk) && walk.vertex > 0) {
       look_through_panes(scene_, walk, v, [&](const Walk& beyond, const Vertex* seen) {

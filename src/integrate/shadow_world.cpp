@@ -75,7 +75,7 @@ void ShadowWorld::occluded(const SegmentArrays& segments, std::span<uint8_t> is_
 void ShadowWorld::trace(std::span<const ShadowSegment> segments, std::span<ShadowHit> hits) {
   set_rays(segments);
   hits_.resize(segments.size());
-  tracer_.closest_but_panes(rays_, hits_, Coherence::coherent);
+  tracer_.closest(rays_, hits_, Coherence::coherent, Meeting::no_panes);
   for (size_t i = 0; i < segments.size(); ++i) {
     hits[i] = {};
     const Hit& hit = hits_[i];

@@ -43,8 +43,9 @@ inline Vertex make_vertex(const Surface& surface, const Vec3& ray_direction) {
   face_viewer(v, ray_direction);
   return v;
 }
-inline void make_vertex(const Scene& scene, const Ray& ray, const Hit& hit, Vertex& v) {
-  surface_at(scene, ray, hit, v.surface);
+inline void make_vertex(const Scene& scene, const Ray& ray, const Hit& hit, Vertex& v,
+                        const RayCone& cone = {}) {
+  surface_at(scene, ray, hit, v.surface, cone);
   face_viewer(v, ray.direction);
 }
 

@@ -1,5 +1,6 @@
 #include "integrate/walk.h"
 
+#include <cmath>
 #include <limits>
 
 #include "base/random.h"
@@ -12,6 +13,7 @@ void start_walks(const ViewingRays& rays, std::vector<Walk>& walks) {
   for (uint32_t i = 0; i < rays.size(); ++i) {
     Walk& w = walks[i];
     w.ray = rays.rays[i];
+    w.cone = rays.cone;
     w.index = i;
     w.sample = rays.samples[i];
     w.stream = rays.streams[i];
@@ -32,8 +34,28 @@ void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence
   scratch.rays.resize(n);
   scratch.hits.resize(n);
   for (size_t i = 0; i < n; ++i) scratch.rays[i] = walks[i].ray;
-  tracer.closest(scratch.rays, scratch.hits, coherence);
+  const bool is_from_eye = n > 0 && walks[0].vertex == 0;
+  tracer.closest(scratch.rays, scratch.hits, coherence,
+                 is_from_eye ? Meeting::as_seen : Meeting::all);
   if (n > 0 && walks[0].vertex > 0) counters.extension_rays += n;
+}
+
+namespace {
+
+bool absorbs_inside(const Material& m) {
+  return !m.is_thin && !m.absorption.is_black();
+}
+
+}  // namespace
+
+void arrive_at(const Scene& scene, const Hit& hit, Walk& walk, Vertex& v) {
+  make_vertex(scene, walk.ray, hit, v, walk.cone);
+  walk.cone.width += walk.cone.spread * hit.t;
+  const uint32_t material = v.surface.material;
+  if (!v.is_front && absorbs_inside(scene.materials[material])) walk.medium = int32_t(material);
+  if (walk.medium == no_medium) return;
+  const Rgb depth = scene.materials[size_t(walk.medium)].absorption * hit.t;
+  walk.throughput *= Rgb{std::exp(-depth.r), std::exp(-depth.g), std::exp(-depth.b)};
 }
 
 Vec2 direction_number(const Walk& walk) {
@@ -56,7 +78,11 @@ bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2&
   if (!v.is_consistent(wi, sampled.wi)) return false;
   walk.throughput *= sampled.weight;
   if (walk.throughput.is_black()) return false;
-  if (sampled.is_transmission) walk.eta_squared *= sampled.eta * sampled.eta;
+  if (sampled.is_transmission) {
+    walk.eta_squared *= sampled.eta * sampled.eta;
+    if (!bsdf.is_thin || bsdf.is_absorbing)
+      walk.medium = v.is_front && bsdf.is_absorbing ? int32_t(v.surface.material) : no_medium;
+  }
   walk.ray = {};
   walk.ray.origin = offset_origin(v.surface, wi);
   walk.ray.direction = wi;
@@ -70,7 +96,9 @@ bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2&
   walk.last_normal = v.geometric_normal;
   walk.last_both_sides = bsdf.has_transmission;
   ++walk.vertex;
-  if (!sampled.is_delta) ++walk.scatterings;
+  if (sampled.is_delta) return true;
+  ++walk.scatterings;
+  walk.cone = {};  // directions are drawn: the mean over them is the surface's
   return true;
 }
 

@@ -8,6 +8,8 @@
 
 namespace troffer {
 
+constexpr int32_t no_medium = -1;
+
 // A ray under way from one vertex to the next, and what is needed when it arrives.
 struct Walk {
   Ray ray;
@@ -20,12 +22,14 @@ struct Walk {
   bool last_both_sides = false;
   uint32_t vertex = 0;  // how many vertices it has left behind
   uint32_t panes = 0;   // … of which so many straight through panes, as if they were not there
-  uint32_t scatterings = 0;  // … by lobes that are not deltas
-  float eta_squared = 1;     // by which refraction has scaled radiance so far, inverted
-  uint32_t index = 0;        // of the viewing ray in its batch
-  uint32_t sample = 0;       // of the pixel
-  float length = 0;          // metres that it came before its last vertex, where somebody counts
-  uint32_t last_place = 0;   // the integrator's own note about the vertex it comes from
+  uint32_t scatterings = 0;    // … by lobes that are not deltas
+  float eta_squared = 1;       // by which refraction has scaled radiance so far, inverted
+  uint32_t index = 0;          // of the viewing ray in its batch
+  uint32_t sample = 0;         // of the pixel
+  float length = 0;            // metres that it came before its last vertex, where somebody counts
+  uint32_t last_place = 0;     // the integrator's own note about the vertex it comes from
+  int32_t medium = no_medium;  // material of the absorbing glass that it is in
+  RayCone cone;                // what it stands for, where its ray begins
   uint64_t stream = 0;
 };
 
@@ -44,6 +48,11 @@ struct WalkScratch {
 // Finds where each walk arrives: scratch.hits[i] for walks[i].
 void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence coherence,
                  WalkScratch& scratch, Counters& counters);
+
+// The vertex where a walk has hit the scene: makes it, and takes from the walk's light what the
+// glass that it came through absorbs. What is inside is known by where the walk went in, and by a
+// hit on the inside of glass; glass inside glass ends at the first surface of either.
+void arrive_at(const Scene& scene, const Hit& hit, Walk& walk, Vertex& v);
 
 // Random numbers at a walk's vertex: for choosing a direction (with purpose_scatter, dimensions 0
 // and 1), a lobe (dimension 2), and for Russian roulette, which gains nothing by stratification.

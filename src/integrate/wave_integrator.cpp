@@ -136,10 +136,10 @@ void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch
       see_lights_at_infinity(s.walks[i], s);
       continue;
     }
-    const Walk& walk = w.walks.emplace_back(s.walks[i]);
+    Walk& walk = w.walks.emplace_back(s.walks[i]);
     w.hits.push_back(hit);
     Vertex& v = w.vertices.emplace_back();
-    make_vertex(scene_.scene, walk.ray, hit, v);
+    arrive_at(scene_.scene, hit, walk, v);
     if (v.surface.light >= 0) {
       const Rgb radiance = emission_at(scene_, v);
       if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, &v, radiance);

@@ -53,6 +53,14 @@ void add_texture(Hasher& h, const Texture& t) {
   h.add(t.uv_scale);
   h.add(t.uv_offset);
   h.add(t.uv_rotation_rad);
+  h.add(uint64_t(t.mapping) | uint64_t(t.octaves) << 8);
+  for (const Vec3d& v : t.from_scene.columns) h.add(Vec3(v));
+  h.add(Vec3(t.from_scene.translation));
+  for (const TextureOperand* o : {&t.first, &t.second, &t.amount}) {
+    h.add(o->value);
+    h.add(uint64_t(o->texture));
+  }
+  for (const float v : {t.persistence, t.scale, t.variation}) h.add(v);
 }
 
 void add_web(Hasher& h, const LightWeb& web) {

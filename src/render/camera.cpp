@@ -50,6 +50,12 @@ Ray ViewingCamera::ray(const Vec2& raster, const Vec2& lens) const {
   return r;
 }
 
+RayCone ViewingCamera::cone(int rays) const {
+  const float share = std::max(1 / std::sqrt(float(std::max(rays, 1))), 0.125f);
+  const float width = share * std::sqrt(std::abs(step_.x * step_.y));
+  return is_perspective() ? RayCone{0, width} : RayCone{width, 0};
+}
+
 bool ViewingCamera::raster_of(const Vec3& p, Vec2& raster) const {
   const Vec3 d = p - camera_.position;
   const float along = dot(d, camera_.forward);

@@ -19,6 +19,9 @@ class ViewingCamera {
   // Where a point is seen through the middle of the lens: the inverse of ray(). False where it is
   // not before the camera.
   bool raster_of(const Vec3& p, Vec2& raster) const;
+  // What one of `rays` rays of a pixel stands for: between the root's share of its width and an
+  // eighth, so that their mean is not blurred by more than the pixel.
+  RayCone cone(int rays) const;
   bool is_perspective() const { return camera_.kind == CameraKind::perspective; }
   // Unit, from a point to where it is seen from.
   Vec3 towards_eye(const Vec3& p) const {

@@ -39,7 +39,7 @@ std::vector<Corner> trace_corners(const PreparedScene& scene, const ViewingCamer
     for (size_t i = 0; i < columns; ++i)
       rays[i] =
           camera.ray({float(region.x0) + float(i), float(region.y0) + float(row)}, {0.5f, 0.5f});
-    scene.tracer.closest(rays, hits, Coherence::coherent);
+    scene.tracer.closest(rays, hits, Coherence::coherent, Meeting::as_seen);
     for (size_t i = 0; i < columns; ++i) {
       if (!hits[i].is_valid()) continue;
       const Surface s = surface_at(scene.scene, rays[i], hits[i]);

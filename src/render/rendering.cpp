@@ -30,6 +30,7 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       work_(size_t(thread_count(options.threads))),
       report_(progress),
       stop_(stop) {
+  for (Work& w : work_) w.rays.cone = camera.cone(options.spp);
   refining_.max_spp = most_viewing_rays(options);
   if (refining_.max_spp > options.spp) {
     refining_.records.emplace(plan_.region);

@@ -40,6 +40,13 @@ enum class RoughnessMeaning : uint8_t {
   alpha_is_square,  // alpha = roughness²: glTF
 };
 
+// What a surface is to those who see its back.
+enum class BackFaces : uint8_t {
+  shown,   // the same as its front
+  black,   // it reflects nothing there (Mitsuba's one-sided ones)
+  unseen,  // viewing rays go through (glTF's); to light it is the same as its front
+};
+
 struct Material {
   std::string name;
   MaterialKind kind = MaterialKind::diffuse;
@@ -52,10 +59,15 @@ struct Material {
   ColorInput specular_color{Rgb{1}, no_texture};  // … specularColorFactor
   FloatInput transmission{0, no_texture, 0};      // KHR_materials_transmission
   bool is_thin = false;                           // dielectric, transmission: no refraction
+  // Inside solid glass: the share exp(-absorption × metres) is left. Of a sheet: the exponent
+  // straight through it.
+  Rgb absorption{0};
+  BackFaces back_faces = BackFaces::shown;
   bool is_reflectance = false;                    // conductor: normal reflectance is base_color
   Rgb eta{0.2f}, k{3.9f};                         // conductor
   int32_t normal_texture = no_texture;            // tangent space, linear
   float normal_scale = 1;
+  FloatInput bump{0, no_texture, 0};              // height in metres; none without a texture
   bool is_alpha_masked = false;   // hits with alpha < cutoff are not there …
   bool is_alpha_blended = false;  // … or, where it is masked: alpha is the share of rays that hit
   FloatInput alpha{1, no_texture, 3};
@@ -84,6 +96,8 @@ void for_each_value(const Material& m, const Visit& visit) {
         uint64_t(m.is_alpha_blended) << 3);
   visit(m.eta);
   visit(m.k);
+  visit(m.absorption);
+  visit(uint64_t(m.back_faces));
   visit(m.alpha_cutoff);
 }
 
@@ -94,10 +108,12 @@ inline bool has_textured_input(const Material& m) {
   return is_any;
 }
 
-inline Rgb evaluate(const std::vector<Texture>& textures, const ColorInput& in, const Vec2& uv) {
+inline Rgb evaluate(const std::vector<Texture>& textures, const ColorInput& in,
+                    const TexturePlace& uv) {
   return in.texture < 0 ? in.value : in.value * evaluate(textures, uint32_t(in.texture), uv).rgb;
 }
-inline float evaluate(const std::vector<Texture>& textures, const FloatInput& in, const Vec2& uv) {
+inline float evaluate(const std::vector<Texture>& textures, const FloatInput& in,
+                      const TexturePlace& uv) {
   if (in.texture < 0) return in.value;
   const TextureValue v = evaluate(textures, uint32_t(in.texture), uv);
   return in.value * (in.channel == 3 ? v.alpha : v.rgb[size_t(in.channel)]);
@@ -105,14 +121,16 @@ inline float evaluate(const std::vector<Texture>& textures, const FloatInput& in
 
 // The share of rays that meet the surface at uv: 0 where a mask makes a hole, 1 where it does not,
 // between where alpha blends. Of a material that is_alpha_masked.
-inline float coverage(const std::vector<Texture>& textures, const Material& m, const Vec2& uv) {
+inline float coverage(const std::vector<Texture>& textures, const Material& m,
+                      const TexturePlace& uv) {
   const float alpha = evaluate(textures, m.alpha, uv);
   if (!m.is_alpha_blended) return alpha < m.alpha_cutoff ? 0.0f : 1.0f;
   return alpha > 0 ? (alpha < 1 ? alpha : 1.0f) : 0.0f;
 }
 
 // Whether no ray meets it there.
-inline bool is_cut_out(const std::vector<Texture>& textures, const Material& m, const Vec2& uv) {
+inline bool is_cut_out(const std::vector<Texture>& textures, const Material& m,
+                      const TexturePlace& uv) {
   return coverage(textures, m, uv) <= 0;
 }
 

@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-float coverage_at(const AlphaTest& test, uint32_t primitive, float u, float v) {
+float coverage_at(const HitTest& test, uint32_t primitive, float u, float v) {
   const Triangle& t = test.mesh->triangles[primitive];
   Vec2 uv{0, 0};
   if (!test.mesh->uvs.empty()) {
@@ -36,28 +36,41 @@ float draw_of(const RTCFilterFunctionNArguments* args, unsigned i) {
   return unit_float(uint32_t(hash >> 32));
 }
 
-void alpha_filter(const RTCFilterFunctionNArguments* args) {
-  const auto& test = *static_cast<const AlphaTest*>(args->geometryUserPtr);
+// Whether the hit is in a hole, or the ray is one of those that go through.
+bool is_in_hole(const HitTest& test, const RTCFilterFunctionNArguments* args, unsigned i) {
+  if (!test.has_holes) return false;
+  const float share =
+      coverage_at(test, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                  RTCHitN_v(args->hit, args->N, i));
+  return share <= 0 || (share < 1 && draw_of(args, i) >= share);
+}
+
+bool is_from_behind(const RTCFilterFunctionNArguments* args, unsigned i) {
+  const unsigned n = args->N;
+  return RTCHitN_Ng_x(args->hit, n, i) * RTCRayN_dir_x(args->ray, n, i) +
+             RTCHitN_Ng_y(args->hit, n, i) * RTCRayN_dir_y(args->ray, n, i) +
+             RTCHitN_Ng_z(args->hit, n, i) * RTCRayN_dir_z(args->ray, n, i) >
+         0;
+}
+
+void closest_filter(const RTCFilterFunctionNArguments* args) {
+  const auto& test = *static_cast<const HitTest*>(args->geometryUserPtr);
+  const Meeting meeting = reinterpret_cast<const Context*>(args->context)->meeting;
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
-    const float share =
-        coverage_at(test, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
-                    RTCHitN_v(args->hit, args->N, i));
-    if (share <= 0 || (share < 1 && draw_of(args, i) >= share)) args->valid[i] = 0;
+    const bool is_skipped =
+        (meeting == Meeting::no_panes && test.is_pane_at(RTCHitN_primID(args->hit, args->N, i))) ||
+        (meeting == Meeting::as_seen && test.hides_backs && is_from_behind(args, i));
+    if (is_skipped || is_in_hole(test, args, i)) args->valid[i] = 0;
   }
 }
 
-void reject_panes(const RTCFilterFunctionNArguments* args) {
-  const auto& test = *static_cast<const PaneTest*>(args->geometryUserPtr);
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] != -1) continue;
-    if (test.is_pane.empty() || test.is_pane[RTCHitN_primID(args->hit, args->N, i)] != 0)
+void occluded_filter(const RTCFilterFunctionNArguments* args) {
+  const auto& test = *static_cast<const HitTest*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i)
+    if (args->valid[i] == -1 &&
+        (test.is_pane_at(RTCHitN_primID(args->hit, args->N, i)) || is_in_hole(test, args, i)))
       args->valid[i] = 0;
-  }
-}
-
-void pane_filter(const RTCFilterFunctionNArguments* args) {
-  if (reinterpret_cast<const Context*>(args->context)->skips_panes) reject_panes(args);
 }
 
 void on_error(void* user, RTCError code, const char* text) {
@@ -87,7 +100,7 @@ void* Tracer::Embree::buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat
 void Tracer::Embree::attach(RTCGeometry geometry, uint32_t id) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
-  if (id < pane_tests.size() && pane_tests[id].has_panes) {
+  if (tests[id].has_panes) {
     if (panes == nullptr) panes = rtcNewScene(device);
     rtcSetSceneFlags(panes, RTC_SCENE_FLAG_ROBUST);
     rtcAttachGeometryByID(panes, geometry, id);
@@ -95,11 +108,12 @@ void Tracer::Embree::attach(RTCGeometry geometry, uint32_t id) {
   rtcReleaseGeometry(geometry);
 }
 
-void Tracer::Embree::set_pane_test(RTCGeometry g, uint32_t id, std::vector<uint8_t> is_pane) {
-  pane_tests[id] = {true, std::move(is_pane)};
-  rtcSetGeometryUserData(g, &pane_tests[id]);
-  rtcSetGeometryIntersectFilterFunction(g, pane_filter);
-  rtcSetGeometryOccludedFilterFunction(g, reject_panes);
+void Tracer::Embree::set_filters(RTCGeometry g, uint32_t id) {
+  const HitTest& test = tests[id];
+  rtcSetGeometryUserData(g, &tests[id]);
+  if (test.has_holes || test.hides_backs || test.has_panes)
+    rtcSetGeometryIntersectFilterFunction(g, closest_filter);
+  if (test.has_holes || test.has_panes) rtcSetGeometryOccludedFilterFunction(g, occluded_filter);
 }
 
 void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass) {
@@ -115,14 +129,14 @@ void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glas
                                           3 * sizeof(uint32_t), mesh.triangles.size()));
   for (size_t i = 0; i < mesh.triangles.size(); ++i)
     for (size_t a = 0; a < 3; ++a) t[3 * i + a] = mesh.triangles[i][a];
-  if (s.materials[mesh.material].is_alpha_masked) {
-    alpha_tests[id] = {&s, &mesh};
-    rtcSetGeometryUserData(g, &alpha_tests[id]);
-    rtcSetGeometryIntersectFilterFunction(g, alpha_filter);
-    rtcSetGeometryOccludedFilterFunction(g, alpha_filter);
-  } else if (glass != nullptr && glass->is_pane(mesh.material)) {
-    set_pane_test(g, id, {});
-  }
+  HitTest& test = tests[id];
+  test.scene = &s;
+  test.mesh = &mesh;
+  const Material& m = s.materials[mesh.material];
+  test.has_holes = m.is_alpha_masked;
+  test.hides_backs = m.back_faces == BackFaces::unseen;
+  test.has_panes = !m.is_alpha_masked && glass != nullptr && glass->is_pane(mesh.material);
+  set_filters(g, id);
   attach(g, id);
 }
 
@@ -133,8 +147,10 @@ void Tracer::Embree::mark_panes(RTCGeometry g, uint32_t id, const Shapes& shapes
   if (glass == nullptr) return;
   std::vector<uint8_t> is_pane;
   for (const auto& shape : shapes) is_pane.push_back(glass->is_pane(shape.material) ? 1 : 0);
-  if (std::find(is_pane.begin(), is_pane.end(), 1) != is_pane.end())
-    set_pane_test(g, id, std::move(is_pane));
+  if (std::find(is_pane.begin(), is_pane.end(), 1) == is_pane.end()) return;
+  tests[id].has_panes = true;
+  tests[id].is_pane = std::move(is_pane);
+  set_filters(g, id);
 }
 
 void Tracer::Embree::add_spheres(const Scene& s, const PaneGlass* glass) {
@@ -177,8 +193,7 @@ Tracer::Embree::Embree(const Scene& s, const PaneGlass* glass) {
   scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no light leaks through shared edges
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-  alpha_tests.resize(s.meshes.size());
-  pane_tests.resize(s.meshes.size() + 2);
+  tests.resize(s.meshes.size() + 2);
   for (uint32_t i = 0; i < s.meshes.size(); ++i) add_mesh(s, i, glass);
   add_spheres(s, glass);
   add_disks(s, glass);

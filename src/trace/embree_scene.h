@@ -10,26 +10,24 @@
 
 namespace troffer {
 
-// What an alpha test needs to know of its mesh.
-struct AlphaTest {
-  const Scene* scene;
-  const Mesh* mesh;
-};
-
 // Of all rays: filters get it with each hit.
 struct Context {
   RTCIntersectContext embree;  // the first member: Embree knows the address of this
-  bool skips_panes = false;
+  Meeting meeting;
 
-  explicit Context(bool without_panes) : skips_panes(without_panes) {
-    rtcInitIntersectContext(&embree);
-  }
+  explicit Context(Meeting what) : meeting(what) { rtcInitIntersectContext(&embree); }
 };
 
-// Of a geometry of which some are panes.
-struct PaneTest {
-  bool has_panes = false;
-  std::vector<uint8_t> is_pane;  // per primitive; empty: all are
+// What of a geometry is not there for some rays, or has holes.
+struct HitTest {
+  const Scene* scene = nullptr;
+  const Mesh* mesh = nullptr;  // null: spheres or disks
+  bool has_holes = false, hides_backs = false, has_panes = false;
+  std::vector<uint8_t> is_pane;  // per primitive; empty: all are, where it has any
+
+  bool is_pane_at(uint32_t primitive) const {
+    return has_panes && (is_pane.empty() || is_pane[primitive] != 0);
+  }
 };
 
 struct EmbreeStatus {
@@ -42,8 +40,7 @@ struct Tracer::Embree {
   RTCScene scene = nullptr;
   RTCScene panes = nullptr;  // alone, by the same numbers; null: there are none
   EmbreeStatus status;
-  std::vector<AlphaTest> alpha_tests;
-  std::vector<PaneTest> pane_tests;  // per mesh, of all spheres, of all disks
+  std::vector<HitTest> tests;  // per mesh, of all spheres, of all disks
 
   // Throws EnvironmentError if memory runs out.
   Embree(const Scene& scene, const PaneGlass* glass);
@@ -59,7 +56,7 @@ struct Tracer::Embree {
   void add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass);
   void add_spheres(const Scene& s, const PaneGlass* glass);
   void add_disks(const Scene& s, const PaneGlass* glass);
-  void set_pane_test(RTCGeometry geometry, uint32_t id, std::vector<uint8_t> is_pane);
+  void set_filters(RTCGeometry geometry, uint32_t id);
   template <class Shapes>
   void mark_panes(RTCGeometry geometry, uint32_t id, const Shapes& shapes, const PaneGlass* glass);
 };

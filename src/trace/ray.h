@@ -19,6 +19,12 @@ struct Ray {
   float t_max = std::numeric_limits<float>::infinity();
 };
 
+// What a ray stands for: a cone around it, as wide as this where the ray begins, wider by `spread`
+// with every metre.
+struct RayCone {
+  float width = 0, spread = 0;
+};
+
 // Rays with t in [0, 1], as plain arrays: those that ask whether two points see each other. Only
 // the first size() entries of the arrays count.
 class Segments {

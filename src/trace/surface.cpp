@@ -1,8 +1,13 @@
 #include "trace/surface.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace troffer {
+
+// References: [1] Akenine-Möller et al., "Texture Level of Detail Strategies for Real-Time Ray
+//   Tracing", Ray Tracing Gems, 2019. [2] Mikkelsen, "Bump Mapping Unparametrized Surfaces on the
+//   GPU", JGT 15(1), 2010.
 
 namespace {
 
@@ -46,7 +51,97 @@ Vec3 mapped_normal(const Scene& scene, const Material& m, const Surface& s,
   return mapped / ml;
 }
 
-void triangle_surface(const Scene& scene, const Hit& hit, Surface& s) {
+// How positions and texture coordinates of a triangle change together.
+struct TriangleUvs {
+  Vec3 along_u, along_v;  // metres per unit
+  bool is_fine = false;
+
+  TriangleUvs(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& uv) {
+    const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
+    const float det = d1.x * d2.y - d1.y * d2.x;
+    if (det == 0 || !std::isfinite(1 / det)) return;
+    const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
+    along_u = (e1 * d2.y - e2 * d1.y) * (1 / det);
+    along_v = (e2 * d1.x - e1 * d2.x) * (1 / det);
+    is_fine = length_squared(cross(along_u, along_v)) > 0;
+  }
+  // The change of (u,v) over a way in the plane.
+  Vec2 over(const Vec3& way) const {
+    const float uu = dot(along_u, along_u), uv = dot(along_u, along_v), vv = dot(along_v, along_v);
+    const float a = dot(way, along_u), b = dot(way, along_v), inverse = 1 / (uu * vv - uv * uv);
+    return Vec2{vv * a - uv * b, uu * b - uv * a} * inverse;
+  }
+};
+
+// What a cone of that width meets of a plane [1]: as wide across as it is, longer along its way,
+// but no longer than `most`.
+void set_footprint(const TriangleUvs& uvs, const Vec3& normal, const Vec3& direction, float width,
+                   TexturePlace& place) {
+  constexpr float most = 64;
+  const float cosine = dot(direction, normal);
+  const Vec3 flat = direction - normal * cosine;
+  const float l = length(flat);
+  const Vec3 along = l > 1e-4f ? flat / l : Frame(normal).tangent;
+  const float longer = std::min(1 / std::max(std::abs(cosine), 1e-6f), most);
+  place.axis_a = uvs.over(along * (width * longer));
+  place.axis_b = uvs.over(cross(normal, along) * width);
+  if (!std::isfinite(place.axis_a.x + place.axis_a.y + place.axis_b.x + place.axis_b.y))
+    place.axis_a = place.axis_b = {};
+}
+
+// The shading normal on heights that are looked up [2]: their gradient in the plane, by differences
+// over the footprint, or over a texel where that is less.
+Vec3 bumped_normal(const Scene& scene, const Material& m, const TriangleUvs& uvs,
+                   const Surface& s) {
+  const auto height = [&](const Vec2& d) {
+    TexturePlace at = s.uv;
+    at.uv = at.uv + d;
+    at.position = at.position + uvs.along_u * d.x + uvs.along_v * d.y;
+    return evaluate(scene.textures, m.bump, at);
+  };
+  const Vec2 texel = texel_step(scene.textures, uint32_t(m.bump.texture));
+  const float wide = std::max(std::abs(s.uv.axis_a.x), std::abs(s.uv.axis_b.x)),
+              high = std::max(std::abs(s.uv.axis_a.y), std::abs(s.uv.axis_b.y));
+  const float du = 0.5f * std::max(wide, texel.x), dv = 0.5f * std::max(high, texel.y);
+  const float by_u = (height({du, 0}) - height({-du, 0})) / (2 * du),
+              by_v = (height({0, dv}) - height({0, -dv})) / (2 * dv);
+  const Vec3 n = s.shading_normal, area = cross(uvs.along_u, uvs.along_v);
+  const float side = dot(area, n) < 0 ? -1.0f : 1.0f;
+  const Vec3 gradient =
+      (cross(uvs.along_v, n) * by_u + cross(n, uvs.along_u) * by_v) * (side / length(area));
+  const Vec3 bumped = n - gradient;
+  const float l = length(bumped);
+  if (!(l > 1e-6f) || !std::isfinite(l) || dot(bumped, s.geometric_normal) <= 0) return n;
+  return bumped / l;
+}
+
+bool is_textured_at_all(const Material& m) {
+  return m.normal_texture >= 0 || m.bump.texture >= 0 || has_textured_input(m);
+}
+
+// What textures make of the surface; places for those that are looked up later.
+void set_textured(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
+                  const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& uv, Surface& s) {
+  const Material& m = scene.materials[s.material];
+  if (!is_textured_at_all(m)) return;
+  const TriangleUvs uvs(p, uv);
+  s.uv.position = s.position;
+  s.uv.width = cone.width + cone.spread * hit.t;
+  if (s.uv.width > 0 && uvs.is_fine)
+    set_footprint(uvs, s.geometric_normal, ray.direction, s.uv.width, s.uv);
+  if (m.normal_texture >= 0) s.shading_normal = mapped_normal(scene, m, s, p, uv);
+  if (m.bump.texture >= 0 && uvs.is_fine) s.shading_normal = bumped_normal(scene, m, uvs, s);
+}
+
+// Of shapes without texture coordinates: where they are, for textures in space.
+void set_place(const RayCone& cone, const Hit& hit, Surface& s) {
+  s.uv = {};
+  s.uv.position = s.position;
+  s.uv.width = cone.width + cone.spread * hit.t;
+}
+
+void triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
+                      Surface& s) {
   const Mesh& mesh = scene.meshes[hit.geometry];
   const Triangle& t = mesh.triangles[hit.primitive];
   const std::array<Vec3, 3> p{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
@@ -68,13 +163,15 @@ void triangle_surface(const Scene& scene, const Hit& hit, Surface& s) {
   s.uv = {};
   if (!mesh.uvs.empty()) {
     const std::array<Vec2, 3> uv{mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]};
-    s.uv = uv[0] * w + uv[1] * hit.u + uv[2] * hit.v;
-    const Material& m = scene.materials[mesh.material];
-    if (m.normal_texture >= 0) s.shading_normal = mapped_normal(scene, m, s, p, uv);
+    s.uv.uv = uv[0] * w + uv[1] * hit.u + uv[2] * hit.v;
+    set_textured(scene, ray, hit, cone, p, uv, s);
+  } else if (is_textured_at_all(scene.materials[s.material])) {
+    set_place(cone, hit, s);
   }
 }
 
-void sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface& s) {
+void sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
+                    Surface& s) {
   const Sphere& sphere = scene.spheres[hit.primitive];
   const Vec3 from_centre =
       normalize(ray.origin + ray.direction * hit.t - sphere.centre);  // re-projected: accurate
@@ -83,21 +180,22 @@ void sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface&
   s.position = sphere.centre + from_centre * sphere.radius;
   s.geometric_normal = sphere.is_inside_out ? -from_centre : from_centre;
   s.shading_normal = s.geometric_normal;
-  s.uv = {};
+  set_place(cone, hit, s);
   // Embree solves a quadratic: its t errs more than a triangle's.
   s.offset = 4 * ray_offset(largest_coordinate(sphere.centre) + sphere.radius);
   s.material = sphere.material;
   s.light = sphere.light;
 }
 
-void disk_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface& s) {
+void disk_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
+                  Surface& s) {
   const Disk& disk = scene.disks[hit.primitive];
   const Vec3 p = ray.origin + ray.direction * hit.t;
   s.geometry = hit.geometry;
   s.primitive = hit.primitive;
   s.position = p - disk.normal * dot(disk.normal, p - disk.centre);
   s.geometric_normal = s.shading_normal = disk.normal;
-  s.uv = {};
+  set_place(cone, hit, s);
   s.offset = ray_offset(largest_coordinate(disk.centre) + disk.radius);
   s.material = disk.material;
   s.light = disk.light;
@@ -105,13 +203,14 @@ void disk_surface(const Scene& scene, const Ray& ray, const Hit& hit, Surface& s
 
 }  // namespace
 
-void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out) {
+void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out,
+                const RayCone& cone) {
   if (hit.geometry < scene.meshes.size())
-    triangle_surface(scene, hit, out);
+    triangle_surface(scene, ray, hit, cone, out);
   else if (hit.geometry == scene.meshes.size())
-    sphere_surface(scene, ray, hit, out);
+    sphere_surface(scene, ray, hit, cone, out);
   else
-    disk_surface(scene, ray, hit, out);
+    disk_surface(scene, ray, hit, cone, out);
 }
 
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {

@@ -13,10 +13,10 @@
 namespace troffer {
 
 struct Surface {
-  Vec3 position;          // from barycentrics, accurate to a few ulps
-  Vec3 geometric_normal;  // unit, on the front
-  Vec3 shading_normal;    // unit, on the front; interpolated and normal-mapped
-  Vec2 uv;
+  Vec3 position;                         // from barycentrics, accurate to a few ulps
+  Vec3 geometric_normal;                 // unit, on the front
+  Vec3 shading_normal;                   // unit, on the front; interpolated and normal-mapped
+  TexturePlace uv;                       // with what the ray stands for
   float offset = 0;                      // metres: farther from the surface than rounding can err
   uint32_t geometry = 0, primitive = 0;  // as in Hit
   uint32_t material = 0;
@@ -24,8 +24,9 @@ struct Surface {
 };
 
 Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
-// The same in place, every member written.
-void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out);
+// The same in place, every member written. cone: of a ray whose direction is unit.
+void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out,
+                const RayCone& cone = {});
 
 // Where a new ray in the direction of `towards` starts, clear of the surface it leaves.
 inline Vec3 offset_origin(const Surface& s, const Vec3& towards) {

@@ -158,19 +158,10 @@ void append(RayLog& log, std::span<const Ray> rays, Coherence coherence, bool is
 
 }  // namespace
 
-void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) const {
-  trace_closest(rays, hits, coherence, false);
-}
-
-void Tracer::closest_but_panes(std::span<const Ray> rays, std::span<Hit> hits,
-                               Coherence coherence) const {
-  trace_closest(rays, hits, coherence, true);
-}
-
-void Tracer::trace_closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence,
-                           bool skips_panes) const {
+void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence,
+                     Meeting meeting) const {
   if (log_ != nullptr) append(*log_, rays, coherence, false);
-  Context context(skips_panes);
+  Context context(meeting);
   if (coherence == Coherence::coherent) {
     context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     closest_packets(embree_->scene, context, rays, hits);
@@ -185,7 +176,7 @@ void Tracer::trace_closest(std::span<const Ray> rays, std::span<Hit> hits, Coher
 void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
                       Coherence coherence) const {
   if (log_ != nullptr) append(*log_, rays, coherence, true);
-  Context context(false);
+  Context context(Meeting::all);
   if (coherence == Coherence::coherent) {
     occluded_packets(embree_->scene, context, rays, is_occluded);
     return;
@@ -202,7 +193,7 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
 
 void Tracer::occluded(const Segments& segments, std::span<uint8_t> is_occluded) const {
   if (log_ != nullptr) append(*log_, segments);
-  Context context(false);
+  Context context(Meeting::all);
   alignas(64) std::array<int, packet_size> valid{};
   RTCRay16 p;
   for (size_t first = 0; first < segments.size(); first += packet_size) {
@@ -237,7 +228,7 @@ Rgb Tracer::transmittance(const Ray& ray) const {
   constexpr int most_panes = 256;
   Rgb left{1};
   if (!has_panes() || !is_traceable(ray)) return left;
-  Context context(false);
+  Context context(Meeting::all);
   const float per_metre = 1 / length(ray.direction);
   Ray rest = ray;
   for (int i = 0; i < most_panes; ++i) {

@@ -15,6 +15,13 @@ namespace troffer {
 // Coherent rays (such as a pixel's viewing rays) are traced in packets.
 enum class Coherence { none, coherent };
 
+// Which surfaces rays meet.
+enum class Meeting : uint8_t {
+  all,
+  no_panes,
+  as_seen,  // as the eye does: not the backs of those that are unseen from there
+};
+
 // All rays that a tracer is asked about, in order: for benchmarks.
 struct RayLog {
   struct Batch {
@@ -44,9 +51,7 @@ class Tracer {
 
   // hits[i] = closest hit of rays[i]. Hits that an alpha mask makes transparent do not count.
   void closest(std::span<const Ray> rays, std::span<Hit> hits,
-               Coherence coherence = Coherence::none) const;
-  // The same, but no hit is on a pane.
-  void closest_but_panes(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) const;
+               Coherence coherence = Coherence::none, Meeting meeting = Meeting::all) const;
   // is_occluded[i] = 1 if anything but a pane lies on rays[i], else 0.
   void occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded, Coherence coherence,
                 PaneFactors& factors) const;
@@ -67,9 +72,6 @@ class Tracer {
 
  private:
   struct Embree;
-  void trace_closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence,
-                     bool skips_panes) const;
-
   std::unique_ptr<Embree> embree_;
   const PaneGlass* glass_ = nullptr;  // null: there are no panes
   RayLog* log_ = nullptr;

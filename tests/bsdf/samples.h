@@ -24,7 +24,7 @@ struct Specimens {
   Specimens(std::initializer_list<std::pair<std::string, Material>> list)
       : names(names_of(list)), materials(materials_of(list)), tables(materials) {}
   Bsdf at(size_t i, bool is_front = true) const {
-    return make_bsdf(tables, materials, textures, uint32_t(i), {0.5f, 0.5f}, is_front);
+    return make_bsdf(tables, materials, textures, uint32_t(i), Vec2{0.5f, 0.5f}, is_front);
   }
   size_t size() const { return materials.size(); }
 

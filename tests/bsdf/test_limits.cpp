@@ -135,7 +135,7 @@ TEST_CASE("roughness means what the format says, and textures drive it") {
   m.roughness = {0.5f, 0, 1};
   const std::vector<Material> materials{m};
   const BsdfTables tables(materials);
-  CHECK(glossy_alpha(make_bsdf(tables, materials, {t}, 0, {0, 0}, true)) == 0.25f);
+  CHECK(glossy_alpha(make_bsdf(tables, materials, {t}, 0, Vec2{0, 0}, true)) == 0.25f);
 }
 
 TEST_CASE("many indices of refraction share a bounded number of tables") {
@@ -143,7 +143,7 @@ TEST_CASE("many indices of refraction share a bounded number of tables") {
   for (int i = 0; i < 200; ++i) materials.push_back(coated(0.3f, Rgb{1}, 1.1f + 0.01f * float(i)));
   const BsdfTables tables(materials);
   for (const uint32_t i : {0u, 5u, 199u}) {
-    const Bsdf b = make_bsdf(tables, materials, {}, i, {0, 0}, true);
+    const Bsdf b = make_bsdf(tables, materials, {}, i, Vec2{0, 0}, true);
     const double e = scattered(b, direction(0.7f)).total();
     CHECK(std::abs(e - 1) < 0.25);
   }

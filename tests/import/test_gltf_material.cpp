@@ -78,7 +78,7 @@ TEST_CASE("alpha modes") {
   CHECK(only_material(blend).is_alpha_blended);
   CHECK_FALSE(only_material(mask).is_alpha_blended);
   CHECK(only_material(blend).alpha.value == 0.3f);
-  CHECK(coverage(blend.textures, only_material(blend), {0, 0}) == 0.3f);
+  CHECK(coverage(blend.textures, only_material(blend), Vec2{0, 0}) == 0.3f);
   CHECK(blend.warnings.total() == 0);
   const Scene opaque_blend = with_material("{'alphaMode':'BLEND'}");
   CHECK_FALSE(only_material(opaque_blend).is_alpha_masked);
@@ -159,7 +159,7 @@ TEST_CASE("images outside the scene's folder are not read: one beside the scene,
                      "'textures':[{'source':0}],'images':[{'uri':'" +
                          uri + "'}]")));
     return evaluate(scene.textures, scene.materials.at(scene.meshes.at(0).material).base_color,
-                    {0.5f, 0.5f});
+                    Vec2{0.5f, 0.5f});
   };
   CHECK(color_of("../textures/a.pfm") == Rgb{1, 0, 0});
   CHECK(color_of("../textures/b.pfm") == Rgb{0.5f});
@@ -224,7 +224,7 @@ TEST_CASE("KHR_materials_pbrSpecularGlossiness: a dielectric of that reflectance
                                            "'glossinessFactor':0.5") +
                                  "]")));
   const Material& t = textured.materials.at(0);
-  CHECK(evaluate(textured.textures, t.roughness, {0, 0}) ==
+  CHECK(evaluate(textured.textures, t.roughness, Vec2{0, 0}) ==
         doctest::Approx(1 - 0.5 * 0x66 / 255.0).epsilon(0.005));
 }
 

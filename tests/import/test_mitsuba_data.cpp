@@ -136,8 +136,8 @@ TEST_CASE("combined materials") {
   REQUIRE(masked.materials.at(0).is_alpha_masked);
   CHECK(masked.spheres.empty());  // with (u,v), as triangles
   const Material& holes = masked.materials[0];
-  CHECK_FALSE(is_cut_out(masked.textures, holes, {0.2f, 0.2f}));
-  CHECK(is_cut_out(masked.textures, holes, {0.7f, 0.2f}));
+  CHECK_FALSE(is_cut_out(masked.textures, holes, Vec2{0.2f, 0.2f}));
+  CHECK(is_cut_out(masked.textures, holes, Vec2{0.7f, 0.2f}));
   CHECK(import_bsdf("<bsdf type='null'/>").spheres.empty());
   m = material_of(
       "<bsdf type='principled'><rgb name='base_color' value='.3'/><float "
@@ -164,8 +164,8 @@ TEST_CASE("a bitmap's (0,0) is its upper left corner; OBJ files count from the l
   CHECK(mesh.normals.empty());  // flat
   const ColorInput& c = scene.materials.at(mesh.material).base_color;
   const Vec2 up = mesh.positions[2].y > 0.5f ? mesh.uvs[2] : mesh.uvs[0];
-  CHECK(evaluate(scene.textures, c, {0.5f, up.y + 0.1f}).r == 0);
-  CHECK(evaluate(scene.textures, c, {0.5f, up.y + 0.9f}).r == 1);
+  CHECK(evaluate(scene.textures, c, Vec2{0.5f, up.y + 0.1f}).r == 0);
+  CHECK(evaluate(scene.textures, c, Vec2{0.5f, up.y + 0.9f}).r == 1);
 }
 
 TEST_CASE("serialized meshes of either precision") {

@@ -184,7 +184,7 @@ TEST_CASE("constant and scaled textures, with images and without") {
   const Scene rough = import_world(
       textures + "Material \"coateddiffuse\" \"texture roughness\" \"g\"\n" + triangle);
   const Material& m = rough.materials.at(rough.meshes.at(0).material);
-  CHECK(evaluate(rough.textures, m.roughness, {0.25f, 0.75f}) == doctest::Approx(1 / 3.0));
+  CHECK(evaluate(rough.textures, m.roughness, Vec2{0.25f, 0.75f}) == doctest::Approx(1 / 3.0));
 }
 
 TEST_CASE("textures that cannot be") {

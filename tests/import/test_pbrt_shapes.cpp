@@ -171,7 +171,7 @@ TEST_CASE("checkerboards and mixes of plain colours are what they say") {
     for (const double v : {0.1, 0.4, 0.6, 0.9}) {
       // pbrt's v points up, as the mesh has it.
       const bool is_first = (int(std::floor(4 * u)) + int(std::floor(2 * v))) % 2 == 0;
-      const Rgb c = evaluate(scene.textures, m.base_color, {float(u), float(v)});
+      const Rgb c = evaluate(scene.textures, m.base_color, Vec2{float(u), float(v)});
       CHECK(c.r == (is_first ? 1.0f : 0.0f));
       CHECK(c.b == (is_first ? 0.0f : 1.0f));
     }
@@ -182,5 +182,5 @@ TEST_CASE("alpha of shapes is the share of rays that meet them") {
       import_world("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"float alpha\" 0.3\n");
   const Material& m = scene.materials.at(scene.meshes.at(0).material);
   CHECK(m.is_alpha_blended);
-  CHECK(coverage(scene.textures, m, {0, 0}) == 0.3f);
+  CHECK(coverage(scene.textures, m, Vec2{0, 0}) == 0.3f);
 }

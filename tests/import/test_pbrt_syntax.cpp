@@ -161,7 +161,7 @@ TEST_CASE("unknown parameters and unsupported directives are warnings that name 
       "1\nWorldBegin\n"
       "LightSource \"glow\" \"rgb I\" [1 1 1]\nLightSource \"glow\"\n"
       "Shape \"paraboloid\"\nShape \"sphere\" \"float raduis\" 2\n"
-      "MediumInterface \"fog\" \"\"\nWorldEnd\n");
+      "MediumInterface \"\" \"fog\"\nWorldEnd\n");
   for (const char* part :
        {"disablepixeljitter", "rec2020", "Camera \"perspective\": parameter \"fof\"",
         "LightSource \"glow\"", "shape \"paraboloid\"", "Shape \"sphere\": parameter \"raduis\"",

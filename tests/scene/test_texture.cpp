@@ -22,7 +22,7 @@ Texture small() {
   return t;
 }
 float grey(const Texture& t, float u, float v) {
-  return evaluate({t}, 0, {u, v}).rgb.r;
+  return evaluate({t}, 0, Vec2{u, v}).rgb.r;
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ TEST_CASE("wrap modes") {
       case WrapMode::black:
         CHECK(after == 0);
         CHECK(before == 0);
-        CHECK(evaluate({t}, 0, {-0.1f, 0.1f}).alpha == 0);
+        CHECK(evaluate({t}, 0, Vec2{-0.1f, 0.1f}).alpha == 0);
         break;
     }
   }
@@ -94,22 +94,22 @@ TEST_CASE("eight-bit texels decode sRGB in colour, never in alpha") {
   t.width = t.height = 1;
   t.channels = 4;
   t.texels8 = {0, 128, 255, 128};
-  TextureValue v = evaluate({t}, 0, {0.5f, 0.5f});
+  TextureValue v = evaluate({t}, 0, Vec2{0.5f, 0.5f});
   CHECK(v.rgb.r == 0);
   CHECK(v.rgb.g == doctest::Approx(0.21586).epsilon(1e-4));
   CHECK(v.rgb.b == 1);
   CHECK(v.alpha == doctest::Approx(128.0 / 255));
   t.is_srgb = false;
-  v = evaluate({t}, 0, {0.5f, 0.5f});
+  v = evaluate({t}, 0, Vec2{0.5f, 0.5f});
   CHECK(v.rgb.g == doctest::Approx(128.0 / 255));
   t.channels = 2;
   t.texels8 = {51, 102};
-  v = evaluate({t}, 0, {0.5f, 0.5f});
+  v = evaluate({t}, 0, Vec2{0.5f, 0.5f});
   CHECK(v.rgb == Rgb{0.2f});
   CHECK(v.alpha == doctest::Approx(0.4));
   t.channels = 3;
   t.texels8 = {51, 102, 153};
-  CHECK(evaluate({t}, 0, {0.5f, 0.5f}).alpha == 1);
+  CHECK(evaluate({t}, 0, Vec2{0.5f, 0.5f}).alpha == 1);
 }
 
 TEST_CASE("scale, rotation, offset, inversion") {
@@ -142,7 +142,7 @@ TEST_CASE("products multiply colour, alpha and their own factor") {
   product.factor_a = 0;
   product.factor_b = 1;
   product.value = Rgb{10};
-  const TextureValue v = evaluate({a, b, product}, 2, {0.5f / 3, 0.75f});
+  const TextureValue v = evaluate({a, b, product}, 2, Vec2{0.5f / 3, 0.75f});
   CHECK(v.rgb.r == doctest::Approx(0.5 * 4 * 10));
   CHECK(v.rgb.b == doctest::Approx(2.0 * 4 * 10));
   CHECK(v.alpha == 1);
@@ -161,9 +161,9 @@ TEST_CASE("material inputs multiply value and texture channel") {
   Texture t;
   t.value = {0.1f, 0.2f, 0.4f};
   const std::vector<Texture> textures{t};
-  CHECK(evaluate(textures, ColorInput{{2, 2, 0.5f}, no_texture}, {0, 0}) == Rgb{2, 2, 0.5f});
-  CHECK(evaluate(textures, ColorInput{{2, 2, 0.5f}, 0}, {0, 0}) == Rgb{0.2f, 0.4f, 0.2f});
-  CHECK(evaluate(textures, FloatInput{3, no_texture, 1}, {0, 0}) == 3);
-  CHECK(evaluate(textures, FloatInput{3, 0, 1}, {0, 0}) == doctest::Approx(0.6));
-  CHECK(evaluate(textures, FloatInput{3, 0, 3}, {0, 0}) == 3);
+  CHECK(evaluate(textures, ColorInput{{2, 2, 0.5f}, no_texture}, Vec2{0, 0}) == Rgb{2, 2, 0.5f});
+  CHECK(evaluate(textures, ColorInput{{2, 2, 0.5f}, 0}, Vec2{0, 0}) == Rgb{0.2f, 0.4f, 0.2f});
+  CHECK(evaluate(textures, FloatInput{3, no_texture, 1}, Vec2{0, 0}) == 3);
+  CHECK(evaluate(textures, FloatInput{3, 0, 1}, Vec2{0, 0}) == doctest::Approx(0.6));
+  CHECK(evaluate(textures, FloatInput{3, 0, 3}, Vec2{0, 0}) == 3);
 }

@@ -1,0 +1,146 @@
+// Coloured glass, far textures and one-sided surfaces as they are seen, by `path` and the default.
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "image/read_image.h"
+#include "program.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// Mean of a picture of 16 × 16 pixels.
+Rgb mean_seen(const std::string& name, const std::string& scene,
+              const std::vector<std::string>& options) {
+  const Folder folder;
+  std::vector<std::string> words{
+      "render", folder.write(name, scene), "-o", folder.path("o.pfm"), "--size", "16x16",
+      "--quiet"};
+  words.insert(words.end(), options.begin(), options.end());
+  const Finished f = run_program(folder, words);
+  CAPTURE(f.err);
+  REQUIRE(f.status == 0);
+  const Image image = read_image(folder.path("o.pfm"));
+  Rgb sum;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) sum += image.at(x, y);
+  return sum / float(image.width * image.height);
+}
+
+// A slab of glass of that thickness before a white sky, seen through a narrow angle.
+std::string slab(double thickness, const std::string& absorption) {
+  return fmt::format(
+      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 2\nWorldBegin\n"
+      "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+      "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [{1}] "
+      "\"rgb sigma_s\" [0 0 0]\nMediumInterface \"m\" \"\"\n"
+      "Material \"dielectric\" \"float eta\" 1.5\n"
+      "Shape \"trianglemesh\" \"point3 P\" [-3 -3 -{0}  3 -3 -{0}  3 3 -{0}  -3 3 -{0}  "
+      "-3 -3 0  3 -3 0  3 3 0  -3 3 0] \"integer indices\" [0 2 1 0 3 2  4 5 6 4 6 7  "
+      "0 1 5 0 5 4  1 2 6 1 6 5  2 3 7 2 7 6  3 0 4 3 4 7]\n",
+      thickness, absorption);
+}
+
+// Seen straight on: what is reflected and what goes through, all orders summed.
+double slab_closed_form(double absorption, double thickness) {
+  const double r = 0.04, a = std::exp(-absorption * thickness);
+  const double through = (1 - r) * (1 - r) * a / (1 - r * r * a * a);
+  return through + r + r * a * through;
+}
+
+}  // namespace
+
+TEST_CASE("a slab of glass absorbs by its thickness, a pane as well") {
+  for (const double thickness : {1.0, 0.1})  // the thinner one becomes a sheet
+    for (const char* method : {"path", "certified"}) {
+      const Rgb seen =
+          mean_seen("s.pbrt", slab(thickness, ".5 1 2"), {"--method", method, "--spp", "256"});
+      CAPTURE(method);
+      CAPTURE(thickness);
+      for (size_t c = 0; c < 3; ++c) {
+        const double expected = slab_closed_form(c == 0 ? .5 : c == 1 ? 1 : 2, thickness);
+        CHECK(std::abs(double(seen[c]) - expected) < 0.004);
+      }
+    }
+}
+
+TEST_CASE("a pane absorbs more of light that leans, by every method") {
+  // One light over a pane 1 m above the floor, straight above and 60 degrees off.
+  const std::string scene =
+      "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
+      "\"point3 P\" [-50 -50 0  50 -50 0  50 50 0  -50 50 0]\n"
+      "LightSource \"point\" \"rgb I\" [7 7 7] \"point3 from\" [0 0 2]\n";
+  const auto pane = [](const std::string& medium) {
+    return "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [" + medium +
+           "] \"rgb sigma_s\" [0 0 0]\nMediumInterface \"m\" \"\"\n"
+           "Material \"dielectric\" \"float eta\" 1.5\n"
+           "Shape \"trianglemesh\" \"point3 P\" [-90 -90 .9  90 -90 .9  90 90 .9  -90 90 .9  "
+           "-90 -90 1  90 -90 1  90 90 1  -90 90 1] \"integer indices\" [0 2 1 0 3 2  4 5 6 4 6 7 "
+           " 0 1 5 0 5 4  1 2 6 1 6 5  2 3 7 2 7 6  3 0 4 3 4 7]\n";
+  };
+  const auto measure = [&](const std::string& medium, const char* method) {
+    const Folder folder;
+    const Finished f = run_program(
+        folder, {"measure", folder.write("s.pbrt", scene + pane(medium)), "--points",
+                 folder.write("p.csv", "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n3.4641016,0,0,0,0,1\n"),
+                 "--method", method});
+    CAPTURE(f.err);
+    REQUIRE(f.status == 0);
+    return measured(f);
+  };
+  for (const char* method : {"certified", "path", "fixed"}) {
+    const auto clear = measure("0 0 0", method), grey = measure("5 5 5", method);
+    for (size_t i = 0; i < 2; ++i) {
+      // sin of 60 degrees over 1.5 inside; what is reflected within changes it by little
+      const double inside = i == 0 ? 1 : std::sqrt(1 - 0.75 / 2.25);
+      const double expected = std::exp(-0.5 / inside);
+      CAPTURE(method);
+      CHECK(grey[i].lx / clear[i].lx == doctest::Approx(expected).epsilon(0.008));
+    }
+  }
+}
+
+TEST_CASE("a far checkered floor has its mean at one viewing ray") {
+  const std::string scene =
+      "LookAt 0 0 50  0 300 0  0 0 1\nCamera \"perspective\" \"float fov\" 10\nWorldBegin\n"
+      "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+      "Texture \"c\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 1 1] \"rgb tex2\" [.2 .2 .2] "
+      "\"float uscale\" 20000 \"float vscale\" 20000\n"
+      "Material \"diffuse\" \"texture reflectance\" \"c\"\n"
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1] "
+      "\"point3 P\" [-5000 -5000 0  5000 -5000 0  5000 5000 0  -5000 5000 0]\n";
+  const Folder folder;
+  const Finished f =
+      run_program(folder, {"render", folder.write("s.pbrt", scene), "-o", folder.path("o.pfm"),
+                           "--size", "16x16", "--quiet", "--method", "fixed", "--spp", "1"});
+  CAPTURE(f.err);
+  REQUIRE(f.status == 0);
+  // Every pixel, not only their mean.
+  const Image seen = read_image(folder.path("o.pfm"));
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) CHECK(std::abs(seen.at(x, y).g - 0.6f) < 0.02f);
+}
+
+TEST_CASE("backs: black in Mitsuba's files, unseen in glTF's but there for light") {
+  const auto panel = [](const std::string& bsdf) {
+    return "<scene version='3.0.0'><sensor type='perspective'><float name='fov' value='5'/>"
+           "<transform name='to_world'><lookat origin='0,0,-5' target='0,0,0' up='0,1,0'/>"
+           "</transform></sensor><emitter type='constant'><rgb name='radiance' value='1'/>"
+           "</emitter><shape type='rectangle'>" +
+           bsdf + "</shape></scene>";
+  };
+  const std::string white = "<bsdf type='diffuse'><rgb name='reflectance' value='.5'/></bsdf>";
+  for (const char* method : {"path", "certified", "fixed"}) {
+    CAPTURE(method);
+    CHECK(mean_seen("b.xml", panel(white), {"--method", method}).g == 0);
+    const float both = mean_seen("t.xml", panel("<bsdf type='twosided'>" + white + "</bsdf>"),
+                                 {"--method", method, "--spp", "16"})
+                           .g;
+    CHECK(both == doctest::Approx(0.5).epsilon(0.02));
+  }
+}

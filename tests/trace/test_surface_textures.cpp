@@ -1,0 +1,122 @@
+// What rays stand for of a textured surface, bumps, and backs that the eye does not see.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "trace/surface.h"
+#include "trace/tracer.h"
+
+using namespace troffer;
+
+namespace {
+
+// A square of 4 × 4 m in the plane z = 0, (u,v) = (x, y) / 2, its front up.
+Scene square(const Material& material, const Texture& texture) {
+  Scene s;
+  s.textures.push_back(texture);
+  s.materials.push_back(material);
+  Mesh m;
+  m.positions = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+  for (const Vec3& p : m.positions) m.uvs.push_back({p.x / 2, p.y / 2});
+  m.triangles = {{0, 1, 2}, {0, 2, 3}};
+  s.meshes.push_back(m);
+  return s;
+}
+
+// Heights .3 u + .1 v, as texels of a ramp.
+Texture ramp() {
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = t.height = 64;
+  t.channels = 1;
+  t.wrap_u = t.wrap_v = WrapMode::clamp;
+  t.uv_scale = {0.5f, 0.5f};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      t.texels_float.push_back(0.3f * (float(x) + 0.5f) / 32 + 0.1f * (float(y) + 0.5f) / 32);
+  return t;
+}
+
+Surface hit_from(const Scene& scene, const Vec3& origin, const Vec3& target, const RayCone& cone) {
+  const Tracer tracer(scene);
+  Ray ray;
+  ray.origin = origin;
+  ray.direction = normalize(target - origin);
+  Hit hit;
+  tracer.closest({&ray, 1}, {&hit, 1});
+  REQUIRE(hit.is_valid());
+  Surface s;
+  surface_at(scene, ray, hit, s, cone);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("a footprint is as wide as the cone, and longer where it leans") {
+  Material m;
+  m.base_color.texture = 0;
+  const Scene scene = square(m, ramp());
+  // from straight above, 5 m: 5 cm wide, and .025 in (u,v)
+  Surface s = hit_from(scene, {2, 2, 5}, {2, 2, 0}, {0, 0.01f});
+  CHECK(s.uv.width == doctest::Approx(0.05));
+  CHECK(std::sqrt(dot(s.uv.axis_a, s.uv.axis_a)) == doctest::Approx(0.025));
+  CHECK(std::sqrt(dot(s.uv.axis_b, s.uv.axis_b)) == doctest::Approx(0.025));
+  // 60 degrees off along x: twice as long there
+  s = hit_from(scene, {2 - std::sqrt(3.0f), 2, 1}, {2, 2, 0}, {0.05f, 0});
+  CHECK(std::abs(s.uv.axis_a.x) == doctest::Approx(0.05));
+  CHECK(std::abs(s.uv.axis_a.y) < 1e-5f);
+  CHECK(std::abs(s.uv.axis_b.y) == doctest::Approx(0.025));
+  s = hit_from(scene, {2, 2, 5}, {2, 2, 0}, {});
+  CHECK(s.uv.axis_a == Vec2{0, 0});
+}
+
+TEST_CASE("bumps lean the normal by the gradient of their heights") {
+  for (const float cone : {0.0f, 0.2f})
+    for (const float scale : {1.0f, -2.0f}) {
+      Material m;
+      m.bump = {scale, 0, 0};
+      const Scene scene = square(m, ramp());
+      const Surface s = hit_from(scene, {1.9f, 2.1f, 5}, {1.9f, 2.1f, 0}, {cone, 0});
+      // a unit of (u,v) is 2 m
+      const Vec3 expected = normalize(Vec3{-0.15f * scale, -0.05f * scale, 1});
+      CHECK(length(s.shading_normal - expected) < 2e-3f);
+      CHECK(s.geometric_normal.z == doctest::Approx(1));
+    }
+}
+
+TEST_CASE("mirrored coordinates and smooth normals change nothing of where bumps are") {
+  Material m;
+  m.bump = {1, 0, 0};
+  Scene scene = square(m, ramp());
+  for (Vec2& uv : scene.meshes[0].uvs) uv.x = 2 - uv.x;
+  const Vec3 n = hit_from(scene, {2, 2, 5}, {2, 2, 0}, {}).shading_normal;
+  CHECK(length(n - normalize(Vec3{0.15f, -0.05f, 1})) < 2e-3f);
+}
+
+TEST_CASE("backs that are unseen: to the eye alone") {
+  for (const bool is_masked : {false, true}) {
+    Material m;
+    m.back_faces = BackFaces::unseen;
+    if (is_masked) {
+      m.is_alpha_masked = true;
+      m.alpha = {1, no_texture, 0};
+    }
+    const Scene scene = square(m, ramp());
+    const Tracer tracer(scene);
+    std::vector<Ray> rays(20);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      rays[i].origin = {1 + float(i) * 0.1f, 1.3f, i % 2 == 0 ? 1.0f : -1.0f};
+      rays[i].direction = {0.1f, 0.2f, i % 2 == 0 ? -1.0f : 1.0f};
+    }
+    std::vector<Hit> hits(rays.size());
+    for (const Coherence coherence : {Coherence::none, Coherence::coherent}) {
+      tracer.closest(rays, hits, coherence, Meeting::as_seen);
+      for (size_t i = 0; i < rays.size(); ++i) CHECK(hits[i].is_valid() == (i % 2 == 0));
+      tracer.closest(rays, hits, coherence);
+      for (size_t i = 0; i < rays.size(); ++i) CHECK(hits[i].is_valid());
+    }
+    std::vector<uint8_t> hidden(rays.size());
+    tracer.occluded(rays, hidden);
+    for (const uint8_t h : hidden) CHECK(h == 1);
+  }
+}
