@@ -29,11 +29,12 @@ Texture random_image(int width, int height, int channels, bool is_bytes, uint64_
 
 // Mean of a texture by its texels.
 Rgb texel_mean(const Texture& t) {
+  const std::vector<Texture> textures{t};
   Rgb sum;
   for (int y = 0; y < t.height; ++y)
     for (int x = 0; x < t.width; ++x) {
       const Vec2 at{(float(x) + 0.5f) / float(t.width), (float(y) + 0.5f) / float(t.height)};
-      sum += evaluate({t}, 0, at).rgb;
+      sum += evaluate(textures, 0, at).rgb;
     }
   return sum / float(t.width * t.height);
 }
