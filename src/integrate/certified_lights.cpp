@@ -34,7 +34,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      far_{FarCells(scene.scene, scene.primitives), 0, {}, {}, {}, false},
+      far_{FarCells(scene.scene, scene.primitives), 0, nullptr, {}, {}, {}, false},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
@@ -155,6 +155,7 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
 
 void CertifiedLights::set_occluders(const Occluders& occluders) {
   if (far_.cells.all().empty()) return;
+  far_.occluders = &occluders;
   far_.scene = far_scene(occluders);
   far_.shells = ClosedShells(scene_.scene, scene_.panes.is_empty() ? nullptr : &scene_.glass);
   far_.is_shut_out = are_lit_places_closed(scene_, far_.points, far_.shells);
@@ -214,8 +215,7 @@ void CertifiedLights::add_drawn_lights(const PreparedScene& scene) {
 void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
                                  Counters& counters) const {
   if (s.hits.size() == 0) return;
-  if (!find_closed_off(s))
-    s.far = open_share_of_batch({scene_, competition_, s.hits, far_.points}, far_.is_shut_out);
+  if (!find_closed_off(s)) s.far = open_share_of_batch(far_draws(s), far_.is_shut_out);
   cluster_receivers(s.hits.positions, s.hits.horizons, reach_, s.clusters);
   for (size_t c = 0; c < s.clusters.size(); ++c)
     illuminate_cluster(s.clusters.members(c), s, out, counters);
@@ -255,8 +255,7 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
     seen = s.cluster.memory.light;
   }
   if (!is_closed_off && !has_far)
-    draw_points({scene_, competition_, s.hits, far_.points}, members, s.far, seen, budget_, s.drawn,
-                out, counters);
+    cast_far_rays(far_draws(s), members, s.far, seen, budget_, s.far_rays, out, counters);
 }
 
 bool CertifiedLights::find_closed_off(CertifiedLightsScratch& s) const {
@@ -297,6 +296,7 @@ bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
   constexpr double share_of_further = 0.25;  // a further viewing ray of a pixel gets fewer
   if (s.far.seems_closed) return false;
   if (!is_picture) return true;
+  if (s.far.is_behind_clutter) return false;
   const double rays = rays_for_error(s.far.open, double(s.options.mask_error));
   double all = 0;
   for (const uint32_t m : members)

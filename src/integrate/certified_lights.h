@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "integrate/drawn_lights.h"
-#include "integrate/far_points.h"
+#include "integrate/far_rays.h"
 #include "integrate/light_groups.h"
 #include "integrate/shadow_world.h"
 #include "integrate/source_integrand.h"
@@ -40,6 +40,7 @@ struct CertifiedLightsScratch {
   std::vector<uint32_t> requested;  // sources of the cluster's requests
   std::vector<uint32_t> drawing;    // hits of the cluster
   DrawnLightsScratch drawn;
+  FarRays far_rays;
   FarShare far;                        // of the light of far sources, what arrives at the hits
   std::vector<uint8_t> is_closed_off;  // per hit, surely: from all that is far away
 };
@@ -61,7 +62,7 @@ class CertifiedLights {
   // The one of a light at infinity in a direction; null if none.
   const CertifiedSource* source_towards(uint32_t primitive, const Vec3& direction) const;
 
-  // Before the first hits, where there are lights at infinity.
+  // Before the first hits, where there are lights at infinity; they must stay.
   void set_occluders(const Occluders& occluders);
 
   // What a batch learns is forgotten at its beginning, so that it does not matter what a thread did
@@ -79,6 +80,9 @@ class CertifiedLights {
   void add_far_lights(const PreparedScene& scene);
   void illuminate_cluster(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                           RadianceBatch& out, Counters& counters) const;
+  FarPointDraws far_draws(const CertifiedLightsScratch& s) const {
+    return {scene_, competition_, s.hits, far_.points, *far_.occluders};
+  }
   // False: some hit may get light from far away.
   bool find_closed_off(CertifiedLightsScratch& s) const;
   void count_closed_off(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
@@ -103,10 +107,11 @@ class CertifiedLights {
   struct Far {
     FarCells cells;
     uint32_t first_source = 0;  // those of the cells are the last ones
-    FarScene scene;             // what hides much of them
-    FarPoints points;           // … where proofs are not worth while
-    ClosedShells shells;        // … and what none of it gets into
-    bool is_shut_out = false;   // … nor, as it seems, anything that other lights shine on
+    const Occluders* occluders = nullptr;
+    FarScene scene;            // what hides much of them
+    FarPoints points;          // … where proofs are not worth while
+    ClosedShells shells;       // … and what none of it gets into
+    bool is_shut_out = false;  // … nor, as it seems, anything that other lights shine on
   } far_;
   DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -24,11 +25,11 @@ class FarCounts {
         is_picture_(is_picture) {
     constexpr double most_points = 256;
     const double each = std::min(of_pixel / double(budget.viewing_rays), most_points);
-    usual_ = uint32_t(std::ceil(each));
-    constexpr double most_fewer = 4, least_most_few = 16, much = 0.4;
+    usual_ = power_near(each);
+    constexpr double most_fewer = 4, least_most_few = 8, much = 0.4;
     const double fewer = std::clamp(most_fewer * open / much, 1.0, most_fewer);
     const double most_few = least_most_few * sqr(most_fewer / fewer);
-    few_ = uint32_t(std::ceil(std::min(each / fewer, most_few)));
+    few_ = std::min(power_near(std::min(each / fewer, most_few)), usual_);
   }
 
   uint32_t usual() const { return usual_; }
@@ -41,16 +42,20 @@ class FarCounts {
     while (end < members_.size() && !is_first_of_pixel(end)) ++end;
     is_divided_ = 2 * (end - i) <= first_;
   }
-  // Points of hit i, one of each `per`, and the first of them in the pixel's sequence.
-  uint32_t of(size_t i, uint32_t per, uint32_t& first_point) const {
+  // Points of hit i, and the first of them in the pixel's sequence.
+  uint32_t of(size_t i, uint32_t& first_point) const {
     const uint32_t sample = hits_.samples[members_[i]];
-    const uint32_t usual = std::max(usual_ / per, 1u), few = std::max(few_ / per, 1u);
     const bool is_further = is_picture_ && sample >= first_;
-    first_point = is_further ? first_ * usual + (sample - first_) * few : sample * usual;
-    return is_further || (is_picture_ && is_divided_) ? few : usual;
+    first_point = is_further ? first_ * usual_ + (sample - first_) * few_ : sample * usual_;
+    return is_further || (is_picture_ && is_divided_) ? few_ : usual_;
   }
 
  private:
+  // Of two, which sequences are even for: the nearest in ratio. None for nothing.
+  static uint32_t power_near(double n) {
+    return n > 0 ? std::bit_floor(std::max(uint32_t(n * std::sqrt(2.0)), 1u)) : 0;
+  }
+
   const WaitingHits& hits_;
   std::span<const uint32_t> members_;
   uint32_t first_, usual_ = 0, few_ = 0;

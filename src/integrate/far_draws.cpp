@@ -173,7 +173,7 @@ void draw_left(const FarDraws& draws, const DrawingBudget& budget, DrawnLightsSc
       s.runs.push_back(s.draws.size());
     }
     uint32_t before = 0;
-    const uint32_t n = numbers.of(i, 1, before);
+    const uint32_t n = numbers.of(i, before);
     drawing.of_member(i, n, before, out);
   }
   if (s.rays.size() >= most_waiting) resolve_draws(draws.scene, draws.hits, s, out, counters);

@@ -1,9 +1,9 @@
-// Points of all lights at infinity for hits that proofs are not worth: few of them, scattered, or
-// where most of the sky is open anyway. No shafts, no lists, no exact light: small parts of the
-// cells, chosen by the cosine of their middles, a few points of every sun, and a ray to each.
+// Points of all lights at infinity: small parts of their cells, chosen by the cosine of their
+// middles, and those of suns. No shafts, no lists, no exact light: for hits that proofs are not
+// worth (far_rays.h).
 //
-// Unbiased. How many points a hit gets is chosen by rays of its batch, which count for nothing
-// else: 64, or more where none of these arrives.
+// Seen from anywhere in the scene a point lies in the same direction (light/far_cells.h), so
+// receivers matter by their normals alone.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,16 @@ class FarPoints {
   explicit FarPoints(std::span<const CertifiedSource> sources);
   bool is_empty() const { return parts_.empty() && suns_.empty(); }
 
-  // One point for a receiver.
+  // A point: of the part with this number, by the numbers (u,v) left in it.
+  struct Choice {
+    uint32_t part = 0;
+    float chance = 0;  // of the part; 0: none
+    float u = 0, v = 0;
+  };
   struct Point {
     const CertifiedSource* source = nullptr;  // null: none
-    Vec3 way, wi;                             // from the receiver, metres; and the unit direction
-    float pdf = 0;                            // per sr
-    float place = 0;                          // of its part among all, in [0,1)
+    Vec3 way, wi;                             // towards it, metres; and the unit direction
+    float inverse_pdf = 0;                    // sr
   };
   // The parts' chances for receivers of one normal, as a tree: nodes of a heap, the root being 1.
   class Chances {
@@ -35,39 +39,54 @@ class FarPoints {
     // Of skies and images, and of suns: light that nothing hides, about.
     float all() const { return of_node_.empty() ? 0 : of_node_[1]; }
     float suns() const { return suns_; }
+    float of_sun(size_t k) const { return of_sun_[k]; }
 
    private:
     friend class FarPoints;
     Vec3 normal_;
     std::vector<float> of_node_, of_sun_;
+    // What of a node's chance is its left child's; where a child's share begins in its parent's,
+    // and the inverse of that share.
+    std::vector<float> left_, first_, inverse_;
     float suns_ = 0;
   };
   // False where all parts are below the receiver's horizon. What is there for the same normal
   // stays.
   bool set_chances(const ShadowReceiver& receiver, Chances& chances) const;
+
   // Of skies and images, by (u, v) in [0,1)²: even points become points that are as even, since
-  // every branch of the tree goes on with its share of u or v. chances.all() is over 0.
-  Point point(const ShadowReceiver& receiver, const Chances& chances, float u, float v) const;
-  // Of one of the suns.
+  // every branch of the tree goes on with its share of u or v. chances.all() is over 0. Parts of
+  // neighbouring numbers lie close to each other.
+  Choice choose(const Chances& chances, float u, float v) const;
+  // Of one of the suns, whose numbers follow those of all others.
   size_t suns() const { return suns_.size(); }
-  Point point_of_sun(size_t sun, const ShadowReceiver& receiver, float u, float v) const;
-  // Of either, suns by `place` in [0,1).
-  Point point_of_any(const ShadowReceiver& receiver, const Chances& chances, float u, float v,
-                     float place) const;
+  Choice choose_sun(size_t sun, float u, float v) const {
+    return {uint32_t(parts_.size() + sun), 1, u, v};
+  }
+  // Of any sun, by `place` in [0,1). chances.suns() is over 0.
+  Choice choose_any_sun(const Chances& chances, float u, float v, float place) const;
+  size_t parts() const { return parts_.size() + suns_.size(); }
+
+  Point point(const Choice& choice) const;
+  // The radiance that the points send.
+  void radiance(std::span<const Point> points, std::vector<Rgb>& out) const;
 
  private:
+  // Directions are in units of the distance of its face of the cube.
   struct Part {
-    Parallelogram plane;
-    double area = 0;
     const CertifiedSource* source = nullptr;
-    Vec3 middle;         // direction from the scene
+    Vec3 origin, u, v;
+    float area = 0;
+    Vec3 middle;         // unit direction from the scene
     float sine = 0;      // of the angle within which the part lies about it
     float strength = 0;  // luminance × sr
   };
   void add(const CertifiedSource& source, const Parallelogram& plane, double all, int halvings);
   // Puts parts into leaves from `leaf` on, neighbours together.
   void plant(std::span<Part> parts, size_t leaf, size_t leaves);
-  Point point_of_part(const Part& part, const ShadowReceiver& receiver, float u, float v) const;
+  const Part& part(uint32_t i) const {
+    return i < parts_.size() ? parts_[i] : suns_[i - parts_.size()];
+  }
   std::vector<Part> parts_;  // by leaf of the tree, some of them empty
   std::vector<Part> suns_;
   // Per leaf.
@@ -76,28 +95,5 @@ class FarPoints {
 
 // The radiance that a point of a source at infinity sends.
 Rgb far_radiance_of(const CertifiedSource& source, const Vec3& way);
-
-struct FarPointDraws {
-  const PreparedScene& scene;
-  const LobeCompetition& competition;
-  const WaitingHits& hits;
-  const FarPoints& points;
-};
-
-// What share of the light of all far sources arrives at the hits, by rays that count for nothing
-// else.
-struct FarShare {
-  double open = 0.5;          // about; not 0 or 1
-  bool seems_closed = false;  // shut out, and of many rays none has arrived
-};
-// is_shut_out: nothing arrives, as it seems; then it is looked at more closely.
-FarShare open_share_of_batch(const FarPointDraws& draws, bool is_shut_out);
-
-// Draws points from each of `members`: so many that they err by the budget's error of the light
-// that arrives, if the share holds. seen: per member, luminance × sr of what other sources bring;
-// empty: nothing. Rays wait, as those of draw_lights().
-void draw_points(const FarPointDraws& draws, std::span<const uint32_t> members,
-                 const FarShare& share, std::span<const float> seen, const DrawingBudget& budget,
-                 DrawnLightsScratch& scratch, RadianceBatch& out, Counters& counters);
 
 }  // namespace troffer

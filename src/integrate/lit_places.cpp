@@ -79,7 +79,10 @@ class Walks {
     const Vec2 u = random.next_vec2();
     const float place = random.next_float();
     if (points_.set_chances(r, chances_)) {
-      const FarPoints::Point p = points_.point_of_any(r, chances_, u.x, u.y, place);
+      const float share = chances_.suns() / (chances_.all() + chances_.suns());
+      const FarPoints::Point p =
+          points_.point(place < share ? points_.choose_any_sun(chances_, u.x, u.y, place / share)
+                                      : points_.choose(chances_, u.x, u.y));
       if (p.source != nullptr && dot(p.wi, r.normal) > 0) {
         Ray& asking = asking_.emplace_back();
         asking.origin = r.origin;

@@ -260,6 +260,7 @@ class Cutter {
               sum += matrix_[i][m] * matrix_[j][n] * double(values[m][n][c]);
           cell.fit[c][i][j] = float(sum);
         }
+    cell.is_grey = cell.fit[1] == cell.fit[0] && cell.fit[2] == cell.fit[0];
   }
 
   const Scene& scene_;
@@ -274,21 +275,22 @@ class Cutter {
   std::vector<FarCell>& out_;
 };
 
+inline float evaluate_fit(const FarCell& cell, const FarPolynomial& c, float x, float y, float z) {
+  const Vec3 &au = cell.along_u, &av = cell.along_v;
+  const float u = x * au.x + y * au.y + z * au.z - cell.from_u;
+  const float v = x * av.x + y * av.y + z * av.z - cell.from_v;
+  const float c0 = c[0][0] + v * (c[0][1] + v * (c[0][2] + v * c[0][3]));
+  const float c1 = c[1][0] + v * (c[1][1] + v * (c[1][2] + v * c[1][3]));
+  const float c2 = c[2][0] + v * (c[2][1] + v * (c[2][2] + v * c[2][3]));
+  const float c3 = c[3][0] + v * (c[3][1] + v * (c[3][2] + v * c[3][3]));
+  const float sum = c0 + u * (c1 + u * (c2 + u * c3));
+  return sum > 0 ? sum : 0.0f;
+}
+
 TROFFER_MULTIVERSION
 void evaluate_fit(const FarCell& cell, const FarPolynomial& c, size_t n, const float* __restrict x,
                   const float* __restrict y, const float* __restrict z, float* __restrict out) {
-  const Vec3 au = cell.along_u, av = cell.along_v;
-  const float fu = cell.from_u, fv = cell.from_v;
-  for (size_t i = 0; i < n; ++i) {
-    const float u = x[i] * au.x + y[i] * au.y + z[i] * au.z - fu;
-    const float v = x[i] * av.x + y[i] * av.y + z[i] * av.z - fv;
-    const float c0 = c[0][0] + v * (c[0][1] + v * (c[0][2] + v * c[0][3]));
-    const float c1 = c[1][0] + v * (c[1][1] + v * (c[1][2] + v * c[1][3]));
-    const float c2 = c[2][0] + v * (c[2][1] + v * (c[2][2] + v * c[2][3]));
-    const float c3 = c[3][0] + v * (c[3][1] + v * (c[3][2] + v * c[3][3]));
-    const float sum = c0 + u * (c1 + u * (c2 + u * c3));
-    out[i] = sum > 0 ? sum : 0.0f;
-  }
+  for (size_t i = 0; i < n; ++i) out[i] = evaluate_fit(cell, c, x[i], y[i], z[i]);
 }
 
 void look_up(const FarCell& cell, size_t n, const float* x, const float* y, const float* z,
@@ -338,8 +340,14 @@ FarCells::FarCells(const Scene& scene, const LightPrimitives& primitives) {
 void far_radiance(const FarCell& cell, size_t n, const float* x, const float* y, const float* z,
                   float* r, float* g, float* b) {
   if (cell.table != nullptr) return look_up(cell, n, x, y, z, r, g, b);
+  constexpr size_t few = 8;  // for which vectors are not worth while
+  if (n < few && cell.is_grey) {
+    for (size_t i = 0; i < n; ++i)
+      r[i] = g[i] = b[i] = evaluate_fit(cell, cell.fit[0], x[i], y[i], z[i]);
+    return;
+  }
   evaluate_fit(cell, cell.fit[0], n, x, y, z, r);
-  if (cell.fit[1] == cell.fit[0] && cell.fit[2] == cell.fit[0]) {  // grey, as most skies are
+  if (cell.is_grey) {  // as most skies are
     std::copy_n(r, n, g);
     std::copy_n(r, n, b);
     return;

@@ -39,6 +39,7 @@ struct FarCell {
   float from_u = 0, from_v = 0;
   double height = 0;  // of the scene over the cell's plane
   std::array<FarPolynomial, 3> fit{};
+  bool is_grey = false;             // all three are the same
   const FarTable* table = nullptr;  // null: the polynomials hold
   int table_x = 0, table_y = 0, table_size = 0;
 

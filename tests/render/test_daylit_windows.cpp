@@ -153,7 +153,7 @@ TEST_CASE("a room of thick walls that seems closed gets few rays, and no light i
   };
   const Counters without = counters_of(false), with = counters_of(true);
   CHECK(with.masked == without.masked);
-  CHECK(with.shadow_rays < 12 * with.viewing_rays);
+  CHECK(with.shadow_rays < 4 * with.viewing_rays);
   for (const float slit : {0.003f, 0.05f}) {
     const PreparedScene scene(thick_room(slit, true));
     o.method = Method::certified;
