@@ -47,6 +47,20 @@ const Texture* image_of(const Scene& scene, int32_t texture) {
   return a ? a : image_of(scene, int32_t(t.factor_b));
 }
 
+void tell_what_is_left_out(const Scene& scene, const Material& m, bool is_gltf,
+                           WarningLog& warnings) {
+  if (m.bump.texture >= 0) warnings.add("bumps are not written");
+  if (m.back_faces == BackFaces::black) warnings.add("black backs are written as their fronts");
+  if (m.back_faces == BackFaces::unseen && !is_gltf)
+    warnings.add("backs that the eye does not see are written as their fronts");
+  for_each_input(m, [&](const auto& input) {
+    if (input.texture < 0) return;
+    const Texture& t = scene.textures[size_t(input.texture)];
+    if (t.kind >= TextureKind::checks || t.mapping != TextureMapping::uv)
+      warnings.add("patterns, noise and textures placed in space are written as one colour");
+  });
+}
+
 Rgb color_at(const Scene& scene, const ColorInput& input, const Vec2& uv,
              const ColorChange& change) {
   Rgb c = evaluate(scene.textures, input, uv);

@@ -28,6 +28,10 @@ using ColorChange = std::function<float(float)>;
 BakedImage baked_color(const Scene& scene, const ColorInput& input, bool with_alpha,
                        const ColorChange& change = {});
 // The same at one place.
+// Warns of what neither format is written with (is_gltf: or glTF alone) of a material.
+void tell_what_is_left_out(const Scene& scene, const Material& material, bool is_gltf,
+                           WarningLog& warnings);
+
 Rgb color_at(const Scene& scene, const ColorInput& input, const Vec2& uv,
              const ColorChange& change = {});
 // One channel of numbers, times the value, raised to `power`, as grey; not sRGB.

@@ -134,7 +134,18 @@ void GltfMaterialWriter::add_glass(const Material& m, Json& out) {
   if (!is_glass && m.transmission.texture >= 0)
     warnings_.add("textures of transmission are written as one value");
   out["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", share}};
-  if (!m.is_thin) out["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+  if (m.is_thin) {
+    if (!m.absorption.is_black()) warnings_.add("what sheets of glass absorb is not written");
+    return;
+  }
+  Json& volume = out["extensions"]["KHR_materials_volume"];
+  volume["thicknessFactor"] = 1;
+  if (m.absorption.is_black()) return;
+  // What is left after the way on which the strongest colour falls to 1/e.
+  const float most = max_component(m.absorption);
+  volume["attenuationDistance"] = 1 / most;
+  volume["attenuationColor"] = {std::exp(-m.absorption.r / most), std::exp(-m.absorption.g / most),
+                                std::exp(-m.absorption.b / most)};
 }
 
 Json GltfMaterialWriter::surface(const Material& m) {
@@ -208,7 +219,8 @@ size_t GltfMaterialWriter::index_of(uint32_t material, const Light* light, Rgb r
   if (light)
     add_emission(*light, radiance, out);
   else
-    out["doubleSided"] = true;
+    out["doubleSided"] = scene_.materials[material].back_faces != BackFaces::unseen;
+  tell_what_is_left_out(scene_, scene_.materials[material], true, warnings_);
   materials_.push_back(std::move(out));
   return made_[key] = materials_.size() - 1;
 }

@@ -141,6 +141,19 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
   return "\"diffuse\"";
 }
 
+// What glass absorbs inside. Shapes are within AttributeBegin and AttributeEnd.
+std::string PbrtMaterialWriter::medium_text(const Material& m) {
+  if (m.absorption.is_black()) return "";
+  if (m.is_thin) {
+    warnings_.add("what sheets of glass absorb is not written: pbrt has none");
+    return "";
+  }
+  const std::string name = fmt::format("medium{}", media_++);
+  return fmt::format("MakeNamedMedium \"{}\" \"string type\" \"homogeneous\"", name) +
+         rgb("sigma_a", m.absorption) + rgb("sigma_s", Rgb{0}) +
+         fmt::format("\nMediumInterface \"{}\" \"\"\n", name);
+}
+
 std::string PbrtMaterialWriter::use(uint32_t material) {
   const Material& m = scene_.materials[material];
   std::string text = "Material " + material_text(m);
@@ -153,6 +166,8 @@ std::string PbrtMaterialWriter::use(uint32_t material) {
     }
     text += fmt::format(" \"string normalmap\" \"{}\"", file);
   }
+  tell_what_is_left_out(scene_, m, false, warnings_);
+  text = medium_text(m) + text;
   alpha_of(material);  // its texture is defined before
   std::string out = std::move(definitions_);
   definitions_.clear();

@@ -30,9 +30,10 @@ class PbrtMaterialWriter {
   WarningLog& warnings_;
   std::map<std::string, std::string> textures_;  // by what they hold -> name
   std::string definitions_;                      // of textures, not yet written
-  size_t images_ = 0;
+  size_t images_ = 0, media_ = 0;
 
   std::string material_text(const Material& m);
+  std::string medium_text(const Material& m);
   std::string mixed_text(const Material& m);
   std::string color(const char* parameter, const ColorInput& input, const ColorChange& change = {});
   std::string roughness(const Material& m, float power);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/units.h"
 #include "import/gltf_texture.h"
 #include "import/uri.h"
 
@@ -27,6 +28,9 @@ class GltfMaterials::Reader {
     read_specular();
     read_transmission();
     read_clearcoat();
+    read_sheen();
+    read_anisotropy();
+    read_iridescence();
     tell_what_is_left_out();
     read_emission();
     result_.is_two_sided = node_.bool_or("doubleSided", false);
@@ -155,15 +159,65 @@ class GltfMaterials::Reader {
     warn("the clear coat replaces the gloss below it");
   }
 
+  // What cloth reflects more of light that leans is shown as much lighter all around: by the mean
+  // albedo of the extension's lobe, which falls about so from rough to smooth.
+  void read_sheen() {
+    const auto sheen = node_.extension("KHR_materials_sheen");
+    if (!sheen) return;
+    const auto color = sheen->numbers_or("sheenColorFactor", {0, 0, 0});
+    const float roughness = unit_number(*sheen, "sheenRoughnessFactor", 0);
+    if (color.size() != 3 || sheen->find("sheenColorTexture"))
+      warn("sheen by a texture is left out");
+    if (color.size() != 3 || *std::max_element(color.begin(), color.end()) <= 0) return;
+    const float albedo = 0.18f * roughness;
+    for (size_t c = 0; c < 3; ++c) {
+      float& base = material_.base_color.value[c];
+      const float own = albedo * float(std::clamp(color[c], 0.0, 1.0));
+      base = std::clamp(base * (1 - own) + own, 0.0f, 1.0f);
+    }
+    warn("sheen is approximated: the surface is lighter by its mean");
+  }
+
+  // Widths α and α + (1 - α) s² as one, their geometric mean.
+  void read_anisotropy() {
+    const auto anisotropy = node_.extension("KHR_materials_anisotropy");
+    if (!anisotropy) return;
+    const float strength = unit_number(*anisotropy, "anisotropyStrength", 0);
+    if (strength == 0) return;
+    const float alpha = sqr(material_.roughness.value);
+    const float along = alpha + (1 - alpha) * sqr(strength);
+    material_.roughness.value = std::min(std::sqrt(std::sqrt(alpha * along)), 1.0f);
+    warn("anisotropy is approximated: gloss is even in all directions, as wide as in the mean");
+  }
+
+  // Interference in a thin film, of light straight on: a colour of the reflection that does not
+  // change with the angle. Of the first reflection at the film and the first within it.
+  void read_iridescence() {
+    const auto film = node_.extension("KHR_materials_iridescence");
+    if (!film) return;
+    const float factor = unit_number(*film, "iridescenceFactor", 0);
+    if (factor == 0) return;
+    const double index = film->number_or("iridescenceIor", 1.3),
+                 thickness = film->number_or("iridescenceThicknessMaximum", 400);
+    const double below = double(material_.ior > 1 ? material_.ior : 1.5f);
+    const double a = (1 - index) / (1 + index), b = (index - below) / (index + below);
+    const double plain = sqr((1 - below) / (1 + below));
+    constexpr std::array<double, 3> wavelengths{610, 550, 465};  // nm, of the channels
+    for (size_t c = 0; c < 3; ++c) {
+      const double phase = 4 * pi * index * thickness / wavelengths[c];
+      const double shown = std::clamp(a * a + b * b + 2 * a * b * std::cos(phase), 0.0, 1.0);
+      const auto ratio = float(plain > 0 ? shown / plain : 1);
+      material_.specular_color.value[c] *= 1 + factor * (ratio - 1);
+    }
+    warn("iridescence is approximated: as a colour of the reflection, the same at all angles");
+  }
+
   void tell_what_is_left_out() {
     struct Told {
       const char *extension, *what;
     };
-    constexpr std::array<Told, 7> list{
+    constexpr std::array<Told, 4> list{
         {{"KHR_materials_unlit", "unlit: shown diffuse, as lit as its place is"},
-         {"KHR_materials_sheen", "sheen is left out"},
-         {"KHR_materials_iridescence", "iridescence is left out"},
-         {"KHR_materials_anisotropy", "anisotropy is left out: gloss is even in all directions"},
          {"KHR_materials_dispersion", "dispersion is left out"},
          {"KHR_materials_diffuse_transmission", "diffuse transmission is left out"},
          {"KHR_materials_volume_scatter", "scattering inside a volume is left out"}}};

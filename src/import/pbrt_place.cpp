@@ -71,16 +71,21 @@ void PbrtPlacer::place(Placing placing) {
   if (shape.kind == PbrtShapeKind::mesh) {
     place_mesh(placing, *shape.mesh, shape.is_quadric);
   } else if (shape.kind == PbrtShapeKind::sphere) {
-    if (is_similarity(placing.world_from_object))
+    if (is_similarity(placing.world_from_object) && !needs_uvs(placing))
       place_sphere(placing);
     else
       place_mesh(placing,
                  {tessellate_sphere(shape.radius, -shape.radius, shape.radius, 2 * pi), {}}, true);
-  } else if (keeps_circles(placing.world_from_object, 0, 1)) {
+  } else if (keeps_circles(placing.world_from_object, 0, 1) && !needs_uvs(placing)) {
     place_disk(placing);
   } else {
     place_mesh(placing, {tessellate_disk(shape.height, shape.radius, 0, 2 * pi), {}}, true);
   }
+}
+
+// Exact shapes have no (u,v); those that emit stay exact.
+bool PbrtPlacer::needs_uvs(const Placing& placing) {
+  return !placing.is_emitting && is_textured(scene_.materials[material_of(placing)]);
 }
 
 uint32_t PbrtPlacer::material_of(const Placing& placing) {
@@ -118,8 +123,8 @@ void PbrtPlacer::place_sphere(const Placing& placing) {
     return;
   }
   sphere.material = material_of(placing);
-  if (is_textured(scene_.materials[sphere.material]))
-    scene_.warnings.add("sphere with a texture: shown with its value at (0,0)");
+  if (placing.is_emitting && is_textured(scene_.materials[sphere.material]))
+    scene_.warnings.add("sphere with a texture that emits: shown with its value at (0,0)");
   const auto geometry = uint32_t(scene_.spheres.size());
   if (placing.is_emitting) {
     if (!placing.shape.light->image.empty())
@@ -155,8 +160,8 @@ void PbrtPlacer::place_disk(const Placing& placing) {
     return;
   }
   disk.material = material_of(placing);
-  if (is_textured(scene_.materials[disk.material]))
-    scene_.warnings.add("disk with a texture: shown with its value at (0,0)");
+  if (placing.is_emitting && is_textured(scene_.materials[disk.material]))
+    scene_.warnings.add("disk with a texture that emits: shown with its value at (0,0)");
   const auto geometry = uint32_t(scene_.disks.size());
   if (placing.is_emitting) {
     if (!placing.shape.light->image.empty())

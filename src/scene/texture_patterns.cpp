@@ -11,6 +11,7 @@ namespace troffer {
 namespace {
 
 constexpr float farthest = 1e8f;  // cells beyond are one
+constexpr float finest = 1e15f;   // … of octaves
 
 Vec3 in_texture(const Texture& t, const Vec3& position) {
   const Vec3 p(t.from_scene.point(Vec3d(position)));
@@ -27,12 +28,12 @@ float stretch(const Texture& t) {
 
 // ---- noise
 
-uint64_t cell_hash(int x, int y, int z) {
-  return hash_of(uint64_t(uint32_t(x)) << 32 | uint32_t(y), uint64_t(uint32_t(z)));
+uint64_t cell_hash(int64_t x, int64_t y, int64_t z) {
+  return hash_of(uint64_t(x), uint64_t(y), uint64_t(z));
 }
 
 // The gradient of a corner, one of the twelve edges of a cube [2], times the way from it.
-float slope(int x, int y, int z, const Vec3& way) {
+float slope(int64_t x, int64_t y, int64_t z, const Vec3& way) {
   const uint64_t h = cell_hash(x, y, z) >> 33;
   const uint64_t axis = h % 3;
   const float a = axis == 0 ? way.y : way.x, b = axis == 2 ? way.y : way.z;
@@ -45,7 +46,10 @@ float ease(float t) {
 
 // Gradient noise, 0 in the mean, within about ±1.
 float noise(const Vec3& p) {
-  const int x = int(std::floor(p.x)), y = int(std::floor(p.y)), z = int(std::floor(p.z));
+  const auto cell = [](float v) { return int64_t(std::floor(v)); };
+  const Vec3 reach = abs(p);
+  if (!(reach.x < finest && reach.y < finest && reach.z < finest)) return 0;
+  const int64_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
   const Vec3 f{p.x - float(x), p.y - float(y), p.z - float(z)};
   const auto mix = [](float a, float b, float t) { return a + (b - a) * t; };
   const float u = ease(f.x), v = ease(f.y), w = ease(f.z);

@@ -184,6 +184,40 @@ TEST_CASE("textures, masks and scenes far from the origin survive") {
   }
 }
 
+TEST_CASE("what glass absorbs survives, and what is lost is told") {
+  const TempFolder folder;
+  const Scene scene = import_scene(folder.write(
+      "in.pbrt",
+      "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 3 0] "
+      "\"rgb sigma_s\" [0 0 0]\nMediumInterface \"m\" \"\"\nMaterial \"dielectric\"\n"
+      "Shape \"sphere\"\nMediumInterface \"\" \"\"\n"
+      "Texture \"n\" \"float\" \"wrinkled\"\n"
+      "Texture \"t\" \"spectrum\" \"mix\" \"texture amount\" \"n\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\" \"texture displacement\" \"n\"\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n"));
+  for (const std::string name : {"out.pbrt", "out.gltf"}) {
+    CAPTURE(name);
+    const std::vector<Warning> lost = export_scene(scene, folder.path(name));
+    CHECK(has_warning(lost, "bumps are not written"));
+    CHECK(has_warning(lost, "patterns, noise"));
+    const Scene back = import_scene(folder.path(name));
+    size_t glasses = 0;
+    for (const Material& m : back.materials) {
+      if (m.absorption.is_black()) continue;
+      ++glasses;
+      check_near(m.absorption, {1, 3, 0}, 1e-4);
+    }
+    CHECK(glasses == 1);
+  }
+  // Backs: glTF alone knows those that the eye does not see.
+  Scene unseen = scene;
+  for (Material& m : unseen.materials) m.back_faces = BackFaces::unseen;
+  CHECK_FALSE(has_warning(export_scene(unseen, folder.path("b.gltf")), "backs"));
+  for (const Material& m : import_scene(folder.path("b.gltf")).materials)
+    CHECK(m.back_faces == BackFaces::unseen);
+  CHECK(has_warning(export_scene(unseen, folder.path("b.pbrt")), "backs"));
+}
+
 TEST_CASE("a measured luminaire keeps its flux") {
   const TempFolder folder;
   Scene scene;

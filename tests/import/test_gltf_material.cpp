@@ -241,8 +241,33 @@ TEST_CASE("what materials cannot show is told, and approximated where that is ne
   const Scene unlit = with_material("{'extensions':{'KHR_materials_unlit':{}}}");
   CHECK(only_material(unlit).kind == MaterialKind::diffuse);
   CHECK(has_warning(unlit, "unlit"));
-  for (const std::string name : {"sheen", "iridescence", "anisotropy", "dispersion"})
-    CHECK(has_warning(with_material("{'extensions':{'KHR_materials_" + name + "':{}}}"), name));
+  CHECK(has_warning(with_material("{'extensions':{'KHR_materials_dispersion':{}}}"), "dispersion"));
+  const std::string dielectric =
+      "{'pbrMetallicRoughness':{'baseColorFactor':[0.5,0,1,1],'metallicFactor':0,"
+      "'roughnessFactor':0.5},'extensions':{'KHR_materials_";
+  const Scene cloth = with_material(
+      dielectric + "sheen':{'sheenColorFactor':[1,0.5,0],'sheenRoughnessFactor':1}}}");
+  CHECK(has_warning(cloth, "sheen is approximated"));
+  const Rgb lighter = only_material(cloth).base_color.value;
+  CHECK(lighter.r == doctest::Approx(0.59));
+  CHECK(lighter.g == doctest::Approx(0.09));
+  CHECK(lighter.b == 1);
+  const Scene brushed = with_material(dielectric + "anisotropy':{'anisotropyStrength':1}}}");
+  CHECK(has_warning(brushed, "anisotropy is approximated"));
+  // widths 1/4 and 1: 1/2
+  CHECK(sqr(only_material(brushed).roughness.value) == doctest::Approx(0.5));
+  const auto film = [&](const std::string& nanometres) {
+    return with_material(dielectric +
+                         "iridescence':{'iridescenceFactor':1,'iridescenceIor':1.3,"
+                         "'iridescenceThicknessMaximum':" +
+                         nanometres + "}}}");
+  };
+  CHECK(has_warning(film("400"), "iridescence is approximated"));
+  CHECK(only_material(film("400")).specular_color.value != Rgb{1});
+  // Of no thickness: what the bare surface reflects, but for what goes to and fro.
+  CHECK(only_material(film("0")).specular_color.value.g == doctest::Approx(1).epsilon(0.03));
+  for (const std::string name : {"sheen", "iridescence", "anisotropy"})
+    CHECK(with_material("{'extensions':{'KHR_materials_" + name + "':{}}}").warnings.total() == 0);
 }
 
 TEST_CASE("a data URI that is broken is told of though nothing shows its image") {
