@@ -15,6 +15,7 @@
 #define TROFFER_MASK_NAMESPACE mask_plain
 #include "shadow/coverage_mask_kernels.h"
 #include "shadow/coverage_mask_proofs.h"
+#include "shadow/coverage_mask_weights.h"
 #undef TROFFER_MASK_WIDTH
 #undef TROFFER_MASK_NAMESPACE
 #ifdef TROFFER_MASK_DISPATCH
@@ -24,6 +25,7 @@
 #define TROFFER_MASK_NAMESPACE mask_avx2
 #include "shadow/coverage_mask_kernels.h"
 #include "shadow/coverage_mask_proofs.h"
+#include "shadow/coverage_mask_weights.h"
 #undef TROFFER_MASK_WIDTH
 #undef TROFFER_MASK_NAMESPACE
 #pragma GCC pop_options
@@ -33,6 +35,7 @@
 #define TROFFER_MASK_NAMESPACE mask_avx512
 #include "shadow/coverage_mask_kernels.h"
 #include "shadow/coverage_mask_proofs.h"
+#include "shadow/coverage_mask_weights.h"
 #undef TROFFER_MASK_WIDTH
 #undef TROFFER_MASK_NAMESPACE
 #pragma GCC pop_options
@@ -276,12 +279,12 @@ MaskWeights mask_weights(const MaskFrame& frame, const Vec3d& x, const Vec3& n, 
 
 MaskWeight weigh(const MaskFrame& frame, const CoverageMask& mask, const MaskWeights& weights,
                  float* open_by_row, int instruction_set) {
-  float sums[2], rows[most_mask_rows];
-  int pairs[2];
+  float sums[3], rows[most_mask_rows];
+  int counts[5];
   kernels(instruction_set)
       .weigh(weights, frame.lattice().rows, mask.inside.row, mask.open.row, sums,
-             open_by_row != nullptr ? open_by_row : rows, pairs);
-  return {sums[0], sums[1], pairs[0], pairs[1]};
+             open_by_row != nullptr ? open_by_row : rows, counts);
+  return {sums[0], sums[1], sums[2], counts[0], counts[1], counts[2], counts[3], counts[4]};
 }
 
 }  // namespace troffer

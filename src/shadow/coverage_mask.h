@@ -175,8 +175,10 @@ struct CoverageMask {
 // Weights of the samples inside and of the open ones, in a unit that is the same for one receiver.
 struct MaskWeight {
   float all = 0, open = 0;
-  // Neighbouring samples of which one is open and one is not: in a row, in a column.
-  int row_pairs = 0, column_pairs = 0;
+  float pair_squares = 0;  // of weights, one for each pair whose samples differ
+  // Neighbouring samples of which one is open and one is not: in a row, in a column; all of them.
+  int row_pairs = 0, column_pairs = 0, neighbours = 0;
+  int inside_count = 0, open_count = 0;
   float share() const { return all > 0 ? open / all : 0; }
 };
 

@@ -1,8 +1,8 @@
 // The loops of coverage_mask.cpp, written for vectors of `width` numbers and compiled once per
-// instruction set: coverage_mask.cpp includes this file, and coverage_mask_proofs.h after it,
-// with TROFFER_MASK_WIDTH and TROFFER_MASK_NAMESPACE set, under the pragma that selects the set. No
-// function here may call one from elsewhere, whose code would be the plain one. Results are the
-// same bits for every width.
+// instruction set: coverage_mask.cpp includes this file, coverage_mask_proofs.h and
+// coverage_mask_weights.h after it, with TROFFER_MASK_WIDTH and TROFFER_MASK_NAMESPACE set, under
+// the pragma that selects the set. No function here may call one from elsewhere, whose code would
+// be the plain one. Results are the same bits for every width.
 #ifndef TROFFER_MASK_WIDTH
 #include "shadow/coverage_mask.h"
 #define TROFFER_MASK_WIDTH 4
@@ -322,70 +322,6 @@ bool cover_rows(const MaskPoint& p, int rows, const FacetBatch<4>* quads, size_t
            cover_batches<3, 16>(triangles, triangle_batches, p, open);
   return cover_batches<4, 32>(quads, quad_batches, p, open) &&
          cover_batches<3, 32>(triangles, triangle_batches, p, open);
-}
-
-template <int rows, int columns>
-inline __attribute__((always_inline)) void weigh(const MaskWeights& w, const uint32_t* inside_rows,
-                                                 const uint32_t* open_rows, float* sums,
-                                                 float* row_sums) {
-  constexpr int blocks = rows / width;
-  const Floats zero = {};
-  float all_sum = 0, seen_sum = 0;  // over rows, so that their order does not depend on the width
-  for (int block = 0; block < blocks; ++block) {
-    Bits inside, open;
-    __builtin_memcpy(&inside, inside_rows + block * width, sizeof inside);
-    __builtin_memcpy(&open, open_rows + block * width, sizeof open);
-    Floats row;
-    for (int i = 0; i < width; ++i) row[i] = float(block * width + i);
-    const Floats cosine_0 = w.cosine + w.cosine_j * row;
-    const Floats square_0 = w.square + row * (w.square_j + row * w.square_jj);
-    const Floats slope = w.slope + w.slope_j * row;
-    Floats all = zero, seen = zero;
-    for (int k = 0; k < columns; ++k) {
-      const auto at = float(k);
-      const Floats cosine = cosine_0 + w.cosine_k * at;
-      const Floats square = square_0 + at * (slope + at * w.square_kk);
-      const Floats weight = (cosine > zero ? cosine : zero) / (square * square);
-      const Bits bit = Bits{} + (1u << k);
-      all += (inside & bit) != 0 ? weight : zero;
-      seen += (open & bit) != 0 ? weight : zero;
-    }
-    __builtin_memcpy(row_sums + block * width, &seen, sizeof seen);
-    for (int i = 0; i < width; ++i) {
-      all_sum += all[i];
-      seen_sum += seen[i];
-    }
-  }
-  sums[0] = all_sum;
-  sums[1] = seen_sum;
-}
-
-// Pairs of neighbouring samples inside of which one is open and one is not: in a row, in a column.
-template <int rows>
-inline __attribute__((always_inline)) void boundary_pairs(const uint32_t* inside,
-                                                          const uint32_t* open, int* pairs) {
-  pairs[0] = pairs[1] = 0;
-  for (int j = 0; j < rows; j += 2) {  // two rows in 64 bits
-    const uint64_t i0 = inside[j], i1 = inside[j + 1], o0 = open[j], o1 = open[j + 1];
-    const uint64_t in = i0 | (i1 << 32), on = o0 | (o1 << 32);
-    const uint64_t i2 = j + 2 < rows ? inside[j + 2] : 0, o2 = j + 2 < rows ? open[j + 2] : 0;
-    const uint64_t in_above = i1 | (i2 << 32), on_above = o1 | (o2 << 32);
-    pairs[1] += __builtin_popcountll((on ^ on_above) & in & in_above);
-    pairs[0] += __builtin_popcountll((on ^ (on >> 1)) & in & (in >> 1) & 0x7fffffff7fffffffull);
-  }
-}
-
-// sums: weight of all samples inside, of those open; row_sums: of those open, by row; pairs: as
-// above.
-void weigh_rows(const MaskWeights& w, int rows, const uint32_t* inside, const uint32_t* open,
-                float* sums, float* row_sums, int* pairs) {
-  if (rows <= 16) {
-    weigh<16, 16>(w, inside, open, sums, row_sums);
-    boundary_pairs<16>(inside, open, pairs);
-  } else {
-    weigh<32, 31>(w, inside, open, sums, row_sums);
-    boundary_pairs<32>(inside, open, pairs);
-  }
 }
 
 }  // namespace troffer::TROFFER_MASK_NAMESPACE

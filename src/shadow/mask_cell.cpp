@@ -16,36 +16,29 @@ namespace {
 // second sample (measured: docs/certified.md). Along diagonals it is large too, but as many pairs
 // in rows as in columns mostly mean edges along both sides of the source.
 float edge_variance(float least_pairs, float most_pairs) {
-  if (most_pairs < 6) return 0.12f;  // a few pairs do not tell a direction
+  if (most_pairs < 6) return 0.14f;  // a few pairs do not tell a direction
   const float ratio = least_pairs / most_pairs;
   if (ratio < 0.04f) return 0.5f;
-  return ratio < 0.08f || std::abs(ratio - 0.5f) < 0.06f || ratio > 0.9f ? 0.065f : 0.04f;
+  return ratio < 0.08f || std::abs(ratio - 0.5f) < 0.06f || ratio > 0.9f ? 0.075f : 0.045f;
 }
 
-// Expected variance of a mask's share. Where samples differ from their neighbours as often as if
-// they were thrown at random, and not as rarely as in one piece, a pair stands for a quarter of a
-// sample squared; samples at the boundary are taken to weigh as much as the source's corners, in
-// the root mean square.
-float mask_variance(const MaskFrame& frame, const MaskWeights& weights, const MaskWeight& sums) {
+// Expected variance of a mask's share. The more of all neighbours differ, from as few as in one
+// piece to as many as if samples were thrown at random, the closer it comes to that of independent
+// samples, and some more: what hides them may have a regularity of its own, as parallel wires have.
+float mask_variance(const MaskWeight& sums) {
   const auto rows = float(sums.row_pairs), columns = float(sums.column_pairs);
   const float pairs = rows + columns;
   if (pairs == 0) return 0;
-  float squares = 0;
-  for (int i = 0; i < frame.corner_count(); ++i) {
-    const MaskFrame::Corner& c = frame.corners()[i];
-    squares += sqr(weight_of(weights, int(c.k), int(c.j)));
-  }
-  // Corners of a disk's square may be far from it.
-  const float mean = sums.all / float(frame.lattice().samples());
-  const float weight2 = std::min(squares / float(frame.corner_count()), 4 * sqr(mean));
-  const auto n = float(frame.lattice().samples());
-  const float share = sums.share();
+  const auto n = float(sums.inside_count);
+  const float share = float(sums.open_count) / n, spread = share * (1 - share);
   const float fewest = 4 * std::sqrt(n * std::min(share, 1 - share));  // of a square
-  const float random = 4 * n * share * (1 - share);
+  const float random = 2 * float(sums.neighbours) * spread;
   const float disorder = std::clamp((pairs - fewest) / std::max(random - fewest, 1.0f), 0.0f, 1.0f);
   const float of_edge = edge_variance(std::min(rows, columns), std::max(rows, columns));
-  const float of_pair = of_edge + disorder * std::max(0.25f - of_edge, 0.0f);
-  return of_pair * pairs * weight2 / sqr(sums.all);
+  constexpr float regularity = 1.2f;
+  const float of_random = regularity * n * spread * n / ((n - 1) * random);
+  const float of_pair = of_edge + disorder * std::max(of_random - of_edge, 0.0f);
+  return of_pair * sums.pair_squares / sqr(sums.all);
 }
 
 // Random numbers of a pair of receiver and cell, for several purposes and passes.
@@ -88,17 +81,19 @@ MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& f
     clip_to_horizon(frame, x, r.horizon, samples.shift, mask);
     if (cell.source.does_horizon_hide()) mask.inside = inside;
   }
-  samples.rows = mask.open;
   samples.weights = mask_weights(frame, x, r.normal, samples.shift);
+  const bool is_above = is_above_horizon(frame, samples.weights);
+  if (!is_above) clip_to_horizon(frame, x, r.normal, samples.shift, mask);
+  samples.rows = mask.open;
   // Where nobody wants to know where the samples are, weights do not matter if all are open.
   const bool is_answer = cell.is_complete && cell.source.wanted_points[member] == 0;
-  if (is_answer && is_above_horizon(frame, samples.weights) &&
+  if (is_answer && is_above &&
       std::equal(mask.open.row, mask.open.row + most_mask_rows, mask.inside.row))
     return {1, 0};
   const MaskWeight sums = weigh(frame, mask, samples.weights, samples.open_by_row);
   if (!(sums.all > 0)) return {-1, 0};
   samples.open = sums.open;
-  return {sums.share(), mask_variance(frame, samples.weights, sums)};
+  return {sums.share(), mask_variance(sums)};
 }
 
 namespace {

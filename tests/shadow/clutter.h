@@ -1,0 +1,55 @@
+// Things in disorder before ceiling_source().
+#pragma once
+
+#include <vector>
+
+#include "base/random.h"
+#include "brute_force.h"
+
+namespace troffer::test {
+
+// Within 17 degrees of level or so.
+inline Vec3 levelish(Random& random) {
+  for (;;) {
+    const Vec3 d{2 * random.next_float() - 1, 2 * random.next_float() - 1,
+                 0.3f * (2 * random.next_float() - 1)};
+    if (length(d) > 0.1f && length(d) < 1) return normalize(d);
+  }
+}
+
+inline Vec3 before_source(Random& random, float lower, float upper) {
+  const float x = random.next_float() - 0.5f, y = random.next_float() - 0.5f;
+  return {0.9f * x, 0.9f * y, lower + (upper - lower) * random.next_float()};
+}
+
+// Flat ones of 2 m, all one way or each its own.
+inline std::vector<Quad> wires(Random& random, int n, float half_width, bool are_parallel = false) {
+  std::vector<Quad> out;
+  Vec3 way = levelish(random);
+  for (int i = 0; i < n; ++i) {
+    if (!are_parallel) way = levelish(random);
+    const Vec3 middle = before_source(random, 0.8f, 1.6f);
+    const Vec3 side = normalize(cross(way, Vec3{0, 0, 1})) * half_width;
+    const Vec3 a = middle - way, b = middle + way;
+    out.push_back({a - side, b - side, b + side, a + side});
+  }
+  return out;
+}
+
+inline std::vector<Quad> leaves(Random& random, int n, float size) {
+  std::vector<Quad> out;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 middle = before_source(random, 0.5f, 1.6f), u = levelish(random);
+    const Vec3 other{random.next_float(), random.next_float(), 1};
+    out.push_back(parallelogram_facet(middle, u * size, normalize(cross(u, other)) * size));
+  }
+  return out;
+}
+
+// What lies on one side of a line.
+inline Quad half_plane(Random& random) {
+  const Vec3 way = levelish(random), p = before_source(random, 1, 1.2f);
+  return parallelogram_facet(p - way * 3, way * 6, normalize(cross(way, Vec3{0, 0, 1})) * 3);
+}
+
+}  // namespace troffer::test
