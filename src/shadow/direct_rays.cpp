@@ -72,42 +72,23 @@ void make_ways(size_t n, const Vec3& shift, float end, float* __restrict x, floa
   }
 }
 
-// Sums over the rays of one receiver: of f V - b f, of its square, and of squared differences of
-// neighbours.
-struct RaySums {
-  float value = 0, squares = 0, changes = 0;
-};
+// What each ray of a receiver brings, f V - b f over `unit`; returns the sum.
 TROFFER_MULTIVERSION
-RaySums add_up(size_t n, const float* __restrict weights, const uint8_t* __restrict is_hidden,
-               float control, float* __restrict values) {
+float add_up(size_t n, const float* __restrict weights, const uint8_t* __restrict is_hidden,
+             float control, float unit, float* __restrict values) {
   constexpr size_t lanes = 16;
-  float value[lanes] = {}, squares[lanes] = {}, changes[lanes] = {};
+  float sums[lanes] = {};
   for (size_t i = 0; i < n; ++i) {
     const float free = weights[i] > 0 && is_hidden[i] == 0 ? weights[i] : 0.0f;
-    values[i] = free - control * std::abs(weights[i]);
+    values[i] = (free - control * std::abs(weights[i])) * unit;
   }
-  values[n] = values[n - 1];
   const size_t whole = n / lanes * lanes;
   for (size_t i = 0; i < whole; i += lanes)
-    for (size_t k = 0; k < lanes; ++k) {
-      const float v = values[i + k], change = values[i + k + 1] - v;
-      value[k] += v;
-      squares[k] += v * v;
-      changes[k] += change * change;
-    }
-  for (size_t i = whole; i < n; ++i) {
-    const float v = values[i], change = values[i + 1] - v;
-    value[i - whole] += v;
-    squares[i - whole] += v * v;
-    changes[i - whole] += change * change;
-  }
-  RaySums sums;
-  for (size_t k = 0; k < lanes; ++k) {
-    sums.value += value[k];
-    sums.squares += squares[k];
-    sums.changes += changes[k];
-  }
-  return sums;
+    for (size_t k = 0; k < lanes; ++k) sums[k] += values[i + k];
+  for (size_t i = whole; i < n; ++i) sums[i - whole] += values[i];
+  float sum = 0;
+  for (const float v : sums) sum += v;
+  return sum;
 }
 
 // One stage for one part, over in one call: hence its members.
@@ -136,6 +117,7 @@ class Caster {
 
   void run() {
     m_.answers.clear();
+    m_.spread.begin(blocks_, m_.blocks.size());
     const size_t at_once = std::max<size_t>(batch / rays_, 1);
     for (size_t first = 0; first < members_.size(); first += at_once) {
       const std::span<const uint32_t> some =
@@ -288,38 +270,24 @@ class Caster {
 
   // Keeps what the rays of a member, the batch's receiver i, say, for add_answers.
   void note_answer(size_t i, uint32_t member) {
-    m_.values.resize(rays_ + 1);
-    const RaySums sums = add_up(rays_, m_.weights.data() + i * rays_,
-                                m_.is_hidden.data() + i * rays_, control_, m_.values.data());
-    const auto squares = double(sums.squares), changes = double(sums.changes);
     double all = 0;
     for (size_t c = 0; c < m_.cells.size(); ++c) all += double(unoccluded(c, member));
     if (!(all > 0)) return;
-    const auto n = double(rays_), mean = double(sums.value) / n;
-    // Neighbours on the source differ by what their strata leave to chance. Where these are in
-    // order the sequence gains more, and the error of all rays of a pixel falls faster than with
-    // the root of their number, as N^-3/4; what is told here will be taken for independent.
-    const double neighbours = changes / (2 * n * n);
-    const double random = std::max(squares / n - sqr(mean), 0.0) / n;
-    const double by_chance = random > 0 ? std::min(neighbours / random, 1.0) : 1;
-    const bool is_shared = task_.cluster.receivers[member].pixel != 0;
-    const double shared = is_shared ? 1 / std::sqrt(double(task_.options.viewing_rays)) : 1;
-    const double gain = (0.25 + 0.75 * sqr(by_chance)) * (shared + (1 - shared) * by_chance);
-    m_.answers.push_back({member, all, mean + double(control_) * all, neighbours * gain});
+    m_.values.resize(rays_);
+    const float sum = add_up(rays_, m_.weights.data() + i * rays_, m_.is_hidden.data() + i * rays_,
+                             control_, float(std::min(1 / all, 1e30)), m_.values.data());
+    m_.answers.push_back({member, float(all), sum / float(rays_) + control_});
+    draw_numbers(task_.cluster.receivers[member]);
+    m_.spread.add(m_.values, m_.numbers);
   }
 
-  // A member's own rays may all have met the same: the spread of all members' counts for one of n +
-  // 1, and a ray of another answer for one of all.
   void add_answers() {
-    double spread = 0;
-    for (const DirectRayMemory::Answer& a : m_.answers) spread += a.variance / sqr(a.unoccluded);
-    const auto n = double(rays_), answers = double(m_.answers.size());
-    const double mean = spread / answers + 1 / sqr(n * answers);
-    for (const DirectRayMemory::Answer& a : m_.answers) {
-      const double variance = (n * a.variance + mean * sqr(a.unoccluded)) / (n + 1);
+    if (m_.answers.empty()) return;
+    const std::span<const double> variances = m_.spread.variances();
+    for (size_t i = 0; i < m_.answers.size(); ++i) {
+      const DirectRayMemory::Answer& a = m_.answers[i];
       CellSum& s = sums_of_[a.member];
-      s.add(float(a.unoccluded), float(a.light / a.unoccluded), float(variance / sqr(a.unoccluded)),
-            ShadowAnswer::mixed);
+      s.add(a.unoccluded, a.share, float(variances[i]), ShadowAnswer::mixed);
       s.rays += rays_;
     }
   }

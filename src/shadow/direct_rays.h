@@ -15,6 +15,7 @@
 #include "base/random.h"
 #include "light/light_points.h"
 #include "shadow/gather_facets.h"
+#include "shadow/ray_spread.h"
 
 namespace troffer {
 
@@ -34,10 +35,10 @@ struct DirectRayMemory {
   std::vector<ShadowHit> hits;
   struct Answer {
     uint32_t member;
-    double unoccluded, light;  // sr
-    double variance;           // sr²
+    float unoccluded, share;  // sr, and what of it arrives
   };
   std::vector<Answer> answers;
+  RaySpread spread;
 };
 
 constexpr double fewest_rays = 16;
