@@ -33,11 +33,11 @@ SCENES = [
                  "disks", "lights10", "lights100", "lights1000", "lights3000")),
 ]
 ERRORS = (0.05, 0.02, 0.01, 0.005)
-FIXED_RAYS = (1, 4, 16, 64, 256, 1024)
+FIXED_RAYS = (1, 4, 16, 64, 256, 1024, 4096)
 MOST_FIXED = 4096  # rays of a viewing ray, to all lights
 PATHS = (4, 16, 64, 256)
 REFERENCE_RAYS = 16384  # of a viewing ray, to all lights, but no more to one than
-MOST_TO_ONE = 4096
+MOST_TO_ONE = 8192
 REFERENCE_PATHS = 512  # twice
 # Runs shorter than this, s, are made three times.
 SHORT = 0.2
@@ -64,8 +64,10 @@ def luminance(picture):
 
 
 def reference_rays(lights):
-    """Of a viewing ray to each light."""
-    return 2 ** int(np.log2(min(max(8, REFERENCE_RAYS / lights), MOST_TO_ONE)))
+    """Of a viewing ray to each light, for either half: other numbers have other sequences, so that
+    halves and all settings err independently."""
+    rays = 2 ** int(np.log2(min(max(8, REFERENCE_RAYS / lights), MOST_TO_ONE)))
+    return rays, rays * 3 // 4
 
 
 class Reference:
@@ -73,19 +75,18 @@ class Reference:
     there, methods with different viewing rays can be compared."""
 
     def __init__(self, program, scene, file, size):
-        rays = reference_rays(scene.lights)
         paths = REFERENCE_PATHS
         common = f"--size {size} --indirect none"
-        own = program.render(
-            f"{scene.name}-reference", file, f"{common} --method fixed --spp {VIEWING_RAYS} "
-            f"--max-spp {VIEWING_RAYS} --shadow-rays {rays}")
-        self.own = own.picture.astype(np.float64)
+        self.own = [program.render(
+            f"{scene.name}-reference-{rays}", file, f"{common} --method fixed --spp {VIEWING_RAYS} "
+            f"--max-spp {VIEWING_RAYS} --shadow-rays {rays}").picture.astype(np.float64)
+            for rays in reference_rays(scene.lights)]
         halves = [program.render(f"{scene.name}-reference{seed}", file,
                                  f"{common} --method path --spp {paths} --max-spp {paths} "
                                  f"--seed {seed}").picture.astype(np.float64) for seed in (101, 102)]
         self.halves = halves
         every = luminance(halves[0] + halves[1]) / 2
-        self.light = luminance(self.own)
+        self.light = luminance(self.own[0] + self.own[1]) / 2
         self.mean = float(every.mean())
         self.floor = 0.01 * self.mean
         # The halves' own noise must not choose: a pixel is even if both say so.
@@ -104,15 +105,18 @@ class Reference:
         """Root mean squares: over the even pixels, over the mean light; and where the viewing rays
         are the reference's, over all pixels, each over its own light."""
         x, mask = picture.astype(np.float64), self.is_even
-        a, b = (self.own, self.own) if has_own_rays else self.halves
+        a, b = self.own if has_own_rays else self.halves
         square = ((x - a) * (x - b)).mean(axis=2)[mask]
         rmse = float(np.sqrt(max(square.mean(), 0)) / self.mean)
-        return rmse, self.relative(luminance(x) - self.light) if has_own_rays else None
+        if not has_own_rays:
+            return rmse, None
+        return rmse, self.relative(luminance(x - a) * luminance(x - b))
 
-    def relative(self, error):
+    def relative(self, squares):
+        """Root of the mean of what is given, over each pixel's own light squared."""
         is_seen = self.light > 0
         light = np.maximum(self.light, self.floor)
-        return float(np.sqrt(((error / light)[is_seen] ** 2).mean()))
+        return float(np.sqrt(max((squares / light ** 2)[is_seen].mean(), 0)))
 
 
 def settings(scene, is_quick):
@@ -120,8 +124,8 @@ def settings(scene, is_quick):
     for e in ERRORS[1:4] if is_quick else ERRORS:
         yield "certified", f"--error {e:g}", f"{own} --error {e:g} --aov error", True
     for n in FIXED_RAYS:
-        # a setting near the reference's would be compared with itself
-        is_apart = 4 * n <= reference_rays(scene.lights)
+        # the reference's own setting would be compared with itself
+        is_apart = 4 * n <= 3 * reference_rays(scene.lights)[0]
         if n == 1 or (n * scene.lights <= MOST_FIXED and is_apart):
             yield "fixed", f"--shadow-rays {n}", f"{own} --method fixed --shadow-rays {n}", True
     for n in PATHS:
@@ -155,7 +159,7 @@ def measure(program, references, scene, options):
             run = min(run, again, key=lambda r: r.stats["seconds"]["render_cpu"])
         rmse, made = reference.errors(run.picture, has_own_rays)
         is_certified = method == "certified"
-        told = reference.relative(run.layers["error"][..., 0]) if is_certified else None
+        told = reference.relative(run.layers["error"][..., 0] ** 2) if is_certified else None
         rows.append({"scene": scene.name, "method": method, "setting": setting,
                      "seconds": run.stats["seconds"]["render_cpu"],
                      "rays": run.stats["shadow_rays"] / run.stats["viewing_rays"],
@@ -179,11 +183,11 @@ def main():
     chosen = [s for name in names for s in SCENES if s.name == name]
     os.makedirs(options.out, exist_ok=True)
     program = Program(options.build, options.out, "build/bench/direct-pictures")
-    program.planned = 3 * len(chosen)  # timed() counts its own
+    program.planned = 4 * len(chosen)  # timed() counts its own
     references = program
     if options.reference_build:
         references = Program(options.reference_build, options.out, "build/bench/direct-pictures")
-        references.planned = 3 * len(chosen)
+        references.planned = 4 * len(chosen)
     start = time.monotonic()
     rows, shares = [], {}
     for scene in chosen:

@@ -83,9 +83,9 @@ quickest of three, of one where it took longer than .2 s).
   over all pixels, edges too, of the error over the pixel's own light (or a hundredth of the mean light,
   where that is more): the viewing rays are the reference's own, so that only shadows differ.
 - **RMSE**: over the mean light of the picture; what methods are compared by.
-- `certified` and `fixed` have the same 4 viewing rays in a pixel, and so has their reference (`fixed`
-  with 16384 rays to all sources, up to 4096 to one, whose own noise is in the figures of small
-  errors); `path` has others, more of them at every setting, and a reference of its own, in two halves
+- `certified` and `fixed` have the same 4 viewing rays in a pixel, and so have their references (`fixed`
+  with 16384 rays to all sources, up to 8192 to one, and with three quarters of them, by other random
+  numbers: the product of the differences from both holds no noise of theirs); `path` has others, more of them at every setting, and a reference of its own, in two halves
   of 512 samples. So that this is fair, pixels count only where both references agree: where no edge goes through, and where gloss leaves little noise (one ray of the lobe's own,
   which `certified`, `fixed` and the reference have in common).
 - **Cheapest run at or under it**: of the runs that were made, the cheapest that is as exact, and how

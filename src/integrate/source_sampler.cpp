@@ -67,8 +67,10 @@ uint32_t SourceSampler::choose_pieces(const SampledVertex& at, uint32_t light, u
   const LightPrimitives::Range pieces = scene_.primitives.of_light(light);
   const bool is_one = pieces.last - pieces.first == 1;
   s.resize(n);
-  s.blocks_of(n).draw(hash_combine(at.walk.stream, light + 1), purpose_light(at.walk.vertex),
-                      at.walk.sample, is_one ? 2 : 3, s.numbers.data());
+  // Other numbers of rays have other sequences: pictures of two settings err independently.
+  const uint64_t stream = hash_combine(hash_combine(at.walk.stream, light + 1), n);
+  s.blocks_of(n).draw(stream, purpose_light(at.walk.vertex), at.walk.sample, is_one ? 2 : 3,
+                      s.numbers.data());
   if (is_one) {
     std::fill_n(s.primitives.begin(), n, pieces.first);
     std::fill_n(s.pmfs.begin(), n, 1.0f);
