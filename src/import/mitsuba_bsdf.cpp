@@ -234,15 +234,15 @@ Material MitsubaBsdfs::phong(const MitsubaNode& node) {
   return m;
 }
 
+// The share of rays that meet it.
 std::optional<Material> MitsubaBsdfs::masked(const MitsubaNode& node) {
   const FloatInput opacity = textures_.real(node, {"opacity"}, 0.5f);
   std::optional<Material> m = nested(node);
   if (!m || (opacity.texture < 0 && opacity.value >= 1)) return m;
-  m->is_alpha_masked = true;
+  if (opacity.texture < 0 && opacity.value <= 0) return std::nullopt;
+  if (m->is_alpha_masked) approximate(node, "without the mask within it");
+  m->is_alpha_masked = m->is_alpha_blended = true;
   m->alpha = opacity;
-  m->alpha_cutoff = 0.5f;
-  approximate(node, "holes where its opacity is below 0.5");
-  if (opacity.texture < 0 && opacity.value < 0.5f) return std::nullopt;
   return m;
 }
 

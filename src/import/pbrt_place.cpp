@@ -71,21 +71,23 @@ void PbrtPlacer::place(Placing placing) {
   if (shape.kind == PbrtShapeKind::mesh) {
     place_mesh(placing, *shape.mesh, shape.is_quadric);
   } else if (shape.kind == PbrtShapeKind::sphere) {
-    if (is_similarity(placing.world_from_object) && !needs_uvs(placing))
+    if (is_similarity(placing.world_from_object) && !needs_triangles(placing))
       place_sphere(placing);
     else
       place_mesh(placing,
                  {tessellate_sphere(shape.radius, -shape.radius, shape.radius, 2 * pi), {}}, true);
-  } else if (keeps_circles(placing.world_from_object, 0, 1) && !needs_uvs(placing)) {
+  } else if (keeps_circles(placing.world_from_object, 0, 1) && !needs_triangles(placing)) {
     place_disk(placing);
   } else {
     place_mesh(placing, {tessellate_disk(shape.height, shape.radius, 0, 2 * pi), {}}, true);
   }
 }
 
-// Exact shapes have no (u,v); those that emit stay exact.
-bool PbrtPlacer::needs_uvs(const Placing& placing) {
-  return !placing.is_emitting && is_textured(scene_.materials[material_of(placing)]);
+// Exact shapes have no (u,v) and no holes; those that emit stay exact.
+bool PbrtPlacer::needs_triangles(const Placing& placing) {
+  if (placing.is_emitting) return false;
+  const Material& m = scene_.materials[material_of(placing)];
+  return is_textured(m) || m.is_alpha_masked;
 }
 
 uint32_t PbrtPlacer::material_of(const Placing& placing) {

@@ -43,7 +43,7 @@ class PbrtPlacer {
   void place_disk(const Placing& placing);
   void place_mesh(const Placing& placing, const AnchoredMesh& local, bool is_quadric);
   uint32_t material_of(const Placing& placing);
-  bool needs_uvs(const Placing& placing);
+  bool needs_triangles(const Placing& placing);
   // Emission of the next light, whose area (m²) turns power into radiance.
   Light next_light(const PbrtAreaLight& light, double area);
   void spend(size_t triangles, const PbrtPlace& place);

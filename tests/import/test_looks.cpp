@@ -118,6 +118,10 @@ TEST_CASE("bumps") {
       "type='diffuse'/></bsdf></shape>");
   CHECK(material_of(x).bump.texture >= 0);
   CHECK(material_of(x).bump.value == 0.5f);
+  CHECK(mitsuba(
+            "<shape type='sphere'><bsdf type='bumpmap'><texture type='bitmap'><string "
+            "name='filename' value='heights.pfm'/></texture><bsdf type='diffuse'/></bsdf></shape>")
+            .spheres.empty());
   const auto obj = [](const std::string& line) {
     const TempFolder folder;
     Image image(2, 2);
@@ -171,6 +175,19 @@ TEST_CASE("pbrt's patterns and noise are looked up, by the transform that they a
                           "\"\nTexture \"t\" \"spectrum\" \"mix\" \"texture amount\" \"n\"";
     CHECK(value(t, at(3.3f, 0.7f, 2.4f)) != value(t, at(5.9f, 4.1f, 8.8f)));
   }
+}
+
+TEST_CASE("round shapes of pbrt with textures or holes are triangles, those that emit are exact") {
+  const auto spheres = [](const std::string& what) { return pbrt(what).spheres.size(); };
+  const std::string checks =
+      "Texture \"t\" \"spectrum\" \"checkerboard\"\nMaterial \"diffuse\" \"texture reflectance\" "
+      "\"t\"\n";
+  CHECK(spheres("Shape \"sphere\"\n") == 1);
+  CHECK(spheres(checks + "Shape \"sphere\"\n") == 0);
+  CHECK(spheres("Shape \"sphere\" \"float alpha\" .3\n") == 0);
+  CHECK(spheres(checks + "AreaLightSource \"diffuse\"\nShape \"sphere\"\n") == 1);
+  CHECK(pbrt(checks + "Shape \"disk\"\n").disks.empty());
+  CHECK_FALSE(pbrt(checks + "Shape \"disk\"\n").meshes.at(0).uvs.empty());
 }
 
 TEST_CASE("whose backs are seen") {

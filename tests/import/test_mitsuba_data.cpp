@@ -138,6 +138,14 @@ TEST_CASE("combined materials") {
   const Material& holes = masked.materials[0];
   CHECK_FALSE(is_cut_out(masked.textures, holes, Vec2{0.2f, 0.2f}));
   CHECK(is_cut_out(masked.textures, holes, Vec2{0.7f, 0.2f}));
+  const std::string veil =
+      "<bsdf type='mask'><float name='opacity' value='.3'/><bsdf type='diffuse'/></bsdf>";
+  CHECK(coverage({}, material_of(veil), Vec2{0, 0}) == 0.3f);
+  CHECK(import_bsdf(veil).warnings.total() == 0);
+  CHECK(import_bsdf(veil).spheres.empty());  // exact ones have no holes
+  CHECK(import_bsdf("<bsdf type='mask'><float name='opacity' value='0'/><bsdf type='diffuse'/>"
+                    "</bsdf>")
+            .materials.empty());
   CHECK(import_bsdf("<bsdf type='null'/>").spheres.empty());
   m = material_of(
       "<bsdf type='principled'><rgb name='base_color' value='.3'/><float "
