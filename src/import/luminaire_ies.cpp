@@ -99,6 +99,16 @@ Header read_header(PhotometricText& text, Luminaire& l, bool is_before_2002) {
   return h;
 }
 
+// More numbers than the header has announced: one of them is wrong, somewhere.
+void warn_of_more(PhotometricText& text, const std::string& path, WarningLog& warnings) {
+  std::string_view line;
+  while (text.next_line(line))
+    if (!line.empty() && line.find_first_not_of("0123456789.,+-eE \t") == std::string_view::npos) {
+      warnings.add("'" + path + "' has more intensities than angles; the last ones are left out");
+      return;
+    }
+}
+
 }  // namespace
 
 Luminaire read_ies(const std::string& path, std::string_view bytes, const std::string& folder,
@@ -126,6 +136,7 @@ Luminaire read_ies(const std::string& path, std::string_view bytes, const std::s
   for (size_t i = 0; i < h.heights * h.turns; ++i)
     planes.candela.push_back(h.factor * text.number("intensity", -most_candela, most_candela));
   clean_intensities(planes, text, path, warnings);
+  warn_of_more(text, path, warnings);
   l.web = is_round
               ? unfold_planes(planes, path, warnings)
               : unfold_beam(planes, h.type == 2 ? WebPole::right : WebPole::up, path, warnings);

@@ -10,7 +10,7 @@ namespace troffer {
 namespace {
 
 constexpr double largest_coordinate = 1e9;  // as for triangles (triangle_check.h)
-constexpr double usual_step = 100;
+constexpr double usual_step = 100, far_step = 10;
 constexpr double anchor_step = 1000;
 // Short of twice the box, and beside the half of a step: boxes and places in round numbers are
 // common, and must not fall to one side or the other by the rounding of doubles.
@@ -62,8 +62,12 @@ Vec3d rounded_middle(const Boxd& box, double least_step) {
   return rounded;
 }
 
+// Far away the step is as fine as the box allows: what is left of the coordinates costs digits, and
+// moves measured points off their surfaces.
 Vec3d choose_origin(const Boxd& box) {
-  return rounded_middle(box, usual_step * std::min(1.0, longest_side(box)));
+  const double side = longest_side(box);
+  if (rounded_middle(box, usual_step * std::min(1.0, side)) == Vec3d{}) return {};
+  return rounded_middle(box, far_step * std::min(1.0, side));
 }
 
 Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import) {

@@ -11,6 +11,7 @@
 #include "import/gltf.h"
 #include "import/light_radius.h"
 #include "import/pbrt.h"
+#include "mutations.h"
 #include "scene/environment_lookup.h"
 #include "scene/projected_image.h"
 #include "temp_folder.h"
@@ -403,6 +404,14 @@ TEST_CASE("glTF's image-based light: six faces as they look from within, turned 
   CHECK(broken.lights.size() == 1);
   CHECK(import_text(image_light("{'uri':'gone.png'}")).lights.empty());
   CHECK_THROWS_AS(import_text(image_light(images, ",'rotation':[0,0,0,0]")), InputError);
+}
+
+TEST_CASE("mutated image-based lights load or are refused") {
+  std::string images;
+  for (int i = 0; i < 6; ++i) images += (i > 0 ? "," : "") + data_image(pfm_face(float(i + 1)));
+  test::check_mutations(image_light(images), 3000, [](const std::string& text) {
+    for (const Light& l : import_text(text).lights) CHECK(is_finite(l.radiance));
+  });
 }
 
 TEST_CASE("a radius makes spheres of points and spots, as strong from far away") {

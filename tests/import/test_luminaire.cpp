@@ -98,6 +98,22 @@ TEST_CASE("LM-63: what stands in a file of any edition") {
   }
 }
 
+TEST_CASE("LM-63: intensities that no angle asks for are told") {
+  const TempFolder folder;
+  const auto warnings_of = [&](const std::string& text) {
+    WarningLog warnings;
+    read_luminaire(folder.write("more.ies", text), warnings);
+    return warnings.entries().size();
+  };
+  const size_t usual = warnings_of(cosine_ies());
+  CHECK(warnings_of(cosine_ies() + "\n[END] of 2 pages\n") == usual);
+  for (const char* more : {" 7", "\n7 8.5\n"}) {
+    std::string text = cosine_ies();
+    while (text.back() == '\n') text.pop_back();
+    CHECK(warnings_of(text + more) == usual + 1);
+  }
+}
+
 TEST_CASE("planes that symmetry leaves out are there") {
   const Luminaire quarter = read(planes_ies({0, 30, 90}));
   for (const auto& [turn, value] : {std::pair{0, 100},
