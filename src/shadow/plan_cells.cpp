@@ -19,7 +19,7 @@ constexpr uint64_t first_pilot_pass = 1000;
 // Variance of the coarse lattice over that of the fine one: (661 / 178)^1.5.
 constexpr double coarse_variance = 7.2;
 // Masks err by less than they tell, by a third and more as a rule.
-constexpr double told_over_made = 1.2;
+constexpr double told_over_made = 1.3;
 // What a mask costs, in facets of the fine lattice: itself, and each of them by the coarse one.
 constexpr double cost_of_mask = 10, coarse_cost = 0.6;
 
