@@ -30,8 +30,10 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       work_(size_t(thread_count(options.threads))),
       report_(progress),
       stop_(stop) {
-  for (Work& w : work_) w.rays.cone = camera.cone(options.spp);
   refining_.max_spp = most_viewing_rays(options);
+  // By as many rays as a pixel may come to: what a footprint takes from beside a narrow surface no
+  // further ray mends.
+  for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, refining_.max_spp));
   if (refining_.max_spp > options.spp) {
     refining_.records.emplace(plan_.region);
     refining_.can_glance = integrator.can_glance();
