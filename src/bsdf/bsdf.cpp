@@ -366,6 +366,11 @@ Bsdf specular_part(const Bsdf& b) {
   return s;
 }
 
+float coat_share(const Bsdf& b, float cos_i) {
+  if (b.coat == Bsdf::Coat::none || !(b.diffuse_mean > 0)) return 1;
+  return gains_at(b, cos_i).diffuse / b.diffuse_mean;
+}
+
 Rgb albedo(const Bsdf& b, float cos_o) {
   if (b.is_lambertian) return b.diffuse;
   if (!(cos_o > 0)) return Rgb{0};

@@ -160,6 +160,11 @@ Bsdf diffuse_part(const Bsdf& bsdf);
 // … and all else: mirrors, gloss with its lost energy, everything that transmits.
 Bsdf specular_part(const Bsdf& bsdf);
 
+// What the coat lets through to the diffuse lobe from a direction of cosine cos_i, over its mean by
+// the cosine; 1 without a coat. The lobe is separable: what it sends to wo is albedo(diffuse_part,
+// wo) / pi times the irradiance in which every direction counts by this.
+float coat_share(const Bsdf& bsdf, float cos_i);
+
 // What a pane lets through straight on, seen at a cosine > 0; 0 of all else.
 Rgb straight_transmittance(const Bsdf& bsdf, float cos_o);
 // What a smooth surface, such as a pane, reflects as a mirror; 0 of all else.

@@ -71,29 +71,29 @@ void CellRows::apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, 
   });
 }
 
-// out = W e
-void CellRows::reflect(const std::vector<Rgb>& e, int threads, std::vector<Rgb>& out) const {
-  out.resize(e.size());
-  by_cells(e.size(), threads, [&](size_t i) {
-    const RowSum sum = sum_of(i, e, Half::both);
-    out[i] = sum.rays > 0 ? sum.reflected / float(sum.rays) : Rgb{0};
-  });
+CellRows::Packed CellRows::packed() const {
+  Packed rows;
+  rows.begin.reserve(rays_.size() + 1);
+  rows.begin.push_back(0);
+  rows.entries.reserve(entries_.size());
+  for (size_t i = 0; i < rays_.size(); ++i) {
+    const float share = 1 / float(std::max(rays_[i], 1u));
+    for (size_t o = begin_[i]; o < begin_[i + 1]; ++o)
+      for (const RowEntry& k : entries(order_[o]))
+        rows.entries.push_back({k.cell, k.weight * share});
+    rows.begin.push_back(rows.entries.size());
+  }
+  return rows;
 }
 
 // What is off in one cell is off in those that see it: d = s + W d, to the first few bounces.
-void CellRows::spread(std::vector<float>& differences, int threads) const {
+void CellRows::spread(const Packed& rows, std::vector<float>& differences, int threads) {
   const std::vector<float> source = differences;
   std::vector<float> next(source.size());
-  const size_t n = source.size();
   for (int bounce = 0; bounce < bounces_of_noise; ++bounce) {
-    by_cells(n, threads, [&](size_t i) {
-      float sum = 0;
-      for (size_t o = begin_[i]; o < begin_[i + 1]; ++o) {
-        const RowEntry* k = &entries_[first_entry_[order_[o]]];
-        for (uint32_t t = 0; t < parts_[order_[o]].entries; ++t)
-          sum += luminance(k[t].weight) * differences[k[t].cell];
-      }
-      next[i] = source[i] + (rays_[i] > 0 ? sum / float(rays_[i]) : 0.0f);
+    by_cells(source.size(), threads, [&](size_t i) {
+      next[i] = source[i];
+      for (const RowEntry& k : rows.of(i)) next[i] += luminance(k.weight) * differences[k.cell];
     });
     differences.swap(next);
   }
@@ -105,8 +105,14 @@ CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<floa
   CellLight light;
   std::vector<Rgb> given, next;
   apply(direct, std::vector<Rgb>(direct.size()), Half::both, threads, given);
+  const Packed rows = packed();
   const LightOperator reflected = [&](const std::vector<Rgb>& v, std::vector<Rgb>& out) {
-    reflect(v, threads, out);
+    out.resize(v.size());
+    by_cells(v.size(), threads, [&](size_t i) {
+      Rgb sum;
+      for (const RowEntry& k : rows.of(i)) sum += k.weight * v[k.cell];
+      out[i] = sum;
+    });
   };
   Balance balance =
       solve_balance(reflected, given, importance, most_unbalanced, most_iterations, threads);
@@ -119,32 +125,44 @@ CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<floa
     const float sign = half == Half::first ? 0.5f : -0.5f;
     for (size_t i = 0; i < e.size(); ++i) light.half_difference[i] += sign * luminance(next[i]);
   }
-  spread(light.half_difference, threads);
+  spread(rows, light.half_difference, threads);
   light.irradiance = std::move(e);
   return light;
 }
 
-std::vector<float> CellRows::importance(const std::vector<float>& asked, int iterations) const {
+std::vector<float> CellRows::importance(const std::vector<float>& asked, std::vector<float> known,
+                                        int iterations) const {
+  // y + w, where w is what is left: w = c + Wᵀ y - y, and then Wᵀ w, again and again
   std::vector<float> y = asked, wave = asked, next(asked.size());
-  for (int it = 0; it < iterations; ++it) {
+  const auto pass_on = [&] {
     std::fill(next.begin(), next.end(), 0.0f);
     for (size_t p = 0; p < parts_.size(); ++p) {
       const float given = wave[parts_[p].cell];
       if (given == 0) continue;
       const float each = given / float(rays_[parts_[p].cell]);
-      const RowEntry* k = &entries_[first_entry_[p]];
-      for (uint32_t t = 0; t < parts_[p].entries; ++t)
-        next[k[t].cell] += each * luminance(k[t].weight);
+      for (const RowEntry& k : entries(p)) next[k.cell] += each * luminance(k.weight);
     }
     wave.swap(next);
+  };
+  if (!known.empty()) {
+    known.resize(asked.size(), 0);
+    wave = known;
+    pass_on();
+    for (size_t i = 0; i < y.size(); ++i) wave[i] += asked[i] - known[i];
+    y = std::move(known);
+    for (size_t i = 0; i < y.size(); ++i) y[i] += wave[i];
+  }
+  for (int it = 0; it < iterations; ++it) {
+    pass_on();
     double sum = 0, all = 0;
     for (size_t i = 0; i < y.size(); ++i) {
       y[i] += wave[i];
-      sum += double(wave[i]);
+      sum += std::abs(double(wave[i]));
       all += double(y[i]);
     }
     if (sum <= 1e-4 * all) break;
   }
+  for (float& v : y) v = std::max(v, 0.0f);
   return y;
 }
 

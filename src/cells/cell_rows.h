@@ -57,9 +57,10 @@ class CellRows {
   // importance: of each cell, for what is asked (those beyond its end have none).
   CellLight solve(const std::vector<Rgb>& direct, const std::vector<float>& of_direct,
                   std::vector<float> importance, int threads) const;
-  // How much of what is asked for each cell's light is, all bounces counted: y = c + Wᵀ y. Not more
-  // than `iterations` bounces.
-  std::vector<float> importance(const std::vector<float>& asked, int iterations) const;
+  // How much of what is asked for each cell's light is, all bounces counted: y = c + Wᵀ y. `known`:
+  // of rows that were nearly these, or nothing; not more than `iterations` bounces more.
+  std::vector<float> importance(const std::vector<float>& asked, std::vector<float> known,
+                                int iterations) const;
 
  private:
   enum class Half { both, first, second };
@@ -70,9 +71,17 @@ class CellRows {
   };
   void apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half, int threads,
              std::vector<Rgb>& out) const;
-  void reflect(const std::vector<Rgb>& e, int threads, std::vector<Rgb>& out) const;
+  // Of each cell Σ w_k / M, one after the other: a solve goes over them again and again.
+  struct Packed {
+    std::vector<size_t> begin;  // of each cell, and the end
+    std::vector<RowEntry> entries;
+    std::span<const RowEntry> of(size_t cell) const {
+      return std::span(entries).subspan(begin[cell], begin[cell + 1] - begin[cell]);
+    }
+  };
+  Packed packed() const;
   RowSum sum_of(size_t cell, const std::vector<Rgb>& e, Half half) const;
-  void spread(std::vector<float>& differences, int threads) const;
+  static void spread(const Packed& rows, std::vector<float>& differences, int threads);
 
   std::vector<RowPart> parts_;
   std::vector<size_t> first_entry_;  // of each part

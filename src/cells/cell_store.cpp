@@ -8,7 +8,7 @@ namespace troffer {
 
 namespace {
 
-constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 2, "file of cells"};
+constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 3, "file of cells"};
 constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
 
 struct Header {
@@ -41,7 +41,7 @@ struct FilePart {
   uint32_t cell, rays, entries, is_second_half;
   Rgb emission;
 };
-static_assert(sizeof(FilePart) == 28 && sizeof(RowEntry) == 16 && sizeof(CellHit) == 40);
+static_assert(sizeof(FilePart) == 28 && sizeof(RowEntry) == 16 && sizeof(CellHit) == 52);
 
 bool is_light(const Rgb& c) {
   return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0;
@@ -91,7 +91,8 @@ struct CellMapParts {
       for (uint32_t i = 0; i < h.count; ++i) {
         const auto hit = in.next<CellHit>();
         if (!is_finite(hit.position) || !is_unit(hit.normal) || !is_unit(hit.horizon) ||
-            !(hit.offset >= 0) || !std::isfinite(hit.offset))
+            !(hit.offset >= 0) || !std::isfinite(hit.offset) || !std::isfinite(hit.uv.x) ||
+            !std::isfinite(hit.uv.y))
           return false;
         h.hits[i] = hit;
       }

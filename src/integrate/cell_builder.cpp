@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 
 #include "base/error.h"
@@ -15,12 +16,14 @@ namespace troffer {
 namespace {
 
 // All measured: docs/cells.md.
-constexpr float size_of_median = 0.06f;  // of a cell, of the median length of gather rays
-constexpr size_t pilot_rays = 1 << 17;   // gather rays from what the pilot sees
-constexpr uint32_t rays_of_row = 16;     // first ones of every cell
-constexpr uint32_t rays_of_step = 8;     // further ones come in so many
+constexpr float size_of_median = 0.06f;  // of a cell, of the median length of gather rays …
+constexpr double fine_error = 0.01;      // … for errors up to this; larger ones take larger cells
+constexpr double size_by_error = 0.18;
+constexpr size_t pilot_rays = 1 << 17;  // gather rays from what the pilot sees
+constexpr uint32_t rays_of_row = 16;    // first ones of every cell
+constexpr uint32_t rays_of_step = 8;    // further ones come in so many
 constexpr uint32_t most_rays_of_row = 4096;
-constexpr double most_unresolved = 1e-5;  // of the light asked for
+constexpr double most_unresolved = 1e-3;  // of the light asked for, of the error
 constexpr double enough_of_wanted = 1.5;  // further rays that a kept cell has: no more then
 constexpr int most_rounds = 12;
 constexpr size_t most_cells = 1 << 21;
@@ -28,6 +31,11 @@ constexpr size_t tasks_at_a_time = 1 << 14;
 constexpr int bounces_of_importance = 24;
 
 using Clock = std::chrono::steady_clock;
+
+// How many times what suits fine errors is asked.
+double coarseness(const CellBuilderOptions& o) {
+  return std::max(o.error / fine_error, 1.0);
+}
 
 // Some of the viewing rays' walks ended here.
 struct Place {
@@ -114,10 +122,11 @@ void Builder::start_map(const CellsSeen& seen) {
   const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
   if (!lengths.empty()) std::nth_element(lengths.begin(), middle, lengths.end());
   const float median = lengths.empty() ? 0 : *middle;
+  const float size = size_of_median * float(std::pow(coarseness(options_), size_by_error));
   // Finer than this, voxels would be no larger than the rounding of positions.
   const Box box = bounds(scene_.scene);
   const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), 1e-6f);
-  map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size_of_median * median, least));
+  map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size * median, least));
 }
 
 void Builder::ask(const CellPilot& pilot) {
@@ -207,7 +216,8 @@ bool Builder::run(const std::vector<CellTask>& tasks) {
 
 // Cells without a row, the most important first, but for those that hardly matter.
 std::vector<uint32_t> Builder::cells_to_resolve() {
-  asked_.importance = rows_.importance(asked_.light, bounces_of_importance);
+  asked_.importance =
+      rows_.importance(asked_.light, std::move(asked_.importance), bounces_of_importance);
   const std::vector<float>& y = asked_.importance;
   double all = 0, open = 0;
   std::vector<uint32_t> cells;
@@ -218,13 +228,13 @@ std::vector<uint32_t> Builder::cells_to_resolve() {
     cells.push_back(c);
   }
   statistics_.unresolved = all > 0 ? open / all : 0;
-  if (statistics_.unresolved <= most_unresolved || map_->size() > most_cells) return {};
+  const double most = most_unresolved * fine_error * coarseness(options_);
+  if (statistics_.unresolved <= most || map_->size() > most_cells) return {};
   std::sort(cells.begin(), cells.end(),
             [&](uint32_t a, uint32_t b) { return y[a] != y[b] ? y[a] > y[b] : a < b; });
   double left = open;
   size_t kept = 0;
-  while (kept < cells.size() && left > 0.5 * most_unresolved * all)
-    left -= double(y[cells[kept++]]);
+  while (kept < cells.size() && left > 0.5 * most * all) left -= double(y[cells[kept++]]);
   cells.resize(kept);
   return cells;
 }
@@ -232,12 +242,14 @@ std::vector<uint32_t> Builder::cells_to_resolve() {
 // As many rays again as the first ones of the cells that matter, in proportion to what is asked of
 // them; less what they have had already, for other views.
 std::vector<CellTask> Builder::further_tasks() {
-  asked_.importance = rows_.importance(asked_.light, bounces_of_importance);
+  asked_.importance =
+      rows_.importance(asked_.light, std::move(asked_.importance), bounces_of_importance);
   const std::vector<float>& y = asked_.importance;
   const double all = std::accumulate(y.begin(), y.end(), 0.0);
   std::vector<CellTask> tasks;
   if (!(all > 0)) return tasks;
-  const double least = map_->frozen() > 0 ? 0.5 * most_unresolved * all / double(y.size()) : -1;
+  const double least =
+      map_->frozen() > 0 ? 0.5 * most_unresolved * fine_error * all / double(y.size()) : -1;
   size_t cells = 0;
   for (uint32_t c = 0; c < y.size(); ++c)
     if (rows_.has_row(c) && double(y[c]) > least) ++cells;
@@ -280,7 +292,7 @@ bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
     lit = {std::move(store_->direct), std::move(store_->direct_half_difference)};
     first = map_->frozen();
   }
-  add_direct_light(*map_, direct, first, options_.threads, stop_, lit, counters_);
+  add_direct_light(*map_, walks_, direct, first, options_.threads, stop_, lit, counters_);
   return !stop_.load();
 }
 

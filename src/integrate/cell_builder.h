@@ -25,6 +25,7 @@ struct CellBuilderOptions {
   int threads = 0;
   uint64_t seed = 0;
   double direct_error = 0;  // asked of the light straight from sources
+  double error = 0.01;      // asked of the picture
 };
 
 // direct: light straight from sources. store: what is kept from before, or nothing yet; left with

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "integrate/gather_walks.h"
 
 namespace troffer {
 
@@ -54,8 +53,8 @@ std::string name_of_hit(const void*, size_t i) {
   return "cell hit " + std::to_string(i);
 }
 
-void light_group(const CellMap& map, const DirectLight& direct, std::span<const uint32_t> cells,
-                 Worker& w, CellDirectLight& light) {
+void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
+                 std::span<const uint32_t> cells, Worker& w, CellDirectLight& light) {
   if (!w.direct) w.direct = direct.make_scratch();
   direct.begin(*w.direct);
   size_t hits = 0;
@@ -77,7 +76,7 @@ void light_group(const CellMap& map, const DirectLight& direct, std::span<const 
       ++index;
       w.wave.walks.push_back(walk);
       w.wave.vertices.push_back(vertex_of(hit));
-      w.wave.scatterings.emplace_back(sensor_bsdf());
+      w.wave.scatterings.emplace_back(walks.white_at(hit, pi_f)).is_gentle = true;
       if (w.wave.size() == hits_at_a_time) send();
     }
   send();
@@ -98,8 +97,9 @@ void light_group(const CellMap& map, const DirectLight& direct, std::span<const 
 
 }  // namespace
 
-void add_direct_light(const CellMap& map, const DirectLight& direct, size_t first_cell, int threads,
-                      const StopFlag& stop, CellDirectLight& light, Counters& counters) {
+void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
+                      size_t first_cell, int threads, const StopFlag& stop, CellDirectLight& light,
+                      Counters& counters) {
   const std::vector<uint32_t> order = cells_in_order(map, first_cell);
   light.irradiance.resize(map.size());
   light.half_difference.resize(map.size(), 0);
@@ -108,7 +108,7 @@ void add_direct_light(const CellMap& map, const DirectLight& direct, size_t firs
   parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
     const size_t first = g * cells_of_group;
-    light_group(map, direct,
+    light_group(map, walks, direct,
                 std::span(order).subspan(first, std::min(cells_of_group, order.size() - first)),
                 workers[slot], light);
   });

@@ -6,17 +6,19 @@
 #include "base/parallel.h"
 #include "cells/cell_map.h"
 #include "integrate/direct_light.h"
+#include "integrate/gather_walks.h"
 
 namespace troffer {
 
 struct CellDirectLight {
-  std::vector<Rgb> irradiance;         // of each cell, the mean over its hits
+  std::vector<Rgb> irradiance;  // of each cell, the mean over its hits, by way of their coats
   std::vector<float> half_difference;  // luminance: what either half of the hits has more or less
 };
 
 // Of all cells from number `first` on; what is in `light` of those before stays. Cells near each
 // other are lit together, in the same groups for any number of threads.
-void add_direct_light(const CellMap& map, const DirectLight& direct, size_t first, int threads,
-                      const StopFlag& stop, CellDirectLight& light, Counters& counters);
+void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
+                      size_t first, int threads, const StopFlag& stop, CellDirectLight& light,
+                      Counters& counters);
 
 }  // namespace troffer

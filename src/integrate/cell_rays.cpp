@@ -51,7 +51,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
       walk.stream = tasks[t].stream;
       walk.sample = tasks[t].first + k;
       w.tasks.push_back(uint32_t(t));
-      set_out(tasks[t].from[walk.sample % tasks[t].from.size()], direction_number(walk), walk);
+      walks.leave(tasks[t].from[walk.sample % tasks[t].from.size()], direction_number(walk), walk);
       if (!walk.throughput.is_black()) g.walks.push_back(walk);
     }
   const CheckContext context(&w, w.tasks.size(), name_of_ray);

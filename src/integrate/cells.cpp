@@ -47,6 +47,7 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
   s.light.distance.assign(rays, 0);
   for (int bounce = 0; bounce < most_bounces && !s.gather.walks.empty(); ++bounce) {
     walks_.follow(rays, Coherence::none, s.gather, counters);
+    if (bounce == 0) s.light.distance.swap(s.gather.black);
     s.arrivals.swap(s.gather.arrivals);
     s.again.clear();
     size_t missed = 0;

@@ -74,7 +74,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
     items.at(at.index);
     const Vertex& v = wave.vertices[i];
     const Weights weights = weights_of(at, v, scattering);
-    const CellHit hit = cell_hit_of(v);
+    const CellHit hit = cell_hit_of(v, scattering.diffuse);
     Rgb irradiance;
     if (at.scatterings > 0 &&
         cells_->indirect_at(hit, wave.hits[i].t * length(at.ray.direction), irradiance)) {
@@ -101,12 +101,9 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       walk.index = uint32_t(s.weights.size());
       walk.sample = at.sample * rays + k;
       set_out(hit, direction_number(walk), walk);
-      s.weights.push_back(weights.matte);
-      if (scattering.is_gathered) {
-        const Vec3 wi = v.frame.to_local(walk.ray.direction);
-        if (wi.z > 0)
-          s.weights.back() += at.throughput * evaluate(scattering.specular, v.wo, wi) * (1 / wi.z);
-      }
+      const Vec3 wi = v.frame.to_local(walk.ray.direction);
+      s.weights.push_back(
+          wi.z > 0 ? at.throughput * evaluate(scattering.diffuse, v.wo, wi) * (1 / wi.z) : Rgb{0});
       if (!walk.throughput.is_black()) s.cells.gather.walks.push_back(walk);
     }
     s.indices.push_back(at.index);
@@ -124,7 +121,7 @@ void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
     items.at(at.index);
     const Vertex& v = wave.vertices[i];
     const Weights weights = weights_of(at, v, scattering);
-    const CellHit hit = cell_hit_of(v);
+    const CellHit hit = cell_hit_of(v, scattering.diffuse);
     const CellLightAt cell = cells_->light_at(hit);
     const PixelAt& pixel = wave.viewing->pixels[at.index];
     FittedRecord fitted;

@@ -233,7 +233,9 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
     s.cluster.receivers.back().floor = least_light(luminance(s.hits.weights[m]), out.typical);
     const int32_t g = s.hits.glossy[m];
     s.integrand.hits().push_back(
-        {s.hits.positions[m], g < 0 ? nullptr : &s.hits.glossy_hits[size_t(g)]});
+        {s.hits.positions[m], g < 0 || s.hits.glossy_hits[size_t(g)].is_gentle
+                                  ? nullptr
+                                  : &s.hits.glossy_hits[size_t(g)]});
   }
   choose_lights(groups_, ball_about(s.hits, members), members.size(), budget_, s.chosen);
   draw(members, s, out, counters);
@@ -352,7 +354,10 @@ void CertifiedLights::add_answers(uint32_t request, std::span<const uint32_t> me
           Rgb{is_lit || is_dark ? 0.0f : 1.0f, is_lit ? 1.0f : 0.0f, is_dark ? 1.0f : 0.0f};
     if (is_dark) continue;
     const bool has_value = s.integrand.is_wanted(request, i);
-    const Rgb factor = has_value ? s.hits.weights[m] : s.hits.weights[m] * source.radiance;
+    Rgb factor = has_value ? s.hits.weights[m] : s.hits.weights[m] * source.radiance;
+    const int32_t g = s.hits.glossy[m];
+    if (g >= 0 && s.hits.glossy_hits[size_t(g)].is_gentle)
+      factor *= gentle_value(s.hits.glossy_hits[size_t(g)], source, s.hits.positions[m]);
     out.add(index, s.hits.is_direct[m] != 0,
             has_value ? factor * a.value : factor * (a.unoccluded * a.visible),
             has_value ? sqr(luminance(factor)) * a.value_variance

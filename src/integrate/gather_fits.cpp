@@ -25,8 +25,38 @@ constexpr int few_along = 4, many_along = 8;
 
 }  // namespace
 
+// Whether the pixels around see something that stands before the record's surface, no farther from
+// it than a few pixels are apart, and turns its back on it: a panel a finger's breadth below a
+// ceiling. Behind its edge light changes by less than a pixel's width, whatever the record's few
+// rays saw of it. (In a corner, surfaces see one another, and light goes over into the dark
+// evenly.)
+bool GatherPass::is_beside(int x, int y, uint32_t r) const {
+  constexpr float close = 3, least_height = 0.03f;
+  const GatherRecord& at = out_.records_[r];
+  const auto around = [&](const auto& visit) {
+    for (int j = y - 1; j <= y + 1; ++j)
+      for (int i = x - 1; i <= x + 1; ++i)
+        out_.of_pixel(i, j, [&](uint32_t o) {
+          const GatherRecord& n = out_.records_[o];
+          visit(n.hit, n.hit.position - at.hit.position);
+        });
+  };
+  float apart2 = sqr(at.spacing);
+  around([&](const CellHit& hit, const Vec3& d) {
+    if (is_one_surface(at.hit, hit, at.spacing))
+      apart2 = std::max(apart2, std::min(length_squared(d), sqr(16 * at.spacing)));
+  });
+  bool found = false;
+  around([&](const CellHit& hit, const Vec3& d) {
+    found |= dot(d, at.hit.horizon) > least_height * at.spacing && dot(d, hit.horizon) >= 0 &&
+             length_squared(d) < sqr(close) * apart2 && !is_one_surface(at.hit, hit, at.spacing);
+  });
+  return found;
+}
+
 // Whether what one gathers says something of the other.
-bool GatherPass::is_neighbour(const GatherRecord& at, const GatherRecord& n, Part part) const {
+bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
+  const GatherRecord &at = out_.records_[r], &n = out_.records_[o];
   if (part == &GatherRecord::gloss && n.place.material != at.place.material) return false;
   return is_one_surface(at.hit, n.hit, at.spacing);
 }
@@ -38,7 +68,7 @@ GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part)
     for (int i = x - 2; i <= x + 2; ++i)
       out_.of_pixel(i, j, [&](uint32_t o) {
         const GatherRecord& n = out_.records_[o];
-        if (!is_neighbour(at, n, part)) return;
+        if (!is_neighbour(r, o, part)) return;
         const GatherSums& sums = n.*part;
         nearness += n.nearness;
         bright_nearness += sums.bright_nearness;
@@ -70,7 +100,7 @@ LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int
         const GatherRecord& n = out_.records_[o];
         const Vec3 d = (n.hit.position - at.hit.position) * scale;
         const float d2 = length_squared(d);
-        if (d2 >= 1 || !is_neighbour(at, n, part)) return;
+        if (d2 >= 1 || (beside_[o] != 0 && o != r) || !is_neighbour(r, o, part)) return;
         sums.add(dot(d, frame.tangent), dot(d, frame.bitangent), 1 - d2, n.rays / unit,
                  (n.*part).sum / n.rays);
       });
@@ -148,7 +178,8 @@ FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
   // What it errs by elsewhere goes with the square of how far.
   const float reach =
       std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
-  f.reach = at.spacing > reach ? 0 : reach;
+  f.is_beside = beside_[r] != 0;
+  f.reach = at.spacing > reach || f.is_beside ? 0 : reach;
   f.rays = std::min(std::max(own_rays(x, y, r, &GatherRecord::matte),
                              at.place.is_there() ? own_rays(x, y, r, &GatherRecord::gloss) : 0.0f),
                     float(most_rays));

@@ -99,6 +99,11 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
       for (int x = t.pixels.x0; x < t.pixels.x1; ++x)
         out_.of_pixel(x, y, [&](uint32_t r) { act(x, y, r); });
   };
+  beside_.resize(out_.records_.size());
+  if (!over_tiles(tiles, counters, [&](Tile& t, Worker&) {
+        of_all(t, [&](int x, int y, uint32_t r) { beside_[r] = is_beside(x, y, r); });
+      }))
+    return false;
   if (!over_tiles(tiles, counters, [&](Tile& t, Worker&) {
         of_all(t, [&](int x, int y, uint32_t r) {
           wanted_[r] = further_rays(x, y, r, &GatherRecord::matte);
@@ -172,6 +177,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   walks.clear();
   std::vector<uint32_t> owners;
   std::vector<Vec3> directions;
+  std::vector<float> shares;  // what their light counts below the coat
   std::vector<Lobe> lobes;
   for (uint32_t r = 0; r < records.size(); ++r) {
     lobes.emplace_back(cells_.walks(), records[r]);
@@ -184,6 +190,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
       owners.push_back(r);
       set_out(records[r].hit, direction_number(walk), walk);
       directions.push_back(walk.ray.direction);
+      shares.push_back(cells_.walks().coat_share(records[r].hit, walk.pdf * pi_f));
       if (!walk.throughput.is_black()) walks.push_back(walk);
     }
   }
@@ -196,7 +203,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
     if (!is_finite(light.irradiance[i])) continue;
     const float nearness = light.distance[i] > 0 ? 1 / light.distance[i] : 0;
     r.nearness += nearness;
-    add(r.matte, light.irradiance[i], light.half_difference[i], nearness);
+    add(r.matte, light.irradiance[i] * shares[i], light.half_difference[i] * shares[i], nearness);
     if (!r.place.is_there()) continue;
     const Rgb share = lobes[owners[i]].share_of(directions[i]);
     add(r.gloss, light.irradiance[i] * share, light.half_difference[i] * luminance(share),

@@ -45,7 +45,8 @@ class GatherPass {
               const Tile& tile, const std::vector<uint32_t>& places, bool is_further,
               Worker& w) const;
   void join(std::vector<Tile>& tiles);
-  bool is_neighbour(const GatherRecord& at, const GatherRecord& other, Part part) const;
+  bool is_beside(int x, int y, uint32_t r) const;
+  bool is_neighbour(uint32_t at, uint32_t other, Part part) const;
   Surroundings around(int x, int y, uint32_t r, Part part) const;
   LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along) const;
   static FittedLight solved(const LinearFit& fit, const Surroundings& s);
@@ -64,6 +65,7 @@ class GatherPass {
   const StopFlag& stop_;
   GatherRecords& out_;
   std::vector<Worker> workers_;
+  std::vector<uint8_t> beside_;   // of each record: whether something else stands close by
   std::vector<uint32_t> wanted_;  // further rays of each record
 };
 

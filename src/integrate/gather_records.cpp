@@ -9,7 +9,7 @@ namespace troffer {
 
 bool is_one_surface(const CellHit& a, const CellHit& b, float spacing) {
   constexpr float least_cosine = 0.94f;  // 20°
-  constexpr float flatness = 0.1f;       // of a pixel
+  constexpr float flatness = 0.03f;      // of a pixel
   if (dot(a.normal, b.normal) < least_cosine) return false;
   const Vec3 d = b.position - a.position;
   const float bend = length(a.horizon - b.horizon) * length(d);
@@ -34,7 +34,8 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
 
 bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                                   FittedRecord& out) const {
-  float weights = 0;
+  float weights = 0, nearest = 0;
+  bool is_held = is_rough;
   out = {};
   for (int j = y - 1; j <= y + 1; ++j)
     for (int i = x - 1; i <= x + 1; ++i)
@@ -45,9 +46,13 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t glo
         // As far as pixels are apart where one looks along a surface, and no farther.
         if (d2 > sqr(16 * record.spacing) || !is_one_surface(record.hit, hit, record.spacing))
           return;
-        if (!is_rough && d2 > sqr(fitted_[r].reach)) return;
         // The own pixel's, but for where it goes over into the next one's.
         const float w = 1 / sqr(d2 / sqr(record.spacing) + 0.03f);
+        if (w > nearest) {
+          nearest = w;
+          is_held = is_rough || !fitted_[r].is_beside;
+        }
+        if (!is_rough && d2 > sqr(fitted_[r].reach)) return;
         out.irradiance += fitted_[r].irradiance * w;
         out.error += fitted_[r].error * w;
         out.gloss += fitted_[r].gloss * w;
@@ -55,7 +60,7 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t glo
         out.rays = std::max(out.rays, fitted_[r].rays);
         weights += w;
       });
-  if (weights == 0) return false;
+  if (weights == 0 || !is_held) return false;
   out.irradiance *= 1 / weights;
   out.error /= weights;
   out.gloss *= 1 / weights;

@@ -22,8 +22,12 @@ constexpr float gather_spread = 0.1f;
 
 }  // namespace
 
-CellHit cell_hit_of(const Vertex& v) {
-  return {v.surface.position, v.frame.normal, v.geometric_normal, v.surface.offset};
+CellHit cell_hit_of(const Vertex& v, const Bsdf& bsdf) {
+  CellHit hit{v.surface.position, v.frame.normal, v.geometric_normal, v.surface.offset};
+  if (bsdf.coat == Bsdf::Coat::none) return hit;
+  hit.coated = 2 * v.surface.material + (v.is_front ? 0 : 1);
+  hit.uv = v.surface.uv;
+  return hit;
 }
 
 Vertex vertex_of(const CellHit& hit) {
@@ -63,6 +67,7 @@ void GatherWalks::follow(size_t rays, Coherence coherence, GatherScratch& s,
   s.light.direct.assign(rays, Rgb{0});
   s.light.indirect.assign(rays, Rgb{0});
   s.light.shadow_rays.assign(rays, 0);
+  s.black.assign(rays, 0);
   CheckItems items;
   for (; !s.walks.empty(); coherence = Coherence::none) {
     trace_walks(scene_.tracer, s.walks, coherence, s.trace, counters);
@@ -119,6 +124,7 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
   float gloss_weight = 0;
   Rgb reflectance = bsdf.diffuse;
   const bool is_matte = is_lambertian(bsdf, nullptr);
+  bool goes_on = false;
   if (!is_matte) {
     const SurfaceScattering scattering(bsdf);
     reflectance = scattering.has_diffuse ? albedo(scattering.diffuse, v.wo.z) : Rgb{0};
@@ -126,6 +132,7 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
       gloss = {v.surface.material, v.is_front, v.surface.uv, v.wo};
       gloss_weight = luminance(walk.throughput * albedo(scattering.specular, v.wo.z));
     } else if (scattering.has_specular && walk.vertex < longest_walk) {
+      goes_on = true;
       if (scattering.has_rough && !s.is_view) {
         s.rough.walks.push_back(walk);
         s.rough.vertices.push_back(v);
@@ -140,11 +147,15 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
       }
     }
   }
-  if (reflectance.is_black() && !gloss.is_there()) return;
+  if (reflectance.is_black() && !gloss.is_there()) {
+    if (goes_on) return;
+    s.black[walk.index] = walk.length + distance;
+    if (!s.is_view) return;
+  }
   GatherArrival& a = s.arrivals.emplace_back();
   a.walk = walk;
   a.walk.throughput *= reflectance;
-  a.hit = cell_hit_of(v);
+  a.hit = cell_hit_of(v, bsdf);
   a.gloss = gloss;
   a.gloss_weight = gloss_weight;
   a.distance = distance;
@@ -156,11 +167,37 @@ SurfaceScattering GatherWalks::scattering_at(const GlossPlace& p) const {
       make_bsdf(scene_.bsdf_tables, scene_.scene, p.material, p.uv, p.is_front));
 }
 
+float GatherWalks::coat_share(const CellHit& hit, float cosine) const {
+  const uint32_t material = hit.coated / 2;
+  if (material >= scene_.scene.materials.size()) return 1;  // no coat
+  const Bsdf bsdf =
+      make_bsdf(scene_.bsdf_tables, scene_.scene, material, hit.uv, hit.coated % 2 == 0);
+  return troffer::coat_share(bsdf, cosine);
+}
+
+Bsdf GatherWalks::white_at(const CellHit& hit, float reflectance) const {
+  Bsdf white = sensor_bsdf();
+  const uint32_t material = hit.coated / 2;
+  if (material < scene_.scene.materials.size()) {
+    white = diffuse_part(
+        make_bsdf(scene_.bsdf_tables, scene_.scene, material, hit.uv, hit.coated % 2 == 0));
+    reflectance /=
+        std::max(white.diffuse_mean * troffer::coat_share(white, 1) * white.diffuse_mean, 1e-3f);
+  }
+  white.diffuse = Rgb{reflectance};
+  return white;
+}
+
+void GatherWalks::leave(const CellHit& from, const Vec2& number, Walk& walk) const {
+  set_out(from, number, walk);
+  if (from.coated != CellHit::uncoated) walk.throughput *= coat_share(from, walk.pdf * pi_f);
+}
+
 void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const {
   s.walks.clear();
   for (GatherArrival& a : arrivals) {
     const Vec2 number = direction_number(a.walk);
-    set_out(a.hit, number, a.walk);
+    leave(a.hit, number, a.walk);
     if (!a.walk.throughput.is_black()) s.walks.push_back(a.walk);
   }
 }
@@ -181,8 +218,6 @@ void GatherWalks::light_up(const std::vector<GatherArrival>& arrivals, GatherScr
 void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,
                               std::span<const GatherArrival> arrivals, GatherScratch& s,
                               Counters& counters) const {
-  Bsdf white = sensor_bsdf();
-  white.diffuse = Rgb{1};
   s.rough.clear();
   for (const GatherArrival& a : arrivals) {
     if (mirror != nullptr && mirror->above(a.hit.position) <= mirror->tolerance) continue;
@@ -191,7 +226,7 @@ void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mir
       s.rough.walks.back().stream =
           hash_of(a.walk.stream, uint64_t{0x696d'6167}, uint64_t(mirror->mesh));
     s.rough.vertices.push_back(vertex_of(a.hit));
-    s.rough.bsdfs.push_back(white);
+    s.rough.bsdfs.push_back(white_at(a.hit, 1));
   }
   if (s.rough.size() == 0) return;
   tree.queue(s.rough, s.tree, s.light, counters);

@@ -29,7 +29,7 @@ struct GlossPlace {
   bool is_there() const { return material != no_material; }
 };
 
-// A matte surface seen by a ray, or, of a view, one of wide gloss.
+// A matte surface seen by a ray, or, of a view, one of wide gloss, or one that reflects nothing.
 struct GatherArrival {
   Walk walk;               // throughput: times the surface's reflectance towards the ray
   CellHit hit;             // where
@@ -45,6 +45,7 @@ struct GatherScratch {
   std::vector<Walk> walks, next;
   std::vector<GatherArrival> arrivals;  // the result …
   RadianceBatch light;                  // … and radiance from sources: direct + indirect
+  std::vector<float> black;             // how far each ray went to where all is swallowed; or 0
   WalkScratch trace;
   WaveHits rough;
   LightTreeDirectScratch tree;
@@ -57,9 +58,16 @@ class GatherWalks {
 
   // Follows s.walks, whose indices are below `rays`, to the end.
   void follow(size_t rays, Coherence coherence, GatherScratch& s, Counters& counters) const;
-  // One ray of each arrival by cosine, in s.walks; the walks have left the arrivals' surfaces.
+  // Sends a walk on from a place, by cosine; its throughput is what light from there counts.
+  void leave(const CellHit& from, const Vec2& number, Walk& walk) const;
+  // One such ray of each arrival, in s.walks; the walks have left the arrivals' surfaces.
   void bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const;
   SurfaceScattering scattering_at(const GlossPlace& place) const;
+  // What light from a direction of this cosine counts at a place (troffer::coat_share).
+  float coat_share(const CellHit& hit, float cosine) const;
+  // A surface there that reflects all, or, of reflectance pi, shows its irradiance; seen from
+  // straight above, by way of the coat.
+  Bsdf white_at(const CellHit& hit, float reflectance) const;
   // Light straight from sources at arrivals, as irradiance times the walks' throughput, over π, in
   // `light`: one sample each, and one of each image.
   void light_up(const std::vector<GatherArrival>& arrivals, GatherScratch& s,
@@ -81,7 +89,7 @@ class GatherWalks {
 };
 
 // Where a ray has hit a surface, as cells want it.
-CellHit cell_hit_of(const Vertex& v);
+CellHit cell_hit_of(const Vertex& v, const Bsdf& bsdf);
 // … and back, as a surface seen from straight above.
 Vertex vertex_of(const CellHit& hit);
 

@@ -47,9 +47,10 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
     if (!in.cells->progress) return nullptr;
     return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
   };
-  std::unique_ptr<Cells> cells = make_cells(
-      in.scene, direct, in.cells->pilot, {in.settings.threads, in.cells->seed, error_beyond(in)},
-      in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
+  std::unique_ptr<Cells> cells =
+      make_cells(in.scene, direct, in.cells->pilot,
+                 {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error},
+                 in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
   std::unique_ptr<GatherRecords> records;

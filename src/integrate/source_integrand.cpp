@@ -74,6 +74,31 @@ Rgb glossy_value(const GlossyHit& g, const Vec3& world, float density) {
   return f_cos;
 }
 
+Rgb gentle_value(const GlossyHit& hit, const CertifiedSource& source, const Vec3& x) {
+  const auto at = [&](const Vec3d& way, double weight, Rgb& sum, double& weights) {
+    const Vec3 wi = hit.frame.to_local(Vec3(way * (1 / std::max(length(way), 1e-300))));
+    weight *= double(wi.z);
+    if (!(weight > 0)) return;
+    sum += troffer::evaluate(hit.diffuse, hit.wo, wi) * (float(weight) / wi.z);
+    weights += weight;
+  };
+  Rgb sum;
+  double weights = 0;
+  if (source.is_round) {
+    at(source.sphere.centre - Vec3d(x), 1, sum, weights);
+  } else {
+    const Parallelogram& p = source.flat.plane;
+    for (const double u : {0.25, 0.75})
+      for (const double v : {0.25, 0.75}) {
+        const Vec3d way = p.origin + p.u * u + p.v * v - Vec3d(x);
+        at(way, 1 / std::max(length_squared(way), 1e-300), sum, weights);
+      }
+  }
+  // Seen by an edge alone, it is at the horizon.
+  if (!(weights > 0)) at(Vec3d(hit.frame.normal) + Vec3d(hit.frame.tangent) * 10, 1, sum, weights);
+  return sum * float(1 / weights);
+}
+
 Rgb SourceIntegrand::radiance_at(const CertifiedSource& source, const Vec3& point,
                                  const Vec3& receiver) const {
   if (!source.is_textured) return source.radiance;

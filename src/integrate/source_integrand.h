@@ -41,6 +41,7 @@ struct GlossyHit {
   Vec3 geometric_normal, wo;
   Bsdf diffuse, rough;  // the second competes with spawned rays
   bool has_diffuse = false, has_rough = false;
+  bool is_gentle = false;  // SurfaceScattering; not rough
 };
 
 // Rough lobes send rays of their own, which compete with points of sources: a density of
@@ -67,6 +68,10 @@ class LobeCompetition {
 // BRDF × cosine towards the unit direction wi in the world: the diffuse part, and the share of the
 // rough one that is left to points of a source, `density` being LobeCompetition::density().
 Rgb glossy_value(const GlossyHit& hit, const Vec3& wi, float density);
+
+// BRDF at x for light from a source, the mean over four points of it or, of a sphere, at its
+// middle: for hits that are gentle.
+Rgb gentle_value(const GlossyHit& hit, const CertifiedSource& source, const Vec3& x);
 
 // Hits of the cluster as the integrand sees them.
 struct IntegrandHit {

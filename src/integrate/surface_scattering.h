@@ -16,6 +16,8 @@ struct SurfaceScattering {
   bool has_rough = false;     // … of which some is not a mirror: sources are sampled for it too
 
   bool is_gathered = false;  // gather_gloss() was called
+  // What the coat takes of a source's light may be taken for all of it as at a few of its points.
+  bool is_gentle = false;
 
   // Light that arrives from behind goes through, other than straight on.
   bool is_transmitting() const { return has_rough && specular.has_transmission; }

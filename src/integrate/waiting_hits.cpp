@@ -47,7 +47,7 @@ void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceSca
   add(walk, v, walk.throughput, direct);
   glossy.back() = int32_t(glossy_hits.size());
   glossy_hits.push_back({v.frame, v.geometric_normal, v.wo, scattering.diffuse, scattering.specular,
-                         scattering.has_diffuse, scattering.has_rough});
+                         scattering.has_diffuse, scattering.has_rough, scattering.is_gentle});
 }
 
 }  // namespace troffer

@@ -68,6 +68,22 @@ TEST_CASE("both parts together scatter what the whole does") {
     }
 }
 
+TEST_CASE("what a coat lets through from either direction are factors of the diffuse part") {
+  const Specimens s = all_kinds();
+  Random random(6);
+  for (size_t i = 0; i < s.size(); ++i) {
+    const Bsdf diffuse = diffuse_part(s.at(i));
+    CAPTURE(i);
+    for (int k = 0; k < 50; ++k) {
+      const Vec3 wo = direction(std::max(random.next_float(), 1e-3f), 6 * random.next_float());
+      const Vec3 wi = direction(std::max(random.next_float(), 1e-3f), 6 * random.next_float());
+      const Rgb value = evaluate(diffuse, wo, wi);
+      const Rgb product = albedo(diffuse, wo.z) * (coat_share(diffuse, wi.z) * wi.z * inv_pi_f);
+      CHECK(most(product - value) <= 1e-4 * most(value) + 1e-7);
+    }
+  }
+}
+
 TEST_CASE("each part sends on what its albedo says, and samples what it evaluates") {
   const Specimens s = all_kinds();
   for (size_t i = 0; i < s.size(); ++i) {

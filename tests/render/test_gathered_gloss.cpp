@@ -70,8 +70,14 @@ size_t specks(const Image& image) {
 
 TEST_CASE("gathered gloss: no bright specks where a small patch lights a room") {
   const PreparedScene scene(room_with_patch(coated(0.7f, 1)));
-  const RenderResult r = render_now(scene, mixed_room_camera(), picture(64, 0.05));
-  CHECK(specks(r.layers[1].image) <= 6);
+  size_t sum = 0;
+  for (uint64_t seed : {0, 1, 2, 3, 4, 5}) {
+    RenderOptions o = picture(64, 0.05);
+    o.seed = seed;
+    const RenderResult r = render_now(scene, mixed_room_camera(), o);
+    sum += specks(r.layers[1].image);
+  }
+  CHECK(sum <= 36);
 }
 
 TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {

@@ -1,0 +1,47 @@
+// Light that goes from coated wall to coated wall: what a coat lets through depends on where light
+// comes from as much as on where it goes.
+#include <doctest/doctest.h>
+
+#include "render/pictures.h"
+#include "support/scenes.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// Light of a small source comes to the floor at right angles, where a coat lets through most.
+Scene coated_room(float alpha) {
+  Scene s;
+  Material m;
+  m.kind = MaterialKind::coated_diffuse;
+  m.base_color.value = Rgb{0.6f};
+  m.roughness.value = alpha;
+  add_box_inside(s, add_material(s, m), {-1.5f, -1.5f, 0}, {1.5f, 1.5f, 3});
+  add_ceiling_light(s, 0.6f, 2.99f, Rgb{10});
+  return s;
+}
+
+double reflected(const PreparedScene& scene, RenderOptions o) {
+  o.width = 48;
+  o.height = 36;
+  o.threads = 2;
+  o.aovs = {Aov::indirect};
+  const Camera camera = look_at({-0.5f, -0.5f, 1.5f}, {1, 1, 1}, {0, 0, 1}, 70);
+  return mean(render_now(scene, camera, o).layers.at(1).image);
+}
+
+}  // namespace
+
+TEST_CASE("no light is lost between coated walls") {
+  for (const float alpha : {0.25f, 0.5f}) {
+    CAPTURE(alpha);
+    const PreparedScene scene(coated_room(alpha));
+    RenderOptions path;
+    path.method = Method::path;
+    path.spp = 512;
+    RenderOptions ours;
+    ours.error = 0.02;
+    CHECK(reflected(scene, ours) / reflected(scene, path) == doctest::Approx(1).epsilon(0.004));
+  }
+}
