@@ -17,13 +17,13 @@ namespace {
 
 // All measured: docs/cells.md.
 constexpr float size_of_median = 0.06f;  // of a cell, of the median length of gather rays …
-constexpr double fine_error = 0.01;      // … for errors up to this; larger ones take larger cells
-constexpr double size_by_error = 0.18;
+constexpr double fine_error = 0.05;      // … for errors up to this; larger ones take larger cells
+constexpr double size_by_error = 0.58, most_coarseness = 4;
 constexpr size_t pilot_rays = 1 << 17;  // gather rays from what the pilot sees
 constexpr uint32_t rays_of_row = 16;    // first ones of every cell
 constexpr uint32_t rays_of_step = 8;    // further ones come in so many
 constexpr uint32_t most_rays_of_row = 4096;
-constexpr double most_unresolved = 1e-3;  // of the light asked for, of the error
+constexpr double most_unresolved = 1e-5;  // of the light asked for, for an error of .01 or less
 constexpr double enough_of_wanted = 1.5;  // further rays that a kept cell has: no more then
 constexpr int most_rounds = 12;
 constexpr size_t most_cells = 1 << 21;
@@ -32,9 +32,9 @@ constexpr int bounces_of_importance = 24;
 
 using Clock = std::chrono::steady_clock;
 
-// How many times what suits fine errors is asked.
-double coarseness(const CellBuilderOptions& o) {
-  return std::max(o.error / fine_error, 1.0);
+// How many times what suits a fine one is asked.
+double coarseness(double error, double fine) {
+  return std::clamp(error / fine, 1.0, most_coarseness);
 }
 
 // Some of the viewing rays' walks ended here.
@@ -122,7 +122,8 @@ void Builder::start_map(const CellsSeen& seen) {
   const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
   if (!lengths.empty()) std::nth_element(lengths.begin(), middle, lengths.end());
   const float median = lengths.empty() ? 0 : *middle;
-  const float size = size_of_median * float(std::pow(coarseness(options_), size_by_error));
+  const float size =
+      size_of_median * float(std::pow(coarseness(options_.error, fine_error), size_by_error));
   // Finer than this, voxels would be no larger than the rounding of positions.
   const Box box = bounds(scene_.scene);
   const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), 1e-6f);
@@ -228,7 +229,7 @@ std::vector<uint32_t> Builder::cells_to_resolve() {
     cells.push_back(c);
   }
   statistics_.unresolved = all > 0 ? open / all : 0;
-  const double most = most_unresolved * fine_error * coarseness(options_);
+  const double most = most_unresolved * coarseness(options_.error, 0.01);
   if (statistics_.unresolved <= most || map_->size() > most_cells) return {};
   std::sort(cells.begin(), cells.end(),
             [&](uint32_t a, uint32_t b) { return y[a] != y[b] ? y[a] > y[b] : a < b; });
@@ -248,8 +249,7 @@ std::vector<CellTask> Builder::further_tasks() {
   const double all = std::accumulate(y.begin(), y.end(), 0.0);
   std::vector<CellTask> tasks;
   if (!(all > 0)) return tasks;
-  const double least =
-      map_->frozen() > 0 ? 0.5 * most_unresolved * fine_error * all / double(y.size()) : -1;
+  const double least = map_->frozen() > 0 ? 0.5 * most_unresolved * all / double(y.size()) : -1;
   size_t cells = 0;
   for (uint32_t c = 0; c < y.size(); ++c)
     if (rows_.has_row(c) && double(y[c]) > least) ++cells;
