@@ -71,13 +71,13 @@ size_t specks(const Image& image) {
 TEST_CASE("gathered gloss: no bright specks where a small patch lights a room") {
   const PreparedScene scene(room_with_patch(coated(0.7f, 1)));
   size_t sum = 0;
-  for (uint64_t seed : {0, 1, 2, 3, 4, 5}) {
+  for (uint64_t seed = 0; seed < 8; ++seed) {
     RenderOptions o = picture(64, 0.05);
     o.seed = seed;
     const RenderResult r = render_now(scene, mixed_room_camera(), o);
     sum += specks(r.layers[1].image);
   }
-  CHECK(sum <= 36);
+  CHECK(sum <= 48);
 }
 
 TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
