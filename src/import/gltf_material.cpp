@@ -166,7 +166,8 @@ class GltfMaterials::Reader {
     if (!sheen) return;
     const auto color = sheen->numbers_or("sheenColorFactor", {0, 0, 0});
     const float roughness = unit_number(*sheen, "sheenRoughnessFactor", 0);
-    if (color.size() != 3 || sheen->find("sheenColorTexture"))
+    if (color.size() != 3 || sheen->find("sheenColorTexture") ||
+        sheen->find("sheenRoughnessTexture"))
       warn("sheen by a texture is left out");
     if (color.size() != 3 || *std::max_element(color.begin(), color.end()) <= 0) return;
     const float albedo = 0.18f * roughness;
@@ -184,6 +185,7 @@ class GltfMaterials::Reader {
     if (!anisotropy) return;
     const float strength = unit_number(*anisotropy, "anisotropyStrength", 0);
     if (strength == 0) return;
+    if (anisotropy->find("anisotropyTexture")) warn("anisotropy by a texture is left out");
     const float alpha = sqr(material_.roughness.value);
     const float along = alpha + (1 - alpha) * sqr(strength);
     material_.roughness.value = std::min(std::sqrt(std::sqrt(alpha * along)), 1.0f);
@@ -197,6 +199,8 @@ class GltfMaterials::Reader {
     if (!film) return;
     const float factor = unit_number(*film, "iridescenceFactor", 0);
     if (factor == 0) return;
+    if (film->find("iridescenceTexture") || film->find("iridescenceThicknessTexture"))
+      warn("iridescence by a texture is left out");
     const double index = film->number_or("iridescenceIor", 1.3),
                  thickness = film->number_or("iridescenceThicknessMaximum", 400);
     const double below = double(material_.ior > 1 ? material_.ior : 1.5f);

@@ -1,7 +1,6 @@
 #include "import/import.h"
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "import/file.h"
 #include "import/gltf.h"
 #include "import/mitsuba.h"
@@ -45,7 +44,6 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
 Scene import_scene(const std::string& path, const ImportOptions& options) {
   Scene scene = import_file(path, options);
   replace_thin_glass(scene);
-  parallel_for(scene.textures.size(), 0, [&](size_t i) { build_levels(scene.textures[i]); });
   return scene;
 }
 

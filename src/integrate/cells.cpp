@@ -52,8 +52,8 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
     s.again.clear();
     size_t missed = 0;
     for (GatherArrival& a : s.arrivals) {
-      if (bounce == 0 && s.light.distance[a.walk.index] == 0)
-        s.light.distance[a.walk.index] = a.length;
+      float& distance = s.light.distance[a.walk.index];
+      if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
       // The mean of a cell wider than the ray is long is not what the ray sees.
       const bool is_short = a.distance < 0.25f * map_->near() && bounce < short_bounces;
       if (is_short || !look_up(a, bounce > 0, s)) s.arrivals[missed++] = a;

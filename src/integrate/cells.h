@@ -26,7 +26,7 @@ struct CellStatistics {
 struct GatheredLight {
   std::vector<Rgb> irradiance;         // of each ray: π × radiance
   std::vector<float> half_difference;  // by the noise of cells: luminance (CellLight)
-  std::vector<float> distance;         // to the first matte surface, all the way; 0: none
+  std::vector<float> distance;  // to the first surface that is matte or black, all the way; 0: none
 };
 
 // Irradiance at a place.

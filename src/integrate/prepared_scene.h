@@ -1,6 +1,7 @@
 // A scene with all that is built from it before the first ray.
 #pragma once
 
+#include "base/parallel.h"
 #include "bsdf/bsdf.h"
 #include "integrate/scene_glass.h"
 #include "light/light_primitive.h"
@@ -10,10 +11,16 @@
 
 namespace troffer {
 
+// Levels of all images, which only rays look at.
+inline Scene with_levels(Scene scene) {
+  parallel_for(scene.textures.size(), 0, [&](size_t i) { build_levels(scene.textures[i]); });
+  return scene;
+}
+
 // Immutable; members refer to each other, so it stays where it was made.
 struct PreparedScene {
   explicit PreparedScene(Scene s)
-      : scene(std::move(s)),
+      : scene(with_levels(std::move(s))),
         bsdf_tables(scene),
         glass(scene, bsdf_tables),
         panes(scene, glass),

@@ -270,6 +270,24 @@ TEST_CASE("what materials cannot show is told, and approximated where that is ne
     CHECK(with_material("{'extensions':{'KHR_materials_" + name + "':{}}}").warnings.total() == 0);
 }
 
+TEST_CASE("textures of what is approximated are told to be left out") {
+  const auto with = [](const std::string& extension) {
+    return with_material("{'extensions':{'KHR_materials_" + extension + "}}");
+  };
+  const std::string texture = "{'index':0}";
+  CHECK(has_warning(
+      with("sheen':{'sheenColorFactor':[1,1,1],'sheenRoughnessTexture':" + texture + "}"),
+      "sheen by a texture"));
+  CHECK(
+      has_warning(with("anisotropy':{'anisotropyStrength':1,'anisotropyTexture':" + texture + "}"),
+                  "anisotropy by a texture"));
+  for (const char* name : {"iridescenceTexture", "iridescenceThicknessTexture"})
+    CHECK(has_warning(
+        with("iridescence':{'iridescenceFactor':1,'" + std::string(name) + "':" + texture + "}"),
+        "iridescence by a texture"));
+  CHECK(!has_warning(with("anisotropy':{'anisotropyStrength':1}"), "by a texture"));
+}
+
 TEST_CASE("a data URI that is broken is told of though nothing shows its image") {
   const Scene scene = with_material("{}",
                                     ",'images':[{'uri':'data:image/png;base64,A'},"

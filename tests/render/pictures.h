@@ -23,6 +23,16 @@ inline RenderResult render_now(const PreparedScene& scene, const Camera& camera,
   return render(scene, camera, options, {}, never_stopped);
 }
 
+// Reflected light alone, in so many pixels.
+inline Image reflected_light(const PreparedScene& scene, const Camera& camera, int width,
+                             int height, RenderOptions options) {
+  options.width = width;
+  options.height = height;
+  options.threads = 2;
+  options.aovs = {Aov::indirect};
+  return render_now(scene, camera, options).layers.at(1).image;
+}
+
 // The same bits in every layer.
 inline bool is_identical(const std::vector<Layer>& a, const std::vector<Layer>& b) {
   if (a.size() != b.size()) return false;

@@ -22,13 +22,9 @@ Scene coated_room(float alpha) {
   return s;
 }
 
-double reflected(const PreparedScene& scene, RenderOptions o) {
-  o.width = 48;
-  o.height = 36;
-  o.threads = 2;
-  o.aovs = {Aov::indirect};
+double reflected(const PreparedScene& scene, const RenderOptions& o) {
   const Camera camera = look_at({-0.5f, -0.5f, 1.5f}, {1, 1, 1}, {0, 0, 1}, 70);
-  return mean(render_now(scene, camera, o).layers.at(1).image);
+  return mean(reflected_light(scene, camera, 48, 36, o));
 }
 
 }  // namespace

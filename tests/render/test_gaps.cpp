@@ -32,13 +32,9 @@ Scene room_under_panels(float gap) {
   return s;
 }
 
-Image reflected(const PreparedScene& scene, RenderOptions o) {
-  o.width = 64;
-  o.height = 48;
-  o.threads = 2;
-  o.aovs = {Aov::indirect};
+Image reflected(const PreparedScene& scene, const RenderOptions& o) {
   const Camera camera = look_at({1, 1, 1.5f}, {9, 9, 1.8f}, {0, 0, 1}, 70);
-  return render_now(scene, camera, o).layers.at(1).image;
+  return reflected_light(scene, camera, 64, 48, o);
 }
 
 }  // namespace

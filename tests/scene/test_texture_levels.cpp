@@ -5,8 +5,10 @@
 
 #include "base/random.h"
 #include "scene/texture.h"
+#include "support/textures.h"
 
 using namespace troffer;
+using namespace troffer::test;
 
 namespace {
 
@@ -48,11 +50,7 @@ TexturePlace over(const Vec2& uv, const Vec2& a, const Vec2& b) {
 
 // Columns of black and white, each one texel wide.
 Texture stripes() {
-  Texture t;
-  t.kind = TextureKind::image;
-  t.width = t.height = 64;
-  t.channels = 1;
-  for (int i = 0; i < 64 * 64; ++i) t.texels_float.push_back(i % 2 == 0 ? 1.0f : 0.0f);
+  Texture t = grey_image(64, 64, [](int x, int) { return x % 2 == 0 ? 1.0f : 0.0f; });
   build_levels(t);
   return t;
 }

@@ -3,10 +3,12 @@
 
 #include <cmath>
 
+#include "support/textures.h"
 #include "trace/surface.h"
 #include "trace/tracer.h"
 
 using namespace troffer;
+using namespace troffer::test;
 
 namespace {
 
@@ -25,15 +27,11 @@ Scene square(const Material& material, const Texture& texture) {
 
 // Heights .3 u + .1 v, as texels of a ramp.
 Texture ramp() {
-  Texture t;
-  t.kind = TextureKind::image;
-  t.width = t.height = 64;
-  t.channels = 1;
+  Texture t = grey_image(64, 64, [](int x, int y) {
+    return 0.3f * (float(x) + 0.5f) / 32 + 0.1f * (float(y) + 0.5f) / 32;
+  });
   t.wrap_u = t.wrap_v = WrapMode::clamp;
   t.uv_scale = {0.5f, 0.5f};
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x)
-      t.texels_float.push_back(0.3f * (float(x) + 0.5f) / 32 + 0.1f * (float(y) + 0.5f) / 32);
   return t;
 }
 
