@@ -217,7 +217,7 @@ void thin(const Arguments& a) {
     for (size_t i = 0; i < p.size(); ++i) {
       if (p.is_counted[i] == 0) continue;
       hidden += 1 - double(p.reference[i]);
-      found += 1 - double(std::max(answers.visible[i], 0.0f));
+      found += 1 - double(answers.visible[i]);
     }
     const auto n = double(p.counted);
     const size_t wrong = contradictions(p, answers);

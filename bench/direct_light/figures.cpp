@@ -15,7 +15,7 @@ Figures figures_of(const Pairs& p, const Answers& answers) {
       for (size_t r = 0; r < p.tiles[t].size(); ++r) {
         const size_t i = p.index(t, s, r);
         if (p.is_counted[i] == 0) continue;
-        const double e = double(std::max(answers.visible[i], 0.0f)) - double(p.reference[i]);
+        const double e = double(answers.visible[i]) - double(p.reference[i]);
         const double unoccluded = p.scene.radiance[s] * p.unoccluded[i];
         f.rms += e * e;
         f.mean += e;

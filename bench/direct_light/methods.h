@@ -14,7 +14,8 @@ namespace troffer::bench {
 
 // What a method says of every pair, plain arrays over pairs, and what it took.
 struct Answers {
-  std::vector<float> visible;   // share; -1 where no light can arrive
+  // Share; 0 where no light can arrive. Estimates may be under 0, and must stay so in means.
+  std::vector<float> visible;
   std::vector<float> variance;  // of `visible`, as the method believes; 0 where it does not say
   // certified alone; empty for others
   std::vector<float> unoccluded;  // sr

@@ -12,7 +12,7 @@ double thread_seconds() {
 }
 
 void Answers::reset(size_t pairs) {
-  visible.assign(pairs, -1);
+  visible.assign(pairs, 0);
   variance.assign(pairs, 0);
   unoccluded.clear();
   kinds.clear();

@@ -307,6 +307,18 @@ class Caster {
 
 }  // namespace
 
+namespace {
+
+// Rays for a source's own visible share, half open: as plan_rays.cpp has them.
+double rays_for_share(const SourceTask& task) {
+  const RayLimits& limits = task.options.rays;
+  const double wanted =
+      std::min(0.25 / sqr(double(limits.pair_error)), double(limits.most_pair_rays));
+  return std::min(wanted, double(limits.most_share_rays) / task.promise.sources);
+}
+
+}  // namespace
+
 double direct_rays_of(const SourceTask& task, ShadowScene& scene) {
   FoundFacets::Dense& dense = task.request.found->dense;
   if (dense.is_known()) return dense.rays;
@@ -322,7 +334,7 @@ double direct_rays_of(const SourceTask& task, ShadowScene& scene) {
     others += double(promise.seen[i] + promise.rest[i]);
   }
   const double wanted = variance_kept * own / ((own + others) * sqr(double(promise.error)));
-  dense.rays = std::clamp(wanted, fewest_rays, dense.rays);
+  dense.rays = std::clamp(std::max(wanted, rays_for_share(task)), fewest_rays, dense.rays);
   return dense.rays;
 }
 

@@ -44,7 +44,8 @@ struct DirectRayMemory {
 constexpr double fewest_rays = 16;
 
 // So many rays from each receiver of a batch: as many as make the error what the masks' may be
-// (Promise) where the source is half open, by its share of the unoccluded light. Not by what is
+// (Promise) where the source is half open, by its share of the unoccluded light, and no fewer than
+// a weak source's own visible share is worth (RayLimits::pair_error). Not by what is
 // open here: batches in which little is would take rays from those in which much is, where they
 // count for more of the picture's light; and a pixel's viewing rays share a sequence. The first
 // cluster that asks has pilots cast, which find what is open.

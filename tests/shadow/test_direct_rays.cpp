@@ -82,6 +82,24 @@ Made made_over_seeds(const FlatSource& source, const std::vector<Quad>& facets, 
   return made;
 }
 
+// What of the source's light arrives, by rays on a fine grid; below 0: none could.
+double share_by_brute_force(const FlatSource& source, const BruteForceScene& scene,
+                            const ShadowReceiver& r) {
+  constexpr int side = 300;
+  double all = 0, open = 0;
+  for (int i = 0; i < side * side; ++i) {
+    const double u = (0.5 + i % side) / side, v = (0.5 + double(i / side)) / side;
+    const Vec3d y = source.plane.origin + source.plane.u * u + source.plane.v * v;
+    const Vec3d d = y - Vec3d(r.position);
+    const double cosines = dot(Vec3d(r.normal), d) * -dot(source.plane.normal, d);
+    if (!(dot(Vec3d(r.normal), d) > 0)) continue;
+    const double weight = cosines / sqr(length_squared(d));
+    all += weight;
+    if (scene.is_hidden(Vec3d(r.origin), y, 0) != 1) open += weight;
+  }
+  return all > 0 ? open / all : -1;
+}
+
 }  // namespace
 
 TEST_CASE("rays straight to a source: unbiased, and better than as many independent ones") {
@@ -108,6 +126,56 @@ TEST_CASE("rays straight to a source: unbiased, and better than as many independ
   check(triangle, plates(4, 0.05f, 0.3f, 0.8f, -0.06f), 0.9);
   check(disk, plates(5, 0.12f, 0.4f, 1), 0.8);
   check(near_one, plates(4, 0.1f, 0.6f, 0.1f), 0.7);
+}
+
+// Whatever is learnt of the share that is open (here one half, for all), single receivers have
+// their own right mean: those from which all is hidden a mean of 0, so that about every other
+// answer is less than that.
+TEST_CASE("rays straight to a source: no bias where little or nothing is open") {
+  constexpr int seeds = 1500, count = 16;
+  const FlatSource source = ceiling_source();
+  BruteForceScene scene;
+  scene.facets = plates(8, 0.45f, 1.0f, 1, 0.35f);  // two layers without a gap
+  for (const Quad& q : plates(7, 0.45f, 1.0f, 1.01f, 0.35f)) scene.facets.push_back(q);
+  std::vector<ShadowReceiver> receivers = receivers_on_floor(4, 0.25f);
+  for (size_t i = 0; i < count; i += 3)  // some see the source low over their horizon
+    receivers[i].normal = receivers[i].horizon =
+        normalize(Vec3{-1, -0.2f, i % 2 == 0 ? 0.3f : -0.1f});
+  CertifiedOptions options;
+  options.mask_error = 0.1f;
+  double sums[count] = {}, squares[count] = {};
+  bool is_any_negative = false;
+  for (uint64_t seed = 0; seed < seeds; ++seed) {
+    for (uint32_t i = 0; i < count; ++i) receivers[i].stream = hash_of(seed, i, 5u);
+    std::vector<SourceVisibility> out(count);
+    FoundFacets found;
+    found.dense.open_share = 0.5;
+    found.dense.rays = 16;
+    found.note_hopeless({}, 1);
+    evaluate_alone(options, source, receivers, scene, found, out);
+    for (size_t i = 0; i < count; ++i) {
+      if (out[i].answer == ShadowAnswer::below) continue;
+      const auto share = double(out[i].visible);
+      REQUIRE(out[i].rays == 16);
+      sums[i] += share;
+      squares[i] += sqr(share);
+      is_any_negative = is_any_negative || share < 0;
+    }
+  }
+  CHECK(is_any_negative);
+  int hidden = 0, partly = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const double right = share_by_brute_force(source, scene, receivers[i]);
+    if (right < 0) continue;
+    const double mean = sums[i] / seeds;
+    const double error = std::sqrt((squares[i] / seeds - sqr(mean)) / (seeds - 1));
+    hidden += right == 0 ? 1 : 0;
+    partly += right > 0 && right < 1 ? 1 : 0;
+    CAPTURE(i);
+    CHECK(std::abs(mean - right) < 4.5 * error + 1e-4);
+  }
+  CHECK(hidden >= 3);
+  CHECK(partly >= 3);
 }
 
 TEST_CASE(
@@ -150,6 +218,12 @@ TEST_CASE("rays straight to a source: as many for a whole batch, by its error an
   CHECK(rays_at(0.05f, 0) == doctest::Approx(4 * n).epsilon(1e-5));
   one.found = {};
   CHECK(rays_at(0.05f, 1) == doctest::Approx(2 * n).epsilon(1e-5));
+  // a weak source's visible share is worth some, too
+  one.found = {};
+  CHECK(rays_at(0.1f, 1000) == 64);
+  one.options.rays.pair_error = 0.1f;
+  one.found = {};
+  CHECK(rays_at(0.1f, 1000) == doctest::Approx(25).epsilon(1e-5));
 }
 
 TEST_CASE("rays straight to a source: where clutter leaves much open nothing else is tried") {
