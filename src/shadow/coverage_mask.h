@@ -108,6 +108,9 @@ class MaskFrame {
 
 struct FacetFlags;
 
+// Which side of the source's parallelogram edges are parallel to.
+enum class EdgesAlong : uint8_t { neither, u, v };
+
 // A facet in space; is_front_only: only receivers count that see its vertices counterclockwise.
 struct FacetToAdd {
   Quad quad;
@@ -127,6 +130,9 @@ class FacetList {
   void finish();
   // Becomes the facets of `from` whose flag is 0; what is round is not copied.
   void keep_unsettled(const FacetList& from, const FacetFlags& flags);
+  // Finds out whether most edges run along one side of the source. Before that: neither.
+  void find_edges_along(const MaskLattice& lattice);
+  EdgesAlong edges_along() const { return edges_along_; }
   // Lanes in use, of which after add_many some may hold no facet, and what is round.
   size_t size() const { return triangle_count_ + quad_count_ + round_.size(); }
   // What is round: covered by round_cover.h, all else by cover() below.
@@ -144,6 +150,7 @@ class FacetList {
   std::vector<FacetBatch<3>> triangles_;
   std::vector<FacetBatch<4>> quads_;
   size_t triangle_count_ = 0, quad_count_ = 0;
+  EdgesAlong edges_along_ = EdgesAlong::neither;
   RoundList round_;
 };
 
@@ -194,12 +201,14 @@ void clip_to_horizon(const MaskFrame& frame, const Vec3d& x, const Vec3& n, cons
 // The unoccluded weights of samples at world position x with unit normal n: max(n·d, 0) / |d|⁴,
 // d from x to the sample, which is the differential form factor but for what all samples share.
 MaskWeights mask_weights(const MaskFrame& frame, const Vec3d& x, const Vec3& n, const Vec2& shift);
-inline float weight_of(const MaskWeights& w, int k, int j) {
-  const auto row = float(j), at = float(k);
+inline float weight_of(const MaskWeights& w, float at, float row) {
   const float cosine = w.cosine + w.cosine_j * row + w.cosine_k * at;
   const float square = w.square + row * (w.square_j + row * w.square_jj) +
                        at * (w.slope + w.slope_j * row + at * w.square_kk);
   return (cosine > 0 ? cosine : 0) / (square * square);
+}
+inline float weight_of(const MaskWeights& w, int k, int j) {
+  return weight_of(w, float(k), float(j));
 }
 
 // Visible share of the source's unoccluded irradiance; open_by_row, if not null, receives the open

@@ -12,6 +12,7 @@ void FacetList::clear() {
   quads_.clear();
   round_.clear();
   triangle_count_ = quad_count_ = 0;
+  edges_along_ = EdgesAlong::neither;
 }
 
 namespace {
@@ -255,7 +256,57 @@ void copy_unsettled(const std::vector<FacetBatch<edges>>& from, size_t from_coun
   }
 }
 
+// Lengths of edges: of all, and of those parallel to either side.
+struct EdgeLengths {
+  float all = 0, along_u = 0, along_v = 0;
+};
+
+// The sides stand at (a, -b) and (b, a) on the canvas.
+template <int edges>
+EdgeLengths edge_lengths(const FacetBatch<edges>& f, const MaskLattice& lattice) {
+  constexpr int lanes = FacetBatch<edges>::lanes;
+  constexpr float tolerance = 1e-3f;  // tangent: less than a sample's share of the side
+  const float scale = 1 / std::sqrt(float(lattice.samples()));
+  const float a = float(lattice.a) * scale, b = float(lattice.b) * scale;
+  float all[lanes] = {}, along_u[lanes] = {}, along_v[lanes] = {};
+  for (int e = 0; e < edges; ++e) {
+    const int g = e + 1 == edges ? 0 : e + 1;
+    for (int i = 0; i < lanes; ++i) {
+      const float dk = f.k[g][i] - f.k[e][i], dj = f.j[g][i] - f.j[e][i],
+                  dw = f.w[g][i] - f.w[e][i];
+      const float size = std::sqrt(dk * dk + dj * dj + dw * dw);
+      const float in_u = a * dk - b * dj, in_v = b * dk + a * dj, most = tolerance * size;
+      all[i] += size;
+      along_u[i] += std::abs(in_v) + std::abs(dw) < most ? size : 0.0f;
+      along_v[i] += std::abs(in_u) + std::abs(dw) < most ? size : 0.0f;
+    }
+  }
+  EdgeLengths sum;
+  for (int i = 0; i < lanes; ++i) {
+    sum.all += all[i];
+    sum.along_u += along_u[i];
+    sum.along_v += along_v[i];
+  }
+  return sum;
+}
+
 }  // namespace
+
+void FacetList::find_edges_along(const MaskLattice& lattice) {
+  constexpr float most = 0.8f;
+  edges_along_ = EdgesAlong::neither;
+  if (round_.size() > 0) return;
+  EdgeLengths sum;
+  const auto add = [&](const EdgeLengths& l) {
+    sum.all += l.all;
+    sum.along_u += l.along_u;
+    sum.along_v += l.along_v;
+  };
+  for (const FacetBatch<4>& f : quads_) add(edge_lengths(f, lattice));
+  for (const FacetBatch<3>& f : triangles_) add(edge_lengths(f, lattice));
+  if (sum.along_u > most * sum.all) edges_along_ = EdgesAlong::u;
+  if (sum.along_v > most * sum.all) edges_along_ = EdgesAlong::v;
+}
 
 void FacetList::keep_unsettled(const FacetList& from, const FacetFlags& flags) {
   clear();

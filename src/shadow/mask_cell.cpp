@@ -4,42 +4,12 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "shadow/mask_variance.h"
 #include "shadow/round_cover.h"
 
 namespace troffer {
 
 namespace {
-
-// Variance of a count of lattice samples behind an edge, in samples squared per pair of neighbours
-// that the edge parts. The numbers of pairs in rows and in columns tell the edge's direction; it is
-// large along rows or columns of the lattice, and larger than elsewhere along lines through every
-// second sample (measured: docs/certified.md). Along diagonals it is large too, but as many pairs
-// in rows as in columns mostly mean edges along both sides of the source.
-float edge_variance(float least_pairs, float most_pairs) {
-  if (most_pairs < 6) return 0.14f;  // a few pairs do not tell a direction
-  const float ratio = least_pairs / most_pairs;
-  if (ratio < 0.04f) return 0.5f;
-  return ratio < 0.08f || std::abs(ratio - 0.5f) < 0.06f || ratio > 0.9f ? 0.075f : 0.045f;
-}
-
-// Expected variance of a mask's share. The more of all neighbours differ, from as few as in one
-// piece to as many as if samples were thrown at random, the closer it comes to that of independent
-// samples, and some more: what hides them may have a regularity of its own, as parallel wires have.
-float mask_variance(const MaskWeight& sums) {
-  const auto rows = float(sums.row_pairs), columns = float(sums.column_pairs);
-  const float pairs = rows + columns;
-  if (pairs == 0) return 0;
-  const auto n = float(sums.inside_count);
-  const float share = float(sums.open_count) / n, spread = share * (1 - share);
-  const float fewest = 4 * std::sqrt(n * std::min(share, 1 - share));  // of a square
-  const float random = 2 * float(sums.neighbours) * spread;
-  const float disorder = std::clamp((pairs - fewest) / std::max(random - fewest, 1.0f), 0.0f, 1.0f);
-  const float of_edge = edge_variance(std::min(rows, columns), std::max(rows, columns));
-  constexpr float regularity = 1.2f;
-  const float of_random = regularity * n * spread * n / ((n - 1) * random);
-  const float of_pair = of_edge + disorder * std::max(of_random - of_edge, 0.0f);
-  return of_pair * sums.pair_squares / sqr(sums.all);
-}
 
 // Random numbers of a pair of receiver and cell, for several purposes and passes.
 constexpr uint64_t purpose_shift = 0x5851f42d4c957f2dull, purpose_points = 0x14057b7ef767814full;
@@ -93,7 +63,7 @@ MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& f
   const MaskWeight sums = weigh(frame, mask, samples.weights, samples.open_by_row);
   if (!(sums.all > 0)) return {-1, 0};
   samples.open = sums.open;
-  return {sums.share(), mask_variance(sums)};
+  return {sums.share(), mask_variance(frame, sums, mask, samples.weights, facets.edges_along())};
 }
 
 namespace {

@@ -20,6 +20,7 @@ Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetL
         std::any_of(flags.triangles.begin(), flags.triangles.end(), hides_all))
       return Certificate::dark;
     left.keep_unsettled(facets, flags);
+    if (!frame.is_disk()) left.find_edges_along(frame.lattice());
   }
   for (const RoundBody& body : facets.round().bodies) {
     const RoundFlag flag = classify(body, frame, hull);

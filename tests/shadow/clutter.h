@@ -46,6 +46,18 @@ inline std::vector<Quad> leaves(Random& random, int n, float size) {
   return out;
 }
 
+// n strips of `width`, `step` apart, turned by `angle` from the source's second side.
+inline std::vector<Quad> slats(Random& random, int n, float step, float width, float angle) {
+  std::vector<Quad> out;
+  const Vec3 way{-std::sin(angle), std::cos(angle), 0}, across{std::cos(angle), std::sin(angle), 0};
+  const Vec3 first = across * (step * (random.next_float() - 0.5f * float(n)));
+  const float z = 0.8f + 0.8f * random.next_float();
+  for (int i = 0; i < n; ++i)
+    out.push_back(parallelogram_facet(first + across * (step * float(i)) - way * 3 + Vec3{0, 0, z},
+                                      across * width, way * 6));
+  return out;
+}
+
 // What lies on one side of a line.
 inline Quad half_plane(Random& random) {
   const Vec3 way = levelish(random), p = before_source(random, 1, 1.2f);

@@ -1,0 +1,118 @@
+#include "shadow/mask_variance.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace troffer {
+
+namespace {
+
+// Variance of a count of lattice samples behind an edge, in samples squared per pair of neighbours
+// that the edge parts. The numbers of pairs in rows and in columns tell the edge's direction; it is
+// large along rows or columns of the lattice, and larger than elsewhere along lines through every
+// second sample (measured: docs/certified.md). Along diagonals it is large too, but as many pairs
+// in rows as in columns mostly mean edges along both sides of the source.
+float edge_variance(float least_pairs, float most_pairs) {
+  if (most_pairs < 6) return 0.14f;  // a few pairs do not tell a direction
+  const float ratio = least_pairs / most_pairs;
+  if (ratio < 0.04f) return 0.5f;
+  return ratio < 0.08f || std::abs(ratio - 0.5f) < 0.06f || ratio > 0.9f ? 0.075f : 0.045f;
+}
+
+// What stands in rows, as parallel wires do, may be in step with the samples.
+constexpr float regularity = 1.2f;
+
+// Of a share: where samples were thrown at random `random` pairs would differ.
+float random_variance(float n, float spread, float random) {
+  return regularity * n * spread * n / ((n - 1) * random);
+}
+
+// How much weights vary along a side: half their difference between the ends of a line, over their
+// mean there, of two lines the one that sends more.
+float variation_along(const MaskLattice& lattice, const MaskWeights& w, EdgesAlong edges) {
+  const auto a = float(lattice.a), b = float(lattice.b), middle = 0.5f * (a + b);
+  const Vec2 u{a, -b}, v{b, a};
+  const Vec2 along = (edges == EdgesAlong::v ? v : u) * 0.5f;
+  const Vec2 across = (edges == EdgesAlong::v ? u : v) * 0.33f;
+  float most = 0, variation = 1;
+  for (const float side : {-1.0f, 1.0f}) {
+    const Vec2 from = Vec2{middle, middle} + across * side - along, to = from + along * 2.0f;
+    const float first = weight_of(w, from.x, from.y), last = weight_of(w, to.x, to.y);
+    if (!(first + last > most)) continue;
+    most = first + last;
+    variation = std::abs(first - last) / most;
+  }
+  return variation;
+}
+
+// Of the share, in squared weights of samples, of edges along one side of the source. Each parts
+// one pair of neighbours in order, wherever it stands, and errs by 1/12 of a sample squared, and
+// more if others are in step with it. As neighbours in order stand apart along the edge, what
+// weights vary by along it adds to that: where it is all of them, as much as an edge of any
+// direction errs by. And where edges stand closer than samples, without order, it comes to the
+// variance of independent ones: then samples one step apart, and two, differ as if thrown at
+// random, where what is regular makes them differ more, or less.
+float ordered_variance(const CoverageMask& mask, EdgesAlong edges, float variation, float n,
+                       float spread) {
+  constexpr float by_chance = 0.1f, of_edge = 0.15f;
+  float order = 0, parted = 0;
+  for (const uint32_t steps : {1u, 2u}) {
+    const OrderedPairs pairs = ordered_pairs(mask, edges, steps);
+    const float share = float(pairs.differing) / float(std::max(pairs.all, 1));
+    if (steps == 1) parted = std::max(share * n, 1.0f);
+    order = std::max(order, std::abs(share / (2 * spread) - 1));
+  }
+  const float disorder = std::clamp(1 + by_chance - order, 0.0f, 1.0f);
+  const float of_random = random_variance(n, spread, 2 * n * spread);
+  const float of_pair =
+      of_edge + disorder * disorder * disorder * std::max(of_random - of_edge, 0.0f);
+  return parted * of_pair + sqr(variation) * std::min(1.2f * parted, 0.4f * n * spread);
+}
+
+}  // namespace
+
+OrderedPairs ordered_pairs(const CoverageMask& mask, EdgesAlong edges, uint32_t steps) {
+  // With 25 · 1 - 6 · 4 = 13 · 1 - 3 · 4 = 1, (k + 1, j + 4) is the next sample in u, and
+  // (k - 4, j + 1) in v.
+  static_assert(fine_lattice.a - 4 * fine_lattice.b == 1);
+  static_assert(coarse_lattice.a - 4 * coarse_lattice.b == 1);
+  const bool is_next_in_u = edges == EdgesAlong::v;
+  const uint32_t rows = is_next_in_u ? 4 * steps : steps,
+                 columns = is_next_in_u ? steps : 4 * steps;
+  OrderedPairs pairs;
+  for (size_t r = 0; r + rows < most_mask_rows; ++r) {
+    const auto at_next = [&](const MaskRows& m) {
+      return is_next_in_u ? m.row[r + rows] >> columns : m.row[r + rows] << columns;
+    };
+    const uint32_t inside = mask.inside.row[r] & at_next(mask.inside);
+    pairs.all += std::popcount(inside);
+    pairs.differing += std::popcount((mask.open.row[r] ^ at_next(mask.open)) & inside);
+  }
+  return pairs;
+}
+
+// The more of all neighbours differ, from as few as in one piece to as many as if samples were
+// thrown at random, the closer the variance comes to that of independent samples, and some more.
+float mask_variance(const MaskFrame& frame, const MaskWeight& sums, const CoverageMask& mask,
+                    const MaskWeights& weights, EdgesAlong edges) {
+  const auto rows = float(sums.row_pairs), columns = float(sums.column_pairs);
+  const float pairs = rows + columns;
+  if (pairs == 0) return 0;
+  const auto n = float(sums.inside_count);
+  const float share = float(sums.open_count) / n, spread = share * (1 - share);
+  const float scale = sums.pair_squares / sqr(sums.all);
+  if (edges != EdgesAlong::neither)
+    return ordered_variance(mask, edges, variation_along(frame.lattice(), weights, edges), n,
+                            spread) /
+           pairs * scale;
+  const float fewest = 4 * std::sqrt(n * std::min(share, 1 - share));  // of a square
+  const float random = 2 * float(sums.neighbours) * spread;
+  const float disorder = std::clamp((pairs - fewest) / std::max(random - fewest, 1.0f), 0.0f, 1.0f);
+  const float of_edge = edge_variance(std::min(rows, columns), std::max(rows, columns));
+  const float of_random = random_variance(n, spread, random);
+  const float of_pair = of_edge + disorder * std::max(of_random - of_edge, 0.0f);
+  return of_pair * scale;
+}
+
+}  // namespace troffer
