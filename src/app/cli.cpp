@@ -149,12 +149,27 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
       "certified: keep cells in this file, and go on from them; kj92: what troffer radiosity made");
 }
 
+// What is seen, at what size.
+void add_view(CLI::App* r, RenderCommand& c, RawOptions& raw) {
+  r->add_option("--size", raw.size, "Image size WxH in pixels [by the scene]");
+  r->add_option("--crop", raw.crop, "Window X0,Y0,X1,Y1 of the image, in pixels");
+  r->add_option("--camera", c.camera, "Camera by name [the first]");
+  r->add_option("--eye", c.eye, "Camera position x,y,z, in place of the scene's camera");
+  r->add_option("--target", c.target, "Point x,y,z that --eye looks at");
+  r->add_option("--up", c.up, "Upward direction x,y,z [0,1,0; pbrt and z-up scenes: 0,0,1]");
+  r->add_option("--fov", c.fov_deg, "Field of view of --eye over the shorter side, degrees")
+      ->check(CLI::Range(0.1, 179.0))
+      ->capture_default_str();
+}
+
 void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   CLI::App* r = app.add_subcommand("render", "Render an image of a scene");
   add_scene_choice(*r, c.scene);
   r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
       ->required()
       ->allow_extra_args(false);
+  r->add_flag("--preview", c.has_preview,
+              "Write -o at once too, coarse, and then again and again as the picture is made");
   r->add_option("--method", c.method, "How light is computed: " + Method::names())
       ->capture_default_str();
   r->add_option("--spp", c.options.spp, "Viewing rays per pixel, before refinement")
@@ -179,15 +194,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->capture_default_str();
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
       ->check(CLI::Range(0, 1 << 20));
-  r->add_option("--size", raw.size, "Image size WxH in pixels [by the scene]");
-  r->add_option("--crop", raw.crop, "Window X0,Y0,X1,Y1 of the image, in pixels");
-  r->add_option("--camera", c.camera, "Camera by name [the first]");
-  r->add_option("--eye", c.eye, "Camera position x,y,z, in place of the scene's camera");
-  r->add_option("--target", c.target, "Point x,y,z that --eye looks at");
-  r->add_option("--up", c.up, "Upward direction x,y,z [0,1,0; pbrt and z-up scenes: 0,0,1]");
-  r->add_option("--fov", c.fov_deg, "Field of view of --eye over the shorter side, degrees")
-      ->check(CLI::Range(0.1, 179.0))
-      ->capture_default_str();
+  add_view(r, c, raw);
   r->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
       ->delimiter(',')
       ->allow_extra_args(false);

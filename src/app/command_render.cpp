@@ -2,22 +2,21 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/commands.h"
 #include "app/outputs.h"
+#include "app/picture_files.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
-#include "image/exposure.h"
-#include "image/write_image.h"
 #include "render/camera.h"
 #include "render/framing.h"
+#include "render/preview.h"
 
 namespace troffer {
 
@@ -108,38 +107,6 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   return j.dump(2) + "\n";
 }
 
-// The exposure of .png: as asked for; `auto` by the picture, which by itself is taken where without
-// one it would come out nearly black or white.
-double exposure_stops(const RenderCommand& c, const Image& picture) {
-  constexpr double most_stops_off = 4;
-  const Brightness b = brightness(picture);
-  if (b.is_black && !c.is_quiet)
-    fmt::print(stderr, "warning: the picture is black: no light reaches what the camera sees\n");
-  if (!c.exposure.empty() && c.exposure != "auto") return std::strtod(c.exposure.c_str(), nullptr);
-  if (c.exposure == "auto") return b.auto_stops;
-  const bool is_shown = std::any_of(c.outputs.begin(), c.outputs.end(), [](const std::string& o) {
-    return image_format(o) == ImageFormat::png;
-  });
-  if (!is_shown || std::abs(b.auto_stops) <= most_stops_off) return 0;
-  if (!c.is_quiet)
-    fmt::print(stderr,
-               "warning: the .png is exposed by {:+.1f} stops (--exposure chooses another)\n",
-               b.auto_stops);
-  return b.auto_stops;
-}
-
-WriteOptions write_options(const RenderCommand& c, const Camera& camera, const Image& picture) {
-  WriteOptions write;
-  write.display = {exposure_stops(c, picture),
-                   c.tone_map == "none" ? ToneMap::none : ToneMap::filmic};
-  write.threads = c.options.threads;
-  if (c.options.has_crop) {
-    const ImageSize whole = image_size(camera, c.options.width, c.options.height);
-    write.window = {c.options.crop[0], c.options.crop[1], whole.width, whole.height};
-  }
-  return write;
-}
-
 // What can be said of the command before any work is done; the files that it will write.
 std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
   c.options.method = parse_method(c.method);
@@ -149,6 +116,16 @@ std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   reserve_cells(c.solution, c.options.method, c.options.indirect, reserved);
   return reserved;
+}
+
+// What is to be said of it in the end, and the exit status.
+int tell(const RenderResult& result, bool is_quiet) {
+  const uint64_t bad = result.statistics.counters.nan_samples;
+  if (!is_quiet && bad > 0)
+    fmt::print(stderr, "warning: {} samples were not finite and count as black\n", bad);
+  if (result.is_complete) return exit_done;
+  fmt::print(stderr, "interrupted: wrote what was finished\n");
+  return exit_interrupted;
 }
 
 }  // namespace
@@ -174,6 +151,12 @@ int run_render(RenderCommand c) {
     c.options.kj92.selection.is_restricted = true;
     c.options.kj92.selection.only = lights_named(scene.scene, c.selected_lights);
   }
+  PreviewFiles files(c, camera);
+  Preview preview([&](const Image& picture) { files.write(picture); });
+  if (c.has_preview) {
+    preview.look(scene, camera, c.options, stop);
+    c.options.preview = &preview;
+  }
   double cpu = cpu_seconds();
   const std::unique_ptr<Preparation> preparation =
       prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
@@ -194,21 +177,15 @@ int run_render(RenderCommand c) {
   seconds.render_cpu = cpu_seconds() - cpu;
 
   mark = Clock::now();
-  const WriteOptions write = write_options(c, camera, result.layers[0].image);
+  const WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet);
   for (const std::string& path : c.outputs) write_image(path, result.layers, write);
+  files.are_replaced();
   if (result.is_complete) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())
     write_file(c.stats, statistics_json(c, result.statistics, seconds, seconds_since(start),
                                         result.is_complete));
-  if (!c.is_quiet && result.statistics.counters.nan_samples > 0)
-    fmt::print(stderr, "warning: {} samples were not finite and count as black\n",
-               result.statistics.counters.nan_samples);
-  if (!result.is_complete) {
-    fmt::print(stderr, "interrupted: wrote what was finished\n");
-    return exit_interrupted;
-  }
-  return exit_done;
+  return tell(result, c.is_quiet);
 }
 
 }  // namespace troffer

@@ -46,6 +46,7 @@ struct RenderCommand {
   std::string solution;                      // kj92, certified: file, or empty
   std::string eye, target, up;               // "x,y,z"; override the camera
   float fov_deg = 60;
+  bool has_preview = false;  // outputs are written while the work is under way too
   bool is_quiet = false;
 };
 int run_render(RenderCommand command);

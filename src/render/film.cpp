@@ -248,6 +248,13 @@ Layer Film::make_layer(Aov aov) const {
   return layer;
 }
 
+std::optional<Rgb> Film::radiance(int x, int y) const {
+  const size_t i = index(x, y);
+  if (pixels_[i].samples == 0) return std::nullopt;
+  const Light light = light_of(i);
+  return as_rgb(light.direct + light.indirect);
+}
+
 std::vector<Layer> Film::layers() const {
   std::vector<Layer> layers(1);
   layers[0].image = Image(window_.width(), window_.height());

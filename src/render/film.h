@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/vec.h"
@@ -69,6 +70,8 @@ class Film {
 
   // (x, y) as in add().
   PixelEstimate estimate(int x, int y) const;
+  // Of the picture, by the samples so far; nothing without any.
+  std::optional<Rgb> radiance(int x, int y) const;
 
   // The picture, then the AOVs in the order given.
   std::vector<Layer> layers() const;

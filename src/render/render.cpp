@@ -20,15 +20,6 @@ namespace {
 // the program without a word.
 constexpr double most_film_bytes = 8.0 * (1 << 30);
 
-PixelRect window_of(const RenderOptions& o, int width, int height) {
-  if (!o.has_crop) return {0, 0, width, height};
-  const PixelRect w{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
-  if (w.x0 < 0 || w.y0 < 0 || w.x1 > width || w.y1 > height || w.x0 >= w.x1 || w.y0 >= w.y1)
-    throw UsageError("--crop is empty or reaches outside the image of " + std::to_string(width) +
-                     "x" + std::to_string(height) + " pixels");
-  return w;
-}
-
 // InputError where the camera's numbers overflow: a place or a lens beyond measure.
 void check_camera(const ViewingCamera& camera, const PixelRect& window, const PreparedScene& scene,
                   const std::string& name) {
@@ -106,7 +97,7 @@ MethodSettings method_settings(const RenderOptions& o) {
 
 void check_options(const PreparedScene& scene, const Camera& camera, const RenderOptions& options) {
   const ImageSize size = image_size(camera, options.width, options.height);
-  const PixelRect window = window_of(options, size.width, size.height);
+  const PixelRect window = wanted_window(options, size.width, size.height);
   if (film_bytes(window, options) > most_film_bytes)
     throw UsageError("an image of " + std::to_string(window.width()) + "x" +
                      std::to_string(window.height()) +
@@ -119,7 +110,7 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   check_options(scene, camera, options);
   const ImageSize size = image_size(camera, options.width, options.height);
   const PixelRect image{0, 0, size.width, size.height};
-  const PixelRect window = window_of(options, size.width, size.height);
+  const PixelRect window = wanted_window(options, size.width, size.height);
   RenderResult result;
   result.statistics.width = window.width();
   result.statistics.height = window.height();

@@ -17,6 +17,8 @@
 
 namespace troffer {
 
+class Preview;
+
 // AOVs that an image can carry besides the picture.
 // sources: how many sources were sampled by shadow rays; probed and found visible; probed and found
 // hidden (kj92). certified: neither proved lit nor dark; proved lit; proved dark.
@@ -46,6 +48,7 @@ struct RenderOptions {
   // Made beforehand by prepare(); null: made by render(), where it is needed.
   const Preparation* preparation = nullptr;
   CellStore* cells = nullptr;  // certified: kept from before, and kept for later; may be null
+  Preview* preview = nullptr;  // gets what is finished, tile by tile; may be null
   Indirect indirect = Indirect::automatic;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera

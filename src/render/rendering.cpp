@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
+#include "render/preview.h"
 
 namespace troffer {
 
@@ -112,11 +113,13 @@ void Rendering::pass(const Fill& fill) {
     fill(plan_.tiles[t], w);
     const CheckContext context(&w, w.rays.size(), name_of_ray);
     if (w.rays.size() > 0) trace(w);
-    tell_progress();
+    tell_progress(plan_.tiles[t]);
   });
 }
 
-void Rendering::tell_progress() {
+// Of a tile that this thread has just been busy with.
+void Rendering::tell_progress(const PixelRect& tile) {
+  if (options_.preview != nullptr) options_.preview->update(film_, tile);
   const std::lock_guard lock(progress_.mutex);
   ++progress_.tiles_done;
   if (report_)
@@ -178,7 +181,7 @@ void Rendering::refine(const std::vector<int>& wanted) {
       return;
     }
     refine(plan_.tiles[t], wanted, work_[slot]);
-    tell_progress();
+    tell_progress(plan_.tiles[t]);
   });
 }
 

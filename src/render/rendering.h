@@ -79,7 +79,7 @@ class Rendering {
   void glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
   double typical_luminance();  // looked at once
   double mean_luminance() const;
-  void tell_progress();
+  void tell_progress(const PixelRect& tile);
 
   const PreparedScene& scene_;
   const ViewingCamera camera_;

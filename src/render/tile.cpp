@@ -1,7 +1,9 @@
 #include "render/tile.h"
 
 #include <algorithm>
+#include <string>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "integrate/purposes.h"
 
@@ -20,6 +22,15 @@ PixelRect whole_tiles(const PixelRect& window, int side, int rings, const PixelR
   const auto last = [&](int v) { return ((v + side - 1) / side + rings) * side; };
   return {std::max(first(window.x0), image.x0), std::max(first(window.y0), image.y0),
           std::min(last(window.x1), image.x1), std::min(last(window.y1), image.y1)};
+}
+
+PixelRect wanted_window(const RenderOptions& o, int width, int height) {
+  if (!o.has_crop) return {0, 0, width, height};
+  const PixelRect w{o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
+  if (w.x0 < 0 || w.y0 < 0 || w.x1 > width || w.y1 > height || w.x0 >= w.x1 || w.y0 >= w.y1)
+    throw UsageError("--crop is empty or reaches outside the image of " + std::to_string(width) +
+                     "x" + std::to_string(height) + " pixels");
+  return w;
 }
 
 TilePlan plan_tiles(const PixelRect& image, const PixelRect& window, int side, bool has_whole_tiles,

@@ -10,6 +10,9 @@
 
 namespace troffer {
 
+// The pixels that are asked for: UsageError where they are none, or not all in the picture.
+PixelRect wanted_window(const RenderOptions& options, int width, int height);
+
 // The window cut into squares, row by row; those at its right and lower border may be smaller.
 std::vector<PixelRect> tiles_of(const PixelRect& window, int side);
 

@@ -1,0 +1,44 @@
+// Pictures of a rendering that is not done yet: a coarse one at once, then what is finished so far.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "image/image.h"
+#include "render/film.h"
+#include "render/render.h"
+
+namespace troffer {
+
+// None of it changes the picture that is made in the end.
+class Preview {
+ public:
+  // Gets what is to be shown, of the size of the window that is rendered; called from one thread at
+  // a time, whichever it is.
+  using Show = std::function<void(const Image&)>;
+  explicit Preview(Show show) : show_(std::move(show)) {}
+
+  // A coarse picture by few paths: shown as soon as there is one, and again when it has become as
+  // fine as about a second allows. The options must be fine (check_options).
+  void look(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
+            const StopFlag& stop);
+
+  // Takes the pixels of a tile that have samples over the coarse ones; shows the picture where the
+  // last one has stood for a while. Any number of threads, as long as nobody adds to this tile.
+  void update(const Film& film, const PixelRect& tile);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show(const Image& image);
+
+  Show show_;
+  PixelRect window_;
+  Image image_;  // empty: nobody has looked yet
+  std::mutex mutex_;
+  bool is_showing_ = false;
+  Clock::time_point next_;  // not before this
+};
+
+}  // namespace troffer
