@@ -178,8 +178,10 @@ int run_render(RenderCommand c) {
 
   mark = Clock::now();
   const WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet);
-  for (const std::string& path : c.outputs) write_image(path, result.layers, write);
-  files.are_replaced();
+  for (const std::string& path : c.outputs) {
+    write_image(path, result.layers, write);
+    files.is_replaced(path);
+  }
   if (result.is_complete) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())

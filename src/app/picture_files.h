@@ -27,8 +27,8 @@ class PreviewFiles {
   // Writes the outputs that are plain files; what takes what is written as it comes (pipes,
   // devices) gets the last picture alone.
   void write(const Image& picture);
-  // The outputs themselves have been written.
-  void are_replaced() { written_.clear(); }
+  // This output itself has been written.
+  void is_replaced(const std::string& path) { std::erase(written_, path); }
 
  private:
   const RenderCommand& command_;
