@@ -25,7 +25,9 @@ struct Pair {
 class PolygonMerger {
  public:
   PolygonMerger(std::span<const Vec3> positions, const PolygonList& pieces, size_t most_corners);
-  MergedPolygons run(std::span<const PolygonEdge> edges);
+  // The edges between two vertices; all of them, in order, before merge().
+  void look_at(std::span<const PolygonEdge> edges);
+  MergedPolygons merge();
 
  private:
   Vec3d position(uint32_t v) const { return Vec3d(positions_[v]); }
@@ -37,10 +39,8 @@ class PolygonMerger {
 
   std::span<const Vec3> positions_;
   const PolygonList& pieces_;
-  std::vector<Vec3d> areas_;  // per piece: unit normal times area
-  std::vector<Pair> pairs_;   // coplanar neighbours
+  std::vector<Pair> pairs_;  // coplanar neighbours
   DisjointSets regions_;
-  std::vector<uint32_t> root_;         // per piece
   std::vector<uint32_t> local_;        // per vertex: number in the region at hand
   std::vector<uint32_t> flat_pieces_;  // of the region at hand: those that merger_ has
   std::vector<uint32_t> vertices_;     // of the region at hand
@@ -50,12 +50,9 @@ class PolygonMerger {
 
 PolygonMerger::PolygonMerger(std::span<const Vec3> positions, const PolygonList& pieces,
                              size_t most_corners)
-    : positions_(positions), pieces_(pieces), regions_(pieces.size()), merger_(most_corners) {
-  areas_.reserve(pieces.size());
-  for (uint32_t p = 0; p < pieces.size(); ++p) areas_.push_back(area_of(p));
-}
+    : positions_(positions), pieces_(pieces), regions_(pieces.size()), merger_(most_corners) {}
 
-// Zero where there is none.
+// Unit normal times area; zero where there is none. Not kept: there may be millions.
 Vec3d PolygonMerger::area_of(uint32_t piece) const {
   const std::span<const uint32_t> c = pieces_[piece];
   const Vec3d origin = position(c[0]);
@@ -67,14 +64,16 @@ Vec3d PolygonMerger::area_of(uint32_t piece) const {
 
 // A first look, at neighbours: whether both may be part of one flat region.
 bool PolygonMerger::is_coplanar(uint32_t a, uint32_t b) const {
-  double square = length_squared(areas_[a]);
-  const double other_square = length_squared(areas_[b]);
-  if (!(square > 0) || !(other_square > 0) || !(dot(areas_[a], areas_[b]) > 0)) return false;
+  Vec3d normal = area_of(a);
+  const Vec3d other = area_of(b);
+  double square = length_squared(normal);
+  const double other_square = length_squared(other);
+  if (!(square > 0) || !(other_square > 0) || !(dot(normal, other) > 0)) return false;
   if (square < other_square) {
     std::swap(a, b);
     square = other_square;
+    normal = other;
   }
-  const Vec3d& normal = areas_[a];
   const Vec3 origin = positions_[pieces_[a][0]];
   const double level = largest_coordinate(origin);
   for (const uint32_t v : pieces_[b]) {
@@ -85,52 +84,63 @@ bool PolygonMerger::is_coplanar(uint32_t a, uint32_t b) const {
   return true;
 }
 
-MergedPolygons PolygonMerger::run(std::span<const PolygonEdge> edges) {
-  for (size_t i = 0; i < edges.size();) {
-    size_t end = i + 1;
-    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high)
-      ++end;
-    const PolygonEdge &e = edges[i], &f = edges[end - 1];
-    if (end - i == 2 && e.is_forward != f.is_forward && e.polygon != f.polygon &&
-        is_coplanar(e.polygon, f.polygon)) {
-      pairs_.push_back({e.polygon, f.polygon, e.low, e.high});
-      regions_.join(e.polygon, f.polygon);
-    }
-    i = end;
-  }
+void PolygonMerger::look_at(std::span<const PolygonEdge> edges) {
+  if (edges.size() != 2) return;
+  const PolygonEdge &e = edges[0], &f = edges[1];
+  if (e.is_forward == f.is_forward || e.polygon == f.polygon || !is_coplanar(e.polygon, f.polygon))
+    return;
+  pairs_.push_back({e.polygon, f.polygon, e.low, e.high});
+  regions_.join(e.polygon, f.polygon);
+}
+
+// Most pieces of curved surfaces have no partner: lists are of those that have.
+MergedPolygons PolygonMerger::merge() {
   const auto n = uint32_t(pieces_.size());
   out_.of_piece.assign(n, no_polygon);
-  out_.polygons.corners.reserve(pieces_.corners.size() / 2);
-  root_.resize(n);
-  std::vector<uint32_t> count(size_t(n) + 1, 0), pair_count(size_t(n) + 1, 0);
-  for (uint32_t p = 0; p < n; ++p) ++count[(root_[p] = regions_.find(p)) + 1];
-  for (const Pair& p : pairs_) ++pair_count[root_[p.a] + 1];
-  for (uint32_t p = 0; p < n; ++p) {
-    count[p + 1] += count[p];
-    pair_count[p + 1] += pair_count[p];
-  }
-  std::vector<uint32_t> members(n), next(count.begin(), count.end() - 1);
-  for (uint32_t p = 0; p < n; ++p) members[next[root_[p]]++] = p;
-  std::vector<Pair> pairs(pairs_.size());
-  next.assign(pair_count.begin(), pair_count.end() - 1);
-  for (const Pair& p : pairs_) pairs[next[root_[p.a]]++] = p;
+  out_.polygons.corners.reserve(pieces_.corners.size());
+  out_.polygons.first.reserve(size_t(n) + 1);
+  std::vector<bool> is_paired(n, false);
+  for (const Pair& p : pairs_) is_paired[p.a] = is_paired[p.b] = true;
+  struct Member {
+    uint32_t root, piece;
+    bool operator<(const Member& m) const {
+      return root != m.root ? root < m.root : piece < m.piece;
+    }
+  };
+  std::vector<Member> members;
+  for (uint32_t p = 0; p < n; ++p)
+    if (is_paired[p]) members.push_back({regions_.find(p), p});
+  std::sort(members.begin(), members.end());
+  std::sort(pairs_.begin(), pairs_.end(), [&](const Pair& p, const Pair& q) {
+    const uint32_t r = regions_.find(p.a), s = regions_.find(q.a);
+    return r != s ? r < s : p.low != q.low ? p.low < q.low : p.high < q.high;
+  });
   local_.assign(positions_.size(), no_polygon);
-  // a region's root is its first piece
-  for (uint32_t r = 0; r < n; ++r)
-    if (count[r] < count[r + 1])
-      add_region({members.data() + count[r], count[r + 1] - count[r]},
-                 {pairs.data() + pair_count[r], pair_count[r + 1] - pair_count[r]});
+  std::vector<uint32_t> region;
+  size_t m = 0, first_pair = 0;
+  for (uint32_t r = 0; r < n; ++r) {
+    if (!is_paired[r]) {
+      add_alone(r);
+      continue;
+    }
+    if (regions_.find(r) != r) continue;  // a region's root is its first piece
+    region.clear();
+    for (; m < members.size() && members[m].root == r; ++m) region.push_back(members[m].piece);
+    size_t end = first_pair;
+    while (end < pairs_.size() && regions_.find(pairs_[end].a) == r) ++end;
+    add_region(region, std::span(pairs_).subspan(first_pair, end - first_pair));
+    first_pair = end;
+  }
   return std::move(out_);
 }
 
 void PolygonMerger::add_alone(uint32_t piece) {
-  if (!(length_squared(areas_[piece]) > 0)) return;
+  if (!(length_squared(area_of(piece)) > 0)) return;
   out_.of_piece[piece] = uint32_t(out_.polygons.size());
   out_.polygons.add(pieces_[piece]);
 }
 
 void PolygonMerger::add_region(std::span<const uint32_t> members, std::span<const Pair> pairs) {
-  if (members.size() == 1) return add_alone(members[0]);
   if (add_flat(members, false)) return;
   // Each is flat with its neighbours but all are not: pairs, those with the longest edges first.
   std::vector<std::pair<double, const Pair*>> order;
@@ -151,7 +161,7 @@ void PolygonMerger::add_region(std::span<const uint32_t> members, std::span<cons
 // only_if_merged, where nothing merges.
 bool PolygonMerger::add_flat(std::span<const uint32_t> members, bool only_if_merged) {
   Vec3d normal;
-  for (const uint32_t p : members) normal += areas_[p];
+  for (const uint32_t p : members) normal += area_of(p);
   const double size = length(normal);
   if (!(size > 0)) return false;
   normal = normal * (1 / size);
@@ -172,7 +182,7 @@ bool PolygonMerger::add_flat(std::span<const uint32_t> members, bool only_if_mer
   merger_.pieces.first.assign(1, 0);
   flat_pieces_.clear();
   for (const uint32_t p : members) {
-    if (!(dot(areas_[p], normal) > 0)) continue;  // a sliver that rounding has turned over
+    if (!(dot(area_of(p), normal) > 0)) continue;  // a sliver that rounding has turned over
     flat_pieces_.push_back(p);
     for (const uint32_t v : pieces_[p]) {
       if (local_[v] == no_polygon) {
@@ -206,7 +216,19 @@ bool PolygonMerger::add_flat(std::span<const uint32_t> members, bool only_if_mer
 
 MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
                               std::span<const PolygonEdge> edges, size_t most_corners) {
-  return PolygonMerger(positions, pieces, most_corners).run(edges);
+  PolygonMerger merger(positions, pieces, most_corners);
+  for_each_edge(edges, [&](std::span<const PolygonEdge> e) { merger.look_at(e); });
+  return merger.merge();
+}
+
+MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
+                              size_t most_corners, const EdgeVisitor& look) {
+  PolygonMerger merger(positions, pieces, most_corners);
+  for_each_edge(pieces, positions.size(), [&](std::span<const PolygonEdge> e) {
+    merger.look_at(e);
+    look(e);
+  });
+  return merger.merge();
 }
 
 }  // namespace troffer

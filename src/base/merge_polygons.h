@@ -33,5 +33,8 @@ struct MergedPolygons {
 // in order of the first pieces. Deterministic; O(n log n) for what tessellation makes.
 MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
                               std::span<const PolygonEdge> edges, size_t most_corners);
+// The same, with edges that are made as they are needed (for_each_edge), and handed on to `look`.
+MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
+                              size_t most_corners, const EdgeVisitor& look);
 
 }  // namespace troffer

@@ -20,29 +20,78 @@ std::vector<uint32_t> weld(std::span<const Vec3> positions) {
   return welded;
 }
 
-std::vector<PolygonEdge> sorted_edges(const PolygonList& polygons, size_t vertex_count) {
-  const auto for_each = [&](const auto& act) {
-    for (uint32_t p = 0; p < polygons.size(); ++p) {
-      const std::span<const uint32_t> c = polygons[p];
-      for (size_t i = 0; i < c.size(); ++i) {
-        const uint32_t from = c[i], to = c[i + 1 == c.size() ? 0 : i + 1];
-        if (from != to) act(PolygonEdge{std::min(from, to), std::max(from, to), p, from < to});
-      }
+namespace {
+
+// Edges from low vertices in [first, end), sorted; begin: where those of each vertex of the list
+// begin among all of them.
+void edges_from(const PolygonList& polygons, const std::vector<uint32_t>& begin, size_t first,
+                size_t end, std::vector<PolygonEdge>& edges) {
+  edges.resize(begin[end] - begin[first]);
+  std::vector<uint32_t> next(begin.begin() + std::ptrdiff_t(first),
+                             begin.begin() + std::ptrdiff_t(end));
+  for (uint32_t& n : next) n -= begin[first];
+  for (uint32_t p = 0; p < polygons.size(); ++p) {
+    const std::span<const uint32_t> c = polygons[p];
+    for (size_t i = 0; i < c.size(); ++i) {
+      const uint32_t from = c[i], to = c[i + 1 == c.size() ? 0 : i + 1];
+      const uint32_t low = std::min(from, to);
+      if (from == to || low < first || low >= end) continue;
+      edges[next[low - first]++] = {low, std::max(from, to), p, from < to};
     }
-  };
-  // Dealt to their low vertices, then sorted there.
-  std::vector<uint32_t> begin(vertex_count + 1, 0);
-  for_each([&](const PolygonEdge& e) { ++begin[e.low + 1]; });
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<PolygonEdge> edges(begin.back());
-  std::vector<uint32_t> next(begin.begin(), begin.end() - 1);
-  for_each([&](const PolygonEdge& e) { edges[next[e.low]++] = e; });
-  for (size_t v = 0; v < vertex_count; ++v)
-    std::sort(edges.begin() + begin[v], edges.begin() + begin[v + 1],
+  }
+  for (size_t v = first; v < end; ++v)
+    std::sort(edges.begin() + (begin[v] - begin[first]),
+              edges.begin() + (begin[v + 1] - begin[first]),
               [](const PolygonEdge& a, const PolygonEdge& b) {
                 return a.high != b.high ? a.high < b.high : a.polygon < b.polygon;
               });
+}
+
+// Where the edges of each low vertex begin, and where all end.
+std::vector<uint32_t> edge_begins(const PolygonList& polygons, size_t vertex_count) {
+  std::vector<uint32_t> begin(vertex_count + 1, 0);
+  for (size_t p = 0; p < polygons.size(); ++p) {
+    const std::span<const uint32_t> c = polygons[p];
+    for (size_t i = 0; i < c.size(); ++i) {
+      const uint32_t from = c[i], to = c[i + 1 == c.size() ? 0 : i + 1];
+      if (from != to) ++begin[std::min(from, to) + 1];
+    }
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  return begin;
+}
+
+}  // namespace
+
+std::vector<PolygonEdge> sorted_edges(const PolygonList& polygons, size_t vertex_count) {
+  std::vector<PolygonEdge> edges;
+  edges_from(polygons, edge_begins(polygons, vertex_count), 0, vertex_count, edges);
   return edges;
+}
+
+void for_each_edge(const PolygonList& polygons, size_t vertex_count, const EdgeVisitor& visit) {
+  constexpr size_t least_part = 1 << 20, most_parts = 16;
+  const std::vector<uint32_t> begin = edge_begins(polygons, vertex_count);
+  const size_t part = std::max(least_part, begin.back() / most_parts);
+  std::vector<PolygonEdge> edges;
+  for (size_t first = 0; first < vertex_count;) {
+    size_t end = first + 1;
+    while (end < vertex_count && begin[end + 1] - begin[first] <= part) ++end;
+    edges_from(polygons, begin, first, end, edges);
+    for_each_edge(edges, visit);
+    first = end;
+  }
+}
+
+void for_each_edge(std::span<const PolygonEdge> sorted, const EdgeVisitor& visit) {
+  for (size_t i = 0; i < sorted.size();) {
+    size_t end = i + 1;
+    while (end < sorted.size() && sorted[end].low == sorted[i].low &&
+           sorted[end].high == sorted[i].high)
+      ++end;
+    visit(sorted.subspan(i, end - i));
+    i = end;
+  }
 }
 
 }  // namespace troffer

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -39,5 +40,11 @@ struct PolygonEdge {
 // All edges but those from a vertex to itself, sorted by low, high and polygon: those of several
 // polygons stand together. O(n log n) at worst, linear where few polygons meet at a vertex.
 std::vector<PolygonEdge> sorted_edges(const PolygonList& polygons, size_t vertex_count);
+
+// Calls visit for each pair of vertices with the edges between them, in the same order. The edges
+// are made a part at a time: large lists take little memory.
+using EdgeVisitor = std::function<void(std::span<const PolygonEdge>)>;
+void for_each_edge(const PolygonList& polygons, size_t vertex_count, const EdgeVisitor& visit);
+void for_each_edge(std::span<const PolygonEdge> sorted, const EdgeVisitor& visit);
 
 }  // namespace troffer

@@ -147,9 +147,13 @@ class Drawing {
 
 FarScene far_scene(const Occluders& occluders) {
   std::vector<std::pair<double, uint32_t>> order;
-  order.reserve(occluders.facet_count());
-  for (uint32_t i = 0; i < occluders.facet_count(); ++i)
+  for (uint32_t i = 0; i < occluders.facet_count(); ++i) {
     order.emplace_back(-area_of(occluders.facet(i)), i);
+    // There may be millions: those that cannot be among the largest go now and then.
+    if (order.size() < 4 * most_large) continue;
+    std::nth_element(order.begin(), order.begin() + std::ptrdiff_t(most_large), order.end());
+    order.resize(most_large);
+  }
   const size_t n = std::min(order.size(), most_large);
   std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(n), order.end());
   FarScene far;

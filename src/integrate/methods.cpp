@@ -15,6 +15,7 @@
 #include "integrate/radiosity_indirect.h"
 #include "integrate/staged_direct.h"
 #include "integrate/wave_integrator.h"
+#include "light/far_cells.h"
 
 namespace troffer {
 
@@ -77,10 +78,22 @@ void add_images(const MethodInput& in, const CertifiedSettings& settings,
       std::make_unique<ImagedDirect>(std::move(beyond), images, occluders, settings_beyond(in));
 }
 
+// What may hide a light that has a certificate: asked for nothing else, and empty where there is
+// none.
+std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
+  const std::vector<Light>& lights = in.scene.scene.lights;
+  const bool is_asked =
+      in.radiosity != nullptr || std::any_of(lights.begin(), lights.end(), [](const Light& light) {
+        return has_surface(light.kind) || has_far_cells(light.kind);
+      });
+  if (!is_asked) return std::make_shared<const Occluders>(Scene());
+  return std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
+}
+
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   const CertifiedSettings settings =
       certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
-  const auto occluders = std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
+  const std::shared_ptr<const Occluders> occluders = occluders_for(in);
   std::unique_ptr<DirectLight> direct =
       std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
   std::unique_ptr<IndirectLight> indirect;

@@ -20,7 +20,7 @@ inline Scene with_levels(Scene scene) {
 // Immutable; members refer to each other, so it stays where it was made.
 struct PreparedScene {
   explicit PreparedScene(Scene s)
-      : scene(with_levels(std::move(s))),
+      : scene(with_room_for_tracer(with_levels(std::move(s)))),
         bsdf_tables(scene),
         glass(scene, bsdf_tables),
         panes(scene, glass),

@@ -14,6 +14,7 @@ namespace {
 // Rooms, not the boxes in them.
 constexpr size_t most_shells = 64;
 constexpr int most_cells = 512;
+constexpr size_t most_triangles = 1 << 19;
 // Triangles are crossed along (slant, 1), in which no edge of a building lies.
 constexpr double slant_x = 0.37139067635410375, slant_y = 0.18490138027430116;
 // Of determinants of two and three differences of coordinates that are at most 1: some dozen
@@ -55,6 +56,28 @@ Crossing crossing(const std::array<Vec3, 3>& triangle, const Vec3& p) {
   const double height = dot(n, d[0]) * (has_left ? 1 : -1);
   if (std::abs(height) <= rounding * size * size * size) return Crossing::unknown;
   return height > 0 ? Crossing::once : Crossing::none;
+}
+
+// Opaque meshes, in order: as many as have most_triangles together, those of fewest triangles
+// first. Walls have few; what is left out is not proved.
+std::vector<uint32_t> meshes_of_rooms(const Scene& scene, const PaneGlass* glass) {
+  std::vector<uint32_t> meshes;
+  for (uint32_t i = 0; i < scene.meshes.size(); ++i) {
+    const Mesh& mesh = scene.meshes[i];
+    if (!mesh.triangles.empty() && !scene.materials[mesh.material].is_alpha_masked &&
+        !(glass != nullptr && glass->is_pane(mesh.material)))
+      meshes.push_back(i);
+  }
+  std::stable_sort(meshes.begin(), meshes.end(), [&](uint32_t a, uint32_t b) {
+    return scene.meshes[a].triangles.size() < scene.meshes[b].triangles.size();
+  });
+  size_t triangles = 0, n = 0;
+  while (n < meshes.size() &&
+         (triangles += scene.meshes[meshes[n]].triangles.size()) <= most_triangles)
+    ++n;
+  meshes.resize(n);
+  std::sort(meshes.begin(), meshes.end());
+  return meshes;
 }
 
 }  // namespace
@@ -125,10 +148,8 @@ bool ClosedShells::Shell::holds(const Vec3& p) const {
 ClosedShells::ClosedShells(const Scene& scene, const PaneGlass* glass) {
   std::vector<Vec3> positions;
   std::vector<std::array<uint32_t, 3>> triangles;
-  for (const Mesh& mesh : scene.meshes) {
-    if (mesh.triangles.empty() || scene.materials[mesh.material].is_alpha_masked ||
-        (glass != nullptr && glass->is_pane(mesh.material)))
-      continue;
+  for (const uint32_t i : meshes_of_rooms(scene, glass)) {
+    const Mesh& mesh = scene.meshes[i];
     const auto base = uint32_t(positions.size());
     positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (const Triangle& t : mesh.triangles)

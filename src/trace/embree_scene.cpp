@@ -116,19 +116,31 @@ void Tracer::Embree::set_filters(RTCGeometry g, uint32_t id) {
   if (test.has_holes || test.has_panes) rtcSetGeometryOccludedFilterFunction(g, occluded_filter);
 }
 
+// Ours, where there is room behind them (with_room_for_tracer): Embree reads vertices in 16-byte
+// loads, past the last one's end. Else copies.
+void Tracer::Embree::set_vertices(RTCGeometry g, const std::vector<Vec3>& positions) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(float));
+  if (positions.capacity() > positions.size()) {
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                               sizeof(Vec3), positions.size());
+    throw_if_failed();
+    return;
+  }
+  auto* p = static_cast<float*>(
+      buffer(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+  for (size_t i = 0; i < positions.size(); ++i)
+    for (size_t a = 0; a < 3; ++a) p[3 * i + a] = positions[i][a];
+}
+
 void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass) {
   const Mesh& mesh = s.meshes[id];
   if (mesh.triangles.empty()) return;
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree owns the copies: it reads vertices in 16-byte loads, past the end of ours.
-  auto* p = static_cast<float*>(buffer(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                       3 * sizeof(float), mesh.positions.size()));
-  for (size_t i = 0; i < mesh.positions.size(); ++i)
-    for (size_t a = 0; a < 3; ++a) p[3 * i + a] = mesh.positions[i][a];
-  auto* t = static_cast<uint32_t*>(buffer(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                          3 * sizeof(uint32_t), mesh.triangles.size()));
-  for (size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (size_t a = 0; a < 3; ++a) t[3 * i + a] = mesh.triangles[i][a];
+  set_vertices(g, mesh.positions);
+  static_assert(sizeof(Triangle) == 3 * sizeof(uint32_t));
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(),
+                             0, sizeof(Triangle), mesh.triangles.size());
+  throw_if_failed();
   HitTest& test = tests[id];
   test.scene = &s;
   test.mesh = &mesh;

@@ -52,6 +52,7 @@ struct Tracer::Embree {
   void throw_if_failed() const;
   void* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, size_t stride,
                size_t count);
+  void set_vertices(RTCGeometry geometry, const std::vector<Vec3>& positions);
   void attach(RTCGeometry geometry, uint32_t id);
   void add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass);
   void add_spheres(const Scene& s, const PaneGlass* glass);

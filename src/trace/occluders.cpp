@@ -81,41 +81,55 @@ bool is_outside(const Vec3& centre, float radius, const PlaneSet& planes) {
   return false;
 }
 
-// The tree as rtcBuildBVH makes it; children of a node lie where its allocator put them.
+// The tree as rtcBuildBVH makes it; children of a node lie where its allocator put them. Leaves,
+// which are most of it, take as little as they can.
 struct RawNode {
   uint32_t child_count = 0;  // 0: a leaf
   uint32_t item_count = 0;
+};
+struct RawInner : RawNode {
   RawNode* child[8] = {};
   RTCBounds bounds[8] = {};
+};
+struct RawLeaf : RawNode {
   uint32_t items[leaf_size] = {};
 };
 
-RawNode* new_node(RTCThreadLocalAllocator allocator) {
-  return new (rtcThreadLocalAlloc(allocator, sizeof(RawNode), 64)) RawNode;
+const RawInner& inner(const RawNode& n) {
+  return static_cast<const RawInner&>(n);
+}
+const RawLeaf& leaf(const RawNode& n) {
+  return static_cast<const RawLeaf&>(n);
+}
+
+template <class T>
+T* new_node(RTCThreadLocalAllocator allocator) {
+  return new (rtcThreadLocalAlloc(allocator, sizeof(T), alignof(T))) T;
 }
 
 void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void*) {
-  RawNode* node = new_node(allocator);
+  auto* node = new_node<RawInner>(allocator);
   node->child_count = count;
-  return node;
+  return static_cast<RawNode*>(node);
 }
 
 void set_children(void* node, void** children, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i)
-    static_cast<RawNode*>(node)->child[i] = static_cast<RawNode*>(children[i]);
+  auto* of = static_cast<RawInner*>(static_cast<RawNode*>(node));
+  for (unsigned i = 0; i < count; ++i) of->child[i] = static_cast<RawNode*>(children[i]);
 }
 
 void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i) static_cast<RawNode*>(node)->bounds[i] = *bounds[i];
+  auto* of = static_cast<RawInner*>(static_cast<RawNode*>(node));
+  for (unsigned i = 0; i < count; ++i) of->bounds[i] = *bounds[i];
 }
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives,
                   size_t count, void*) {
-  RawNode* node = new_node(allocator);
+  auto* node = new_node<RawLeaf>(allocator);
   node->item_count = uint32_t(count);
   for (size_t i = 0; i < count; ++i) node->items[i] = primitives[i].primID;
   std::sort(node->items, node->items + count);
-  return node;
+  return static_cast<RawNode*>(node);
 }
 
 struct Device {
@@ -141,7 +155,7 @@ Box bounds_of(const Quad& q) {
 }
 
 // Embree's tree over the boxes; it lives as long as `embree`.
-const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive>& boxes) {
+const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive> boxes) {
   if (embree.device == nullptr) throw EnvironmentError("cannot start Embree");
   embree.bvh = rtcNewBVH(embree.device);
   RTCBuildArguments args = rtcDefaultBuildArguments();
@@ -150,6 +164,10 @@ const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive>& bo
   args.maxDepth = 64;
   args.minLeafSize = 1;
   args.maxLeafSize = leaf_size;
+  // Many facets: full leaves, in a quarter of the nodes; shafts that cross curved surfaces are
+  // asked for up to a third faster. Few large ones are told apart better one by one.
+  constexpr size_t many = 100'000;
+  args.sahBlockSize = boxes.size() > many ? leaf_size : 1;
   args.traversalCost = 1;
   args.intersectionCost = 1;
   args.bvh = embree.bvh;
@@ -171,7 +189,7 @@ const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive>& bo
 
 // Child i of a node, but for where it is; a place without a child has nothing in it.
 template <class Node>
-void copy_child(const RawNode& raw, uint32_t i, Node& node) {
+void copy_child(const RawInner& raw, uint32_t i, Node& node) {
   const bool is_used = i < raw.child_count;
   const RTCBounds& b = raw.bounds[i];
   const float lower[3] = {b.lower_x, b.lower_y, b.lower_z};
@@ -185,20 +203,28 @@ void copy_child(const RawNode& raw, uint32_t i, Node& node) {
 }
 
 // The first of the leaf's items in the list.
-uint32_t copy_leaf(const RawNode& leaf, std::vector<uint32_t>& items) {
+uint32_t copy_leaf(const RawLeaf& raw, std::vector<uint32_t>& items) {
   const auto first = uint32_t(items.size());
-  items.insert(items.end(), leaf.items, leaf.items + leaf.item_count);
+  items.insert(items.end(), raw.items, raw.items + raw.item_count);
   return first;
+}
+
+size_t count_inner(const RawNode& node) {
+  if (node.child_count == 0) return 0;
+  size_t n = 1;
+  for (uint32_t i = 0; i < node.child_count; ++i) n += count_inner(*inner(node).child[i]);
+  return n;
 }
 
 // Copied depth first: the layout then does not depend on who allocated what.
 template <class Node>
 void copy_tree(const RawNode& root, std::vector<Node>& nodes, std::vector<uint32_t>& leaf_items) {
+  nodes.reserve(count_inner(root));
   struct Open {
-    const RawNode* raw;
+    const RawInner* raw;
     uint32_t parent, slot;
   };
-  std::vector<Open> open{{&root, 0, 8}};
+  std::vector<Open> open{{&inner(root), 0, 8}};
   while (!open.empty()) {
     const Open o = open.back();
     open.pop_back();
@@ -210,9 +236,9 @@ void copy_tree(const RawNode& root, std::vector<Node>& nodes, std::vector<uint32
       if (i >= o.raw->child_count) continue;
       const RawNode* child = o.raw->child[i];
       if (child->child_count == 0)
-        node.child[i] = copy_leaf(*child, leaf_items);
+        node.child[i] = copy_leaf(leaf(*child), leaf_items);
       else
-        open.push_back({child, index, i});
+        open.push_back({&inner(*child), index, i});
     }
   }
 }
@@ -221,9 +247,9 @@ void copy_tree(const RawNode& root, std::vector<Node>& nodes, std::vector<uint32
 
 void Occluders::build_tree() {
   std::vector<RTCBuildPrimitive> boxes;
-  boxes.reserve(facets_.size() + others_.size());
-  for (const Quad& q : facets_)
-    boxes.push_back(build_primitive(bounds_of(q), uint32_t(boxes.size())));
+  boxes.reserve(facet_count() + others_.size());
+  for (uint32_t i = 0; i < facet_count(); ++i)
+    boxes.push_back(build_primitive(bounds_of(facet(i)), i));
   for (const Other& o : others_) boxes.push_back(build_primitive(o.bounds, uint32_t(boxes.size())));
   if (boxes.size() <= leaf_size) {
     for (uint32_t i = 0; i < boxes.size(); ++i) leaf_items_.push_back(i);
@@ -231,9 +257,11 @@ void Occluders::build_tree() {
     return;
   }
   Device embree;
-  const RawNode& root = build_raw_tree(embree, boxes);
+  const size_t items = boxes.size();
+  const RawNode& root = build_raw_tree(embree, std::move(boxes));
+  leaf_items_.reserve(items);
   if (root.child_count == 0) {
-    copy_leaf(root, leaf_items_);
+    copy_leaf(leaf(root), leaf_items_);
     root_leaf_count_ = root.item_count;
     return;
   }
@@ -242,7 +270,7 @@ void Occluders::build_tree() {
 
 void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found) const {
   const PlaneSet set(planes);
-  const auto facets = uint32_t(facets_.size());
+  const auto facets = uint32_t(facet_count());
   // False when the list has become too long.
   const auto look_at_leaf = [&](uint32_t first, uint32_t count) {
     for (uint32_t i = first; i < first + count; ++i) {
@@ -260,7 +288,7 @@ void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found)
         }
         if (found.rounds.size() >= most) return false;
         found.rounds.push_back(o.round);
-      } else if (!is_outside(facets_[item], set)) {
+      } else if (!is_outside(facet(item), set)) {
         if (found.facets.size() >= most) return false;
         found.facets.push_back(item);
       }
@@ -292,7 +320,7 @@ void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found)
 }
 
 bool Occluders::may_meet(uint32_t facet, std::span<const Plane> planes) const {
-  return !is_outside(facets_[facet], PlaneSet(planes));
+  return !is_outside(this->facet(facet), PlaneSet(planes));
 }
 
 uint32_t Occluders::facet_of(uint32_t geometry, uint32_t primitive) const {

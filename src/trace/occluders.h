@@ -8,6 +8,7 @@
 // these hide.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -31,8 +32,12 @@ class Occluders {
   // … and what panes are, which hide nothing: none if null.
   Occluders(const Scene& scene, const PaneGlass* glass);
 
-  size_t facet_count() const { return facets_.size(); }
-  const Quad& facet(uint32_t id) const { return facets_[id]; }
+  size_t facet_count() const { return component_.size(); }
+  Quad facet(uint32_t id) const {
+    if (!quads_.empty()) return quads_[id];
+    const Corners& c = corners_[id];
+    return {vertices_[c[0]], vertices_[c[1]], vertices_[c[2]], vertices_[c[3]]};
+  }
   // The facet that a hit (trace/ray.h) lies on; no_facet for what is none.
   uint32_t facet_of(uint32_t geometry, uint32_t primitive) const;
 
@@ -81,8 +86,15 @@ class Occluders {
   void join_and_add(const Scene& scene, uint32_t mesh);
   void add_others(const Scene& scene, const PaneGlass* glass);
   void build_tree();
+  void reserve(const Scene& scene);
 
-  std::vector<Quad> facets_;
+  // Facets, in one way or the other: with their vertices, or, of large scenes, by their numbers,
+  // which take a third of the memory and more time to look at.
+  std::vector<Quad> quads_;
+  using Corners = std::array<uint32_t, 4>;  // a triangle repeats its last
+  std::vector<Corners> corners_;
+  std::vector<Vec3> vertices_;  // of all meshes
+  bool is_large_ = false;
   std::vector<uint32_t> component_;  // per facet
   std::vector<Component> components_;
   // What is no facet: its bounds, and where it is flat a facet that covers it.

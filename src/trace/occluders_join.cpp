@@ -23,7 +23,6 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
     parts.join(corners[0], corners[2]);
     triangles.add(corners);
   }
-  const std::vector<PolygonEdge> edges = sorted_edges(triangles, mesh.positions.size());
 
   // Components, closed unless an edge says otherwise.
   std::vector<uint32_t> component(mesh.positions.size(), no_facet);
@@ -35,21 +34,24 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
     }
     return c;
   };
-  for (size_t i = 0; i < edges.size();) {
-    size_t end = i;
-    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high)
-      ++end;
-    if (end - i != 2 || edges[i].is_forward == edges[i + 1].is_forward)
-      components_[component_at(edges[i].low)].is_closed = false;
-    i = end;
-  }
-
-  const MergedPolygons merged = merge_polygons(mesh.positions, triangles, edges, 4);
-  const auto first_facet = uint32_t(facets_.size());
+  const MergedPolygons merged =
+      merge_polygons(mesh.positions, triangles, 4, [&](std::span<const PolygonEdge> edges) {
+        const uint32_t c = component_at(edges[0].low);
+        if (edges.size() != 2 || edges[0].is_forward == edges[1].is_forward)
+          components_[c].is_closed = false;
+      });
+  const auto first_facet = uint32_t(facet_count());
+  const auto first_vertex = uint32_t(vertices_.size());
+  if (is_large_) vertices_.insert(vertices_.end(), mesh.positions.begin(), mesh.positions.end());
   for (size_t i = 0; i < merged.polygons.size(); ++i) {
     const std::span<const uint32_t> c = merged.polygons[i];
-    const auto corner = [&](size_t k) { return mesh.positions[c[std::min(k, c.size() - 1)]]; };
-    facets_.push_back({corner(0), corner(1), corner(2), corner(3)});
+    const auto corner = [&](size_t k) { return c[std::min(k, c.size() - 1)]; };
+    const auto vertex = [&](size_t k) { return mesh.positions[corner(k)]; };
+    if (is_large_)
+      corners_.push_back({first_vertex + corner(0), first_vertex + corner(1),
+                          first_vertex + corner(2), first_vertex + corner(3)});
+    else
+      quads_.push_back({vertex(0), vertex(1), vertex(2), vertex(3)});
     component_.push_back(component_at(c[0]));
   }
   std::vector<uint32_t>& facet_of = facet_of_[mesh_index];
@@ -100,7 +102,22 @@ void Occluders::add_others(const Scene& scene, const PaneGlass* glass) {
   }
 }
 
+// Room for the most there can be: what is not needed of it is never touched, and growing would
+// copy.
+void Occluders::reserve(const Scene& scene) {
+  constexpr size_t large = 1 << 18;
+  const size_t triangles = triangle_count(scene);
+  is_large_ = triangles > large;
+  component_.reserve(triangles);
+  if (!is_large_) return quads_.reserve(triangles);
+  corners_.reserve(triangles);
+  size_t vertices = 0;
+  for (const Mesh& mesh : scene.meshes) vertices += mesh.positions.size();
+  vertices_.reserve(vertices);
+}
+
 Occluders::Occluders(const Scene& scene, const PaneGlass* glass) : facet_of_(scene.meshes.size()) {
+  reserve(scene);
   for (uint32_t i = 0; i < scene.meshes.size(); ++i)
     if (!scene.meshes[i].triangles.empty() &&
         !scene.materials[scene.meshes[i].material].is_alpha_masked &&

@@ -19,6 +19,11 @@ Tracer::Tracer(const Scene& scene, const PaneGlass* glass)
     : embree_(std::make_unique<Embree>(scene, glass)),
       glass_(embree_->panes != nullptr ? glass : nullptr) {}
 
+Scene with_room_for_tracer(Scene scene) {
+  for (Mesh& mesh : scene.meshes) mesh.positions.reserve(mesh.positions.size() + 1);
+  return scene;
+}
+
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;

@@ -33,6 +33,9 @@ struct RayLog {
   std::vector<Batch> batches;
 };
 
+// The same scene, its vertices such that a tracer needs no copies of them; not to be changed then.
+Scene with_room_for_tracer(Scene scene);
+
 // The acceleration structure of a scene, which must outlive it. Immutable and safe to use from
 // many threads; results do not depend on how many. Rays that are not finite or reach beyond 1e18
 // hit nothing and count as occluded.

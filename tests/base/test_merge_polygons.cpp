@@ -115,3 +115,37 @@ TEST_CASE("quadrilaterals and polygons merge too; nothing at all does not") {
   m = merge_polygons({}, {}, {}, 4);
   CHECK(m.polygons.size() == 0);
 }
+
+TEST_CASE("edges by parts are those of the sorted list, and merge the same") {
+  // A rough grid, flat in one half: more edges than one part has.
+  constexpr uint32_t n = 480;
+  std::vector<Vec3> p;
+  PolygonList list;
+  Random r(3);
+  for (uint32_t y = 0; y <= n; ++y)
+    for (uint32_t x = 0; x <= n; ++x)
+      p.push_back({float(x), float(y), x < n / 2 ? 0.0f : r.next_float()});
+  for (uint32_t y = 0; y < n; ++y)
+    for (uint32_t x = 0; x < n; ++x) {
+      const uint32_t a = y * (n + 1) + x;
+      list.add(std::array<uint32_t, 3>{a, a + 1, a + n + 2});
+      list.add(std::array<uint32_t, 3>{a, a + n + 2, a + n + 1});
+    }
+  const std::vector<PolygonEdge> sorted = sorted_edges(list, p.size());
+  REQUIRE(sorted.size() > (size_t(1) << 20));
+  size_t at = 0, wrong = 0;
+  const MergedPolygons parts = merge_polygons(p, list, 4, [&](std::span<const PolygonEdge> edges) {
+    for (const PolygonEdge& e : edges) {
+      const PolygonEdge& f = sorted[at++];
+      if (e.low != f.low || e.high != f.high || e.polygon != f.polygon ||
+          e.is_forward != f.is_forward || e.low != edges[0].low || e.high != edges[0].high)
+        ++wrong;
+    }
+  });
+  CHECK(at == sorted.size());
+  CHECK(wrong == 0);
+  const MergedPolygons whole = merge_polygons(p, list, sorted, 4);
+  CHECK(parts.of_piece == whole.of_piece);
+  CHECK(parts.polygons.corners == whole.polygons.corners);
+  CHECK(whole.polygons.size() < list.size() * 3 / 4);
+}

@@ -136,6 +136,38 @@ double seconds_of(clockid_t clock) {
 
 }  // namespace
 
+TEST_CASE("what lies elsewhere changes no facet, however many triangles it has") {
+  const Scene few = soup(7, 2000);
+  Scene many = few;
+  constexpr int others = (1 << 18) + 1;
+  many.meshes.push_back(soup(8, others).meshes[0]);
+  for (Vec3& p : many.meshes[1].positions) p.x += 10;
+  const Occluders small(few), large(many);
+  REQUIRE(large.facet_count() > others);
+  for (uint32_t f = 0; f < small.facet_count(); ++f) CHECK(small.facet(f) == large.facet(f));
+  for (uint32_t t = 0; t < 2000; ++t) CHECK(small.facet_of(0, t) == large.facet_of(0, t));
+  Random r(9);
+  size_t gathered = 0;
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Plane> planes{{{1, 0, 0}, 5}};
+    for (int i = 0; i < 6; ++i) {
+      const Vec3 n = sphere_from_square(r.next_vec2());
+      planes.push_back(plane_through(random_point(r) + n * 0.2f, n));
+    }
+    const auto ids = [&](const Occluders& occluders) {
+      Occluders::Found found;
+      occluders.gather(planes, 1000000, found);
+      CHECK(found.is_complete);
+      std::sort(found.facets.begin(), found.facets.end());
+      return found.facets;
+    };
+    const std::vector<uint32_t> expected = ids(small);
+    CHECK(ids(large) == expected);
+    gathered += expected.size();
+  }
+  CHECK(gathered > 1000);
+}
+
 TEST_CASE("the tree is the same, whatever threads there are") {
   const Scene scene = piles();
   Occluders::Found one;

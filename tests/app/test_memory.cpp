@@ -1,0 +1,86 @@
+// What triangles cost.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// A bent and rough surface of 2 n² triangles, none of which lies in its neighbour's plane.
+std::string rough_ply(int n) {
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string((n + 1) * (n + 1)) +
+      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+      std::to_string(2 * n * n) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto add = [&](const auto& value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    text.append(bytes, sizeof value);
+  };
+  uint32_t random = 1;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      random = random * 1664525 + 1013904223;
+      const float x = 8.0f * float(i) / float(n) - 4, y = 8.0f * float(j) / float(n) - 4;
+      add(x);
+      add(y);
+      add(0.2f * std::sin(3 * x) * std::cos(2 * y) + 0.001f * float(random >> 16) / 65536.0f);
+    }
+  const auto face = [&](int a, int b, int c) {
+    add(uint8_t{3});
+    add(int32_t{a});
+    add(int32_t{b});
+    add(int32_t{c});
+  };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i;
+      face(a, a + 1, a + n + 2);
+      face(a, a + n + 2, a + n + 1);
+    }
+  return text;
+}
+
+std::string scene_with(const std::string& lights) {
+  return "LookAt 3.5 3.5 2  0 0 0  0 0 1\nCamera \"perspective\"\n"
+         "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 12\nWorldBegin\n"
+         "Shape \"plymesh\" \"string filename\" \"rough.ply\"\n" +
+         lights;
+}
+
+double peak_mb(const Folder& folder, const std::string& scene) {
+  const Finished f = run_program(
+      folder, {"render", scene, "-o", folder.path("o.exr"), "--stats", folder.path("s.json"),
+               "--error", ".1", "--spp", "1", "--threads", "2", "--quiet"});
+  CHECK(f.status == 0);
+  return nlohmann::json::parse(read_file(folder.path("s.json")))["peak_memory_mb"];
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the default takes less than 200 bytes for a triangle under lights, 130 where none asks") {
+  constexpr int n = 600, few = 4;
+  const std::string lamps =
+      "AttributeBegin\nTranslate 0 0 2.5\nAreaLightSource \"diffuse\" \"rgb L\" [12 11 10]\n"
+      "Shape \"disk\" \"float radius\" .3\nAttributeEnd\n";
+  const std::string point = "LightSource \"point\" \"point3 from\" [0 0 2]\n";
+  for (const bool is_asked : {true, false}) {
+    const Folder folder;
+    const std::string scene = folder.write("s.pbrt", scene_with(is_asked ? lamps : point));
+    folder.write("rough.ply", rough_ply(few));
+    const double least = peak_mb(folder, scene);
+    folder.write("rough.ply", rough_ply(n));
+    const double per_triangle = (peak_mb(folder, scene) - least) * (1 << 20) / (2 * n * n);
+    CAPTURE(is_asked);
+    MESSAGE(per_triangle << " bytes for a triangle");
+    CHECK(per_triangle < (is_asked ? 200 : 130));
+  }
+}
