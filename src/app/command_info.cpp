@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/luminaire_options.h"
 #include "app/printable.h"
+#include "app/process.h"
 #include "base/box.h"
 #include "base/error.h"
 #include "import/import.h"
@@ -16,6 +17,25 @@ namespace troffer {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+template <class T>
+size_t bytes_of(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
+size_t geometry_bytes(const Scene& scene) {
+  size_t bytes = bytes_of(scene.spheres) + bytes_of(scene.disks);
+  for (const Mesh& m : scene.meshes)
+    bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.triangles) +
+             bytes_of(m.lights);
+  return bytes;
+}
+
+size_t texture_bytes(const Scene& scene) {
+  size_t bytes = 0;
+  for (const Texture& t : scene.textures) bytes += bytes_of(t.texels8) + bytes_of(t.texels_float);
+  return bytes;
+}
 
 Json info_json(const Scene& scene) {
   size_t light_triangles = 0;
@@ -47,6 +67,10 @@ Json info_json(const Scene& scene) {
   j["spheres"] = scene.spheres.size();
   j["disks"] = scene.disks.size();
   j["is_photometric"] = scene.is_photometric;
+  constexpr double mib = 1 << 20;
+  j["memory_mb"] = {{"geometry", double(geometry_bytes(scene)) / mib},
+                    {"textures", double(texture_bytes(scene)) / mib},
+                    {"peak", peak_memory_mb()}};
   j["sources"] = Json::array();
   for (size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& e = scene.lights[i];
@@ -64,6 +88,10 @@ void print_text(const Scene& scene, const Json& j) {
   fmt::print("scene      {}\n", printable(scene.file));
   for (const char* key : {"triangles", "meshes", "materials", "textures", "spheres", "disks"})
     fmt::print("{:<10} {}\n", key, j[key].get<size_t>());
+  const Json& memory = j["memory_mb"];
+  fmt::print("memory     {:.1f} MB of geometry, {:.1f} MB of textures; {:.1f} MB to read them\n",
+             memory["geometry"].get<double>(), memory["textures"].get<double>(),
+             memory["peak"].get<double>());
   const Boxd box = bounds_in_file(scene);
   // Of a scene far from its file's origin the millimetres too.
   const int digits = scene.origin == Vec3d{} ? 6 : 9;

@@ -157,6 +157,10 @@ TEST_CASE("info tells what is there") {
   CHECK(j["lights"] == Json{"emitter0"});
   CHECK(j["cameras"].size() == 1);
   CHECK(j["bounds"] == Json::parse("[[-2,-2,0],[2,2,2]]"));
+  CHECK(j["memory_mb"]["geometry"] > 0);
+  CHECK(j["memory_mb"]["geometry"] < 0.001);
+  CHECK(j["memory_mb"]["textures"] == 0);
+  CHECK(j["memory_mb"]["peak"] > 1);
   CHECK(run_well(folder, {"info", scene}).out.find("emitter0") != std::string::npos);
 }
 
