@@ -29,18 +29,23 @@ float squared_differences(size_t n, const float* __restrict a, const float* __re
   return sum;
 }
 
-double changes(std::span<const float> values) {
-  return double(squared_differences(values.size() - 1, values.data(), values.data() + 1));
+// Of values `steps` apart, as if there were as many such pairs as neighbours.
+double changes(std::span<const float> values, size_t steps) {
+  if (values.size() <= steps) return 0;
+  const size_t n = values.size() - steps;
+  const double sum = double(squared_differences(n, values.data(), values.data() + steps));
+  return sum * double(values.size() - 1) / double(n);
 }
 
-// Of the variance that strata tell, which keep the share `kept` of that of independent samples, so
-// much is left by the sequence, which has strata of other shapes and sizes as well (measured:
-// docs/certified.md). Strips gain nothing more before they fit nearly all that hides the source.
+// Of the variance that strata tell so much is left by the sequence, which has strata of other
+// shapes and sizes as well: the less, the more of it goes with smaller strata. kept: what
+// neighbours differ by, of what samples a few strata apart do (measured: docs/certified.md).
 double left_by_squares(double kept) {
-  return 0.3 + 0.7 * sqr(kept * kept * kept);
+  const double fine = std::clamp((kept - 0.6) / 0.38, 0.0, 1.0);
+  return 0.3 + 0.7 * fine * fine * fine;
 }
 double left_by_strips(double kept) {
-  return 0.3 + 0.7 * std::min(kept / 0.6, 1.0);
+  return 0.3 + 0.7 * sqr(kept);
 }
 
 }  // namespace
@@ -49,30 +54,28 @@ void RaySpread::begin(uint32_t blocks, uint32_t of_block) {
   blocks_ = blocks;
   of_block_ = of_block;
   neighbours_.clear();
-  random_ = 0;
+  apart_ = {};
 }
 
 // Of the rays in the order of one of their numbers, of which each block has one in each of so many
 // equal parts.
-double RaySpread::changes_along(std::span<const float> values, const float* numbers) {
+void RaySpread::sort_along(std::span<const float> values, const float* numbers) {
   sorted_.resize(values.size());
   for (uint32_t b = 0, i = 0; b < blocks_; ++b)
     for (uint32_t k = 0; k < of_block_; ++k, ++i)
       sorted_[uint32_t(numbers[i] * float(of_block_)) * blocks_ + b] = values[i];
-  return changes(sorted_);
 }
 
 void RaySpread::add(std::span<const float> values, std::span<const float> numbers) {
   const auto n = double(values.size());
-  double sum = 0, squares = 0;
-  for (const float v : values) {
-    sum += double(v);
-    squares += double(v) * double(v);
-  }
-  random_ += std::max(squares / n - sqr(sum / n), 0.0) / n;
   const double half = 1 / (2 * n * n);
-  neighbours_.push_back({half * changes(values), half * changes_along(values, numbers.data()),
-                         half * changes_along(values, numbers.data() + values.size())});
+  std::array<double, shapes>& own = neighbours_.emplace_back();
+  for (size_t k = 0; k < shapes; ++k) {
+    if (k > 0) sort_along(values, numbers.data() + (k - 1) * values.size());
+    const std::span<const float> ordered = k == 0 ? values : std::span<const float>(sorted_);
+    own[k] = half * changes(ordered, 1);
+    apart_[k] += half * changes(ordered, steps_apart);
+  }
 }
 
 std::span<const double> RaySpread::variances() {
@@ -85,7 +88,7 @@ std::span<const double> RaySpread::variances() {
   for (size_t k = 0; k < shapes; ++k) {
     double sum = 0;
     for (const std::array<double, shapes>& v : neighbours_) sum += v[k];
-    const double kept = random_ > 0 ? std::min(sum / random_, 1.0) : 1;
+    const double kept = apart_[k] > 0 ? std::min(sum / apart_[k], 1.0) : 1;
     const double left = k == 0 ? left_by_squares(kept) : left_by_strips(kept);
     if (k > 0 && left * sum >= least) continue;
     least = left * sum;

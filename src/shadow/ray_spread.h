@@ -25,13 +25,14 @@ class RaySpread {
   std::span<const double> variances();
 
  private:
-  double changes_along(std::span<const float> values, const float* numbers);
+  void sort_along(std::span<const float> values, const float* numbers);
 
+  static constexpr size_t steps_apart = 4;
   static constexpr size_t shapes = 3;  // squares, strips one way, strips the other way
   uint32_t blocks_ = 1, of_block_ = 1;
   std::vector<float> sorted_;  // values in another order
   std::vector<std::array<double, shapes>> neighbours_;
-  double random_ = 0;  // sum over receivers: what independent rays would err by
+  std::array<double, shapes> apart_{};  // sum over receivers: the same of samples steps_apart apart
   std::vector<double> variances_;
 };
 

@@ -46,6 +46,21 @@ inline std::vector<Quad> leaves(Random& random, int n, float size) {
   return out;
 }
 
+// Hanging flat wires, within 4 degrees or so of upright.
+inline std::vector<Quad> curtain(Random& random, int n, float width) {
+  std::vector<Quad> out;
+  const auto off = [&] {
+    return 0.1f * (random.next_float() + random.next_float() + random.next_float() - 1.5f);
+  };
+  for (int i = 0; i < n; ++i) {
+    const float x = 3 * random.next_float() - 1.5f, y = 0.5f * random.next_float() - 0.25f;
+    const float turn = 6.28f * random.next_float(), to_x = off(), to_y = off();
+    out.push_back(parallelogram_facet({x, y, 0.4f}, Vec3{std::cos(turn), std::sin(turn), 0} * width,
+                                      {to_x, to_y, 1.5f}));
+  }
+  return out;
+}
+
 // n strips of `width`, `step` apart, turned by `angle` from the source's second side.
 inline std::vector<Quad> slats(Random& random, int n, float step, float width, float angle) {
   std::vector<Quad> out;
