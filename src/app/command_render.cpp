@@ -118,6 +118,13 @@ std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
   return reserved;
 }
 
+RenderResult render_with_bar(const PreparedScene& scene, const Camera& camera,
+                             const RenderCommand& c, const StopFlag& stop) {
+  ProgressBar bar("render", c.is_quiet);
+  return render(
+      scene, camera, c.options, [&](double f) { bar.update(f); }, stop);
+}
+
 // What is to be said of it in the end, and the exit status.
 int tell(const RenderResult& result, bool is_quiet) {
   const uint64_t bad = result.statistics.counters.nan_samples;
@@ -140,8 +147,12 @@ int run_render(RenderCommand c) {
   const std::optional<Camera> chosen = choose_camera(imported, c);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
+  Camera camera = chosen.value_or(Camera());
+  PreviewFiles files(c, camera);
+  Preview preview([&](const Image& picture) { files.write(picture); });
+  if (c.has_preview && chosen) preview.sight(imported, camera, c.options);
   const PreparedScene scene(std::move(imported));
-  const Camera camera = chosen ? *chosen : place_camera(scene, c);
+  if (!chosen) camera = place_camera(scene, c);
   seconds.build = seconds_since(mark);
 
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
@@ -151,14 +162,12 @@ int run_render(RenderCommand c) {
     c.options.kj92.selection.is_restricted = true;
     c.options.kj92.selection.only = lights_named(scene.scene, c.selected_lights);
   }
-  PreviewFiles files(c, camera);
-  Preview preview([&](const Image& picture) { files.write(picture); });
   if (c.has_preview) {
     preview.look(scene, camera, c.options, stop);
     c.options.preview = &preview;
   }
   double cpu = cpu_seconds();
-  const std::unique_ptr<Preparation> preparation =
+  const auto preparation =
       prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
                      c.options.threads, c.is_quiet, stop);
   seconds.preprocess_cpu = cpu_seconds() - cpu;
@@ -167,12 +176,7 @@ int run_render(RenderCommand c) {
   const std::unique_ptr<CellStore> cells =
       cells_of_file(scene, c.options.method, c.options.indirect, c.solution);
   c.options.cells = cells.get();
-  RenderResult result;
-  {
-    ProgressBar bar("render", c.is_quiet);
-    result = render(
-        scene, camera, c.options, [&](double f) { bar.update(f); }, stop);
-  }
+  const RenderResult result = render_with_bar(scene, camera, c, stop);
   seconds.render = result.statistics.render_seconds;
   seconds.render_cpu = cpu_seconds() - cpu;
 

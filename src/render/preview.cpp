@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "integrate/purposes.h"
 #include "render/camera.h"
+#include "render/first_sight.h"
 #include "render/tile.h"
 
 namespace troffer {
@@ -114,6 +115,17 @@ std::unique_ptr<Integrator> paths_for(const PreparedScene& scene, const RenderOp
 }
 
 }  // namespace
+
+void Preview::sight(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+  constexpr size_t few_triangles = 200'000;
+  if (triangle_count(scene) <= few_triangles) return;
+  const ImageSize size = image_size(camera, options.width, options.height);
+  const PixelRect window = wanted_window(options, size.width, size.height);
+  constexpr double most_pixels = 1 << 26;  // more may be refused soon (check_options)
+  if (double(window.width()) * window.height() > most_pixels) return;
+  const ViewingCamera viewing(camera, size.width, size.height);
+  show(first_sight(scene, viewing, window, options.threads));
+}
 
 void Preview::look(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
                    const StopFlag& stop) {

@@ -20,6 +20,9 @@ class Preview {
   using Show = std::function<void(const Image&)>;
   explicit Preview(Show show) : show_(std::move(show)) {}
 
+  // Of a scene for which a tracer takes a while to build, at once: a grey picture (first_sight.h).
+  void sight(const Scene& scene, const Camera& camera, const RenderOptions& options);
+
   // A coarse picture by few paths: shown as soon as there is one, and again when it has become as
   // fine as about a second allows. The options must be fine (check_options).
   void look(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,

@@ -1,0 +1,158 @@
+#include "render/first_sight.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr int most_blocks = 128;  // along the longer side
+constexpr size_t triangles_at_a_time = 1 << 16;
+
+// What a block of pixels shows: the nearest surface, and the cosine at which it is seen.
+struct Seen {
+  float distance = std::numeric_limits<float>::infinity();
+  float cosine = 0;
+  void take(float d, float c) {
+    // Of two at one distance always the same: threads come in any order.
+    if (d > distance || (d == distance && c <= cosine)) return;
+    distance = d;
+    cosine = c;
+  }
+};
+
+// The window in blocks, with a ray through the middle of each.
+struct Grid {
+  PixelRect window;
+  int side, across, down;
+  std::vector<Ray> rays;
+
+  Grid(const ViewingCamera& camera, const PixelRect& w) : window(w) {
+    side = std::max(1, (std::max(w.width(), w.height()) + most_blocks - 1) / most_blocks);
+    across = (w.width() + side - 1) / side;
+    down = (w.height() + side - 1) / side;
+    for (int j = 0; j < down; ++j)
+      for (int i = 0; i < across; ++i)
+        rays.push_back(camera.ray({float(w.x0) + (float(i) + 0.5f) * float(side),
+                                   float(w.y0) + (float(j) + 0.5f) * float(side)},
+                                  {0.5f, 0.5f}));
+  }
+};
+
+// Blocks i0 … i1 and j0 … j1, inclusive.
+struct BlockRange {
+  int i0, i1, j0, j1;
+};
+
+class Sight {
+ public:
+  Sight(const ViewingCamera& camera, const Grid& grid)
+      : camera_(camera), grid_(grid), seen_(grid.rays.size()) {}
+
+  void add(const std::array<Vec3, 3>& p) {
+    std::array<Vec2, 3> at;
+    int before = 0;
+    for (size_t k = 0; k < 3; ++k)
+      before += camera_.raster_of(p[k], at[k]) && std::isfinite(at[k].x + at[k].y) ? 1 : 0;
+    const Vec3 area = cross(p[1] - p[0], p[2] - p[0]);
+    const float twice = length(area);
+    if (before == 0 || !(twice > 0) || !std::isfinite(twice)) return;
+    const Vec3 normal = area * (1 / twice);
+    BlockRange r{0, grid_.across - 1, 0, grid_.down - 1};  // partly behind the camera: anywhere
+    if (before == 3) {
+      r = around(at);
+      if (r.i1 < 0 || r.j1 < 0 || r.i0 >= grid_.across || r.j0 >= grid_.down) return;
+      if (r.i0 == r.i1 && r.j0 == r.j1) return take(r.i0, r.j0, p, normal);
+      r = {std::max(r.i0, 0), std::min(r.i1, grid_.across - 1), std::max(r.j0, 0),
+           std::min(r.j1, grid_.down - 1)};
+    }
+    for (int j = r.j0; j <= r.j1; ++j)
+      for (int i = r.i0; i <= r.i1; ++i) intersect(i, j, p, normal);
+  }
+
+  void merge(const Sight& other) {
+    for (size_t i = 0; i < seen_.size(); ++i)
+      seen_[i].take(other.seen_[i].distance, other.seen_[i].cosine);
+  }
+
+  Image image() const {
+    Image image(grid_.window.width(), grid_.window.height());
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const Seen& s =
+            seen_[size_t(y / grid_.side) * size_t(grid_.across) + size_t(x / grid_.side)];
+        constexpr float darkest = 0.05f, brightest = 0.4f;
+        if (std::isfinite(s.distance))
+          image.at(x, y) = Rgb{darkest + (brightest - darkest) * s.cosine};
+      }
+    return image;
+  }
+
+ private:
+  // The blocks that the corners are in; one beyond the window stands for all there.
+  BlockRange around(const std::array<Vec2, 3>& at) const {
+    const auto block = [&](float raster, int first, int count) {
+      const float b = (raster - float(first)) / float(grid_.side);
+      return int(std::floor(std::clamp(b, -1.0f, float(count))));
+    };
+    const auto [x0, x1] = std::minmax({at[0].x, at[1].x, at[2].x});
+    const auto [y0, y1] = std::minmax({at[0].y, at[1].y, at[2].y});
+    return {block(x0, grid_.window.x0, grid_.across), block(x1, grid_.window.x0, grid_.across),
+            block(y0, grid_.window.y0, grid_.down), block(y1, grid_.window.y0, grid_.down)};
+  }
+
+  Seen& seen(int i, int j) { return seen_[size_t(j) * size_t(grid_.across) + size_t(i)]; }
+
+  // A triangle within one block: as if it filled it.
+  void take(int i, int j, const std::array<Vec3, 3>& p, const Vec3& normal) {
+    const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f);
+    seen(i, j).take(camera_.distance(middle), std::abs(dot(normal, camera_.towards_eye(middle))));
+  }
+
+  // Where the block's ray meets the triangle, if it does.
+  void intersect(int i, int j, const std::array<Vec3, 3>& p, const Vec3& normal) {
+    const Ray& ray = grid_.rays[size_t(j) * size_t(grid_.across) + size_t(i)];
+    const float cosine = dot(normal, ray.direction);
+    const float t = dot(normal, p[0] - ray.origin) / cosine;
+    if (!(t > 0) || !std::isfinite(t)) return;
+    const Vec3 at = ray.origin + ray.direction * t;
+    for (size_t k = 0; k < 3; ++k)
+      if (dot(cross(p[(k + 1) % 3] - p[k], at - p[k]), normal) < 0) return;
+    seen(i, j).take(t, std::abs(cosine));
+  }
+
+  const ViewingCamera& camera_;
+  const Grid& grid_;
+  std::vector<Seen> seen_;
+};
+
+}  // namespace
+
+Image first_sight(const Scene& scene, const ViewingCamera& camera, const PixelRect& window,
+                  int threads) {
+  const Grid grid(camera, window);
+  std::vector<Sight> sights(size_t(thread_count(threads)), Sight(camera, grid));
+  for (const Mesh& mesh : scene.meshes) {
+    const size_t n = mesh.triangles.size();
+    parallel_for_slots(
+        (n + triangles_at_a_time - 1) / triangles_at_a_time, threads,
+        [&](size_t part, size_t slot) {
+          const size_t first = part * triangles_at_a_time;
+          const size_t end = std::min(n, first + triangles_at_a_time);
+          for (size_t i = first; i < end; ++i) {
+            const Triangle& t = mesh.triangles[i];
+            sights[slot].add({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+          }
+        });
+  }
+  for (size_t i = 1; i < sights.size(); ++i) sights[0].merge(sights[i]);
+  return sights[0].image();
+}
+
+}  // namespace troffer
