@@ -61,9 +61,12 @@ struct RadianceBatch {
   // Variance of the luminance of `direct` by the sampling of sources; empty where the method does
   // not tell.
   std::vector<float> direct_variance;
-  // What the luminance of `indirect` may be off by and all samples of a pixel or a point share:
-  // standard errors; of points, signed. Empty where the method does not tell.
+  // What the luminance of `indirect` may be off by and all samples of a pixel share: standard
+  // errors. Empty where the method does not tell.
   std::vector<float> shared_error;
+  // … and one draw, of either sign, of what it is off by besides: that of samples is that of their
+  // sum. Empty likewise.
+  std::vector<float> drawn_error;
   // Luminance of that part of `indirect` whose error is told by either of these; how far the rest
   // is off, samples tell by how far they differ. Empty where nothing is told.
   std::vector<float> told_indirect;
@@ -91,6 +94,7 @@ struct RadianceBatch {
     shadow_rays.assign(n, 0);
     direct_variance.clear();
     shared_error.clear();
+    drawn_error.clear();
     told_indirect.clear();
     albedo.assign(n, Rgb{0});
     normal.assign(n, Vec3{});
@@ -103,6 +107,7 @@ struct RadianceBatch {
   // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
   void tell_shared_error() {
     shared_error.resize(direct.size(), 0);
+    drawn_error.resize(direct.size(), 0);
     told_indirect.resize(direct.size(), 0);
   }
   void tell_variance() { direct_variance.assign(direct.size(), 0); }

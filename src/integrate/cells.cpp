@@ -11,11 +11,13 @@ constexpr int short_bounces = 4;
 
 }  // namespace
 
-bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance) const {
+bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
+                        float& half_difference) const {
   if (distance < map_->near()) return false;
   const uint32_t cell = map_->find(hit, distance);
   if (cell == no_cell) return false;
   irradiance = irradiance_[cell] - direct_[cell];
+  half_difference = half_difference_[cell];
   return true;
 }
 

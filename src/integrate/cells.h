@@ -57,9 +57,10 @@ class Cells {
 
   // Follows s.gather.walks, of indices below `rays`, and gathers what they see: s.light.
   void gather(size_t rays, CellsScratch& s, Counters& counters) const;
-  // Irradiance at a place seen from this far, but for what comes straight from sources; false where
-  // there is no cell that is good enough.
-  bool indirect_at(const CellHit& hit, float distance, Rgb& irradiance) const;
+  // Irradiance at a place seen from this far, but for what comes straight from sources, and a draw
+  // of the error of its luminance (CellLight); false where there is no cell that is good enough.
+  bool indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
+                   float& half_difference) const;
   // That of the cell there; black where there is none.
   CellLightAt light_at(const CellHit& hit) const;
 

@@ -76,9 +76,11 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
     const Weights weights = weights_of(at, v, scattering);
     const CellHit hit = cell_hit_of(v, scattering.diffuse);
     Rgb irradiance;
-    if (at.scatterings > 0 &&
-        cells_->indirect_at(hit, wave.hits[i].t * length(at.ray.direction), irradiance)) {
+    float half_difference = 0;
+    if (at.scatterings > 0 && cells_->indirect_at(hit, wave.hits[i].t * length(at.ray.direction),
+                                                  irradiance, half_difference)) {
       out.indirect[at.index] += weights.matte * irradiance;
+      out.drawn_error[at.index] += luminance(weights.matte) * half_difference;
       continue;
     }
     FittedRecord fitted;
@@ -141,16 +143,18 @@ void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
   size_t first = 0;
   for (size_t i = 0; i < s.indices.size(); ++i) {
     Rgb sum;
-    float squares = 0;
+    float squares = 0, halves = 0;
     for (size_t k = first; k < s.ends[i]; ++k) {
       const Rgb light = s.weights[k] * s.cells.light.irradiance[k];
       sum += light;
       squares += sqr(luminance(light));
+      halves += luminance(s.weights[k]) * s.cells.light.half_difference[k];
     }
     const auto n = float(s.ends[i] - first);
     first = s.ends[i];
     out.indirect[s.indices[i]] += sum * (1 / n);
     out.told_indirect[s.indices[i]] += luminance(sum) / n;
+    out.drawn_error[s.indices[i]] += halves / n;
     if (out.direct_variance.empty()) continue;
     const float variance = std::max(squares / n - sqr(luminance(sum) / n), 0.0f) / (n - 1);
     out.direct_variance[s.indices[i]] += variance;
@@ -172,7 +176,7 @@ void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scr
   out.tell_shared_error();
   for (uint32_t i = 0; i < sensors.size(); ++i) {
     out.indirect[i] += s.cells.light.irradiance[i];
-    out.shared_error[i] += s.cells.light.half_difference[i];
+    out.drawn_error[i] += s.cells.light.half_difference[i];
   }
 }
 

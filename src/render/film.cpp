@@ -8,6 +8,9 @@ namespace troffer {
 
 namespace {
 
+// Viewing rays that share a pixel evenly.
+constexpr uint32_t samples_of_block = 4;
+
 Vec3d as_vec(Rgb c) {
   return {double(c.r), double(c.g), double(c.b)};
 }
@@ -83,10 +86,29 @@ double Film::standard_error(const Pixel& p) {
 // What the method tells of its sampling, where it does: samples' errors that are independent add up
 // by their squares, those that they share add up; of light that it does not tell of (what gloss
 // shows), and where it tells of none, the spread of the samples.
-double Film::told_error(const Pixel& p) {
+//
+// Of whole pictures also what samples differ by beyond that: what edges within the pixel leave.
+double Film::told_error(size_t i) const {
+  const Pixel& p = pixels_[i];
   if (!p.has_source_variance) return standard_error(p);
-  const double untold = error_of_mean(p.untold, p.untold_squared, p.samples) * p.samples;
-  return std::sqrt(p.source_variance + sqr(p.shared_error) + sqr(untold)) / p.samples;
+  const double n = p.samples;
+  const double untold = error_of_mean(p.untold, p.untold_squared, n) * n;
+  double independent = p.source_variance + sqr(untold);
+  if (p.is_told_whole) independent += variance_beyond(i, independent);
+  return std::sqrt(independent + sqr(p.shared_error) + sqr(p.drawn_error)) / n;
+}
+
+// Of a pixel's sum, what its samples are spread by more than this. Each four of them lie in four
+// quarters of the pixel: an edge through it leaves the mean of these four half the variance of
+// independent ones; what is smaller than their share of the pixel, all of it.
+double Film::variance_beyond(size_t i, double independent) const {
+  constexpr double gain_of_edges = 0.5;
+  const double n = pixels_[i].samples, fours = std::floor(n / samples_of_block);
+  if (known_.empty() || fours < 2)
+    return gain_of_edges * std::max(sqr(estimate_of(i).standard_error * n) - independent, 0.0);
+  const Known& k = known_[i];
+  const double spread = sqr(error_of_mean(k.fours, k.squares_of_fours, fours) * fours);
+  return std::max(spread * n / (fours * samples_of_block) - independent, 0.0);
 }
 
 PixelEstimate Film::estimate(int x, int y) const {
@@ -156,6 +178,17 @@ void Film::add_glance(int x, int y, const RadianceBatch& batch, size_t i, float 
   glances.add(batch.known[i]);
 }
 
+// so_far: samples, with this one.
+void Film::Known::add_rest(float value, uint32_t so_far) {
+  rest += value;
+  squares_of_rest += value * value;
+  four += value;
+  if (so_far % samples_of_block != 0) return;
+  fours += four;
+  squares_of_fours += four * four;
+  four = 0;
+}
+
 bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
   const size_t at = index(x, y);
   Pixel& p = pixels_[at];
@@ -178,15 +211,16 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
     k.samples.add(batch.known[i]);
     const double rest =
         y_sample - double(luminance(batch.known[i].direct + batch.known[i].indirect));
-    k.rest += float(rest);
-    k.squares_of_rest += float(rest * rest);
+    k.add_rest(float(rest), p.samples);
   }
   if (!batch.direct_variance.empty()) {
     p.source_variance += double(batch.direct_variance[i]);
     p.has_source_variance = true;
   }
   if (!batch.shared_error.empty()) p.shared_error += double(batch.shared_error[i]);
+  if (!batch.drawn_error.empty()) p.drawn_error += double(batch.drawn_error[i]);
   if (!batch.told_indirect.empty()) {
+    p.is_told_whole = true;
     const double untold = double(luminance(indirect)) - double(batch.told_indirect[i]);
     p.untold += untold;
     p.untold_squared += untold * untold;
@@ -237,8 +271,7 @@ Layer Film::make_layer(Aov aov) const {
           layer.image.pixels[i] = as_rgb(first_hits_[i].sources * (1.0 / pixels_[i].samples));
       break;
     case Aov::error:
-      for (size_t i = 0; i < pixels_.size(); ++i)
-        layer.image.pixels[i] = Rgb{float(told_error(pixels_[i]))};
+      for (size_t i = 0; i < pixels_.size(); ++i) layer.image.pixels[i] = Rgb{float(told_error(i))};
       break;
     case Aov::viewing_error:
       for (size_t i = 0; i < pixels_.size(); ++i)

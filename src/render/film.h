@@ -82,9 +82,10 @@ class Film {
     double sum_luminance = 0, sum_luminance_squared = 0;
     double source_variance = 0;  // of the samples' direct light, as far as the method tells it
     double shared_error = 0;     // … of their indirect light, likewise
+    double drawn_error = 0;      // … a draw of it
     double untold = 0, untold_squared = 0;  // luminance of light of which it does not tell
     uint32_t samples = 0;
-    bool has_source_variance = false;
+    bool has_source_variance = false, is_told_whole = false;
   };
   struct Light {
     Vec3d direct, indirect;
@@ -100,6 +101,9 @@ class Film {
   struct Known {
     KnownSums samples, glances;
     float rest = 0, squares_of_rest = 0;  // luminance of samples, less what is known
+    // … summed over fours; those sums, and their squares
+    float four = 0, fours = 0, squares_of_fours = 0;
+    void add_rest(float value, uint32_t so_far);
   };
   size_t index(int x, int y) const {
     return size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
@@ -107,7 +111,8 @@ class Film {
   PixelEstimate estimate_of(size_t i) const;
   Light light_of(size_t i) const;
   static double standard_error(const Pixel& p);
-  static double told_error(const Pixel& p);
+  double told_error(size_t i) const;
+  double variance_beyond(size_t i, double independent) const;
   Layer make_layer(Aov aov) const;
 
   PixelRect window_;

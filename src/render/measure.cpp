@@ -40,7 +40,7 @@ double t_quantile_95(int n) {
 struct Sums {
   Vec3d irradiance;
   double luminance = 0;
-  double shared_error = 0;  // as RadianceBatch has it
+  double shared_error = 0;  // as RadianceBatch::drawn_error has it
 };
 
 struct Worker {
@@ -81,7 +81,7 @@ Sums sum_of_replicate(const Integrator& integrator, uint64_t stream, int samples
       }
       sums.irradiance += Vec3d{double(e.r), double(e.g), double(e.b)};
       sums.luminance += double(luminance(e));
-      if (!w.out.shared_error.empty()) sums.shared_error += double(w.out.shared_error[i]);
+      if (!w.out.drawn_error.empty()) sums.shared_error += double(w.out.drawn_error[i]);
     }
   }
   return sums;

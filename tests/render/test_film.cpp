@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "support/statistics.h"
+
 using namespace troffer;
+using troffer::test::Moments;
 
 namespace {
 
@@ -89,4 +92,47 @@ TEST_CASE("first-hit layers are means over the samples that hit, normals of unit
   CHECK(double(pixel("albedo").g) == doctest::Approx(0.3));
   CHECK(pixel("position") == Rgb{2, 2, 2});
   CHECK(pixel("shadow_rays").r == 3);
+}
+
+namespace {
+
+// What is told of one pixel whose samples the method tells to be without error, but for what they
+// differ by.
+double told_error_of(const std::vector<float>& values, bool expects_glances) {
+  Film film({0, 0, 1, 1}, {Aov::error});
+  if (expects_glances) film.expect_glances();
+  RadianceBatch b;
+  b.reset(values.size());
+  b.tell_variance();
+  b.tell_shared_error();
+  b.known.assign(values.size(), {});
+  for (size_t i = 0; i < values.size(); ++i) {
+    b.direct[i] = Rgb{values[i]};
+    film.add(0, 0, b, i, 0);
+  }
+  return double(film.layers()[1].image.at(0, 0).r);
+}
+
+double independent_error_of(const std::vector<float>& values) {
+  Moments m;
+  for (const float v : values) m.add(double(v));
+  return m.standard_error();
+}
+
+}  // namespace
+
+TEST_CASE("of whole pictures, what samples differ by within a pixel is told") {
+  // An edge: as many samples of each four on either side.
+  std::vector<float> edge, spikes;
+  for (int i = 0; i < 64; ++i) {
+    edge.push_back(i % 2 == 0 ? 1.0f : 2.0f);
+    spikes.push_back(i % 13 == 5 ? 9.0f : 1.0f);
+  }
+  CHECK(told_error_of(edge, true) < 0.01);
+  CHECK(told_error_of(spikes, true) == doctest::Approx(independent_error_of(spikes)).epsilon(0.2));
+  // Of few samples one cannot know: what edges would leave of it.
+  const std::vector<float> few{1, 1, 2, 2};
+  for (const bool expects_glances : {false, true})
+    CHECK(told_error_of(few, expects_glances) ==
+          doctest::Approx(std::sqrt(0.5) * independent_error_of(few)).epsilon(1e-4));
 }

@@ -1,0 +1,78 @@
+// The layer `error` of whole pictures beside what pictures of other random numbers differ by.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/frame.h"
+#include "base/random.h"
+#include "base/warp.h"
+#include "render/pictures.h"
+#include "support/statistics.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+Material metal(float roughness) {
+  Material m;
+  m.kind = MaterialKind::conductor;
+  m.is_reflectance = true;
+  m.base_color.value = Rgb{0.9f};
+  m.roughness.value = roughness;
+  m.roughness_meaning = RoughnessMeaning::alpha;
+  return m;
+}
+
+// Small squares of metal, turned every way, below the light.
+void add_crystals(Scene& s, const Vec3& lower, const Vec3& upper, float side, uint32_t count) {
+  const uint32_t material = add_material(s, metal(0.3f));
+  const auto number = [](uint32_t i, uint32_t k) {
+    return unit_float(uint32_t(hash_of(uint64_t{i}, uint64_t{k}) >> 32));
+  };
+  for (uint32_t i = 0; i < count; ++i) {
+    const Vec3 at = lower + (upper - lower) * Vec3{number(i, 0), number(i, 1), number(i, 2)};
+    const Frame f(sphere_from_square({number(i, 3), number(i, 4)}));
+    const Vec3 u = f.tangent * (0.5f * side), v = f.bitangent * (0.5f * side);
+    add_quad(s, material, {at - u - v, at + u - v, at + u + v, at - u + v});
+  }
+}
+
+// Root mean squares over pixels, of pictures of so many seeds: what is told, over how far they lie
+// from their mean.
+double told_over_made(const PreparedScene& scene, const Camera& camera, RenderOptions o,
+                      int pictures) {
+  o.aovs = {Aov::error};
+  std::vector<Moments> values(size_t(o.width) * size_t(o.height));
+  double told = 0, made = 0;
+  for (int k = 0; k < pictures; ++k) {
+    const RenderResult r = render_now(scene, camera, o);
+    for (size_t i = 0; i < values.size(); ++i) {
+      values[i].add(double(luminance(r.layers[0].image.pixels[i])));
+      told += sqr(double(r.layers[1].image.pixels[i].r)) / pictures;
+    }
+    ++o.seed;
+  }
+  for (const Moments& m : values) made += m.variance_of_mean() * pictures;
+  return std::sqrt(told / made);
+}
+
+}  // namespace
+
+TEST_CASE("told error: of what glitters within a pixel") {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-2, -2, 0}, {2, 2, 2.5f});
+  add_crystals(s, {-0.5f, -0.5f, 1.2f}, {0.5f, 0.5f, 2.2f}, 0.02f, 3000);
+  add_ceiling_light(s, 0.4f, 2.45f, Rgb{50});
+  const PreparedScene scene(std::move(s));
+  RenderOptions o;
+  o.width = 24;
+  o.height = 18;
+  o.threads = 2;
+  o.error = 0.05;
+  const Camera camera = look_at({-1.2f, -1.8f, 1.4f}, {0, 0, 1.7f}, {0, 0, 1}, 40);
+  const double ratio = told_over_made(scene, camera, o, 6);
+  CAPTURE(ratio);
+  CHECK(ratio > 0.9);
+  CHECK(ratio < 2);
+}
