@@ -112,7 +112,9 @@ class Sight {
   // A triangle within one block: as if it filled it.
   void take(int i, int j, const std::array<Vec3, 3>& p, const Vec3& normal) {
     const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f);
-    seen(i, j).take(camera_.distance(middle), std::abs(dot(normal, camera_.towards_eye(middle))));
+    const float distance =
+        camera_.is_perspective() ? camera_.distance(middle) : camera_.depth(middle);
+    seen(i, j).take(distance, std::abs(dot(normal, camera_.towards_eye(middle))));
   }
 
   // Where the block's ray meets the triangle, if it does.
