@@ -48,9 +48,15 @@ void add_block_rays(const ViewingCamera& camera, const Blocks& blocks, int i, in
   }
 }
 
-// One value for each block; false where it was stopped.
+// What paths through the blocks bring, and what they meet first.
+struct Values {
+  Image light, albedo;
+  std::vector<Vec3> normals;  // sums; zero: nothing was met
+};
+
+// False where it was stopped.
 bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blocks& blocks,
-            const RenderOptions& options, const StopFlag& stop, Image& values) {
+            const RenderOptions& options, const StopFlag& stop, Values& values) {
   struct Work {
     std::unique_ptr<IntegratorScratch> scratch;
     ViewingRays rays;
@@ -59,7 +65,8 @@ bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blo
   };
   const uint64_t seed = hash_of(options.seed, uint64_t{0x6c6f'6f6b}, uint64_t(blocks.side));
   std::vector<Work> work(size_t(thread_count(options.threads)));
-  values = Image(blocks.across(), blocks.down());
+  values = {Image(blocks.across(), blocks.down()), Image(blocks.across(), blocks.down()), {}};
+  values.normals.assign(values.light.pixels.size(), Vec3{});
   parallel_for_slots(size_t(blocks.down()), options.threads, [&](size_t row, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
     Work& w = work[slot];
@@ -72,11 +79,53 @@ bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blo
     integrator.radiance(w.rays, *w.scratch, w.radiance, w.counters);
     for (size_t i = 0; i < w.rays.size(); ++i) {
       const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
-      if (is_finite(l))
-        values.at(int(i / paths_of_block), int(row)) += l * (1.0f / float(paths_of_block));
+      if (!is_finite(l)) continue;
+      const size_t at = row * size_t(blocks.across()) + i / paths_of_block;
+      values.light.pixels[at] += l * (1.0f / float(paths_of_block));
+      values.albedo.pixels[at] += w.radiance.albedo[i] * (1.0f / float(paths_of_block));
+      values.normals[at] += w.radiance.normal[i];
     }
   });
   return !stop.load(std::memory_order_relaxed);
+}
+
+// Noise evened out between neighbours that face the same way: what arrives, not what they make of
+// it. Blocks that shine (or are noise far above the mean) are told apart from the others.
+Image smoothed(const Values& v) {
+  constexpr float dark = 0.02f;
+  constexpr double shining = 16;
+  constexpr int reach = 2;
+  const int width = v.light.width, height = v.light.height;
+  Image arriving(width, height), out(width, height);
+  double sum = 0;
+  for (size_t i = 0; i < arriving.pixels.size(); ++i) {
+    arriving.pixels[i] = v.light.pixels[i] / (v.albedo.pixels[i] + Rgb{dark});
+    sum += double(luminance(arriving.pixels[i]));
+  }
+  const auto limit = float(shining * sum / double(arriving.pixels.size()));
+  const auto weight = [&](size_t i, size_t j) {
+    if ((luminance(arriving.pixels[i]) > limit) != (luminance(arriving.pixels[j]) > limit))
+      return 0.0f;
+    const float both = length(v.normals[i]) * length(v.normals[j]);
+    if (!(both > 0)) return i == j ? 1.0f : 0.0f;
+    return std::pow(std::max(0.0f, dot(v.normals[i], v.normals[j]) / both), 16.0f);
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const size_t i = size_t(y) * size_t(width) + size_t(x);
+      Rgb mean;
+      float weights = 0;
+      for (int b = std::max(0, y - reach); b <= std::min(height - 1, y + reach); ++b)
+        for (int a = std::max(0, x - reach); a <= std::min(width - 1, x + reach); ++a) {
+          const size_t j = size_t(b) * size_t(width) + size_t(a);
+          const float w = weight(i, j);
+          mean += arriving.pixels[j] * w;
+          weights += w;
+        }
+      out.pixels[i] =
+          weights > 0 ? mean / weights * (v.albedo.pixels[i] + Rgb{dark}) : v.light.pixels[i];
+    }
+  return out;
 }
 
 // Linear between the middles of blocks.
@@ -136,13 +185,13 @@ void Preview::look(const PreparedScene& scene, const Camera& camera, const Rende
   const int longest = std::max(window_.width(), window_.height());
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(time_to_look);
-  Image values;
+  Values values;
   for (int side = (longest + first_blocks - 1) / first_blocks; side > 0; side /= 2) {
     const Clock::time_point start = Clock::now();
     const Blocks blocks{window_, side};
     if (!sample(*paths, viewing, blocks, options, stop, values)) break;
     const bool is_first = image_.pixels.empty();
-    image_ = spread(values, blocks);
+    image_ = spread(smoothed(values), blocks);
     // The next one has four times as many blocks.
     const Clock::time_point done = Clock::now();
     const bool is_last = side == 1 || done + 4 * (done - start) > end;
