@@ -202,3 +202,15 @@ TEST_CASE("closed or not at any size and place, and where nothing is") {
   CHECK(ClosedShells(nothing, nullptr).is_empty());
   CHECK_FALSE(ClosedShells().hold({0, 0, 0}));
 }
+
+TEST_CASE("a room is found beside a mesh of more triangles than are looked at") {
+  Random r(21);
+  Scene scene;
+  scene.materials.resize(1);
+  add_triangles(scene, 0, bumpy_box(r, 2, {0, 0, 0}, {4, 3, 5}, 0));
+  constexpr size_t many = (1 << 19) + 1;
+  add_triangles(scene, 0, std::vector<Corners>(many, {Vec3{1, 1, 1}, {2, 1, 1}, {1, 2, 1}}));
+  const ClosedShells shells(scene, nullptr);
+  CHECK(shells.hold({2, 1.5f, 2.5f}));
+  CHECK(!shells.hold({5, 1.5f, 2.5f}));
+}
