@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "light/irradiance.h"
+#include "shadow/cell_facets.h"
 
 namespace troffer {
 
@@ -23,6 +24,11 @@ constexpr double told_over_made = 1.3;
 // What a mask costs, in facets of the fine lattice: itself, and each of them by the coarse one.
 constexpr double cost_of_mask = 10, coarse_cost = 0.6;
 
+std::span<const FacetToAdd> facets_of(const SourcePart& part, const PilotMemory& memory,
+                                      size_t cell) {
+  return memory.has_own_facets[cell] != 0 ? memory.facets[cell] : part.facets;
+}
+
 // The plan as it grows: entries of `cells`, which coarse lattices lie over. Sums go along with it.
 class Plan {
  public:
@@ -37,6 +43,10 @@ class Plan {
       m_.pilots[k].member = part.members[(2 * k + 1) * members / (2 * n)];
     m_.costs.clear();
     m_.is_coarse.clear();
+    m_.has_own_facets.assign(m_.cells.size(), m_.cells.size() > 1 ? 1 : 0);
+    m_.facets.resize(std::max(m_.facets.size(), m_.cells.size()));
+    for (size_t c = 0; c < m_.cells.size() && m_.cells.size() > 1; ++c)
+      facets_before(part.hull, m_.cells[c], part.facets, m_.facets[c]);
     const size_t first = m_.cells.size();
     const bool is_coarse = task.options.lattice.rows < fine_lattice.rows;
     for (size_t c = 0; c < first; ++c) look(c, is_coarse);
@@ -56,6 +66,7 @@ class Plan {
     FlatCell first, second;
     if (m_.cells[cell].is_disk || !halve(m_.cells[cell], first, second)) return false;
     count(cell, -1);
+    divide_facets(cell, first, second);
     m_.cells[cell] = first;
     look(cell, false);
     m_.cells.push_back(second);
@@ -110,6 +121,17 @@ class Plan {
            std::max(all * std::max(light, all / (2 * p.sources)), least * least);
   }
 
+  // The halves of a cell have lists of their own.
+  void divide_facets(size_t cell, const FlatCell& first, const FlatCell& second) {
+    const size_t n = m_.cells.size();
+    if (m_.facets.size() <= n) m_.facets.resize(n + 1);
+    m_.has_own_facets.push_back(1);
+    facets_before(part_.hull, second, facets_of(part_, m_, cell), m_.facets[n]);
+    facets_before(part_.hull, first, facets_of(part_, m_, cell), kept_);
+    m_.facets[cell].swap(kept_);
+    m_.has_own_facets[cell] = 1;
+  }
+
   // Adds what pilots see of a cell.
   void look(size_t cell, bool is_coarse);
 
@@ -120,6 +142,7 @@ class Plan {
   SettleMemory& settle_;
   double cost_ = 0;
   size_t most_dark_ = 0;
+  std::vector<FacetToAdd> kept_;
 };
 
 void Plan::look(size_t c, bool is_coarse) {
@@ -133,7 +156,7 @@ void Plan::look(size_t c, bool is_coarse) {
   FacetList& list = settle_.lists[0];
   list.clear();
   list.round().bodies = part_.rounds;
-  list.add_many(frame, part_.facets);
+  list.add_many(frame, facets_of(part_, m_, c));
   list.finish();
   const CellTask task{task_, frame, task_.unoccluded, stream, part_.is_complete, false};
   FacetList& left = settle_.lists[1];
@@ -172,14 +195,15 @@ void plan_cells(const SourceTask& task, const SourcePart& part, uint64_t stream,
   cut_cells(part.cell, part.hull, task.options.cells, memory.cells);
   const bool has_masks = part.is_complete && !(part.facets.empty() && part.rounds.empty());
   if (!has_masks || !(task.promise.error > 0)) {
-    for (const FlatCell& c : memory.cells) out.push_back({c, task.options.lattice});
+    for (const FlatCell& c : memory.cells) out.push_back({c, task.options.lattice, part.facets});
     return;
   }
   Plan plan(task, part, stream, memory, settle);
   while (plan.refine()) {
   }
   for (size_t c = 0; c < memory.cells.size(); ++c)
-    out.push_back({memory.cells[c], memory.is_coarse[c] != 0 ? coarse_lattice : fine_lattice});
+    out.push_back({memory.cells[c], memory.is_coarse[c] != 0 ? coarse_lattice : fine_lattice,
+                   facets_of(part, memory, c)});
 }
 
 }  // namespace troffer

@@ -18,6 +18,7 @@ namespace troffer {
 struct PlannedCell {
   FlatCell cell;
   MaskLattice lattice;
+  std::span<const FacetToAdd> facets;  // of the part, those that may hide some of the cell
 };
 
 struct PilotMemory {
@@ -31,6 +32,8 @@ struct PilotMemory {
   std::vector<double> costs;  // per cell: of its masks by the fine lattice, in facets
   std::vector<uint8_t> is_coarse;
   std::vector<FlatCell> cells;
+  std::vector<std::vector<FacetToAdd>> facets;  // per cell that was halved from another
+  std::vector<uint8_t> has_own_facets;
 };
 
 // Sets `out` to the cells of a flat part. stream: hash of the part's own.

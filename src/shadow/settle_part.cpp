@@ -14,10 +14,11 @@ bool is_mirrored(uint64_t stream, const SourceTask& task, uint32_t member) {
   return (mix64(stream + task.cluster.receivers[member].stream) & 1) != 0;
 }
 
-void set_list(const MaskFrame& frame, const SourcePart& part, FacetList& list) {
+void set_list(const MaskFrame& frame, const SourcePart& part, std::span<const FacetToAdd> facets,
+              FacetList& list) {
   list.clear();
   list.round().bodies = part.rounds;
-  list.add_many(frame, part.facets);
+  list.add_many(frame, facets);
   list.finish();
 }
 
@@ -44,7 +45,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
   plan_cells(task, part, hash_of(stream, task.request.stream, part.members[0]), memory.pilots,
              memory.settle, memory.cells);
   memory.receivers.set(task.cluster, part.members, part.hull);
-  for (const auto& [cell, lattice] : memory.cells) {
+  for (const auto& [cell, lattice, facets] : memory.cells) {
     ++results.counters.cells;
     stream = hash_of(stream, 1u);
     const std::span<const float> unoccluded = unoccluded_of(task, part, cell, memory);
@@ -56,7 +57,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
                           is_mirrored(stream + task.request.stream, task, part.members[0]),
                           part.hull.centre, cell.all_outline(), cell.is_disk);
     if (!part.is_complete) results.rays.frames.push_back(frame);
-    set_list(frame, part, memory.settle.lists[0]);
+    set_list(frame, part, facets, memory.settle.lists[0]);
     const bool is_all = memory.members.size() == part.members.size();
     if (!is_all)
       memory.some_receivers.set(task.cluster, memory.members,
@@ -71,7 +72,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
 bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memory) {
   const MaskFrame frame(part.cell.plane, coarse_lattice, false, part.hull.centre,
                         part.cell.all_outline(), part.cell.is_disk);
-  set_list(frame, part, memory.lists[0]);
+  set_list(frame, part, part.facets, memory.lists[0]);
   return certify({task, frame, task.unoccluded, 0, false, true}, part.hull, memory.lists[0],
                  memory.flags, memory.lists[1]) == Certificate::dark;
 }
@@ -79,7 +80,7 @@ bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memor
 // What is dark, or left out, without a look at it.
 void set_aside(const SourceTask& task, const SourcePart& part, PartMemory& memory,
                SourceResults& results) {
-  memory.cells.assign(1, {part.cell, coarse_lattice});
+  memory.cells.assign(1, {part.cell, coarse_lattice, {}});
   const std::span<const float> unoccluded = unoccluded_of(task, part, part.cell, memory);
   for (const uint32_t m : part.members)
     if (unoccluded[m] > 0)
@@ -148,7 +149,7 @@ void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& me
       continue;
     }
     FacetList& list = memory.settle.lists[0];
-    set_list(frame, part, list);
+    set_list(frame, part, part.facets, list);
     list.round().is_source_round = true;
     list.round().source = {sphere.centre, sphere.radius};
     list.round().entering = entering;

@@ -5,6 +5,8 @@
 
 #include "light/irradiance.h"
 #include "one_source.h"
+#include "shadow/cell_facets.h"
+#include "shadow/cell_points.h"
 #include "shadow/plan_cells.h"
 
 using namespace troffer;
@@ -122,4 +124,41 @@ TEST_CASE(
   part.facets.resize(1);
   part.facets[0].quad = {Vec3{5, 5, 1}, {6, 5, 1}, {6, 6, 1}, {5, 6, 1}};
   CHECK(cells_within(1e9) == 1);
+}
+
+TEST_CASE("masks: what a cell's list leaves out hides nothing of the cell") {
+  Random random(11);
+  size_t all = 0, kept = 0, segments = 0;
+  for (int scene = 0; scene < 300; ++scene) {
+    const FlatSource source = random_source(random);
+    OneSource one(random_receivers(random, 16), source);
+    FlatCell cell = visible_part(source, one.cluster.hull);
+    if (cell.corner_count == 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      FlatCell first, second;
+      if (halve(cell, first, second)) cell = random.next_float() < 0.5f ? first : second;
+    }
+    BruteForceScene world;
+    for (int k = 0; k < 6; ++k) add_random_facets(random, world);
+    std::vector<FacetToAdd> facets, before;
+    for (uint32_t i = 0; i < world.facets.size(); ++i)
+      facets.push_back({world.facets[i], i, false});
+    facets_before(one.cluster.hull, cell, facets, before);
+    all += facets.size();
+    kept += before.size();
+    std::vector<uint8_t> is_kept(facets.size(), 0);
+    for (const FacetToAdd& f : before) is_kept[f.id] = 1;
+    const CellPoints points(cell);
+    for (int k = 0; k < 100; ++k) {
+      const Vec3d from(one.receivers[size_t(k) % 16].origin);
+      const Vec3d to = points.at(random.next_float(), random.next_float());
+      for (size_t i = 0; i < facets.size(); ++i) {
+        if (is_kept[i] != 0) continue;
+        ++segments;
+        REQUIRE(meets(from, to, facets[i].quad, 1e-7) != 1);
+      }
+    }
+  }
+  CHECK(segments > 100000);
+  CHECK(kept < 0.8 * double(all));
 }
