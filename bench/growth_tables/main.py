@@ -81,8 +81,8 @@ def exponent(sizes, values):
 
 EXPLANATION = {
     "triangles": "The hierarchy of triangles takes n log n, reading and memory n; what rays cost grows "
-                 "with the logarithm. Cells are as many as the rays that hit ask for: their number "
-                 "depends on what stands where, not on how finely it is triangulated. Proofs look at "
+                 "with the logarithm. Cells follow surfaces as they turn: the finer "
+                 "the bumps, the more of them, up to what voxels hold. Proofs look at "
                  "the triangles between a patch of the picture and a light; where they are too many, "
                  "rays take over.",
     "lights": "The lights share one area and one power. Of many weak ones some are drawn, so that "

@@ -61,6 +61,22 @@ bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
   return is_one_surface(at.hit, n.hit, at.spacing);
 }
 
+// Rays count for as much as there are, so that records whose first rays chanced to meet something,
+// which get more, do not weigh too much of it in. But where light itself calls for more rays (the
+// dark beside a caustic, which it hardly reaches), places would count for more than others: so over
+// what is usual around them.
+float GatherPass::usual_rays(int x, int y, uint32_t r) const {
+  float rays = 0, records = 0;
+  for (int j = y - 2; j <= y + 2; ++j)
+    for (int i = x - 2; i <= x + 2; ++i)
+      out_.of_pixel(i, j, [&](uint32_t o) {
+        if (!is_neighbour(r, o, &GatherRecord::matte)) return;
+        rays += out_.records_[o].rays;
+        records += 1;
+      });
+  return rays / std::max(records, 1.0f);
+}
+
 GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part) const {
   const GatherRecord& at = out_.records_[r];
   float nearness = 0, bright_nearness = 0, light = 0, rays = 0, variance = 0, records = 0;
@@ -101,8 +117,8 @@ LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int
         const Vec3 d = (n.hit.position - at.hit.position) * scale;
         const float d2 = length_squared(d);
         if (d2 >= 1 || (beside_[o] != 0 && o != r) || !is_neighbour(r, o, part)) return;
-        sums.add(dot(d, frame.tangent), dot(d, frame.bitangent), 1 - d2, n.rays / unit,
-                 (n.*part).sum / n.rays);
+        sums.add(dot(d, frame.tangent), dot(d, frame.bitangent), 1 - d2,
+                 n.rays / usual_rays_[o] * usual_rays_[r] / unit, (n.*part).sum / n.rays);
       });
   return sums;
 }
@@ -116,10 +132,13 @@ FittedLight GatherPass::solved(const LinearFit& fit, const Surroundings& s) {
   return light;
 }
 
-// Of the luminance of either sum's light, by that of all that the pixel sees there.
-float GatherPass::allowed_error(const GatherRecord& r, Part part) const {
+// Of the luminance of either sum's light, by that of all that the pixel sees there. around: that of
+// the light, not by the record's own few rays: what is bright would get few more, what is dark
+// beside it many.
+float GatherPass::allowed_error(const GatherRecord& r, Part part, float around) const {
+  const Part other = part == &GatherRecord::matte ? &GatherRecord::gloss : &GatherRecord::matte;
   const float own =
-      (luminance(r.matte.sum) * r.matte.weight + luminance(r.gloss.sum) * r.gloss.weight) / r.rays;
+      around * (r.*part).weight + luminance((r.*other).sum) * (r.*other).weight / r.rays;
   const float weight = std::max((r.*part).weight, 1e-4f);
   return float(options_.error) * 0.5f * (own + float(options_.typical)) / weight + 1e-20f;
 }
@@ -131,8 +150,9 @@ uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
       std::max(near_radius / std::max(s.nearness, 1e-20f), least_pixels * at.spacing);
   const FittedLight light =
       solved(fit(x, y, r, part, std::min(radius, most_pixels * at.spacing), few_along), s);
-  const double wanted = light.spread / std::max(light.neighbours, 1.0) /
-                        sqr(gain_of_order * double(allowed_error(at, part)));
+  const double wanted =
+      light.spread / std::max(light.neighbours, 1.0) /
+      sqr(gain_of_order * double(allowed_error(at, part, luminance(light.value))));
   if (!(wanted > 1)) return 0;
   const double rays = std::min(first_rays * (wanted - 1), double(most_rays - first_rays));
   return uint32_t(rays / 4 + 0.999) * 4;
@@ -147,7 +167,7 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Rgb& value, floa
   const float least = least_pixels * at.spacing, most = most_pixels * at.spacing;
   float radius = std::clamp(near_radius * distance, least, most);
   const FittedLight light = solved(fit(x, y, r, part, radius, few_along), s);
-  const double allowed = double(allowed_error(at, part));
+  const double allowed = double(allowed_error(at, part, luminance(light.value)));
   const double excess = light.spread / std::max(light.neighbours, 1.0) / (allowed * allowed);
   radius *= float(std::clamp(std::sqrt(excess), 0.5, 2.0));
   radius = std::clamp(radius, least, std::clamp(far_radius * distance, least, most));
@@ -166,7 +186,9 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Rgb& value, floa
 
 // Of a pixel that shares nobody's.
 float GatherPass::own_rays(int x, int y, uint32_t r, Part part) const {
-  return unit * around(x, y, r, part).variance / sqr(allowed_error(out_.records_[r], part));
+  const GatherRecord& at = out_.records_[r];
+  return unit * around(x, y, r, part).variance /
+         sqr(allowed_error(at, part, luminance((at.*part).sum) / at.rays));
 }
 
 FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {

@@ -94,6 +94,7 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
   tell(0.3);
   join(tiles);
   wanted_.assign(out_.records_.size(), 0);
+  usual_rays_.assign(out_.records_.size(), float(first_rays));
   const auto of_all = [&](const Tile& t, const auto& act) {
     for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
       for (int x = t.pixels.x0; x < t.pixels.x1; ++x)
@@ -114,6 +115,10 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
     return false;
   tell(0.4);
   if (!over_tiles(tiles, counters, [&](Tile& t, Worker& worker) { gather_further(t, worker); }))
+    return false;
+  if (!over_tiles(tiles, counters, [&](Tile& t, Worker&) {
+        of_all(t, [&](int x, int y, uint32_t r) { usual_rays_[r] = usual_rays(x, y, r); });
+      }))
     return false;
   tell(0.8);
   out_.fitted_.resize(out_.records_.size());

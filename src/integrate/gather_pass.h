@@ -46,11 +46,12 @@ class GatherPass {
               Worker& w) const;
   void join(std::vector<Tile>& tiles);
   bool is_beside(int x, int y, uint32_t r) const;
+  float usual_rays(int x, int y, uint32_t r) const;
   bool is_neighbour(uint32_t at, uint32_t other, Part part) const;
   Surroundings around(int x, int y, uint32_t r, Part part) const;
   LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along) const;
   static FittedLight solved(const LinearFit& fit, const Surroundings& s);
-  float allowed_error(const GatherRecord& r, Part part) const;
+  float allowed_error(const GatherRecord& r, Part part, float around) const;
   uint32_t further_rays(int x, int y, uint32_t r, Part part) const;
   float fit_part(int x, int y, uint32_t r, Part part, Rgb& value, float& error) const;
   float own_rays(int x, int y, uint32_t r, Part part) const;
@@ -67,6 +68,8 @@ class GatherPass {
   std::vector<Worker> workers_;
   std::vector<uint8_t> beside_;   // of each record: whether something else stands close by
   std::vector<uint32_t> wanted_;  // further rays of each record
+  // Of the places around each record, on average.
+  std::vector<float> usual_rays_;
 };
 
 }  // namespace troffer
