@@ -14,6 +14,7 @@
 #include "image/read_image.h"
 #include "import/import.h"
 #include "import/luminaire.h"
+#include "import/measured_bsdf.h"
 
 namespace {
 
@@ -53,6 +54,15 @@ void read(const fs::path& folder, const std::string& path) {
         "mtllib input.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
     write(folder / "user.obj", user.data(), user.size());
     import_scene((folder / "user.obj").string());
+  } else if constexpr (ending == "serialized") {
+    constexpr std::string_view user =
+        "<scene version='3.0.0'><shape type='serialized'><string name='filename' "
+        "value='input.serialized'/></shape></scene>";
+    write(folder / "user.xml", user.data(), user.size());
+    import_scene((folder / "user.xml").string());
+  } else if constexpr (ending == "bsdf") {
+    WarningLog warnings;
+    measured_material(folder.string(), "input.bsdf", warnings);
   } else if constexpr (ending == "png" || ending == "jpg" || ending == "hdr" || ending == "pfm" ||
                        ending == "exr" || ending == "webp" || ending == "tga") {
     read_image(path, size_t(1) << 22);

@@ -82,23 +82,9 @@ float schlick_weight(float c) {
   return pow5(1 - c);
 }
 
-// Averages of the piecewise linear interpolant in the fourth root t of c: 2 ∫ E c dc = 8 ∫ E t⁷ dt.
-// Three-point Gauss quadrature errs by less than rounding on such short intervals.
 void finish(AlbedoTable& table) {
-  constexpr std::array<double, 3> node{0.11270166537925831, 0.5, 0.88729833462074169};
-  constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
-  constexpr double h = 1.0 / double(table_cosines - 1);
-  for (size_t a = 0; a < table_alphas; ++a) {
-    const float* row = table.values.data() + a * table_cosines;
-    double sum = 0;
-    for (size_t k = 0; k + 1 < table_cosines; ++k)
-      for (size_t q = 0; q < 3; ++q) {
-        const double t = (double(k) + node[q]) * h;
-        sum +=
-            8 * h * weight[q] * std::pow(t, 7) * lerp(double(row[k]), double(row[k + 1]), node[q]);
-      }
-    table.averages[a] = float(std::min(sum, 1.0));
-  }
+  for (size_t a = 0; a < table_alphas; ++a)
+    table.averages[a] = row_average(table.values.data() + a * table_cosines);
 }
 
 // 2 ∫ f(c) c dc, midpoint rule in t = sqrt(c).
@@ -114,6 +100,21 @@ float hemisphere_average(const F& f) {
 }
 
 }  // namespace
+
+// Of the piecewise linear interpolant in the fourth root t of c: 2 ∫ E c dc = 8 ∫ E t⁷ dt.
+// Three-point Gauss quadrature errs by less than rounding on such short intervals.
+float row_average(const float* row) {
+  constexpr std::array<double, 3> node{0.11270166537925831, 0.5, 0.88729833462074169};
+  constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
+  constexpr double h = 1.0 / double(table_cosines - 1);
+  double sum = 0;
+  for (size_t k = 0; k + 1 < table_cosines; ++k)
+    for (size_t q = 0; q < 3; ++q) {
+      const double t = (double(k) + node[q]) * h;
+      sum += 8 * h * weight[q] * std::pow(t, 7) * lerp(double(row[k]), double(row[k + 1]), node[q]);
+    }
+  return float(std::min(sum, 1.0));
+}
 
 void build_albedo_tables(GgxTables& ggx, std::vector<CoatTable>& coats,
                          std::vector<GlassTables>& glasses) {

@@ -67,6 +67,9 @@ struct AlbedoTable {
   }
 };
 
+// Cosine-weighted mean of a row of table_cosines values, as AlbedoRow reads between them.
+float row_average(const float* row);
+
 // GGX reflection with Fresnel factor 1, and with Schlick's (1 - cos)^5 in its place: a lobe with
 // Schlick's f0, f90 has the albedo f0 (one - grazing) + f90 grazing [2].
 struct GgxTables {

@@ -6,73 +6,27 @@
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobes.h"
+#include "bsdf/split.h"
 
 namespace troffer {
 
 namespace {
 
-// What a microfacet reflects and transmits at a cosine of incidence on it.
-struct Split {
-  Rgb reflected, transmitted;
-  // Probability of following the reflection.
-  float reflection_share() const {
-    const float r = average(reflected), t = average(transmitted);
-    return t > 0 ? r / (r + t) : 1.0f;
-  }
-};
-
-// Through an absorbing sheet the way is longer the more it leans. Where reflection is scaled, what
-// is not reflected goes through.
-Split absorbing_sheet(const Bsdf& b, float c) {
-  const float way = 1 / std::max(refracted_cosine(c, b.eta), 1e-4f);
-  Split s;
-  for (size_t i = 0; i < 3; ++i) {
-    const float a = std::exp(-b.absorbed[i] * way);
-    const PlateShares p = absorbing_plate(c, b.eta, a);
-    s.reflected[i] = b.glass_reflect[i] * p.reflected;
-    s.transmitted[i] =
-        b.glass_transmit[i] * (p.transmitted + (1 - b.glass_scale) * a * p.reflected);
-  }
-  return s;
-}
-
-Split split_at(const Bsdf& b, float c) {
-  switch (b.fresnel) {
-    case Bsdf::Fresnel::none:
-      break;
-    case Bsdf::Fresnel::conductor:
-      return {fresnel_conductor(c, b.f0, b.f90), Rgb{0}};
-    case Bsdf::Fresnel::schlick:
-      return {fresnel_schlick(c, b.f0, b.f90), Rgb{0}};
-    case Bsdf::Fresnel::coat:
-      return {Rgb{fresnel_dielectric(c, b.eta)}, Rgb{0}};
-    case Bsdf::Fresnel::glass: {
-      const Rgb opaque = fresnel_schlick(c, b.f0, b.f90);
-      float r = fresnel_dielectric(c, b.eta);
-      if (r >= 1) return {opaque + Rgb{b.glass_weight}, Rgb{0}};
-      if (b.is_thin && !b.absorbed.is_black()) {
-        const Split s = absorbing_sheet(b, c);
-        return {opaque + s.reflected, s.transmitted};
-      }
-      if (b.is_thin) r = plate_reflectance(c, b.eta);
-      return {opaque + b.glass_reflect * r, b.glass_transmit * (1 - b.glass_scale * r)};
-    }
-  }
-  return {};
-}
-
 // The g of each separable lobe at a direction on the viewer's side (far_glass: on the other).
 struct Gains {
   float diffuse = 1, soft = 0, glass = 0;
+  float pass = 1;  // of a sheen above, for all but itself; in `diffuse` already
 };
 
 float missing(const AlbedoRow& row, const CosineCoordinate& at) {
   return row.values == nullptr ? 0.0f : std::max(0.0f, 1 - row.at(at));
 }
 
-Gains gains_at(const Bsdf& b, float cosine) {
+Gains gains_at(const Bsdf& b, const Vec3& w) {
   Gains g;
-  const CosineCoordinate at(cosine);
+  const float cosine = w.z;
+  const SoftDirection direction(w);
+  const CosineCoordinate& at = direction.cosine;
   switch (b.coat) {
     case Bsdf::Coat::none:
       break;
@@ -91,7 +45,9 @@ Gains gains_at(const Bsdf& b, float cosine) {
       break;
     }
   }
-  g.soft = soft_gain(b.soft, at);
+  g.soft = soft_gain(b.soft, direction);
+  g.pass = b.cover.pass(at);
+  g.diffuse *= g.pass;
   if (b.glass_weight > 0) g.glass = missing(b.near, at);
   return g;
 }
@@ -122,10 +78,10 @@ struct Energies {
 };
 Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
   Energies e;
-  e.glossy = glossy_albedo(b, cos_o);
+  e.glossy = glossy_albedo(b, cos_o) * g.pass;
   if (!b.has_separable) return e;
   e.diffuse = b.diffuse * (g.diffuse * b.diffuse_mean);
-  e.again = soft_energy(b.soft, cos_o, g.soft) + b.glass_again * (g.glass * b.near_mean);
+  e.again = soft_energy(b.soft, g.soft) + b.glass_again * (g.glass * b.near_mean);
   e.through = b.glass_through * (g.glass * b.far_mean);
   return e;
 }
@@ -174,6 +130,14 @@ Vec3 sample_separable(const Choice& c, float u_lobe, const Vec2& u) {
   return w;
 }
 
+// Between the viewer's frame and that whose x axis is the grain.
+Vec3 to_grain(const Bsdf& b, const Vec3& w) {
+  return {b.grain.x * w.x + b.grain.y * w.y, b.grain.x * w.y - b.grain.y * w.x, w.z};
+}
+Vec3 from_grain(const Bsdf& b, const Vec3& w) {
+  return {b.grain.x * w.x - b.grain.y * w.y, b.grain.x * w.y + b.grain.y * w.x, w.z};
+}
+
 // Only lobes that reflect alone can leave out the normals that send light below the horizon.
 float bound_of(const Bsdf& b, const Vec3& wo) {
   return b.has_transmission ? 1.0f : ggx_bound(wo, b.alpha);
@@ -183,7 +147,7 @@ float bound_of(const Bsdf& b, const Vec3& wo) {
 Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) {
   const float cos_i = wi.z;
   if (cos_i > 0) {
-    const Gains at_i = gains_at(b, cos_i);
+    const Gains at_i = gains_at(b, wi);
     return (b.diffuse * (at_o.diffuse * at_i.diffuse) +
             soft_value(b.soft, wo, wi, at_o.soft, at_i.soft) +
             b.glass_again * (at_o.glass * at_i.glass)) *
@@ -204,6 +168,9 @@ BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is
   const float c = std::min(dot(wo, m), 1.0f);
   if (!(c > 0)) return {};
   const Split s = split_at(b, c);
+  if (b.is_grained)  // reflects alone
+    return {s.reflected * (ggx_distribution(m, b.widths) * ggx_visibility(wo, wi, b.widths) * wi.z),
+            ggx_pdf_reflected(wo, m, b.widths, ggx_bound(wo, b.widths))};
   const float share = is_transmission ? 1 - s.reflection_share() : s.reflection_share();
   const float f = ggx_distribution(m, b.alpha) * ggx_visibility(wo.z, wi.z, b.alpha) * wi.z;
   return {(is_transmission ? s.transmitted : s.reflected) * f,
@@ -242,6 +209,9 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
   if (b.fresnel != Bsdf::Fresnel::none && !b.is_smooth) {
     v = glossy(b, wo, wi);
     v.pdf *= choice.glossy;
+    if (b.cover.share > 0)
+      v.f_cos *= std::min(b.cover.pass(CosineCoordinate(wo.z)),
+                          b.cover.pass(CosineCoordinate(std::abs(wi.z))));
   }
   if (b.has_separable) {
     v.f_cos += separable(b, g, wo, wi);
@@ -258,18 +228,19 @@ bool refract(const Vec3& wo, const Vec3& m, float c, float eta, Vec3& wi) {
   return true;
 }
 
-bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float u_side,
+// pass: what a sheen above leaves.
+bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass, float u_side,
                    BsdfSample& out) {
   const Split s = split_at(b, std::min(wo.z, 1.0f));
   const float share = s.reflection_share();
   out.is_delta = true;
   if (u_side < share) {
     out.wi = {-wo.x, -wo.y, wo.z};
-    out.weight = s.reflected / (probability * share);
+    out.weight = s.reflected * (pass / (probability * share));
     return !out.weight.is_black();
   }
   out.is_transmission = true;
-  out.weight = s.transmitted / (probability * (1 - share));
+  out.weight = s.transmitted * (pass / (probability * (1 - share)));
   if (b.is_thin) {
     out.wi = -wo;
   } else {
@@ -282,7 +253,8 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float u_sid
 
 // A direction of the rough glossy lobe.
 bool sample_rough(const Bsdf& b, const Vec3& wo, float u_side, const Vec2& u, Vec3& wi) {
-  const Vec3 m = ggx_sample_visible_normal(wo, u, b.alpha, bound_of(b, wo));
+  const Vec3 m = b.is_grained ? ggx_sample_visible_normal(wo, u, b.widths, ggx_bound(wo, b.widths))
+                              : ggx_sample_visible_normal(wo, u, b.alpha, bound_of(b, wo));
   const float c = std::min(dot(wo, m), 1.0f);
   if (!(c > 0)) return false;
   const bool is_reflection = !b.has_transmission || u_side < split_at(b, c).reflection_share();
@@ -297,22 +269,33 @@ bool sample_rough(const Bsdf& b, const Vec3& wo, float u_side, const Vec2& u, Ve
 
 }  // namespace
 
+namespace {
+
+BsdfValue evaluate_seen(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool with_pdf) {
+  const Gains g = b.has_separable ? gains_at(b, wo) : Gains{};
+  return evaluate_chosen(b, g, with_pdf ? choice_at(b, g, wo.z) : Choice{}, wo, wi);
+}
+
+}  // namespace
+
 BsdfValue evaluate_general(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool with_pdf) {
   if (!(wo.z > 0) || wi.z == 0 || !(std::abs(wi.z) <= 2)) return {};
   if (wi.z < 0 && !b.has_transmission) return {};
   if (is_purely_delta(b)) return {};
-  const Gains g = b.has_separable ? gains_at(b, wo.z) : Gains{};
-  return evaluate_chosen(b, g, with_pdf ? choice_at(b, g, wo.z) : Choice{}, wo, wi);
+  if (b.is_grained) return evaluate_seen(b, to_grain(b, wo), to_grain(b, wi), with_pdf);
+  return evaluate_seen(b, wo, wi, with_pdf);
 }
 
-bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample& out) {
+bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2& u,
+                    BsdfSample& out) {
   out = {};
-  if (!(wo.z > 0)) return false;
-  const Gains g = b.has_separable ? gains_at(b, wo.z) : Gains{};
+  if (!(viewer.z > 0)) return false;
+  const Vec3 wo = b.is_grained ? to_grain(b, viewer) : viewer;
+  const Gains g = b.has_separable ? gains_at(b, wo) : Gains{};
   const Choice choice = choice_at(b, g, wo.z);
   if (u_lobe < choice.glossy) {
     const float u_side = std::min(u_lobe / choice.glossy, one_minus_epsilon);
-    if (b.is_smooth) return sample_smooth(b, wo, choice.glossy, u_side, out);
+    if (b.is_smooth) return sample_smooth(b, wo, choice.glossy, g.pass, u_side, out);
     if (!sample_rough(b, wo, u_side, u, out.wi)) return false;
   } else {
     const float rest = (u_lobe - choice.glossy) / (1 - choice.glossy);
@@ -320,6 +303,7 @@ bool sample_general(const Bsdf& b, const Vec3& wo, float u_lobe, const Vec2& u, 
   }
   const BsdfValue v = evaluate_chosen(b, g, choice, wo, out.wi);
   if (!(v.pdf > 0) || !std::isfinite(v.pdf) || out.wi.z == 0) return false;
+  if (b.is_grained) out.wi = from_grain(b, out.wi);
   out.weight = v.f_cos / v.pdf;
   out.pdf = v.pdf;
   out.is_transmission = out.wi.z < 0;
@@ -335,11 +319,13 @@ Rgb straight_transmittance(const Bsdf& b, float cos_o) {
 
 Rgb mirrored_reflectance(const Bsdf& b, float cos_o) {
   if (!b.is_smooth || !(cos_o > 0)) return Rgb{0};
-  return split_at(b, std::min(cos_o, 1.0f)).reflected;
+  const float c = std::min(cos_o, 1.0f);
+  const float pass = b.cover.pass(CosineCoordinate(c));
+  return split_at(b, c).reflected * pass;
 }
 
 LobeConstants lobe_constants(const Bsdf& b, float cos_o) {
-  const Gains g = b.has_separable ? gains_at(b, cos_o) : Gains{};
+  const Gains g = b.has_separable ? gains_at(b, {0, 0, cos_o}) : Gains{};
   const Choice c = choice_at(b, g, cos_o);
   return {c.glossy, c.cosine, c.uniform, g.diffuse, g.soft};
 }
@@ -368,14 +354,14 @@ Bsdf specular_part(const Bsdf& b) {
 
 float coat_share(const Bsdf& b, float cos_i) {
   if (b.coat == Bsdf::Coat::none || !(b.diffuse_mean > 0)) return 1;
-  return gains_at(b, cos_i).diffuse / b.diffuse_mean;
+  return gains_at(b, {0, 0, cos_i}).diffuse / b.diffuse_mean;
 }
 
 Rgb albedo(const Bsdf& b, float cos_o) {
   if (b.is_lambertian) return b.diffuse;
   if (!(cos_o > 0)) return Rgb{0};
   const float c = std::min(cos_o, 1.0f);
-  const Gains g = b.has_separable ? gains_at(b, c) : Gains{};
+  const Gains g = b.has_separable ? gains_at(b, {0, 0, c}) : Gains{};
   const Energies e = energies_at(b, g, c);
   return e.glossy + e.diffuse + e.again + e.through;
 }

@@ -16,6 +16,11 @@
 // - Rough ones are GGX, height-correlated Smith. Energy lost between microfacets returns as a
 //   reciprocal diffuse lobe [1]: for conductors and glTF's metals scaled by the mean Fresnel
 //   reflectance; for glass in both half spaces, split by the mean transmittance.
+// - Where gloss has a grain, GGX has two widths; what is lost between microfacets returns by a fit
+//   to its albedo over cosine and azimuth where the widths are even, else it stays lost.
+// - Sheen lies over everything else, which keeps p = 1 - its albedo × the largest of its colours:
+//   gloss the smaller p of both directions, as KHR_materials_sheen has it, the diffuse lobe their
+//   product, over its mean, so that a white one reflects what is left.
 // - coated_diffuse: dielectric coat over a Lambertian base with all inter-reflections below the
 //   coat: f = T(wo) T(wi) rho / (pi eta² (1 - rho F)), T = 1 - E, E the coat's directional albedo,
 //   F = 1 - (1 - E_avg) / eta² its mean reflectance from below [2]. A white base reflects all.
@@ -39,12 +44,14 @@
 //   for Refraction through Rough Surfaces", EGSR 2007.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/frame.h"
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "base/warp.h"
+#include "bsdf/ggx_grained.h"
 #include "bsdf/soft_lobe.h"
 #include "bsdf/tables.h"
 #include "scene/scene.h"
@@ -65,8 +72,12 @@ struct Bsdf {
   bool has_transmission = false;
   bool has_separable = false;  // the soft lobe, or any of the cosine-shaped ones below
 
-  float alpha = 0;  // GGX width of the glossy lobe
-  float eta = 1;    // n(far side) / n(viewer's side); coat: n(below) / n(above)
+  bool is_grained = false;  // the glossy lobe has `widths`, else alpha all around
+
+  float alpha = 0;   // GGX width of the glossy lobe; grained: the geometric mean of both
+  GgxWidths widths;  // in the frame whose x axis is the grain
+  Vec2 grain{1, 0};  // … in the viewer's frame, unit
+  float eta = 1;     // n(far side) / n(viewer's side); coat: n(below) / n(above)
 
   Rgb f0, f90;             // Schlick (its weight included); conductor: eta and k
   Rgb glass_reflect;       // Fresnel::glass: factor on the reflectance
@@ -77,6 +88,7 @@ struct Bsdf {
   bool is_absorbing = false;  // what goes through comes into a body that absorbs, or out of one
 
   SoftLobe soft;
+  SheenCover cover;  // over all lobes but the soft one
 
   // Separable lobes: colour × g(wo) g(wi) / pi, each g = 1 - a directional albedo.
   Rgb diffuse;                     // g of the coat, or 1
@@ -182,8 +194,9 @@ inline bool is_lambertian(const Bsdf& bsdf, Rgb* rho) {
 inline bool has_glossy(const Bsdf& bsdf) {
   return bsdf.fresnel != Bsdf::Fresnel::none;
 }
-// GGX width of the glossy lobe: 0 where it is a delta, 1 where there is none.
+// GGX width of the glossy lobe: 0 where it is a delta, 1 where there is none; the smaller of two.
 inline float glossy_alpha(const Bsdf& bsdf) {
+  if (bsdf.is_grained) return std::min(bsdf.widths.along, bsdf.widths.across);
   return !has_glossy(bsdf) ? 1.0f : bsdf.is_smooth ? 0.0f : bsdf.alpha;
 }
 

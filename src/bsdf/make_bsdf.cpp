@@ -1,5 +1,6 @@
 // From material data to a Bsdf.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bsdf/bsdf.h"
@@ -54,8 +55,28 @@ float alpha_of(float roughness, RoughnessMeaning meaning) {
   return roughness;
 }
 
-void set_roughness(Bsdf& b, const Inputs& in) {
+bool has_sheen(const Material& m) {
+  return m.kind == MaterialKind::metallic_roughness && !m.sheen_color.value.is_black();
+}
+
+GgxWidths widths_of(float alpha, float strength) {
+  return {alpha + (1 - alpha) * sqr(strength), std::max(alpha, smooth_alpha)};
+}
+
+// Two widths, where there is a grain.
+void set_grain(Bsdf& b, const Inputs& in, float strength) {
+  b.widths = widths_of(b.alpha, strength);
+  if (!(b.widths.along > b.widths.across)) return;
+  b.is_grained = true;
+  b.alpha = std::sqrt(b.widths.along * b.widths.across);
+  // The grain is told in the frame of the front; that of the back has the same x axis.
+  b.grain = in.is_front ? in.uv.grain : Vec2{in.uv.grain.x, -in.uv.grain.y};
+}
+
+void set_roughness(Bsdf& b, const Inputs& in, bool can_have_grain = false) {
   b.alpha = alpha_of(in.value(in.material.roughness), in.material.roughness_meaning);
+  if (can_have_grain && in.material.anisotropy.value > 0)
+    set_grain(b, in, in.value(in.material.anisotropy));
   b.is_smooth = b.alpha < smooth_alpha;
   if (b.is_smooth) return;
   b.one = in.tables.ggx().one.row(b.alpha);
@@ -67,12 +88,20 @@ constexpr float negligible = 1e-5f;
 
 // Multiple scattering between conducting microfacets of mean reflectance f [1]: the geometric
 // series of reflections after the second, f² E / (1 - f (1 - E)). `weight` is the metal's share.
-void add_metal_compensation(Bsdf& b, Rgb f, float weight) {
+void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight) {
   if (b.is_smooth || weight == 0) return;
-  const float escape = b.one.average, stay = 1 - escape;
+  const GrainTable* grain =
+      b.is_grained && in.prepared.grain >= 0 ? &in.tables.grain(in.prepared.grain) : nullptr;
+  if (b.is_grained && grain == nullptr) return;
+  const float escape = grain ? grain->even_row().average : b.one.average, stay = 1 - escape;
   if (stay < negligible) return;
   const Rgb colour = f * f * (weight * escape / stay) / (Rgb{1} - f * stay);
-  if (!colour.is_black()) b.soft = {SoftLobe::Kind::lost_light, colour, stay, b.one};
+  if (colour.is_black()) return;
+  b.soft.kind = grain ? SoftLobe::Kind::lost_grained_light : SoftLobe::Kind::lost_light;
+  b.soft.colour = colour;
+  b.soft.mean = stay;
+  b.soft.glossy = grain ? grain->even_row() : b.one;
+  if (grain) b.soft.twice = grain->twice_row();
   b.has_separable = true;
 }
 
@@ -125,7 +154,7 @@ void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
 }
 
 void set_conductor(Bsdf& b, const Inputs& in) {
-  set_roughness(b, in);
+  set_roughness(b, in, true);
   b.fresnel = Bsdf::Fresnel::conductor;
   Rgb average = in.prepared.conductor_average;
   if (in.material.is_reflectance) {
@@ -137,7 +166,7 @@ void set_conductor(Bsdf& b, const Inputs& in) {
     b.f0 = safe_index(in.material.eta);
     b.f90 = safe_index(in.material.k);
   }
-  add_metal_compensation(b, average, 1);
+  add_metal_compensation(b, in, average, 1);
 }
 
 void set_dielectric(Bsdf& b, const Inputs& in) {
@@ -166,6 +195,35 @@ void set_coated_diffuse(Bsdf& b, const Inputs& in) {
   b.has_separable = !b.diffuse.is_black();
 }
 
+// The mean that diffuse lobes divide by, by Gauss's rule in the fourth root of the cosine, where
+// tables are smooth: 2 ∫ g c dc = 8 ∫ g t⁷ dt.
+float mean_coat_gain(const Bsdf& b) {
+  constexpr std::array<float, 4> node{0.1834346f, 0.5255324f, 0.7966665f, 0.9602899f},
+      weight{0.3626838f, 0.3137066f, 0.2223810f, 0.1012285f};
+  float sum = 0;
+  for (size_t i = 0; i < node.size(); ++i)
+    for (const float side : {-1.0f, 1.0f}) {
+      const float t = 0.5f + 0.5f * side * node[i], t2 = t * t, c = t2 * t2;
+      sum += weight[i] * 4 * coat_share(b, c) * t2 * t2 * t2 * t;
+    }
+  return sum * b.diffuse_mean;
+}
+
+// Over what is set already but for the diffuse lobe, whose mean becomes that under both.
+void cover_with_sheen(Bsdf& b, const Inputs& in) {
+  const Rgb color = safe01(evaluate(in.textures, in.material.sheen_color, in.uv));
+  const float alpha = std::max(sqr(in.value(in.material.sheen_roughness)), least_sheen_alpha);
+  if (color.is_black()) return;
+  b.soft = {};
+  b.soft.kind = SoftLobe::Kind::sheen;
+  b.soft.colour = color;
+  b.soft.alpha = alpha;
+  b.soft.glossy = in.tables.sheen().row(alpha);
+  b.cover = {max_component(color), b.soft.glossy};
+  b.has_separable = true;
+  b.diffuse_mean = mean_coat_gain(b);
+}
+
 void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   const Material& m = in.material;
   const Rgb base = in.base();
@@ -178,12 +236,13 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   const float r0 = m.ior == 0 ? 1.0f : normal_reflectance(in.prepared.ior);
   const Rgb coat_f0 = safe01(tint * r0) * specular;
 
-  if (metallic == 0 && glass == 0 && specular == 0) return set_lambertian(b, base);
-  set_roughness(b, in);
+  const bool is_covered = has_sheen(m) && glass == 0;
+  if (metallic == 0 && glass == 0 && specular == 0 && !is_covered) return set_lambertian(b, base);
+  set_roughness(b, in, glass == 0);
   b.fresnel = Bsdf::Fresnel::schlick;
   b.f0 = base * metallic + coat_f0 * opaque;
   b.f90 = Rgb{metallic + specular * opaque};
-  add_metal_compensation(b, base + (Rgb{1} - base) * (1.0f / 21), metallic);
+  add_metal_compensation(b, in, base + (Rgb{1} - base) * (1.0f / 21), metallic);
   if (opaque > 0) {
     b.coat_f0 = max_component(coat_f0);
     b.coat_f90 = specular;
@@ -194,6 +253,7 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
       average = b.coat_f0 * (b.one.average - b.grazing.average) + b.coat_f90 * b.grazing.average;
     }
     b.diffuse_mean = 1 - average;
+    if (is_covered) cover_with_sheen(b, in);
     if (b.diffuse_mean > negligible) b.diffuse = base * (opaque / b.diffuse_mean);
     b.has_separable |= !b.diffuse.is_black();
   }
@@ -201,7 +261,7 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
 }
 
 bool can_be_rough(const Material& m) {
-  return m.roughness.texture >= 0 || m.roughness.value >= 1e-6f;
+  return m.roughness.texture >= 0 || m.roughness.value >= 1e-6f || m.anisotropy.value > 0;
 }
 
 }  // namespace
@@ -239,6 +299,14 @@ TableNeeds table_needs(const Material& m) {
       break;
   }
   n.has_glass = is_glass && is_rough && !m.is_thin;
+  n.has_sheen = has_sheen(m);
+  const bool is_metal = m.kind == MaterialKind::conductor ||
+                        (m.kind == MaterialKind::metallic_roughness && m.metallic.value > 0);
+  if (is_metal && m.anisotropy.value > 0 && m.anisotropy.texture < 0 && m.roughness.texture < 0) {
+    const GgxWidths a = widths_of(alpha_of(safe01(m.roughness.value), m.roughness_meaning),
+                                  safe01(m.anisotropy.value));
+    if (a.along > a.across) n.grain = a;
+  }
   n.has_dielectric_average |= is_glass;
   return n;
 }

@@ -38,16 +38,26 @@ int32_t table_for(std::vector<Table>& tables, float ior, size_t max_tables) {
   return int32_t(tables.size() - 1);
 }
 
+int32_t grain_for(std::vector<GrainTable>& tables, const GgxWidths& a, size_t max_tables) {
+  for (size_t i = 0; i < tables.size(); ++i)
+    if (tables[i].widths.along == a.along && tables[i].widths.across == a.across) return int32_t(i);
+  if (tables.size() >= max_tables) return -1;
+  tables.push_back(make_grain_table(a));
+  return int32_t(tables.size() - 1);
+}
+
 }  // namespace
 
 BsdfTables::BsdfTables(const std::vector<Material>& materials) {
-  bool needs_ggx = false;
+  bool needs_ggx = false, needs_sheen = false;
   for (const Material& m : materials) {
     PreparedMaterial p;
     p.ior = safe_ior(m.ior);
     p.is_pane = is_pane(m);
     const TableNeeds needs = table_needs(m);
     needs_ggx |= needs.has_ggx;
+    needs_sheen |= needs.has_sheen;
+    if (needs.grain.along > 0) p.grain = grain_for(grains_, needs.grain, max_iors);
     if (needs.has_coat) p.coat = table_for(coats_, p.ior, max_iors);
     if (needs.has_glass && std::abs(p.ior - 1) >= index_matched)
       p.glass = table_for(glasses_, p.ior, max_iors);
@@ -63,6 +73,7 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
     materials_.push_back(p);
   }
   if (needs_ggx) build_albedo_tables(ggx_, coats_, glasses_);
+  if (needs_sheen) build_sheen_table(sheen_);
   for (size_t i = 0; i < reflectances; ++i)
     reflectance_average_[i] =
         fresnel_conductor_average(1, k_from_reflectance(float(i) / float(reflectances - 1)));

@@ -8,6 +8,7 @@
 
 #include "base/rgb.h"
 #include "bsdf/albedo_table.h"
+#include "bsdf/grain_table.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -19,6 +20,7 @@ constexpr float index_matched = 1e-3f;
 struct PreparedMaterial {
   float ior = 1.5f;               // made safe: in [1/100, 100] and finite
   int32_t coat = -1, glass = -1;  // tables for this ior, where the material can need them
+  int32_t grain = -1;             // for its two widths, where they are the same everywhere
   float dielectric_average = 0;   // cosine-weighted mean Fresnel reflectance from outside
   float plate_average = 0;        // … of a thin plate
   bool is_pane = false;
@@ -30,6 +32,8 @@ struct TableNeeds {
   bool has_ggx = false;                      // tables by GGX width alone
   bool has_coat = false, has_glass = false;  // tables for its index of refraction
   bool has_dielectric_average = false, has_conductor_average = false;
+  bool has_sheen = false;
+  GgxWidths grain{0, 0};  // zeros: none, or not the same everywhere
 };
 TableNeeds table_needs(const Material& material);  // make_bsdf.cpp
 
@@ -41,8 +45,9 @@ bool is_pane(const Material& material);  // make_bsdf.cpp
 class BsdfTables {
  public:
   // Some ten milliseconds, plus about as much per distinct index of refraction among rough
-  // dielectrics and coats. Past `max_iors` distinct indices of a kind the nearest one that has a
-  // table serves.
+  // dielectrics and coats and per pair of widths among grained gloss, and a tenth of a second for
+  // sheen. Past `max_iors` distinct indices of a kind the nearest one that has a table serves; past
+  // as many pairs of widths there are none.
   explicit BsdfTables(const std::vector<Material>& materials);
   explicit BsdfTables(const Scene& scene) : BsdfTables(scene.materials) {}
 
@@ -50,6 +55,8 @@ class BsdfTables {
   const GgxTables& ggx() const { return ggx_; }
   const CoatTable& coat(int32_t i) const { return coats_[size_t(i)]; }
   const GlassTables& glass(int32_t i) const { return glasses_[size_t(i)]; }
+  const GrainTable& grain(int32_t i) const { return grains_[size_t(i)]; }
+  const AlbedoTable& sheen() const { return sheen_; }
   // Mean Fresnel reflectance of the conductor with eta = 1 and normal reflectance r.
   Rgb reflectance_average(Rgb r) const;
 
@@ -60,6 +67,8 @@ class BsdfTables {
   GgxTables ggx_;
   std::vector<CoatTable> coats_;
   std::vector<GlassTables> glasses_;
+  std::vector<GrainTable> grains_;
+  AlbedoTable sheen_;
   std::array<float, reflectances> reflectance_average_{};
 };
 

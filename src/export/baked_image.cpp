@@ -53,10 +53,16 @@ void tell_what_is_left_out(const Scene& scene, const Material& m, bool is_gltf,
   if (m.back_faces == BackFaces::black) warnings.add("black backs are written as their fronts");
   if (m.back_faces == BackFaces::unseen && !is_gltf)
     warnings.add("backs that the eye does not see are written as their fronts");
+  if (!is_gltf && !m.sheen_color.value.is_black()) warnings.add("sheen is not written");
+  if (!is_gltf && m.anisotropy.value > 0)
+    warnings.add("gloss with a grain is written as wide as across it");
   for_each_input(m, [&](const auto& input) {
     if (input.texture < 0) return;
     const Texture& t = scene.textures[size_t(input.texture)];
-    if (t.kind >= TextureKind::checks || t.mapping != TextureMapping::uv)
+    const bool is_second = t.mapping == TextureMapping::second_uv;
+    if (is_second && !is_gltf)
+      warnings.add("textures by a second set of coordinates are written by the first");
+    if (t.kind >= TextureKind::checks || (t.mapping != TextureMapping::uv && !is_second))
       warnings.add("patterns, noise and textures placed in space are written as one colour");
   });
 }

@@ -36,6 +36,7 @@ Rgb normal_reflectance(const Material& m) {
 
 Json GltfMaterialWriter::reference(size_t texture, const Texture& look) const {
   Json out{{"index", texture}};
+  if (look.mapping == TextureMapping::second_uv) out["texCoord"] = 1;
   Json t = Json::object();
   if (look.uv_scale.x != 1 || look.uv_scale.y != 1) t["scale"] = {look.uv_scale.x, look.uv_scale.y};
   if (look.uv_offset.x != 0 || look.uv_offset.y != 0)
@@ -148,6 +149,19 @@ void GltfMaterialWriter::add_glass(const Material& m, Json& out) {
                                 std::exp(-m.absorption.b / most)};
 }
 
+// Sheen and grain, where they are even.
+void GltfMaterialWriter::add_cloth_and_grain(const Material& m, Json& out) {
+  if (m.sheen_color.texture >= 0 || m.sheen_roughness.texture >= 0 || m.anisotropy.texture >= 0)
+    warnings_.add("textures of sheen and of gloss with a grain are written as one value");
+  if (!m.sheen_color.value.is_black())
+    out["extensions"]["KHR_materials_sheen"] = {{"sheenColorFactor", list(m.sheen_color.value)},
+                                                {"sheenRoughnessFactor", m.sheen_roughness.value}};
+  if (m.anisotropy.value > 0)
+    out["extensions"]["KHR_materials_anisotropy"] = {
+        {"anisotropyStrength", m.anisotropy.value},
+        {"anisotropyRotation", m.anisotropy_rotation_rad}};
+}
+
 Json GltfMaterialWriter::surface(const Material& m) {
   Json out;
   if (!m.name.empty()) out["name"] = m.name;
@@ -168,6 +182,7 @@ Json GltfMaterialWriter::surface(const Material& m) {
     return out;
   }
   add_roughness(m, pbr);
+  add_cloth_and_grain(m, out);
   if (m.kind == MaterialKind::conductor) {
     if (!m.is_reflectance)
       warnings_.add("metals are written by their reflectance at normal incidence");

@@ -38,6 +38,7 @@ class GltfMaterialWriter {
   void add_base(const Material& m, Json& out);
   void add_roughness(const Material& m, Json& pbr);
   void add_glass(const Material& m, Json& out);
+  void add_cloth_and_grain(const Material& m, Json& out);
   void add_emission(const Light& light, Rgb radiance, Json& out);
   size_t texture(const std::string& key, const BakedImage& image, const Texture& look);
   Json reference(size_t texture, const Texture& look) const;

@@ -64,6 +64,7 @@ void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
   Json attributes{{"POSITION", buffer_.add(m.positions, true)}};
   if (!m.normals.empty()) attributes["NORMAL"] = buffer_.add(m.normals, false);
   if (!m.uvs.empty()) attributes["TEXCOORD_0"] = buffer_.add(m.uvs);
+  if (!m.uvs_2.empty()) attributes["TEXCOORD_1"] = buffer_.add(m.uvs_2);
   const size_t indices = buffer_.add(m.triangles);
   const size_t material = materials_.index_of(m.material, light, radiance);
   Json mesh;
@@ -160,9 +161,9 @@ Json GltfWriter::file() {
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   Json used = Json::array();
   for (const char* name :
-       {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
-        "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume",
-        "KHR_texture_transform"})
+       {"KHR_lights_punctual", "KHR_materials_anisotropy", "KHR_materials_emissive_strength",
+        "KHR_materials_ior", "KHR_materials_sheen", "KHR_materials_specular",
+        "KHR_materials_transmission", "KHR_materials_volume", "KHR_texture_transform"})
     if (text.find(std::string("\"") + name + "\"") != std::string::npos) used.push_back(name);
   if (!used.empty()) json["extensionsUsed"] = used;
   return json;

@@ -27,6 +27,7 @@ Mesh extracted(const Mesh& from, const std::vector<Triangle>& triangles) {
         to.positions.push_back(from.positions[t[k]]);
         if (!from.normals.empty()) to.normals.push_back(from.normals[t[k]]);
         if (!from.uvs.empty()) to.uvs.push_back(from.uvs[t[k]]);
+        if (!from.uvs_2.empty()) to.uvs_2.push_back(from.uvs_2[t[k]]);
       }
       out[k] = v;
     }

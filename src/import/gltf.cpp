@@ -140,14 +140,18 @@ class Importer {
                 const std::string& node_name) {
     const GltfMaterial& material = materials_.get(p.material);
     std::vector<TextureValue> colors;
-    Mesh mesh = make_gltf_mesh(p, pose, material.uv_set, scene_.warnings, bounds_, &colors);
+    Mesh mesh = make_gltf_mesh(p, pose, material.uv_sets, scene_.warnings, bounds_, &colors);
     mesh.name = name;
     mesh.material = material.material;
     painter_.paint(mesh, colors, material.is_textured);
     const bool is_empty = mesh.triangles.empty();
-    if (material.is_textured && mesh.uvs.empty() && !is_empty)
-      scene_.warnings.add("textured meshes without TEXCOORD_" + std::to_string(material.uv_set) +
+    const auto tell_missing = [&](int set) {
+      scene_.warnings.add("textured meshes without TEXCOORD_" + std::to_string(set) +
                           " show one texel only");
+    };
+    if (material.is_textured && mesh.uvs.empty() && !is_empty) tell_missing(material.uv_sets.first);
+    if (material.uv_sets.second >= 0 && mesh.uvs_2.empty() && !is_empty)
+      tell_missing(material.uv_sets.second);
     const bool is_emissive = !material.emission.is_black();
     // Counted whether it ends up with a source or not, so that a name depends on the file alone.
     const std::string light_name =

@@ -19,6 +19,7 @@ class GltfMaterials::Reader {
     material_.kind = MaterialKind::metallic_roughness;
     material_.roughness_meaning = RoughnessMeaning::alpha_is_square;
     material_.name = node_.string_or("name", "");
+    result_.uv_sets = gltf_uv_sets(node_, all_.scene_.warnings);
     if (const auto old = node_.extension("KHR_materials_pbrSpecularGlossiness"))
       read_specular_glossiness(*old);
     else
@@ -37,8 +38,6 @@ class GltfMaterials::Reader {
     // What shines may show its back: the light, not the surface, is one-sided there.
     if (!result_.is_two_sided && result_.emission.is_black())
       material_.back_faces = BackFaces::unseen;
-    result_.is_textured = uv_set_ >= 0;
-    result_.uv_set = std::max(uv_set_, 0);
     reduce_to_diffuse();
     result_.material = uint32_t(all_.scene_.materials.size());
     all_.scene_.materials.push_back(std::move(material_));
@@ -71,15 +70,10 @@ class GltfMaterials::Reader {
     const auto info = object.find(key);
     stand_in_ = Rgb{1};
     if (!info) return no_texture;
-    const GltfTextureUse use =
-        gltf_texture(all_.root_, *info, is_srgb, all_.buffers_, all_.loader_, all_.scene_);
+    const GltfTextureUse use = gltf_texture(all_.root_, *info, is_srgb, result_.uv_sets,
+                                            all_.buffers_, all_.loader_, all_.scene_);
     stand_in_ = use.stand_in;
-    if (use.texture == no_texture) return no_texture;
-    if (uv_set_ < 0) uv_set_ = use.uv_set;  // the base colour's, which is read first
-    if (uv_set_ != use.uv_set)
-      warn(
-          "textures of one material use different sets of coordinates; the first one's "
-          "serves all");
+    result_.is_textured |= use.texture != no_texture;
     return use.texture;
   }
 
@@ -159,37 +153,42 @@ class GltfMaterials::Reader {
     warn("the clear coat replaces the gloss below it");
   }
 
-  // What cloth reflects more of light that leans is shown as much lighter all around: by the mean
-  // albedo of the extension's lobe, which falls about so from rough to smooth.
   void read_sheen() {
     const auto sheen = node_.extension("KHR_materials_sheen");
     if (!sheen) return;
     const auto color = sheen->numbers_or("sheenColorFactor", {0, 0, 0});
-    const float roughness = unit_number(*sheen, "sheenRoughnessFactor", 0);
-    if (color.size() != 3 || sheen->find("sheenColorTexture") ||
-        sheen->find("sheenRoughnessTexture"))
-      warn("sheen by a texture is left out");
-    if (color.size() != 3 || *std::max_element(color.begin(), color.end()) <= 0) return;
-    const float albedo = 0.18f * roughness;
-    for (size_t c = 0; c < 3; ++c) {
-      float& base = material_.base_color.value[c];
-      const float own = albedo * float(std::clamp(color[c], 0.0, 1.0));
-      base = std::clamp(base * (1 - own) + own, 0.0f, 1.0f);
+    if (color.size() != 3) {
+      warn("sheenColorFactor should be three numbers; left out");
+      return;
     }
-    warn("sheen is approximated: the surface is lighter by its mean");
+    for (size_t c = 0; c < 3; ++c)
+      material_.sheen_color.value[c] = float(std::clamp(color[c], 0.0, 1.0));
+    if (material_.sheen_color.value.is_black()) return;
+    if (material_.metallic.value >= 1 || material_.transmission.value > 0)
+      warn("sheen over metal, or over what transmits, is left out");
+    material_.sheen_roughness.value = unit_number(*sheen, "sheenRoughnessFactor", 0);
+    material_.sheen_color.texture = texture(*sheen, "sheenColorTexture", true);
+    material_.sheen_color.value *= stand_in_;
+    material_.sheen_roughness.texture = texture(*sheen, "sheenRoughnessTexture", false);
   }
 
-  // Widths α and α + (1 - α) s² as one, their geometric mean.
   void read_anisotropy() {
     const auto anisotropy = node_.extension("KHR_materials_anisotropy");
     if (!anisotropy) return;
     const float strength = unit_number(*anisotropy, "anisotropyStrength", 0);
     if (strength == 0) return;
-    if (anisotropy->find("anisotropyTexture")) warn("anisotropy by a texture is left out");
-    const float alpha = sqr(material_.roughness.value);
-    const float along = alpha + (1 - alpha) * sqr(strength);
-    material_.roughness.value = std::min(std::sqrt(std::sqrt(alpha * along)), 1.0f);
-    warn("anisotropy is approximated: gloss is even in all directions, as wide as in the mean");
+    if (material_.transmission.value > 0) {
+      const float alpha = sqr(material_.roughness.value);
+      const float along = alpha + (1 - alpha) * sqr(strength);
+      material_.roughness.value = std::min(std::sqrt(std::sqrt(alpha * along)), 1.0f);
+      warn(
+          "anisotropy of what transmits is approximated: gloss is even in all directions, as wide "
+          "as in the mean");
+      return;
+    }
+    material_.anisotropy.value = strength;
+    material_.anisotropy_rotation_rad = float(anisotropy->number_or("anisotropyRotation", 0));
+    material_.anisotropy.texture = texture(*anisotropy, "anisotropyTexture", false);
   }
 
   // Interference in a thin film, of light straight on: a colour of the reflection that does not
@@ -324,7 +323,7 @@ class GltfMaterials::Reader {
   // Without metal, specular reflection and transmission the model is Lambert's, exactly.
   void reduce_to_diffuse() {
     if (material_.metallic.value == 0 && material_.specular.value == 0 &&
-        material_.transmission.value == 0)
+        material_.transmission.value == 0 && material_.sheen_color.value.is_black())
       material_.kind = MaterialKind::diffuse;
   }
 
@@ -332,7 +331,6 @@ class GltfMaterials::Reader {
   const JsonNode& node_;
   Material material_;
   GltfMaterial result_;
-  int uv_set_ = -1;  // not yet known
   Rgb stand_in_{1};  // for the image that was asked for last, where it is missing
 };
 

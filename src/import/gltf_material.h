@@ -11,6 +11,7 @@
 
 #include "import/gltf_accessor.h"
 #include "import/gltf_json.h"
+#include "import/gltf_uv_sets.h"
 #include "import/texture_loader.h"
 #include "scene/scene.h"
 
@@ -22,7 +23,7 @@ struct GltfMaterial {
   int32_t emission_texture = no_texture;
   bool is_two_sided = false;
   bool is_textured = false;
-  int uv_set = 0;  // n of the TEXCOORD_n that all its textures use
+  GltfUvSets uv_sets;
 };
 
 // Converts materials when they are asked for, each once; textures nobody uses are not decoded.

@@ -123,12 +123,21 @@ std::vector<Triangle> read_triangles(const GltfPrimitive& p, const Poser& poser,
   return triangles;
 }
 
-void read_uvs(const AccessorView& uvs, const std::vector<uint32_t>& used, Mesh& mesh) {
-  mesh.uvs.reserve(used.size());
-  for (const uint32_t v : used) {
-    const auto value = uvs.read(v);
-    mesh.uvs.push_back({value[0], value[1]});
+// Zeros where the set is not there but `is_needed`.
+std::vector<Vec2> read_uvs(const GltfPrimitive& p, int set, const std::vector<uint32_t>& used,
+                           bool is_needed) {
+  std::vector<Vec2> out;
+  const auto found = p.uvs.find(set);
+  if (found == p.uvs.end()) {
+    if (is_needed) out.resize(used.size());
+    return out;
   }
+  out.reserve(used.size());
+  for (const uint32_t v : used) {
+    const auto value = found->second.read(v);
+    out.push_back({value[0], value[1]});
+  }
+  return out;
 }
 
 std::vector<TextureValue> read_colors(const AccessorView& colors,
@@ -159,8 +168,8 @@ void wind_by_normals(Mesh& mesh, WarningLog& warnings) {
 
 }  // namespace
 
-Mesh make_gltf_mesh(const GltfPrimitive& p, const GltfPose& pose, int uv_set, WarningLog& warnings,
-                    PlacedBounds& bounds, std::vector<TextureValue>* colors) {
+Mesh make_gltf_mesh(const GltfPrimitive& p, const GltfPose& pose, const GltfUvSets& sets,
+                    WarningLog& warnings, PlacedBounds& bounds, std::vector<TextureValue>* colors) {
   const Poser poser(p, pose);
   Mesh mesh;
   mesh.triangles = read_triangles(p, poser, warnings, bounds);
@@ -171,8 +180,8 @@ Mesh make_gltf_mesh(const GltfPrimitive& p, const GltfPose& pose, int uv_set, Wa
     mesh.normals.reserve(used.size());
     for (const uint32_t v : used) mesh.normals.push_back(poser.normal(v));
   }
-  const auto uvs = p.uvs.find(uv_set);
-  if (uvs != p.uvs.end()) read_uvs(uvs->second, used, mesh);
+  mesh.uvs_2 = read_uvs(p, sets.second, used, false);
+  mesh.uvs = read_uvs(p, sets.first, used, !mesh.uvs_2.empty());
   if (colors && p.colors) *colors = read_colors(*p.colors, used);
   clean_mesh(mesh, warnings);  // replaces normals and (u,v) that are not finite
   wind_by_normals(mesh, warnings);

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/transform.h"
 #include "import/gltf_primitive.h"
+#include "import/gltf_uv_sets.h"
 #include "import/recentre.h"
 #include "scene/scene.h"
 
@@ -22,10 +23,10 @@ struct GltfPose {
 // The primitive in world space, with the vertices that its triangles use. Triangles without area
 // or with vertices that are not finite are left out, with a warning. Under a mirroring transform
 // triangles are turned round, so that the front stays the front [1] §3.7.4; a mesh all of whose
-// normals contradict its winding is wound by them, with a warning. `uv_set`: which TEXCOORD_n
-// becomes Mesh::uvs (none if it is not there). Counts its triangles into `bounds`. `colors` becomes
-// those of the vertices, if they have any.
-Mesh make_gltf_mesh(const GltfPrimitive& primitive, const GltfPose& pose, int uv_set,
+// normals contradict its winding is wound by them, with a warning. `sets`: which TEXCOORD_n
+// become Mesh::uvs and uvs_2 (none if they are not there). Counts its triangles into `bounds`.
+// `colors` becomes those of the vertices, if they have any.
+Mesh make_gltf_mesh(const GltfPrimitive& primitive, const GltfPose& pose, const GltfUvSets& sets,
                     WarningLog& warnings, PlacedBounds& bounds,
                     std::vector<TextureValue>* colors = nullptr);
 

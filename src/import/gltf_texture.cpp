@@ -10,8 +10,6 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_uv_set = 1000;
-
 WrapMode wrap_mode(const JsonNode& sampler, const char* key) {
   const auto node = sampler.find(key);
   const uint64_t value = node ? node->as_integer(~uint64_t(0)) : 10497;
@@ -39,13 +37,12 @@ void read_sampler(const JsonNode& sampler, Texture& look) {
   }
 }
 
-void read_transform(const JsonNode& transform, Texture& look, int& uv_set) {
+void read_transform(const JsonNode& transform, Texture& look) {
   const auto offset = transform.numbers_or("offset", {0, 0});
   const auto scale = transform.numbers_or("scale", {1, 1});
   look.uv_offset = {float(offset[0]), float(offset[1])};
   look.uv_scale = {float(scale[0]), float(scale[1])};
   look.uv_rotation_rad = float(transform.number_or("rotation", 0));
-  uv_set = int(transform.integer_or("texCoord", uint64_t(uv_set), max_uv_set));
 }
 
 // An image outside the scene's folder, where nothing is read, may lie beside the scene all the
@@ -92,13 +89,14 @@ std::string gltf_image_key(const JsonNode& image) {
 }
 
 GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_srgb,
-                            const GltfBuffers& buffers, TextureLoader& loader, Scene& scene) {
+                            const GltfUvSets& sets, const GltfBuffers& buffers,
+                            TextureLoader& loader, Scene& scene) {
   GltfTextureUse use;
-  use.uv_set = int(info.integer_or("texCoord", 0, max_uv_set));
   Texture look;
+  if (gltf_uv_set(info) == sets.second) look.mapping = TextureMapping::second_uv;
   look.is_srgb = is_srgb;
   if (const auto transform = info.extension("KHR_texture_transform"))
-    read_transform(*transform, look, use.uv_set);
+    read_transform(*transform, look);
   const JsonNode textures = root.member("textures");
   const JsonNode texture =
       textures.element(info.member("index").as_index(textures.size(), "textures"));

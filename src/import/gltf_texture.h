@@ -8,22 +8,24 @@
 
 #include "import/gltf_accessor.h"
 #include "import/gltf_json.h"
+#include "import/gltf_uv_sets.h"
 #include "import/texture_loader.h"
 
 namespace troffer {
 
 struct GltfTextureUse {
   int32_t texture = no_texture;  // none also where the image cannot be had (with a warning)
-  int uv_set = 0;
-  Rgb stand_in{1};  // where an image cannot be had: what to take for it
+  Rgb stand_in{1};               // where an image cannot be had: what to take for it
 };
 
 // What stands for an image in warnings and for the loader.
 std::string gltf_image_key(const JsonNode& image);
 
 // The texture that `info` (a textureInfo [1] §5.30) names, with its sampler and transform [2].
-// `is_srgb`: colour as against data. A URI that leads out of the scene's folder fails.
+// `is_srgb`: colour as against data. `sets`: what a mesh of its material has as texture
+// coordinates. A URI that leads out of the scene's folder fails.
 GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_srgb,
-                            const GltfBuffers& buffers, TextureLoader& loader, Scene& scene);
+                            const GltfUvSets& sets, const GltfBuffers& buffers,
+                            TextureLoader& loader, Scene& scene);
 
 }  // namespace troffer

@@ -23,12 +23,14 @@ void drop_vertices(Mesh& mesh) {
     mesh.positions[kept] = mesh.positions[i];
     if (!mesh.normals.empty()) mesh.normals[kept] = mesh.normals[i];
     if (!mesh.uvs.empty()) mesh.uvs[kept] = mesh.uvs[i];
+    if (!mesh.uvs_2.empty()) mesh.uvs_2[kept] = mesh.uvs_2[i];
     ++kept;
   }
   if (kept == mesh.positions.size()) return;
   mesh.positions.resize(kept);
   if (!mesh.normals.empty()) mesh.normals.resize(kept);
   if (!mesh.uvs.empty()) mesh.uvs.resize(kept);
+  if (!mesh.uvs_2.empty()) mesh.uvs_2.resize(kept);
   for (Triangle& t : mesh.triangles)
     for (uint32_t& v : t) v = renumbered[v];
 }
@@ -63,8 +65,9 @@ void clean_mesh(Mesh& mesh, WarningLog& warnings) {
   drop_triangles(mesh, warnings);
   drop_vertices(mesh);
   repair_normals(mesh);
-  for (Vec2& uv : mesh.uvs)
-    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
+  for (std::vector<Vec2>* const set : {&mesh.uvs, &mesh.uvs_2})
+    for (Vec2& uv : *set)
+      if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
 }
 
 void show_alone(Mesh mesh, Scene& scene) {

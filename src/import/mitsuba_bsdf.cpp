@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "base/coat.h"
+#include "import/measured_bsdf.h"
 #include "import/mitsuba_values.h"
 #include "import/spectra.h"
+#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -79,7 +81,10 @@ void MitsubaBsdfs::read_alpha(const MitsubaNode& node, Material& m) {
     const FloatInput v = textures_.real(node, {"alpha_v"}, default_alpha);
     m.roughness = u;
     m.roughness.value = std::sqrt(u.value * v.value);
-    if (u.value != v.value || u.texture != v.texture)
+    const bool is_grained = m.kind == MaterialKind::conductor && u.texture < 0 && v.texture < 0;
+    if (is_grained)
+      set_two_widths(m, u.value, v.value);
+    else if (u.value != v.value || u.texture != v.texture)
       approximate(node, "different roughness along u and v as its geometric mean");
   } else {
     m.roughness = textures_.real(node, {"alpha"}, default_alpha);
@@ -352,6 +357,10 @@ std::optional<Material> MitsubaBsdfs::convert_simple(const MitsubaNode& node) {
   if (is_any({"bumpmap", "bump", "normalmap"})) return bumped(node);
   if (is_any({"twosided"})) return two_sided(node);
   if (is_any({"null"})) return std::nullopt;
+  if (is_any({"measured"})) {
+    const std::string file = get_text(node, "filename", "");
+    return one_sided(measured_material(tree_.folder(), file, scene_.warnings));
+  }
   scene_.warnings.add("bsdf \"" + shortened(type) + "\" is not supported: shown diffuse grey");
   for (const MitsubaNode* child : node.children) child->is_used = true;
   Material m;

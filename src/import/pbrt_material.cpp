@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "import/absorption.h"
+#include "import/measured_bsdf.h"
 #include "import/spectra.h"
+#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -72,7 +74,12 @@ void PbrtMaterials::read_roughness(const PbrtParams& params, Material& m,
   };
   const FloatInput u = along(prefix + "uroughness"), v = along(prefix + "vroughness");
   m.roughness = u;
-  if (u.texture != v.texture || u.value != v.value) {
+  m.roughness_meaning = params.get_bool("remaproughness", true) ? RoughnessMeaning::alpha_is_sqrt
+                                                                : RoughnessMeaning::alpha;
+  const bool is_grained = m.kind == MaterialKind::conductor && u.texture < 0 && v.texture < 0;
+  if (is_grained && u.value != v.value) {
+    set_two_widths(m, u.value, v.value);
+  } else if (u.texture != v.texture || u.value != v.value) {
     m.roughness.value = std::sqrt(std::max(u.value, 0.0f) * std::max(v.value, 0.0f));
     if (u.texture < 0) m.roughness.texture = v.texture;
     scene_.warnings.add(params.owner +
@@ -82,8 +89,6 @@ void PbrtMaterials::read_roughness(const PbrtParams& params, Material& m,
     scene_.warnings.add(params.owner + ": negative roughness is set to 0");
     m.roughness.value = 0;
   }
-  m.roughness_meaning = params.get_bool("remaproughness", true) ? RoughnessMeaning::alpha_is_sqrt
-                                                                : RoughnessMeaning::alpha;
 }
 
 float PbrtMaterials::read_ior(const PbrtParams& params) {
@@ -169,6 +174,8 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
     m = make_coated_conductor(params);
   } else if (type == "mix") {
     m = make_mix(material);
+  } else if (type == "measured") {
+    m = measured_material(textures.folder(), params.get_string("filename", ""), scene_.warnings);
   } else if (type == "diffusetransmission") {
     m.base_color = textures.color(params, "reflectance", Rgb{0.25f});
     m.base_color.value *= float(params.get_float("scale", 1));
@@ -190,7 +197,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
 
 bool is_textured(const Material& m) {
   return has_textured_input(m) || m.normal_texture >= 0 || m.bump.texture >= 0 ||
-         (m.is_alpha_masked && m.alpha.texture >= 0);
+         m.anisotropy.value > 0 || (m.is_alpha_masked && m.alpha.texture >= 0);
 }
 
 }  // namespace troffer

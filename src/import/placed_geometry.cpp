@@ -48,7 +48,8 @@ void GeometryPlacer::spend(size_t triangles, const SourcePlace& place) {
 bool GeometryPlacer::needs_coordinates(const PlacedLook& look) const {
   const Material& m = scene_.materials[look.material];
   return has_textured_input(m) || m.normal_texture >= 0 || m.bump.texture >= 0 ||
-         m.is_alpha_masked || (look.emission && look.emission->texture >= 0);
+         m.anisotropy.value > 0 || m.is_alpha_masked ||
+         (look.emission && look.emission->texture >= 0);
 }
 
 int32_t GeometryPlacer::add_light(const PlacedLook& look, LightKind kind, size_t geometry) {

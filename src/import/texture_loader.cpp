@@ -27,7 +27,7 @@ std::string request_key(const std::string& image, const Texture& look) {
                                      look.uv_offset.y, look.uv_rotation_rad};
   for (const float f : numbers) key += std::to_string(std::bit_cast<uint32_t>(f)) + ' ';
   for (const int flag : {int(look.is_srgb), int(look.is_inverted), int(look.is_filtered),
-                         int(look.wrap_u), int(look.wrap_v)})
+                         int(look.wrap_u), int(look.wrap_v), int(look.mapping)})
     key += std::to_string(flag);
   return key;
 }

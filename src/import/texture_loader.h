@@ -29,8 +29,8 @@ class TextureLoader {
       : scene_(scene), max_texel_bytes_(max_texel_bytes) {}
 
   // Index in Scene::textures of the image at `path`, looked up as `look` says: its name, value,
-  // is_srgb (of 8-bit images), is_inverted, is_filtered, wrap and uv fields are kept; kind, size
-  // and texels are filled in. An empty name becomes the path.
+  // is_srgb (of 8-bit images), is_inverted, is_filtered, mapping, wrap and uv fields are kept;
+  // kind, size and texels are filled in. An empty name becomes the path.
   int32_t from_file(const std::string& path, const Texture& look);
 
   // The same for an encoded image (PNG, JPEG …) in memory. `key` stands for the image in warnings

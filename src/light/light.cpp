@@ -64,7 +64,7 @@ float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x
                   [&](auto kind) { return kind.pdf_solid_angle(scene, p, x, wi, distance); });
 }
 
-Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const Vec2& uv,
+Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const TexturePlace& uv,
                      const Vec3& towards) {
   return ask_kind(light.kind,
                   [&](auto kind) { return kind.emitted(scene, light, is_front, uv, towards); });

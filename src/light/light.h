@@ -34,7 +34,7 @@ float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x
 
 // Radiance that leaves a light's surface, on its front or back where its texture coordinates are
 // uv, in the unit direction `towards`.
-Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const Vec2& uv,
+Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const TexturePlace& uv,
                      const Vec3& towards);
 
 // Radiance of piece p that a ray sees which leaves the scene in the unit direction wi.

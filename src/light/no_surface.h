@@ -13,7 +13,9 @@
 namespace troffer {
 
 struct NoSurface {
-  static Rgb emitted(const Scene&, const Light&, bool, const Vec2&, const Vec3&) { return Rgb{0}; }
+  static Rgb emitted(const Scene&, const Light&, bool, const TexturePlace&, const Vec3&) {
+    return Rgb{0};
+  }
   static float pdf_solid_angle(const Scene&, const LightPrimitive&, const Vec3&, const Vec3&,
                                float) {
     return 0;

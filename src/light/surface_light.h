@@ -8,7 +8,7 @@
 namespace troffer {
 
 struct SurfaceLight {
-  static Rgb emitted(const Scene& scene, const Light& e, bool is_front, const Vec2& uv,
+  static Rgb emitted(const Scene& scene, const Light& e, bool is_front, const TexturePlace& uv,
                      const Vec3& towards) {
     if (e.web == no_web) return emitted_radiance(scene, e, is_front, uv);  // in all directions
     if (!is_front && !e.is_two_sided) return Rgb{0};

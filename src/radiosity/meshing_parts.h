@@ -38,6 +38,6 @@ struct Reflectances {
   Rgb diffuse, other;
 };
 Reflectances reflectances(const BsdfTables& tables, const Scene& scene, uint32_t material,
-                          const Vec2& uv, bool is_front);
+                          const TexturePlace& uv, bool is_front);
 
 }  // namespace troffer

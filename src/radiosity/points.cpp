@@ -19,8 +19,8 @@ namespace {
 constexpr int reach_rays = 8, reach_rays_of_lights = 64;
 constexpr uint32_t purpose_reach = 0;
 
-Vec2 uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t triangle, uint32_t fragment,
-           const Vec3& weights) {
+TexturePlace uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t triangle,
+                   uint32_t fragment, const Vec3& weights) {
   const BaseTriangle& t = mesh.geometry.triangles[triangle];
   const BaseSurface& s = mesh.geometry.surfaces[t.surface];
   if (s.bulge != Bulge::none) return {};
@@ -36,7 +36,11 @@ Vec2 uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t triangle, uin
   const double nn = dot(n, n);
   const auto w1 = float(dot(cross(at - a, ac), n) / nn), w2 = float(dot(cross(ab, at - a), n) / nn);
   const Triangle& c = m.triangles[triangle - s.first_triangle];
-  return m.uvs[c[0]] * (1 - w1 - w2) + m.uvs[c[1]] * w1 + m.uvs[c[2]] * w2;
+  const auto between = [&](const std::vector<Vec2>& uvs) {
+    return uvs[c[0]] * (1 - w1 - w2) + uvs[c[1]] * w1 + uvs[c[2]] * w2;
+  };
+  return m.uvs_2.empty() ? TexturePlace(between(m.uvs))
+                         : TexturePlace(between(m.uvs), between(m.uvs_2));
 }
 
 struct ElementSurface {
@@ -70,7 +74,7 @@ ElementSurface average_surface(const Scene& scene, const BsdfTables& tables,
     const uint32_t f = e.order[i];
     const double share = std::max(e.area[f], 1e-30);
     for (const Vec3& w : weights) {
-      const Vec2 uv = uv_at(scene, mesh, e.base_triangle[f], f, w);
+      const TexturePlace uv = uv_at(scene, mesh, e.base_triangle[f], f, w);
       total += share;
       const double there =
           m.is_alpha_masked ? double(coverage(scene.textures, m, uv)) * share : share;
@@ -199,7 +203,7 @@ Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh&
 }  // namespace
 
 Reflectances reflectances(const BsdfTables& tables, const Scene& scene, uint32_t material,
-                          const Vec2& uv, bool is_front) {
+                          const TexturePlace& uv, bool is_front) {
   const Bsdf b = make_bsdf(tables, scene, material, uv, is_front);
   Rgb rho;
   if (is_lambertian(b, &rho)) return {rho, Rgb{0}};

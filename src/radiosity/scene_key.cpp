@@ -13,6 +13,7 @@ void add_geometry(Hasher& h, const Scene& scene) {
     for (const Vec3& p : m.positions) h.add(p);
     h.add(m.uvs.size());
     for (const Vec2& p : m.uvs) h.add(p);
+    for (const Vec2& p : m.uvs_2) h.add(p);
     h.add(m.triangles.size());
     for (const Triangle& t : m.triangles)
       for (const uint32_t v : t) h.add(uint64_t(v));

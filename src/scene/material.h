@@ -54,6 +54,14 @@ struct Material {
   FloatInput roughness{0, no_texture, 0};
   RoughnessMeaning roughness_meaning = RoughnessMeaning::alpha;
   FloatInput metallic{0, no_texture, 2};
+  // GGX is alpha + (1 - alpha) × this² wide along TexturePlace::grain, alpha across it: of
+  // conductors and metallic_roughness. The grain lies so far counterclockwise from growing u,
+  // turned further by the texture's red and green as a direction.
+  FloatInput anisotropy{0, no_texture, 2};
+  float anisotropy_rotation_rad = 0;
+  // metallic_roughness: cloth's fibres over it (bsdf/sheen.h). Black: none.
+  ColorInput sheen_color{Rgb{0}, no_texture};
+  FloatInput sheen_roughness{0, no_texture, 3};
   float ior = 1.5f;                               // real index of refraction, inside / outside
   FloatInput specular{1, no_texture, 3};          // KHR_materials_specular: specularFactor
   ColorInput specular_color{Rgb{1}, no_texture};  // … specularColorFactor
@@ -63,12 +71,12 @@ struct Material {
   // straight through it.
   Rgb absorption{0};
   BackFaces back_faces = BackFaces::shown;
-  bool is_reflectance = false;                    // conductor: normal reflectance is base_color
-  Rgb eta{0.2f}, k{3.9f};                         // conductor
-  int32_t normal_texture = no_texture;            // tangent space, linear
+  bool is_reflectance = false;          // conductor: normal reflectance is base_color
+  Rgb eta{0.2f}, k{3.9f};               // conductor
+  int32_t normal_texture = no_texture;  // tangent space, linear
   float normal_scale = 1;
-  FloatInput bump{0, no_texture, 0};              // height in metres; none without a texture
-  bool is_alpha_masked = false;   // hits with alpha < cutoff are not there …
+  FloatInput bump{0, no_texture, 0};  // height in metres; none without a texture
+  bool is_alpha_masked = false;       // hits with alpha < cutoff are not there …
   bool is_alpha_blended = false;  // … or, where it is masked: alpha is the share of rays that hit
   FloatInput alpha{1, no_texture, 3};
   float alpha_cutoff = 0.5f;
@@ -79,8 +87,10 @@ struct Material {
 // Calls visit(input) for every input that says how a material scatters light: what may be textured.
 template <class Visit>
 void for_each_input(const Material& m, const Visit& visit) {
-  for (const ColorInput* c : {&m.base_color, &m.specular_color}) visit(*c);
-  for (const FloatInput* f : {&m.roughness, &m.metallic, &m.specular, &m.transmission}) visit(*f);
+  for (const ColorInput* c : {&m.base_color, &m.specular_color, &m.sheen_color}) visit(*c);
+  for (const FloatInput* f :
+       {&m.roughness, &m.metallic, &m.specular, &m.transmission, &m.anisotropy, &m.sheen_roughness})
+    visit(*f);
 }
 
 // Calls visit(v) for all that says how a material scatters light and where it has holes (bumps and
@@ -91,6 +101,7 @@ void for_each_value(const Material& m, const Visit& visit) {
   visit(uint64_t(m.roughness_meaning));
   for_each_input(m, visit);
   visit(m.alpha);
+  visit(m.anisotropy_rotation_rad);
   visit(m.ior);
   visit(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2 |
         uint64_t(m.is_alpha_blended) << 3);
@@ -130,7 +141,7 @@ inline float coverage(const std::vector<Texture>& textures, const Material& m,
 
 // Whether no ray meets it there.
 inline bool is_cut_out(const std::vector<Texture>& textures, const Material& m,
-                      const TexturePlace& uv) {
+                       const TexturePlace& uv) {
   return coverage(textures, m, uv) <= 0;
 }
 

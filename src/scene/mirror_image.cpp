@@ -53,14 +53,16 @@ class MeshCutter {
  private:
   static constexpr uint32_t none = 0xffffffffu;
 
-  uint32_t add(const Vec3& p, const Vec2& uv) {
+  uint32_t add(const Vec3& p, const Vec2& uv, const Vec2& uv_2) {
     out_.mesh.positions.push_back(p);
     if (!mesh_.uvs.empty()) out_.mesh.uvs.push_back(uv);
+    if (!mesh_.uvs_2.empty()) out_.mesh.uvs_2.push_back(uv_2);
     return uint32_t(out_.mesh.positions.size() - 1);
   }
   Vec2 uv(uint32_t v) const { return mesh_.uvs.empty() ? Vec2{} : mesh_.uvs[v]; }
+  Vec2 uv_2(uint32_t v) const { return mesh_.uvs_2.empty() ? Vec2{} : mesh_.uvs_2[v]; }
   uint32_t vertex(uint32_t v) {
-    if (number_[v] == none) number_[v] = add(mesh_.positions[v], uv(v));
+    if (number_[v] == none) number_[v] = add(mesh_.positions[v], uv(v), uv_2(v));
     return number_[v];
   }
   // Where an edge meets the plane: the same for both triangles beside it.
@@ -69,8 +71,9 @@ class MeshCutter {
     const auto [it, is_new] = crossings_.try_emplace({low, high}, 0);
     if (is_new) {
       const float s = above_[low] / (above_[low] - above_[high]);
-      it->second = add(mesh_.positions[low] + (mesh_.positions[high] - mesh_.positions[low]) * s,
-                       uv(low) + (uv(high) - uv(low)) * s);
+      it->second =
+          add(mesh_.positions[low] + (mesh_.positions[high] - mesh_.positions[low]) * s,
+              uv(low) + (uv(high) - uv(low)) * s, uv_2(low) + (uv_2(high) - uv_2(low)) * s);
     }
     return it->second;
   }

@@ -28,7 +28,8 @@ struct Mesh {
   std::string name;
   std::vector<Vec3> positions;  // metres
   std::vector<Vec3> normals;    // empty, or per vertex: unit shading normals
-  std::vector<Vec2> uvs;        // empty, or per vertex
+  std::vector<Vec2> uvs;        // empty, or per vertex: what lights and alpha are looked up by
+  std::vector<Vec2> uvs_2;      // the same, for textures mapped by second_uv
   std::vector<Triangle> triangles;
   std::vector<int32_t> lights;  // empty (nothing emits), or per triangle
   uint32_t material = 0;
@@ -104,11 +105,12 @@ inline float coverage(const Scene& scene, const Light& e, const Vec2& uv) {
 }
 
 // Emission of a light that has a surface towards a viewer on its front (or back), where the surface
-// has texture coordinates uv; where alpha blends, the mean over rays that meet it and rays that do
-// not.
-inline Rgb emitted_radiance(const Scene& scene, const Light& e, bool is_front, const Vec2& uv) {
+// has texture coordinates uv: the mean over a footprint, whose middle decides about holes. Where
+// alpha blends, the mean over rays that meet it and rays that do not.
+inline Rgb emitted_radiance(const Scene& scene, const Light& e, bool is_front,
+                            const TexturePlace& uv) {
   if (!is_front && !e.is_two_sided) return Rgb{0};
-  const Rgb radiance = e.radiance * coverage(scene, e, uv);
+  const Rgb radiance = e.radiance * coverage(scene, e, uv.uv);
   return e.texture < 0 || radiance.is_black()
              ? radiance
              : radiance * evaluate(scene.textures, uint32_t(e.texture), uv).rgb;

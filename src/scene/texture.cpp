@@ -234,7 +234,7 @@ Vec2 texel_step(const std::vector<Texture>& textures, uint32_t texture) {
     const Vec2 a = texel_step(textures, t.factor_a), b = texel_step(textures, t.factor_b);
     return {std::min(a.x, b.x), std::min(a.y, b.y)};
   }
-  if (t.kind != TextureKind::image || t.mapping != TextureMapping::uv) return {step, step};
+  if (t.kind != TextureKind::image || t.mapping > TextureMapping::second_uv) return {step, step};
   const auto one = [](float scale, int n) {
     return 1 / std::max(std::abs(scale) * float(n), 1e-6f);
   };

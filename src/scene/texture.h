@@ -34,21 +34,26 @@ enum class TextureKind : uint8_t {
   windy,
   marble,
 };
-// What becomes the (u,v) of a look-up: the surface's own, or the place in space, by
-// Texture::from_scene: as on a sphere or a cylinder around z, or the coordinates x and y; solid:
-// all three (patterns and noise).
-enum class TextureMapping : uint8_t { uv, spherical, cylindrical, planar, solid };
+// What becomes the (u,v) of a look-up: the surface's own, or its second ones, or the place in
+// space, by Texture::from_scene: as on a sphere or a cylinder around z, or the coordinates x and y;
+// solid: all three (patterns and noise).
+enum class TextureMapping : uint8_t { uv, second_uv, spherical, cylindrical, planar, solid };
 
 // Where a texture is looked up, and over what.
 struct TexturePlace {
   Vec2 uv;
   Vec2 axis_a, axis_b;  // sides of the footprint in (u,v); 0: a point
-  Vec3 position;        // from the scene's origin
-  float width = 0;      // metres: shorter side of the footprint
+  // The same in the second set of texture coordinates.
+  Vec2 uv_2, axis_2a, axis_2b;
+  Vec3 position;    // from the scene's origin
+  float width = 0;  // metres: shorter side of the footprint
+  // Along it gloss is widest, where it is not the same all around: unit, in Frame(shading normal).
+  Vec2 grain{1, 0};
 
   TexturePlace() = default;
   // A point, for look-ups that know no more.
-  TexturePlace(const Vec2& at) : uv(at) {}
+  TexturePlace(const Vec2& at) : uv(at), uv_2(at) {}
+  TexturePlace(const Vec2& at, const Vec2& at_2) : uv(at), uv_2(at_2) {}
   operator const Vec2&() const { return uv; }
 };
 

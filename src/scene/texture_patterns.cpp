@@ -182,9 +182,15 @@ float mixed_share(const std::vector<Texture>& textures, const Texture& t,
 }  // namespace
 
 TexturePlace mapped_place(const Texture& t, const TexturePlace& place) {
+  TexturePlace out = place;
+  if (t.mapping == TextureMapping::second_uv) {
+    out.uv = place.uv_2;
+    out.axis_a = place.axis_2a;
+    out.axis_b = place.axis_2b;
+    return out;
+  }
   const Vec3 p = in_texture(t, place.position);
   const float d = place.width * stretch(t);
-  TexturePlace out = place;
   const auto set = [&](const Vec2& uv, float wide, float high) {
     out.uv = uv;
     out.axis_a = {std::min(wide, 1.0f), 0};
@@ -208,6 +214,7 @@ TexturePlace mapped_place(const Texture& t, const TexturePlace& place) {
       out.axis_b = {0, d};
       break;
     case TextureMapping::uv:
+    case TextureMapping::second_uv:
     case TextureMapping::solid:
       break;
   }

@@ -9,7 +9,7 @@ namespace troffer {
 TextureValue pattern_value(const std::vector<Texture>& textures, const Texture& t,
                            const TexturePlace& place);
 
-// The place on t's own (u,v), where its mapping is one of space.
+// The place on t's own (u,v), where its mapping is of space or of the second set.
 TexturePlace mapped_place(const Texture& t, const TexturePlace& place);
 
 }  // namespace troffer

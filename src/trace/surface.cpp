@@ -29,17 +29,34 @@ bool tangent_from_uvs(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& u
   return true;
 }
 
-// Normal map: tangent-space normal, x along u, y up the image (against v), z outwards (glTF).
-Vec3 mapped_normal(const Scene& scene, const Material& m, const Surface& s,
-                   const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& uv) {
-  Vec3 t;
-  bool is_mirrored = false;
-  if (!tangent_from_uvs(p, uv, t, is_mirrored)) return s.shading_normal;
-  const Vec3 n = s.shading_normal;
+// The corners' texture coordinates in the set by which a texture is looked up.
+using CornerUvs = std::array<Vec2, 3>;
+struct UvSets {
+  CornerUvs first, second;
+
+  const CornerUvs& of(const Scene& scene, int32_t texture) const {
+    return scene.textures[uint32_t(texture)].mapping == TextureMapping::second_uv ? second : first;
+  }
+};
+
+// The tangent along growing u about the normal n, unit; false where there is none.
+bool tangent_about(const Vec3& n, const std::array<Vec3, 3>& p, const CornerUvs& uv, Vec3& t,
+                   bool& is_mirrored) {
+  if (!tangent_from_uvs(p, uv, t, is_mirrored)) return false;
   t = t - n * dot(n, t);
   const float l = length(t);
-  if (!(l > 1e-6f)) return n;
+  if (!(l > 1e-6f)) return false;
   t = t / l;
+  return true;
+}
+
+// Normal map: tangent-space normal, x along u, y up the image (against v), z outwards (glTF).
+Vec3 mapped_normal(const Scene& scene, const Material& m, const Surface& s,
+                   const std::array<Vec3, 3>& p, const CornerUvs& uv) {
+  Vec3 t;
+  bool is_mirrored = false;
+  const Vec3 n = s.shading_normal;
+  if (!tangent_about(n, p, uv, t, is_mirrored)) return n;
   // The bitangent runs up the image: against v, or with it where the lookup flips v.
   const bool is_v_up = scene.textures[uint32_t(m.normal_texture)].uv_scale.y < 0;
   const Vec3 b = is_mirrored != is_v_up ? cross(n, t) : cross(t, n);
@@ -76,17 +93,16 @@ struct TriangleUvs {
 // What a cone of that width meets of a plane [1]: as wide across as it is, longer along its way,
 // but no longer than `most`.
 void set_footprint(const TriangleUvs& uvs, const Vec3& normal, const Vec3& direction, float width,
-                   TexturePlace& place) {
+                   Vec2& axis_a, Vec2& axis_b) {
   constexpr float most = 64;
   const float cosine = dot(direction, normal);
   const Vec3 flat = direction - normal * cosine;
   const float l = length(flat);
   const Vec3 along = l > 1e-4f ? flat / l : Frame(normal).tangent;
   const float longer = std::min(1 / std::max(std::abs(cosine), 1e-6f), most);
-  place.axis_a = uvs.over(along * (width * longer));
-  place.axis_b = uvs.over(cross(normal, along) * width);
-  if (!std::isfinite(place.axis_a.x + place.axis_a.y + place.axis_b.x + place.axis_b.y))
-    place.axis_a = place.axis_b = {};
+  axis_a = uvs.over(along * (width * longer));
+  axis_b = uvs.over(cross(normal, along) * width);
+  if (!std::isfinite(axis_a.x + axis_a.y + axis_b.x + axis_b.y)) axis_a = axis_b = {};
 }
 
 // The shading normal on heights that are looked up [2]: their gradient in the plane, by differences
@@ -115,22 +131,55 @@ Vec3 bumped_normal(const Scene& scene, const Material& m, const TriangleUvs& uvs
   return bumped / l;
 }
 
-bool is_textured_at_all(const Material& m) {
-  return m.normal_texture >= 0 || m.bump.texture >= 0 || has_textured_input(m);
+// The grain of anisotropic gloss: growing u, turned as the material and its texture say.
+Vec2 grain_of(const Scene& scene, const Material& m, const Surface& s, const std::array<Vec3, 3>& p,
+              const UvSets& uvs) {
+  const int32_t texture = m.anisotropy.texture;
+  Vec3 t;
+  bool is_mirrored = false;
+  const Vec3 n = s.shading_normal;
+  if (!tangent_about(n, p, texture < 0 ? uvs.first : uvs.of(scene, texture), t, is_mirrored))
+    return {1, 0};
+  const bool is_v_up = texture >= 0 && scene.textures[uint32_t(texture)].uv_scale.y < 0;
+  const Vec3 b = is_mirrored != is_v_up ? cross(n, t) : cross(t, n);
+  Vec2 way{std::cos(m.anisotropy_rotation_rad), std::sin(m.anisotropy_rotation_rad)};
+  if (texture >= 0) {
+    const Rgb c = evaluate(scene.textures, uint32_t(texture), s.uv).rgb;
+    const Vec2 d{2 * c.r - 1, 2 * c.g - 1};
+    way = {way.x * d.x - way.y * d.y, way.y * d.x + way.x * d.y};
+  }
+  const Vec3 grain = Frame(n).to_local(t * way.x + b * way.y);
+  const float l = std::sqrt(grain.x * grain.x + grain.y * grain.y);
+  return l > 1e-6f ? Vec2{grain.x / l, grain.y / l} : Vec2{1, 0};
+}
+
+// Whether look-ups at the surface want more than its (u,v): by its material, or by its light.
+bool is_textured_at_all(const Scene& scene, const Surface& s) {
+  const Material& m = scene.materials[s.material];
+  return m.normal_texture >= 0 || m.bump.texture >= 0 || m.anisotropy.value > 0 ||
+         has_textured_input(m) || (s.light >= 0 && scene.lights[size_t(s.light)].texture >= 0);
 }
 
 // What textures make of the surface; places for those that are looked up later.
 void set_textured(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
-                  const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& uv, Surface& s) {
+                  const std::array<Vec3, 3>& p, const UvSets& uv, Surface& s) {
+  if (!is_textured_at_all(scene, s)) return;
   const Material& m = scene.materials[s.material];
-  if (!is_textured_at_all(m)) return;
-  const TriangleUvs uvs(p, uv);
+  const TriangleUvs uvs(p, uv.first);
   s.uv.position = s.position;
   s.uv.width = cone.width + cone.spread * hit.t;
   if (s.uv.width > 0 && uvs.is_fine)
-    set_footprint(uvs, s.geometric_normal, ray.direction, s.uv.width, s.uv);
-  if (m.normal_texture >= 0) s.shading_normal = mapped_normal(scene, m, s, p, uv);
+    set_footprint(uvs, s.geometric_normal, ray.direction, s.uv.width, s.uv.axis_a, s.uv.axis_b);
+  if (s.uv.width > 0 && !scene.meshes[s.geometry].uvs_2.empty()) {
+    const TriangleUvs second(p, uv.second);
+    if (second.is_fine)
+      set_footprint(second, s.geometric_normal, ray.direction, s.uv.width, s.uv.axis_2a,
+                    s.uv.axis_2b);
+  }
+  if (m.normal_texture >= 0)
+    s.shading_normal = mapped_normal(scene, m, s, p, uv.of(scene, m.normal_texture));
   if (m.bump.texture >= 0 && uvs.is_fine) s.shading_normal = bumped_normal(scene, m, uvs, s);
+  if (m.anisotropy.value > 0) s.uv.grain = grain_of(scene, m, s, p, uv);
 }
 
 // Of shapes without texture coordinates: where they are, for textures in space.
@@ -162,10 +211,14 @@ void triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit, const 
   }
   s.uv = {};
   if (!mesh.uvs.empty()) {
-    const std::array<Vec2, 3> uv{mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]};
-    s.uv.uv = uv[0] * w + uv[1] * hit.u + uv[2] * hit.v;
+    UvSets uv{{mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]}, {}};
+    s.uv.uv = uv.first[0] * w + uv.first[1] * hit.u + uv.first[2] * hit.v;
+    if (!mesh.uvs_2.empty()) {
+      uv.second = {mesh.uvs_2[t[0]], mesh.uvs_2[t[1]], mesh.uvs_2[t[2]]};
+      s.uv.uv_2 = uv.second[0] * w + uv.second[1] * hit.u + uv.second[2] * hit.v;
+    }
     set_textured(scene, ray, hit, cone, p, uv, s);
-  } else if (is_textured_at_all(scene.materials[s.material])) {
+  } else if (is_textured_at_all(scene, s)) {
     set_place(cone, hit, s);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "image/read_image.h"
@@ -124,6 +125,61 @@ TEST_CASE("a far checkered floor has its mean at one viewing ray") {
   const Image seen = read_image(folder.path("o.pfm"));
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) CHECK(std::abs(seen.at(x, y).g - 0.6f) < 0.02f);
+}
+
+// Rows of black and white, of holes and white, and of dark and bright that shine: near by as fine
+// as a pixel, and finer.
+TEST_CASE("half as many pixels see the same mean of textures, masks and shining textures") {
+  const std::string look =
+      "LookAt 0 -4 6  0 4 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n";
+  const std::string floor =
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1] "
+      "\"point3 P\" [-20 -20 0  20 -20 0  20 20 0  -20 20 0]\n";
+  const std::string image =
+      "\"imagemap\" \"string filename\" \"t.pfm\" \"string encoding\" \"linear\" "
+      "\"float uscale\" 13 \"float vscale\" 13\n";
+  const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+  const std::string diffuse = "Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8]\n";
+  const std::string scenes[] = {
+      look + sky + "Texture \"t\" \"spectrum\" " + image +
+          "Material \"diffuse\" \"texture reflectance\" \"t\"\n" + floor,
+      look + sky + diffuse + "Texture \"a\" \"float\" " + image +
+          floor.substr(0, floor.size() - 1) + " \"texture alpha\" \"a\"\n",
+      look + diffuse +
+          "AreaLightSource \"diffuse\" \"string filename\" \"t.pfm\" \"float scale\" .7\n" + floor};
+  std::string texels = "Pf\n64 64\n-1.0\n";
+  for (int i = 0; i < 64 * 64; ++i) {
+    const float v = (i / 64 + i % 64) % 2 == 0 ? 1.0f : 0.0f;
+    texels.append(reinterpret_cast<const char*>(&v), sizeof v);
+  }
+  for (const std::string& scene : scenes)
+    for (const char* method : {"path", "certified"}) {
+      const Folder folder;
+      folder.write("t.pfm", texels);
+      const auto seen = [&](const std::string& size, const std::string& spp) {
+        const Finished f = run_program(
+            folder, {"render", folder.write("s.pbrt", scene), "-o", folder.path("o.pfm"), "--size",
+                     size, "--quiet", "--method", method, "--depth", "1", "--spp", spp});
+        CAPTURE(f.err);
+        REQUIRE(f.status == 0);
+        return read_image(folder.path("o.pfm"));
+      };
+      const Image fine = seen("48x48", "16"), coarse = seen("24x24", "16");
+      double difference = 0, most = 0, sum = 0;
+      for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 24; ++x) {
+          const Rgb four = fine.at(2 * x, 2 * y) + fine.at(2 * x + 1, 2 * y) +
+                           fine.at(2 * x, 2 * y + 1) + fine.at(2 * x + 1, 2 * y + 1);
+          const double d = double(coarse.at(x, y).g) - double(four.g) / 4;
+          difference += d;
+          most = std::max(most, std::abs(d));
+          sum += double(four.g) / 4;
+        }
+      CAPTURE(scene);
+      CAPTURE(method);
+      CAPTURE(most);
+      CHECK(std::abs(difference) < 0.01 * sum);
+    }
 }
 
 TEST_CASE("backs: black in Mitsuba's files, unseen in glTF's but there for light") {

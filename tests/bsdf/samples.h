@@ -24,7 +24,9 @@ struct Specimens {
   Specimens(std::initializer_list<std::pair<std::string, Material>> list)
       : names(names_of(list)), materials(materials_of(list)), tables(materials) {}
   Bsdf at(size_t i, bool is_front = true) const {
-    return make_bsdf(tables, materials, textures, uint32_t(i), Vec2{0.5f, 0.5f}, is_front);
+    TexturePlace place(Vec2{0.5f, 0.5f});
+    place.grain = {std::cos(0.4f), std::sin(0.4f)};
+    return make_bsdf(tables, materials, textures, uint32_t(i), place, is_front);
   }
   size_t size() const { return materials.size(); }
 
@@ -77,6 +79,19 @@ inline Material gltf(float alpha, float metallic, Rgb base = Rgb{1}, float trans
   m.metallic.value = metallic;
   m.transmission.value = transmission;
   m.is_thin = is_thin;
+  return m;
+}
+
+// Gloss wider along a grain, which lies anywhere in the surface.
+inline Material brushed(Material m, float anisotropy) {
+  m.anisotropy.value = anisotropy;
+  return m;
+}
+// glTF's cloth.
+inline Material cloth(float sheen_roughness, Rgb sheen, float alpha = 0.5f, Rgb base = Rgb{1}) {
+  Material m = gltf(alpha, 0, base);
+  m.sheen_color.value = sheen;
+  m.sheen_roughness.value = sheen_roughness;
   return m;
 }
 

@@ -45,6 +45,47 @@ TEST_CASE("opaque white surfaces reflect everything") {
                   4e-3, 1.1e-3, 1u << 15);
 }
 
+// Its albedo is fitted to the first harmonic of the azimuth: the wider one way, the worse.
+TEST_CASE("white metal with a grain reflects nearly everything, from every side") {
+  const auto check = [](float alpha, float anisotropy, double loss, double gain) {
+    const Specimens s{{"brushed", brushed(mirror_metal(alpha), anisotropy)}};
+    double least = 2, most = 0, sum = 0;
+    int n = 0;
+    for (const float c : {0.05f, 0.2f, 0.5f, 0.8f, 1.0f})
+      for (const float phi : {0.4f, 0.8f, 1.2f, 1.6f, 1.97f, 2.8f}) {
+        const double e = scattered(s.at(0), direction(c, phi), 1u << 12).total();
+        least = std::min(least, e);
+        most = std::max(most, e);
+        sum += e;
+        ++n;
+      }
+    INFO("alpha ", alpha, " anisotropy ", anisotropy, ": ", least, " ", sum / n, " ", most);
+    CHECK(least > 1 - loss);
+    CHECK(most < 1 + gain);
+    CHECK(std::abs(sum / n - 1) < 0.01);
+  };
+  check(0.05f, 0.3f, 0.01, 0.01);
+  check(0.1f, 0.5f, 0.03, 0.015);
+  check(0.3f, 0.5f, 0.01, 0.01);
+  check(0.1f, 0.9f, 0.15, 0.035);
+}
+
+TEST_CASE("cloth neither makes energy nor loses much of it, and its sheen is what it says") {
+  for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f})
+    for (const float alpha : {0.0f, 0.3f, 1.0f}) {
+      const Specimens s{{"white", cloth(roughness, Rgb{1}, alpha)},
+                        {"black", cloth(roughness, Rgb{1}, alpha, Rgb{0})}};
+      for (const float c : cosines) {
+        const double white = scattered(s.at(0), direction(c), 1u << 14).total();
+        INFO("sheen ", roughness, " alpha ", alpha, " cosine ", c, ": ", white);
+        CHECK(white < 1.003);
+        CHECK(white > 0.93);
+        const double black = scattered(s.at(1), direction(c), 1u << 14).total();
+        CHECK(std::abs(black - double(albedo(s.at(1), c).g)) < 0.03);
+      }
+    }
+}
+
 TEST_CASE("lossless glass sends everything on") {
   for (const float alpha : alphas) {
     const Specimens s{{"glass 1.1", glass(alpha, 1.1f)},

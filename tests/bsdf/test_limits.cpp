@@ -150,3 +150,28 @@ TEST_CASE("many indices of refraction share a bounded number of tables") {
   CHECK(tables.material(31).coat == 31);
   CHECK(tables.material(199).coat == 31);
 }
+
+TEST_CASE("two equal widths are one, and the grain turns with the surface") {
+  const Vec3 wo = direction(0.6f, 0.3f), wi = direction(0.8f, 2.9f), m = normalize(wo + wi);
+  const GgxWidths even{0.3f, 0.3f};
+  CHECK(ggx_distribution(m, even) == doctest::Approx(double(ggx_distribution(m, 0.3f))));
+  CHECK(ggx_visibility(wo, wi, even) == doctest::Approx(double(ggx_visibility(0.6f, 0.8f, 0.3f))));
+  CHECK(ggx_bound(wo, even) == doctest::Approx(double(ggx_bound(wo, 0.3f))));
+  CHECK(ggx_pdf_reflected(wo, m, even, 0.7f) ==
+        doctest::Approx(double(ggx_pdf_reflected(wo, m, 0.3f, 0.7f))));
+  const Material metal = brushed(mirror_metal(0.1f), 0.7f);
+  const BsdfTables tables({metal});
+  const auto value = [&](float grain, float turn, bool is_front, float mirrored) {
+    TexturePlace place;
+    place.grain = {std::cos(grain), std::sin(grain)};
+    return evaluate(make_bsdf(tables, {metal}, {}, 0, place, is_front),
+                    direction(0.6f, mirrored * (0.3f + turn)),
+                    direction(0.8f, mirrored * (2.9f + turn)))
+        .g;
+  };
+  const double plain = double(value(0, 0, true, 1));
+  CHECK(value(0.5f, 0.5f, true, 1) == doctest::Approx(plain).epsilon(1e-4));
+  CHECK(value(1.4f, 0, true, 1) != doctest::Approx(plain).epsilon(0.1));
+  // Seen from the back, whose frame has the other bitangent.
+  CHECK(value(0.5f, 0.5f, false, -1) == doctest::Approx(plain).epsilon(1e-4));
+}

@@ -28,6 +28,9 @@ Specimens all_kinds() {
         for (const bool is_thin : {false, true})
           m.push_back(gltf(alpha, metallic, {0.8f, 0.5f, 0.9f}, transmission, is_thin));
   }
+  m.push_back(brushed(gltf(0.1f, 0.4f, {0.8f, 0.5f, 0.9f}), 0.7f));
+  m.push_back(cloth(0.6f, {0.9f, 0.3f, 0.5f}, 0.3f, {0.8f, 0.5f, 0.9f}));
+  m.push_back(cloth(0.9f, {0.1f, 1, 0.5f}, 0, {0.8f, 0.5f, 0.9f}));
   return Specimens(m);
 }
 

@@ -42,6 +42,10 @@ TEST_CASE("scattering is reciprocal") {
       {"glTF", gltf(0.4f, 0.4f, {0.3f, 0.7f, 0.9f})},
       {"glTF mixed", mixed},
       {"glTF thin", thin},
+      {"brushed copper", brushed(copper(0.1f), 0.6f)},
+      {"brushed glTF", brushed(gltf(0.3f, 0.5f, {0.3f, 0.7f, 0.9f}), 0.8f)},
+      {"cloth", cloth(0.7f, {0.9f, 0.3f, 0.5f})},
+      {"smooth cloth", cloth(0.4f, {0.9f, 0.3f, 0.5f}, 0)},
   };
   Random random(1);
   int compared = 0;

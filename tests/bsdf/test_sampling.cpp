@@ -116,6 +116,10 @@ TEST_CASE("samples follow the density") {
       {"glTF .7", gltf(0.7f, 0, {0.3f, 0.7f, 0.9f})},
       {"glTF mixed", mixed},
       {"glTF mixed thin", mixed_thin},
+      {"brushed copper", brushed(copper(0.15f), 0.5f)},
+      {"brushed glTF", brushed(gltf(0.3f, 0.5f, {0.3f, 0.7f, 0.9f}), 0.9f)},
+      {"cloth", cloth(0.6f, {0.9f, 0.3f, 0.5f})},
+      {"smooth cloth", cloth(0.9f, Rgb{1}, 0)},
   };
   const float cosines[] = {0.05f, 0.4f, 0.95f};
   int tests = 0;
@@ -142,6 +146,10 @@ TEST_CASE("grazing and degenerate directions stay finite") {
       {"nearly matched glass", glass(0.3f, 1.002f)},
       {"thin", glass(0.2f, 1.5f, true)},
       {"glTF", gltf(0.002f, 0.4f, {0.3f, 0.7f, 0.9f}, 0.5f)},
+      {"brushed", brushed(mirror_metal(1e-4f), 0.5f)},
+      {"brushed", brushed(mirror_metal(0.5f), 1)},
+      {"cloth", cloth(0, Rgb{1})},
+      {"cloth", cloth(1, Rgb{1}, 0)},
       {"infinite index",
        [] {
          Material m = gltf(0.2f, 0);

@@ -184,6 +184,52 @@ TEST_CASE("textures, masks and scenes far from the origin survive") {
   }
 }
 
+TEST_CASE(
+    "two sets of texture coordinates, sheen and grain survive in glTF, and are told of else") {
+  const TempFolder folder;
+  Scene scene;
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = 2;
+  t.height = t.channels = 1;
+  t.texels8 = {0, 255};
+  t.is_srgb = false;
+  scene.textures = {t, t};
+  scene.textures[1].mapping = TextureMapping::second_uv;
+  Material m;
+  m.kind = MaterialKind::metallic_roughness;
+  m.base_color = {Rgb{1}, 0};
+  m.roughness = {1, 1, 1};
+  m.sheen_color.value = {0.5f, 0.25f, 0};
+  m.sheen_roughness.value = 0.75f;
+  m.anisotropy.value = 0.5f;
+  m.anisotropy_rotation_rad = 0.25f;
+  scene.materials = {m};
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  mesh.uvs_2 = {{0, 0.5f}, {0.5f, 0}, {1, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  scene.meshes = {mesh};
+  export_scene(scene, folder.path("out.glb"));
+  const Scene back = import_scene(folder.path("out.glb"));
+  CHECK(back.meshes[0].uvs == mesh.uvs);
+  CHECK(back.meshes[0].uvs_2 == mesh.uvs_2);
+  const Material& n = back.materials[0];
+  const TexturePlace place(Vec2{0.25f, 0.5f}, Vec2{0.75f, 0.5f});
+  CHECK(evaluate(back.textures, n.base_color, place).g == 0);
+  CHECK(evaluate(back.textures, n.roughness, place) == doctest::Approx(1));
+  check_near(n.sheen_color.value, m.sheen_color.value, 1e-6);
+  CHECK(n.sheen_roughness.value == 0.75f);
+  CHECK(n.anisotropy.value == 0.5f);
+  CHECK(n.anisotropy_rotation_rad == 0.25f);
+  const std::vector<Warning> lost = export_scene(scene, folder.path("out.pbrt"));
+  for (const char* what : {"second set", "sheen", "grain"}) {
+    CAPTURE(what);
+    CHECK(has_warning(lost, what));
+  }
+}
+
 TEST_CASE("what glass absorbs survives, and what is lost is told") {
   const TempFolder folder;
   const Scene scene = import_scene(folder.write(

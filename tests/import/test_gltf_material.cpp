@@ -181,23 +181,6 @@ TEST_CASE("an emissive texture keeps the mesh a mesh source") {
   CHECK(scene.meshes[0].uvs.size() == 4);
 }
 
-TEST_CASE("the set of texture coordinates is the base colour's") {
-  const TempFolder folder;
-  folder.write("a.pfm", "PF\n2 1\n-1.0\n" + bytes_of<float>({1, 0, 0, 0, 0, 1}));
-  std::string text =
-      square_scene("[{'mesh':0}]",
-                   "'images':[{'uri':'a.pfm'}],'textures':[{'source':0}],'materials':[{"
-                   "'pbrMetallicRoughness':{'baseColorTexture':{'index':0,'texCoord':1}},"
-                   "'normalTexture':{'index':0}}]");
-  Scene scene = import_gltf(folder.write("scene.gltf", text));
-  CHECK(has_warning(scene, "different sets"));
-  CHECK(has_warning(scene, "TEXCOORD_1"));
-  CHECK(scene.meshes[0].uvs.empty());
-  text.replace(text.find("TEXCOORD_0"), 10, "TEXCOORD_1");
-  scene = import_gltf(folder.write("scene.gltf", text));
-  CHECK(scene.meshes[0].uvs.size() == 4);
-}
-
 TEST_CASE("KHR_materials_pbrSpecularGlossiness: a dielectric of that reflectance") {
   const auto extension = [](const std::string& members) {
     return "{'extensions':{'KHR_materials_pbrSpecularGlossiness':{" + members + "}}}";
@@ -245,17 +228,6 @@ TEST_CASE("what materials cannot show is told, and approximated where that is ne
   const std::string dielectric =
       "{'pbrMetallicRoughness':{'baseColorFactor':[0.5,0,1,1],'metallicFactor':0,"
       "'roughnessFactor':0.5},'extensions':{'KHR_materials_";
-  const Scene cloth = with_material(
-      dielectric + "sheen':{'sheenColorFactor':[1,0.5,0],'sheenRoughnessFactor':1}}}");
-  CHECK(has_warning(cloth, "sheen is approximated"));
-  const Rgb lighter = only_material(cloth).base_color.value;
-  CHECK(lighter.r == doctest::Approx(0.59));
-  CHECK(lighter.g == doctest::Approx(0.09));
-  CHECK(lighter.b == 1);
-  const Scene brushed = with_material(dielectric + "anisotropy':{'anisotropyStrength':1}}}");
-  CHECK(has_warning(brushed, "anisotropy is approximated"));
-  // widths 1/4 and 1: 1/2
-  CHECK(sqr(only_material(brushed).roughness.value) == doctest::Approx(0.5));
   const auto film = [&](const std::string& nanometres) {
     return with_material(dielectric +
                          "iridescence':{'iridescenceFactor':1,'iridescenceIor':1.3,"
@@ -270,22 +242,59 @@ TEST_CASE("what materials cannot show is told, and approximated where that is ne
     CHECK(with_material("{'extensions':{'KHR_materials_" + name + "':{}}}").warnings.total() == 0);
 }
 
+TEST_CASE("sheen and anisotropy: factors and textures") {
+  const TempFolder folder;
+  folder.write("a.pfm", "PF\n2 1\n-1.0\n" + bytes_of<float>({1, 0, 0, 0, 0, 1}));
+  const std::string image = "'images':[{'uri':'a.pfm'}],'textures':[{'source':0}],";
+  const auto with = [&](const std::string& more) {
+    return import_gltf(folder.write(
+        "scene.gltf", square_scene("[{'mesh':0}]", image + "'materials':[{" + more + "}]")));
+  };
+  const std::string cloth =
+      "'KHR_materials_sheen':{'sheenColorFactor':[1,0.5,0],'sheenRoughnessFactor':0.25,"
+      "'sheenColorTexture':{'index':0},'sheenRoughnessTexture':{'index':0}}";
+  Scene scene = with("'pbrMetallicRoughness':{'metallicFactor':0},'extensions':{" + cloth + "}");
+  CHECK(scene.warnings.total() == 0);
+  Material m = only_material(scene);
+  CHECK(m.sheen_color.value == Rgb{1, 0.5f, 0});
+  CHECK(m.sheen_color.texture >= 0);
+  CHECK(m.sheen_roughness.value == 0.25f);
+  CHECK(m.sheen_roughness.channel == 3);
+  CHECK(m.sheen_roughness.texture >= 0);
+  CHECK(has_warning(with("'extensions':{" + cloth + "}"), "sheen over metal"));
+  // Without specular reflection it is not Lambert's model all the same.
+  scene = with("'pbrMetallicRoughness':{'metallicFactor':0},'extensions':{" + cloth +
+               ",'KHR_materials_specular':{'specularFactor':0}}");
+  CHECK(only_material(scene).kind == MaterialKind::metallic_roughness);
+  scene = with(
+      "'extensions':{'KHR_materials_anisotropy':{'anisotropyStrength':0.5,"
+      "'anisotropyRotation':1.5,'anisotropyTexture':{'index':0}}}");
+  CHECK(scene.warnings.total() == 0);
+  m = only_material(scene);
+  CHECK(m.anisotropy.value == 0.5f);
+  CHECK(m.anisotropy.channel == 2);
+  CHECK(m.anisotropy.texture >= 0);
+  CHECK(m.anisotropy_rotation_rad == 1.5f);
+  CHECK(m.roughness.value == 1);
+  scene = with(
+      "'pbrMetallicRoughness':{'metallicFactor':0,'roughnessFactor':0.5},'extensions':{"
+      "'KHR_materials_transmission':{'transmissionFactor':1},"
+      "'KHR_materials_anisotropy':{'anisotropyStrength':1}}");
+  CHECK(has_warning(scene, "anisotropy of what transmits is approximated"));
+  // widths 1/4 and 1: 1/2
+  CHECK(sqr(only_material(scene).roughness.value) == doctest::Approx(0.5));
+}
+
 TEST_CASE("textures of what is approximated are told to be left out") {
   const auto with = [](const std::string& extension) {
     return with_material("{'extensions':{'KHR_materials_" + extension + "}}");
   };
   const std::string texture = "{'index':0}";
-  CHECK(has_warning(
-      with("sheen':{'sheenColorFactor':[1,1,1],'sheenRoughnessTexture':" + texture + "}"),
-      "sheen by a texture"));
-  CHECK(
-      has_warning(with("anisotropy':{'anisotropyStrength':1,'anisotropyTexture':" + texture + "}"),
-                  "anisotropy by a texture"));
   for (const char* name : {"iridescenceTexture", "iridescenceThicknessTexture"})
     CHECK(has_warning(
         with("iridescence':{'iridescenceFactor':1,'" + std::string(name) + "':" + texture + "}"),
         "iridescence by a texture"));
-  CHECK(!has_warning(with("anisotropy':{'anisotropyStrength':1}"), "by a texture"));
+  CHECK(!has_warning(with("iridescence':{'iridescenceFactor':1}"), "by a texture"));
 }
 
 TEST_CASE("a data URI that is broken is told of though nothing shows its image") {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/units.h"
 #include "import/mitsuba.h"
 #include "import/mitsuba_serialized.h"
 #include "mutations.h"
@@ -101,7 +102,8 @@ TEST_CASE("Mitsuba's smooth and rough materials") {
       "1'/><rgb name='k' value='3 2 1'/><float name='alpha_u' value='.1'/><float "
       "name='alpha_v' value='.4'/></bsdf></bsdf>");
   CHECK(m.eta == Rgb{0.2f, 0.9f, 1});
-  CHECK(m.roughness.value == doctest::Approx(0.2));
+  CHECK(m.roughness.value == doctest::Approx(0.1));
+  CHECK(0.1f + 0.9f * sqr(m.anisotropy.value) == doctest::Approx(0.4));
 }
 
 // Reflectance of the base alone, seen and lit along the normal, times pi: Mitsuba's

@@ -1,9 +1,11 @@
 // Materials, textures and spectra of pbrt scenes.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 
 #include "base/error.h"
+#include "base/units.h"
 #include "image/write_image.h"
 #include "import/pbrt.h"
 #include "import/spectra.h"
@@ -76,7 +78,11 @@ TEST_CASE("pbrt materials and their defaults") {
       "\"metal-Au-k\" \"float uroughness\" .1 \"float vroughness\" .4");
   CHECK(m.eta.b == doctest::Approx(1.442479));
   CHECK(m.k.r == doctest::Approx(3.98316));
-  CHECK(m.roughness.value == doctest::Approx(0.2));
+  // widths sqrt(.1) along u, sqrt(.4) along v
+  CHECK(m.roughness.value == doctest::Approx(0.1));
+  const auto alpha = std::sqrt(0.1f);
+  CHECK(alpha + (1 - alpha) * sqr(m.anisotropy.value) == doctest::Approx(std::sqrt(0.4f)));
+  CHECK(m.anisotropy_rotation_rad == doctest::Approx(pi / 2));
 
   m = material_of("Material \"conductor\" \"rgb reflectance\" [.9 .8 .7]");
   CHECK(m.is_reflectance);
@@ -246,7 +252,7 @@ TEST_CASE("images of emission belong to meshes") {
   CHECK(e.kind == LightKind::mesh);
   CHECK(e.radiance == Rgb(3));
   REQUIRE(e.texture >= 0);
-  check_near(emitted_radiance(scene, e, true, {0.25f, 0.25f}), {0, 0, 3});
+  check_near(emitted_radiance(scene, e, true, Vec2{0.25f, 0.25f}), {0, 0, 3});
   CHECK(scene.lights[1].texture == no_texture);
   CHECK(has_warning(scene, "emission of a sphere"));
 }

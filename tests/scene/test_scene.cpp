@@ -88,12 +88,12 @@ TEST_CASE("emission leaves the front, or both sides, times its texture") {
   Scene s = small();
   Light e;
   e.radiance = {2, 4, 8};
-  CHECK(emitted_radiance(s, e, true, {0, 0}) == Rgb{2, 4, 8});
-  CHECK(emitted_radiance(s, e, false, {0, 0}) == Rgb{0});
+  CHECK(emitted_radiance(s, e, true, Vec2{0, 0}) == Rgb{2, 4, 8});
+  CHECK(emitted_radiance(s, e, false, Vec2{0, 0}) == Rgb{0});
   e.is_two_sided = true;
-  CHECK(emitted_radiance(s, e, false, {0, 0}) == Rgb{2, 4, 8});
+  CHECK(emitted_radiance(s, e, false, Vec2{0, 0}) == Rgb{2, 4, 8});
   s.textures.emplace_back();
   s.textures[0].value = {0.5f, 0.25f, 0};
   e.texture = 0;
-  CHECK(emitted_radiance(s, e, true, {0, 0}) == Rgb{1, 1, 0});
+  CHECK(emitted_radiance(s, e, true, Vec2{0, 0}) == Rgb{1, 1, 0});
 }

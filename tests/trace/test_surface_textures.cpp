@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/units.h"
 #include "support/textures.h"
 #include "trace/surface.h"
 #include "trace/tracer.h"
@@ -116,5 +117,75 @@ TEST_CASE("backs that are unseen: to the eye alone") {
     std::vector<uint8_t> hidden(rays.size());
     tracer.occluded(rays, hidden);
     for (const uint8_t h : hidden) CHECK(h == 1);
+  }
+}
+
+TEST_CASE("what shines by a texture is seen with its mean over the footprint") {
+  // Columns of 1 and 3, each 1/64 of (u,v), which is 1/32 m.
+  Texture columns = grey_image(64, 1, [](int x, int) { return x % 2 == 0 ? 1.0f : 3.0f; });
+  build_levels(columns);
+  Scene scene = square(Material{}, columns);
+  Light light;
+  light.kind = LightKind::mesh;
+  light.triangles = {0, 1};
+  light.texture = 0;
+  light.radiance = Rgb{2};
+  scene.lights.push_back(light);
+  scene.meshes[0].lights = {0, 0};
+  double spread = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 at{1 + 0.0173f * float(i), 2.1f, 0};
+    const Surface far = hit_from(scene, at + Vec3{0, 0, 5}, at, {0.5f, 0});
+    CHECK(emitted_radiance(scene, scene.lights[0], true, far.uv).g ==
+          doctest::Approx(4).epsilon(0.02));
+    const Surface near = hit_from(scene, at + Vec3{0, 0, 5}, at, {});
+    const float point = emitted_radiance(scene, scene.lights[0], true, near.uv).g;
+    CHECK(point == emitted_radiance(scene, scene.lights[0], true, near.uv.uv).g);
+    spread = std::max(spread, std::abs(double(point) - 4));
+  }
+  CHECK(spread > 1);
+}
+
+TEST_CASE("a grain lies along growing u, turned as it is told, in the frame of the normal") {
+  const Vec3 expected[] = {{1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
+  for (int i = 0; i < 3; ++i) {
+    Material m;
+    m.anisotropy.value = 0.5f;
+    // counterclockwise with v downwards: from +u towards -v, which is -y here
+    if (i == 1) m.anisotropy_rotation_rad = float(pi / 2);
+    Texture up;  // by a texture the same way round: red and green 0.5, 0 is down the image
+    up.value = {0.5f, 0, 1};
+    if (i == 2) m.anisotropy.texture = 0;
+    const Scene scene = square(m, up);
+    const Surface s = hit_from(scene, {1.9f, 2.1f, 5}, {1.9f, 2.1f, 0}, {});
+    const Vec3 grain = Frame(s.shading_normal).to_world({s.uv.grain.x, s.uv.grain.y, 0});
+    CHECK(std::abs(dot(grain, expected[i])) == doctest::Approx(1));
+    if (i > 0) CHECK(dot(grain, expected[i]) == doctest::Approx(1));
+  }
+}
+
+TEST_CASE("a second set of coordinates: its place, its footprint, and the axes of its normal map") {
+  Material m;
+  m.base_color = {Rgb{1}, 0};
+  m.normal_texture = 1;
+  Scene scene = square(m, ramp());
+  for (const Vec3& p : scene.meshes[0].positions)
+    scene.meshes[0].uvs_2.push_back({p.y / 4, p.x / 4});
+  Texture lean;  // red .75: towards growing u
+  lean.value = {0.75f, 0.5f, 1};
+  scene.textures.push_back(lean);
+  for (const bool is_second : {false, true}) {
+    for (Texture& t : scene.textures)
+      t.mapping = is_second ? TextureMapping::second_uv : TextureMapping::uv;
+    const Surface s = hit_from(scene, {1.4f, 2.2f, 5}, {1.4f, 2.2f, 0}, {0.1f, 0});
+    CHECK(s.uv.uv_2.x == doctest::Approx(0.55));
+    CHECK(s.uv.uv_2.y == doctest::Approx(0.35));
+    CHECK(std::sqrt(dot(s.uv.axis_a, s.uv.axis_a)) == doctest::Approx(0.05));
+    CHECK(std::sqrt(dot(s.uv.axis_2a, s.uv.axis_2a)) == doctest::Approx(0.025));
+    const float value = evaluate(scene.textures, m.base_color, s.uv).g;
+    const Vec2 uv = is_second ? s.uv.uv_2 : s.uv.uv;
+    CHECK(value == doctest::Approx(0.3 * double(uv.x) + 0.1 * double(uv.y)).epsilon(0.02));
+    const Vec3 expected = normalize(is_second ? Vec3{0, 0.5f, 1} : Vec3{0.5f, 0, 1});
+    CHECK(length(s.shading_normal - expected) < 1e-3f);
   }
 }

@@ -1,0 +1,86 @@
+#include "bsdf/grain_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "bsdf/sheen.h"
+
+namespace troffer {
+
+namespace {
+
+float table_cosine(size_t i) {
+  return std::max(sqr(sqr(float(i) / float(table_cosines - 1))), 1e-6f);
+}
+
+// Midpoint rule over the numbers that visible normals are drawn by; nodes crowd as in
+// albedo_table.cpp.
+float grained_albedo(const Vec3& wo, const GgxWidths& a) {
+  constexpr int n = 32;
+  const float at_o = ggx_stretched(wo, a);
+  float sum = 0;
+  for (int j = 0; j < n; ++j) {
+    const float rest = 1 - (float(j) + 0.5f) / n;
+    for (int i = 0; i < n; ++i) {
+      const Vec3 m = ggx_sample_visible_normal(wo, {(float(i) + 0.5f) / n, 1 - rest * rest}, a, 1);
+      const Vec3 wi = m * (2 * dot(wo, m)) - wo;
+      if (!(wi.z > 0)) continue;
+      // G2 / G1 = (1 + Lambda(o)) / (1 + Lambda(o) + Lambda(i)), multiplied by 2 o i
+      const float masked = (at_o + wo.z) * wi.z;
+      sum += 2 * rest * masked / (at_o * wi.z + ggx_stretched(wi, a) * wo.z);
+    }
+  }
+  return std::min(sum / float(n * n), 1.0f);
+}
+
+// White sheen from a cosine; by symmetry half the azimuths.
+float sheen_albedo(float cosine, float alpha) {
+  constexpr int heights = 32, azimuths = 24;
+  const Vec3 wo{std::sqrt(1 - cosine * cosine), 0, cosine};
+  double sum = 0;
+  for (int j = 0; j < heights; ++j) {
+    const float t = (float(j) + 0.5f) / heights, z = t * t, r = std::sqrt(1 - z * z);
+    for (int i = 0; i < azimuths; ++i) {
+      const float phi = pi_f * (float(i) + 0.5f) / azimuths;
+      const float f = sheen_value(wo, {r * std::cos(phi), r * std::sin(phi), z}, alpha);
+      sum += double(f * z * 2 * t);
+    }
+  }
+  return float(std::min(sum * 2 * pi / (heights * azimuths), 1.0));
+}
+
+}  // namespace
+
+GrainTable make_grain_table(const GgxWidths& widths) {
+  constexpr int azimuths = 4;
+  GrainTable table;
+  table.widths = widths;
+  for (size_t k = 0; k < table_cosines; ++k) {
+    const float c = std::min(table_cosine(k), 1.0f), s = std::sqrt(1 - c * c);
+    float even = 0, twice = 0;
+    for (int i = 0; i < azimuths; ++i) {
+      const float phi = 0.5f * pi_f * (float(i) + 0.5f) / azimuths;
+      const float e = grained_albedo({s * std::cos(phi), s * std::sin(phi), c}, widths);
+      even += e / azimuths;
+      twice += e * std::cos(2 * phi) * 2 / azimuths;
+    }
+    table.even[k] = table.even[k + table_cosines] = even;
+    table.twice[k] = table.twice[k + table_cosines] = twice;
+  }
+  table.average = row_average(table.even.data());
+  return table;
+}
+
+void build_sheen_table(AlbedoTable& table) {
+  for (size_t a = 0; a < table_alphas; ++a) {
+    const float at = lerp(AlphaCoordinate::first, 1.0f, float(a) / float(table_alphas - 1));
+    const float alpha = std::max(sqr(sqr(at)), least_sheen_alpha);
+    float* row = table.values.data() + a * table_cosines;
+    for (size_t k = 0; k < table_cosines; ++k)
+      row[k] = sheen_albedo(std::min(table_cosine(k), 1.0f), alpha);
+    table.averages[a] = row_average(row);
+  }
+}
+
+}  // namespace troffer

@@ -1,0 +1,27 @@
+// Directional albedo of gloss that is wider along a grain than across it, over the cosine and, to
+// the first harmonic, the azimuth: even(c) + twice(c) cos 2φ.
+#pragma once
+
+#include <array>
+
+#include "bsdf/albedo_table.h"
+#include "bsdf/ggx_grained.h"
+
+namespace troffer {
+
+struct GrainTable {
+  GgxWidths widths;
+  // Two equal rows each, as AlbedoRow reads them.
+  std::array<float, 2 * table_cosines> even{}, twice{};
+  float average = 0;  // of even
+
+  AlbedoRow even_row() const { return {even.data(), 0, average}; }
+  AlbedoRow twice_row() const { return {twice.data(), 0, 0}; }
+};
+
+GrainTable make_grain_table(const GgxWidths& widths);
+
+// Of white sheen (bsdf/sheen.h), by its width; below least_sheen_alpha as there.
+void build_sheen_table(AlbedoTable& table);
+
+}  // namespace troffer
