@@ -1,8 +1,9 @@
 #include "shadow/mask_variance.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+
+#include "base/simd.h"
 
 namespace troffer {
 
@@ -70,6 +71,21 @@ float ordered_variance(const CoverageMask& mask, EdgesAlong edges, float variati
   return parted * of_pair + sqr(variation) * std::min(1.2f * parted, 0.4f * n * spread);
 }
 
+// Pairs of samples `rows` rows apart, and so many columns to the right or the left: all inside, and
+// those that differ.
+TROFFER_MULTIVERSION
+void count_apart(const uint32_t* __restrict inside, const uint32_t* __restrict open, uint32_t rows,
+                 uint32_t right, uint32_t left, int* __restrict counts) {
+  int all = 0, differing = 0;
+  for (uint32_t r = 0; r + rows < most_mask_rows; ++r) {
+    const uint32_t in = inside[r] & (inside[r + rows] >> right << left);
+    all += __builtin_popcount(in);
+    differing += __builtin_popcount((open[r] ^ (open[r + rows] >> right << left)) & in);
+  }
+  counts[0] = all;
+  counts[1] = differing;
+}
+
 }  // namespace
 
 OrderedPairs ordered_pairs(const CoverageMask& mask, EdgesAlong edges, uint32_t steps) {
@@ -77,19 +93,12 @@ OrderedPairs ordered_pairs(const CoverageMask& mask, EdgesAlong edges, uint32_t 
   // (k - 4, j + 1) in v.
   static_assert(fine_lattice.a - 4 * fine_lattice.b == 1);
   static_assert(coarse_lattice.a - 4 * coarse_lattice.b == 1);
-  const bool is_next_in_u = edges == EdgesAlong::v;
-  const uint32_t rows = is_next_in_u ? 4 * steps : steps,
-                 columns = is_next_in_u ? steps : 4 * steps;
-  OrderedPairs pairs;
-  for (size_t r = 0; r + rows < most_mask_rows; ++r) {
-    const auto at_next = [&](const MaskRows& m) {
-      return is_next_in_u ? m.row[r + rows] >> columns : m.row[r + rows] << columns;
-    };
-    const uint32_t inside = mask.inside.row[r] & at_next(mask.inside);
-    pairs.all += std::popcount(inside);
-    pairs.differing += std::popcount((mask.open.row[r] ^ at_next(mask.open)) & inside);
-  }
-  return pairs;
+  int counts[2];
+  if (edges == EdgesAlong::v)
+    count_apart(mask.inside.row, mask.open.row, 4 * steps, steps, 0, counts);
+  else
+    count_apart(mask.inside.row, mask.open.row, steps, 0, 4 * steps, counts);
+  return {counts[0], counts[1]};
 }
 
 // The more of all neighbours differ, from as few as in one piece to as many as if samples were
