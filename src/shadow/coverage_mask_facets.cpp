@@ -256,38 +256,32 @@ void copy_unsettled(const std::vector<FacetBatch<edges>>& from, size_t from_coun
   }
 }
 
-// Lengths of edges: of all, and of those parallel to either side.
-struct EdgeLengths {
-  float all = 0, along_u = 0, along_v = 0;
+// Lengths of edges: of all, and of those parallel to either side of the source.
+struct alignas(64) EdgeLengths {
+  static constexpr int lanes = 16;
+  float all[lanes] = {}, along_u[lanes] = {}, along_v[lanes] = {};
 };
 
-// The sides stand at (a, -b) and (b, a) on the canvas.
-template <int edges>
-EdgeLengths edge_lengths(const FacetBatch<edges>& f, const MaskLattice& lattice) {
-  constexpr int lanes = FacetBatch<edges>::lanes;
+// Those of a batch. (a, -b) and (b, a), of length 1: where the sides stand on the canvas.
+TROFFER_MULTIVERSION
+void add_edge_lengths(const float* __restrict k, const float* __restrict j,
+                      const float* __restrict w, int edges, float a, float b,
+                      EdgeLengths& __restrict sum) {
+  constexpr int lanes = EdgeLengths::lanes;
   constexpr float tolerance = 1e-3f;  // tangent: less than a sample's share of the side
-  const float scale = 1 / std::sqrt(float(lattice.samples()));
-  const float a = float(lattice.a) * scale, b = float(lattice.b) * scale;
-  float all[lanes] = {}, along_u[lanes] = {}, along_v[lanes] = {};
   for (int e = 0; e < edges; ++e) {
-    const int g = e + 1 == edges ? 0 : e + 1;
+    const int from = e * lanes, to = e + 1 == edges ? 0 : from + lanes;
     for (int i = 0; i < lanes; ++i) {
-      const float dk = f.k[g][i] - f.k[e][i], dj = f.j[g][i] - f.j[e][i],
-                  dw = f.w[g][i] - f.w[e][i];
+      const float dk = k[to + i] - k[from + i], dj = j[to + i] - j[from + i],
+                  dw = w[to + i] - w[from + i];
       const float size = std::sqrt(dk * dk + dj * dj + dw * dw);
-      const float in_u = a * dk - b * dj, in_v = b * dk + a * dj, most = tolerance * size;
-      all[i] += size;
-      along_u[i] += std::abs(in_v) + std::abs(dw) < most ? size : 0.0f;
-      along_v[i] += std::abs(in_u) + std::abs(dw) < most ? size : 0.0f;
+      const float in_u = a * dk - b * dj, in_v = b * dk + a * dj;
+      const float most = tolerance * size - std::abs(dw);
+      sum.all[i] += size;
+      sum.along_u[i] += std::abs(in_v) < most ? size : 0.0f;
+      sum.along_v[i] += std::abs(in_u) < most ? size : 0.0f;
     }
   }
-  EdgeLengths sum;
-  for (int i = 0; i < lanes; ++i) {
-    sum.all += all[i];
-    sum.along_u += along_u[i];
-    sum.along_v += along_v[i];
-  }
-  return sum;
 }
 
 }  // namespace
@@ -296,16 +290,19 @@ void FacetList::find_edges_along(const MaskLattice& lattice) {
   constexpr float most = 0.8f;
   edges_along_ = EdgesAlong::neither;
   if (round_.size() > 0) return;
+  const float scale = 1 / std::sqrt(float(lattice.samples()));
+  const float a = float(lattice.a) * scale, b = float(lattice.b) * scale;
   EdgeLengths sum;
-  const auto add = [&](const EdgeLengths& l) {
-    sum.all += l.all;
-    sum.along_u += l.along_u;
-    sum.along_v += l.along_v;
-  };
-  for (const FacetBatch<4>& f : quads_) add(edge_lengths(f, lattice));
-  for (const FacetBatch<3>& f : triangles_) add(edge_lengths(f, lattice));
-  if (sum.along_u > most * sum.all) edges_along_ = EdgesAlong::u;
-  if (sum.along_v > most * sum.all) edges_along_ = EdgesAlong::v;
+  for (const FacetBatch<4>& f : quads_) add_edge_lengths(f.k[0], f.j[0], f.w[0], 4, a, b, sum);
+  for (const FacetBatch<3>& f : triangles_) add_edge_lengths(f.k[0], f.j[0], f.w[0], 3, a, b, sum);
+  float all = 0, along_u = 0, along_v = 0;
+  for (int i = 0; i < EdgeLengths::lanes; ++i) {
+    all += sum.all[i];
+    along_u += sum.along_u[i];
+    along_v += sum.along_v[i];
+  }
+  if (along_u > most * all) edges_along_ = EdgesAlong::u;
+  if (along_v > most * all) edges_along_ = EdgesAlong::v;
 }
 
 void FacetList::keep_unsettled(const FacetList& from, const FacetFlags& flags) {
