@@ -64,6 +64,7 @@ inline __attribute__((always_inline)) void weigh(const MaskWeights& w, const uin
     const Floats square_0 = w.square + row * (w.square_j + row * w.square_jj);
     const Floats slope = w.slope + w.slope_j * row;
     Floats all = zero, seen = zero, squares = zero;
+#pragma GCC unroll 32
     for (int k = 0; k < columns; ++k) {
       const auto at = float(k);
       const Floats cosine = cosine_0 + w.cosine_k * at;
