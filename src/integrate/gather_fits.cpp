@@ -67,8 +67,8 @@ bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
 // what is usual around them.
 float GatherPass::usual_rays(int x, int y, uint32_t r) const {
   float rays = 0, records = 0;
-  for (int j = y - 2; j <= y + 2; ++j)
-    for (int i = x - 2; i <= x + 2; ++i)
+  for (int j = y - usual_pixels; j <= y + usual_pixels; ++j)
+    for (int i = x - usual_pixels; i <= x + usual_pixels; ++i)
       out_.of_pixel(i, j, [&](uint32_t o) {
         if (!is_neighbour(r, o, &GatherRecord::matte)) return;
         rays += out_.records_[o].rays;

@@ -23,7 +23,7 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
                                                    const StopFlag& stop, Counters& counters) {
   // A pixel looks at its neighbours' fits, these at gathers and at how many rays are usual around
   // them, which others asked for.
-  constexpr int border = 2 * GatherPass::most_pixels + 6;
+  constexpr int border = 2 * GatherPass::most_pixels + GatherPass::usual_pixels + 4;
   PixelWindow w = view.window;
   w = {std::max(w.x0 - border, view.image.x0), std::max(w.y0 - border, view.image.y0),
        std::min(w.x1 + border, view.image.x1), std::min(w.y1 + border, view.image.y1)};
