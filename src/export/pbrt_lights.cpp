@@ -118,6 +118,11 @@ std::string Writer::text(const Light& e) {
     default:
       return "";  // has a surface
   }
+  for (size_t i = 0; i < e.portal.size(); ++i) {
+    const Vec3d p = Vec3d(e.portal[i]) + scene_.origin;
+    out += fmt::format("{} {} {} {}{}", i == 0 ? " \"point3 portal\" [" : "", p.x, p.y, p.z,
+                       i + 1 == e.portal.size() ? " ]" : "");
+  }
   if (e.range > 0) warnings_.add("the range of lights is left out: pbrt has none");
   // The image's axes, for those that have one.
   const bool has_axes =

@@ -14,6 +14,16 @@ namespace troffer {
 
 namespace {
 
+// Within a thousandth.
+bool is_rectangle(const std::vector<Vec3d>& p) {
+  const Vec3d a = p[1] - p[0], b = p[2] - p[1], c = p[3] - p[2], d = p[0] - p[3];
+  const double size = length(a) + length(b);
+  if (!is_finite(a) || !is_finite(b) || !is_finite(c) || !is_finite(d) || !std::isfinite(size))
+    return false;
+  return length(a + c) < 1e-3 * size && length(a) > 1e-6 * size && length(b) > 1e-6 * size &&
+         std::abs(dot(a, b)) < 1e-3 * length(a) * length(b) && size > 1e-9;
+}
+
 class LightReader {
  public:
   LightReader(const PbrtParams& params, const Affine& world_from_light,
@@ -103,12 +113,7 @@ class LightReader {
   std::optional<Light> infinite() {
     Light e;
     e.kind = LightKind::environment;
-    if (params_.has("portal")) {
-      params_.ignore({"portal"});
-      context_.warnings.add(
-          "LightSource \"infinite\": its portal is not used; light comes from all directions that "
-          "nothing hides");
-    }
+    e.portal = portal();
     const std::string file = params_.get_string("filename", "");
     if (file.empty()) {
       e.radiance = emission("L") * scale_with("illuminance", pi);
@@ -153,6 +158,21 @@ class LightReader {
     if (!is_finite(p))
       fail_at(params_.find(name)->place, std::string(name) + ": one point expected");
     return p;
+  }
+
+  // A rectangle in the world whatever the transform is, counterclockwise seen from where its light
+  // arrives [2].
+  std::vector<Vec3> portal() {
+    const std::vector<double>& v = params_.numbers("portal", PbrtType::point3);
+    if (v.empty()) return {};
+    std::vector<Vec3d> p;
+    for (size_t i = 0; i + 2 < v.size(); i += 3)
+      p.push_back(Vec3d{v[i], v[i + 1], v[i + 2]} - scene_.origin);
+    if (v.size() == 12 && is_rectangle(p)) return {Vec3(p[0]), Vec3(p[1]), Vec3(p[2]), Vec3(p[3])};
+    context_.warnings.add(
+        "LightSource \"infinite\": its portal is no rectangle of four corners and is not used; "
+        "light comes from all directions that nothing hides");
+    return {};
   }
 
   bool place(Light& e, const Vec3d& local) {

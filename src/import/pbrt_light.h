@@ -1,6 +1,7 @@
 // pbrt's lights without surface.
 //
 // References: [1] pbrt-v4 Input File Format, section "Lights", pbrt.org/fileformat-v4.
+//   [2] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., 12.5.3.
 #pragma once
 
 #include <optional>

@@ -163,7 +163,11 @@ void CertifiedLights::set_occluders(const Occluders& occluders) {
 
 void CertifiedLights::add_far_lights(const PreparedScene& scene) {
   far_.first_source = uint32_t(sources_.size());
+  const Box everywhere = bounds(scene.scene);
   for (const FarCell& cell : far_.cells.all()) {
+    has_light_[scene.primitives[cell.primitive].light] = true;
+    const Portal* portal = scene.primitives[cell.primitive].portal;
+    if (portal != nullptr && portal->view(everywhere, cell.plane) == Portal::View::none) continue;
     CertifiedSource source;
     source.flat.plane = cell.plane;
     source.flat.is_disk = cell.is_disk;
@@ -174,7 +178,6 @@ void CertifiedLights::add_far_lights(const PreparedScene& scene) {
     source.far = &cell;
     sources_.push_back(source);
     before_.push_back(-1);
-    has_light_[scene.primitives[cell.primitive].light] = true;
   }
   far_.points = FarPoints(std::span(sources_).subspan(far_.first_source));
 }
@@ -289,6 +292,16 @@ void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScr
               counters);
 }
 
+namespace {
+
+// … so that sky and suns err by so much of what arrives.
+double rays_of_hit(const FarShare& share, bool has_suns, double error) {
+  const double of_suns = std::sqrt(share.spread_of_sun) / (share.open * error);
+  return rays_for_error(share.open_sky, error) + (has_suns ? std::pow(of_suns, 4.0 / 3) : 0.0);
+}
+
+}  // namespace
+
 // Whether rays to far sources would cost more than a look at their cells. Points of `measure` can
 // wait.
 bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
@@ -296,10 +309,14 @@ bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
                                             bool is_picture) const {
   constexpr double cost_of_look = 4000;      // in rays
   constexpr double share_of_further = 0.25;  // a further viewing ray of a pixel gets fewer
+  // … and of a cell before a hit, in rays as they are estimated; of what is that open.
+  constexpr double cost_of_mask = 40, open_enough = 0.25;
   if (s.far.seems_closed) return false;
   if (!is_picture) return true;
   if (s.far.is_behind_clutter) return false;
-  const double rays = rays_for_error(s.far.open, double(s.options.mask_error));
+  const double rays = rays_of_hit(s.far, far_.points.suns() > 0, double(s.options.mask_error));
+  const size_t cells = sources_.size() - far_.first_source;
+  if (s.far.open > open_enough && rays < cost_of_mask * double(cells)) return false;
   double all = 0;
   for (const uint32_t m : members)
     all += s.hits.samples[m] < uint32_t(budget_.viewing_rays) ? rays : rays * share_of_further;
@@ -311,11 +328,16 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s, bool has_far) cons
   s.requested.clear();
   s.integrand.sources().clear();
   s.integrand.behind_panes().clear();
+  s.integrand.portals().clear();
   Box receivers;
-  if (!scene_.panes.is_empty())
-    for (const ShadowReceiver& r : s.cluster.receivers) receivers.grow(r.position);
+  for (const ShadowReceiver& r : s.cluster.receivers) receivers.grow(r.position);
   const auto add = [&](uint32_t i) {
     const CertifiedSource& source = sources_[i];
+    const Portal* portal = scene_.primitives[source.primitive].portal;
+    const Portal::View view =
+        portal == nullptr ? Portal::View::all : portal->view(receivers, source.flat.plane);
+    if (view == Portal::View::none) return;
+    s.integrand.portals().push_back(view == Portal::View::some ? portal : nullptr);
     LightRequest& r = s.cluster.requests.emplace_back();
     if (source.is_round)
       r.sphere = &source.sphere;

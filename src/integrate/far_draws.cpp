@@ -117,7 +117,7 @@ class Drawing {
     const Rgb weight = d_.hits.weights[draw.hit] * float(steradians / points);
     if (expected_ > 0 && d_.hits.glossy[draw.hit] < 0)
       draw.expected = weight * source.radiance * (cosine * expected_);
-    if (!is_above) return;
+    if (!is_above || !is_through_portal(d_.scene.primitives, source, r.position, wi)) return;
     draw.light = weight * far_radiance_of(source, Vec3(d)) * value(source, draw.hit, wi, cosine);
     if (draw.light.is_black()) return;
     draw.ray = int32_t(s_.rays.size());

@@ -112,23 +112,32 @@ class Pilots {
   void begin() {
     rays_of_.clear();
     weights_.clear();
+    is_shown_.clear();
   }
   void add(const ShadowReceiver& r, const FarPoints::Choice& c) {
-    const FarPoints::Point p = d_.points.point(c);
+    const FarPoints::Point p = d_.points.point(c, r.normal);
     if (p.source == nullptr || !is_above(r, p.wi)) return;
     weights_.push_back(luminance(far_radiance_of(*p.source, p.way)) * dot(p.wi, r.normal) *
                        p.inverse_pdf);
-    rays_of_.push_back(far_ray(r, p.wi));
+    push(r, p);
   }
   // Without weight below the horizon.
   void add_always(const ShadowReceiver& r, const FarPoints::Choice& c) {
-    const FarPoints::Point p = d_.points.point(c);
+    const FarPoints::Point p = d_.points.point(c, r.normal);
     weights_.push_back(is_above(r, p.wi) ? 1.0f : 0.0f);
+    push(r, p);
+  }
+  void push(const ShadowReceiver& r, const FarPoints::Point& p) {
     rays_of_.push_back(far_ray(r, p.wi));
+    const bool is_shown =
+        p.source == nullptr || is_through_portal(d_.scene.primitives, *p.source, r.position, p.wi);
+    is_shown_.push_back(is_shown ? 1 : 0);
   }
   void trace() {
     is_occluded_.resize(rays_of_.size());
     d_.scene.tracer.occluded(rays_of_, is_occluded_, Coherence::coherent);
+    for (size_t k = 0; k < is_shown_.size(); ++k)
+      if (is_shown_[k] == 0) is_occluded_[k] = 1;
   }
 
   void note_hidden() {
@@ -140,7 +149,7 @@ class Pilots {
   FarPoints::Chances chances_;
   std::vector<Ray> rays_of_, hidden_;
   std::vector<float> weights_;
-  std::vector<uint8_t> is_occluded_;
+  std::vector<uint8_t> is_occluded_, is_shown_;
   struct Sums {
     double sky = 0, suns = 0;  // chances, of all receivers
     double of_sky = 0, open_sky = 0, sky_rays = 0;

@@ -14,7 +14,7 @@ namespace {
 
 // A part gives so much of all light at most, or lies within a sine of its middle; and a cell is
 // halved so often at most.
-constexpr double most_share = 1.0 / 48, most_sine = 0.3;
+constexpr double most_share = 1.0 / 48, most_sine = 0.15;
 constexpr int most_halvings = 8;
 constexpr float tiny = 1e-30f;
 
@@ -31,6 +31,12 @@ Rgb far_radiance_of(const CertifiedSource& source, const Vec3& way) {
   return l;
 }
 
+bool is_through_portal(const LightPrimitives& primitives, const CertifiedSource& source,
+                       const Vec3& x, const Vec3& wi) {
+  const Portal* portal = primitives[source.primitive].portal;
+  return portal == nullptr || portal->shows(x, wi);
+}
+
 FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
   double all = 0;
   for (const CertifiedSource& s : sources)
@@ -43,13 +49,14 @@ FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
   const size_t leaves = std::bit_ceil(std::max(parts.size(), size_t(2)));
   parts_.resize(leaves);
   plant(parts, 0, leaves);
-  for (const Part& p : parts_) {
-    x_.push_back(p.middle.x);
-    y_.push_back(p.middle.y);
-    z_.push_back(p.middle.z);
-    sine_.push_back(p.sine);
-    strength_.push_back(p.strength);
-  }
+  for (const Part& p : parts_)
+    for (size_t k = 0; k < 4; ++k) {
+      const Vec3 corner = p.corner(k);
+      x_[k].push_back(corner.x);
+      y_[k].push_back(corner.y);
+      z_[k].push_back(corner.z);
+      strength_[k].push_back(p.strength[k]);
+    }
 }
 
 void FarPoints::plant(std::span<Part> parts, size_t leaf, size_t leaves) {
@@ -59,11 +66,12 @@ void FarPoints::plant(std::span<Part> parts, size_t leaf, size_t leaves) {
     return;
   }
   Box box;
-  for (const Part& p : parts) box.grow(p.middle);
+  for (const Part& p : parts) box.grow(p.middle());
   const Vec3 e = box.extent();
   const size_t axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
-  std::stable_sort(parts.begin(), parts.end(),
-                   [&](const Part& a, const Part& b) { return a.middle[axis] < b.middle[axis]; });
+  std::stable_sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) {
+    return a.middle()[axis] < b.middle()[axis];
+  });
   const size_t half = (parts.size() + 1) / 2;
   plant(parts.first(half), leaf, leaves / 2);
   plant(parts.subspan(half), leaf + leaves / 2, leaves / 2);
@@ -94,34 +102,40 @@ void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, d
     add(source, half, all, halvings - 1);
     return;
   }
-  const double share = source.flat.is_disk ? 0.25 * pi : 1;
-  const Vec3d corner = way + plane.origin - middle_of(plane);
-  const double unit = 1 / height;
-  const Part part{&source,
-                  Vec3(corner * unit),
-                  Vec3(plane.u * unit),
-                  Vec3(plane.v * unit),
-                  float(area * share * sqr(unit)),
-                  Vec3(way * (1 / distance)),
-                  float(sine),
-                  float(strength * share)};
-  (source.flat.is_disk ? suns_ : parts_).push_back(part);
+  Part part;
+  part.source = &source;
+  part.origin = Vec3((way + plane.origin - middle_of(plane)) * (1 / height));
+  part.u = Vec3(plane.u * (1 / height));
+  part.v = Vec3(plane.v * (1 / height));
+  part.area = float(area / sqr(height) * (source.flat.is_disk ? 0.25 * pi : 1));
+  if (source.flat.is_disk) {
+    part.strength[0] = luminance(l) * float(steradians * 0.25 * pi);
+    suns_.push_back(part);
+    return;
+  }
+  // What is no polynomial may shine anywhere between its corners.
+  for (size_t k = 0; k < 4; ++k) {
+    const Vec3 corner = part.corner(k);
+    const float shine = source.far->table != nullptr || !source.is_textured
+                            ? luminance(l)
+                            : luminance(far_radiance_of(source, corner * float(height)));
+    part.strength[k] = part.area * (0.9f * shine + 0.1f * luminance(source.radiance)) /
+                       sqr(length_squared(corner));
+  }
+  parts_.push_back(part);
 }
 
 namespace {
 
+// Nothing where all corners lie below the horizon, and so all between them.
 TROFFER_MULTIVERSION
-void set_chances_of_parts(const Vec3& normal, size_t n, const float* __restrict x,
-                          const float* __restrict y, const float* __restrict z,
-                          const float* __restrict sine, const float* __restrict strength,
-                          float* __restrict out) {
+void add_chances(const Vec3& normal, size_t n, const float* __restrict x, const float* __restrict y,
+                 const float* __restrict z, const float* __restrict strength,
+                 float* __restrict out) {
   const float nx = normal.x, ny = normal.y, nz = normal.z;
   for (size_t i = 0; i < n; ++i) {
-    const float cosine = nx * x[i] + ny * y[i] + nz * z[i];
-    // 1.01: no part of which some is above the horizon is left out
-    const float reach = 1.01f * sine[i] + 1e-3f, least = 0.3f * reach;
-    const float height = cosine > least ? cosine : least;
-    out[i] = cosine + reach > 0 ? strength[i] * height : 0.0f;
+    const float height = nx * x[i] + ny * y[i] + nz * z[i];
+    out[i] += 0.25f * strength[i] * (height > 0 ? height : 0.0f);
   }
 }
 
@@ -139,6 +153,12 @@ void set_branches(size_t n, const float* __restrict node, float* __restrict left
   }
 }
 
+// In [0,1] with density in proportion to the line from a to b, not both 0.
+float sample_line(float a, float b, float u) {
+  const float root = std::sqrt(a * a + (b * b - a * a) * u);
+  return std::min(u * (a + b) / std::max(a + root, tiny), 1.0f);
+}
+
 }  // namespace
 
 bool FarPoints::set_chances(const ShadowReceiver& r, Chances& c) const {
@@ -150,9 +170,10 @@ bool FarPoints::set_chances(const ShadowReceiver& r, Chances& c) const {
   c.normal_ = r.normal;
   c.of_node_.resize(2 * n);
   float* node = c.of_node_.data();
-  if (n > 0)
-    set_chances_of_parts(r.normal, n, x_.data(), y_.data(), z_.data(), sine_.data(),
-                         strength_.data(), node + n);
+  std::fill_n(node + n, n, 0.0f);
+  for (size_t k = 0; k < 4 && n > 0; ++k)
+    add_chances(r.normal, n, x_[k].data(), y_[k].data(), z_[k].data(), strength_[k].data(),
+                node + n);
   for (size_t i = n; i-- > 1;) node[i] = node[2 * i] + node[2 * i + 1];
   c.left_.resize(n);
   c.first_.resize(2 * n);
@@ -161,8 +182,11 @@ bool FarPoints::set_chances(const ShadowReceiver& r, Chances& c) const {
   c.suns_ = 0;
   c.of_sun_.clear();
   for (const Part& p : suns_) {
-    const float cosine = dot(r.normal, p.middle), reach = 1.01f * p.sine + 1e-3f;
-    c.of_sun_.push_back(cosine + reach > 0 ? p.strength * std::max(cosine, 0.3f * reach) : 0.0f);
+    const Vec3 middle = p.middle();
+    const float cosine = dot(r.normal, normalize(middle));
+    // 1.01: no sun of which some is above the horizon is left out
+    const float reach = 0.505f * length(p.u + p.v) / length(middle) + 1e-3f;
+    c.of_sun_.push_back(cosine + reach > 0 ? p.strength[0] * std::max(cosine, 0.3f * reach) : 0.0f);
     c.suns_ += c.of_sun_.back();
   }
   return c.all() + c.suns() > 0;
@@ -196,22 +220,31 @@ FarPoints::Choice FarPoints::choose_any_sun(const Chances& c, float u, float v, 
   return {};
 }
 
-FarPoints::Point FarPoints::point(const Choice& c) const {
+FarPoints::Point FarPoints::point(const Choice& c, const Vec3& normal) const {
   Point out;
   if (!(c.chance > 0)) return out;
   const Part& p = part(c.part);
-  float a = c.u, b = c.v;
+  float a = c.u, b = c.v, density = 1;
   if (p.source->flat.is_disk) {
     const float radius = 0.5f * std::sqrt(a), angle = 2 * pi_f * b;
     a = 0.5f + radius * std::cos(angle);
     b = 0.5f + radius * std::sin(angle);
+  } else {
+    // Bilinear between the corners, as the chance of the part is.
+    std::array<float, 4> g;
+    for (size_t k = 0; k < 4; ++k) g[k] = p.strength[k] * std::max(dot(normal, p.corner(k)), 0.0f);
+    a = sample_line(g[0] + g[2], g[1] + g[3], a);
+    const float low = g[0] + (g[1] - g[0]) * a, high = g[2] + (g[3] - g[2]) * a;
+    b = sample_line(low, high, b);
+    density = (low + (high - low) * b) / (0.25f * ((g[0] + g[1]) + (g[2] + g[3])));
+    if (!(density > 0)) return out;
   }
   const Vec3 way = p.origin + p.u * a + p.v * b;
   const float square = dot(way, way), distance = std::sqrt(square);
   out.source = p.source;
   out.way = way * float(p.source->far->height);
   out.wi = way * (1 / distance);
-  out.inverse_pdf = p.area / (square * distance * c.chance);
+  out.inverse_pdf = p.area / (square * distance * c.chance * density);
   return out;
 }
 

@@ -1,11 +1,12 @@
-// Points of all lights at infinity: small parts of their cells, chosen by the cosine of their
-// middles, and those of suns. No shafts, no lists, no exact light: for hits that proofs are not
-// worth (far_rays.h).
+// Points of all lights at infinity: small parts of their cells, chosen by the light that they would
+// send, places in them by what their corners would, and those of suns. No shafts, no lists, no
+// exact light: for hits that proofs are not worth (far_rays.h).
 //
 // Seen from anywhere in the scene a point lies in the same direction (light/far_cells.h), so
 // receivers matter by their normals alone.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -67,7 +68,8 @@ class FarPoints {
   Choice choose_any_sun(const Chances& chances, float u, float v, float place) const;
   size_t parts() const { return parts_.size() + suns_.size(); }
 
-  Point point(const Choice& choice) const;
+  // For a receiver of the normal that the choice was made for.
+  Point point(const Choice& choice, const Vec3& normal) const;
   // The radiance that the points send.
   void radiance(std::span<const Point> points, std::vector<Rgb>& out) const;
 
@@ -77,9 +79,13 @@ class FarPoints {
     const CertifiedSource* source = nullptr;
     Vec3 origin, u, v;
     float area = 0;
-    Vec3 middle;         // unit direction from the scene
-    float sine = 0;      // of the angle within which the part lies about it
-    float strength = 0;  // luminance × sr
+    Vec3 corner(size_t k) const {
+      return origin + (k % 2 != 0 ? u : Vec3{}) + (k / 2 != 0 ? v : Vec3{});
+    }
+    Vec3 middle() const { return origin + (u + v) * 0.5f; }
+    // Luminance × sr of all of the part if it were as at its corners, (0,0) (1,0) (0,1) (1,1), over
+    // their distance: times the height over a horizon it is what a receiver gets. Suns: the first.
+    std::array<float, 4> strength{};
   };
   void add(const CertifiedSource& source, const Parallelogram& plane, double all, int halvings);
   // Puts parts into leaves from `leaf` on, neighbours together.
@@ -89,11 +95,16 @@ class FarPoints {
   }
   std::vector<Part> parts_;  // by leaf of the tree, some of them empty
   std::vector<Part> suns_;
-  // Per leaf.
-  std::vector<float> x_, y_, z_, sine_, strength_;
+  // Per leaf: its corners and their strengths.
+  std::array<std::vector<float>, 4> x_, y_, z_, strength_;
 };
 
 // The radiance that a point of a source at infinity sends.
 Rgb far_radiance_of(const CertifiedSource& source, const Vec3& way);
+
+// Whether a source at infinity shows at x in the direction wi what nothing hides there: where it
+// has a portal, through that alone.
+bool is_through_portal(const LightPrimitives& primitives, const CertifiedSource& source,
+                       const Vec3& x, const Vec3& wi);
 
 }  // namespace troffer

@@ -98,7 +98,9 @@ class Casting {
     if (n == 0) return;
     sort();
     s_.points.resize(n);
-    for (size_t k = 0; k < n; ++k) s_.points[k] = d_.points.point(s_.sorted[k]);
+    for (size_t k = 0; k < n; ++k)
+      s_.points[k] =
+          d_.points.point(s_.sorted[k], d_.hits.receivers[members_[s_.of_sorted[k]]].normal);
     d_.points.radiance(s_.points, s_.radiance);
     s_.runs.push_back(s_.terms.size());
     for (size_t k = 0; k < n; ++k) add(s_.of_sorted[k], s_.points[k], s_.radiance[k]);
@@ -113,6 +115,7 @@ class Casting {
     const uint32_t m = members_[i];
     const ShadowReceiver& r = d_.hits.receivers[m];
     if (p.source == nullptr || !is_above(r, p.wi)) return;
+    if (!is_through_portal(d_.scene.primitives, *p.source, r.position, p.wi)) return;
     const int32_t g = d_.hits.glossy[m];
     const Rgb value =
         g < 0 ? Rgb{dot(p.wi, r.normal)}

@@ -109,7 +109,9 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
   if (!hit.is_valid()) {
     for (const uint32_t p : scene_.primitives.at_infinity())
       if (counts(walk, scene_.primitives[p].light))
-        see(walk, radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction),
+        see(walk,
+            radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.last_position,
+                                 walk.ray.direction),
             walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, s);
     return;
   }

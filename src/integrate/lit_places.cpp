@@ -82,7 +82,8 @@ class Walks {
       const float share = chances_.suns() / (chances_.all() + chances_.suns());
       const FarPoints::Point p =
           points_.point(place < share ? points_.choose_any_sun(chances_, u.x, u.y, place / share)
-                                      : points_.choose(chances_, u.x, u.y));
+                                      : points_.choose(chances_, u.x, u.y),
+                        r.normal);
       if (p.source != nullptr && dot(p.wi, r.normal) > 0) {
         Ray& asking = asking_.emplace_back();
         asking.origin = r.origin;

@@ -168,7 +168,9 @@ void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBat
 // What lights at infinity show to a path that has left the scene.
 void PathIntegrator::add_miss(const Walk& walk, RadianceBatch& out) const {
   for (const uint32_t p : scene_.primitives.at_infinity())
-    add_seen(walk, radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction),
+    add_seen(walk,
+             radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.last_position,
+                                  walk.ray.direction),
              walk.pdf > 0 ? lights_.weight_of_miss(walk, p) : 1, out);
 }
 

@@ -128,7 +128,7 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
   if (hit.glossy == nullptr) {
     for (size_t i = 0; i < points.size(); ++i)
       values[i] = radiance_at(source, points[i], hit.position);
-    take_by_panes(request, hit.position, points, values);
+    take_on_the_way(request, hit.position, points, values);
     return;
   }
   const GlossyHit& g = *hit.glossy;
@@ -142,18 +142,22 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
       values[i] = glossy_value(g, wi, density * dot(wi, g.geometric_normal)) * (1 / cosine) *
                   radiance_at(source, points[i], hit.position);
   }
-  take_by_panes(request, hit.position, points, values);
+  take_on_the_way(request, hit.position, points, values);
 }
 
-void SourceIntegrand::take_by_panes(uint32_t request, const Vec3& receiver,
-                                    std::span<const Vec3> points, std::span<Rgb> values) const {
-  if (!is_behind_panes(request)) return;
+void SourceIntegrand::take_on_the_way(uint32_t request, const Vec3& receiver,
+                                      std::span<const Vec3> points, std::span<Rgb> values) const {
+  if (!is_taken_on_the_way(request)) return;
   for (size_t i = 0; i < points.size(); ++i)
-    if (!values[i].is_black()) values[i] *= left_by_panes(request, receiver, points[i] - receiver);
+    if (!values[i].is_black())
+      values[i] *= left_on_the_way(request, receiver, points[i] - receiver);
 }
 
 // A pane that the receiver itself lies on does not count.
-Rgb SourceIntegrand::left_by_panes(uint32_t request, const Vec3& receiver, const Vec3& way) const {
+Rgb SourceIntegrand::left_on_the_way(uint32_t request, const Vec3& receiver,
+                                     const Vec3& way) const {
+  if (portals_[request] != nullptr && !portals_[request]->shows(receiver, way)) return Rgb{0};
+  if (!is_behind_panes(request)) return Rgb{1};
   const PanesBetween& panes = behind_panes_[request];
   if (panes.are_simple) return scene_.panes.transmittance(panes, receiver, way);
   Ray ray{receiver, 0, way, 1};
@@ -222,9 +226,9 @@ void SourceIntegrand::evaluate_many(uint32_t request, uint32_t member, PointArra
   for (auto* a : {&p.r, &p.g, &p.b}) a->assign(n, 0);
   if (hit.glossy != nullptr) evaluate_gloss(source, hit, p);
   multiply_by_radiance(source, hit, p);
-  if (!is_behind_panes(request)) return;
+  if (!is_taken_on_the_way(request)) return;
   for (size_t i = 0; i < n; ++i) {
-    const Rgb left = left_by_panes(request, hit.position, {p.x[i], p.y[i], p.z[i]});
+    const Rgb left = left_on_the_way(request, hit.position, {p.x[i], p.y[i], p.z[i]});
     p.r[i] *= left.r;
     p.g[i] *= left.g;
     p.b[i] *= left.b;

@@ -100,6 +100,9 @@ class SourceIntegrand final : public ShadowIntegrand {
   std::vector<const CertifiedSource*>& sources() { return sources_; }
   // Per source: panes that may lie between it and the hits. Empty: the scene has none.
   std::vector<PanesBetween>& behind_panes() { return behind_panes_; }
+  // Per request: what its light comes through alone, of which not all hits may see all of the
+  // source; mostly null.
+  std::vector<const Portal*>& portals() { return portals_; }
 
   bool is_wanted(uint32_t request, uint32_t member) const {
     return varies(request) || hits_[member].glossy != nullptr;
@@ -116,7 +119,7 @@ class SourceIntegrand final : public ShadowIntegrand {
   void evaluate_many(uint32_t request, uint32_t member, PointArrays& points) override;
   bool is_gentle(uint32_t request, uint32_t member) const override {
     return sources_[request]->is_by_web && hits_[member].glossy == nullptr &&
-           !is_behind_panes(request);
+           !is_behind_panes(request);  // portals have no webs
   }
 
  private:
@@ -124,17 +127,22 @@ class SourceIntegrand final : public ShadowIntegrand {
     return !behind_panes_.empty() && behind_panes_[request].are_any;
   }
   bool varies(uint32_t request) const {
-    return sources_[request]->is_textured || is_behind_panes(request);
+    return sources_[request]->is_textured || is_behind_panes(request) ||
+           portals_[request] != nullptr;
   }
   Rgb radiance_at(const CertifiedSource& source, const Vec3& point, const Vec3& receiver) const;
   void evaluate_gloss(const CertifiedSource& source, const IntegrandHit& hit, PointArrays& points);
   void multiply_by_radiance(const CertifiedSource& source, const IntegrandHit& hit,
                             PointArrays& points);
   void multiply_by_web(const CertifiedSource& source, const IntegrandHit& hit, PointArrays& points);
-  void take_by_panes(uint32_t request, const Vec3& receiver, std::span<const Vec3> points,
-                     std::span<Rgb> values) const;
+  void take_on_the_way(uint32_t request, const Vec3& receiver, std::span<const Vec3> points,
+                       std::span<Rgb> values) const;
+  // By panes and portals.
+  bool is_taken_on_the_way(uint32_t request) const {
+    return is_behind_panes(request) || portals_[request] != nullptr;
+  }
   // To the receiver, from so far away.
-  Rgb left_by_panes(uint32_t request, const Vec3& receiver, const Vec3& way) const;
+  Rgb left_on_the_way(uint32_t request, const Vec3& receiver, const Vec3& way) const;
 
   const PreparedScene& scene_;
   uint32_t points_;
@@ -142,6 +150,7 @@ class SourceIntegrand final : public ShadowIntegrand {
   std::vector<IntegrandHit> hits_;
   std::vector<const CertifiedSource*> sources_;
   std::vector<PanesBetween> behind_panes_;
+  std::vector<const Portal*> portals_;
   GlossyLanes lanes_;
   std::vector<float> far_values_;
   WebLanes web_lanes_;

@@ -13,6 +13,7 @@ void start_walks(const ViewingRays& rays, std::vector<Walk>& walks) {
   for (uint32_t i = 0; i < rays.size(); ++i) {
     Walk& w = walks[i];
     w.ray = rays.rays[i];
+    w.last_position = w.ray.origin;
     w.cone = rays.cone;
     w.index = i;
     w.sample = rays.samples[i];

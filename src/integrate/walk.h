@@ -17,7 +17,8 @@ struct Walk {
   // Density per solid angle with which the ray's direction was chosen; 0: by the camera or by a
   // delta lobe, in competition with no sampling of lights.
   float pdf = 0;
-  // Where it comes from, for the density with which a light could have been sampled from there.
+  // Where it comes from, through panes as if they were not there: for the density with which a
+  // light could have been sampled from there, and for what portals show.
   Vec3 last_position, last_normal;
   bool last_both_sides = false;
   uint32_t vertex = 0;  // how many vertices it has left behind

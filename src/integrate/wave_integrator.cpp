@@ -166,8 +166,8 @@ void WaveIntegrator::see_through_panes(const Walk& walk, const Vertex& v, Scratc
 
 void WaveIntegrator::see_lights_at_infinity(const Walk& walk, Scratch& s) const {
   for (const uint32_t p : scene_.primitives.at_infinity()) {
-    const Rgb radiance =
-        radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.ray.direction);
+    const Rgb radiance = radiance_at_infinity(scene_.scene, scene_.primitives[p],
+                                              walk.last_position, walk.ray.direction);
     if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, nullptr, radiance, p);
   }
 }

@@ -133,7 +133,7 @@ class Cutter {
   }
 
   Rgb radiance(const Vec3d& direction) const {
-    return radiance_at_infinity(scene_, piece_, Vec3(normalize(direction)));
+    return radiance_beyond(scene_, light_, Vec3(normalize(direction)));
   }
 
   // As fine as an image's texels, as far as memory allows; each value the mean of some.

@@ -1,8 +1,11 @@
 #include "light/light.h"
 
+#include <limits>
+
 #include "light/distant_light.h"
 #include "light/environment_light.h"
 #include "light/point_light.h"
+#include "light/portal.h"
 #include "light/sky_light.h"
 #include "light/spot_light.h"
 #include "light/sun_light.h"
@@ -37,10 +40,25 @@ decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
   return ask(SurfaceLight());
 }
 
+bool sample_through_portal(const Scene& scene, const LightPrimitive& p, const Vec3& x,
+                           const Vec2& u, LightSample& out) {
+  out = {};
+  if (!p.portal->sample(x, u, out.wi, out.pdf_solid_angle)) return false;
+  out.distance = std::numeric_limits<float>::infinity();
+  out.radiance = radiance_beyond(scene, scene.lights[p.light], out.wi);
+  return true;
+}
+
 }  // namespace
+
+Rgb radiance_beyond(const Scene& scene, const Light& light, const Vec3& wi) {
+  return ask_kind(light.kind,
+                  [&](auto kind) { return kind.radiance_at_infinity(scene, light, wi); });
+}
 
 bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec2& u,
             LightSample& out) {
+  if (p.portal != nullptr) return sample_through_portal(scene, p, x, u, out);
   return ask_kind(scene.lights[p.light].kind,
                   [&](auto kind) { return kind.sample(scene, p, x, u, out); });
 }
@@ -60,6 +78,7 @@ void sample_many(const Scene& scene, const LightPrimitives& all, size_t n,
 
 float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec3& wi,
                       float distance) {
+  if (p.portal != nullptr) return p.portal->pdf(x, wi);
   return ask_kind(scene.lights[p.light].kind,
                   [&](auto kind) { return kind.pdf_solid_angle(scene, p, x, wi, distance); });
 }
@@ -70,10 +89,10 @@ Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, cons
                   [&](auto kind) { return kind.emitted(scene, light, is_front, uv, towards); });
 }
 
-Rgb radiance_at_infinity(const Scene& scene, const LightPrimitive& p, const Vec3& wi) {
-  const Light& light = scene.lights[p.light];
-  return ask_kind(light.kind,
-                  [&](auto kind) { return kind.radiance_at_infinity(scene, light, wi); });
+Rgb radiance_at_infinity(const Scene& scene, const LightPrimitive& p, const Vec3& x,
+                         const Vec3& wi) {
+  if (p.portal != nullptr && !p.portal->shows(x, wi)) return Rgb{0};
+  return radiance_beyond(scene, scene.lights[p.light], wi);
 }
 
 std::unique_ptr<const DirectionTable> make_directions(const Scene& scene, const Light& light) {
@@ -90,6 +109,21 @@ LightPrimitive make_piece(const Scene& scene, const Light& light, const Box& sce
 
 CertificateShape certificate_shape(const Scene& scene, const Light& light) {
   return ask_kind(light.kind, [&](auto kind) { return kind.certificate(scene, light); });
+}
+
+// Several cells to a texel, since the image is bilinear between them; what has none is smooth.
+std::unique_ptr<const Portal> make_portal(const Scene& scene, const Light& light,
+                                          const LightPrimitive& p) {
+  constexpr int least = 64, most = 1024;
+  if (light.portal.size() != 4 || !p.is_infinite() || is_delta(light.kind)) return nullptr;
+  int n = least;
+  if (light.environment != no_environment) {
+    const int height = scene.environments[size_t(light.environment)].height;
+    while (n < std::min(4 * height, most)) n *= 2;
+  }
+  return std::make_unique<const Portal>(light.portal, n, [&](const Vec3& wi) {
+    return luminance(radiance_beyond(scene, light, wi));
+  });
 }
 
 }  // namespace troffer

@@ -37,8 +37,12 @@ float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x
 Rgb emitted_radiance(const Scene& scene, const Light& light, bool is_front, const TexturePlace& uv,
                      const Vec3& towards);
 
-// Radiance of piece p that a ray sees which leaves the scene in the unit direction wi.
-Rgb radiance_at_infinity(const Scene& scene, const LightPrimitive& p, const Vec3& wi);
+// Radiance from beyond the scene, in the direction wi, whatever it comes through.
+Rgb radiance_beyond(const Scene& scene, const Light& light, const Vec3& wi);
+
+// Radiance of piece p that a ray sees which leaves the scene in the unit direction wi, from x.
+Rgb radiance_at_infinity(const Scene& scene, const LightPrimitive& p, const Vec3& x,
+                         const Vec3& wi);
 
 // By which directions towards a light at infinity are drawn; null for kinds that need no table.
 std::unique_ptr<const DirectionTable> make_directions(const Scene& scene, const Light& light);
@@ -47,6 +51,10 @@ std::unique_ptr<const DirectionTable> make_directions(const Scene& scene, const 
 // `scene_bounds` says how much of a light at infinity enters the scene.
 LightPrimitive make_piece(const Scene& scene, const Light& light, const Box& scene_bounds,
                           const DirectionTable* directions);
+
+// What the light of a piece without surface comes through alone; null for most.
+std::unique_ptr<const Portal> make_portal(const Scene& scene, const Light& light,
+                                          const LightPrimitive& p);
 
 // By which shape of its pieces a light's visibility can be proved (docs/certified.md).
 enum class CertificateShape : uint8_t { none, flat, sphere };

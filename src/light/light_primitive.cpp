@@ -162,6 +162,12 @@ void LightPrimitives::add_without_surface(const Scene& scene, uint32_t light,
   if (directions && !(directions->integral() > 0)) return;
   LightPrimitive p = make_piece(scene, e, scene_bounds, directions.get());
   if (directions) directions_.push_back(std::move(directions));
+  if (std::unique_ptr<const Portal> portal = make_portal(scene, e, p)) {
+    p.portal = portal.get();
+    // What enters through it.
+    p.power = p.tree_power = pi_f * float(portal->area()) * luminance(p.mean_radiance);
+    portals_.push_back(std::move(portal));
+  }
   p.light = light;
   if (p.is_infinite()) at_infinity_.push_back(uint32_t(primitives_.size()));
   primitives_.push_back(p);

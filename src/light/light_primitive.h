@@ -11,6 +11,7 @@
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "light/direction_table.h"
+#include "light/portal.h"
 #include "light/web.h"
 #include "scene/scene.h"
 
@@ -39,6 +40,7 @@ struct LightPrimitive {
   Vec2 uvs[3];                          // triangle: texture coordinates of the vertices
   // infinite: by which directions are drawn, or none; LightPrimitives owns
   const DirectionTable* directions = nullptr;
+  const Portal* portal = nullptr;  // … through which alone; so too
 
   uint32_t light = 0;        // index into Scene::lights
   int32_t triangle = -1;     // of a mesh source: index into that mesh's triangles
@@ -110,6 +112,7 @@ class LightPrimitives {
   std::vector<LightPrimitive> primitives_;
   std::vector<std::vector<Vec3>> vertices_;  // of polygons with more than 4
   std::vector<std::unique_ptr<const DirectionTable>> directions_;
+  std::vector<std::unique_ptr<const Portal>> portals_;
   std::vector<Range> ranges_;  // per light
   std::vector<uint32_t> at_infinity_;
   std::vector<std::vector<int32_t>> triangle_table_;  // per mesh: empty, or per triangle

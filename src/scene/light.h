@@ -59,6 +59,10 @@ struct Light {
   std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
   std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
 
+  // environment, sky, sun: nothing, or the corners of a rectangle that its light comes through
+  // alone, counterclockwise seen from where it arrives
+  std::vector<Vec3> portal;
+
   Vec3 position;  // point, spot
   // spot: axis of its beam; distant, sun, sky: which the light takes that comes from there, or from
   // the sun in it; unit
@@ -107,6 +111,7 @@ void for_each_value(const Light& e, const Visit& visit) {
   for (const float f : {e.sky.a, e.sky.b, e.sky.c, e.sky.d, e.sky.e, e.sky.k}) visit(f);
   visit(e.sky.ground);
   visit(e.angular_radius);
+  for (const Vec3& p : e.portal) visit(p);
   visit(uint64_t(e.web));
   for (const Vec3& axis : e.axes) visit(axis);
 }

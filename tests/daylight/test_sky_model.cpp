@@ -102,7 +102,7 @@ TEST_CASE("a sky brings the illuminance that it is asked for, on all sides what 
     const auto seen = [&](double z, double azimuth) {
       const Vec3 w(
           Vec3d{std::sin(z) * std::cos(azimuth), std::sin(z) * std::sin(azimuth), std::cos(z)});
-      return double(radiance_at_infinity(scene, lights[0], w).g);
+      return double(radiance_at_infinity(scene, lights[0], {}, w).g);
     };
     CAPTURE(type);
     CHECK(illuminance(seen, 0) == doctest::Approx(12345).epsilon(1e-4));

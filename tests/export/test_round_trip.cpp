@@ -148,6 +148,22 @@ TEST_CASE("a file of pbrt's that is written is read as exactly the same scene") 
   CHECK(metal.roughness.value == 0.5f);  // the width of ggx itself
 }
 
+TEST_CASE("a portal stays where it is, in scenes far from the origin too") {
+  const TempFolder folder;
+  const std::string text =
+      "WorldBegin\nTranslate 40000 0 0\n"
+      "LightSource \"infinite\" \"point3 portal\" [40001 0 0 40001 0 2 40001 3 2 40001 3 0]\n"
+      "Shape \"sphere\" \"float radius\" 2\n";
+  const Scene scene = import_scene(folder.write("in.pbrt", text));
+  CHECK(export_scene(scene, folder.path("out.pbrt")).empty());
+  const Scene back = import_scene(folder.path("out.pbrt"));
+  REQUIRE(back.lights.size() == 1);
+  REQUIRE(back.lights[0].portal.size() == 4);
+  for (size_t i = 0; i < 4; ++i) CHECK(back.lights[0].portal[i] == scene.lights[0].portal[i]);
+  const Vec3d corner = Vec3d(back.lights[0].portal[2]) + back.origin;
+  CHECK(length(corner - Vec3d{40001, 3, 2}) < 1e-3);
+}
+
 TEST_CASE("textures, masks and scenes far from the origin survive") {
   const TempFolder folder;
   std::string pfm = "PF\n2 1\n-1.0\n";

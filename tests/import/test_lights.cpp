@@ -119,9 +119,27 @@ TEST_CASE("pbrt's lights that make no sense are errors with a place, or warnings
     CHECK(scene.lights.empty());
     CHECK(has_text(scene, "left out"));
   }
-  CHECK(
-      has_text(import_world("LightSource \"infinite\" \"point3 portal\" [0 0 0 1 0 0 1 1 0 0 1 0]"),
-               "portal"));
+}
+
+TEST_CASE("pbrt's portals are rectangles of the world; others are told and left aside") {
+  const auto with = [](const std::string& corners, const std::string& before = "") {
+    return import_world(before + "LightSource \"infinite\" \"point3 portal\" [" + corners + "]");
+  };
+  const Scene scene = with("0 0 0 0 0 2 3 0 2 3 0 0", "Translate 5 5 5 Scale 2 2 2 ");
+  const Light e = only_light(scene);
+  REQUIRE(e.portal.size() == 4);
+  CHECK(e.portal[1] == Vec3{0, 0, 2});
+  CHECK(e.portal[2] == Vec3{3, 0, 2});
+  CHECK(scene.warnings.entries().empty());
+  for (const char* odd :
+       {"0 0 0 1 0 0 1 1 0 0 1 .1", "0 0 0 1 0 0 1 1 0", "0 0 0 0 0 0 0 0 0 0 0 0",
+        "0 0 0 1 0 0 1 1 0 0 1 0 2 2 2", "0 0 0 1 0 0 2 1 0 1 1 0",
+        "0 0 0 1e30 0 0 1e30 1e-30 0 0 1e-30 0", "0 0 0 1 0 0 0 0 0 0 1 0"}) {
+    CAPTURE(odd);
+    const Scene left = with(odd);
+    CHECK(only_light(left).portal.empty());
+    CHECK(has_text(left, "portal is no rectangle"));
+  }
 }
 
 TEST_CASE("pbrt's infinite lights: even, and images turned by the transform") {

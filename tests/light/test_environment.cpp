@@ -128,7 +128,7 @@ TEST_CASE("an image's light is what rays by chance see, weighed by the same dens
       LightSample at;
       const Vec2 u = random.next_vec2();
       REQUIRE(sample(s, lights[0], {}, u, at));
-      CHECK(at.radiance == radiance_at_infinity(s, lights[0], at.wi));
+      CHECK(at.radiance == radiance_at_infinity(s, lights[0], {}, at.wi));
       CHECK(double(pdf_solid_angle(s, lights[0], {}, at.wi, infinity)) ==
             doctest::Approx(double(at.pdf_solid_angle)).epsilon(0.02));
       drawn += at.radiance / (at.pdf_solid_angle * n);
@@ -136,7 +136,7 @@ TEST_CASE("an image's light is what rays by chance see, weighed by the same dens
     for (int i = 0; i < 600; ++i)
       for (int j = 0; j < 600; ++j)
         seen += radiance_at_infinity(
-                    s, lights[0],
+                    s, lights[0], {},
                     sphere_from_square({(float(i) + 0.5f) / 600, (float(j) + 0.5f) / 600})) *
                 (4 * pi_f / (600 * 600));
     CAPTURE(c.width);
@@ -181,13 +181,13 @@ TEST_CASE("a sky's and a sun's samples: density, radiance, irradiance") {
           doctest::Approx(double(at.pdf_solid_angle)).epsilon(0.03));
     sky_drawn += double(at.radiance.g / at.pdf_solid_angle) / n;
     const Vec3 w = sphere_from_square(random.next_vec2());
-    sky_seen += double(radiance_at_infinity(s, lights[0], w).g) * 4 * pi / n;
+    sky_seen += double(radiance_at_infinity(s, lights[0], {}, w).g) * 4 * pi / n;
     // What is seen can be drawn.
-    if (radiance_at_infinity(s, lights[0], w).g > 0)
+    if (radiance_at_infinity(s, lights[0], {}, w).g > 0)
       CHECK(pdf_solid_angle(s, lights[0], {}, w, infinity) > 0);
 
     REQUIRE(sample(s, lights[1], {}, random.next_vec2(), at));
-    CHECK(at.radiance == radiance_at_infinity(s, lights[1], at.wi));
+    CHECK(at.radiance == radiance_at_infinity(s, lights[1], {}, at.wi));
     CHECK(pdf_solid_angle(s, lights[1], {}, at.wi, infinity) == at.pdf_solid_angle);
     sun_drawn +=
         double(at.radiance.g / at.pdf_solid_angle) * double(dot(at.wi, -sun.direction)) / n;

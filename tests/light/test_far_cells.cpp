@@ -59,7 +59,7 @@ Seen look_round(const Scene& scene, const LightPrimitives& primitives, const Far
       else
         far_radiance(cell, 1, &y.x, &y.y, &y.z, &got.r, &got.g, &got.b);
     }
-    const Rgb exact = radiance_at_infinity(scene, primitives[0], w);
+    const Rgb exact = radiance_at_infinity(scene, primitives[0], {}, w);
     seen.none += found == 0 && !exact.is_black();
     seen.many += found > 1;
     seen.error += sqr(double(got.g) - double(exact.g)) / n;

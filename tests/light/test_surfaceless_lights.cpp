@@ -49,7 +49,7 @@ TEST_CASE("an environment's samples fill the sphere as their density says, and c
     REQUIRE(sample(s, p, lamp, u, sample_of));
     const Vec3 wi = sample_of.wi;
     REQUIRE(sample_of.pdf_solid_angle == pdf_solid_angle(s, p, lamp, wi, infinity));
-    REQUIRE(sample_of.radiance == radiance_at_infinity(s, p, wi));
+    REQUIRE(sample_of.radiance == radiance_at_infinity(s, p, {}, wi));
     REQUIRE_FALSE(sample_of.is_delta);
     REQUIRE(std::isinf(sample_of.distance));
     const Vec2 back = square_from_sphere(wi);
@@ -113,7 +113,7 @@ TEST_CASE("a point, a spot and a distant light send what their closed forms say"
     CHECK(length(at.wi + Vec3{1, 2, -2} / 3) < 1e-6f);
     for (uint32_t p = 0; p < 3; ++p) {
       CHECK(pdf_solid_angle(s, lights[p], x, at.wi, infinity) == 0);
-      CHECK(radiance_at_infinity(s, lights[p], at.wi).is_black());
+      CHECK(radiance_at_infinity(s, lights[p], {}, at.wi).is_black());
     }
   }
   CHECK(in_beam > 100);

@@ -157,7 +157,7 @@ TEST_CASE("an open plain gets of a sky, a sun and an image what they bring, by e
   for (int i = 0; i < n * n; ++i) {
     const Vec3 w =
         cosine_hemisphere_from_square({(float(i % n) + 0.5f) / n, (float(i / n) + 0.5f) / n});
-    image += double(radiance_at_infinity(scene.scene, scene.primitives[2], w).g) * pi / (n * n);
+    image += double(radiance_at_infinity(scene.scene, scene.primitives[2], {}, w).g) * pi / (n * n);
   }
   const double expected =
       (9000 + 50'000 * std::sin(rad_from_deg(40.0))) / luminous_efficacy + image;

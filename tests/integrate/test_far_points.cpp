@@ -1,0 +1,124 @@
+// Points of skies that rays are cast to: even, and in proportion to what they would send.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "base/units.h"
+#include "base/warp.h"
+#include "integrate/far_points.h"
+#include "light/far_cells.h"
+#include "light/light.h"
+#include "support/light_scenes.h"
+#include "support/surfaceless_lights.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+enum class Kind { overcast, clear, image };
+
+Scene under(Kind kind) {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+  if (kind == Kind::image) {
+    EnvironmentMap map;
+    map.width = 64;
+    map.height = 32;
+    for (int i = 0; i < 64 * 32; ++i) map.texels.push_back(Rgb{1 + std::sin(0.1f * float(i % 64))});
+    s.environments.push_back(map);
+    add_light(s, LightKind::environment, Rgb{1}).environment = 0;
+    return s;
+  }
+  Light& e = add_light(s, LightKind::sky, Rgb{1});
+  e.direction = normalize(Vec3{-0.6f, -0.5f, -0.7f});
+  if (kind == Kind::overcast) {
+    e.sky.a = 4;
+    e.sky.b = -0.7f;
+  } else {
+    e.sky.a = -1;
+    e.sky.b = -0.32f;
+    e.sky.c = 10;
+    e.sky.d = -3;
+    e.sky.e = 0.45f;
+  }
+  e.sky.ground = Rgb{0.2f};
+  return s;
+}
+
+struct Points {
+  Scene scene;
+  LightPrimitives lights;
+  FarCells cells;
+  std::vector<CertifiedSource> sources;
+  FarPoints points;
+
+  explicit Points(Kind kind) : scene(under(kind)), lights(scene), cells(scene, lights) {
+    for (const FarCell& cell : cells.all()) {
+      CertifiedSource source;
+      source.flat.plane = cell.plane;
+      source.radiance = cell.mean;
+      source.is_textured = !cell.is_even;
+      source.primitive = cell.primitive;
+      source.far = &cell;
+      sources.push_back(source);
+    }
+    points = FarPoints(sources);
+  }
+};
+
+// Luminance that arrives at a horizontal or tilted surface, by so many even points of the upper
+// hemisphere of its normal.
+double expected(const Points& p, const Frame& frame) {
+  constexpr int n = 600;
+  double sum = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const Vec2 u{(float(i) + 0.5f) / n, (float(j) + 0.5f) / n};
+      const Vec3 wi = frame.to_world(cosine_hemisphere_from_square(u));
+      sum += double(luminance(radiance_beyond(p.scene, p.scene.lights[0], wi)));
+    }
+  return sum * pi / (double(n) * n);
+}
+
+}  // namespace
+
+TEST_CASE("sixty-four points of a sky say what arrives where nothing hides it") {
+  for (const Kind kind : {Kind::overcast, Kind::clear, Kind::image}) {
+    const Points p(kind);
+    for (const Vec3& normal : {Vec3{0, 0, 1}, normalize(Vec3{0.4f, -0.7f, 0.6f})}) {
+      const double whole = expected(p, Frame(normal));
+      ShadowReceiver r{};
+      r.normal = r.horizon = normal;
+      FarPoints::Chances chances;
+      REQUIRE(p.points.set_chances(r, chances));
+      double mean = 0, squares = 0;
+      constexpr int runs = 256, n = 64;
+      for (int run = 0; run < runs; ++run) {
+        const std::vector<uint64_t> streams(n, hash_of(uint64_t(run), 5u));
+        std::vector<uint32_t> samples;
+        for (uint32_t j = 0; j < n; ++j) samples.push_back(j);
+        std::vector<float> u(2 * n);
+        sobol_groups(streams.data(), samples.data(), n, 0, 2, u.data());
+        double sum = 0;
+        for (size_t j = 0; j < n; ++j) {
+          const FarPoints::Point at =
+              p.points.point(p.points.choose(chances, u[j], u[n + j]), normal);
+          if (at.source == nullptr) continue;
+          sum += double(luminance(far_radiance_of(*at.source, at.way)) *
+                        std::max(dot(at.wi, normal), 0.0f) * at.inverse_pdf) /
+                 n;
+        }
+        mean += sum / runs;
+        squares += sqr(sum / whole - 1) / runs;
+      }
+      CAPTURE(int(kind));
+      CAPTURE(normal.z);
+      const double error = std::sqrt(squares);
+      CHECK(std::abs(mean / whole - 1) < 0.002 + 4 * error / std::sqrt(double(runs)));
+      // Tables are as even as parts are small.
+      CHECK(error < (kind == Kind::image ? 0.04 : 0.015));
+    }
+  }
+}
