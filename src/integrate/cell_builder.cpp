@@ -20,8 +20,14 @@ constexpr float size_of_median = 0.06f;  // of a cell, of the median length of g
 constexpr double fine_error = 0.05;      // … for errors up to this; larger ones take larger cells
 constexpr double size_by_error = 0.58, most_coarseness = 4;
 constexpr size_t pilot_rays = 1 << 17;  // gather rays from what the pilot sees
-constexpr uint32_t rays_of_row = 16;    // first ones of every cell
+constexpr uint32_t rays_of_row = 16;    // first ones of a cell that matters
 constexpr uint32_t rays_of_step = 8;    // further ones come in so many
+// A cell's first rays are each worth as much as this many of the pilot's, all bounces counted, for
+// `fine_error`; for others by this power of the error.
+constexpr double pilots_of_ray = 0.1, worth_by_error = 1.5;
+// A cell with fewer first rays than this gets its light straight from sources by draws, this many
+// for a ray.
+constexpr uint32_t rays_for_proofs = 4, draws_of_ray = 2;
 constexpr uint32_t most_rays_of_row = 4096;
 constexpr double most_unresolved = 1e-5;  // of the light asked for, for an error of .01 or less
 constexpr double enough_of_wanted = 1.5;  // further rays that a kept cell has: no more then
@@ -48,6 +54,7 @@ struct Place {
 // What is asked for, by all that look at cells first.
 struct Asked {
   size_t askers = 0;              // viewing rays, and points
+  double of_ray = 0;              // importance that a cell's ray is worth
   std::vector<float> light;       // per cell
   std::vector<float> importance;  // per cell, all bounces counted, as last looked at
 };
@@ -78,6 +85,8 @@ class Builder {
   std::span<const CellHit> hits_of(const CellTask& task) const;
   CellTask task_of(uint32_t cell, uint32_t first, uint32_t count) const;
   std::vector<uint32_t> cells_to_resolve();
+  uint32_t first_rays(uint32_t cell) const;
+  void add_first_tasks(uint32_t cell, uint32_t had, uint32_t count, std::vector<CellTask>& tasks);
   std::vector<CellTask> further_tasks();
 
   const PreparedScene& scene_;
@@ -157,6 +166,9 @@ void Builder::ask(const CellPilot& pilot) {
     asked_.light.resize(map_->size(), 0);
     asked_.light[cell] += tasks[c.task].weight * luminance(c.weight);
   }
+  const double all = std::accumulate(asked_.light.begin(), asked_.light.end(), 0.0);
+  const double error = std::clamp(options_.error, 1e-3, 0.2) / fine_error;
+  asked_.of_ray = pilots_of_ray * std::pow(error, worth_by_error) * all / double(pilot_rays);
   rows_.finish(map_->size());
 }
 
@@ -240,6 +252,27 @@ std::vector<uint32_t> Builder::cells_to_resolve() {
   return cells;
 }
 
+// By what a cell matters: where few rays share cells (in the open, between small things) 16 rays
+// from each, and from what they hit, would be a tree without end; one from each is a path.
+uint32_t Builder::first_rays(uint32_t cell) const {
+  if (cell >= asked_.importance.size()) return 1;
+  const double worth = double(asked_.importance[cell]) / asked_.of_ray;
+  uint32_t n = rays_of_row;
+  while (n > 1 && worth < n) n /= 2;
+  return n;
+}
+
+// Of the first `count` rays of a cell those after the first `had`, either half of them from its own
+// half of the sequence.
+void Builder::add_first_tasks(uint32_t cell, uint32_t had, uint32_t count,
+                              std::vector<CellTask>& tasks) {
+  const auto add = [&](uint32_t first, uint32_t end, uint32_t begin) {
+    if (end > first) tasks.push_back(task_of(cell, begin + first, end - first));
+  };
+  add((had + 1) / 2, (count + 1) / 2, 0);
+  add(had / 2, count / 2, rays_of_step);
+}
+
 // As many rays again as the first ones of the cells that matter, in proportion to what is asked of
 // them; less what they have had already, for other views.
 std::vector<CellTask> Builder::further_tasks() {
@@ -250,15 +283,18 @@ std::vector<CellTask> Builder::further_tasks() {
   std::vector<CellTask> tasks;
   if (!(all > 0)) return tasks;
   const double least = map_->frozen() > 0 ? 0.5 * most_unresolved * all / double(y.size()) : -1;
-  size_t cells = 0;
+  size_t rays = 0;
   for (uint32_t c = 0; c < y.size(); ++c)
-    if (rows_.has_row(c) && double(y[c]) > least) ++cells;
-  const double steps = double(cells) * rays_of_row / rays_of_step;
+    if (rows_.has_row(c) && double(y[c]) > least) rays += std::min(rows_.rays(c), rays_of_row);
+  const double steps = double(rays) / rays_of_step;
   for (uint32_t c = 0; c < y.size(); ++c) {
     if (!rows_.has_row(c)) continue;
     const double wanted =
         std::min(steps * double(y[c]) / all, double(most_rays_of_row / rays_of_step));
-    const uint32_t had = (rows_.rays(c) - rays_of_row) / rays_of_step;
+    const uint32_t first = std::min(rows_.rays(c), rays_of_row);
+    if (first < rays_of_row && wanted < 0.5) continue;
+    add_first_tasks(c, first, rays_of_row, tasks);
+    const uint32_t had = (rows_.rays(c) - first) / rays_of_step;
     if (wanted < enough_of_wanted * had) continue;
     for (uint32_t step = had; step < uint32_t(wanted + 0.5); ++step)
       tasks.push_back(task_of(c, rays_of_row + step * rays_of_step, rays_of_step));
@@ -273,9 +309,7 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
       if (is_further && round == 0)
         tasks = further_tasks();
       else
-        for (const uint32_t c : cells_to_resolve())
-          for (uint32_t first = 0; first < rays_of_row; first += rays_of_step)
-            tasks.push_back(task_of(c, first, rays_of_step));
+        for (const uint32_t c : cells_to_resolve()) add_first_tasks(c, 0, first_rays(c), tasks);
       if (tasks.empty()) break;
       if (!run(tasks)) return false;
       ++statistics_.rounds;
@@ -292,7 +326,11 @@ bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
     lit = {std::move(store_->direct), std::move(store_->direct_half_difference)};
     first = map_->frozen();
   }
-  add_direct_light(*map_, walks_, direct, first, options_.threads, stop_, lit, counters_);
+  // What is kept may matter more to the next view.
+  std::vector<uint8_t> draws(map_->size(), 0);
+  for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c)
+    if (first_rays(c) < rays_for_proofs) draws[c] = uint8_t(draws_of_ray * first_rays(c));
+  add_direct_light(*map_, walks_, direct, draws, first, options_.threads, stop_, lit, counters_);
   return !stop_.load();
 }
 

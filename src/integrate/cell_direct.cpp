@@ -18,6 +18,9 @@ struct Worker {
   std::unique_ptr<DirectLightScratch> direct;
   WaveHits wave;
   RadianceBatch out;
+  std::vector<uint32_t> certified, sampled;  // cells of a group
+  std::vector<GatherArrival> arrivals;
+  GatherScratch gather;
   Counters counters;
 };
 
@@ -53,6 +56,20 @@ std::string name_of_hit(const void*, size_t i) {
   return "cell hit " + std::to_string(i);
 }
 
+// The mean of n values of a cell, and what halves of them differ by.
+template <typename F>
+void set(CellDirectLight& light, uint32_t cell, size_t n, const F& value) {
+  std::array<Rgb, 2> halves;
+  for (size_t i = 0; i < n; ++i) {
+    const Rgb e = value(i);
+    if (is_finite(e)) halves[i < n / 2 ? 0 : 1] += e;
+  }
+  light.irradiance[cell] = n > 0 ? (halves[0] + halves[1]) / float(n) : Rgb{0};
+  if (n >= 2)
+    light.half_difference[cell] =
+        luminance(halves[0]) / float(n / 2) - luminance(light.irradiance[cell]);
+}
+
 void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
                  std::span<const uint32_t> cells, Worker& w, CellDirectLight& light) {
   if (!w.direct) w.direct = direct.make_scratch();
@@ -84,22 +101,48 @@ void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight
   index = 0;
   for (const uint32_t c : cells) {
     const size_t n = map.hits(c).size();
-    std::array<Rgb, 2> halves;
-    for (size_t i = 0; i < n; ++i, ++index) {
+    set(light, c, n, [&](size_t) {
       const Rgb e = w.out.direct[index] + w.out.indirect[index];
-      if (is_finite(e)) halves[i < n / 2 ? 0 : 1] += e;
-    }
-    light.irradiance[c] = n > 0 ? (halves[0] + halves[1]) / float(n) : Rgb{0};
-    if (n < 2) continue;
-    light.half_difference[c] = luminance(halves[0]) / float(n / 2) - luminance(light.irradiance[c]);
+      ++index;
+      return e;
+    });
   }
+}
+
+// As light_group(), by draws.
+void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const uint32_t> cells,
+                  std::span<const uint8_t> samples, Worker& w, CellDirectLight& light) {
+  w.arrivals.clear();
+  for (const uint32_t c : cells)
+    for (uint32_t k = 0; k < samples[c]; ++k) {
+      const std::span<const CellHit> hits = map.hits(c);
+      if (hits.empty()) break;
+      GatherArrival& a = w.arrivals.emplace_back();
+      a.walk.index = uint32_t(w.arrivals.size() - 1);
+      a.walk.sample = k;
+      a.walk.stream = hash_of(uint64_t(c), uint64_t{0x6472'6177});
+      a.hit = hits[k * hits.size() / samples[c]];
+    }
+  const size_t n = w.arrivals.size();
+  w.gather.light.direct.assign(n, Rgb{0});
+  w.gather.light.indirect.assign(n, Rgb{0});
+  w.gather.light.shadow_rays.assign(n, 0);
+  const CheckContext context(&w, n, name_of_hit);
+  walks.light_up(w.arrivals, w.gather, w.counters);
+  size_t index = 0;
+  for (const uint32_t c : cells)
+    set(light, c, map.hits(c).empty() ? 0 : samples[c], [&](size_t) {
+      const Rgb e = (w.gather.light.direct[index] + w.gather.light.indirect[index]) * pi_f;
+      ++index;
+      return e;
+    });
 }
 
 }  // namespace
 
 void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                      size_t first_cell, int threads, const StopFlag& stop, CellDirectLight& light,
-                      Counters& counters) {
+                      std::span<const uint8_t> samples, size_t first_cell, int threads,
+                      const StopFlag& stop, CellDirectLight& light, Counters& counters) {
   const std::vector<uint32_t> order = cells_in_order(map, first_cell);
   light.irradiance.resize(map.size());
   light.half_difference.resize(map.size(), 0);
@@ -108,9 +151,14 @@ void add_direct_light(const CellMap& map, const GatherWalks& walks, const Direct
   parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
     const size_t first = g * cells_of_group;
-    light_group(map, walks, direct,
-                std::span(order).subspan(first, std::min(cells_of_group, order.size() - first)),
-                workers[slot], light);
+    Worker& w = workers[slot];
+    w.certified.clear();
+    w.sampled.clear();
+    for (const uint32_t c :
+         std::span(order).subspan(first, std::min(cells_of_group, order.size() - first)))
+      (c < samples.size() && samples[c] > 0 ? w.sampled : w.certified).push_back(c);
+    if (!w.certified.empty()) light_group(map, walks, direct, w.certified, w, light);
+    if (!w.sampled.empty()) sample_group(map, walks, w.sampled, samples, w, light);
   });
   for (const Worker& w : workers) counters += w.counters;
 }

@@ -1,6 +1,8 @@
 // Light straight from sources at cells, by a method's own direct light.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -16,9 +18,10 @@ struct CellDirectLight {
 };
 
 // Of all cells from number `first` on; what is in `light` of those before stays. Cells near each
-// other are lit together, in the same groups for any number of threads.
+// other are lit together, in the same groups for any number of threads. samples: of each cell, by
+// so many draws of one source each, as in path tracing; by `direct` where it is 0.
 void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                      size_t first, int threads, const StopFlag& stop, CellDirectLight& light,
-                      Counters& counters);
+                      std::span<const uint8_t> samples, size_t first, int threads,
+                      const StopFlag& stop, CellDirectLight& light, Counters& counters);
 
 }  // namespace troffer

@@ -231,7 +231,10 @@ void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mir
     s.rough.bsdfs.push_back(white_at(a.hit, 1));
   }
   if (s.rough.size() == 0) return;
+  // Walks that go on do so by cosine, and count no light: under a coat neither.
+  s.tree.is_alone = true;
   tree.queue(s.rough, s.tree, s.light, counters);
+  s.tree.is_alone = false;
   tree.flush(s.tree, s.light, counters);
 }
 

@@ -74,7 +74,8 @@ void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
     LightConnection c;
     if (!connect(wave.vertices[i], wave.bsdfs[i], s.points[k], c)) continue;
     const float pdf_light = c.pdf_light * s.light_pmf[k];
-    const bool has_competition = has_matte_walks_ || !is_lambertian(wave.bsdfs[i], nullptr);
+    const bool has_competition =
+        !s.is_alone && (has_matte_walks_ || !is_lambertian(wave.bsdfs[i], nullptr));
     const float weight = has_competition ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
     const Walk& walk = wave.walks[i];
     s.shadows.add(c.shadow_ray, walk.throughput * c.value * (weight / pdf_light), walk.index,

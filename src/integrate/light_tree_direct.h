@@ -27,6 +27,9 @@ struct LightTreeDirectScratch final : DirectLightScratch {
   std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
   LightSampleScratch light_samples;
+  // No walk goes on from the hits by their own scattering and counts what it runs into: all light
+  // is this one's, whatever the surface.
+  bool is_alone = false;
 
   void resize(size_t n);
 };
