@@ -101,7 +101,7 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["peak_memory_mb"] = peak_memory_mb();
   j["extension_rays"] = n.extension_rays;
   j["spp"] = c.options.spp;
-  j["max_spp"] = most_viewing_rays(c.options);
+  j["max_spp"] = most_viewing_rays(c.options).in_pixel;
   j["seed"] = c.options.seed;
   j["is_complete"] = is_complete;
   return j.dump(2) + "\n";

@@ -124,9 +124,7 @@ void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const 
       a.hit = hits[k * hits.size() / samples[c]];
     }
   const size_t n = w.arrivals.size();
-  w.gather.light.direct.assign(n, Rgb{0});
-  w.gather.light.indirect.assign(n, Rgb{0});
-  w.gather.light.shadow_rays.assign(n, 0);
+  w.gather.light.reset(n);
   const CheckContext context(&w, n, name_of_hit);
   walks.light_up(w.arrivals, w.gather, w.counters);
   size_t index = 0;

@@ -56,9 +56,13 @@ void set_out(const CellHit& from, const Vec2& number, Walk& walk) {
 }
 
 GatherWalks::GatherWalks(const PreparedScene& scene, std::shared_ptr<const MirrorImages> images)
-    : scene_(scene), tree_(scene), images_(std::move(images)) {
+    : scene_(scene),
+      tree_(scene),
+      lit_(scene, LightTreeDirect::Competition::none),
+      images_(std::move(images)) {
   if (!images_) return;
-  for (const MirrorImages::Image& image : images_->all()) image_trees_.emplace_back(*image.scene);
+  for (const MirrorImages::Image& image : images_->all())
+    lit_images_.emplace_back(*image.scene, LightTreeDirect::Competition::none);
 }
 
 void GatherWalks::follow(size_t rays, Coherence coherence, GatherScratch& s,
@@ -210,9 +214,9 @@ void GatherWalks::light_up(const std::vector<GatherArrival>& arrivals, GatherScr
   for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
     while (end < arrivals.size() && arrivals[end].walk.vertex == arrivals[first].walk.vertex) ++end;
     const auto group = std::span(arrivals).subspan(first, end - first);
-    light_up_by(tree_, nullptr, group, s, counters);
-    for (size_t i = 0; i < image_trees_.size(); ++i)
-      light_up_by(image_trees_[i], &images_->all()[i].mirror, group, s, counters);
+    light_up_by(lit_, nullptr, group, s, counters);
+    for (size_t i = 0; i < lit_images_.size(); ++i)
+      light_up_by(lit_images_[i], &images_->all()[i].mirror, group, s, counters);
   }
 }
 
@@ -231,10 +235,7 @@ void GatherWalks::light_up_by(const LightTreeDirect& tree, const FlatMirror* mir
     s.rough.bsdfs.push_back(white_at(a.hit, 1));
   }
   if (s.rough.size() == 0) return;
-  // Walks that go on do so by cosine, and count no light: under a coat neither.
-  s.tree.is_alone = true;
   tree.queue(s.rough, s.tree, s.light, counters);
-  s.tree.is_alone = false;
   tree.flush(s.tree, s.light, counters);
 }
 

@@ -84,8 +84,11 @@ class GatherWalks {
 
   const PreparedScene& scene_;
   LightTreeDirect tree_;
+  // … at arrivals: walks that go on from there do so by cosine, and count no light, under a coat
+  // neither.
+  LightTreeDirect lit_;
   std::shared_ptr<const MirrorImages> images_;
-  std::vector<LightTreeDirect> image_trees_;
+  std::vector<LightTreeDirect> lit_images_;
 };
 
 // Where a ray has hit a surface, as cells want it.

@@ -60,6 +60,18 @@ size_t LightTreeDirect::choose_lights(const WaveHits& wave, LightTreeDirectScrat
   return kept;
 }
 
+bool LightTreeDirect::has_competition(const Bsdf& bsdf) const {
+  switch (competition_) {
+    case Competition::all:
+      return true;
+    case Competition::none:
+      return false;
+    case Competition::glossy:
+      break;
+  }
+  return !is_lambertian(bsdf, nullptr);
+}
+
 void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch&,
                             Counters&) const {
   auto& s = static_cast<LightTreeDirectScratch&>(scratch);
@@ -74,9 +86,8 @@ void LightTreeDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
     LightConnection c;
     if (!connect(wave.vertices[i], wave.bsdfs[i], s.points[k], c)) continue;
     const float pdf_light = c.pdf_light * s.light_pmf[k];
-    const bool has_competition =
-        !s.is_alone && (has_matte_walks_ || !is_lambertian(wave.bsdfs[i], nullptr));
-    const float weight = has_competition ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
+    const float weight =
+        has_competition(wave.bsdfs[i]) ? power_heuristic(pdf_light, c.pdf_bsdf) : 1;
     const Walk& walk = wave.walks[i];
     s.shadows.add(c.shadow_ray, walk.throughput * c.value * (weight / pdf_light), walk.index,
                   is_direct_at(walk));

@@ -27,18 +27,19 @@ struct LightTreeDirectScratch final : DirectLightScratch {
   std::vector<LightSample> points;
   std::vector<uint8_t> is_valid;
   LightSampleScratch light_samples;
-  // No walk goes on from the hits by their own scattering and counts what it runs into: all light
-  // is this one's, whatever the surface.
-  bool is_alone = false;
 
   void resize(size_t n);
 };
 
 class LightTreeDirect final : public DirectLight {
  public:
-  // has_matte_walks: walks leave Lambertian surfaces too, as paths do, and compete there.
-  explicit LightTreeDirect(const PreparedScene& scene, bool has_matte_walks = false)
-      : scene_(scene), has_matte_walks_(has_matte_walks) {}
+  // Where walks go on from the hits by the surface's own scattering and count the emission they run
+  // into: from surfaces that are not Lambertian; from all of them, as paths do; from none, so that
+  // all light is this one's.
+  enum class Competition { glossy, all, none };
+  explicit LightTreeDirect(const PreparedScene& scene,
+                           Competition competition = Competition::glossy)
+      : scene_(scene), competition_(competition) {}
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return WalkedPart::whole; }
@@ -53,10 +54,11 @@ class LightTreeDirect final : public DirectLight {
   float weight_of_miss(const Walk& walk, uint32_t primitive) const;
 
  private:
+  bool has_competition(const Bsdf& bsdf) const;
   size_t choose_lights(const WaveHits& wave, LightTreeDirectScratch& s) const;
 
   const PreparedScene& scene_;
-  bool has_matte_walks_;
+  Competition competition_;
 };
 
 }  // namespace troffer

@@ -20,7 +20,7 @@ struct PathOptions {
 class PathIntegrator final : public Integrator {
  public:
   PathIntegrator(const PreparedScene& scene, const PathOptions& options)
-      : scene_(scene), options_(options), lights_(scene, true) {}
+      : scene_(scene), options_(options), lights_(scene, LightTreeDirect::Competition::all) {}
 
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
   void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,

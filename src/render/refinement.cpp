@@ -102,25 +102,30 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
 }
 
 // Of the luminance of a pixel amid such a mean. Where all of the picture is refined, what is bright
-// is so for an error between that of its own luminance and that of the picture's, at most four
+// is so for an error between that of its own luminance and that of the picture's, at most so many
 // times less than its own.
-double allowed_error(double mean, double typical, const RefinementOptions& options) {
+double allowed_error(double mean, double typical, const RefinementOptions& options,
+                     double most_times_less = 4) {
   const double bright = std::max(mean, typical);
   return double(options.error) *
-         (options.is_everywhere ? std::sqrt(bright * std::max(typical, bright / 16)) : bright);
+         (options.is_everywhere
+              ? std::sqrt(bright * std::max(typical, bright / sqr(most_times_less)))
+              : bright);
 }
 
 }  // namespace
 
 int glances_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
-  constexpr int most = 1024;
+  constexpr int most = 16'384;
+  // Rays that cost so little may go for all that a picture's mean asks of what is bright.
+  constexpr double most_times_less = 100;
   const Surroundings s =
       look_around(v, x, y, options, [&](int px, int py) { return known_of(v.film.known(px, py)); });
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
   if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things) return 0;
   const bool is_divided = has_edge || has_light;
   const double variance = std::max(s.sample_variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0);
-  const double allowed = allowed_error(s.mean, v.typical, options);
+  const double allowed = allowed_error(s.mean, v.typical, options, most_times_less);
   // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
   // seen what shines.)
   const double least = has_light ? 256 : 0;

@@ -66,21 +66,21 @@ double film_bytes(const PixelRect& window, const RenderOptions& o) {
   const double pixels = double(window.width()) * window.height();
   constexpr double corner = 32;  // EdgeMap
   constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern) + corner + sizeof(int);
-  const bool is_refined = most_viewing_rays(o) > o.spp;
+  const bool is_refined = most_viewing_rays(o).in_pixel > o.spp;
   const bool has_glances = is_refined && needs_cells(o.method, o.indirect);
   return Film::bytes(pixels, o.aovs, has_glances) + (is_refined ? pixels * record : 0);
 }
 
 }  // namespace
 
-int most_viewing_rays(const RenderOptions& options) {
-  if (options.max_spp > 0) return std::max(options.max_spp, options.spp);
-  // By what cells know, edges cost little, and further rays are for what is left.
-  constexpr int with_cells = 16;
+MostViewingRays most_viewing_rays(const RenderOptions& options) {
+  const auto all = [](int n) { return MostViewingRays{n, n, n}; };
+  if (options.max_spp > 0) return all(std::max(options.max_spp, options.spp));
   const MethodRow& row = options.method.row();
+  // By what cells know, edges cost little, and further rays are for what is left.
   if (row.refinement > 1 && needs_cells(options.method, options.indirect))
-    return with_cells * options.spp;
-  return row.refinement * options.spp;
+    return {256 * options.spp, 64 * options.spp, 16 * options.spp};
+  return all(row.refinement * options.spp);
 }
 
 MethodSettings method_settings(const RenderOptions& o) {
@@ -131,7 +131,7 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
   const auto start = std::chrono::steady_clock::now();
   const MethodSettings settings = method_settings(options);
   const MethodRow& row = options.method.row();
-  const bool is_refined = most_viewing_rays(options) > options.spp;
+  const bool is_refined = most_viewing_rays(options).in_pixel > options.spp;
   const bool has_whole_tiles = row.is_same_in_crops && (row.has_noise_of_batch || is_refined);
   const int side = tile_side(options.method, settings, scene.scene.lights.size());
   const TilePlan plan = plan_tiles(image, window, side, has_whole_tiles, is_refined);

@@ -59,9 +59,14 @@ struct RenderOptions {
   std::vector<Aov> aovs;
 };
 
-// The most viewing rays that a pixel may get: max_spp where it was given, else as many as the
-// method takes by itself (MethodRow::refinement).
-int most_viewing_rays(const RenderOptions& options);
+// The most viewing rays that a pixel may get; that pixels of a tile may get in the mean, so that
+// what glitters here and there is refined, and no picture takes very long; that a pixel is taken to
+// get where textures are filtered. All are max_spp where it was given, else as many as the method
+// takes by itself (MethodRow::refinement).
+struct MostViewingRays {
+  int in_pixel = 0, in_mean = 0, usual = 0;
+};
+MostViewingRays most_viewing_rays(const RenderOptions& options);
 
 // What the options say about the method.
 MethodSettings method_settings(const RenderOptions& options);

@@ -31,11 +31,11 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       work_(size_t(thread_count(options.threads))),
       report_(progress),
       stop_(stop) {
-  refining_.max_spp = most_viewing_rays(options);
+  refining_.most = most_viewing_rays(options);
   // By as many rays as a pixel may come to: what a footprint takes from beside a narrow surface no
   // further ray mends.
-  for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, refining_.max_spp));
-  if (refining_.max_spp > options.spp) {
+  for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, refining_.most.usual));
+  if (refining_.most.in_pixel > options.spp) {
     refining_.records.emplace(plan_.region);
     refining_.can_glance = integrator.can_glance();
     if (refining_.can_glance) {
@@ -45,7 +45,7 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       refining_.options.most_even = 6;
     }
   }
-  const int passes = refining_.can_glance ? 1 : passes_of(refining_.max_spp - options.spp);
+  const int passes = refining_.can_glance ? 1 : passes_of(refining_.most.in_pixel - options.spp);
   progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(options.spp) + passes);
 }
 
@@ -159,7 +159,7 @@ void Rendering::refine() {
     glance(wanted.glances);
     return refine(wanted.samples);
   }
-  for (int first = options_.spp; first < refining_.max_spp && !was_stopped_;
+  for (int first = options_.spp; first < refining_.most.in_pixel && !was_stopped_;
        first += samples_per_batch) {
     pass([&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) {
@@ -225,10 +225,29 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
       const size_t i = records.index(x, y);
       if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
       wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, options_.spp,
-                                         refining_.max_spp, refining_.options);
+                                         refining_.most.in_pixel, refining_.options);
     }
   });
+  constexpr int glances_in_mean = 1024;
+  for (const PixelRect& tile : plan_.tiles) {
+    keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
+    keep_in_bounds(tile, glances_in_mean, wanted.glances);
+  }
   return wanted;
+}
+
+// Some pixels of a tile may get more than the mean, as long as others want less: those that want
+// most get as many as are left for each.
+void Rendering::keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const {
+  std::vector<int*> most_last;
+  for (const Pixel2& p : pixels_in_order(tile))
+    most_last.push_back(&wanted[refining_.records->index(p.x, p.y)]);
+  std::sort(most_last.begin(), most_last.end(), [](const int* a, const int* b) { return *a < *b; });
+  int64_t left = int64_t(most_last.size()) * mean;
+  for (size_t i = 0; i < most_last.size(); ++i) {
+    *most_last[i] = int(std::min<int64_t>(*most_last[i], left / int64_t(most_last.size() - i)));
+    left -= *most_last[i];
+  }
 }
 
 // Rays that look at what is known, where that varies within a pixel.
@@ -259,10 +278,14 @@ void Rendering::glance(const PixelRect& tile, const std::vector<int>& wanted, Wo
     w.pixels.clear();
   };
   for (const Pixel2& p : pixels_in_order(tile)) {
-    const int count = wanted[refining_.records->index(p.x, p.y)];
-    add_viewing_rays(camera_, p, 0, uint32_t(count), seed, w.rays);
-    w.pixels.resize(w.rays.size(), p);
-    if (w.rays.size() >= rays_at_a_time) send();
+    const auto all = size_t(wanted[refining_.records->index(p.x, p.y)]);
+    for (size_t first = 0; first < all;) {
+      const size_t count = std::min(all - first, rays_at_a_time - w.rays.size());
+      add_viewing_rays(camera_, p, uint32_t(first), uint32_t(count), seed, w.rays);
+      w.pixels.resize(w.rays.size(), p);
+      if (w.rays.size() >= rays_at_a_time) send();
+      first += count;
+    }
   }
   send();
 }

@@ -49,7 +49,7 @@ class Rendering {
   };
   // What refinement knows; empty where pixels get no further rays.
   struct Refining {
-    int max_spp = 0;
+    MostViewingRays most;
     RefinementOptions options;
     std::optional<PixelRecords> records;
     std::optional<double> typical;  // luminance
@@ -75,6 +75,7 @@ class Rendering {
   void refine(const std::vector<int>& wanted);
   void refine(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
   FurtherRays further_rays(double typical) const;
+  void keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const;
   void glance(const std::vector<int>& wanted);
   void glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
   double typical_luminance();  // looked at once

@@ -7,6 +7,7 @@
 #include "render/furnace.h"
 #include "render/measure.h"
 #include "render/pictures.h"
+#include "support/surfaceless_lights.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -278,4 +279,42 @@ TEST_CASE("cells: light on a floor of tiles is smooth, and the tiles stay sharp"
   CAPTURE(std::sqrt(squares / n));
   CHECK(mean_green(mine) == doctest::Approx(mean_green(paths)).epsilon(0.005));
   CHECK(std::sqrt(squares / n) < 0.025);  // the noise of paths is in it
+}
+
+// Leaves in the open: each ray hits another one, and a cell of it is worth what that ray is.
+TEST_CASE("cells: where few rays share cells, few go out from each") {
+  Scene s;
+  const uint32_t m = add_diffuse(s, Rgb{0.5f});
+  Random random(11);
+  for (int i = 0; i < 15'000; ++i) {
+    const Vec3 c{random.next_float() * 4 - 2, random.next_float() * 4 - 2, random.next_float() * 4};
+    const Vec3 u = normalize(
+        Vec3{random.next_float() - 0.5f, random.next_float() - 0.5f, random.next_float() - 0.5f});
+    const Vec3 v = cross(u, normalize(Vec3{0.3f, 0.5f, 0.8f}));
+    constexpr float half = 0.02f;
+    add_quad(s, m,
+             {c - u * half - v * half, c + u * half - v * half, c + u * half + v * half,
+              c - u * half + v * half});
+  }
+  add_environment(s, Rgb{1});
+  const PreparedScene scene(std::move(s));
+  RenderOptions o = picture_by_cells();
+  o.width = 24;
+  o.height = 18;
+  o.error = 0.1;
+  const RenderResult r = render_now(scene, look_at({0, -9, 2}, {0, 0, 2}, {0, 0, 1}, 35), o);
+  const CellStatistics& c = r.statistics.cells;
+  CAPTURE(c.cells);
+  CAPTURE(c.rays);
+  CHECK(c.cells > 10'000);
+  CHECK(double(c.rays) < 16 * double(c.cells));  // 27 where all send out as many
+  o.method = Method::path;
+  o.indirect = Indirect::automatic;
+  o.spp = 256;
+  CHECK(
+      mean_green(r.layers[0].image) ==
+      doctest::Approx(
+          mean_green(
+              render_now(scene, look_at({0, -9, 2}, {0, 0, 2}, {0, 0, 1}, 35), o).layers[0].image))
+          .epsilon(0.005));
 }

@@ -10,37 +10,12 @@
 #include "render/measure.h"
 #include "support/light_scenes.h"
 #include "support/surfaceless_lights.h"
+#include "window_room.h"
 
 using namespace troffer;
 using namespace troffer::test;
 
 namespace {
-
-// 5 × 4 × 2.7 m, black, without thickness; a window of 2 × 1.2 m in the wall at x = 5.
-Scene room(bool has_window = true) {
-  Scene s;
-  const uint32_t m = add_diffuse(s, Rgb{0});
-  constexpr float X = 5, Y = 4, Z = 2.7f, y0 = 1, y1 = 3, z0 = 0.9f, z1 = 2.1f;
-  add_quad(s, m, {Vec3{0, 0, 0}, {X, 0, 0}, {X, Y, 0}, {0, Y, 0}});
-  add_quad(s, m, {Vec3{0, 0, Z}, {0, Y, Z}, {X, Y, Z}, {X, 0, Z}});
-  add_quad(s, m, {Vec3{0, 0, 0}, {0, Y, 0}, {0, Y, Z}, {0, 0, Z}});
-  add_quad(s, m, {Vec3{0, 0, 0}, {0, 0, Z}, {X, 0, Z}, {X, 0, 0}});
-  add_quad(s, m, {Vec3{0, Y, 0}, {X, Y, 0}, {X, Y, Z}, {0, Y, Z}});
-  add_quad(s, m, {Vec3{X, 0, 0}, {X, 0, Z}, {X, y0, Z}, {X, y0, 0}});
-  add_quad(s, m, {Vec3{X, y1, 0}, {X, y1, Z}, {X, Y, Z}, {X, Y, 0}});
-  add_quad(s, m, {Vec3{X, y0, 0}, {X, y0, z0}, {X, y1, z0}, {X, y1, 0}});
-  add_quad(s, m, {Vec3{X, y0, z1}, {X, y0, Z}, {X, y1, Z}, {X, y1, z1}});
-  if (!has_window) add_quad(s, m, {Vec3{X, y0, z0}, {X, y0, z1}, {X, y1, z1}, {X, y1, z0}});
-  return s;
-}
-
-std::vector<MeasuringPoint> desk_points() {
-  std::vector<MeasuringPoint> points;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 3; ++j)
-      points.push_back({{0.7f + 1.1f * float(i), 0.6f + 1.3f * float(j), 0.2f}, {0, 0, 1}});
-  return points;
-}
 
 std::vector<Measurement> measured(const PreparedScene& scene,
                                   const std::vector<MeasuringPoint>& points, Method method, int spp,
@@ -57,11 +32,11 @@ std::vector<Measurement> measured(const PreparedScene& scene,
 }  // namespace
 
 TEST_CASE("a window under an even sky gives its form factor times pi L") {
-  Scene s = room();
+  Scene s = WindowRoom::make(0);
   add_environment(s, Rgb{2});
   const PreparedScene scene(std::move(s));
   const Vec3d window[4] = {{5, 1, 0.9f}, {5, 3, 0.9f}, {5, 3, 2.1f}, {5, 1, 2.1f}};
-  const auto points = desk_points();
+  const auto points = WindowRoom::points();
   const auto values = measured(scene, points, Method::certified, 64, 2, 0.002);
   double squares = 0;
   for (size_t i = 0; i < points.size(); ++i) {
@@ -77,20 +52,20 @@ TEST_CASE("a window under an even sky gives its form factor times pi L") {
 }
 
 TEST_CASE("a closed room is dark under any sky, sun and image") {
-  Scene s = room(false);
+  Scene s = WindowRoom::make(0, false);
   add_environment(s, Rgb{2});
   Light& sun = add_light(s, LightKind::sun, Rgb{1e6f});
   sun.direction = normalize(Vec3{-1, 0.2f, -0.7f});
   sun.angular_radius = 0.00465f;
   const PreparedScene scene(std::move(s));
-  for (const Measurement& m : measured(scene, desk_points(), Method::certified, 4))
+  for (const Measurement& m : measured(scene, WindowRoom::points(), Method::certified, 4))
     CHECK(m.irradiance.g == 0);
 }
 
 // Before it was known what is closed off, the room took 14 to 25 times as long with the sky.
 TEST_CASE("a sky and a sun cost a closed room neither rays nor masks") {
   const auto counters_of = [](bool has_sky) {
-    Scene s = room(false);
+    Scene s = WindowRoom::make(0, false);
     const uint32_t grey = add_diffuse(s, Rgb{0.5f});
     add_box_inside(s, grey, {3, 1, 0}, {4, 2, 1});
     make_light(s, add_quad(s, grey, {Vec3{1, 1, 2.6f}, {1, 2, 2.6f}, {2, 2, 2.6f}, {2, 1, 2.6f}}),
@@ -169,7 +144,7 @@ TEST_CASE("a room of thick walls that seems closed gets few rays, and no light i
 }
 
 TEST_CASE("the sun's patch on the floor has the sun's light, and its edge the sun's width") {
-  Scene s = room();
+  Scene s = WindowRoom::make(0);
   const double irradiance = 500, radius = 0.00465;
   Light& sun = add_light(s, LightKind::sun, Rgb{float(irradiance / (pi * sqr(std::sin(radius))))});
   sun.direction = normalize(Vec3{-1, 0, -1});
@@ -190,7 +165,7 @@ TEST_CASE("the sun's patch on the floor has the sun's light, and its edge the su
 
 // So many things before the window that no list holds them: rays to what is left of the sky.
 TEST_CASE("a thicket before a window: the mean of rays, and the same bytes for all threads") {
-  Scene s = room();
+  Scene s = WindowRoom::make(0);
   const uint32_t m = add_diffuse(s, Rgb{0});
   Random random(11);
   for (int i = 0; i < 6000; ++i) {
@@ -200,7 +175,7 @@ TEST_CASE("a thicket before a window: the mean of rays, and the same bytes for a
   }
   add_environment(s, Rgb{2});
   const PreparedScene scene(std::move(s));
-  const auto points = desk_points();
+  const auto points = WindowRoom::points();
   const auto mine = measured(scene, points, Method::certified, 256);
   const auto alone = measured(scene, points, Method::certified, 256, 1);
   const auto rays = measured(scene, points, Method::fixed, 16384);

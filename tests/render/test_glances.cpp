@@ -177,3 +177,33 @@ TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by l
   CHECK(fine < 0.02);
   CHECK(fine < 0.7 * coarse);
 }
+
+// Two thousand times as bright as the room, and three pixels wide: an error there of a thousandth
+// of the light is twice the picture's mean.
+TEST_CASE("glances: more at the outline of what is very bright") {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {3, 3, 2.5f});
+  const Vec3 at{1.5f, 2.5f, 1.6f}, u{0.09f, 0, 0.03f}, v{-0.03f, 0, 0.09f};
+  make_light(s,
+             add_quad(s, add_diffuse(s, Rgb{0.5f}),
+                      std::array<Vec3, 4>{at - u - v, at + u - v, at + u + v, at - u + v}),
+             Rgb{2000});
+  const PreparedScene scene(std::move(s));
+  RenderOptions o = small_picture();
+  o.error = 0.05;
+  std::vector<Moments> pixels(size_t(o.width) * size_t(o.height));
+  Moments all;
+  for (int k = 0; k < 6; ++k, ++o.seed) {
+    const Image picture = render_now(scene, at_window, o).layers[0].image;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      pixels[i].add(double(luminance(picture.pixels[i])));
+      all.add(double(luminance(picture.pixels[i])));
+    }
+  }
+  double variance = 0;
+  for (const Moments& m : pixels) variance += m.variance_of_mean() * 6 / double(pixels.size());
+  const double error = std::sqrt(variance) / all.mean();
+  CAPTURE(all.mean());
+  CAPTURE(error);
+  CHECK(error < 0.02);
+}

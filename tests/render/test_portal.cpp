@@ -9,34 +9,19 @@
 #include "render/measure.h"
 #include "support/light_scenes.h"
 #include "support/surfaceless_lights.h"
+#include "window_room.h"
 
 using namespace troffer;
 using namespace troffer::test;
 
 namespace {
 
-constexpr float X = 5, Y = 4, Z = 2.7f, y0 = 1, y1 = 3, z0 = 0.9f, z1 = 2.1f;
-
 // A rectangle in the wall at x = 5, so much larger than its window on all sides.
 std::vector<Vec3> portal(float by) {
+  constexpr float X = WindowRoom::X, y0 = WindowRoom::y0, y1 = WindowRoom::y1, z0 = WindowRoom::z0,
+                  z1 = WindowRoom::z1;
   return {
       {X, y0 - by, z0 - by}, {X, y0 - by, z1 + by}, {X, y1 + by, z1 + by}, {X, y1 + by, z0 - by}};
-}
-
-// 5 × 4 × 2.7 m without thickness, and a window of 2 × 1.2 m.
-Scene room(float albedo) {
-  Scene s;
-  const uint32_t m = add_diffuse(s, Rgb{albedo});
-  add_quad(s, m, {Vec3{0, 0, 0}, {X, 0, 0}, {X, Y, 0}, {0, Y, 0}});
-  add_quad(s, m, {Vec3{0, 0, Z}, {0, Y, Z}, {X, Y, Z}, {X, 0, Z}});
-  add_quad(s, m, {Vec3{0, 0, 0}, {0, Y, 0}, {0, Y, Z}, {0, 0, Z}});
-  add_quad(s, m, {Vec3{0, 0, 0}, {0, 0, Z}, {X, 0, Z}, {X, 0, 0}});
-  add_quad(s, m, {Vec3{0, Y, 0}, {X, Y, 0}, {X, Y, Z}, {0, Y, Z}});
-  add_quad(s, m, {Vec3{X, 0, 0}, {X, 0, Z}, {X, y0, Z}, {X, y0, 0}});
-  add_quad(s, m, {Vec3{X, y1, 0}, {X, y1, Z}, {X, Y, Z}, {X, Y, 0}});
-  add_quad(s, m, {Vec3{X, y0, 0}, {X, y0, z0}, {X, y1, z0}, {X, y1, 0}});
-  add_quad(s, m, {Vec3{X, y0, z1}, {X, y0, Z}, {X, y1, Z}, {X, y1, z1}});
-  return s;
 }
 
 // Bright about one direction, which the window shows to some of the floor.
@@ -49,14 +34,6 @@ EnvironmentMap bright_spot() {
     for (int x = 0; x < map.width; ++x)
       map.texels.push_back(Rgb{y >= 10 && y < 12 && x < 2 ? 200.0f : 0.2f + 0.02f * float(x % 8)});
   return map;
-}
-
-std::vector<MeasuringPoint> desk_points() {
-  std::vector<MeasuringPoint> points;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 3; ++j)
-      points.push_back({{0.7f + 1.1f * float(i), 0.6f + 1.3f * float(j), 0.2f}, {0, 0, 1}});
-  return points;
 }
 
 std::vector<Measurement> measured(const PreparedScene& scene,
@@ -106,9 +83,9 @@ Scene lit(Scene s, bool has_image, const std::vector<Vec3>& through) {
 TEST_CASE("a portal over a window changes no light, and takes most of the variance of paths") {
   for (const bool has_image : {false, true}) {
     CAPTURE(has_image);
-    const PreparedScene with(lit(room(0), has_image, portal(0.1f)));
-    const PreparedScene without(lit(room(0), has_image, {}));
-    const auto points = desk_points();
+    const PreparedScene with(lit(WindowRoom::make(0), has_image, portal(0.1f)));
+    const PreparedScene without(lit(WindowRoom::make(0), has_image, {}));
+    const auto points = WindowRoom::points();
     const auto reference = measured(without, points, Method::certified, 16);
     check_same(measured(with, points, Method::certified, 16), reference);
     check_same(measured(with, points, Method::fixed, 1024), reference);
@@ -122,8 +99,8 @@ TEST_CASE("a portal over a window changes no light, and takes most of the varian
 // The window is the larger one: the portal's own sides decide.
 TEST_CASE("through a portal smaller than the window its own form factor arrives, by all methods") {
   const auto p = portal(-0.15f);
-  const PreparedScene scene(lit(room(0), false, p));
-  const auto points = desk_points();
+  const PreparedScene scene(lit(WindowRoom::make(0), false, p));
+  const auto points = WindowRoom::points();
   const Vec3d outline[4] = {Vec3d(p[0]), Vec3d(p[3]), Vec3d(p[2]), Vec3d(p[1])};
   for (const Method method : {Method::certified, Method::path, Method::fixed, Method::kj92}) {
     const auto values = measured(scene, points, method, method == Method::path ? 4096 : 64);
@@ -141,7 +118,7 @@ TEST_CASE("through a portal smaller than the window its own form factor arrives,
 }
 
 TEST_CASE("outside of its portal a light brings nothing; all light is the same by all methods") {
-  Scene s = lit(room(0.5f), false, portal(0.1f));
+  Scene s = lit(WindowRoom::make(0.5f), false, portal(0.1f));
   add_quad(s, 0, {Vec3{5.5f, 0, 0}, {8, 0, 0}, {8, 4, 0}, {5.5f, 4, 0}});
   const PreparedScene scene(std::move(s));
   const std::vector<MeasuringPoint> outside = {{{6, 2, 0.1f}, {0, 0, 1}},
@@ -149,7 +126,7 @@ TEST_CASE("outside of its portal a light brings nothing; all light is the same b
   for (const Method method : {Method::certified, Method::path})
     for (const Measurement& m : measured(scene, outside, method, 64))
       CHECK(m.irradiance.is_black());
-  const auto points = desk_points();
+  const auto points = WindowRoom::points();
   const auto cells = measured(scene, points, Method::certified, 16, Indirect::automatic);
   check_same(measured(scene, points, Method::path, 4096, Indirect::automatic), cells);
   const auto one = measured(scene, points, Method::certified, 16, Indirect::automatic, 1);
