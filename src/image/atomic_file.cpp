@@ -72,6 +72,18 @@ void AtomicFile::write(std::string_view text) {
   write_all(descriptor_, text.data(), text.size(), path_);
 }
 
+void AtomicFile::commit_to_disk() {
+  if (!temporary_.empty() && fsync(descriptor_) != 0) fail_to_write(path_, errno);
+  const bool is_file = !temporary_.empty();
+  commit();
+  if (!is_file) return;
+  // The new name is in the folder. Not every file system can sync a folder, or needs to.
+  const int folder = open(folder_of(target_.path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  fsync(folder);
+  close(folder);
+}
+
 void AtomicFile::commit() {
   const int result = close(std::exchange(descriptor_, -1));
   if (result != 0) fail_to_write(path_, errno);

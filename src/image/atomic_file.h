@@ -27,6 +27,8 @@ class AtomicFile {
   void write(std::span<const uint8_t> bytes);
   void write(std::string_view text);
   void commit();
+  // As commit(), once the disk has the bytes: whole even where the power fails.
+  void commit_to_disk();
 
  private:
   void open_temporary();
