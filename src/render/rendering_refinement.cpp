@@ -172,6 +172,8 @@ double Rendering::typical_luminance() {
       w.pixels.push_back({i * width / nx, j * height / ny});
       add_viewing_rays(camera_, w.pixels.back(), 0, 1, seed, w.rays);
     }
+  // What was gathered for pixels is known within the window alone: to crops as much as to all.
+  w.rays.pixels.clear();
   const CheckContext context(&w, w.rays.size(), name_of_ray);
   w.radiance.reset(w.rays.size());
   Counters uncounted;
