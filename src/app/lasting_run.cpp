@@ -41,6 +41,7 @@ void reserve_checkpoint(const RenderCommand& c, std::vector<OutputReservation>& 
   if (!c.lasting.is_resumed && fs::exists(path))
     throw InputError(path, 0, 0, "is there already: --resume goes on from it, or remove it");
   reserved.emplace_back(path);
+  remove_abandoned_files(path);  // whoever was killed while writing one left it half-written
 }
 
 LastingRun::LastingRun(RenderCommand& command, Clock::time_point start, const StopFlag& stop)

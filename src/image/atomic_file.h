@@ -41,6 +41,10 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
+// Temporary files beside `path` that programs left which were killed: those of AtomicFile that
+// nobody holds any more and that are older than a minute.
+void remove_abandoned_files(const std::string& path);
+
 // The whole of a small file in one call.
 void write_file(const std::string& path, std::string_view text);
 

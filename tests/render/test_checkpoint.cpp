@@ -34,8 +34,8 @@ struct File {
 RenderOptions options_for(Method method, int max_spp) {
   RenderOptions o;
   o.method = method;
-  o.width = 43;
-  o.height = 21;
+  o.width = 35;
+  o.height = 17;
   o.spp = 6;  // two passes
   o.max_spp = max_spp;
   o.shadow_rays = 3;
@@ -85,7 +85,7 @@ void check_resumed(const RenderOptions& o) {
   bool is_there = false;
   // Of the work after cells, which take the first half.
   const double first = needs_cells(o.method, o.indirect) ? 0.5 : 0;
-  for (const double share : {0.02, 0.2, 0.45, 0.55, 0.7, 0.9, 0.99}) {
+  for (const double share : {0.02, 0.45, 0.55, 0.7, 0.95}) {
     // Kept in the end, or all the time and read as it was when a tile was done.
     const RenderResult part =
         broken_off(room, o, file, is_there, first + (1 - first) * share, share < 0.5 ? 1e9 : 0);
@@ -103,7 +103,7 @@ void check_resumed(const RenderOptions& o) {
 
 }  // namespace
 
-TEST_CASE("a picture that is broken off seven times and gone on with has the same bits") {
+TEST_CASE("a picture that is broken off five times and gone on with has the same bits") {
   for (const int max_spp : {6, 19}) {
     check_resumed(options_for(Method::path, max_spp));
     check_resumed(options_for(Method::fixed, max_spp));
@@ -203,9 +203,12 @@ TEST_CASE("checkpoints that lie, with sound sums: refused, or a picture all the 
     broken_off(room, o, file, false, 0.6, 1e9);
     Checkpoint good(file.path, room.key(o), {}, 1, {});
     good.read();
+    const auto preparation =
+        prepare(room.scene, method, o.kj92, o.indirect, std::nullopt, 2, {}, never_stopped);
+    o.preparation = preparation.get();
     std::mt19937 random(2);
     int refused = 0;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 40; ++i) {
       std::vector<std::vector<uint8_t>> chunks;
       for (const auto& c : good.chunks()) chunks.emplace_back(c.begin(), c.end());
       auto& chunk = chunks[random() % chunks.size()];
@@ -240,7 +243,8 @@ TEST_CASE("checkpoints that lie, with sound sums: refused, or a picture all the 
       }
       std::remove(path.c_str());
     }
-    CHECK(refused > 20);
+    CHECK(refused > 12);
+    CHECK(refused < 40);
   }
 }
 
