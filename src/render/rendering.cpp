@@ -153,6 +153,7 @@ void Rendering::step(uint32_t number, const Tiles& tiles, const Act& act) {
       progress_.was_stopped = true;
       return;
     }
+    const CheckContext context(&w, w.rays.size(), name_of_ray);  // for who is told
     book_.finish(slot, w.counters);
     w.counters = {};
     tell_progress(t, number);
