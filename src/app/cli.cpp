@@ -213,6 +213,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->check(CLI::IsMember({"filmic", "none"}))
       ->capture_default_str();
   add_daylight_options(*r, c.daylight);
+  add_lasting_options(*r, c.lasting);
   r->add_option("--stats", c.stats, "Write counts and times to this JSON file");
   r->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
 }
@@ -261,6 +262,26 @@ void add_info(CLI::App& app, InfoCommand& c) {
   s->add_flag("--json", c.is_json, "Print JSON");
 }
 
+// The options of the command `app` are read.
+int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& raw) {
+  // CLI::Range lets NaN pass.
+  if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
+  if (!std::isfinite(render.options.error)) throw UsageError("--error: not a number");
+  check_exposure(render.exposure);
+  const BintreeOptions& tree = render.options.kj92.sampling.tree;
+  if (!std::isfinite(tree.allowed_variance)) throw UsageError("--variance: not a number");
+  if (!std::isfinite(tree.mean_change)) throw UsageError("--mean-change: not a number");
+  apply(raw, render.options);
+  if (render.method != "kj92" && raw.shadow_rays == 0)
+    throw UsageError("--shadow-rays 0 belongs to --method kj92");
+  const Method method = parse_method(render.method);
+  apply_lasting_options(render, app.get_option("--spp")->count() > 0);
+  warn_of_unused_options(app, method,
+                         indirect_with(render.solution, method, render.options.indirect),
+                         render.is_quiet);
+  return run_render(std::move(render));
+}
+
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"troffer lights rooms: images and lighting figures of interiors."};
   app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
@@ -271,6 +292,7 @@ int parse_and_run(int argc, const char* const* argv) {
   RadiosityCommand radiosity;
   InfoCommand info;
   ConvertCommand convert;
+  MergeCommand merge;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -278,6 +300,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_radiosity(app, radiosity);
   add_info(app, info);
   add_convert(app, convert);
+  add_merge(app, merge);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -287,23 +310,8 @@ int parse_and_run(int argc, const char* const* argv) {
     }
     throw UsageError(e.what());
   }
-  if (app.got_subcommand("render")) {
-    // CLI::Range lets NaN pass.
-    if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
-    if (!std::isfinite(render.options.error)) throw UsageError("--error: not a number");
-    check_exposure(render.exposure);
-    const BintreeOptions& tree = render.options.kj92.sampling.tree;
-    if (!std::isfinite(tree.allowed_variance)) throw UsageError("--variance: not a number");
-    if (!std::isfinite(tree.mean_change)) throw UsageError("--mean-change: not a number");
-    apply(render_raw, render.options);
-    if (render.method != "kj92" && render_raw.shadow_rays == 0)
-      throw UsageError("--shadow-rays 0 belongs to --method kj92");
-    const Method method = parse_method(render.method);
-    warn_of_unused_options(*app.get_subcommand("render"), method,
-                           indirect_with(render.solution, method, render.options.indirect),
-                           render.is_quiet);
-    return run_render(std::move(render));
-  }
+  if (app.got_subcommand("render"))
+    return check_and_run(*app.get_subcommand("render"), render, render_raw);
   if (app.got_subcommand("compare")) return run_compare(compare);
   if (app.got_subcommand("measure")) {
     if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
@@ -316,6 +324,10 @@ int parse_and_run(int argc, const char* const* argv) {
   }
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
   if (app.got_subcommand("convert")) return run_convert(convert);
+  if (app.got_subcommand("merge")) {
+    check_exposure(merge.exposure);
+    return run_merge(merge);
+  }
   return run_info(info);
 }
 

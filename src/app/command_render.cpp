@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/commands.h"
+#include "app/lasting_run.h"
 #include "app/outputs.h"
 #include "app/picture_files.h"
 #include "app/process.h"
@@ -58,8 +59,24 @@ struct Seconds {
   double import = 0, build = 0, preprocess_cpu = 0, render = 0, render_cpu = 0, write = 0;
 };
 
-std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, const Seconds& t,
-                            double total, bool is_complete) {
+// How a rendering ended, for the statistics.
+const char* name_of(RenderEnd end) {
+  switch (end) {
+    case RenderEnd::complete:
+      return "complete";
+    case RenderEnd::good_enough:
+      return "error_limit";
+    case RenderEnd::out_of_time:
+      return "time_limit";
+    case RenderEnd::stopped:
+      break;
+  }
+  return "signal";
+}
+
+std::string statistics_json(const RenderCommand& c, const RenderResult& result, const Seconds& t,
+                            double total) {
+  const RenderStatistics& s = result.statistics;
   const Counters& n = s.counters;
   nlohmann::ordered_json j;
   j["version"] = TROFFER_VERSION;
@@ -103,7 +120,11 @@ std::string statistics_json(const RenderCommand& c, const RenderStatistics& s, c
   j["spp"] = c.options.spp;
   j["max_spp"] = most_viewing_rays(c.options).in_pixel;
   j["seed"] = c.options.seed;
-  j["is_complete"] = is_complete;
+  j["is_complete"] = result.is_complete;
+  j["ended_by"] = name_of(result.end);
+  j["told_error"] = s.told_error;
+  j["share_done"] = s.share_done;
+  j["gaps_filled"] = s.gaps_filled;
   return j.dump(2) + "\n";
 }
 
@@ -114,7 +135,10 @@ std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
-  reserve_cells(c.solution, c.options.method, c.options.indirect, reserved);
+  // Shares leave the cells as they are for each other.
+  if (c.options.parts == 1)
+    reserve_cells(c.solution, c.options.method, c.options.indirect, reserved);
+  reserve_checkpoint(c, reserved);
   return reserved;
 }
 
@@ -125,14 +149,76 @@ RenderResult render_with_bar(const PreparedScene& scene, const Camera& camera,
       scene, camera, c.options, [&](double f) { bar.update(f); }, stop);
 }
 
+// The cells are kept once the picture is there.
+struct Rendered {
+  RenderResult result;
+  std::unique_ptr<CellStore> cells;
+};
+
+Rendered prepare_and_render(const PreparedScene& scene, const Camera& camera, RenderCommand& c,
+                            const StopFlag& stop, Seconds& seconds) {
+  double cpu = cpu_seconds();
+  const auto preparation =
+      prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
+                     c.options.threads, c.is_quiet, stop);
+  seconds.preprocess_cpu = cpu_seconds() - cpu;
+  cpu = cpu_seconds();
+  c.options.preparation = preparation.get();
+  Rendered made;
+  made.cells = cells_of_file(scene, c.options.method, c.options.indirect, c.solution);
+  c.options.cells = made.cells.get();
+  made.result = render_with_bar(scene, camera, c, stop);
+  c.options.preparation = nullptr;
+  seconds.render = made.result.statistics.render_seconds;
+  seconds.render_cpu = cpu_seconds() - cpu;
+  return made;
+}
+
 // What is to be said of it in the end, and the exit status.
-int tell(const RenderResult& result, bool is_quiet) {
-  const uint64_t bad = result.statistics.counters.nan_samples;
-  if (!is_quiet && bad > 0)
+int tell(const RenderResult& result, const RenderCommand& c, double total) {
+  const RenderStatistics& s = result.statistics;
+  const uint64_t bad = s.counters.nan_samples;
+  if (!c.is_quiet && bad > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as black\n", bad);
-  if (result.is_complete) return exit_done;
-  fmt::print(stderr, "interrupted: wrote what was finished\n");
-  return exit_interrupted;
+  switch (result.end) {
+    case RenderEnd::stopped:
+      fmt::print(stderr, "interrupted: wrote what was finished\n");
+      return exit_interrupted;
+    case RenderEnd::out_of_time:
+      fmt::print(stderr,
+                 "time limit: wrote the picture as it was after {:.1f} s, {:.0f} % of its "
+                 "work{}\n",
+                 total, 100 * s.share_done,
+                 s.gaps_filled == 0
+                     ? ""
+                     : fmt::format("; {} of {} pixels are by paths alone", s.gaps_filled,
+                                   size_t(s.width) * size_t(s.height)));
+      break;
+    case RenderEnd::good_enough:
+    case RenderEnd::complete:
+      if (!c.is_quiet && s.told_error > c.lasting.error_limit && c.lasting.error_limit > 0)
+        fmt::print(stderr,
+                   "warning: the error told of the picture is {:.3g}, more than --error-limit: "
+                   "--max-spp, --spp and --error ask for more\n",
+                   s.told_error);
+  }
+  return exit_done;
+}
+
+// Once the picture is there.
+void write_outputs(const RenderCommand& c, const RenderResult& result, const Camera& camera,
+                   const LastingRun& lasting, PreviewFiles& files) {
+  WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet);
+  write.note = lasting.note(result, camera);
+  write.is_safe = !c.lasting.checkpoint.empty();  // before that goes
+  if (c.options.parts > 1) {
+    const ImageSize whole = image_size(camera, c.options.width, c.options.height);
+    write.window = {result.window[0], result.window[1], whole.width, whole.height};
+  }
+  for (const std::string& path : c.outputs) {
+    write_image(path, result.layers, write);
+    files.is_replaced(path);
+  }
 }
 
 }  // namespace
@@ -157,41 +243,27 @@ int run_render(RenderCommand c) {
 
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
 
-  const StopFlag& stop = install_stop_handlers();
   if (!c.selected_lights.empty()) {
     c.options.kj92.selection.is_restricted = true;
     c.options.kj92.selection.only = lights_named(scene.scene, c.selected_lights);
   }
+  LastingRun lasting(c, start, install_stop_handlers());
+  lasting.begin(scene.scene, camera);
+  const StopFlag& stop = lasting.stop();
   if (c.has_preview) {
     preview.look(scene, camera, c.options, stop);
     c.options.preview = &preview;
   }
-  double cpu = cpu_seconds();
-  const auto preparation =
-      prepare_method(scene, c.options.method, c.options.kj92, c.options.indirect, c.solution,
-                     c.options.threads, c.is_quiet, stop);
-  seconds.preprocess_cpu = cpu_seconds() - cpu;
-  cpu = cpu_seconds();
-  c.options.preparation = preparation.get();
-  const std::unique_ptr<CellStore> cells =
-      cells_of_file(scene, c.options.method, c.options.indirect, c.solution);
-  c.options.cells = cells.get();
-  const RenderResult result = render_with_bar(scene, camera, c, stop);
-  seconds.render = result.statistics.render_seconds;
-  seconds.render_cpu = cpu_seconds() - cpu;
-
+  const auto [result, cells] = prepare_and_render(scene, camera, c, stop, seconds);
   mark = Clock::now();
-  const WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet);
-  for (const std::string& path : c.outputs) {
-    write_image(path, result.layers, write);
-    files.is_replaced(path);
-  }
-  if (result.is_complete) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
+  write_outputs(c, result, camera, lasting, files);
+  lasting.finish(result);
+  if (result.is_complete && c.options.parts == 1)
+    keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())
-    write_file(c.stats, statistics_json(c, result.statistics, seconds, seconds_since(start),
-                                        result.is_complete));
-  return tell(result, c.is_quiet);
+    write_file(c.stats, statistics_json(c, result, seconds, seconds_since(start)));
+  return tell(result, c, seconds_since(start));
 }
 
 }  // namespace troffer

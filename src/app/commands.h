@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/daylight_options.h"
+#include "app/lasting_options.h"
 #include "import/import_options.h"
 #include "render/radiosity.h"
 #include "render/render.h"
@@ -46,10 +47,20 @@ struct RenderCommand {
   std::string solution;                      // kj92, certified: file, or empty
   std::string eye, target, up;               // "x,y,z"; override the camera
   float fov_deg = 60;
+  LastingOptions lasting;
   bool has_preview = false;  // outputs are written while the work is under way too
   bool is_quiet = false;
 };
 int run_render(RenderCommand command);
+
+struct MergeCommand {
+  std::string output;
+  std::vector<std::string> parts;
+  std::string exposure, tone_map = "filmic";  // as RenderCommand's
+  bool is_quiet = false;
+};
+void add_merge(CLI::App& app, MergeCommand& command);  // its options
+int run_merge(const MergeCommand& command);
 
 struct CompareCommand {
   std::string image, reference;

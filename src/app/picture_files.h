@@ -9,7 +9,8 @@
 
 namespace troffer {
 
-// How the command wants a picture written. is_quiet: without a word about its exposure.
+// How the command wants a picture written, of all that it asks for. is_quiet: without a word about
+// its exposure.
 WriteOptions write_options(const RenderCommand& command, const Camera& camera, const Image& picture,
                            bool is_quiet);
 

@@ -45,6 +45,7 @@ class ByteReader {
     bytes_ = bytes_.subspan(sizeof(T));
     return v;
   }
+  size_t left() const { return bytes_.size(); }
 
  private:
   std::span<const uint8_t> bytes_;

@@ -1,11 +1,14 @@
 #include "image/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
+#include <ctime>
+#include <filesystem>
 #include <utility>
 
 namespace troffer {
@@ -16,6 +19,9 @@ std::string folder_of(const std::string& path) {
   const size_t slash = path.rfind('/');
   return slash == path.npos ? std::string("./") : path.substr(0, slash + 1);
 }
+
+// Of the names of temporary files.
+constexpr const char *beginning = ".troffer-", *ending = ".tmp";
 
 }  // namespace
 
@@ -34,8 +40,8 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(outpu
 // A hidden file in the target's folder; its name does not grow with the target's.
 void AtomicFile::open_temporary() {
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    temporary_ = folder_of(target_.path) + ".troffer-" + std::to_string(getpid()) + "-" +
-                 std::to_string(attempt) + ".tmp";
+    temporary_ = folder_of(target_.path) + beginning + std::to_string(getpid()) + "-" +
+                 std::to_string(attempt) + ending;
     cleaner_ = TemporaryFile(temporary_);
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) break;
@@ -46,6 +52,8 @@ void AtomicFile::open_temporary() {
     temporary_.clear();
     fail_to_write(path_, error);
   }
+  // As long as this is open, it is not abandoned. (Not every file system knows.)
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) errno = 0;
   if (are_temporary_files_removed()) {
     discard();
     fail_to_write(path_, "the program is ending");
@@ -72,6 +80,18 @@ void AtomicFile::write(std::string_view text) {
   write_all(descriptor_, text.data(), text.size(), path_);
 }
 
+void AtomicFile::commit_to_disk() {
+  if (!temporary_.empty() && fsync(descriptor_) != 0) fail_to_write(path_, errno);
+  const bool is_file = !temporary_.empty();
+  commit();
+  if (!is_file) return;
+  // The new name is in the folder. Not every file system can sync a folder, or needs to.
+  const int folder = open(folder_of(target_.path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  fsync(folder);
+  close(folder);
+}
+
 void AtomicFile::commit() {
   const int result = close(std::exchange(descriptor_, -1));
   if (result != 0) fail_to_write(path_, errno);
@@ -79,6 +99,24 @@ void AtomicFile::commit() {
   if (std::rename(temporary_.c_str(), target_.path.c_str()) != 0) fail_to_write(path_, errno);
   temporary_.clear();
   cleaner_.forget();
+}
+
+void remove_abandoned_files(const std::string& path) {
+  constexpr std::time_t least_age = 60;  // seconds
+  std::error_code ignored;
+  const std::filesystem::path folder = folder_of(output_target(path).path);
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(beginning) || !name.ends_with(ending)) continue;
+    const int file = open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) continue;
+    struct stat info {};
+    const bool is_abandoned = fstat(file, &info) == 0 && S_ISREG(info.st_mode) &&
+                              info.st_mtime + least_age < std::time(nullptr) &&
+                              flock(file, LOCK_EX | LOCK_NB) == 0;
+    if (is_abandoned) unlink(entry.path().c_str());
+    close(file);
+  }
 }
 
 void write_file(const std::string& path, std::string_view text) {

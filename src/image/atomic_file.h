@@ -27,6 +27,8 @@ class AtomicFile {
   void write(std::span<const uint8_t> bytes);
   void write(std::string_view text);
   void commit();
+  // As commit(), once the disk has the bytes: whole even where the power fails.
+  void commit_to_disk();
 
  private:
   void open_temporary();
@@ -38,6 +40,10 @@ class AtomicFile {
   TemporaryFile cleaner_;
   int descriptor_ = -1;
 };
+
+// Temporary files beside `path` that programs left which were killed: those of AtomicFile that
+// nobody holds any more and that are older than a minute.
+void remove_abandoned_files(const std::string& path);
 
 // The whole of a small file in one call.
 void write_file(const std::string& path, std::string_view text);

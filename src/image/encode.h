@@ -13,7 +13,8 @@
 
 namespace troffer {
 
-std::vector<uint8_t> encode_exr(std::span<const Layer> layers, const ImageWindow& window);
+std::vector<uint8_t> encode_exr(std::span<const Layer> layers, const ImageWindow& window,
+                                const std::string& note);
 std::vector<uint8_t> encode_hdr(const Image& image);
 std::vector<uint8_t> encode_pfm(const Image& image);
 std::vector<uint8_t> encode_png(const Image& image, const Display& display, int threads);

@@ -12,4 +12,7 @@ namespace troffer {
 // chunks. Also refuses deep data, by name.
 void check_exr_header(const EncodedImage& encoded);
 
+// Where WriteOptions::note stands.
+constexpr const char* note_attribute = "troffer";
+
 }  // namespace troffer

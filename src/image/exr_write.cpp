@@ -3,11 +3,13 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 
 #include <cstring>
 
 #include "base/error.h"
 #include "image/encode.h"
+#include "image/exr_header.h"
 
 namespace troffer {
 
@@ -41,8 +43,10 @@ Imf::Header make_header(const Image& image, const ImageWindow& window) {
 
 }  // namespace
 
-std::vector<uint8_t> encode_exr(std::span<const Layer> layers, const ImageWindow& window) {
+std::vector<uint8_t> encode_exr(std::span<const Layer> layers, const ImageWindow& window,
+                                const std::string& note) {
   Imf::Header header = make_header(layers[0].image, window);
+  if (!note.empty()) header.insert(note_attribute, Imf::StringAttribute(note));
   Imf::FrameBuffer frame;
   for (const Layer& layer : layers)
     for (size_t c = 0; c < layer.channels.size(); ++c) {

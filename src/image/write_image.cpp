@@ -48,7 +48,7 @@ std::vector<uint8_t> encode(ImageFormat format, std::span<const Layer> layers,
                             const WriteOptions& options) {
   switch (format) {
     case ImageFormat::exr:
-      return encode_exr(layers, options.window);
+      return encode_exr(layers, options.window, options.note);
     case ImageFormat::hdr:
       return encode_hdr(layers[0].image);
     case ImageFormat::pfm:
@@ -122,7 +122,10 @@ void write_image(const std::string& path, std::span<const Layer> layers,
   } catch (const std::bad_alloc&) {
     throw EnvironmentError("cannot write " + path + ": not enough memory");
   }
-  file.commit();
+  if (options.is_safe)
+    file.commit_to_disk();
+  else
+    file.commit();
 }
 
 void write_image(const std::string& path, const Image& image, const WriteOptions& options) {

@@ -26,6 +26,8 @@ struct WriteOptions {
   Display display{0, ToneMap::filmic};  // PNG only
   ImageWindow window{};                 // EXR only: data and display window
   int threads = 0;
+  std::string note;      // EXR only: kept in the header as the attribute `troffer`; empty: none
+  bool is_safe = false;  // the disk has it before the old file goes (AtomicFile::commit_to_disk)
 };
 
 // Writes layers of equal size, at least one; the first is the picture.

@@ -192,7 +192,8 @@ void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {
 void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   WaveHits& w = s.wave;
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
-  const bool gathers_gloss = indirect_ && indirect_->gathers_gloss();
+  // What is gathered is by pixels.
+  const bool gathers_gloss = indirect_ && indirect_->gathers_gloss() && !w.viewing->pixels.empty();
   size_t kept = 0;
   CheckItems items;
   for (size_t i = 0; i < w.size(); ++i) {

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "base/own_file.h"
 #include "base/vec.h"
 #include "image/image.h"
 #include "render/render.h"
@@ -73,8 +75,22 @@ class Film {
   // Of the picture, by the samples so far; nothing without any.
   std::optional<Rgb> radiance(int x, int y) const;
 
+  // Standard error of the pixel's luminance: that of the layer `error`.
+  double told_error(int x, int y) const { return told_error(index(x, y)); }
+
   // The picture, then the AOVs in the order given.
   std::vector<Layer> layers() const;
+
+  // All that is kept of a pixel, as bytes, and how many.
+  void save(int x, int y, std::vector<uint8_t>& out) const;
+  size_t bytes_of_pixel() const;
+  // The pixel as save() has left it; `in` has bytes_of_pixel() left. False where it says what no
+  // pixel can be.
+  bool load(int x, int y, ByteReader& in);
+  // … of glances.
+  uint32_t glances(int x, int y) const {
+    return known_.empty() ? 0 : known_[index(x, y)].glances.count;
+  }
 
  private:
   struct Pixel {

@@ -9,6 +9,7 @@
 #include "integrate/purposes.h"
 #include "render/camera.h"
 #include "render/first_sight.h"
+#include "render/gap_filler.h"
 #include "render/tile.h"
 
 namespace troffer {
@@ -152,15 +153,6 @@ Image spread(const Image& values, const Blocks& blocks) {
     }
   }
   return image;
-}
-
-// Paths, of the light that the picture is to show.
-std::unique_ptr<Integrator> paths_for(const PreparedScene& scene, const RenderOptions& options) {
-  MethodSettings settings = method_settings(options);
-  const bool is_direct = options.method.row().is_direct_only || options.indirect == Indirect::none;
-  settings.indirect = Indirect::automatic;
-  if (options.method != Method::path) settings.depth = is_direct ? 1 : -1;
-  return make_integrator(scene, Method::path, settings, nullptr, nullptr);
 }
 
 }  // namespace

@@ -17,12 +17,52 @@ bool is_inside(const PixelRect& w, int x, int y) {
   return x >= w.x0 && y >= w.y0 && x < w.x1 && y < w.y1;
 }
 
+// Without gaps between members.
+struct RecordBytes {
+  uint32_t geometry, flags;
+  Vec3 normal, position;
+  uint32_t patterns;
+};
+static_assert(sizeof(RecordBytes) == 36);
+struct PatternBytes {
+  uint32_t source;
+  float weight;
+  uint64_t lit, dark;
+};
+static_assert(sizeof(PatternBytes) == 24);
+constexpr uint32_t front_flag = 1, edge_flag = 2;
+
 }  // namespace
 
 void PixelRecords::note(int x, int y, ShadowRecord&& record, bool is_first) {
   const size_t i = index(x, y);
   if (!is_first && !is_same_surface(records[i], record)) has_edge[i] = 1;
   records[i] = std::move(record);
+}
+
+void PixelRecords::save(int x, int y, std::vector<uint8_t>& out) const {
+  const size_t i = index(x, y);
+  const ShadowRecord& r = records[i];
+  append(out,
+         RecordBytes{r.geometry, (r.is_front ? front_flag : 0) | (has_edge[i] != 0 ? edge_flag : 0),
+                     r.normal, r.position, uint32_t(r.patterns.size())});
+  for (const SourcePattern& p : r.patterns)
+    append(out, PatternBytes{p.source, p.weight, p.pattern.lit, p.pattern.dark});
+}
+
+bool PixelRecords::load(int x, int y, ByteReader& in) {
+  if (in.left() < sizeof(RecordBytes)) return false;
+  const auto b = in.next<RecordBytes>();
+  if (b.flags > (front_flag | edge_flag) || b.patterns > in.left() / sizeof(PatternBytes))
+    return false;
+  const size_t i = index(x, y);
+  records[i] = {b.geometry, (b.flags & front_flag) != 0, b.normal, b.position, {}};
+  has_edge[i] = (b.flags & edge_flag) != 0 ? 1 : 0;
+  for (uint32_t k = 0; k < b.patterns; ++k) {
+    const auto p = in.next<PatternBytes>();
+    records[i].patterns.push_back({p.source, p.weight, {p.lit, p.dark}});
+  }
+  return true;
 }
 
 NeighbourRecords PixelRecords::around(int x, int y) const {
@@ -116,7 +156,6 @@ double allowed_error(double mean, double typical, const RefinementOptions& optio
 }  // namespace
 
 int glances_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
-  constexpr int most = 16'384;
   // Rays that cost so little may go for all that a picture's mean asks of what is bright.
   constexpr double most_times_less = 100;
   const Surroundings s =
@@ -132,7 +171,7 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   const double wanted = variance > 0 ? std::pow(variance / sqr(allowed), 2.0 / 3) : 0;
   if (std::max(wanted, least) <= 4) return 0;
   int count = 16;
-  while (count < most && count < std::max(wanted, least)) count *= 2;
+  while (count < most_glances && count < std::max(wanted, least)) count *= 2;
   return count;
 }
 

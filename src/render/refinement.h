@@ -13,6 +13,7 @@
 
 #include <vector>
 
+#include "base/own_file.h"
 #include "integrate/shadow_record.h"
 #include "render/edge_map.h"
 #include "render/film.h"
@@ -48,6 +49,10 @@ struct PixelRecords {
   }
   // Notes the next viewing ray of a pixel; is_first: the first one of it.
   void note(int x, int y, ShadowRecord&& record, bool is_first);
+  // All that is kept of a pixel, as bytes.
+  void save(int x, int y, std::vector<uint8_t>& out) const;
+  // … as save() has left it; false where there is too little, or what no pixel can be.
+  bool load(int x, int y, ByteReader& in);
   // The pixel's own record and those of its four neighbours within the window.
   NeighbourRecords around(int x, int y) const;
 };
@@ -61,7 +66,8 @@ struct RefinementView {
 };
 
 // How many rays a pixel should get that only look at what is known (Integrator::glance): none, or
-// a power of two.
+// a power of two, at most most_glances.
+constexpr int most_glances = 16'384;
 int glances_wanted(const RefinementView& view, int x, int y, const RefinementOptions& options);
 
 // How many viewing rays a pixel should have, between `first` (what it has) and `most`; has_glances:

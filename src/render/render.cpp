@@ -5,10 +5,12 @@
 #include <memory>
 #include <optional>
 
+#include "base/deadline.h"
 #include "base/error.h"
 #include "render/camera.h"
 #include "render/cell_pilot.h"
 #include "render/film.h"
+#include "render/gap_filler.h"
 #include "render/rendering.h"
 #include "render/tile.h"
 
@@ -54,14 +56,6 @@ PixelWindow pixels_of(const PixelRect& r) {
   return {r.x0, r.y0, r.x1, r.y1};
 }
 
-// Stopped before there was anything to show.
-RenderResult nothing_rendered(const PixelRect& window, const RenderOptions& options,
-                              RenderResult result) {
-  result.is_complete = false;
-  result.layers = Film(window, options.aovs).layers();
-  return result;
-}
-
 double film_bytes(const PixelRect& window, const RenderOptions& o) {
   const double pixels = double(window.width()) * window.height();
   constexpr double corner = 32;  // EdgeMap
@@ -69,6 +63,129 @@ double film_bytes(const PixelRect& window, const RenderOptions& o) {
   const bool is_refined = most_viewing_rays(o).in_pixel > o.spp;
   const bool has_glances = is_refined && needs_cells(o.method, o.indirect);
   return Film::bytes(pixels, o.aovs, has_glances) + (is_refined ? pixels * record : 0);
+}
+
+TileRules tile_rules(const PreparedScene& scene, const RenderOptions& o) {
+  const MethodRow& row = o.method.row();
+  TileRules rules;
+  rules.side = tile_side(o.method, method_settings(o), scene.scene.lights.size());
+  rules.is_refined = most_viewing_rays(o).in_pixel > o.spp;
+  rules.has_whole_tiles = row.is_same_in_crops && (row.has_noise_of_batch || rules.is_refined);
+  rules.looks_at_all = !row.is_same_in_crops;
+  return rules;
+}
+
+TilePlan plan_of(const PreparedScene& scene, const ImageSize& size, const RenderOptions& o) {
+  const TileRules rules = tile_rules(scene, o);
+  const PixelRect asked = wanted_window(o, size.width, size.height);
+  return plan_tiles({0, 0, size.width, size.height}, asked, share_of(asked, rules, o.part, o.parts),
+                    rules);
+}
+
+// Between the scene and the picture.
+class Picture {
+ public:
+  Picture(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
+          const ProgressCallback& progress, const StopFlag& stop)
+      : scene_(scene),
+        options_(options),
+        progress_(progress),
+        stop_(stop),
+        size_(image_size(camera, options.width, options.height)),
+        plan_(plan_of(scene, size_, options)),
+        viewing_(camera, size_.width, size_.height) {
+    if (options.deadline == nullptr) return;
+    filler_ = std::make_unique<GapFiller>(scene, viewing_, options);
+    seconds_per_gap_ = filler_->seconds_per_pixel(plan_.window);
+    options.deadline->keep_back(seconds_per_gap_ * plan_.window.width() * plan_.window.height());
+  }
+
+  RenderResult make();
+
+ private:
+  void render(const Preparation* preparation, RenderResult& result);
+  void finish(Film& film, RenderResult& result);
+
+  const PreparedScene& scene_;
+  const RenderOptions& options_;
+  const ProgressCallback& progress_;
+  const StopFlag& stop_;
+  const ImageSize size_;
+  const TilePlan plan_;
+  const ViewingCamera viewing_;
+  std::unique_ptr<GapFiller> filler_;  // null: there is all the time
+  double seconds_per_gap_ = 0;
+};
+
+RenderResult Picture::make() {
+  RenderResult result;
+  const PixelRect& window = plan_.window;
+  result.window = {window.x0, window.y0, window.x1, window.y1};
+  result.statistics.width = window.width();
+  result.statistics.height = window.height();
+  const Preparation* preparation = options_.preparation;
+  std::unique_ptr<Preparation> own;
+  const bool is_prepared = needs_radiosity(options_.method, options_.indirect);
+  if (is_prepared && preparation == nullptr) {
+    own = prepare(scene_, options_.method, options_.kj92, options_.indirect, std::nullopt,
+                  options_.threads, nullptr, stop_);
+    preparation = own.get();
+  }
+  if (preparation != nullptr) result.statistics.preprocess_seconds = preparation->seconds;
+  const auto start = std::chrono::steady_clock::now();
+  result.end = RenderEnd::stopped;
+  if (!is_prepared || preparation != nullptr) render(preparation, result);
+  if (result.layers.empty()) {  // stopped before there was anything to show
+    Film film(plan_.region, options_.aovs, scene_.scene.origin);
+    finish(film, result);
+    result.layers = film.layers();
+    for (Layer& l : result.layers) l.image = part_of(l.image, plan_.region, window);
+  }
+  result.is_complete = result.end == RenderEnd::complete || result.end == RenderEnd::good_enough;
+  result.statistics.render_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+// Where it was broken off for want of time: whole all the same.
+void Picture::finish(Film& film, RenderResult& result) {
+  if (result.end != RenderEnd::stopped || !filler_ || !options_.deadline->is_over()) return;
+  result.statistics.gaps_filled = filler_->fill(film, plan_.window, *options_.deadline);
+  if (!options_.deadline->parent().load()) result.end = RenderEnd::out_of_time;
+}
+
+// Leaves the result without layers where it was stopped before there was anything to show.
+void Picture::render(const Preparation* preparation, RenderResult& result) {
+  const PictureView view{pixels_of(plan_.image), pixels_of(plan_.region), [&](float x, float y) {
+                           return viewing_.ray({x, y}, {0.5f, 0.5f});
+                         }};
+  // Cells and their gathers take about as long as what follows.
+  const double share = needs_cells(options_.method, options_.indirect) ? 0.5 : 0.0;
+  const ProgressCallback of_cells = part_of_progress(progress_, 0, share),
+                         of_tiles = part_of_progress(progress_, share, 1);
+  CellInput cells{picture_pilot(viewing_, size_, options_.seed),
+                  &view,
+                  options_.seed,
+                  of_cells,
+                  stop_,
+                  {},
+                  {},
+                  options_.cells};
+  const MethodSettings settings = method_settings(options_);
+  const std::unique_ptr<Integrator> integrator =
+      make_integrator(scene_, options_.method, settings, preparation, &cells);
+  if (!integrator) return;
+  RenderStatistics& statistics = result.statistics;
+  statistics.cells = cells.statistics;
+  Rendering rendering(scene_, viewing_, *integrator, options_, plan_, of_tiles, stop_);
+  rendering.expect_gaps(seconds_per_gap_);
+  result.end = rendering.run();
+  statistics.share_done = rendering.share_done();
+  finish(rendering.film(), result);
+  result.layers = rendering.layers();
+  statistics.counters = rendering.counters();
+  statistics.viewing_errors = rendering.viewing_errors();
+  statistics.told_error = rendering.told_error();
 }
 
 }  // namespace
@@ -97,72 +214,18 @@ MethodSettings method_settings(const RenderOptions& o) {
 
 void check_options(const PreparedScene& scene, const Camera& camera, const RenderOptions& options) {
   const ImageSize size = image_size(camera, options.width, options.height);
-  const PixelRect window = wanted_window(options, size.width, size.height);
-  if (film_bytes(window, options) > most_film_bytes)
-    throw UsageError("an image of " + std::to_string(window.width()) + "x" +
-                     std::to_string(window.height()) +
+  const TilePlan plan = plan_of(scene, size, options);
+  if (film_bytes(options.parts > 1 ? plan.region : plan.window, options) > most_film_bytes)
+    throw UsageError("an image of " + std::to_string(plan.window.width()) + "x" +
+                     std::to_string(plan.window.height()) +
                      " pixels with these layers takes more than 8 GiB: use --size or --crop");
-  check_camera(ViewingCamera(camera, size.width, size.height), window, scene, camera.name);
+  check_camera(ViewingCamera(camera, size.width, size.height), plan.window, scene, camera.name);
 }
 
 RenderResult render(const PreparedScene& scene, const Camera& camera, const RenderOptions& options,
                     const ProgressCallback& progress, const StopFlag& stop) {
   check_options(scene, camera, options);
-  const ImageSize size = image_size(camera, options.width, options.height);
-  const PixelRect image{0, 0, size.width, size.height};
-  const PixelRect window = wanted_window(options, size.width, size.height);
-  RenderResult result;
-  result.statistics.width = window.width();
-  result.statistics.height = window.height();
-
-  const Preparation* preparation = options.preparation;
-  std::unique_ptr<Preparation> own;
-  const bool is_prepared = needs_radiosity(options.method, options.indirect);
-  if (is_prepared && preparation == nullptr) {
-    own = prepare(scene, options.method, options.kj92, options.indirect, std::nullopt,
-                  options.threads, nullptr, stop);
-    preparation = own.get();
-  }
-  if (is_prepared && preparation == nullptr) {  // stopped: nothing to show
-    return nothing_rendered(window, options, result);
-  }
-  if (preparation != nullptr) result.statistics.preprocess_seconds = preparation->seconds;
-
-  const auto start = std::chrono::steady_clock::now();
-  const MethodSettings settings = method_settings(options);
-  const MethodRow& row = options.method.row();
-  const bool is_refined = most_viewing_rays(options).in_pixel > options.spp;
-  const bool has_whole_tiles = row.is_same_in_crops && (row.has_noise_of_batch || is_refined);
-  const int side = tile_side(options.method, settings, scene.scene.lights.size());
-  const TilePlan plan = plan_tiles(image, window, side, has_whole_tiles, is_refined);
-  const ViewingCamera viewing(camera, size.width, size.height);
-  const PictureView view{pixels_of(image), pixels_of(plan.region), [&](float x, float y) {
-                           return viewing.ray({x, y}, {0.5f, 0.5f});
-                         }};
-  // Cells and their gathers take about as long as what follows.
-  const double share = needs_cells(options.method, options.indirect) ? 0.5 : 0.0;
-  const ProgressCallback of_cells = part_of_progress(progress, 0, share),
-                         of_tiles = part_of_progress(progress, share, 1);
-  CellInput cells{picture_pilot(viewing, size, options.seed),
-                  &view,
-                  options.seed,
-                  of_cells,
-                  stop,
-                  {},
-                  {},
-                  options.cells};
-  const std::unique_ptr<Integrator> integrator =
-      make_integrator(scene, options.method, settings, preparation, &cells);
-  if (!integrator) return nothing_rendered(window, options, result);
-  result.statistics.cells = cells.statistics;
-  Rendering rendering(scene, viewing, *integrator, options, plan, of_tiles, stop);
-  result.is_complete = rendering.run();
-  result.layers = rendering.layers();
-  result.statistics.counters = rendering.counters();
-  result.statistics.viewing_errors = rendering.viewing_errors();
-  result.statistics.render_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return Picture(scene, camera, options, progress, stop).make();
 }
 
 }  // namespace troffer

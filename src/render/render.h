@@ -17,6 +17,8 @@
 
 namespace troffer {
 
+class Checkpoint;
+class Deadline;
 class Preview;
 
 // AOVs that an image can carry besides the picture.
@@ -49,6 +51,13 @@ struct RenderOptions {
   const Preparation* preparation = nullptr;
   CellStore* cells = nullptr;  // certified: kept from before, and kept for later; may be null
   Preview* preview = nullptr;  // gets what is finished, tile by tile; may be null
+  // The work is broken off at its time, and what is missing of the picture made by paths; the stop
+  // flag of render() must be its own. May be null.
+  Deadline* deadline = nullptr;
+  // The work is done when the picture's told error (RenderStatistics) is at most this; 0: as told.
+  double error_limit = 0;
+  Checkpoint* checkpoint = nullptr;  // is written, and gone on from; may be null
+  int part = 1, parts = 1;           // the part-th of so many shares of the picture, from 1
   Indirect indirect = Indirect::automatic;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera
@@ -87,17 +96,29 @@ struct RenderStatistics {
   int width = 0, height = 0;
   Counters counters;
   ViewingErrors viewing_errors;
+  // What the layer `error` says of all pixels together: root of their mean square, over the
+  // picture's mean luminance.
+  double told_error = 0;
+  double share_done = 0;          // of the work, by tiles
+  size_t gaps_filled = 0;         // pixels that are paths alone, for want of time
   double preprocess_seconds = 0;  // of the preparation, whoever made it
   double render_seconds = 0;      // of what came after
   CellStatistics cells;           // none where the method makes none
 };
 
-// layers[0] is the picture; then the AOVs in the order asked for. Where a stop was requested,
-// is_complete is false and every pixel is the mean of the samples it has (black without any).
+// complete: all that was asked for; good_enough: RenderOptions::error_limit is kept; out_of_time:
+// RenderOptions::deadline was over; stopped: a stop was requested.
+enum class RenderEnd { complete, good_enough, out_of_time, stopped };
+
+// layers[0] is the picture; then the AOVs in the order asked for. Where a stop was requested, or
+// time was over, is_complete is false and every pixel is the mean of the samples it has (black
+// without any: only where a stop was requested).
 struct RenderResult {
   std::vector<Layer> layers;
   RenderStatistics statistics;
+  RenderEnd end = RenderEnd::complete;
   bool is_complete = true;
+  std::array<int, 4> window{};  // the pixels that the layers hold, as RenderOptions::crop
 };
 
 // Renders what `camera` sees. The result is the same, bit for bit, for any number of threads.

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/deadline.h"
 #include "base/error.h"
-#include "base/random.h"
 #include "base/units.h"
+#include "render/checkpoint.h"
 #include "render/preview.h"
 
 namespace troffer {
@@ -29,38 +30,56 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       plan_(std::move(plan)),
       film_(plan_.region, options.aovs, scene.scene.origin),
       work_(size_t(thread_count(options.threads))),
+      book_(plan_.tiles.size(), work_.size(), options.checkpoint != nullptr),
       report_(progress),
       stop_(stop) {
   refining_.most = most_viewing_rays(options);
+  steps_.first = uint32_t(passes_of(options.spp));
   // By as many rays as a pixel may come to: what a footprint takes from beside a narrow surface no
   // further ray mends.
   for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, refining_.most.usual));
   if (refining_.most.in_pixel > options.spp) {
     refining_.records.emplace(plan_.region);
     refining_.can_glance = integrator.can_glance();
+    steps_.further = uint32_t(passes_of(refining_.most.in_pixel - options.spp));
     if (refining_.can_glance) {
       film_.expect_glances();
       refining_.options.error = float(options.error);
       refining_.options.is_everywhere = true;
       refining_.options.most_even = 6;
+      steps_.glances = steps_.further = 1;
     }
   }
-  const int passes = refining_.can_glance ? 1 : passes_of(refining_.most.in_pixel - options.spp);
-  progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(options.spp) + passes);
+  progress_.gaps = size_t(plan_.window.width()) * size_t(plan_.window.height());
+  if (options.checkpoint != nullptr && !options.checkpoint->chunks().empty()) restore();
 }
 
-bool Rendering::run() {
+void Rendering::expect_gaps(double seconds_per_pixel) {
+  progress_.seconds_per_gap = seconds_per_pixel;
+  if (options_.deadline != nullptr)
+    options_.deadline->keep_back(double(progress_.gaps) * seconds_per_pixel);
+}
+
+RenderEnd Rendering::run() {
   const bool wants_typical = options_.method.row().wants_typical;
   const auto typical = wants_typical ? float(typical_luminance()) : 0;
   for (Work& w : work_) w.radiance.typical = typical;
-  for (int first = 0; first < options_.spp && !was_stopped_; first += samples_per_batch) {
+  RenderEnd end = RenderEnd::complete;
+  for (uint32_t pass = 0; pass < steps_.first && end == RenderEnd::complete; ++pass) {
+    const int first = int(pass) * samples_per_batch;
     const auto count = uint32_t(std::min(samples_per_batch, options_.spp - first));
-    pass([&](const PixelRect& tile, Work& w) {
+    step(pass, all_tiles(), [&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) add_rays(p, count, w);
+      return trace_all(w);
     });
+    if (progress_.was_stopped)
+      end = RenderEnd::stopped;
+    else if (pass + 1 < steps_.all() && is_good_enough(pass, all_tiles()))
+      end = RenderEnd::good_enough;
   }
-  if (refining_.records && !was_stopped_) refine();
-  return !was_stopped_;
+  if (refining_.records && end == RenderEnd::complete) end = refine();
+  if (options_.checkpoint != nullptr) save();
+  return end;
 }
 
 std::vector<Layer> Rendering::layers() const {
@@ -72,7 +91,7 @@ std::vector<Layer> Rendering::layers() const {
 ViewingErrors Rendering::viewing_errors() const {
   const PixelRect& w = plan_.window;
   ViewingErrors e;
-  const double mean = mean_luminance();
+  const double mean = mean_luminance(w);
   for (int y = w.y0; y < w.y1; ++y)
     for (int x = w.x0; x < w.x1; ++x) {
       const PixelEstimate p = film_.estimate(x, y);
@@ -87,9 +106,23 @@ ViewingErrors Rendering::viewing_errors() const {
   return e;
 }
 
+double Rendering::told_error() const {
+  const PixelRect& w = plan_.window;
+  double sum = 0;
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x) sum += sqr(film_.told_error(x, y));
+  const double mean = mean_luminance(w), pixels = double(w.width()) * w.height();
+  return mean > 0 ? std::sqrt(sum / pixels) / mean : 0;
+}
+
+double Rendering::share_done() const {
+  return std::min(
+      1.0, double(progress_.tiles_done) / double(book_.size() * (steps_.first + steps_.further)));
+}
+
 Counters Rendering::counters() const {
-  Counters sum;
-  for (const Work& w : work_) sum += w.counters;
+  Counters sum = book_.counters();
+  for (const Work& w : work_) sum += w.counters;  // of tiles that were broken off
   return sum;
 }
 
@@ -99,37 +132,77 @@ std::string Rendering::name_of_ray(const void* work, size_t i) {
          "), sample " + std::to_string(w.rays.samples[i]);
 }
 
-// The rays that `fill` adds are traced, and what they bring is added to the film.
-void Rendering::pass(const Fill& fill) {
-  parallel_for_slots(plan_.tiles.size(), options_.threads, [&](size_t t, size_t slot) {
+// Does step `number` of those of the tiles, in this order, that have not done it yet.
+void Rendering::step(uint32_t number, const Tiles& tiles, const Act& act) {
+  Tiles left;
+  for (const size_t t : tiles)
+    if (book_.steps(t) == number) left.push_back(t);
+  std::atomic<size_t> next = 0;
+  parallel_for_slots(left.size(), options_.threads, [&](size_t, size_t slot) {
     if (stop_.load(std::memory_order_relaxed)) {
-      was_stopped_ = true;
+      progress_.was_stopped = true;
       return;
     }
+    const size_t t = left[next.fetch_add(1)];
     Work& w = work_[slot];
     if (!w.scratch) w.scratch = integrator_.make_scratch();
     w.rays.clear();
     w.pixels.clear();
-    fill(plan_.tiles[t], w);
-    const CheckContext context(&w, w.rays.size(), name_of_ray);
-    if (w.rays.size() > 0) trace(w);
-    tell_progress(plan_.tiles[t]);
+    book_.begin(t, slot, [&](std::vector<uint8_t>& out) { save_tile(t, out); });
+    if (!act(plan_.tiles[t], w)) {
+      progress_.was_stopped = true;
+      return;
+    }
+    const CheckContext context(&w, w.rays.size(), name_of_ray);  // for who is told
+    book_.finish(slot, w.counters);
+    w.counters = {};
+    tell_progress(t, number);
   });
 }
 
 // Of a tile that this thread has just been busy with.
-void Rendering::tell_progress(const PixelRect& tile) {
-  if (options_.preview != nullptr) options_.preview->update(film_, tile);
-  const std::lock_guard lock(progress_.mutex);
-  ++progress_.tiles_done;
-  if (report_)
-    report_(std::min(1.0, double(progress_.tiles_done) / double(progress_.tiles_in_all)));
+void Rendering::tell_progress(size_t tile, uint32_t step) {
+  const PixelRect& r = plan_.tiles[tile];
+  if (options_.preview != nullptr) options_.preview->update(film_, r);
+  {
+    const std::lock_guard lock(progress_.mutex);
+    if (step == 0) {
+      progress_.gaps -= common_pixels(r, plan_.window);
+      expect_gaps(progress_.seconds_per_gap);
+    }
+    const bool is_glance = step >= steps_.first && step < steps_.first + steps_.glances;
+    if (!is_glance) ++progress_.tiles_done;
+    if (report_) report_(share_done());
+  }
+  if (options_.checkpoint != nullptr && options_.checkpoint->take_turn()) save();
+}
+
+// Whether the work may end after a step; later: tiles that would go on.
+bool Rendering::is_good_enough(uint32_t step, const Tiles& later) const {
+  if (!(options_.error_limit > 0)) return false;
+  // Whoever went on knew that it was not.
+  for (const size_t t : later)
+    if (book_.steps(t) > step + 1) return false;
+  return told_error() <= options_.error_limit;
+}
+
+Rendering::Tiles Rendering::all_tiles() const {
+  Tiles tiles(plan_.tiles.size());
+  std::iota(tiles.begin(), tiles.end(), size_t(0));
+  return tiles;
 }
 
 // The next `count` viewing rays of a pixel.
 void Rendering::add_rays(const Pixel2& p, uint32_t count, Work& w) const {
   add_viewing_rays(camera_, p, film_.estimate(p.x, p.y).samples, count, options_.seed, w.rays);
   w.pixels.resize(w.rays.size(), p);
+}
+
+// Whatever rays there are; true.
+bool Rendering::trace_all(Work& w) {
+  const CheckContext context(&w, w.rays.size(), name_of_ray);
+  if (w.rays.size() > 0) trace(w);
+  return true;
 }
 
 void Rendering::trace(Work& w) {
@@ -148,185 +221,7 @@ void Rendering::trace(Work& w) {
   }
 }
 
-// Further rays, as many as the first pass has called for, in passes that fit a batch.
-void Rendering::refine() {
-  const bool is_same_in_crops = options_.method.row().is_same_in_crops;
-  const double typical = is_same_in_crops ? typical_luminance() : mean_luminance();
-  const PixelRecords& records = *refining_.records;
-  const FurtherRays wanted = further_rays(typical);
-  refining_.has_begun = true;
-  if (refining_.can_glance) {
-    glance(wanted.glances);
-    return refine(wanted.samples);
-  }
-  for (int first = options_.spp; first < refining_.most.in_pixel && !was_stopped_;
-       first += samples_per_batch) {
-    pass([&](const PixelRect& tile, Work& w) {
-      for (const Pixel2& p : pixels_in_order(tile)) {
-        const int count =
-            std::min(samples_per_batch, wanted.samples[records.index(p.x, p.y)] - first);
-        if (count <= 0) continue;
-        add_rays(p, uint32_t(count), w);
-        w.rays.neighbours.resize(w.rays.size(), records.around(p.x, p.y));
-      }
-    });
-  }
-}
-
-// All further rays of a tile at once: few pixels may get many.
-void Rendering::refine(const std::vector<int>& wanted) {
-  parallel_for_slots(plan_.tiles.size(), options_.threads, [&](size_t t, size_t slot) {
-    if (stop_.load(std::memory_order_relaxed)) {
-      was_stopped_ = true;
-      return;
-    }
-    refine(plan_.tiles[t], wanted, work_[slot]);
-    tell_progress(plan_.tiles[t]);
-  });
-}
-
-void Rendering::refine(const PixelRect& tile, const std::vector<int>& wanted, Work& w) {
-  constexpr size_t rays_at_a_time = 1024;
-  const auto clear = [&] {
-    w.rays.clear();
-    w.pixels.clear();
-  };
-  const auto send = [&] {
-    const CheckContext context(&w, w.rays.size(), name_of_ray);
-    if (w.rays.size() > 0) trace(w);
-    clear();
-  };
-  if (!w.scratch) w.scratch = integrator_.make_scratch();
-  clear();
-  for (const Pixel2& p : pixels_in_order(tile)) {
-    int left = wanted[refining_.records->index(p.x, p.y)] - options_.spp;
-    while (left > 0 && !stop_.load(std::memory_order_relaxed)) {
-      const int count = std::min(left, int(rays_at_a_time - w.rays.size()));
-      add_rays(p, uint32_t(count), w);
-      left -= count;
-      if (w.rays.size() == rays_at_a_time) send();
-    }
-  }
-  send();
-}
-
-// How many of them the pixels of the region get, by what the first pass has seen.
-Rendering::FurtherRays Rendering::further_rays(double typical) const {
-  const PixelRecords& records = *refining_.records;
-  const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
-  const RefinementView view{film_, records, edges, typical};
-  FurtherRays wanted;
-  wanted.samples.assign(records.records.size(), options_.spp);
-  wanted.glances.assign(records.records.size(), 0);
-  const PixelRect& r = plan_.inner;
-  parallel_for(size_t(r.height()), options_.threads, [&](size_t row) {
-    const int y = r.y0 + int(row);
-    for (int x = r.x0; x < r.x1; ++x) {
-      const size_t i = records.index(x, y);
-      if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
-      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, options_.spp,
-                                         refining_.most.in_pixel, refining_.options);
-    }
-  });
-  constexpr int glances_in_mean = 1024;
-  for (const PixelRect& tile : plan_.tiles) {
-    keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
-    keep_in_bounds(tile, glances_in_mean, wanted.glances);
-  }
-  return wanted;
-}
-
-// Some pixels of a tile may get more than the mean, as long as others want less: those that want
-// most get as many as are left for each.
-void Rendering::keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const {
-  std::vector<int*> most_last;
-  for (const Pixel2& p : pixels_in_order(tile))
-    most_last.push_back(&wanted[refining_.records->index(p.x, p.y)]);
-  std::sort(most_last.begin(), most_last.end(), [](const int* a, const int* b) { return *a < *b; });
-  int64_t left = int64_t(most_last.size()) * mean;
-  for (size_t i = 0; i < most_last.size(); ++i) {
-    *most_last[i] = int(std::min<int64_t>(*most_last[i], left / int64_t(most_last.size() - i)));
-    left -= *most_last[i];
-  }
-}
-
-// Rays that look at what is known, where that varies within a pixel.
-void Rendering::glance(const std::vector<int>& wanted) {
-  parallel_for_slots(plan_.tiles.size(), options_.threads, [&](size_t t, size_t slot) {
-    if (stop_.load(std::memory_order_relaxed))
-      was_stopped_ = true;
-    else
-      glance(plan_.tiles[t], wanted, work_[slot]);
-  });
-}
-
-void Rendering::glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w) {
-  constexpr size_t rays_at_a_time = 1024;
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x676c'616e});  // not that of samples
-  if (!w.scratch) w.scratch = integrator_.make_scratch();
-  w.rays.clear();
-  w.pixels.clear();
-  const auto send = [&] {
-    const CheckContext context(&w, w.rays.size(), name_of_ray);
-    w.radiance.reset(w.rays.size());
-    w.radiance.known.assign(w.rays.size(), {});
-    integrator_.glance(w.rays, *w.scratch, w.radiance, w.counters);
-    for (size_t i = 0; i < w.rays.size(); ++i)
-      film_.add_glance(w.pixels[i].x, w.pixels[i].y, w.radiance, i,
-                       camera_.depth(w.radiance.position[i]));
-    w.rays.clear();
-    w.pixels.clear();
-  };
-  for (const Pixel2& p : pixels_in_order(tile)) {
-    const auto all = size_t(wanted[refining_.records->index(p.x, p.y)]);
-    for (size_t first = 0; first < all;) {
-      const size_t count = std::min(all - first, rays_at_a_time - w.rays.size());
-      add_viewing_rays(camera_, p, uint32_t(first), uint32_t(count), seed, w.rays);
-      w.pixels.resize(w.rays.size(), p);
-      if (w.rays.size() >= rays_at_a_time) send();
-      first += count;
-    }
-  }
-  send();
-}
-
-// Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,
-// which are no part of the picture and of its statistics.
-double Rendering::typical_luminance() {
-  if (refining_.typical) return *refining_.typical;
-  constexpr int most = 16;  // rays along each side
-  Work& w = work_[0];
-  if (!w.scratch) w.scratch = integrator_.make_scratch();
-  w.rays.clear();
-  w.pixels.clear();
-  const uint64_t seed = hash_of(options_.seed, uint64_t{0x7479'7069});  // not the picture's own
-  const int width = plan_.image.width(), height = plan_.image.height();
-  const int nx = std::min(most, width), ny = std::min(most, height);
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      w.pixels.push_back({i * width / nx, j * height / ny});
-      add_viewing_rays(camera_, w.pixels.back(), 0, 1, seed, w.rays);
-    }
-  const CheckContext context(&w, w.rays.size(), name_of_ray);
-  w.radiance.reset(w.rays.size());
-  Counters uncounted;
-  w.radiance.is_rough = true;
-  integrator_.radiance(w.rays, *w.scratch, w.radiance, uncounted);
-  w.radiance.is_rough = false;
-  std::vector<double> values;
-  for (size_t i = 0; i < w.rays.size(); ++i) {
-    const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
-    values.push_back(is_finite(l) ? double(luminance(l)) : 0);
-  }
-  std::sort(values.begin(), values.end());
-  values.resize(values.size() - values.size() / 20);
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
-  refining_.typical = mean;
-  return mean;
-}
-
-double Rendering::mean_luminance() const {
-  const PixelRect& w = plan_.window;
+double Rendering::mean_luminance(const PixelRect& w) const {
   double sum = 0;
   for (int y = w.y0; y < w.y1; ++y)
     for (int x = w.x0; x < w.x1; ++x) sum += film_.estimate(x, y).luminance;

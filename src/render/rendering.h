@@ -16,6 +16,7 @@
 #include "render/progress.h"
 #include "render/refinement.h"
 #include "render/tile.h"
+#include "render/tile_book.h"
 
 namespace troffer {
 
@@ -23,20 +24,29 @@ namespace troffer {
 // packets and short enough for the second-level cache.
 constexpr int samples_per_batch = 4;
 
+// Thirteen members: who takes part, what is made, and how far it is.
 class Rendering {
  public:
-  // All but camera and plan must outlive this.
+  // All but camera and plan must outlive this. Goes on from options.checkpoint where that has been
+  // read: InputError where it says what cannot be.
   Rendering(const PreparedScene& scene, const ViewingCamera& camera, const Integrator& integrator,
             const RenderOptions& options, TilePlan plan, const ProgressCallback& progress,
             const StopFlag& stop);
 
-  // False where a stop was requested.
-  bool run();
+  // For a deadline: what a pixel takes that gets no rays here.
+  void expect_gaps(double seconds_per_pixel);
+
+  // stopped, whoever asked for it; complete; or good_enough.
+  RenderEnd run();
+
+  Film& film() { return film_; }
 
   // Of the window.
   std::vector<Layer> layers() const;
   Counters counters() const;
   ViewingErrors viewing_errors() const;
+  double told_error() const;  // RenderStatistics
+  double share_done() const;
 
  private:
   // Memory of one thread.
@@ -45,7 +55,11 @@ class Rendering {
     RadianceBatch radiance;
     std::vector<Pixel2> pixels;  // of each ray
     std::unique_ptr<IntegratorScratch> scratch;
-    Counters counters;
+    Counters counters;  // of the tile under way
+  };
+  // By pixels of the region, row by row.
+  struct FurtherRays {
+    std::vector<int> samples, glances;  // in all
   };
   // What refinement knows; empty where pixels get no further rays.
   struct Refining {
@@ -53,34 +67,51 @@ class Rendering {
     RefinementOptions options;
     std::optional<PixelRecords> records;
     std::optional<double> typical;  // luminance
+    std::optional<FurtherRays> wanted;
     bool has_begun = false;
     bool can_glance = false;
   };
-  // By pixels of the region, row by row.
-  struct FurtherRays {
-    std::vector<int> samples, glances;  // in all
+  // How many steps of a tile (tile_book.h) are passes over all of the picture, looks at what is
+  // known, and further rays; in this order.
+  struct Steps {
+    uint32_t first = 0, glances = 0, further = 0;
+    uint32_t all() const { return first + glances + further; }
   };
   struct Progress {
     std::mutex mutex;
-    size_t tiles_done = 0, tiles_in_all = 0;
+    size_t tiles_done = 0;
+    std::atomic<bool> was_stopped = false;
+    size_t gaps = 0;  // pixels of the window without samples
+    double seconds_per_gap = 0;
   };
-  // Adds the viewing rays that a tile is to get.
-  using Fill = std::function<void(const PixelRect& tile, Work& work)>;
+  using Tiles = std::vector<size_t>;
+  // Does a step of a tile; false where it was stopped on the way.
+  using Act = std::function<bool(const PixelRect& tile, Work& work)>;
 
   static std::string name_of_ray(const void* work, size_t i);
-  void pass(const Fill& fill);
+  void step(uint32_t number, const Tiles& tiles, const Act& act);
+  bool is_good_enough(uint32_t step, const Tiles& later) const;
   void add_rays(const Pixel2& p, uint32_t count, Work& w) const;
   void trace(Work& w);
-  void refine();
-  void refine(const std::vector<int>& wanted);
-  void refine(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
+  bool trace_all(Work& w);
+  RenderEnd refine();
+  RenderEnd refine_by_passes();
+  RenderEnd refine_by_tiles();
+  bool refine(const PixelRect& tile, Work& w);
+  Tiles all_tiles() const;
+  Tiles noisiest_first() const;
   FurtherRays further_rays(double typical) const;
   void keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const;
-  void glance(const std::vector<int>& wanted);
-  void glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
+  bool glance(const PixelRect& tile, Work& w);
   double typical_luminance();  // looked at once
-  double mean_luminance() const;
-  void tell_progress(const PixelRect& tile);
+  double mean_luminance(const PixelRect& window) const;
+  void tell_progress(size_t tile, uint32_t step);
+  void save_tile(size_t tile, std::vector<uint8_t>& out) const;
+  void save();
+  void restore();
+  bool restore_tile(ByteReader in);
+  bool restore_wanted(ByteReader in);
+  bool is_as_expected(uint32_t steps, int x, int y) const;
 
   const PreparedScene& scene_;
   const ViewingCamera camera_;
@@ -90,10 +121,11 @@ class Rendering {
   Film film_;
   std::vector<Work> work_;  // per thread
   Refining refining_;
+  Steps steps_;
+  TileBook book_;
   const ProgressCallback& report_;
   Progress progress_;
   const StopFlag& stop_;
-  std::atomic<bool> was_stopped_ = false;
 };
 
 }  // namespace troffer

@@ -33,15 +33,55 @@ PixelRect wanted_window(const RenderOptions& o, int width, int height) {
   return w;
 }
 
-TilePlan plan_tiles(const PixelRect& image, const PixelRect& window, int side, bool has_whole_tiles,
-                    bool is_refined) {
-  TilePlan p{image, window, window, window, side, {}};
-  if (has_whole_tiles) {
-    p.region = whole_tiles(window, side, is_refined ? 1 : 0, image);
-    p.inner = whole_tiles(window, side, 0, image);
+PixelRect share_of(const PixelRect& asked, const TileRules& rules, int part, int parts) {
+  if (parts <= 1) return asked;
+  const int side = rules.side;
+  // Tiles count from here.
+  const int x = rules.has_whole_tiles ? asked.x0 / side * side : asked.x0,
+            y = rules.has_whole_tiles ? asked.y0 / side * side : asked.y0;
+  PixelRect tiles{0, 0, (asked.x1 - x + side - 1) / side, (asked.y1 - y + side - 1) / side};
+  const int64_t count = int64_t(tiles.width()) * tiles.height();
+  if (parts > count)
+    throw UsageError("--part: the picture has but " + std::to_string(count) + " tiles of " +
+                     std::to_string(side) + "x" + std::to_string(side) + " pixels to share out");
+  // Cut in two, across the longer side, until one share is left.
+  int64_t first = part - 1, left = parts;
+  while (left > 1) {
+    const bool is_wide = tiles.width() >= tiles.height();
+    const int64_t length = is_wide ? tiles.width() : tiles.height(),
+                  across = is_wide ? tiles.height() : tiles.width();
+    const int64_t cut =
+        std::clamp<int64_t>((length * (left / 2) * 2 + left) / (2 * left), 1, length - 1);
+    const int64_t before =
+        std::clamp<int64_t>(left / 2, std::max<int64_t>(1, left - (length - cut) * across),
+                            std::min(left - 1, cut * across));
+    const bool is_before = first < before;
+    (is_wide ? (is_before ? tiles.x1 : tiles.x0) : (is_before ? tiles.y1 : tiles.y0)) =
+        (is_wide ? tiles.x0 : tiles.y0) + int(cut);
+    first -= is_before ? 0 : before;
+    left = is_before ? before : left - before;
   }
-  p.tiles = tiles_of(p.region, side);
+  return {std::max(x + tiles.x0 * side, asked.x0), std::max(y + tiles.y0 * side, asked.y0),
+          std::min(x + tiles.x1 * side, asked.x1), std::min(y + tiles.y1 * side, asked.y1)};
+}
+
+TilePlan plan_tiles(const PixelRect& image, const PixelRect& asked, const PixelRect& window,
+                    const TileRules& rules) {
+  TilePlan p{image, asked, window, window, window, rules.side, {}};
+  if (rules.has_whole_tiles) {
+    p.region = whole_tiles(window, rules.side, rules.is_refined ? 1 : 0, image);
+    p.inner = whole_tiles(window, rules.side, 0, image);
+  } else if (rules.is_refined && rules.looks_at_all) {
+    p.region = asked;
+  }
+  p.tiles = tiles_of(p.region, rules.side);
   return p;
+}
+
+size_t common_pixels(const PixelRect& a, const PixelRect& b) {
+  const int width = std::min(a.x1, b.x1) - std::max(a.x0, b.x0),
+            height = std::min(a.y1, b.y1) - std::max(a.y0, b.y0);
+  return width > 0 && height > 0 ? size_t(width) * size_t(height) : 0;
 }
 
 Image part_of(const Image& image, const PixelRect& region, const PixelRect& window) {

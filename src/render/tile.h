@@ -1,6 +1,7 @@
 // Tiles of the picture and the viewing rays through them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,17 +27,35 @@ Image part_of(const Image& image, const PixelRect& region, const PixelRect& wind
 // Which pixels are rendered, and in which tiles.
 struct TilePlan {
   PixelRect image;   // the whole picture
-  PixelRect window;  // what is wanted of it
+  PixelRect asked;   // what is wanted of it, all shares together
+  PixelRect window;  // what is wanted here
   PixelRect region;  // what is rendered: the window, and what it takes for it to be as it should
   PixelRect inner;   // where refinement is decided: the window in whole tiles, or the window itself
   int side = 0;      // of tiles, pixels
   std::vector<PixelRect> tiles;  // of the region
 };
 
-// has_whole_tiles: tiles are those of the whole picture, with a ring of tiles around them where
-// neighbours decide about refinement, so that the pixels of a crop can be those of the picture.
-TilePlan plan_tiles(const PixelRect& image, const PixelRect& window, int side, bool has_whole_tiles,
-                    bool is_refined);
+struct TileRules {
+  int side = 0;
+  // Tiles are those of the whole picture, with a ring of tiles around them where neighbours decide
+  // about refinement, so that the pixels of a crop, or a share, can be those of the picture.
+  bool has_whole_tiles = false;
+  bool is_refined = false;
+  // Refinement looks at all that is asked for.
+  bool looks_at_all = false;
+};
+
+// The part-th of `parts` shares of what is asked for, both counted from 1: a rectangle of whole
+// tiles, all of them about as large. Together they are all of it, each pixel once. UsageError where
+// there are more shares than tiles.
+PixelRect share_of(const PixelRect& asked, const TileRules& rules, int part, int parts);
+
+// window: what is asked for, or a share of it.
+TilePlan plan_tiles(const PixelRect& image, const PixelRect& asked, const PixelRect& window,
+                    const TileRules& rules);
+
+// How many pixels two rectangles have in common.
+size_t common_pixels(const PixelRect& a, const PixelRect& b);
 
 struct Pixel2 {
   int x = 0, y = 0;

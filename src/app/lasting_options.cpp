@@ -1,0 +1,71 @@
+#include "app/lasting_options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+#include "app/commands.h"
+#include "base/error.h"
+#include "image/write_image.h"
+
+namespace troffer {
+
+namespace {
+
+// "3/8".
+void parse_part(const std::string& text, RenderOptions& options) {
+  constexpr int most = 1'000'000;
+  const char* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, options.part);
+  bool is_sound = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
+  if (is_sound) {
+    const auto second = std::from_chars(first.ptr + 1, end, options.parts);
+    is_sound = second.ec == std::errc() && second.ptr == end;
+  }
+  if (!is_sound || options.parts < 1 || options.parts > most || options.part < 1 ||
+      options.part > options.parts)
+    throw UsageError("--part: '" + text + "' is no share K/N with K from 1 to N");
+}
+
+}  // namespace
+
+void add_lasting_options(CLI::App& app, LastingOptions& o) {
+  const CLI::Range seconds(0.001, 1e9);
+  app.add_option("--time-limit", o.time_limit,
+                 "End after so many seconds, with the picture as far as it got")
+      ->check(seconds);
+  app.add_option("--error-limit", o.error_limit,
+                 "End when the picture's told error, relative to its light, is at most this")
+      ->check(CLI::Range(1e-6, 10.0));
+  app.add_option("--checkpoint", o.checkpoint,
+                 "Keep in this file what is done, every minute and when stopped");
+  app.add_option("--checkpoint-interval", o.checkpoint_interval, "Seconds between these")
+      ->check(seconds)
+      ->capture_default_str();
+  app.add_flag("--resume", o.is_resumed, "Go on from --checkpoint, where there is one");
+  app.add_option("--part", o.part,
+                 "Only the K-th of N shares of the picture, K/N; troffer merge joins them");
+}
+
+void apply_lasting_options(RenderCommand& c, bool has_spp) {
+  const LastingOptions& l = c.lasting;
+  for (const double v : {l.time_limit, l.error_limit, l.checkpoint_interval})
+    if (!std::isfinite(v)) throw UsageError("limits must be numbers");
+  if (l.is_resumed && l.checkpoint.empty()) throw UsageError("--resume needs --checkpoint FILE");
+  if (!l.part.empty()) {
+    parse_part(l.part, c.options);
+    if (l.error_limit > 0)
+      throw UsageError("--error-limit is of the whole picture: it does not go with --part");
+    if (c.has_preview) throw UsageError("--preview does not go with --part");
+    for (const std::string& o : c.outputs)
+      if (image_format(o) != ImageFormat::exr)
+        throw UsageError("--part writes .exr only, which troffer merge joins to any format");
+  }
+  c.options.error_limit = l.error_limit;
+  // As many as it takes, where refinement does not see to that.
+  constexpr int most_rays = 1 << 16;
+  if (l.error_limit > 0 && !has_spp && parse_method(c.method).row().refinement == 1)
+    c.options.spp = most_rays;
+}
+
+}  // namespace troffer

@@ -1,0 +1,98 @@
+#include "app/lasting_run.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "app/part_note.h"
+#include "app/printable.h"
+#include "app/solution_file.h"
+#include "base/error.h"
+#include "image/read_image.h"
+#include "render/camera.h"
+
+namespace troffer {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What came from the file of --solution, as it is now; empty where there is none.
+std::vector<uint8_t> bytes_of_solution(const std::string& path) {
+  const SolutionKind kind = kind_of_solution(path);
+  if (kind == SolutionKind::none || kind == SolutionKind::missing) return {};
+  if (!fs::is_regular_file(path))
+    throw UsageError("--checkpoint and --part read --solution twice: it must be a plain file");
+  return read_file_bytes(path);
+}
+
+}  // namespace
+
+void reserve_checkpoint(const RenderCommand& c, std::vector<OutputReservation>& reserved) {
+  const std::string& path = c.lasting.checkpoint;
+  if (c.options.parts > 1 && needs_cells(c.options.method, c.options.indirect) &&
+      kind_of_solution(c.solution) == SolutionKind::missing)
+    throw UsageError("--part goes on from the cells of --solution, but makes no such file: " +
+                     c.solution + " (troffer radiosity --cells makes one)");
+  if (path.empty()) return;
+  if (output_target(path).kind != OutputTarget::Kind::file)
+    throw UsageError("--checkpoint must be a plain file: " + path);
+  if (!c.lasting.is_resumed && fs::exists(path))
+    throw InputError(path, 0, 0, "is there already: --resume goes on from it, or remove it");
+  reserved.emplace_back(path);
+  remove_abandoned_files(path);  // whoever was killed while writing one left it half-written
+}
+
+LastingRun::LastingRun(RenderCommand& command, Clock::time_point start, const StopFlag& stop)
+    : command_(command), stop_(stop) {
+  if (!(command.lasting.time_limit > 0)) return;
+  const std::chrono::duration<double> limit(command.lasting.time_limit);
+  deadline_.emplace(stop, start + std::chrono::duration_cast<Clock::duration>(limit));
+  command.options.deadline = &*deadline_;
+}
+
+void LastingRun::begin(const Scene& scene, const Camera& camera) {
+  RenderOptions& o = command_.options;
+  const LastingOptions& l = command_.lasting;
+  if (o.parts == 1 && l.checkpoint.empty()) return;
+  key_ = picture_key(TROFFER_VERSION, scene, camera, o, bytes_of_solution(command_.solution));
+  if (l.checkpoint.empty()) return;
+  const auto warn = [](const std::string& what) {
+    fmt::print(stderr, "warning: {}: what is done is not kept\n", printable(what));
+  };
+  checkpoint_ = std::make_unique<Checkpoint>(l.checkpoint, key_, PictureShare{o.part, o.parts},
+                                             l.checkpoint_interval, warn);
+  o.checkpoint = checkpoint_.get();
+  if (!l.is_resumed) return;
+  if (fs::exists(l.checkpoint))
+    checkpoint_->read();
+  else if (!command_.is_quiet)
+    fmt::print(stderr, "there is no {} yet: the picture is begun\n", printable(l.checkpoint));
+}
+
+std::string LastingRun::note(const RenderResult& result, const Camera& camera) const {
+  const RenderOptions& o = command_.options;
+  if (o.parts == 1) return {};
+  const ImageSize size = image_size(camera, o.width, o.height);
+  const std::array<int, 4> all{0, 0, size.width, size.height};
+  return text_of({{o.part, o.parts},
+                  result.is_complete,
+                  o.has_crop ? o.crop : all,
+                  size.width,
+                  size.height,
+                  o.has_crop,
+                  key_});
+}
+
+void LastingRun::finish(const RenderResult& result) const {
+  if (!checkpoint_) return;
+  if (!result.is_complete) {
+    if (!checkpoint_->failure().empty()) throw EnvironmentError(checkpoint_->failure());
+    return;
+  }
+  std::error_code ignored;  // it does no harm
+  fs::remove(output_target(command_.lasting.checkpoint).path, ignored);
+}
+
+}  // namespace troffer

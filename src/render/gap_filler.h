@@ -1,0 +1,50 @@
+// A picture that ran out of time is whole all the same: pixels that no ray has gone through yet get
+// paths, of the light that the picture is to show. Unbiased, and noisy.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/deadline.h"
+#include "integrate/integrator.h"
+#include "render/camera.h"
+#include "render/film.h"
+#include "render/tile.h"
+
+namespace troffer {
+
+// Path tracing of the light that is asked for: `--indirect none` and direct methods, direct light.
+std::unique_ptr<Integrator> paths_for(const PreparedScene& scene, const RenderOptions& options);
+
+class GapFiller {
+ public:
+  // All must outlive this.
+  GapFiller(const PreparedScene& scene, const ViewingCamera& camera, const RenderOptions& options);
+
+  // Seconds that a pixel takes at least, on all threads: measured here, by some rays through the
+  // window.
+  double seconds_per_pixel(const PixelRect& window);
+
+  // Fills pixels of the window that have no samples, and tells how many they were: with 4 each, so
+  // that they tell their error, and more as time is left. Only a set `parent` of the deadline stops
+  // it before that.
+  size_t fill(Film& film, const PixelRect& window, const Deadline& deadline);
+
+ private:
+  struct Work {
+    std::unique_ptr<IntegratorScratch> scratch;
+    ViewingRays rays;
+    RadianceBatch radiance;
+    Counters counters;
+  };
+  void trace(const std::vector<Pixel2>& pixels, uint32_t first_sample, Film* film,
+             const StopFlag& stop);
+
+  const ViewingCamera& camera_;
+  const RenderOptions& options_;
+  std::unique_ptr<Integrator> paths_;
+  std::vector<Work> work_;  // per thread
+};
+
+}  // namespace troffer

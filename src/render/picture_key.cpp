@@ -1,0 +1,111 @@
+#include "render/picture_key.h"
+
+#include <bit>
+#include <type_traits>
+
+#include "base/own_file.h"
+#include "base/random.h"
+#include "radiosity/solution.h"
+
+namespace troffer {
+
+namespace {
+
+class Hasher {
+ public:
+  template <class T>
+  void add(const T& v) {
+    if constexpr (std::is_same_v<T, float>) {
+      add_word(std::bit_cast<uint32_t>(v));
+    } else if constexpr (std::is_same_v<T, double>) {
+      add_word(std::bit_cast<uint64_t>(v));
+    } else {
+      add_word(uint64_t(v));
+    }
+  }
+  void add(const Vec3& v) { add_all(v.x, v.y, v.z); }
+  void add(const Rgb& c) { add_all(c.r, c.g, c.b); }
+  void add(const std::string& text) {
+    add(text.size());
+    for (const char c : text) add(static_cast<unsigned char>(c));
+  }
+  template <class... T>
+  void add_all(const T&... v) {
+    (add(v), ...);
+  }
+  uint64_t value() const { return hash_; }
+
+ private:
+  void add_word(uint64_t v) { hash_ = hash_combine(hash_, v); }
+  uint64_t hash_ = 1;
+};
+
+// Beside what radiosity sees of a scene, what pictures show.
+uint64_t hash_of_scene(const Scene& scene) {
+  Hasher h;
+  h.add(radiosity_scene_key(scene));
+  h.add_all(scene.origin.x, scene.origin.y, scene.origin.z, scene.is_photometric);
+  for (const Mesh& m : scene.meshes) {
+    h.add(m.normals.size());
+    for (const Vec3& n : m.normals) h.add(n);
+  }
+  for (const EnvironmentMap& e : scene.environments) {
+    h.add_all(int(e.projection), e.width, e.height);
+    for (const Rgb& c : e.texels) h.add(c);
+  }
+  return h.value();
+}
+
+void add_camera(Hasher& h, const Camera& c) {
+  h.add_all(int(c.kind), c.position, c.right, c.up, c.forward, c.half_extent, c.fov_is_vertical,
+            c.has_screen_window, c.lens_radius, c.focal_distance, c.width, c.height, c.aspect);
+  for (const float v : c.screen_window) h.add(v);
+}
+
+void add_trees(Hasher& h, const TreeSamplingOptions& s) {
+  const BintreeOptions& t = s.tree;
+  h.add_all(t.initial_rays, t.allowed_variance, t.level_difference, t.mean_change,
+            t.mean_change_iterations, t.enough_rays, t.most_rays, t.renews_jitter, s.probe_rays,
+            s.has_coherence, s.uses_ratio);
+}
+
+void add_selection(Hasher& h, const SelectionOptions& s) {
+  const SelectionThresholds& t = s.thresholds;
+  h.add_all(s.is_enabled, t.occluded_below, t.visible_above, t.major_share, t.shadow_edge,
+            t.probe_share, t.least_share, s.uses_patches, s.is_restricted, s.treats_all_lights,
+            s.most_patch_pieces, s.nearest_patch, s.only.size());
+  for (const uint32_t light : s.only) h.add(light);
+}
+
+void add_radiosity(Hasher& h, const RadiosityOptions& r) {
+  const MeshingOptions& m = r.meshing;
+  h.add_all(m.element_size, m.patch_size, m.join_angle_deg, m.max_elements, m.max_sheets,
+            m.prune_hidden_sides, r.stored_per_point, r.unshot_fraction, r.max_shots,
+            r.max_million_rays, r.max_rays, r.tolerance, r.light_rays, r.light_share, r.seed);
+}
+
+uint64_t hash_of_settings(const Camera& camera, const RenderOptions& o) {
+  Hasher h;
+  add_camera(h, camera);
+  h.add(std::string(o.method.row().name));
+  h.add_all(needs_radiosity(o.method, o.indirect), needs_cells(o.method, o.indirect),
+            o.indirect == Indirect::none, o.spp, most_viewing_rays(o).in_pixel, o.shadow_rays,
+            o.error, o.depth, o.width, o.height, o.has_crop, o.seed, o.aovs.size());
+  for (const int edge : o.crop) h.add(edge);
+  for (const Aov a : o.aovs) h.add(int(a));
+  add_trees(h, o.kj92.sampling);
+  add_selection(h, o.kj92.selection);
+  add_radiosity(h, o.kj92.radiosity);
+  return h.value();
+}
+
+}  // namespace
+
+PictureKey picture_key(const std::string& program, const Scene& scene, const Camera& camera,
+                       const RenderOptions& options, const std::vector<uint8_t>& preparation) {
+  constexpr size_t longest_version = 15;
+  return {program.substr(0, longest_version), hash_of_settings(camera, options),
+          hash_of_scene(scene), preparation.empty() ? 0 : hash_of_parts({}, preparation)};
+}
+
+}  // namespace troffer

@@ -1,0 +1,218 @@
+// Refinement of a rendering under way (rendering.h).
+#include <algorithm>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "render/edge_map.h"
+#include "render/rendering.h"
+
+namespace troffer {
+
+namespace {
+
+// With RenderOptions::error_limit it is looked at after each of so many parts of the further rays.
+constexpr size_t looks = 32;
+
+}  // namespace
+
+// Further rays, as many as the first pass has called for, in passes that fit a batch.
+RenderEnd Rendering::refine() {
+  const bool is_same_in_crops = options_.method.row().is_same_in_crops;
+  if (!refining_.wanted)
+    refining_.wanted =
+        further_rays(is_same_in_crops ? typical_luminance() : mean_luminance(plan_.asked));
+  refining_.has_begun = true;
+  return refining_.can_glance ? refine_by_tiles() : refine_by_passes();
+}
+
+RenderEnd Rendering::refine_by_passes() {
+  const PixelRecords& records = *refining_.records;
+  for (uint32_t pass = 0; pass < steps_.further; ++pass) {
+    const int first = options_.spp + int(pass) * samples_per_batch;
+    const uint32_t number = steps_.first + pass;
+    step(number, all_tiles(), [&](const PixelRect& tile, Work& w) {
+      for (const Pixel2& p : pixels_in_order(tile)) {
+        const int count =
+            std::min(samples_per_batch, refining_.wanted->samples[records.index(p.x, p.y)] - first);
+        if (count <= 0) continue;
+        add_rays(p, uint32_t(count), w);
+        w.rays.neighbours.resize(w.rays.size(), records.around(p.x, p.y));
+      }
+      return trace_all(w);
+    });
+    if (progress_.was_stopped) return RenderEnd::stopped;
+    if (pass + 1 < steps_.further && is_good_enough(number, all_tiles()))
+      return RenderEnd::good_enough;
+  }
+  return RenderEnd::complete;
+}
+
+// All further rays of a tile at once: few pixels may get many.
+RenderEnd Rendering::refine_by_tiles() {
+  const uint32_t glances = steps_.first, further = glances + 1;
+  const auto glance_at = [&](const PixelRect& tile, Work& w) { return glance(tile, w); };
+  const auto refine_tile = [&](const PixelRect& tile, Work& w) { return refine(tile, w); };
+  step(glances, all_tiles(), glance_at);
+  const bool is_limited = options_.deadline != nullptr || options_.error_limit > 0;
+  Tiles left = is_limited ? noisiest_first() : all_tiles();
+  const size_t parts = options_.error_limit > 0 ? std::min(looks, left.size()) : 1;
+  const size_t in_all = left.size();
+  for (size_t part = 0; part < parts; ++part) {
+    if (progress_.was_stopped) return RenderEnd::stopped;
+    if (is_good_enough(glances, left)) return RenderEnd::good_enough;
+    const auto end = std::ptrdiff_t(in_all * (part + 1) / parts - (in_all - left.size()));
+    step(further, Tiles(left.begin(), left.begin() + end), refine_tile);
+    left.erase(left.begin(), left.begin() + end);
+  }
+  return progress_.was_stopped ? RenderEnd::stopped : RenderEnd::complete;
+}
+
+// Where time may be short it goes to tiles whose pixels want most, each by itself.
+Rendering::Tiles Rendering::noisiest_first() const {
+  std::vector<double> wanted;
+  for (const PixelRect& tile : plan_.tiles) {
+    double sum = 0;
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x)
+        sum += refining_.wanted->samples[refining_.records->index(x, y)];
+    wanted.push_back(sum / (double(tile.width()) * tile.height()));
+  }
+  Tiles tiles = all_tiles();
+  std::stable_sort(tiles.begin(), tiles.end(),
+                   [&](size_t a, size_t b) { return wanted[a] > wanted[b]; });
+  return tiles;
+}
+
+// False where it was stopped before all of the tile's rays were sent.
+bool Rendering::refine(const PixelRect& tile, Work& w) {
+  constexpr size_t rays_at_a_time = 1024;
+  const auto send = [&] {
+    trace_all(w);
+    w.rays.clear();
+    w.pixels.clear();
+  };
+  for (const Pixel2& p : pixels_in_order(tile)) {
+    int left = refining_.wanted->samples[refining_.records->index(p.x, p.y)] - options_.spp;
+    while (left > 0) {
+      if (stop_.load(std::memory_order_relaxed)) {
+        send();
+        return false;
+      }
+      const int count = std::min(left, int(rays_at_a_time - w.rays.size()));
+      add_rays(p, uint32_t(count), w);
+      left -= count;
+      if (w.rays.size() == rays_at_a_time) send();
+    }
+  }
+  send();
+  return true;
+}
+
+// How many of them the pixels of the region get, by what the first pass has seen.
+Rendering::FurtherRays Rendering::further_rays(double typical) const {
+  const PixelRecords& records = *refining_.records;
+  const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
+  const RefinementView view{film_, records, edges, typical};
+  FurtherRays wanted;
+  wanted.samples.assign(records.records.size(), options_.spp);
+  wanted.glances.assign(records.records.size(), 0);
+  const PixelRect& r = plan_.inner;
+  parallel_for(size_t(r.height()), options_.threads, [&](size_t row) {
+    const int y = r.y0 + int(row);
+    for (int x = r.x0; x < r.x1; ++x) {
+      const size_t i = records.index(x, y);
+      if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
+      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, options_.spp,
+                                         refining_.most.in_pixel, refining_.options);
+    }
+  });
+  constexpr int glances_in_mean = 1024;
+  for (const PixelRect& tile : plan_.tiles) {
+    keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
+    keep_in_bounds(tile, glances_in_mean, wanted.glances);
+  }
+  return wanted;
+}
+
+// Some pixels of a tile may get more than the mean, as long as others want less: those that want
+// most get as many as are left for each.
+void Rendering::keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const {
+  std::vector<int*> most_last;
+  for (const Pixel2& p : pixels_in_order(tile))
+    most_last.push_back(&wanted[refining_.records->index(p.x, p.y)]);
+  std::sort(most_last.begin(), most_last.end(), [](const int* a, const int* b) { return *a < *b; });
+  int64_t left = int64_t(most_last.size()) * mean;
+  for (size_t i = 0; i < most_last.size(); ++i) {
+    *most_last[i] = int(std::min<int64_t>(*most_last[i], left / int64_t(most_last.size() - i)));
+    left -= *most_last[i];
+  }
+}
+
+// Rays that look at what is known, where that varies within a pixel.
+bool Rendering::glance(const PixelRect& tile, Work& w) {
+  constexpr size_t rays_at_a_time = 1024;
+  const uint64_t seed = hash_of(options_.seed, uint64_t{0x676c'616e});  // not that of samples
+  const auto send = [&] {
+    const CheckContext context(&w, w.rays.size(), name_of_ray);
+    w.radiance.reset(w.rays.size());
+    w.radiance.known.assign(w.rays.size(), {});
+    integrator_.glance(w.rays, *w.scratch, w.radiance, w.counters);
+    for (size_t i = 0; i < w.rays.size(); ++i)
+      film_.add_glance(w.pixels[i].x, w.pixels[i].y, w.radiance, i,
+                       camera_.depth(w.radiance.position[i]));
+    w.rays.clear();
+    w.pixels.clear();
+  };
+  for (const Pixel2& p : pixels_in_order(tile)) {
+    const auto all = size_t(refining_.wanted->glances[refining_.records->index(p.x, p.y)]);
+    for (size_t first = 0; first < all;) {
+      const size_t count = std::min(all - first, rays_at_a_time - w.rays.size());
+      add_viewing_rays(camera_, p, uint32_t(first), uint32_t(count), seed, w.rays);
+      w.pixels.resize(w.rays.size(), p);
+      if (w.rays.size() >= rays_at_a_time) send();
+      first += count;
+    }
+  }
+  send();
+  return true;
+}
+
+// Mean luminance of the whole picture but its brightest twentieth (what shines), from few rays,
+// which are no part of the picture and of its statistics.
+double Rendering::typical_luminance() {
+  if (refining_.typical) return *refining_.typical;
+  constexpr int most = 16;  // rays along each side
+  Work& w = work_[0];
+  if (!w.scratch) w.scratch = integrator_.make_scratch();
+  w.rays.clear();
+  w.pixels.clear();
+  const uint64_t seed = hash_of(options_.seed, uint64_t{0x7479'7069});  // not the picture's own
+  const int width = plan_.image.width(), height = plan_.image.height();
+  const int nx = std::min(most, width), ny = std::min(most, height);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      w.pixels.push_back({i * width / nx, j * height / ny});
+      add_viewing_rays(camera_, w.pixels.back(), 0, 1, seed, w.rays);
+    }
+  // What was gathered for pixels is known within the window alone: to crops as much as to all.
+  w.rays.pixels.clear();
+  const CheckContext context(&w, w.rays.size(), name_of_ray);
+  w.radiance.reset(w.rays.size());
+  Counters uncounted;
+  w.radiance.is_rough = true;
+  integrator_.radiance(w.rays, *w.scratch, w.radiance, uncounted);
+  w.radiance.is_rough = false;
+  std::vector<double> values;
+  for (size_t i = 0; i < w.rays.size(); ++i) {
+    const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
+    values.push_back(is_finite(l) ? double(luminance(l)) : 0);
+  }
+  std::sort(values.begin(), values.end());
+  values.resize(values.size() - values.size() / 20);
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+  refining_.typical = mean;
+  return mean;
+}
+
+}  // namespace troffer

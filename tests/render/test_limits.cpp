@@ -1,0 +1,144 @@
+// Renderings that end for time, or because they are good enough.
+#include <doctest/doctest.h>
+
+#include "base/deadline.h"
+#include "render/checkpoint.h"
+#include "render/pictures.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+RenderOptions options_for(Method method) {
+  RenderOptions o;
+  o.method = method;
+  o.width = 48;
+  o.height = 36;
+  o.aovs = {Aov::error, Aov::depth};
+  o.kj92.radiosity.meshing.element_size = 0.4f;
+  o.kj92.radiosity.meshing.patch_size = 1.2f;
+  o.kj92.radiosity.unshot_fraction = 0.05f;
+  return o;
+}
+
+size_t black_pixels(const Image& image) {
+  size_t n = 0;
+  for (const Rgb& p : image.pixels) n += p.is_black() ? 1 : 0;
+  return n;
+}
+
+// Over the picture: root of the mean square of what the layer `error` tells.
+double rms_told(const RenderResult& r) {
+  double sum = 0;
+  for (const Rgb& p : r.layers[1].image.pixels) sum += double(sqr(p.r));
+  return std::sqrt(sum / double(r.layers[1].image.pixels.size()));
+}
+
+}  // namespace
+
+TEST_CASE("a picture without any time is whole, right in the mean, and says how far it is off") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions right = options_for(Method::path);
+  right.spp = 512;
+  const RenderResult reference = render_now(scene, mixed_room_camera(), right);
+  for (const Method method : {Method::path, Method::certified, Method::kj92}) {
+    CAPTURE(std::string(method.row().name));
+    RenderOptions o = options_for(method);
+    o.spp = 1 << 16;
+    o.max_spp = 1 << 16;
+    const StopFlag stop = false;
+    Deadline deadline(stop, Deadline::Clock::now());
+    o.deadline = &deadline;
+    const RenderResult r = render(scene, mixed_room_camera(), o, {}, deadline.flag());
+    CHECK(r.end == RenderEnd::out_of_time);
+    CHECK(!r.is_complete);
+    CHECK(r.statistics.gaps_filled == 48 * 36);
+    CHECK(black_pixels(r.layers[0].image) < 48 * 36 / 50);
+    CHECK(mean(r.layers[0].image) == doctest::Approx(mean(reference.layers[0].image)).epsilon(0.1));
+    double sum = 0;
+    for (size_t i = 0; i < 48 * 36; ++i)
+      sum += double(sqr(luminance(r.layers[0].image.pixels[i]) -
+                        luminance(reference.layers[0].image.pixels[i])));
+    const double made = std::sqrt(sum / (48 * 36));
+    CHECK(rms_told(r) > 0.7 * made);
+    CHECK(rms_told(r) < 2 * made);
+    for (size_t i = 0; i < 48 * 36; i += 97)
+      CHECK(r.layers[2].image.pixels[i].r ==
+            doctest::Approx(reference.layers[2].image.pixels[i].r).epsilon(0.3));
+  }
+}
+
+TEST_CASE("a time limit that is not reached changes nothing; a stop is no time limit") {
+  const PreparedScene scene(mixed_room());
+  for (const Method method : {Method::fixed, Method::certified}) {
+    RenderOptions o = options_for(method);
+    o.error = 0.05;
+    const RenderResult plain = render_now(scene, mixed_room_camera(), o);
+    StopFlag stop = false;
+    Deadline deadline(stop, Deadline::Clock::now() + std::chrono::hours(100));
+    o.deadline = &deadline;
+    const RenderResult r = render(scene, mixed_room_camera(), o, {}, deadline.flag());
+    CHECK(r.end == RenderEnd::complete);
+    CHECK(is_identical(r.layers, plain.layers));
+    stop = true;
+    while (!deadline.flag().load()) std::this_thread::yield();
+    CHECK(render(scene, mixed_room_camera(), o, {}, deadline.flag()).end == RenderEnd::stopped);
+  }
+}
+
+TEST_CASE("a part-way picture keeps what it has: the rest alone is filled") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions o = options_for(Method::fixed);
+  o.threads = 1;
+  const RenderResult plain = render_now(scene, mixed_room_camera(), o);
+  const StopFlag stop = false;
+  Deadline deadline(stop, Deadline::Clock::now() + std::chrono::hours(100));
+  o.deadline = &deadline;
+  // Time is up, all of a sudden, half-way.
+  const ProgressCallback progress = [&](double share) {
+    if (share < 0.5) return;
+    deadline.keep_back(1e9);
+    while (!deadline.flag().load()) std::this_thread::yield();
+  };
+  const RenderResult r = render(scene, mixed_room_camera(), o, progress, deadline.flag());
+  CHECK(r.end == RenderEnd::out_of_time);
+  CHECK(r.statistics.share_done >= 0.5);
+  CHECK(r.statistics.share_done < 0.7);
+  size_t same = 0;
+  for (size_t i = 0; i < 48 * 36; ++i)
+    same += r.layers[0].image.pixels[i] == plain.layers[0].image.pixels[i] ? 1 : 0;
+  CHECK(r.statistics.gaps_filled > 0);
+  CHECK(same >= 48 * 36 - r.statistics.gaps_filled);
+  CHECK(black_pixels(r.layers[0].image) < 48 * 36 / 20);
+}
+
+TEST_CASE("an error limit ends the work when the picture tells no more, the same for any threads") {
+  const PreparedScene scene(mixed_room());
+  for (const Method method : {Method::path, Method::fixed, Method::certified}) {
+    CAPTURE(std::string(method.row().name));
+    RenderOptions o = options_for(method);
+    o.spp = method == Method::certified ? 4 : 1024;
+    const RenderResult first = [&] {
+      RenderOptions few = o;
+      few.spp = few.max_spp = 4;
+      return render_now(scene, mixed_room_camera(), few);
+    }();
+    o.error_limit = method == Method::certified ? 0.9 * first.statistics.told_error
+                                                : 0.25 * first.statistics.told_error;
+    o.threads = 1;
+    const RenderResult r = render_now(scene, mixed_room_camera(), o);
+    CHECK(r.end == RenderEnd::good_enough);
+    CHECK(r.is_complete);
+    CHECK(r.statistics.told_error <= o.error_limit);
+    CHECK(r.statistics.told_error > 0.3 * o.error_limit);
+    CHECK(rms_told(r) > 0);
+    RenderOptions all = o;
+    all.error_limit = 0;
+    if (method == Method::certified)
+      CHECK(render_now(scene, mixed_room_camera(), all).statistics.counters.viewing_rays >
+            r.statistics.counters.viewing_rays);
+    o.threads = 3;
+    CHECK(is_identical(r.layers, render_now(scene, mixed_room_camera(), o).layers));
+  }
+}
