@@ -62,10 +62,14 @@ struct Labels {
   std::string description;
 };
 
+// LM-63-2002, -02, -2019, -19; not -1995.
 bool has_before_2002(std::string_view first_line) {
-  for (const char* edition : {"LM-63-2002", "LM-63-02", "LM-63-19", "LM-63-2019"})
-    if (first_line.find(edition) != std::string_view::npos) return false;
-  return true;
+  const size_t at = first_line.find("LM-63-");
+  if (at == first_line.npos) return true;
+  std::string_view year = first_line.substr(at + 6, 4);
+  year = year.substr(0, year.find_first_not_of("0123456789"));
+  const bool is_short = year.size() == 2 && year < "86";
+  return !is_short && !(year.size() == 4 && year >= "2002");
 }
 
 // Up to the line TILT=, whose value is returned; what stands before it is text for people.
