@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Rooms lit by the sky, written as pbrt-v4 files (metres, z up): rooms.py FOLDER"""
+import array
 import math
 import pathlib
 import random
@@ -103,9 +104,26 @@ SCENES = {'window': lambda: room(window=(1, 3, .9, 2.1)), 'blinds': blinds,
           'skylight': lambda: room(skylight=(2, 3.2, 1.2, 2.6)), 'atrium': atrium, 'tree': tree}
 
 
+def image():
+    """Surroundings as a PFM of 256 x 128: a sun of a few texels in the south-east, 35 degrees high."""
+    values = array.array('f')
+    for row in range(128):
+        altitude = 180 * (row + .5) / 128 - 90  # the lowest row comes first
+        for column in range(256):
+            azimuth = 360 * (column + .5) / 256 - 180  # from the east
+            if math.hypot(altitude - 35, azimuth - 30) < 2:
+                values.extend((60000, 54000, 45000))
+            elif altitude > 0:
+                values.extend((25 + .2 * (90 - altitude), 35, 60))
+            else:
+                values.extend((12, 10, 7))
+    return b'PF\n256 128\n-1.0\n' + values.tobytes()
+
+
 def write(folder):
     for name, make in SCENES.items():
         (pathlib.Path(folder) / f'{name}.pbrt').write_text(make())
+    (pathlib.Path(folder) / 'image.pfm').write_bytes(image())
 
 
 if __name__ == '__main__':

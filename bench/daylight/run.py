@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Error against processor time of the sky's direct light: run.py TROFFER [--lights "ARGS" ...]
+image.pfm in ARGS is an image of the surroundings that is written beside the rooms. SIZE=WxH in the
+environment: of the pictures, for a quick look.
 
 Renders the rooms of rooms.py by the default and by `fixed`, each with two seeds, and prints as a
 table: processor seconds of a picture, its error, and how many times longer `fixed` would take for
@@ -12,12 +14,17 @@ since 4 leave edges an error that no shadow rays take away (errors fall with the
 import array
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
 import rooms
+
+
+SIZE = ['--size', os.environ['SIZE']] if 'SIZE' in os.environ else []
+LIGHTS = ['--sky overcast', '--sky clear --sun 60,35', '--environment image.pfm']
 
 
 def luminances(path):
@@ -36,7 +43,7 @@ def measure(troffer, scene, options, folder):
     for seed in ('1', '2'):
         out, stats = folder / f'{seed}.pfm', folder / 'stats.json'
         subprocess.run([troffer, 'render', scene, '--quiet', '--indirect', 'none', '--seed', seed,
-                        '-o', out, '--stats', stats, *options], check=True)
+                        '-o', out, '--stats', stats, *SIZE, *options], check=True, cwd=folder)
         pictures.append(luminances(out))
         seconds += json.loads(stats.read_text())['seconds']['render_cpu'] / 2
     a, b = pictures
@@ -49,7 +56,7 @@ def measure(troffer, scene, options, folder):
 
 
 def main():
-    troffer, lights = sys.argv[1], sys.argv[3:] or ['--sky overcast', '--sky clear --sun 60,35']
+    troffer, lights = pathlib.Path(sys.argv[1]).resolve(), sys.argv[3:] or LIGHTS
     print('| scene | light | default, s | error | `fixed` 64, s | error | `fixed` 256, s | error '
           '| `fixed` 16 × 16, s | error | times longer: median | all |\n' + '|---' * 12 + '|')
     with tempfile.TemporaryDirectory() as name:
@@ -62,8 +69,9 @@ def main():
                 few, many = (measure(troffer, path,
                                      [*light.split(), '--method', 'fixed', '--shadow-rays', n], folder)
                              for n in ('64', '256'))
-                power = math.log(many[0] / few[0]) / math.log(few[2] / many[2])
-                needed = many[0] * (many[2] / ours[2]) ** power
+                # No law where more rays did not help.
+                gain = math.log(few[2] / many[2]) if many[2] < .9 * few[2] else math.nan
+                needed = many[0] * (many[2] / ours[2]) ** (math.log(many[0] / few[0]) / gain)
                 even = measure(troffer, path, [*light.split(), '--method', 'fixed', '--spp', '16',
                                                '--shadow-rays', '16'], folder)
                 cells = [f'{s:.2f} | {e:.3f} / {b:.4f}' for s, e, b in (ours, few, many, even)]

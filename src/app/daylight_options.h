@@ -1,5 +1,5 @@
 // Options that bring light from beyond a scene: --sky, --sun, --at, --turbidity, --weather,
-// --north, --ground, --environment.
+// --north, --ground, --environment, --portal.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct DaylightOptions {
   std::string sky, sun, at;
   std::string weather, date;  // app/weather.h
   double light_radius = 0;    // m; 0: points stay points
-  std::string environment;
+  std::string environment, portal;
   std::string up;  // x,y,z; empty: guessed
   double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;
   double turbidity = 0;  // Linke's; 0: what is typical

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -21,27 +22,40 @@ namespace {
 
 constexpr double most_scale = 1e24;  // by which intensities can be multiplied to have a flux
 
-// Twice the least angle from the nadir at which the mean over both directions of the plane at
-// `turn` falls under a share of the largest intensity.
+// By how much intensities may add up to something else than the file says of them.
+constexpr double lumens_tolerance = 0.05;
+
+// In the plane at `turn`, the angle between the outermost directions on both sides of the beam in
+// which the intensity reaches a share of the largest one; about the zenith where that is upwards.
 double full_angle_deg(const LightWeb& web, double share, double turn) {
-  const float largest = largest_intensity(web);
   constexpr int steps = 1800;
-  for (int i = 0; i <= steps; ++i) {
-    const double height = pi * i / steps;
-    float sum = 0;
-    for (const double side : {turn, turn + pi})
-      sum += intensity(web, Vec3(Vec3d{std::sin(height) * std::cos(side),
-                                       std::sin(height) * std::sin(side), std::cos(height)}));
-    if (double(sum) / 2 < share * double(largest)) return 2 * deg_from_rad(height);
-  }
-  return 360;
+  const auto at = [&](double height, double side) {
+    return double(intensity(web, Vec3(Vec3d{std::sin(height) * std::cos(side),
+                                            std::sin(height) * std::sin(side), std::cos(height)})));
+  };
+  double below = 0, above = 0;
+  for (int i = 0; i <= steps; ++i)
+    for (int k = 0; k < 36; ++k) {
+      double& most = 2 * i <= steps ? below : above;
+      most = std::max(most, at(pi * i / steps, pi * k / 18));
+    }
+  const double least = share * double(largest_intensity(web)) * (1 - 1e-6);
+  double sum = 0;
+  for (const double side : {turn, turn + pi})
+    for (int i = steps; i > 0; --i) {
+      const double from_beam = pi * i / steps;
+      if (at(below >= above ? from_beam : pi - from_beam, side) < least) continue;
+      sum += deg_from_rad(from_beam);
+      break;
+    }
+  return sum;
 }
 
 }  // namespace
 
 namespace {
 
-// "NODE=FILE[,LUMENS[,KELVIN]]"
+// "NODE=FILE[,LUMENS[,KELVIN]]"; no LUMENS before KELVIN: the file's.
 struct LuminaireOption {
   std::string node, file;
   double lumens = 0;  // 0: the file's
@@ -70,7 +84,9 @@ LuminaireOption parse_luminaire(const std::string& text) {
   o.file = text.substr(equals + 1);
   double last = 0;
   if (!take_number(o.file, last)) return o;
-  const bool has_kelvin = take_number(o.file, o.lumens);
+  const bool is_open = o.file.ends_with(',');
+  if (is_open) o.file.pop_back();
+  const bool has_kelvin = is_open || take_number(o.file, o.lumens);
   if (!has_kelvin) o.lumens = last;
   // With a colour lumens of 0 stand for the file's.
   if (!(o.lumens >= (has_kelvin ? 0 : 1e-30) && o.lumens <= 1e9))
@@ -84,17 +100,35 @@ LuminaireOption parse_luminaire(const std::string& text) {
 
 }  // namespace
 
+Luminaire read_and_check_luminaire(const std::string& path, WarningLog& warnings) {
+  Luminaire l = read_luminaire(path, warnings);
+  const double lumens = flux(l.web), stated = l.lamp_lumens * l.output_ratio;
+  if (stated > 0 && std::abs(lumens - stated) > lumens_tolerance * stated)
+    warnings.add(
+        fmt::format("{}: its intensities add up to {:.5g} lm, its lamps and its light output ratio "
+                    "to {:.5g} lm",
+                    path, lumens, stated));
+  else if (l.lamp_lumens > 0 && lumens > (1 + lumens_tolerance) * l.lamp_lumens)
+    warnings.add(fmt::format("{}: its intensities add up to {:.5g} lm, its lamps to {:.5g} lm",
+                             path, lumens, l.lamp_lumens));
+  return l;
+}
+
+Rgb luminaire_scale(const Scene& scene, const Luminaire& luminaire, const std::string& name,
+                    double lumens, double kelvin) {
+  const double unit = scene.is_photometric ? 1 : 1 / luminous_efficacy;
+  const double scale = lumens > 0 ? lumens / flux(luminaire.web) : 1;
+  if (!(scale <= most_scale))
+    throw UsageError(fmt::format("{} has too little light to be scaled to {} lm", name, lumens));
+  return (kelvin > 0 ? blackbody_emission(kelvin) : Rgb{1}) * float(unit * scale);
+}
+
 void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down) {
   for (const std::string& text : luminaires) {
     const LuminaireOption o = parse_luminaire(text);
-    const Luminaire luminaire = read_luminaire(o.file, scene.warnings);
-    const double unit = scene.is_photometric ? 1 : 1 / luminous_efficacy;
-    const double scale = o.lumens > 0 ? o.lumens / flux(luminaire.web) : 1;
-    if (!(scale <= most_scale))
-      throw UsageError(fmt::format("--luminaire: {} has too little light to be scaled to {} lm",
-                                   o.file, o.lumens));
-    const Rgb colour = o.kelvin > 0 ? blackbody_emission(o.kelvin) : Rgb{1};
-    attach_luminaire(scene, o.node, luminaire, colour * float(unit * scale), down);
+    const Luminaire luminaire = read_and_check_luminaire(o.file, scene.warnings);
+    attach_luminaire(scene, o.node, luminaire,
+                     luminaire_scale(scene, luminaire, o.file, o.lumens, o.kelvin), down);
   }
 }
 
@@ -105,7 +139,7 @@ bool is_luminaire(const std::string& path) {
 
 std::string luminaire_info(const std::string& path, bool is_json, const std::string& polar) {
   WarningLog warnings;
-  const Luminaire l = read_luminaire(path, warnings);
+  const Luminaire l = read_and_check_luminaire(path, warnings);
   if (!polar.empty()) write_polar_curve(polar, l.web);
   const double lumens = flux(l.web);
   nlohmann::ordered_json j;

@@ -4,11 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "import/luminaire.h"
 #include "scene/scene.h"
 
 namespace troffer {
 
-// Each "NODE=FILE" or "NODE=FILE,LUMENS". UsageError for what cannot be read so and for nodes that
+// read_luminaire(); a further warning where the intensities add up to 5 % more than the lamps are
+// said to have, or to something else than what of that leaves the luminaire (EULUMDAT).
+Luminaire read_and_check_luminaire(const std::string& path, WarningLog& warnings);
+
+// What intensities are multiplied by in the scene's unit, so that the flux is `lumens` (0: the
+// file's), in the colour of a black body (0: white). UsageError where the file, whose name is for
+// the message, has too little light for that.
+Rgb luminaire_scale(const Scene& scene, const Luminaire& luminaire, const std::string& name,
+                    double lumens, double kelvin);
+
+// Each "NODE=FILE[,LUMENS[,KELVIN]]". UsageError for what cannot be read so and for nodes that
 // cannot shine so; InputError for files.
 void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down);
 

@@ -1,11 +1,14 @@
 #include "app/weather.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
 
+#include "app/csv_table.h"
 #include "base/error.h"
 #include "daylight/sun_position.h"
 #include "import/file.h"
@@ -19,17 +22,6 @@ constexpr uint64_t max_file_bytes = uint64_t(64) << 20;
 constexpr size_t month = 1, day = 2, hour = 3, direct = 14, diffuse = 15;
 constexpr double missing = 9999;
 
-std::vector<std::string> fields_of(std::string_view line) {
-  std::vector<std::string> fields{""};
-  for (const char c : line) {
-    if (c == ',')
-      fields.emplace_back();
-    else if (c != '\r')
-      fields.back() += c;
-  }
-  return fields;
-}
-
 double number(const std::vector<std::string>& fields, size_t i, double least, double most,
               const std::string& path, int line) {
   char* end = nullptr;
@@ -39,6 +31,14 @@ double number(const std::vector<std::string>& fields, size_t i, double least, do
                      "field " + std::to_string(i + 1) + ": a number between " +
                          std::to_string(int(least)) + " and " + std::to_string(int(most)) +
                          " expected");
+  return v;
+}
+
+// Nothing, and numbers from `missing` on, stand for what nobody measured.
+double irradiance(const std::vector<std::string>& fields, size_t i, const std::string& path,
+                  int line) {
+  const double v = fields[i].empty() ? missing : number(fields, i, 0, 1e9, path, line);
+  if (v >= missing) throw InputError(path, line, 1, "the irradiances of this hour are missing");
   return v;
 }
 
@@ -80,7 +80,7 @@ Date date_of(double julian_day_at) {
 
 // wanted(zone_hours): the date in the file's standard time.
 template <class Wanted>
-Weather read_hour(const std::string& path, const std::string& name, const Wanted& wanted_in) {
+Weather read_hour(const std::string& path, const Wanted& wanted_in) {
   Date wanted;
   const std::string text = read_text_file(path, max_file_bytes);
   std::string_view rest = text;
@@ -89,7 +89,9 @@ Weather read_hour(const std::string& path, const std::string& name, const Wanted
   bool has_data = false;
   for (int line = 1; !rest.empty(); ++line) {
     const size_t end = rest.find('\n');
-    const auto fields = fields_of(rest.substr(0, end));
+    std::string_view row = rest.substr(0, end);
+    if (row.ends_with('\r')) row.remove_suffix(1);
+    const auto fields = fields_of_row(row, ',');
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     if (line == 1) {
       if (fields[0] != "LOCATION") throw InputError(path, 1, 1, "does not begin with LOCATION");
@@ -108,29 +110,28 @@ Weather read_hour(const std::string& path, const std::string& name, const Wanted
         int(number(fields, day, 1, 31, path, line)) != wanted.day ||
         int(number(fields, hour, 1, 24, path, line)) != wanted.hour + 1)
       continue;
-    weather.direct_normal = number(fields, direct, 0, missing, path, line);
-    weather.diffuse_horizontal = number(fields, diffuse, 0, missing, path, line);
-    if (weather.direct_normal >= missing || weather.diffuse_horizontal >= missing)
-      throw InputError(path, line, 1, "the irradiances of this hour are missing");
+    weather.direct_normal = irradiance(fields, direct, path, line);
+    weather.diffuse_horizontal = irradiance(fields, diffuse, path, line);
     const auto year = int(number(fields, 0, 1900, 2200, path, line));
     weather.julian_day_ut =
         julian_day(year, wanted.month, wanted.day, wanted.hour + wanted.minute / 60.0 - zone_hours);
     return weather;
   }
-  throw InputError(path, 0, 0, "has no row for " + name);
+  throw InputError(path, 0, 0,
+                   fmt::format("has no row for {:02}-{:02}T{:02}:{:02}", wanted.month, wanted.day,
+                               wanted.hour, wanted.minute));
 }
 
 }  // namespace
 
 Weather read_weather(const std::string& path, const std::string& date) {
   const Date wanted = parse_date(date);
-  return read_hour(path, date, [&](double) { return wanted; });
+  return read_hour(path, [&](double) { return wanted; });
 }
 
 Weather read_weather(const std::string& path, double julian_day_ut) {
-  Weather weather = read_hour(path, "that hour", [&](double zone_hours) {
-    return date_of(julian_day_ut + zone_hours / 24);
-  });
+  Weather weather =
+      read_hour(path, [&](double zone_hours) { return date_of(julian_day_ut + zone_hours / 24); });
   weather.julian_day_ut = julian_day_ut;
   return weather;
 }

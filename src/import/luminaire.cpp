@@ -7,6 +7,7 @@
 
 #include "import/file.h"
 #include "import/luminaire_formats.h"
+#include "import/text_lines.h"
 
 namespace troffer {
 
@@ -32,7 +33,8 @@ void clean_intensities(Planes& planes, const PhotometricText& text, const std::s
 }
 
 Luminaire read_luminaire(const std::string& path, WarningLog& warnings) {
-  const std::string text = read_text_file(path, max_luminaire_bytes);
+  std::string text = read_text_file(path, max_luminaire_bytes);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) text = as_utf8(text);
   return lower_case_ending(path) == "ldt" ? read_ldt(path, text, warnings)
                                           : read_ies(path, text, folder_of(path), warnings);
 }

@@ -11,9 +11,21 @@ namespace {
 
 constexpr double metres_per_foot = 0.3048;
 
-std::string_view after_equals(std::string_view line) {
-  line.remove_prefix(std::min(line.size(), line.find('=') + 1));
-  return trimmed(line);
+std::string upper_case(std::string_view s) {
+  std::string out(s);
+  for (char& c : out)
+    if (c >= 'a' && c <= 'z') c = char(c - 'a' + 'A');
+  return out;
+}
+
+// The value of a line TILT=…, blanks and either case allowed; false for other lines.
+bool take_tilt(std::string_view line, std::string_view& value) {
+  constexpr size_t length = 4;
+  if (upper_case(line.substr(0, length)) != "TILT") return false;
+  line = trimmed(line.substr(length));
+  if (!line.starts_with('=')) return false;
+  value = trimmed(line.substr(1));
+  return true;
 }
 
 // What follows TILT=INCLUDE, and is all that a file of tilt factors holds.
@@ -50,10 +62,14 @@ struct Labels {
   std::string description;
 };
 
+// LM-63-2002, -02, -2019, -19; not -1995.
 bool has_before_2002(std::string_view first_line) {
-  for (const char* edition : {"LM-63-2002", "LM-63-02", "LM-63-19", "LM-63-2019"})
-    if (first_line.find(edition) != std::string_view::npos) return false;
-  return true;
+  const size_t at = first_line.find("LM-63-");
+  if (at == first_line.npos) return true;
+  std::string_view year = first_line.substr(at + 6, 4);
+  year = year.substr(0, year.find_first_not_of("0123456789"));
+  const bool is_short = year.size() == 2 && year < "86";
+  return !is_short && !(year.size() == 4 && year >= "2002");
 }
 
 // Up to the line TILT=, whose value is returned; what stands before it is text for people.
@@ -62,7 +78,7 @@ std::string_view read_labels(PhotometricText& text, Labels& labels) {
   constexpr size_t most_labels = 10'000;
   for (size_t n = 0; text.next_line(line) && n <= most_labels; ++n) {
     if (n == 0) labels.is_before_2002 = has_before_2002(line);
-    if (line.starts_with("TILT")) return after_equals(line);
+    if (std::string_view tilt; take_tilt(line, tilt)) return tilt;
     for (const char* label : {"[LUMINAIRE]", "[LUMCAT]"})
       if (line.starts_with(label) && labels.description.empty())
         labels.description = std::string(trimmed(line.substr(std::string_view(label).size(), 200)));
@@ -75,14 +91,20 @@ struct Header {
   double factor = 1;
   size_t heights = 0, turns = 0;
   int type = 1;
+  bool has_zero_factor = false;
 };
 
 Header read_header(PhotometricText& text, Luminaire& l, bool is_before_2002) {
   Header h;
+  const auto take_factor = [&](const char* name, double most) {
+    const double factor = text.number(name, 0, most);
+    if (factor == 0) h.has_zero_factor = true;
+    return factor > 0 ? factor : 1;
+  };
   const int lamps = text.integer("number of lamps", 0, 1'000'000);
   const double lumens = text.number("lumens per lamp", -1, most_lumens);
   if (lumens > 0) l.lamp_lumens = lumens * lamps;
-  h.factor = text.number("multiplier", 0, 1e9);
+  h.factor = take_factor("multiplier", 1e9);
   h.heights = size_t(text.integer("number of vertical angles", 2, 100'000));
   h.turns = size_t(text.integer("number of horizontal angles", 1, 100'000));
   if (h.heights * h.turns > max_intensities) text.fail("too many intensities");
@@ -92,7 +114,7 @@ Header read_header(PhotometricText& text, Luminaire& l, bool is_before_2002) {
   const double length = text.number("length", -most_metres, most_metres) * unit;
   const double height = text.number("height", -most_metres, most_metres) * unit;
   l.opening = ies_opening(width, length, height, is_before_2002);
-  h.factor *= text.number("ballast factor", 0, 1e6);
+  h.factor *= take_factor("ballast factor", 1e6);
   const double future = text.number("ballast-lamp factor", 0, 1e6);
   if (future > 0) h.factor *= future;
   l.watts = text.number("watts", 0, 1e9);
@@ -111,36 +133,102 @@ void warn_of_more(PhotometricText& text, const std::string& path, WarningLog& wa
 
 }  // namespace
 
-Luminaire read_ies(const std::string& path, std::string_view bytes, const std::string& folder,
+namespace {
+
+// Angles that descend are turned round, their intensities with them: told.
+void make_ascend(Planes& planes, const std::string& path, WarningLog& warnings) {
+  const size_t n = planes.heights_deg.size(), rows = planes.turns_deg.size();
+  const auto descends = [](const std::vector<double>& v) {
+    return v.size() > 1 && std::is_sorted(v.rbegin(), v.rend()) && v.front() > v.back();
+  };
+  const bool do_heights = descends(planes.heights_deg), do_turns = descends(planes.turns_deg);
+  if (!do_heights && !do_turns) return;
+  if (do_heights) std::reverse(planes.heights_deg.begin(), planes.heights_deg.end());
+  if (do_turns) std::reverse(planes.turns_deg.begin(), planes.turns_deg.end());
+  if (planes.candela.size() == n * rows) {
+    std::vector<double> turned(planes.candela.size());
+    for (size_t i = 0; i < rows; ++i)
+      for (size_t j = 0; j < n; ++j)
+        turned[i * n + j] =
+            planes.candela[(do_turns ? rows - 1 - i : i) * n + (do_heights ? n - 1 - j : j)];
+    planes.candela = std::move(turned);
+  }
+  warnings.add(path + ": its angles descend");
+}
+
+Planes read_planes(PhotometricText& text, const Header& h, const std::string& path,
                    WarningLog& warnings) {
-  PhotometricText text(path, bytes);
-  Luminaire l;
-  Labels labels;
-  const std::string tilt(read_labels(text, labels));
-  l.description = labels.description;
-  if (tilt == "INCLUDE")
-    l.tilt = read_tilt(text);
-  else if (tilt != "NONE" && !tilt.empty())
-    l.tilt = read_tilt_file(path, folder, tilt, warnings);
-  const Header h = read_header(text, l, labels.is_before_2002);
   const bool is_round = h.type == 1;  // type C; 2: B, 3: A
+  const double most_turn = is_round ? 360 : 90;
   Planes planes;
   for (size_t i = 0; i < h.heights; ++i)
     planes.heights_deg.push_back(
         text.number("vertical angle", is_round ? 0 : -90, is_round ? 180 : 90));
-  check_ascending(planes.heights_deg, text, "vertical angles");
+  check_monotonic(planes.heights_deg, text, "vertical angles");
   for (size_t i = 0; i < h.turns; ++i)
     planes.turns_deg.push_back(
-        text.number("horizontal angle", is_round ? 0 : -90, is_round ? 360 : 90));
-  check_ascending(planes.turns_deg, text, "horizontal angles");
+        text.number("horizontal angle", -std::min(most_turn, 180.0), most_turn));
+  check_monotonic(planes.turns_deg, text, "horizontal angles");
   for (size_t i = 0; i < h.heights * h.turns; ++i)
     planes.candela.push_back(h.factor * text.number("intensity", -most_candela, most_candela));
+  make_ascend(planes, path, warnings);
+  return planes;
+}
+
+Luminaire read_text(const std::string& path, PhotometricText& text, const std::string& folder,
+                    WarningLog& warnings) {
+  Luminaire l;
+  Labels labels;
+  const std::string tilt(read_labels(text, labels));
+  l.description = labels.description;
+  const std::string tilt_name = upper_case(tilt);
+  if (tilt_name == "INCLUDE")
+    l.tilt = read_tilt(text);
+  else if (tilt_name != "NONE" && !tilt.empty())
+    l.tilt = read_tilt_file(path, folder, tilt, warnings);
+  const Header h = read_header(text, l, labels.is_before_2002);
+  Planes planes = read_planes(text, h, path, warnings);
+  if (h.has_zero_factor) warnings.add(path + ": factors of 0 count as 1");
   clean_intensities(planes, text, path, warnings);
   warn_of_more(text, path, warnings);
-  l.web = is_round
+  l.web = h.type == 1
               ? unfold_planes(planes, path, warnings)
               : unfold_beam(planes, h.type == 2 ? WebPole::right : WebPole::up, path, warnings);
   return l;
+}
+
+// Whether a comma stands between digits anywhere, and may be a decimal point.
+bool has_commas_in_numbers(std::string_view bytes) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (size_t i = bytes.find(','); i != bytes.npos; i = bytes.find(',', i + 1))
+    if (i > 0 && i + 1 < bytes.size() && is_digit(bytes[i - 1]) && is_digit(bytes[i + 1]))
+      return true;
+  return false;
+}
+
+}  // namespace
+
+// Commas part numbers by the standard; where the file makes no sense so, they may be decimal ones.
+Luminaire read_ies(const std::string& path, std::string_view bytes, const std::string& folder,
+                   WarningLog& warnings) {
+  WarningLog own;
+  const auto finish = [&](Luminaire l) {
+    for (const Warning& w : own.entries()) warnings.add(w.text, w.count);
+    return l;
+  };
+  try {
+    PhotometricText text(path, bytes);
+    return finish(read_text(path, text, folder, own));
+  } catch (const InputError&) {
+    if (!has_commas_in_numbers(bytes)) throw;
+    own = {};
+    try {
+      PhotometricText text(path, bytes, true);
+      return finish(read_text(path, text, folder, own));
+    } catch (const InputError&) {  // what is said of the file as it should be is told
+    }
+    throw;
+  }
 }
 
 }  // namespace troffer

@@ -27,18 +27,6 @@ std::vector<double> planes_present(int symmetry, const std::vector<double>& turn
   return present;
 }
 
-// Shifts planes from -90 … 90 to 90 … 270 by their mirror image, which the unfolder knows.
-void mirror(Planes& planes) {
-  const size_t n = planes.heights_deg.size(), rows = planes.turns_deg.size();
-  Planes turned = planes;
-  for (size_t i = 0; i < rows; ++i) {
-    turned.turns_deg[i] = 180 - planes.turns_deg[rows - 1 - i];
-    std::copy_n(planes.candela.begin() + ptrdiff_t((rows - 1 - i) * n), n,
-                turned.candela.begin() + ptrdiff_t(i * n));
-  }
-  planes = turned;
-}
-
 LuminousOpening read_opening(PhotometricText& text) {
   constexpr double mm = 1e-3, most = 1e7;
   const double length = mm * text.number_of_line("length of the luminous area", -most, most);
@@ -73,7 +61,7 @@ Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& 
   skip(3);  // housing
   l.opening = read_opening(text);
   text.number_of_line("downward flux fraction", -1e6, 1e6);
-  text.number_of_line("light output ratio", -1e6, 1e6);
+  l.output_ratio = std::max(0.0, text.number_of_line("light output ratio", -1e6, 1e6) / 100);
   const double conversion = text.number_of_line("conversion factor", 0, 1e6);
   text.number_of_line("tilt", -1e6, 1e6);
   const int sets = text.integer_of_line("number of sets of lamps", 0, 1000);
@@ -100,7 +88,6 @@ Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& 
   for (size_t i = 0; i < heights * planes.turns_deg.size(); ++i)
     planes.candela.push_back(factor *
                              text.number_of_line("intensity", -most_candela, most_candela));
-  if (symmetry == 3) mirror(planes);
   clean_intensities(planes, text, path, warnings);
   l.web = unfold_planes(planes, path, warnings);
   return l;

@@ -15,6 +15,13 @@ void check_ascending(const std::vector<double>& angles, const PhotometricText& t
     if (!(angles[i] > angles[i - 1])) text.fail(fmt::format("{} do not ascend", name));
 }
 
+void check_monotonic(const std::vector<double>& angles, const PhotometricText& text,
+                     const char* name) {
+  if (angles.size() < 2 || angles[1] > angles[0]) return check_ascending(angles, text, name);
+  for (size_t i = 1; i < angles.size(); ++i)
+    if (!(angles[i] < angles[i - 1])) text.fail(fmt::format("{} do not ascend", name));
+}
+
 namespace {
 
 // unfold_planes().
@@ -34,10 +41,10 @@ class Unfolder {
       add_all(180, -1);
       add_all(180, +1);
       add_all(360, -1);
-    } else if (first == 0 && last == 180) {
+    } else if ((first == 0 && last == 180) || (first == 180 && last == 360)) {
       add_all(0, +1);
       add_all(360, -1);
-    } else if (first == 90 && last == 270) {
+    } else if ((first == 90 && last == 270) || (first == -90 && last == 90)) {
       add_all(0, +1);
       add_all(180, -1);  // 90 … -90
     } else {

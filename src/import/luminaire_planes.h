@@ -19,8 +19,12 @@ struct Planes {
 
 void check_ascending(const std::vector<double>& angles, const PhotometricText& text,
                      const char* name);
+// Fails unless they ascend or descend throughout.
+void check_monotonic(const std::vector<double>& angles, const PhotometricText& text,
+                     const char* name);
 
-// Of type C: whole turns, from 0 to 360, of planes that begin anywhere and end with their symmetry.
+// Of type C: whole turns, from 0 to 360, of planes that begin anywhere and end with their symmetry:
+// 0 … 90 a quarter, 0 … 180, 180 … 360, 90 … 270 and -90 … 90 halves.
 LightWeb unfold_planes(const Planes& planes, const std::string& name, WarningLog& warnings);
 
 // Of type A (pole `up`) or B (`right`). Angles that begin at 0 stand for both sides, and a single

@@ -96,6 +96,14 @@ LuminousOpening ies_opening(double width, double length, double height, bool is_
   o.is_round = {length < 0, width < 0, height < 0};
   bool &x = o.is_round[0], &y = o.is_round[1];
   const bool is_upright = height >= 0;
+  if (is_before_2002 && !is_upright && (length > 0 || width > 0)) {
+    // A cylinder whose diameter is the height, or an ellipsoid by one sign.
+    if (width == 0) o.size.y = o.size.z;
+    if (length == 0) o.size.x = o.size.z;
+    x = length <= 0 || width < 0;
+    y = width <= 0 || length < 0;
+    o.is_round[2] = x || y;
+  }
   if (x != y && (is_upright || (is_before_2002 && o.size[x ? 1 : 0] == 0))) {
     // One diameter, or an ellipse by one sign.
     if (o.size.x == 0) o.size.x = o.size.y;

@@ -1,7 +1,8 @@
 // The luminous opening of a measured luminaire: what its file says of it, and the body that is.
 //
-// References: [1] ANSI/IESNA LM-63-02, Table 1: luminous shapes by the signs of width, length and
-//   height. [2] Stockmar, "EULUMDAT", Licht '90: lengths, widths and luminous heights.
+// References: [1] ANSI/IESNA LM-63-02, Table 1, and LM-63-95: luminous shapes by the signs of
+// width,
+//   length and height. [2] Stockmar, "EULUMDAT", Licht '90: lengths, widths and luminous heights.
 #pragma once
 
 #include <array>
@@ -21,8 +22,9 @@ struct LuminousOpening {
   std::array<double, 4> sides{};
 };
 
-// By LM-63's signs [1]; before 2002 one negative dimension was enough for a circle, a cylinder or a
-// sphere. Its length lies in the plane C0, its width in C90.
+// By LM-63's signs [1]; before 2002 one negative dimension was enough for a circle, a cylinder, a
+// sphere or an ellipsoid, and a lying cylinder's only one was its diameter, the height. Its length
+// lies in the plane C0, its width in C90.
 LuminousOpening ies_opening(double width, double length, double height, bool is_before_2002);
 
 // EULUMDAT: no width, a circle [2]. Its length lies in the plane C90; `sides` as above.

@@ -8,21 +8,12 @@
 #include "import/environment_file.h"
 #include "import/file.h"
 #include "import/texture_loader.h"
+#include "scene/portal_corners.h"
 #include "scene/projected_image.h"
 
 namespace troffer {
 
 namespace {
-
-// Within a thousandth.
-bool is_rectangle(const std::vector<Vec3d>& p) {
-  const Vec3d a = p[1] - p[0], b = p[2] - p[1], c = p[3] - p[2], d = p[0] - p[3];
-  const double size = length(a) + length(b);
-  if (!is_finite(a) || !is_finite(b) || !is_finite(c) || !is_finite(d) || !std::isfinite(size))
-    return false;
-  return length(a + c) < 1e-3 * size && length(a) > 1e-6 * size && length(b) > 1e-6 * size &&
-         std::abs(dot(a, b)) < 1e-3 * length(a) * length(b) && size > 1e-9;
-}
 
 class LightReader {
  public:
@@ -168,7 +159,8 @@ class LightReader {
     std::vector<Vec3d> p;
     for (size_t i = 0; i + 2 < v.size(); i += 3)
       p.push_back(Vec3d{v[i], v[i + 1], v[i + 2]} - scene_.origin);
-    if (v.size() == 12 && is_rectangle(p)) return {Vec3(p[0]), Vec3(p[1]), Vec3(p[2]), Vec3(p[3])};
+    if (v.size() % 3 == 0 && is_rectangle(p))
+      return {Vec3(p[0]), Vec3(p[1]), Vec3(p[2]), Vec3(p[3])};
     context_.warnings.add(
         "LightSource \"infinite\": its portal is no rectangle of four corners and is not used; "
         "light comes from all directions that nothing hides");

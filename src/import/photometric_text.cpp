@@ -15,9 +15,6 @@ namespace {
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || c == '\0' || c == '\x1a';
 }
-bool is_separator(char c) {
-  return is_blank(c) || c == '\n' || c == ',';
-}
 
 }  // namespace
 
@@ -31,13 +28,27 @@ void PhotometricText::fail(const std::string& what) const {
   throw InputError(file_, int(std::max<size_t>(line_, 1)), int(column_), what);
 }
 
+size_t PhotometricText::after_break(size_t at) const {
+  const size_t other = std::min(text_.find_first_not_of('\r', at), text_.size());
+  if (other < text_.size() && text_[other] == '\n') return other + 1;
+  return std::min(at + 1, text_.size());
+}
+
+bool PhotometricText::is_separator(size_t at) const {
+  const char c = text_[at];
+  if (c != ',') return is_blank(c) || c == '\n';
+  const bool is_before_digit =
+      at + 1 < text_.size() && text_[at + 1] >= '0' && text_[at + 1] <= '9';
+  return !are_commas_decimal_ || !is_before_digit;
+}
+
 std::string_view PhotometricText::take_line() {
   ++line_;
   column_ = 1;
   line_start_ = next_;
-  const size_t end = text_.find('\n', next_);
-  const std::string_view line = text_.substr(next_, end == text_.npos ? end : end - next_);
-  next_ = end == text_.npos ? text_.size() : end + 1;
+  const size_t end = std::min(text_.find_first_of("\r\n", next_), text_.size());
+  const std::string_view line = text_.substr(next_, end - next_);
+  next_ = after_break(end);
   return line;
 }
 
@@ -71,8 +82,10 @@ double PhotometricText::number(const char* name, double least, double most) {
     line_start_ = next_;
     is_in_line_ = true;
   }
-  while (next_ < text_.size() && is_separator(text_[next_])) {
-    if (text_[next_++] == '\n') {
+  while (next_ < text_.size() && is_separator(next_)) {
+    const bool is_break = text_[next_] == '\n' || text_[next_] == '\r';
+    next_ = is_break ? after_break(next_) : next_ + 1;
+    if (is_break) {
       ++line_;
       line_start_ = next_;
     }
@@ -80,7 +93,7 @@ double PhotometricText::number(const char* name, double least, double most) {
   column_ = next_ - line_start_ + 1;
   if (next_ >= text_.size()) fail(fmt::format("{}: the file ends too soon", name));
   const size_t first = next_;
-  while (next_ < text_.size() && !is_separator(text_[next_])) ++next_;
+  while (next_ < text_.size() && !is_separator(next_)) ++next_;
   return parse(text_.substr(first, next_ - first), name, least, most);
 }
 

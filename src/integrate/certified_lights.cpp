@@ -16,8 +16,10 @@ namespace {
 // Lights of more pieces, once those in one plane are merged, are left to rays: each piece would
 // be a source of its own.
 constexpr uint32_t most_pieces = 256;
-// Hits on a curved surface are certified together within this share of the scene's diagonal.
+// Hits on a curved surface are certified together within this share of the scene's diagonal; the
+// plane about a portal goes on for as many of them.
 constexpr float reach_of_diagonal = 0.1f;
+constexpr double reach_of_frame = 16;
 
 // Light at a hit of this weight that makes a hundredth of what is usual in the picture: nobody sees
 // what less of it errs by.
@@ -34,7 +36,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      far_{FarCells(scene.scene, scene.primitives), 0, nullptr, {}, {}, {}, false},
+      far_{FarCells(scene.scene, scene.primitives), 0, nullptr, {}, {}, {}, false, {}, 0},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
@@ -164,6 +166,12 @@ void CertifiedLights::set_occluders(const Occluders& occluders) {
 void CertifiedLights::add_far_lights(const PreparedScene& scene) {
   far_.first_source = uint32_t(sources_.size());
   const Box everywhere = bounds(scene.scene);
+  far_.frame_reach = reach_of_frame * double(everywhere.diagonal());
+  far_.frames.resize(scene.primitives.size());
+  for (const uint32_t p : scene.primitives.at_infinity())
+    if (const Portal* portal = scene.primitives[p].portal)
+      for (const Quad& q : portal->frame(far_.frame_reach))
+        far_.frames[p].push_back({q, no_facet, false});
   for (const FarCell& cell : far_.cells.all()) {
     has_light_[scene.primitives[cell.primitive].light] = true;
     const Portal* portal = scene.primitives[cell.primitive].portal;
@@ -337,12 +345,14 @@ void CertifiedLights::set_requests(CertifiedLightsScratch& s, bool has_far) cons
     const Portal::View view =
         portal == nullptr ? Portal::View::all : portal->view(receivers, source.flat.plane);
     if (view == Portal::View::none) return;
-    s.integrand.portals().push_back(view == Portal::View::some ? portal : nullptr);
+    const bool is_cut = view == Portal::View::some;
+    const bool is_left =
+        is_cut && !portal->is_framed(far_.frame_reach, receivers, source.flat.plane);
+    s.integrand.portals().push_back(is_left ? portal : nullptr);
     LightRequest& r = s.cluster.requests.emplace_back();
-    if (source.is_round)
-      r.sphere = &source.sphere;
-    else
-      r.flat = &source.flat;
+    if (is_cut) r.frame = far_.frames[source.primitive];
+    r.sphere = source.is_round ? &source.sphere : nullptr;
+    r.flat = source.is_round ? nullptr : &source.flat;
     r.stream = source.stream;
     r.brightness = luminance(source.radiance);
     r.found = &s.found[i];

@@ -112,6 +112,9 @@ class CertifiedLights {
     FarPoints points;          // … where proofs are not worth while
     ClosedShells shells;       // … and what none of it gets into
     bool is_shut_out = false;  // … nor, as it seems, anything that other lights shine on
+    // Of portals, what hides their lights beside them; by the primitives they belong to.
+    std::vector<std::vector<FacetToAdd>> frames;
+    double frame_reach = 0;  // metres by which they go on beyond their sides
   } far_;
   DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart

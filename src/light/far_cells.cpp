@@ -7,6 +7,7 @@
 #include "base/frame.h"
 #include "base/simd.h"
 #include "light/light.h"
+#include "light/portal.h"
 
 namespace troffer {
 
@@ -20,6 +21,9 @@ constexpr double fit_error = 1e-4, fit_error_of_all = 1e-5;
 // A cell is halved until the samples of a coarse mask, thrown at random, would err by less than
 // this share of all light, but for what is smooth: then they err by much less.
 constexpr double table_error = 1e-3, samples_of_mask = 178;
+// Of the faces beside a portal's, what lies nearer to its plane is a cell of its own: where rays
+// meet that far away.
+constexpr double near_plane = 0.125;
 
 // Where the radiance is looked at for the fit: nodes of Chebyshev's.
 constexpr double nodes[4] = {0.5 - 0.5 * 0.92387953251128674, 0.5 - 0.5 * 0.38268343236508977,
@@ -81,6 +85,7 @@ class Cutter {
   }
 
   void cut_faces(std::vector<std::unique_ptr<const FarTable>>& tables) {
+    if (is_even() && piece_.portal != nullptr) return cut_before_portal();
     // The horizon of a sky is to run along edges of cells.
     const Vec3d z = normalize(Vec3d(light_.axes[2]));
     const Vec3d other = std::abs(z.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1};
@@ -97,6 +102,18 @@ class Cutter {
         tables.push_back(table_of(f));
         table_ = tables.back().get();
         cut(f, {-1, -1, 2}, 0, 0, table_->size);
+      }
+  }
+
+  // Of an even light: what may come through a portal, in cells whose edges lie in its plane.
+  void cut_before_portal() {
+    const auto [x, y, z] = piece_.portal->axes();
+    add_even({z, x, y}, -1, 1, -1, 1);
+    for (const double side : {1.0, -1.0})
+      for (const auto& [axis, across] : {std::pair{x, y}, {y, x}}) {
+        const Face f{axis * side, across, z};
+        add_even(f, -1, 1, 0, near_plane);
+        add_even(f, -1, 1, near_plane, 1);
       }
   }
 
@@ -130,6 +147,23 @@ class Cutter {
     cell.from_v = float(s.b / s.size);
     cell.height = distance_;
     return cell;
+  }
+
+  // From (a0, b0) to (a1, b1) of the face.
+  void add_even(const Face& f, double a0, double a1, double b0, double b1) {
+    const double width = (a1 - a0) * distance_, height = (b1 - b0) * distance_;
+    FarCell cell;
+    cell.primitive = primitive_;
+    cell.plane = {centre_ + (f.axis + f.across * a0 + f.up * b0) * distance_, f.across * width,
+                  f.up * height, -f.axis};
+    cell.along_u = Vec3(f.across / width);
+    cell.along_v = Vec3(f.up / height);
+    cell.from_u = float(a0 / (a1 - a0));
+    cell.from_v = float(b0 / (b1 - b0));
+    cell.height = distance_;
+    cell.is_even = true;
+    cell.mean = light_.radiance;
+    out_.push_back(cell);
   }
 
   Rgb radiance(const Vec3d& direction) const {

@@ -50,7 +50,8 @@ struct FarCell {
 class FarCells {
  public:
   FarCells() = default;
-  // The cells of all lights at infinity but deltas, those without light left out. Deterministic.
+  // The cells of all lights at infinity but deltas, those without light left out, and of even
+  // lights those that their portal shows to nobody. Deterministic.
   FarCells(const Scene& scene, const LightPrimitives& primitives);
   FarCells(const FarCells&) = delete;
   FarCells& operator=(const FarCells&) = delete;

@@ -40,6 +40,11 @@ decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
   return ask(SurfaceLight());
 }
 
+// A sun's disc is drawn from as without, for a portal's table is too coarse for it.
+bool is_drawn_through_portal(const Scene& scene, const LightPrimitive& p) {
+  return p.portal != nullptr && scene.lights[p.light].kind != LightKind::sun;
+}
+
 bool sample_through_portal(const Scene& scene, const LightPrimitive& p, const Vec3& x,
                            const Vec2& u, LightSample& out) {
   out = {};
@@ -58,9 +63,10 @@ Rgb radiance_beyond(const Scene& scene, const Light& light, const Vec3& wi) {
 
 bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec2& u,
             LightSample& out) {
-  if (p.portal != nullptr) return sample_through_portal(scene, p, x, u, out);
+  if (is_drawn_through_portal(scene, p)) return sample_through_portal(scene, p, x, u, out);
   return ask_kind(scene.lights[p.light].kind,
-                  [&](auto kind) { return kind.sample(scene, p, x, u, out); });
+                  [&](auto kind) { return kind.sample(scene, p, x, u, out); }) &&
+         (p.portal == nullptr || p.portal->shows(x, out.wi));
 }
 
 void sample_many(const Scene& scene, const LightPrimitives& all, size_t n,
@@ -78,7 +84,7 @@ void sample_many(const Scene& scene, const LightPrimitives& all, size_t n,
 
 float pdf_solid_angle(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec3& wi,
                       float distance) {
-  if (p.portal != nullptr) return p.portal->pdf(x, wi);
+  if (is_drawn_through_portal(scene, p)) return p.portal->pdf(x, wi);
   return ask_kind(scene.lights[p.light].kind,
                   [&](auto kind) { return kind.pdf_solid_angle(scene, p, x, wi, distance); });
 }

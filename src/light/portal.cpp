@@ -80,7 +80,8 @@ bool Portal::shows(const Vec3& x, const Vec3& wi) const {
 
 // Each of the conditions of shows() is affine in the place and linear in the direction: what holds
 // at all corners holds between them.
-Portal::View Portal::view(const Box& receivers, const Parallelogram& far) const {
+Portal::View Portal::view_within(double margin, const Box& receivers,
+                                 const Parallelogram& far) const {
   constexpr double angle = 1e-5;  // more than what far away means, and roundings (far_cells.h)
   constexpr size_t conditions = 6;
   std::array<bool, conditions> always{}, never{};
@@ -94,8 +95,13 @@ Portal::View Portal::view(const Box& receivers, const Parallelogram& far) const 
       const Vec3d to = far.origin + far.u * double(j & 1) + far.v * double(j >> 1);
       const Vec3d w = own(normalize(to - at)), from = own(at - corner_);
       const double a = from.x * w.z - w.x * from.z, b = from.y * w.z - w.y * from.z;
-      const double values[conditions] = {w.z, -from.z, a, size_x_ * w.z - a, b, size_y_ * w.z - b};
-      const double metres = size_x_ + size_y_ + length(at - corner_);
+      const double values[conditions] = {w.z,
+                                         -from.z,
+                                         a + margin * w.z,
+                                         (size_x_ + margin) * w.z - a,
+                                         b + margin * w.z,
+                                         (size_y_ + margin) * w.z - b};
+      const double metres = size_x_ + size_y_ + margin + length(at - corner_);
       for (size_t k = 0; k < conditions; ++k) {
         const double slack = angle * (k == 0 ? 1 : metres);
         always[k] = always[k] && values[k] > slack;
@@ -104,6 +110,23 @@ Portal::View Portal::view(const Box& receivers, const Parallelogram& far) const 
     }
   if (std::find(never.begin(), never.end(), true) != never.end()) return View::none;
   return std::find(always.begin(), always.end(), false) == always.end() ? View::all : View::some;
+}
+
+std::array<Quad, 4> Portal::frame(double reach) const {
+  std::array<Vec3, 4> inner, outer;
+  for (size_t i = 0; i < 4; ++i) {
+    const double x = i == 1 || i == 2 ? 1 : 0, y = i >= 2 ? 1 : 0;
+    const Vec3d side = x_ * (2 * x - 1) + y_ * (2 * y - 1);
+    const Vec3d at = corner_ + x_ * (x * size_x_) + y_ * (y * size_y_);
+    inner[i] = Vec3(at);
+    outer[i] = Vec3(at + side * reach);
+  }
+  std::array<Quad, 4> quads;
+  for (size_t i = 0; i < 4; ++i) {
+    const size_t next = (i + 1) % 4;
+    quads[i] = {inner[i], outer[i], outer[next], inner[next]};
+  }
+  return quads;
 }
 
 bool Portal::range_from(const Vec3& x, Range& r) const {

@@ -11,11 +11,13 @@
 //   Section 3.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "base/box.h"
+#include "base/quad.h"
 #include "base/vec.h"
 #include "light/source_surface.h"
 
@@ -32,13 +34,27 @@ class Portal {
   // Whether it is from all of a box, in the directions to all of a parallelogram far away: proved,
   // or some.
   enum class View { none, some, all };
-  View view(const Box& receivers, const Parallelogram& far) const;
+  View view(const Box& receivers, const Parallelogram& far) const {
+    return view_within(0, receivers, far);
+  }
+
+  // The plane about the rectangle, as far as `reach` beyond its sides: four trapezoids that share
+  // their edges with it and with each other, and hide from places before the plane what they do not
+  // let through the rectangle.
+  std::array<Quad, 4> frame(double reach) const;
+  // Whether rays from all of a box to all of a parallelogram far away meet the frame, or the
+  // rectangle within it: proved.
+  bool is_framed(double reach, const Box& receivers, const Parallelogram& far) const {
+    return view_within(reach, receivers, far) == View::all;
+  }
 
   // A direction for the receiver x, and its density per steradian; false where it sees nothing.
   bool sample(const Vec3& x, const Vec2& u, Vec3& wi, float& pdf) const;
   float pdf(const Vec3& x, const Vec3& wi) const;
 
   double area() const { return size_x_ * size_y_; }
+  // Unit: along the sides, and towards what is outside.
+  std::array<Vec3d, 3> axes() const { return {x_, y_, z_}; }
 
  private:
   // Of the table, in its cells.
@@ -47,6 +63,8 @@ class Portal {
   };
   // In the rectangle's axes: of directions, and places from its first corner.
   Vec3d own(const Vec3d& v) const { return {dot(v, x_), dot(v, y_), dot(v, z_)}; }
+  // view() of the rectangle grown by a margin on all sides.
+  View view_within(double margin, const Box& receivers, const Parallelogram& far) const;
   bool range_from(const Vec3& x, Range& r) const;
   // Of all cells before a place.
   double sum(double x, double y) const;

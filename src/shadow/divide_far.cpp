@@ -46,6 +46,8 @@ class FarDivision {
     if (!is_whole && !is_worth_more()) return add_hopeless(cell, is_whole);
     gather_facets(hull_, cell.all_corners(), task_.request.flat->plane.normal, most_, scene_,
                   memory_.candidates, counters_);
+    const std::span<const FacetToAdd> frame = task_.request.frame;
+    memory_.candidates.facets.insert(memory_.candidates.facets.end(), frame.begin(), frame.end());
     work_ -= cost_of_gather + cost_of_found * double(length_of_list());
     FlatCell first, second;
     const size_t length = length_of_list();
@@ -112,13 +114,14 @@ class FarDivision {
 
   bool is_dark(const FlatCell& cell) {
     const std::span<const FacetToAdd> large = task_.request.far->large;
-    if (large.empty()) return false;
+    if (large.empty() && task_.request.frame.empty()) return false;
     work_ -= cost_of_large * double(large.size());
     const MaskFrame frame(cell.plane, coarse_lattice, false, hull_.centre, cell.all_outline(),
                           cell.is_disk);
     FacetList& list = memory_.large;
     list.clear();
     list.add_many(frame, large);
+    list.add_many(frame, task_.request.frame);
     list.finish();
     return certify({task_, frame, task_.unoccluded, 0, false, true}, hull_, list, memory_.flags,
                    memory_.left) == Certificate::dark;

@@ -14,16 +14,37 @@ namespace {
 constexpr size_t most_rays = 128, most_far_rays = 64, rays_of_receiver = 4;
 constexpr uint64_t purpose_pilot = 0x7069'6c6f'7400;
 
+// Whether the ray from x along d meets a convex quadrilateral.
+bool meets(const Quad& q, const Vec3d& x, const Vec3d& d) {
+  int left = 0, right = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    const double side = dot(d, cross(Vec3d(q[i]) - x, Vec3d(q[(i + 1) % 4]) - x));
+    left += side > 0;
+    right += side < 0;
+  }
+  if (left > 0 && right > 0) return false;
+  const Vec3d n = cross(Vec3d(q[1]) - Vec3d(q[0]), Vec3d(q[2]) - Vec3d(q[0]));
+  return dot(n, d) * dot(n, Vec3d(q[0]) - x) > 0;
+}
+
 // Rays to points of sources, and what these would send.
 class Pilots {
  public:
-  // To the point y of a source of normal n; inverse_density: of the choice of source and point.
-  void add(const ShadowReceiver& r, const Vec3d& y, const Vec3d& n, double inverse_density) {
+  // To the point y of a source of normal n; inverse_density: of the choice of source and point;
+  // frame: LightRequest.
+  void add(const ShadowReceiver& r, const Vec3d& y, const Vec3d& n, double inverse_density,
+           std::span<const FacetToAdd> frame = {}) {
     const Vec3d d = y - Vec3d(r.position);
     const double cosine = std::max(dot(Vec3d(r.normal), d), 0.0), height = -dot(n, d);
     if (!(dot(Vec3d(r.horizon), d) > 0) || count_ == most_rays) return;
     const double weight = height * cosine * inverse_density / sqr(length_squared(d));
     if (!(weight > 0)) return;
+    const auto is_met = [&](const FacetToAdd& f) { return meets(f.quad, Vec3d(r.origin), d); };
+    if (std::any_of(frame.begin(), frame.end(), is_met)) {
+      dark_ += weight;
+      ++dark_count_;
+      return;
+    }
     segments_.add({r.origin, Vec3(y), no_round_source}, 0.999f);
     weights_[count_++] = weight;
   }
@@ -32,19 +53,21 @@ class Pilots {
   double share(ShadowScene& scene) {
     std::array<uint8_t, most_rays> is_hidden{};
     scene.occluded(segments_, {is_hidden.data(), count_});
-    double sum = 0, free = 0;
+    double sum = dark_, free = 0;
     for (size_t k = 0; k < count_; ++k) {
       sum += weights_[k];
       if (is_hidden[k] == 0) free += weights_[k];
     }
     const double share = sum > 0 ? free / sum : 0.5;
-    return (share * double(count_) + 1) / (double(count_) + 2);
+    const auto rays = double(count_ + dark_count_);
+    return (share * rays + 1) / (rays + 2);
   }
 
  private:
   SegmentArrays segments_;
   std::array<double, most_rays> weights_{};
-  size_t count_ = 0;
+  size_t count_ = 0, dark_count_ = 0;
+  double dark_ = 0;
 };
 
 double unit_double(uint64_t random) {
@@ -81,7 +104,9 @@ double far_open_share(const ShadowCluster& cluster, std::span<const LightRequest
     const Vec3d y = p.origin + p.u * unit_double(place << 32) + p.v * unit_double(place);
     // of the light that the choice stands for
     const auto light = double(unoccluded[chosen * n + i]);
-    if (light > 0) pilots.add(receiver, y, p.normal, length(cross(p.u, p.v)) / light);
+    if (!(light > 0)) continue;
+    const double inverse_density = length(cross(p.u, p.v)) / light;
+    pilots.add(receiver, y, p.normal, inverse_density, requests[chosen].frame);
   }
   return pilots.share(scene);
 }

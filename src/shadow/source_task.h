@@ -62,6 +62,8 @@ struct LightRequest {
   float brightness = 1;           // luminance of its radiance
   FoundFacets* found = nullptr;   // what earlier clusters have learnt; this one adds to it
   const FarScene* far = nullptr;  // of a flat source at infinity
+  // … what hides it besides the scene's facets, and hides no other source.
+  std::span<const FacetToAdd> frame{};
   // Receivers that this cluster is one of several of: rays straight to the source are as many for
   // all of them. None: the cluster's own.
   std::span<const ShadowReceiver> batch{};

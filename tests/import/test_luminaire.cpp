@@ -98,6 +98,23 @@ TEST_CASE("LM-63: what stands in a file of any edition") {
   }
 }
 
+TEST_CASE("LM-63: the edition tells what a negative dimension means") {
+  for (const auto& [head, is_old] : {std::pair{"IESNA:LM-63-1995", true},
+                                     {"IESNA91", true},
+                                     {"IESNA:LM-63-1986", true},
+                                     {"", true},
+                                     {"IESNA:LM-63-2002", false},
+                                     {"IESNA:LM-63-02 ", false},
+                                     {"IES:LM-63-2019", false},
+                                     {"IES:LM-63-19", false}}) {
+    const Luminaire l =
+        read(std::string(head) + "\nTILT=NONE\n1 -1 1 2 1 1 2 -.3 .6 -.2\n1 1 9\n0 90\n0\n5 5\n");
+    CAPTURE(head);
+    CHECK(l.opening.is_round[0] == is_old);  // an ellipsoid, or a lying cylinder
+    CHECK(l.opening.is_round[1]);
+  }
+}
+
 TEST_CASE("LM-63: intensities that no angle asks for are told") {
   const TempFolder folder;
   const auto warnings_of = [&](const std::string& text) {
@@ -218,7 +235,7 @@ TEST_CASE("photometric files that cannot be used are errors with a place") {
   CHECK(line_of("TILT=NONE\n1 1 1 2 1 2 1 1 1 1 1 1 1\n0 120\n0\n1 1\n", "a.ies") == 3);
   CHECK(line_of("TILT=INCLUDE\n1\n2\n90 0\n1 1\n", "a.ies") == 5);
   CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n0 90\n0\n0 0\n", "a.ies") == 5);
-  CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n90 0\n0\n1 0\n", "a.ies") == 3);
+  CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n90 90\n0\n1 0\n", "a.ies") == 3);
   CHECK(line_of("TILT=NONE\n1 1 1 99999 99999 1 1 1 1 1 1 1 1\n0 90\n", "a.ies") == 2);
   CHECK(line_of("TILT=NONE\n1 1 1 2 1 1 1 1 1 1 1 1 1\n0 90\n0\n1 x\n", "a.ies") == 5);
   CHECK(line_of(ldt(1, 4, {"1"}), "a.ldt") > 40);

@@ -48,6 +48,30 @@ TEST_CASE("shapes by the signs of LM-63's dimensions") {
   CHECK(facing.faces[0].area.x == doctest::Approx(.04 * pi));
 }
 
+TEST_CASE("shapes by the signs of LM-63 of 1995") {
+  const auto size_of = [](double width, double length, double height) {
+    return ies_opening(width, length, height, true).size;
+  };
+  // Lying cylinders: the height is the diameter.
+  CHECK(size_of(0, 1.2, -.04) == Vec3d{1.2, .04, .04});
+  CHECK(size_of(1.2, 0, -.04) == Vec3d{.04, 1.2, .04});
+  const Vec3d w = normalize(Vec3d{.3, -.5, .7});
+  for (const OpeningBody& body : {ies(0, 1.2, -.04, true), ies(1.2, 0, -.04, true)})
+    CHECK(body.faces.size() == circle_corners + 2);
+  const double seen = .04 * 1.2 * std::sqrt(1 - w.x * w.x) + pi * .0004 * std::abs(w.x);
+  CHECK(seen_from(ies(0, 1.2, -.04, true), w) == doctest::Approx(seen).epsilon(.01));
+  // Ellipses and ellipsoids along length and width; a sphere by two signs.
+  CHECK(ies(-.12, .34, .56, true).faces.size() == circle_corners + 2);
+  CHECK(ies(.12, -.34, .56, true).faces.size() == circle_corners + 2);
+  for (const OpeningBody& body : {ies(-.2, .4, -.1, true), ies(.4, -.2, -.1, true)}) {
+    CHECK(body.shape == Shape::sphere);
+    CHECK(body.radius == doctest::Approx(.1));
+  }
+  CHECK(ies(-.12, 0, -.12, true).shape == Shape::sphere);
+  // A box below no plane remains one.
+  CHECK(ies(.5, 1, .1, true).faces.size() == 6);
+}
+
 TEST_CASE("bodies are as large as they look from any side") {
   const Vec3d w = normalize(Vec3d{.3, -.5, .7});
   const double box = .6 * .2 * std::abs(w.x) + 1 * .2 * std::abs(w.y) + 1 * .6 * std::abs(w.z);

@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "base/units.h"
+#include "light/far_cells.h"
 #include "light/light.h"
 #include "light/portal.h"
 #include "support/chi_square.h"
@@ -182,4 +183,83 @@ TEST_CASE("what a portal shows to a box is proved, never contradicted") {
     }
   }
   for (const size_t n : proofs) CHECK(n > 100);
+}
+
+TEST_CASE("the frame of a portal hides what it does not show, as far as it reaches") {
+  const Portal portal(window, 4, [](const Vec3&) { return 1.0f; });
+  constexpr double reach = 20;
+  const auto frame = portal.frame(reach);
+  const auto is_met = [](const Quad& q, const Vec3d& x, const Vec3d& d) {
+    int left = 0, right = 0;
+    for (size_t i = 0; i < 4; ++i) {
+      const Vec3d a = Vec3d(q[i]) - x, b = Vec3d(q[(i + 1) % 4]) - x;
+      (dot(d, cross(a, b)) > 0 ? left : right) += 1;
+    }
+    return left == 0 || right == 0;
+  };
+  Random random(8);
+  int shown = 0, hidden = 0, framed = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto coordinate = [&](float size) { return (random.next_float() - 0.5f) * size; };
+    const Vec3 x{2.9f - 3 * random.next_float(), coordinate(6), coordinate(6)};
+    const Vec3 to{3, coordinate(30), 1.5f + coordinate(30)};
+    const Vec3 middle{3, coordinate(3), 1.5f + coordinate(2)};
+    const Vec3 wi = normalize((i % 2 == 0 ? to : middle) - x);
+    const bool is_shown = portal.shows(x, wi);
+    int met = 0;
+    for (const Quad& q : frame) met += is_met(q, Vec3d(x), Vec3d(wi)) ? 1 : 0;
+    CAPTURE(i);
+    CHECK(met == (is_shown ? 0 : 1));
+    (is_shown ? shown : hidden) += 1;
+    // A proof holds for the ray in its middle, and for all that meet the plane so near.
+    Box box;
+    box.grow(x - Vec3{.01f});
+    box.grow(x + Vec3{.01f});
+    const Vec3d far = Vec3d(wi) * 1e7, u{0, 1e5, 0}, v{0, 0, 1e5};
+    framed += portal.is_framed(reach, box, {far - u * 0.5 - v * 0.5, u, v, {-1, 0, 0}}) ? 1 : 0;
+  }
+  CHECK(shown > 500);
+  CHECK(hidden > 500);
+  CHECK(framed > 3000);
+  Box box;
+  box.grow(Vec3{2, 0, 0});
+  const Vec3d past{1e6, 3e7, 0}, along{-1e5, 3e7, 0};
+  for (const Vec3d& to : {past, along})
+    CHECK_FALSE(portal.is_framed(reach, box, {to, {0, 1e4, 0}, {0, 0, 1e4}, {-1, 0, 0}}));
+}
+
+TEST_CASE("a sun through a portal: of its disc what the portal shows") {
+  Scene s = with_portal(false);
+  s.lights[0].kind = LightKind::sun;
+  s.lights[0].direction = normalize(Vec3{-1, 0, -0.5f});
+  s.lights[0].angular_radius = 0.01f;
+  const LightPrimitives lights(s);
+  LightSample out;
+  CHECK(sample(s, lights[0], {1, 0, 0.5f}, {0.3f, 0.7f}, out));
+  CHECK(out.pdf_solid_angle == doctest::Approx(1 / (pi * 1e-4)).epsilon(1e-3));
+  CHECK(out.pdf_solid_angle == pdf_solid_angle(s, lights[0], {1, 0, 0.5f}, out.wi, out.distance));
+  CHECK_FALSE(sample(s, lights[0], {1, 2, 0.5f}, {0.3f, 0.7f}, out));
+  CHECK_FALSE(sample(s, lights[0], {4, 0, 0.5f}, {0.3f, 0.7f}, out));
+}
+
+TEST_CASE("cells of an even light before a portal hold all that it shows, once") {
+  const Scene s = with_portal(false);
+  const LightPrimitives lights(s);
+  const FarCells cells(s, lights);
+  Random random(4);
+  const Portal& portal = *lights[0].portal;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 wi = normalize(
+        Vec3{random.next_float(), 2 * random.next_float() - 1, 2 * random.next_float() - 1} *
+        Vec3{i % 2 == 0 ? 1.0f : 0.05f, 1, 1});
+    int held = 0;
+    for (const FarCell& c : cells.all()) held += c.holds(wi) ? 1 : 0;
+    CHECK(held == 1);
+    CHECK(std::none_of(cells.all().begin(), cells.all().end(),
+                       [&](const FarCell& c) { return c.holds(-wi); }));
+  }
+  for (const FarCell& c : cells.all()) {
+    CHECK(c.mean == Rgb{2});
+    CHECK(-dot(c.plane.normal, portal.axes()[2]) > -1e-9);
+  }
 }
