@@ -9,7 +9,6 @@ namespace troffer {
 
 namespace {
 
-constexpr int tile_side = 16;
 // The place of a pixel on a Z curve through its tile.
 uint32_t on_curve(uint32_t x, uint32_t y) {
   const auto spread = [](uint32_t v) {

@@ -11,6 +11,7 @@ namespace troffer {
 
 class GatherPass {
  public:
+  static constexpr int tile_side = 16;                        // pixels
   static constexpr int most_pixels = 16;                      // radius of a fit
   static constexpr int usual_pixels = 5;                      // … of what is usual around it
   static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record

@@ -24,9 +24,13 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   // A pixel looks at its neighbours' fits, these at gathers and at how many rays are usual around
   // them, which others asked for.
   constexpr int border = 2 * GatherPass::most_pixels + GatherPass::usual_pixels + 4;
+  // In whole tiles of the picture: what a tile's rays meet is the same for every window.
+  constexpr int side = GatherPass::tile_side;
+  const auto first = [&](int v) { return std::max(v - border, 0) / side * side; };
+  const auto last = [&](int v) { return (v + border + side - 1) / side * side; };
   PixelWindow w = view.window;
-  w = {std::max(w.x0 - border, view.image.x0), std::max(w.y0 - border, view.image.y0),
-       std::min(w.x1 + border, view.image.x1), std::min(w.y1 + border, view.image.y1)};
+  w = {std::max(first(w.x0), view.image.x0), std::max(first(w.y0), view.image.y0),
+       std::min(last(w.x1), view.image.x1), std::min(last(w.y1), view.image.y1)};
   std::unique_ptr<GatherRecords> records(new GatherRecords(w));
   GatherPass pass(cells, view, options, stop, *records);
   if (!pass.run(progress, counters)) return nullptr;

@@ -31,21 +31,27 @@ bool is_same(const Corner& a, const Corner& b) {
 
 std::vector<Corner> trace_corners(const PreparedScene& scene, const ViewingCamera& camera,
                                   const PixelRect& region, int threads) {
+  // Where a ray runs into an edge, which of its two surfaces it meets may depend on the packet in
+  // which it is traced: packets are those of the whole picture, whatever the region.
+  constexpr size_t packet = 16;
   const size_t columns = size_t(region.width()) + 1, rows = size_t(region.height()) + 1;
+  const size_t before = size_t(region.x0) % packet,
+               traced = (before + columns + packet - 1) / packet * packet;
   std::vector<Corner> corners(columns * rows);
   parallel_for(rows, threads, [&](size_t row) {
-    std::vector<Ray> rays(columns);
-    std::vector<Hit> hits(columns);
-    for (size_t i = 0; i < columns; ++i)
+    std::vector<Ray> rays(traced);
+    std::vector<Hit> hits(traced);
+    for (size_t i = 0; i < traced; ++i)
       rays[i] =
-          camera.ray({float(region.x0) + float(i), float(region.y0) + float(row)}, {0.5f, 0.5f});
+          camera.ray({float(region.x0) + float(i) - float(before), float(region.y0) + float(row)},
+                     {0.5f, 0.5f});
     scene.tracer.closest(rays, hits, Coherence::coherent, Meeting::as_seen);
     for (size_t i = 0; i < columns; ++i) {
-      if (!hits[i].is_valid()) continue;
-      const Surface s = surface_at(scene.scene, rays[i], hits[i]);
+      if (!hits[before + i].is_valid()) continue;
+      const Surface s = surface_at(scene.scene, rays[before + i], hits[before + i]);
       Corner& c = corners[row * columns + i];
       c.geometry = s.geometry;
-      c.is_front = dot(s.geometric_normal, rays[i].direction) <= 0;
+      c.is_front = dot(s.geometric_normal, rays[before + i].direction) <= 0;
       c.normal = c.is_front ? s.shading_normal : -s.shading_normal;
       c.position = s.position;
     }

@@ -4,6 +4,9 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "import/import.h"
+#include "render/edge_map.h"
+#include "render/framing.h"
 #include "render/pictures.h"
 #include "render/tile.h"
 
@@ -135,4 +138,26 @@ TEST_CASE("… by the default, of a picture larger than what its gathers look at
   o.crop = {13, 3, 140, 21};
   o.indirect = Indirect::none;
   check_shares(o, 4);
+}
+
+// The mullions of its window lie exactly on corners of pixels.
+TEST_CASE(
+    "edges through pixels are the same for every region of the picture, also where rays tie") {
+  const std::string folder = TROFFER_SOURCE_DIR "/scenes/daylight-room/";
+  const PreparedScene scene(import_scene(folder + "daylight-room.gltf"));
+  const ViewingCamera camera(framing_camera(scene, {0, 1, 0}), 192, 128);
+  const EdgeMap whole(scene, camera, {0, 0, 192, 128}, 2);
+  size_t edges = 0, off = 0;
+  for (int x0 = 1; x0 < 96; x0 += 5) {
+    const PixelRect region{x0, 40, x0 + 64, 70};
+    const EdgeMap part(scene, camera, region, 2);
+    for (int y = region.y0; y < region.y1; ++y)
+      for (int x = region.x0; x < region.x1; ++x) {
+        edges += whole.has_surface_edge(x, y) ? 1 : 0;
+        off += part.has_surface_edge(x, y) != whole.has_surface_edge(x, y) ? 1 : 0;
+        off += part.has_light_edge(x, y) != whole.has_light_edge(x, y) ? 1 : 0;
+      }
+  }
+  CHECK(edges > 100);
+  CHECK(off == 0);
 }
