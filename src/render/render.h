@@ -49,7 +49,8 @@ struct RenderOptions {
   const Preparation* preparation = nullptr;
   CellStore* cells = nullptr;  // certified: kept from before, and kept for later; may be null
   Preview* preview = nullptr;  // gets what is finished, tile by tile; may be null
-  Indirect indirect = Indirect::automatic;
+  // automatic: cells, or paths where these take less.
+  Indirect indirect = Indirect::cells;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera
   bool has_crop = false;

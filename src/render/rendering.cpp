@@ -31,12 +31,19 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       work_(size_t(thread_count(options.threads))),
       report_(progress),
       stop_(stop) {
-  refining_.max_spp = most_viewing_rays(options);
+  const PixelSampling sampling = integrator.sampling();
+  refining_.first_spp = std::max(options.spp, sampling.first);
+  refining_.max_spp = std::max(most_viewing_rays(options), sampling.most);
   // By as many rays as a pixel may come to: what a footprint takes from beside a narrow surface no
   // further ray mends.
-  for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, refining_.max_spp));
-  if (refining_.max_spp > options.spp) {
+  for (Work& w : work_)
+    w.rays.cone = camera.cone(std::max(options.spp, most_viewing_rays(options)));
+  if (refining_.max_spp > refining_.first_spp) {
     refining_.records.emplace(plan_.region);
+    if (sampling.is_by_noise()) {
+      refining_.options.error = float(sampling.error);
+      refining_.options.is_everywhere = refining_.options.is_noise = true;
+    }
     refining_.can_glance = integrator.can_glance();
     if (refining_.can_glance) {
       film_.expect_glances();
@@ -45,16 +52,16 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       refining_.options.most_even = 6;
     }
   }
-  const int passes = refining_.can_glance ? 1 : passes_of(refining_.max_spp - options.spp);
-  progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(options.spp) + passes);
+  const int passes = refines_at_once() ? 1 : passes_of(refining_.max_spp - refining_.first_spp);
+  progress_.tiles_in_all = plan_.tiles.size() * size_t(passes_of(refining_.first_spp) + passes);
 }
 
 bool Rendering::run() {
   const bool wants_typical = options_.method.row().wants_typical;
   const auto typical = wants_typical ? float(typical_luminance()) : 0;
   for (Work& w : work_) w.radiance.typical = typical;
-  for (int first = 0; first < options_.spp && !was_stopped_; first += samples_per_batch) {
-    const auto count = uint32_t(std::min(samples_per_batch, options_.spp - first));
+  for (int first = 0; first < refining_.first_spp && !was_stopped_; first += samples_per_batch) {
+    const auto count = uint32_t(std::min(samples_per_batch, refining_.first_spp - first));
     pass([&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) add_rays(p, count, w);
     });
@@ -155,11 +162,9 @@ void Rendering::refine() {
   const PixelRecords& records = *refining_.records;
   const FurtherRays wanted = further_rays(typical);
   refining_.has_begun = true;
-  if (refining_.can_glance) {
-    glance(wanted.glances);
-    return refine(wanted.samples);
-  }
-  for (int first = options_.spp; first < refining_.max_spp && !was_stopped_;
+  if (refining_.can_glance) glance(wanted.glances);
+  if (refines_at_once()) return refine(wanted.samples);
+  for (int first = refining_.first_spp; first < refining_.max_spp && !was_stopped_;
        first += samples_per_batch) {
     pass([&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) {
@@ -199,7 +204,7 @@ void Rendering::refine(const PixelRect& tile, const std::vector<int>& wanted, Wo
   if (!w.scratch) w.scratch = integrator_.make_scratch();
   clear();
   for (const Pixel2& p : pixels_in_order(tile)) {
-    int left = wanted[refining_.records->index(p.x, p.y)] - options_.spp;
+    int left = wanted[refining_.records->index(p.x, p.y)] - refining_.first_spp;
     while (left > 0 && !stop_.load(std::memory_order_relaxed)) {
       const int count = std::min(left, int(rays_at_a_time - w.rays.size()));
       add_rays(p, uint32_t(count), w);
@@ -216,7 +221,7 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
   const RefinementView view{film_, records, edges, typical};
   FurtherRays wanted;
-  wanted.samples.assign(records.records.size(), options_.spp);
+  wanted.samples.assign(records.records.size(), refining_.first_spp);
   wanted.glances.assign(records.records.size(), 0);
   const PixelRect& r = plan_.inner;
   parallel_for(size_t(r.height()), options_.threads, [&](size_t row) {
@@ -224,7 +229,7 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
     for (int x = r.x0; x < r.x1; ++x) {
       const size_t i = records.index(x, y);
       if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
-      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, options_.spp,
+      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, refining_.first_spp,
                                          refining_.max_spp, refining_.options);
     }
   });

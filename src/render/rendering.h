@@ -49,7 +49,7 @@ class Rendering {
   };
   // What refinement knows; empty where pixels get no further rays.
   struct Refining {
-    int max_spp = 0;
+    int first_spp = 0, max_spp = 0;
     RefinementOptions options;
     std::optional<PixelRecords> records;
     std::optional<double> typical;  // luminance
@@ -77,6 +77,8 @@ class Rendering {
   FurtherRays further_rays(double typical) const;
   void glance(const std::vector<int>& wanted);
   void glance(const PixelRect& tile, const std::vector<int>& wanted, Work& w);
+  // Not compared with neighbours' patterns, which come pass by pass.
+  bool refines_at_once() const { return refining_.can_glance || refining_.options.is_noise; }
   double typical_luminance();  // looked at once
   double mean_luminance() const;
   void tell_progress(const PixelRect& tile);
