@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "integrate/bintree_direct.h"
@@ -37,7 +38,7 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
 
 // By cells, a picture errs by half of what is asked of it, or less; so it should by paths.
 double error_by_paths(double asked) {
-  return 0.5 * asked;
+  return 0.75 * asked;
 }
 int most_by_paths(const MethodSettings& s) {
   constexpr int most = 1 << 14;
