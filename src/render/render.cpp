@@ -156,6 +156,7 @@ RenderResult render(const PreparedScene& scene, const Camera& camera, const Rend
       make_integrator(scene, options.method, settings, preparation, &cells);
   if (!integrator) return nothing_rendered(window, options, result);
   result.statistics.cells = cells.statistics;
+  result.statistics.is_by_paths = integrator->sampling().is_by_noise();
   Rendering rendering(scene, viewing, *integrator, options, plan, of_tiles, stop);
   result.is_complete = rendering.run();
   result.layers = rendering.layers();

@@ -86,6 +86,7 @@ struct RenderStatistics {
   double preprocess_seconds = 0;  // of the preparation, whoever made it
   double render_seconds = 0;      // of what came after
   CellStatistics cells;           // none where the method makes none
+  bool is_by_paths = false;       // certified: paths took the place of cells
 };
 
 // layers[0] is the picture; then the AOVs in the order asked for. Where a stop was requested,
