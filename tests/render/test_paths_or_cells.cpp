@@ -71,12 +71,12 @@ TEST_CASE("objects in the open: by paths, within the error asked, and as it is t
   for (size_t i = 0; i < 2; ++i) {
     RenderOptions path = o;
     path.method = Method::path;
-    path.spp = path.max_spp = 512;
+    path.spp = path.max_spp = 256;
     path.seed = 10 + i;
     halves[i] = render_now(scene, above, path).layers[0].image;
   }
   o.aovs = {Aov::error};
-  for (const double asked : {0.1, 0.03}) {
+  for (const double asked : {0.1, 0.05}) {
     CAPTURE(asked);
     o.error = asked;
     const RenderResult r = render_now(scene, above, o);
