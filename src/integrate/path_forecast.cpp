@@ -18,7 +18,7 @@ namespace {
 constexpr uint32_t pixels_looked_at = 2048;
 // Measured (docs/cells.md): the least that cells take for a picture, in rays of paths, for each
 // pixel, and for the rays that look for cells.
-constexpr double rays_of_pixel = 80, rays_of_search = 4e5;
+constexpr double rays_of_pixel = 80, rays_of_search = 1.5e5;
 // First rays of a pixel tell of its noise, and more than these few are needed for that.
 constexpr int least_first = 8, most_first = 64;
 
