@@ -105,6 +105,7 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result, 
                   {"preprocess_cpu", t.preprocess_cpu},
                   {"render_cpu", t.render_cpu},
                   {"total_cpu", cpu_seconds()}};
+  if (s.is_by_paths) j["by_paths"] = true;
   if (s.cells.cells > 0)
     j["cells"] = {{"count", s.cells.cells},
                   {"size", s.cells.size},

@@ -71,7 +71,7 @@ class Builder {
         store_(store) {}
 
   void ask(const CellPilot& pilot);
-  // False once stopped.
+  // False once stopped, or where cells are too many.
   bool make_rows(const std::function<void(double)>& progress);
   std::unique_ptr<Cells> finish(const DirectLight& direct, Clock::time_point start);
 
@@ -303,6 +303,7 @@ std::vector<CellTask> Builder::further_tasks() {
 }
 
 bool Builder::make_rows(const std::function<void(double)>& progress) {
+  if (double(map_->size()) > options_.most_cells) return false;
   for (bool is_further : {false, true}) {
     for (int round = 0; round < most_rounds; ++round) {
       std::vector<CellTask> tasks;
@@ -311,7 +312,7 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
       else
         for (const uint32_t c : cells_to_resolve()) add_first_tasks(c, 0, first_rays(c), tasks);
       if (tasks.empty()) break;
-      if (!run(tasks)) return false;
+      if (!run(tasks) || double(map_->size()) > options_.most_cells) return false;
       ++statistics_.rounds;
       if (progress) progress(1 - 1 / (1.0 + 0.5 * statistics_.rounds));
     }

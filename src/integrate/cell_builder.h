@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -26,11 +27,14 @@ struct CellBuilderOptions {
   uint64_t seed = 0;
   double direct_error = 0;  // asked of the light straight from sources
   double error = 0.01;      // asked of the picture
+  // None are made where there would be more than this.
+  double most_cells = std::numeric_limits<double>::infinity();
 };
 
 // direct: light straight from sources. store: what is kept from before, or nothing yet; left with
 // what there is now (empty once stopped), and may be null. Cells that have been kept serve as they
-// are; only what the pilot asks for beyond them is made. Null once `stop` is set. progress: 0 to 1;
+// are; only what the pilot asks for beyond them is made. Null once `stop` is set, or
+// where there would be too many. progress: 0 to 1;
 // may be null.
 std::unique_ptr<Cells> make_cells(const PreparedScene& scene, const DirectLight& direct,
                                   const CellPilot& pilot, const CellBuilderOptions& options,

@@ -8,15 +8,24 @@ namespace troffer {
 
 namespace {
 
-// Gather rays from what a viewing ray hits, of which a pixel has about four.
-constexpr uint32_t least_rays = 4, most_rays = 64;
-constexpr float usual_hits = 4;
+// Gather rays from what a viewing ray hits, and from what a further one of its pixel does.
+constexpr uint32_t least_rays = 4, most_rays = 64, most_further_rays = 16;
+// Viewing rays that a pixel has at least.
+constexpr uint32_t first_samples = 4;
 
-// As many as the pixel wants, in powers of two.
-uint32_t rays_of_hit(float wanted) {
-  uint32_t n = least_rays;
-  while (n < most_rays && float(n) * usual_hits < wanted) n *= 2;
-  return n;
+// As many as the pixel wants, in powers of two, if it has no other samples than its first. Where it
+// has further ones, n in all, these want fewer: with wanted / (2 s + 1) from sample s the sum of
+// 1 / rays is n² / wanted for every n, and the mean over samples, all of which count the same, has
+// the noise of `wanted` rays. But a hit takes as long as many rays, so they are not too few.
+uint32_t rays_of_hit(float wanted, uint32_t sample) {
+  const auto as_wanted = [&](float hits, uint32_t most) {
+    uint32_t n = least_rays;
+    while (n < most && float(n) * hits < wanted) n *= 2;
+    return n;
+  };
+  if (sample < first_samples) return as_wanted(first_samples, most_rays);
+  return std::max(as_wanted(first_samples, most_further_rays),
+                  as_wanted(float(2 * sample + 1), most_rays));
 }
 
 }  // namespace
@@ -96,12 +105,14 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       }
       records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
     }
-    const uint32_t rays = rays_of_hit(fitted.rays);
+    const uint32_t rays = rays_of_hit(fitted.rays, at.sample);
+    // Numbers of a pixel's first samples follow each other.
+    const uint32_t first = at.sample * (at.sample < first_samples ? rays : most_rays);
     for (uint32_t k = 0; k < rays; ++k) {
       Walk walk = at;
       walk.throughput = Rgb{1};
       walk.index = uint32_t(s.weights.size());
-      walk.sample = at.sample * rays + k;
+      walk.sample = first + k;
       set_out(hit, direction_number(walk), walk);
       const Vec3 wi = v.frame.to_local(walk.ray.direction);
       s.weights.push_back(

@@ -16,9 +16,6 @@ constexpr uint32_t longest_walk = 24;
 constexpr uint32_t from_matte = 1;
 // nor what image i shines on it: first_image + i, from there by way of its mirror.
 constexpr uint32_t first_image = 2;
-// Width of what a gather's ray stands for, per metre: some 60 rays share a hemisphere, each .3
-// wide; narrower, so that images of other parts of a surface do not come in.
-constexpr float gather_spread = 0.1f;
 
 }  // namespace
 
@@ -50,7 +47,9 @@ void set_out(const CellHit& from, const Vec2& number, Walk& walk) {
   walk.last_normal = from.horizon;
   walk.last_both_sides = false;
   walk.last_place = from_matte;
-  walk.cone = {0, gather_spread};
+  // Texels as they are, as paths see them: a mean over what the ray stands for would be one over
+  // other parts of an image, too, and over what no surface shows.
+  walk.cone = {};
   ++walk.vertex;
   ++walk.scatterings;
 }

@@ -13,6 +13,15 @@ struct IntegratorScratch {
   virtual ~IntegratorScratch() = default;
 };
 
+// How the pixels of a picture are to be sampled by an integrator whose viewing rays cost little and
+// differ much; nothing of it: as the method's are.
+struct PixelSampling {
+  int first = 0;     // viewing rays of a pixel by which its noise is judged
+  int most = 0;      // … in all, wherever that is noisier than
+  double error = 0;  // … this (allowed_error())
+  bool is_by_noise() const { return most > 0; }
+};
+
 // One virtual call per batch, never per ray. Immutable: any number of threads may call radiance,
 // each with a scratch of its own. The result depends on the rays, streams and samples alone, not
 // on what a scratch was used for before; and not on how rays are cut into batches, unless a method
@@ -24,6 +33,7 @@ class Integrator {
   // Adds to `out`, which has been reset to rays.size().
   virtual void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                         Counters& counters) const = 0;
+  virtual PixelSampling sampling() const { return {}; }
   // Whether there is anything known of radiance before light is sampled (KnownRadiance).
   virtual bool can_glance() const { return false; }
   // Adds that to out.known, of size rays.size(), and nothing else.

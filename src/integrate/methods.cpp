@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "integrate/bintree_direct.h"
@@ -12,6 +13,7 @@
 #include "integrate/fixed_direct.h"
 #include "integrate/imaged_direct.h"
 #include "integrate/path.h"
+#include "integrate/path_forecast.h"
 #include "integrate/radiosity_indirect.h"
 #include "integrate/staged_direct.h"
 #include "integrate/wave_integrator.h"
@@ -34,6 +36,15 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
   return s;
 }
 
+// By cells, a picture errs by half of what is asked of it, or less; so it should by paths.
+double error_by_paths(double asked) {
+  return 0.75 * asked;
+}
+int most_by_paths(const MethodSettings& s) {
+  constexpr int most = 1 << 14;
+  return s.most_viewing_rays > 0 ? s.most_viewing_rays : most;
+}
+
 // What neighbours share errs alike in many pixels: it is seen as stains where as much noise of
 // single pixels is not. So light that is gathered errs by less than is asked, down to 1 %.
 double error_of_gather(double asked) {
@@ -41,17 +52,17 @@ double error_of_gather(double asked) {
   return std::sqrt(asked * std::min(asked, as_asked));
 }
 
-std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in,
-                                                   const DirectLight& direct) {
+std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in, const DirectLight& direct,
+                                                   double most_cells) {
   TROFFER_CHECK(in.cells != nullptr);
   const auto part = [&](double first, double last) -> std::function<void(double)> {
     if (!in.cells->progress) return nullptr;
     return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
   };
-  std::unique_ptr<Cells> cells =
-      make_cells(in.scene, direct, in.cells->pilot,
-                 {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error},
-                 in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
+  std::unique_ptr<Cells> cells = make_cells(
+      in.scene, direct, in.cells->pilot,
+      {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error, most_cells},
+      in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
   std::unique_ptr<GatherRecords> records;
@@ -90,7 +101,31 @@ std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
   return std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
 }
 
+// What paths would take for the picture, where they may take the place of cells.
+std::optional<PathForecast> forecast(const MethodInput& in) {
+  const CellInput& cells = *in.cells;
+  if (in.settings.indirect != Indirect::automatic || cells.view == nullptr ||
+      cells.store != nullptr)
+    return std::nullopt;
+  const int most = most_by_paths(in.settings);
+  const PathForecast f = forecast_paths(in.scene, *cells.view, error_by_paths(in.settings.error),
+                                        most, cells.seed, in.cells->counters);
+  // Where few rays are allowed, hardly any pixel may want more than that.
+  if (4 * f.viewing_rays > most) return std::nullopt;
+  return f;
+}
+
+std::unique_ptr<Integrator> make_paths(const MethodInput& in, const PathForecast& forecast) {
+  return std::make_unique<PathIntegrator>(
+      in.scene, PathOptions{in.settings.depth, false,
+                            sampling_by_paths(forecast, error_by_paths(in.settings.error),
+                                              most_by_paths(in.settings))});
+}
+
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
+  std::optional<PathForecast> paths;
+  if (needs_cells(Method::certified, in.settings.indirect)) paths = forecast(in);
+  if (paths && paths->rays_for_cells < 0) return make_paths(in, *paths);
   const CertifiedSettings settings =
       certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
   const std::shared_ptr<const Occluders> occluders = occluders_for(in);
@@ -101,8 +136,10 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
     std::unique_ptr<DirectLight> beyond =
         std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
     add_images(in, settings, direct, beyond);
-    indirect = make_cells_indirect(in, *beyond);
-    if (!indirect) return nullptr;
+    constexpr double any = std::numeric_limits<double>::infinity();
+    const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : any;
+    indirect = make_cells_indirect(in, *beyond, most_cells);
+    if (!indirect) return paths && !in.cells->stop.load() ? make_paths(in, *paths) : nullptr;
     constexpr auto all = std::numeric_limits<uint32_t>::max();
     const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
     return std::make_unique<WaveIntegrator>(

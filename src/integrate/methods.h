@@ -66,8 +66,10 @@ struct MethodSettings {
   double error = 0.01;        // certified: see certified_settings
   int viewing_rays = 1;       // certified: of a pixel, or estimates of a measuring point
   TreeSamplingOptions trees;  // kj92
-  int depth = -1;             // path: most bounces; -1 = unlimited
-  int threads = 0;            // for what is built; 0 = all cores
+  // certified: of a pixel, all in all, where they are not left to the method; 0: they are
+  int most_viewing_rays = 0;
+  int depth = -1;   // path: most bounces; -1 = unlimited
+  int threads = 0;  // for what is built; 0 = all cores
 
   bool is_direct_only() const { return indirect == Indirect::none; }
 };

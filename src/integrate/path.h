@@ -15,6 +15,7 @@ namespace troffer {
 struct PathOptions {
   int depth = -1;               // most scatterings (0 emission, 1 direct light); -1 = no limit
   bool is_direct_only = false;  // only light that is scattered once, not counting mirrors and glass
+  PixelSampling sampling = {};
 };
 
 class PathIntegrator final : public Integrator {
@@ -23,6 +24,7 @@ class PathIntegrator final : public Integrator {
       : scene_(scene), options_(options), lights_(scene, LightTreeDirect::Competition::all) {}
 
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
+  PixelSampling sampling() const override { return options_.sampling; }
   void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                 Counters& counters) const override;
   void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch, RadianceBatch& out,

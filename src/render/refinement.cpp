@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "integrate/allowed_error.h"
 
 namespace troffer {
 
@@ -83,7 +84,8 @@ struct Surroundings {
   double low = 0, high = 0;    // … of them, or of what is not known of them
   double sample_variance = 0;  // the largest among theirs, of one sample, likewise
   double usual_variance = 0;   // … and the middle one
-  bool has_contrast = false;   // between neighbours at opposite sides
+  double mean_variance = 0;
+  bool has_contrast = false;  // between neighbours at opposite sides
   // A neighbour's rays have met different surfaces where no corner of it shows an edge.
   bool has_thin_things = false;
 };
@@ -123,6 +125,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
       const Varying e = of(x + dx, y + dy);
       s.low = count > 0 ? std::min(s.low, e.mean) : e.mean;
       s.high = count > 0 ? std::max(s.high, e.mean) : e.mean;
+      s.mean_variance += e.variance;
       s.mean += v.film.estimate(x + dx, y + dy).luminance;
       size_t at = count;  // they are sorted
       for (; at > 0 && variances[at - 1] > e.variance; --at) variances[at] = variances[at - 1];
@@ -136,21 +139,18 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
     }
   if (count == 0) return s;
   s.mean /= double(count);
+  s.mean_variance /= double(count);
   s.sample_variance = variances[count - 1];
   s.usual_variance = variances[count / 2];
   return s;
 }
 
-// Of the luminance of a pixel amid such a mean. Where all of the picture is refined, what is bright
-// is so for an error between that of its own luminance and that of the picture's, at most so many
-// times less than its own.
+// Of the luminance of a pixel amid such a mean.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
-                     double most_times_less = 4) {
-  const double bright = std::max(mean, typical);
-  return double(options.error) *
-         (options.is_everywhere
-              ? std::sqrt(bright * std::max(typical, bright / sqr(most_times_less)))
-              : bright);
+                     double most_times_less = usual_times_less) {
+  return options.is_everywhere
+             ? troffer::allowed_error(double(options.error), mean, typical, most_times_less)
+             : double(options.error) * std::max(mean, typical);
 }
 
 }  // namespace
@@ -177,7 +177,7 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
 
 int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first, int most,
                    const RefinementOptions& options) {
-  if (v.edges.has_light_edge(x, y) && !has_glances) return most;
+  if (v.edges.has_light_edge(x, y) && !has_glances && !options.is_noise) return most;
   const Surroundings s = look_around(v, x, y, options, [&](int px, int py) -> Varying {
     const PixelEstimate e = v.film.estimate(px, py);
     if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples};
@@ -187,8 +187,9 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
   if (!is_uneven && !options.is_everywhere) return first;
   double variance = is_uneven ? s.sample_variance : s.usual_variance;
+  if (options.is_noise) variance = s.mean_variance;
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
-  if (has_edge) variance = std::max(variance, sqr(s.high - s.low) / 4);
+  if (has_edge && !options.is_noise) variance = std::max(variance, sqr(s.high - s.low) / 4);
   const double allowed = allowed_error(s.mean, v.typical, options);
   // As of independent samples. (Nothing to see by: no light is allowed, none varies.)
   double wanted = variance > 0 ? variance / sqr(allowed) : 0;

@@ -31,6 +31,8 @@ struct RefinementOptions {
   float error = 0.01f;
   // Pixels get further rays where no edge is to be seen, too, if their neighbours vary.
   bool is_everywhere = false;
+  // What neighbours vary by is noise, much the same in all of them: its mean counts.
+  bool is_noise = false;
   // More rays than this squared are in proportion to the pixel's standard deviation, not to its
   // variance: so many rays leave the picture the least error. 0: all by the variance.
   float most_even = 0;

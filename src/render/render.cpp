@@ -206,6 +206,7 @@ MethodSettings method_settings(const RenderOptions& o) {
   s.shadow_rays = o.shadow_rays;
   s.error = o.error;
   s.viewing_rays = o.spp;
+  s.most_viewing_rays = o.max_spp > 0 ? std::max(o.max_spp, o.spp) : 0;
   s.trees = o.kj92.sampling;
   s.depth = o.depth;
   s.threads = o.threads;

@@ -58,7 +58,8 @@ struct RenderOptions {
   double error_limit = 0;
   Checkpoint* checkpoint = nullptr;  // is written, and gone on from; may be null
   int part = 1, parts = 1;           // the part-th of so many shares of the picture, from 1
-  Indirect indirect = Indirect::automatic;
+  // automatic: cells, or paths where these take less.
+  Indirect indirect = Indirect::cells;
   int depth = -1;             // path: most bounces; -1 = unlimited
   int width = 0, height = 0;  // 0 = by the camera
   bool has_crop = false;
@@ -104,6 +105,7 @@ struct RenderStatistics {
   double preprocess_seconds = 0;  // of the preparation, whoever made it
   double render_seconds = 0;      // of what came after
   CellStatistics cells;           // none where the method makes none
+  bool is_by_paths = false;       // certified: paths took the place of cells
 };
 
 // complete: all that was asked for; good_enough: RenderOptions::error_limit is kept; out_of_time:

@@ -33,22 +33,32 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       book_(plan_.tiles.size(), work_.size(), options.checkpoint != nullptr),
       report_(progress),
       stop_(stop) {
-  refining_.most = most_viewing_rays(options);
-  steps_.first = uint32_t(passes_of(options.spp));
+  const PixelSampling sampling = integrator.sampling();
+  const MostViewingRays most = most_viewing_rays(options);
+  refining_.first_spp = std::max(options.spp, sampling.first);
+  refining_.most = most;
+  if (sampling.is_by_noise())
+    refining_.most.in_pixel = refining_.most.in_mean = std::max(most.in_pixel, sampling.most);
+  steps_.first = uint32_t(passes_of(refining_.first_spp));
   // By as many rays as a pixel may come to: what a footprint takes from beside a narrow surface no
   // further ray mends.
-  for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, refining_.most.usual));
-  if (refining_.most.in_pixel > options.spp) {
+  for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, most.usual));
+  if (refining_.most.in_pixel > refining_.first_spp) {
     refining_.records.emplace(plan_.region);
+    if (sampling.is_by_noise()) {
+      refining_.options.error = float(sampling.error);
+      refining_.options.is_everywhere = refining_.options.is_noise = true;
+    }
     refining_.can_glance = integrator.can_glance();
-    steps_.further = uint32_t(passes_of(refining_.most.in_pixel - options.spp));
+    steps_.further = uint32_t(passes_of(refining_.most.in_pixel - refining_.first_spp));
     if (refining_.can_glance) {
       film_.expect_glances();
       refining_.options.error = float(options.error);
       refining_.options.is_everywhere = true;
       refining_.options.most_even = 6;
-      steps_.glances = steps_.further = 1;
+      steps_.glances = 1;
     }
+    if (refines_at_once()) steps_.further = 1;
   }
   progress_.gaps = size_t(plan_.window.width()) * size_t(plan_.window.height());
   if (options.checkpoint != nullptr && !options.checkpoint->chunks().empty()) restore();
@@ -67,7 +77,7 @@ RenderEnd Rendering::run() {
   RenderEnd end = RenderEnd::complete;
   for (uint32_t pass = 0; pass < steps_.first && end == RenderEnd::complete; ++pass) {
     const int first = int(pass) * samples_per_batch;
-    const auto count = uint32_t(std::min(samples_per_batch, options_.spp - first));
+    const auto count = uint32_t(std::min(samples_per_batch, refining_.first_spp - first));
     step(pass, all_tiles(), [&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) add_rays(p, count, w);
       return trace_all(w);

@@ -63,6 +63,7 @@ class Rendering {
   };
   // What refinement knows; empty where pixels get no further rays.
   struct Refining {
+    int first_spp = 0;
     MostViewingRays most;
     RefinementOptions options;
     std::optional<PixelRecords> records;
@@ -103,6 +104,8 @@ class Rendering {
   FurtherRays further_rays(double typical) const;
   void keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const;
   bool glance(const PixelRect& tile, Work& w);
+  // Not compared with neighbours' patterns, which come pass by pass.
+  bool refines_at_once() const { return refining_.can_glance || refining_.options.is_noise; }
   double typical_luminance();  // looked at once
   double mean_luminance(const PixelRect& window) const;
   void tell_progress(size_t tile, uint32_t step);

@@ -23,13 +23,13 @@ RenderEnd Rendering::refine() {
     refining_.wanted =
         further_rays(is_same_in_crops ? typical_luminance() : mean_luminance(plan_.asked));
   refining_.has_begun = true;
-  return refining_.can_glance ? refine_by_tiles() : refine_by_passes();
+  return refines_at_once() ? refine_by_tiles() : refine_by_passes();
 }
 
 RenderEnd Rendering::refine_by_passes() {
   const PixelRecords& records = *refining_.records;
   for (uint32_t pass = 0; pass < steps_.further; ++pass) {
-    const int first = options_.spp + int(pass) * samples_per_batch;
+    const int first = refining_.first_spp + int(pass) * samples_per_batch;
     const uint32_t number = steps_.first + pass;
     step(number, all_tiles(), [&](const PixelRect& tile, Work& w) {
       for (const Pixel2& p : pixels_in_order(tile)) {
@@ -50,17 +50,17 @@ RenderEnd Rendering::refine_by_passes() {
 
 // All further rays of a tile at once: few pixels may get many.
 RenderEnd Rendering::refine_by_tiles() {
-  const uint32_t glances = steps_.first, further = glances + 1;
+  const uint32_t further = steps_.first + steps_.glances;
   const auto glance_at = [&](const PixelRect& tile, Work& w) { return glance(tile, w); };
   const auto refine_tile = [&](const PixelRect& tile, Work& w) { return refine(tile, w); };
-  step(glances, all_tiles(), glance_at);
+  if (steps_.glances > 0) step(steps_.first, all_tiles(), glance_at);
   const bool is_limited = options_.deadline != nullptr || options_.error_limit > 0;
   Tiles left = is_limited ? noisiest_first() : all_tiles();
   const size_t parts = options_.error_limit > 0 ? std::min(looks, left.size()) : 1;
   const size_t in_all = left.size();
   for (size_t part = 0; part < parts; ++part) {
     if (progress_.was_stopped) return RenderEnd::stopped;
-    if (is_good_enough(glances, left)) return RenderEnd::good_enough;
+    if (is_good_enough(further - 1, left)) return RenderEnd::good_enough;
     const auto end = std::ptrdiff_t(in_all * (part + 1) / parts - (in_all - left.size()));
     step(further, Tiles(left.begin(), left.begin() + end), refine_tile);
     left.erase(left.begin(), left.begin() + end);
@@ -93,7 +93,7 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
     w.pixels.clear();
   };
   for (const Pixel2& p : pixels_in_order(tile)) {
-    int left = refining_.wanted->samples[refining_.records->index(p.x, p.y)] - options_.spp;
+    int left = refining_.wanted->samples[refining_.records->index(p.x, p.y)] - refining_.first_spp;
     while (left > 0) {
       if (stop_.load(std::memory_order_relaxed)) {
         send();
@@ -115,7 +115,7 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
   const RefinementView view{film_, records, edges, typical};
   FurtherRays wanted;
-  wanted.samples.assign(records.records.size(), options_.spp);
+  wanted.samples.assign(records.records.size(), refining_.first_spp);
   wanted.glances.assign(records.records.size(), 0);
   const PixelRect& r = plan_.inner;
   parallel_for(size_t(r.height()), options_.threads, [&](size_t row) {
@@ -123,7 +123,7 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
     for (int x = r.x0; x < r.x1; ++x) {
       const size_t i = records.index(x, y);
       if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
-      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, options_.spp,
+      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, refining_.first_spp,
                                          refining_.most.in_pixel, refining_.options);
     }
   });

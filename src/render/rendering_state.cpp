@@ -84,7 +84,8 @@ bool Rendering::restore_wanted(ByteReader in) {
   FurtherRays wanted;
   for (size_t i = 0; i < pixels; ++i) {
     const auto w = in.next<WantedPixel>();
-    if (w.samples < uint32_t(options_.spp) || w.samples > uint32_t(refining_.most.in_pixel) ||
+    if (w.samples < uint32_t(refining_.first_spp) ||
+        w.samples > uint32_t(refining_.most.in_pixel) ||
         w.glances > (refining_.can_glance ? uint32_t(most_glances) : 0))
       return false;
     wanted.samples.push_back(int(w.samples));
@@ -96,16 +97,17 @@ bool Rendering::restore_wanted(ByteReader in) {
 
 // Rays that a pixel must have had after so many steps.
 bool Rendering::is_as_expected(uint32_t steps, int x, int y) const {
-  uint32_t samples = std::min(uint32_t(options_.spp), steps * samples_per_batch), glances = 0;
+  uint32_t samples = std::min(uint32_t(refining_.first_spp), steps * samples_per_batch),
+           glances = 0;
   if (steps > steps_.first) {
     const size_t i = refining_.records->index(x, y);
     const auto wanted = uint32_t(refining_.wanted->samples[i]);
     const uint32_t further = steps - steps_.first;
-    if (refining_.can_glance) {
+    if (refines_at_once()) {
       glances = uint32_t(refining_.wanted->glances[i]);
-      if (further > 1) samples = wanted;
+      if (further > steps_.glances) samples = wanted;
     } else {
-      samples = std::min(wanted, uint32_t(options_.spp) + further * samples_per_batch);
+      samples = std::min(wanted, uint32_t(refining_.first_spp) + further * samples_per_batch);
     }
   }
   return film_.estimate(x, y).samples == samples && film_.glances(x, y) == glances;

@@ -3,9 +3,12 @@
 
 #include <doctest/doctest.h>
 
+#include "base/random.h"
 #include "base/units.h"
 #include "support/light_scenes.h"
+#include "support/scenes.h"
 #include "support/surfaceless_lights.h"
+#include "support/textures.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -40,4 +43,36 @@ TEST_CASE("draws of sources bring coated surfaces all of their light") {
     const Rgb sum = scratch.light.direct[0] + scratch.light.indirect[0];
     CHECK(double(luminance(sum)) / draws * pi == doctest::Approx(pi).epsilon(0.01));
   }
+}
+
+// Images hold what other surfaces show beside what this one does, or nothing. A floor of small
+// tiles, each of which shows the white middle of an image that is black around it.
+TEST_CASE("gather rays see no texels that their surface does not show") {
+  Scene s;
+  s.textures.push_back(grey_image(
+      64, 64, [](int x, int y) { return x >= 16 && x < 48 && y >= 16 && y < 48 ? 0.8f : 0.0f; }));
+  Material m;
+  m.base_color.value = Rgb{1};
+  m.base_color.texture = 0;
+  const uint32_t material = add_material(s, m);
+  for (int i = -20; i < 20; ++i)
+    for (int j = -20; j < 20; ++j) {
+      const float x = 0.1f * float(i), y = 0.1f * float(j);
+      add_quad(s, material,
+               {Vec3{x, y, 0}, {x + 0.1f, y, 0}, {x + 0.1f, y + 0.1f, 0}, {x, y + 0.1f, 0}});
+      s.meshes.back().uvs = {{0.3f, 0.3f}, {0.7f, 0.3f}, {0.7f, 0.7f}, {0.3f, 0.7f}};
+    }
+  const PreparedScene scene(std::move(s));
+  const GatherWalks walks(scene, nullptr);
+  GatherScratch scratch;
+  for (uint32_t k = 0; k < 256; ++k) {
+    Walk& walk = scratch.walks.emplace_back();
+    walk.index = walk.sample = k;
+    walks.leave({{0, 0, 1}, {0, 0, -1}, {0, 0, -1}, 1e-5f}, direction_number(walk), walk);
+  }
+  Counters counters;
+  walks.follow(256, Coherence::none, scratch, counters);
+  CHECK(scratch.arrivals.size() > 100);
+  for (const GatherArrival& a : scratch.arrivals)
+    CHECK(double(a.walk.throughput.g) == doctest::Approx(0.8).epsilon(0.001));
 }

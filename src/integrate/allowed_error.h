@@ -1,0 +1,20 @@
+// The error that a pixel may have, where all of a picture is made for one.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace troffer {
+
+// Of luminance, for `error` of a pixel of this luminance in a picture in which `typical` is usual.
+// What is dark may err by as much as what is usual; what is bright by an error between that of its
+// own luminance and that of the picture's, at most so many times less than its own.
+constexpr double usual_times_less = 4;
+inline double allowed_error(double error, double luminance, double typical,
+                            double most_times_less = usual_times_less) {
+  const double bright = std::max(luminance, typical);
+  return error *
+         std::sqrt(bright * std::max(typical, bright / (most_times_less * most_times_less)));
+}
+
+}  // namespace troffer

@@ -1,0 +1,105 @@
+#include "integrate/path_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "integrate/allowed_error.h"
+#include "integrate/path.h"
+#include "integrate/purposes.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr uint32_t pixels_looked_at = 2048;
+// Measured (docs/cells.md): the least that cells take for a picture, in rays of paths, for each
+// pixel, and for the rays that look for cells.
+constexpr double rays_of_pixel = 80, rays_of_search = 1.5e5;
+// First rays of a pixel tell of its noise, and more than these few are needed for that.
+constexpr int least_first = 8, most_first = 64;
+
+// Two paths through each of some pixels.
+ViewingRays pairs_of_rays(const PictureView& view, uint64_t seed) {
+  ViewingRays rays;
+  const uint64_t stream = hash_of(seed, uint64_t{0x7061'7468});
+  const auto width = float(view.image.width()), height = float(view.image.height());
+  for (uint32_t i = 0; i < pixels_looked_at; ++i) {
+    const SobolGroup where(stream, purpose_camera, i);
+    const Vec2 pixel = where.get2(0);
+    for (uint64_t k = 0; k < 2; ++k) {
+      rays.streams.push_back(hash_of(stream, uint64_t{i}, k));
+      rays.samples.push_back(0);
+      const Vec2 within = SobolGroup(rays.streams.back(), purpose_camera, 0).get2(0);
+      rays.rays.push_back(view.ray(std::floor(pixel.x * width) + within.x,
+                                   std::floor(pixel.y * height) + within.y));
+    }
+  }
+  return rays;
+}
+
+std::string name_of_ray(const void*, size_t i) {
+  return "path " + std::to_string(i) + " of a forecast";
+}
+
+// Luminances, as the paths bring them.
+std::vector<double> luminances(const PreparedScene& scene, const ViewingRays& rays,
+                               Counters& counters) {
+  const PathIntegrator paths(scene, {});
+  const std::unique_ptr<IntegratorScratch> scratch = paths.make_scratch();
+  RadianceBatch out;
+  out.reset(rays.size());
+  const CheckContext context(&rays, rays.size(), name_of_ray);
+  paths.radiance(rays, *scratch, out, counters);
+  std::vector<double> values;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Rgb l = out.direct[i] + out.indirect[i];
+    values.push_back(is_finite(l) ? double(luminance(l)) : 0);
+  }
+  return values;
+}
+
+// Mean but of the brightest twentieth: what shines.
+double typical_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.resize(values.size() - values.size() / 20);
+  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
+
+}  // namespace
+
+PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view, double error,
+                            int most, uint64_t seed, Counters& counters) {
+  Counters own;
+  const ViewingRays rays = pairs_of_rays(view, seed);
+  const std::vector<double> values = luminances(scene, rays, own);
+  counters += own;
+  const double typical = typical_of(values);
+  double wanted = 0;
+  for (size_t i = 0; i + 1 < values.size(); i += 2) {
+    const double variance = sqr(values[i] - values[i + 1]) / 2;
+    const double allowed = allowed_error(error, 0.5 * (values[i] + values[i + 1]), typical);
+    if (variance > 0) wanted += std::min(variance / sqr(allowed), double(most));
+  }
+  PathForecast f;
+  f.viewing_rays = std::max(wanted / pixels_looked_at, double(least_first));
+  const double pixels = double(view.image.width()) * double(view.image.height());
+  const auto traced = double(own.viewing_rays + own.extension_rays + own.shadow_rays);
+  f.rays = traced / double(rays.size()) * f.viewing_rays * pixels;
+  f.rays_for_cells = f.rays - rays_of_pixel * pixels - rays_of_search;
+  return f;
+}
+
+PixelSampling sampling_by_paths(const PathForecast& forecast, double error, int most) {
+  PixelSampling s;
+  s.first = least_first;
+  while (s.first < most_first && 4 * s.first < forecast.viewing_rays) s.first *= 2;
+  s.most = most;
+  s.error = error;
+  return s;
+}
+
+}  // namespace troffer
