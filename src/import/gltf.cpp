@@ -28,6 +28,7 @@ namespace {
 
 // Of all that is stored: about 3 GB of vertices and triangles.
 constexpr uint64_t max_triangles = 60'000'000;
+constexpr uint64_t cost_of_instance = 20;  // in triangles
 constexpr const char* lights_extension = "KHR_lights_punctual";
 
 class Importer {
@@ -110,15 +111,18 @@ class Importer {
       for (const GltfPrimitive& p : meshes_[*mesh].primitives) {
         placed += n * p.triangle_count();
         // Of what is shared there is one, which counts with each of them a little.
-        const bool is_one =
-            is_shared(p, *mesh, json) && MeshInstancer::is_worth(p.triangle_count());
-        stored += is_one ? n + p.triangle_count() / meshes_[*mesh].uses : n * p.triangle_count();
+        stored += is_shared(p, *mesh, json)
+                      ? n * cost_of_instance + p.triangle_count() / meshes_[*mesh].uses
+                      : n * p.triangle_count();
       }
       if (stored > max_triangles || placed > max_placed_triangles || instances > max_triangles)
-        json.fail("the scene has more than " + std::to_string(max_triangles) +
-                  " triangles, or more than " + std::to_string(max_placed_triangles) +
-                  " by instances");
+        fail_of_size(json);
     }
+  }
+
+  [[noreturn]] static void fail_of_size(const JsonNode& node) {
+    node.fail("the scene has more than " + std::to_string(max_triangles) +
+              " triangles, or more than " + std::to_string(max_placed_triangles) + " by instances");
   }
 
   void add_node(const GltfNode& node) {
@@ -147,15 +151,23 @@ class Importer {
     for (const Affine& instance : gltf_instances(json, buffers_)) {
       pose.world_from_mesh = node.world_from_node * instance;
       for (const GltfPrimitive& p : meshes_[*mesh].primitives)
-        if (!is_shared(p, *mesh, json) || !add_instance(p, pose, name))
+        if (!is_shared(p, *mesh, json)) {
           add_mesh(p, pose, name, node_name);
+        } else if (!add_instance(p, pose, name)) {
+          counts_.unshared += p.triangle_count();
+          if (counts_.unshared > max_triangles) fail_of_size(json);
+          add_mesh(p, pose, name, node_name);
+        }
     }
   }
 
-  // Whether it stands in several places, alike in all, and does not emit.
+  // Whether it stands in several places, alike in all, and does not emit: what is worth it is then
+  // stored once, but where a transform is next to singular.
   bool is_shared(const GltfPrimitive& p, uint32_t mesh, const JsonNode& node) {
     const bool is_bent = !p.targets.empty() || (!p.joints.empty() && node.find("skin"));
-    return meshes_[mesh].uses > 1 && !is_bent && materials_.get(p.material).emission.is_black();
+    const GltfMaterial& material = materials_.get(p.material);
+    return meshes_[mesh].uses > 1 && !is_bent && material.emission.is_black() &&
+           instancer_.is_worth(p.triangle_count(), material.material);
   }
 
   // False: it is to be copied.
@@ -193,8 +205,8 @@ class Importer {
     const bool is_emissive = !material.emission.is_black();
     // Counted whether it ends up with a source or not, so that a name depends on the file alone.
     const std::string light_name =
-        node_name.empty() ? "emitter" + std::to_string(emissive_count_) : node_name;
-    if (is_emissive) ++emissive_count_;
+        node_name.empty() ? "emitter" + std::to_string(counts_.emissive) : node_name;
+    if (is_emissive) ++counts_.emissive;
     if (mesh.triangles.empty()) return;
     scene_.meshes.push_back(std::move(mesh));
     if (is_emissive)
@@ -239,7 +251,10 @@ class Importer {
   std::vector<MeshUse> meshes_;
   GltfPoses poses_;
   GltfNodes nodes_;
-  size_t emissive_count_ = 0;
+  struct Counts {
+    size_t emissive = 0;
+    uint64_t unshared = 0;  // triangles that were copied though they are shared
+  } counts_;
 };
 
 }  // namespace

@@ -14,6 +14,9 @@ namespace troffer {
 
 namespace {
 
+// A ray that enters an instance pays for the way to its space, and an instance takes the memory of
+// some triangles: below, copies are no worse.
+constexpr size_t fewest_triangles = 64;
 // One tree over all triangles is faster than two levels: while copies stay below, they are made.
 constexpr size_t most_copied = 1 << 18;
 
@@ -45,8 +48,12 @@ std::string too_many_by_instances() {
          " triangles by instances";
 }
 
-bool MeshInstancer::wants(size_t triangles, uint32_t material) {
-  if (!is_worth(triangles) || may_be_thin_glass(scene_.materials[material])) return false;
+bool MeshInstancer::is_worth(size_t triangles, uint32_t material) const {
+  return triangles >= fewest_triangles && !may_be_thin_glass(scene_.materials[material]);
+}
+
+// Counts those that will be copied.
+bool MeshInstancer::wants(size_t triangles) {
   if (copied_triangles_ + triangles > most_copied) return true;
   copied_triangles_ += triangles;
   return false;
@@ -98,7 +105,7 @@ bool MeshInstancer::place(const Key& key, size_t triangles, const Affine& world_
   if (!is_instanceable(world_from_mesh)) return false;
   auto known = meshes_.find(key);
   if (known == meshes_.end()) {
-    if (!wants(triangles, key.material)) return false;
+    if (!is_worth(triangles, key.material) || !wants(triangles)) return false;
     Mesh mesh = make();
     if (mesh.triangles.empty()) return false;
     known = meshes_.emplace(key, store(std::move(mesh))).first;

@@ -40,14 +40,10 @@ class MeshInstancer {
   bool place(const Key& key, size_t triangles, const Affine& world_from_mesh,
              const std::string& name, const std::function<Mesh()>& make);
 
-  // Whether a mesh of so many triangles is ever shared.
-  static bool is_worth(size_t triangles) { return triangles >= fewest_triangles; }
+  // Whether a mesh of so many triangles and that material is ever shared.
+  bool is_worth(size_t triangles, uint32_t material) const;
 
  private:
-  // A ray that enters an instance pays for the way to its space, and an instance takes the memory
-  // of some triangles: below, copies are no worse.
-  static constexpr size_t fewest_triangles = 64;
-
   // A mesh that is stored, and what says that its triangles keep an area in the world.
   struct Stored {
     uint32_t number = 0;      // of Scene::instanced_meshes
@@ -55,7 +51,7 @@ class MeshInstancer {
     double least_height = 0;  // of a triangle, above its longest edge
     double longest_edge = 0;
   };
-  bool wants(size_t triangles, uint32_t material);
+  bool wants(size_t triangles);
   Stored store(Mesh mesh);
   bool is_good(const Stored& stored, const Affine& world_from_mesh) const;
 

@@ -91,7 +91,8 @@ bool GeometryPlacer::add_instance(const AnchoredMesh& local, const Affine& world
                                   bool is_turned, const PlacedLook& look) {
   if (look.shape == nullptr || (look.emission && !look.emission->radiance.is_black())) return false;
   const size_t triangles = local.mesh.triangles.size();
-  const bool is_winding_turned = is_turned != world_from_local.swaps_handedness();
+  const bool is_mirrored = local.mesh.normals.empty() && world_from_local.swaps_handedness();
+  const bool is_winding_turned = is_turned != is_mirrored;
   Affine t = world_from_local * Affine::translate(local.anchor);
   t.translation -= scene_.origin;
   const auto make = [&] {

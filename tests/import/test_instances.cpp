@@ -127,7 +127,7 @@ TEST_CASE("what cannot be an instance is copied, what stands once is a mesh") {
   for (const Vec3& p : flat.meshes[0].positions) CHECK(p.z == 0);
 
   // So small that some triangles lose their area to rounding: those are left out.
-  const Scene tiny = with(one + one + "Translate 100 0 0\nScale 1e-4 1e-4 1e-4\n" + one);
+  const Scene tiny = with(one + one + "Translate 100 100 100\nScale 1e-4 1e-4 1e-4\n" + one);
   CHECK(tiny.instances.size() == 2);
   CHECK(tiny.meshes.size() <= 1);
   CHECK(tiny.warnings.total() > 0);
