@@ -13,8 +13,8 @@ import plants
 
 # plants, triangles of each, whether copies are tried too
 CASES = [(10, 100_000, True), (100, 100_000, True), (1000, 100_000, False),
-         (10_000, 250, True), (100_000, 64, True)]
-METHODS = [("path", "--method path --spp 4"), ("certified", "--error .05")]
+         (2000, 1000, True), (10_000, 250, True), (100_000, 70, True)]
+METHODS = [("path", "--method path --spp 8 --size 256x256"), ("certified", "--error .1 --size 48x36")]
 HEADER = ["plants", "triangles each", "stored as", "method", "import s", "structures s", "rest s",
           "processor s", "memory MB", "mean"]
 
@@ -24,7 +24,7 @@ def shorter(cases, is_quick):
 
 
 def run(troffer, scene, options, out):
-    words = [troffer, "render", scene, *options.split(), "--size", "256x256", "--quiet", "-o",
+    words = [troffer, "render", scene, *options.split(), "--quiet", "-o",
              f"{out}/picture.pfm", "--stats", f"{out}/stats.json"]
     subprocess.run(words, stdin=subprocess.DEVNULL, check=True)
     with open(f"{out}/stats.json") as file:
@@ -48,10 +48,10 @@ def page(rows, minutes):
     lines = ["# What instances cost", "",
              "Made by `bench/instances --copy docs/results-growth`; nothing here is typed by hand. A hall "
              "of 20 × 15 × 4 m under 12 lamps, full of plants (`bench/growth_tables/plants.py`), each the "
-             "same bush of curved leaves, turned, of another size, every fifth mirrored; 256 × 256 "
-             f"pixels, {os.cpu_count()} threads. *Instances*: `ObjectInstance`s; *copies*: as many shapes, "
-             "each read from the same file. Of 100,000 plants the meshes are as small as is ever shared, and "
-             "the first 2¹⁸ triangles are copies in any case. Seconds by the clock: *import* reads files, "
+             "same bush of curved leaves, turned, of another size, every fifth mirrored; "
+             f"{os.cpu_count()} threads, " + ", ".join(f"`{words}`" for _, words in METHODS) + ". *Instances*: "
+             "`ObjectInstance`s, of which the first are copied ([formats.md](../formats.md#instances)); *copies*: "
+             "as many shapes, each read from the same file. Seconds by the clock: *import* reads files, "
              "*structures* builds what rays need, *rest* is all else; *processor*: of all threads, all "
              "phases. *Memory*: the most at any time. *Mean*: of the picture.", "",
              "| " + " | ".join(HEADER) + " |", "|---" * len(HEADER) + "|"]

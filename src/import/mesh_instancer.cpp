@@ -15,10 +15,12 @@ namespace troffer {
 namespace {
 
 // A ray that enters an instance pays for the way to its space, and an instance takes the memory of
-// some triangles: below, copies are no worse.
-constexpr size_t fewest_triangles = 64;
-// One tree over all triangles is faster than two levels: while copies stay below, they are made.
-constexpr size_t most_copied = 1 << 18;
+// some triangles. Halls full of bushes, time of rays by instances over that by copies: 1.4 for
+// meshes of 70 triangles, 1.1 for 250, 0.8 for 1000. So the smallest are copied, small ones while
+// all copies take some hundred MB; one tree is no worse than two levels for what is small as a
+// whole.
+constexpr size_t fewest_triangles = 64, few_triangles = 512;
+constexpr size_t most_copied = 1 << 18, most_copied_of_few = 1 << 21;
 
 void drop_unused_vertices(Mesh& mesh) {
   std::vector<uint32_t> number(mesh.positions.size(), 0);
@@ -54,7 +56,8 @@ bool MeshInstancer::is_worth(size_t triangles, uint32_t material) const {
 
 // Counts those that will be copied.
 bool MeshInstancer::wants(size_t triangles) {
-  if (copied_triangles_ + triangles > most_copied) return true;
+  const size_t most = triangles < few_triangles ? most_copied_of_few : most_copied;
+  if (copied_triangles_ + triangles > most) return true;
   copied_triangles_ += triangles;
   return false;
 }
