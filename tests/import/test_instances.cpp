@@ -85,7 +85,8 @@ TEST_CASE("pbrt's objects become instances, which stand and face as copies do") 
   const TempFolder folder;
   folder.write("ball.ply", ply_of(large_ball(), true));
   folder.write("bare.ply", ply_of(large_ball(), false));
-  for (const std::string turned : {"", "ReverseOrientation\n"}) {
+  for (const auto& [turned, far] : {std::pair<std::string, std::string>{"", ""},
+                                    {"ReverseOrientation\n", "Translate 500000 0 0\n"}}) {
     const auto shape = [&](const std::string& file) {
       return turned + "Scale .5 -1 1\nShape \"plymesh\" \"string filename\" \"" + file + "\"\n";
     };
@@ -93,15 +94,19 @@ TEST_CASE("pbrt's objects become instances, which stand and face as copies do") 
     for (const std::string file : {"ball.ply", "bare.ply"}) {
       objects += "ObjectBegin \"" + file + "\"\n" + shape(file) + "ObjectEnd\n";
       for (const std::string place : places) {
-        objects += "AttributeBegin\n" + place + "ObjectInstance \"" + file + "\"\nAttributeEnd\n";
-        copies += "AttributeBegin\n" + place + shape(file) + "AttributeEnd\n";
+        objects +=
+            "AttributeBegin\n" + far + place + "ObjectInstance \"" + file + "\"\nAttributeEnd\n";
+        copies += "AttributeBegin\n" + far + place + shape(file) + "AttributeEnd\n";
       }
     }
     const Scene scene = import_scene(folder.write("objects.pbrt", objects));
     CHECK(scene.meshes.empty());
     CHECK(scene.instanced_meshes.size() == 2);
     CHECK(scene.instances.size() == 6);
-    check_same(scene, import_scene(folder.write("copies.pbrt", copies)), 0);
+    const Scene by_copies = import_scene(folder.write("copies.pbrt", copies));
+    CHECK((scene.origin != Vec3d{}) == !far.empty());
+    CHECK(scene.origin == by_copies.origin);
+    check_same(scene, by_copies, 0);
   }
 }
 
