@@ -53,7 +53,7 @@ def page(rows, minutes):
              "`ObjectInstance`s, of which the first are copied ([formats.md](../formats.md#instances)); *copies*: "
              "as many shapes, each read from the same file. Seconds by the clock: *import* reads files, "
              "*structures* builds what rays need, *rest* is all else; *processor*: of all threads, all "
-             "phases. *Memory*: the most at any time. *Mean*: of the picture.", "",
+             "phases, which other work on the machine changes less. *Memory*: the most at any time. *Mean*: of the picture.", "",
              "| " + " | ".join(HEADER) + " |", "|---" * len(HEADER) + "|"]
     lines += ["| " + " | ".join(str(x) for x in row) + " |" for row in rows]
     lines += ["", f"{minutes:.1f} minutes in all."]
