@@ -24,10 +24,11 @@ size_t bytes_of(const std::vector<T>& v) {
 }
 
 size_t geometry_bytes(const Scene& scene) {
-  size_t bytes = bytes_of(scene.spheres) + bytes_of(scene.disks);
-  for (const Mesh& m : scene.meshes)
-    bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.triangles) +
-             bytes_of(m.lights);
+  size_t bytes = bytes_of(scene.spheres) + bytes_of(scene.disks) + bytes_of(scene.instances);
+  for (const std::vector<Mesh>* const meshes : {&scene.meshes, &scene.instanced_meshes})
+    for (const Mesh& m : *meshes)
+      bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.uvs_2) +
+               bytes_of(m.triangles) + bytes_of(m.lights);
   return bytes;
 }
 
@@ -46,7 +47,10 @@ Json info_json(const Scene& scene) {
 
   Json j;
   j["triangles"] = triangle_count(scene);
-  j["meshes"] = scene.meshes.size();
+  j["meshes"] = scene.meshes.size() + scene.instances.size();
+  j["instances"] = scene.instances.size();
+  j["instanced_meshes"] = scene.instanced_meshes.size();
+  j["stored_triangles"] = stored_triangle_count(scene);
   j["materials"] = scene.materials.size();
   j["textures"] = scene.textures.size();
   j["emitters"] = scene.lights.size();
@@ -88,6 +92,9 @@ void print_text(const Scene& scene, const Json& j) {
   fmt::print("scene      {}\n", printable(scene.file));
   for (const char* key : {"triangles", "meshes", "materials", "textures", "spheres", "disks"})
     fmt::print("{:<10} {}\n", key, j[key].get<size_t>());
+  if (!scene.instances.empty())
+    fmt::print("instances  {} of {} meshes; {} triangles stored\n", scene.instances.size(),
+               scene.instanced_meshes.size(), stored_triangle_count(scene));
   const Json& memory = j["memory_mb"];
   fmt::print("memory     {:.1f} MB of geometry, {:.1f} MB of textures; {:.1f} MB to read them\n",
              memory["geometry"].get<double>(), memory["textures"].get<double>(),

@@ -62,6 +62,12 @@ size_t GltfMaterialWriter::texture(const std::string& key, const BakedImage& ima
 
 // Base colour, and with it alpha.
 void GltfMaterialWriter::add_base(const Material& m, Json& out) {
+  // All that `out` gets itself before a reference into it is held: it moves what it has.
+  out["pbrMetallicRoughness"] = Json();
+  if (m.is_alpha_masked) {
+    out["alphaMode"] = "MASK";
+    out["alphaCutoff"] = m.alpha_cutoff;
+  }
   Json& pbr = out["pbrMetallicRoughness"];
   const Texture* look = image_of(scene_, m.base_color.texture);
   const Texture* alpha = m.is_alpha_masked ? image_of(scene_, m.alpha.texture) : nullptr;
@@ -75,8 +81,6 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
     };
   float factor = 1;
   if (m.is_alpha_masked) {
-    out["alphaMode"] = "MASK";
-    out["alphaCutoff"] = m.alpha_cutoff;
     const bool is_same = alpha && alpha == look && m.alpha.channel == 3;
     factor = alpha ? m.alpha.value : evaluate(scene_.textures, m.alpha, Vec2{0, 0});
     if (alpha && !is_same) {

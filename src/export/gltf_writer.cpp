@@ -40,6 +40,8 @@ class GltfWriter {
        lights_ = Json::array();
 
   void add_part(const ScenePart& part, Rgb radiance);
+  void add_mesh(const Mesh& mesh, const Light* light, Rgb radiance);
+  void add_instances();
   void add_node(const std::string& name, Json node);
   void add_light(const Light& e);
   void add_camera(const Camera& c);
@@ -49,7 +51,8 @@ class GltfWriter {
 };
 
 // From scene's origin; columns are the images of the axes.
-Json matrix(const Vec3& x, const Vec3& y, const Vec3& z, const Vec3& at) {
+template <class T>
+Json matrix(const Vec3T<T>& x, const Vec3T<T>& y, const Vec3T<T>& z, const Vec3T<T>& at) {
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, at.x, at.y, at.z, 1};
 }
 
@@ -58,9 +61,7 @@ void GltfWriter::add_node(const std::string& name, Json node) {
   nodes_.push_back(std::move(node));
 }
 
-void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
-  const Light* light = part.light >= 0 ? &scene_.lights[size_t(part.light)] : nullptr;
-  const Mesh& m = part.mesh;
+void GltfWriter::add_mesh(const Mesh& m, const Light* light, Rgb radiance) {
   Json attributes{{"POSITION", buffer_.add(m.positions, true)}};
   if (!m.normals.empty()) attributes["NORMAL"] = buffer_.add(m.normals, false);
   if (!m.uvs.empty()) attributes["TEXCOORD_0"] = buffer_.add(m.uvs);
@@ -71,7 +72,23 @@ void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
   mesh["primitives"] =
       Json::array({Json{{"attributes", attributes}, {"indices", indices}, {"material", material}}});
   meshes_.push_back(std::move(mesh));
-  add_node(light ? light->name : m.name, {{"mesh", meshes_.size() - 1}});
+}
+
+void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
+  const Light* light = part.light >= 0 ? &scene_.lights[size_t(part.light)] : nullptr;
+  add_mesh(part.mesh, light, radiance);
+  add_node(light ? light->name : part.mesh.name, {{"mesh", meshes_.size() - 1}});
+}
+
+// A node each, which share their mesh.
+void GltfWriter::add_instances() {
+  const size_t first = meshes_.size();
+  for (const Mesh& mesh : scene_.instanced_meshes) add_mesh(mesh, nullptr, {});
+  for (const Instance& i : scene_.instances) {
+    const Affine& m = i.world_from_mesh;
+    add_node(i.name, {{"mesh", first + i.mesh},
+                      {"matrix", matrix(m.columns[0], m.columns[1], m.columns[2], m.translation)}});
+  }
 }
 
 void GltfWriter::add_light(const Light& e) {
@@ -219,6 +236,7 @@ std::vector<Warning> GltfWriter::write(const std::string& path) {
   const SceneParts parts = parts_of(scene_, true);
   for (const ScenePart& part : parts.parts)
     add_part(part, part.light >= 0 ? parts.radiances[size_t(part.light)] : Rgb{});
+  add_instances();
   for (const Light& e : scene_.lights) add_light(e);
   for (const Camera& c : scene_.cameras) add_camera(c);
   Json json = file();

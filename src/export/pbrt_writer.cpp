@@ -41,6 +41,7 @@ class PbrtWriter {
 
   void add_camera();
   void add_part(const ScenePart& part, Rgb radiance);
+  void add_instances();
   void add_emission(int32_t light, Rgb radiance);
   void add_round();
 };
@@ -108,6 +109,28 @@ void PbrtWriter::add_part(const ScenePart& part, Rgb radiance) {
                        files_.relative(name), materials_.alpha_of(part.mesh.material));
 }
 
+// Objects, and where they stand.
+void PbrtWriter::add_instances() {
+  for (size_t i = 0; i < scene_.instanced_meshes.size(); ++i) {
+    const Mesh& mesh = scene_.instanced_meshes[i];
+    const std::string name = fmt::format("mesh{}.ply", meshes_++);
+    files_.write(name, ply_of(mesh, {}));
+    const std::string use = materials_.use(mesh.material);
+    text_ += fmt::format(
+        "ObjectBegin \"object{}\"\n  {}\n  Shape \"plymesh\" \"string filename\" \"{}\"{}\n"
+        "ObjectEnd\n",
+        i, use, files_.relative(name), materials_.alpha_of(mesh.material));
+  }
+  for (const Instance& i : scene_.instances) {
+    const Affine& m = i.world_from_mesh;
+    text_ += fmt::format(
+        "AttributeBegin\n  ConcatTransform [ {} 0 {} 0 {} 0 {} 1 ]\n  ObjectInstance \"object{}\"\n"
+        "AttributeEnd\n",
+        numbers(m.columns[0]), numbers(m.columns[1]), numbers(m.columns[2]),
+        numbers(m.translation + scene_.origin), i.mesh);
+  }
+}
+
 void PbrtWriter::add_round() {
   const auto begin = [&](uint32_t material, int32_t light) {
     text_ += "AttributeBegin\n  " + materials_.use(material) + "\n";
@@ -138,6 +161,7 @@ std::vector<Warning> PbrtWriter::write(const std::string& path) {
   const SceneParts parts = parts_of(scene_, false);
   for (const ScenePart& part : parts.parts)
     add_part(part, part.light >= 0 ? parts.radiances[size_t(part.light)] : Rgb{});
+  add_instances();
   add_round();
   write_file(path, text_);
   return warnings_.entries();

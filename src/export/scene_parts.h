@@ -13,7 +13,7 @@ struct ScenePart {
   int32_t light = no_light;
 };
 
-// All meshes, those of lights first, in the order of the lights. With `with_round`, spheres and
+// All meshes but instanced ones, those of lights first, in the order of the lights. With `with_round`, spheres and
 // disks too, as triangles: a light's radiance grows by what its area has shrunk, so that its power
 // stays.
 struct SceneParts {

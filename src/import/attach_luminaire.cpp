@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "import/emissive.h"
 #include "import/mesh_clean.h"
+#include "scene/mesh_in_world.h"
 
 namespace troffer {
 
@@ -251,8 +252,22 @@ void add_luminaire(Scene& scene, const std::string& name, const Luminaire& lumin
   }
 }
 
+namespace {
+
+// What shines is no instance.
+void copy_out(Scene& scene, const std::string& name) {
+  std::erase_if(scene.instances, [&](const Instance& i) {
+    if (i.name != name) return false;
+    scene.meshes.push_back(copied_to_world(MeshInWorld(scene.instanced_meshes[i.mesh], &i)));
+    return true;
+  });
+}
+
+}  // namespace
+
 void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire, Rgb scale,
                       const Vec3& down) {
+  copy_out(scene, node);
   bool is_light = false;
   for (Light& e : scene.lights)
     if (e.name == node && attach_to_light(scene, e, luminaire, scale, Vec3d(down))) is_light = true;

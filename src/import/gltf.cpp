@@ -18,6 +18,7 @@
 #include "import/gltf_pose.h"
 #include "import/gltf_schema.h"
 #include "import/gltf_variant.h"
+#include "import/mesh_instancer.h"
 #include "import/recentre.h"
 #include "import/vertex_paint.h"
 
@@ -25,8 +26,9 @@ namespace troffer {
 
 namespace {
 
-// Over all instances: about 3 GB of vertices and triangles.
+// Of all that is stored: about 3 GB of vertices and triangles.
 constexpr uint64_t max_triangles = 60'000'000;
+constexpr uint64_t cost_of_instance = 20;  // in triangles
 constexpr const char* lights_extension = "KHR_lights_punctual";
 
 class Importer {
@@ -39,7 +41,8 @@ class Importer {
         bounds_(bounds),
         buffers_(root, file),
         materials_(root_, buffers_, scene),
-        painter_(scene) {}
+        painter_(scene),
+        instancer_(scene, bounds) {}
 
   void run() {
     read_primitives();
@@ -47,11 +50,12 @@ class Importer {
     nodes_ = gltf_nodes(root_, poses_, scene_.warnings);
     for (GltfNode& node : nodes_.shown) node.world_from_node.translation -= scene_.origin;
     for (Affine& world : nodes_.world) world.translation -= scene_.origin;
-    check_triangle_count();
+    check_size();
     for (const GltfNode& node : nodes_.shown) add_node(node);
     add_gltf_image_light(root_, buffers_, scene_);
     materials_.check_unused_images();
-    if (scene_.meshes.empty()) scene_.warnings.add("the scene shows no triangles");
+    if (scene_.meshes.empty() && scene_.instances.empty())
+      scene_.warnings.add("the scene shows no triangles");
   }
 
  private:
@@ -73,7 +77,7 @@ class Importer {
   std::optional<uint32_t> mesh_of(const JsonNode& node) const {
     const auto mesh = node.find("mesh");
     if (!mesh) return std::nullopt;
-    return mesh->as_index(primitives_.size(), "meshes");
+    return mesh->as_index(meshes_.size(), "meshes");
   }
 
   void read_primitives() {
@@ -81,7 +85,7 @@ class Importer {
     const auto meshes = root_.find("meshes");
     for (size_t i = 0; meshes && i < meshes->size(); ++i) {
       const JsonNode list = meshes->element(i).member("primitives");
-      auto& of_mesh = primitives_.emplace_back();
+      auto& of_mesh = meshes_.emplace_back().primitives;
       for (size_t k = 0; k < list.size(); ++k)
         if (auto p = read_gltf_primitive(list.element(k), buffers_, scene_.warnings)) {
           if (variant)
@@ -93,18 +97,32 @@ class Importer {
   }
 
   // Before anything of that size is made.
-  void check_triangle_count() const {
-    uint64_t count = 0, instances = 0;
+  void check_size() {
+    uint64_t placed = 0, stored = 0, instances = 0;
+    for (const GltfNode& node : nodes_.shown)
+      if (const auto mesh = mesh_of(node_json(node)))
+        meshes_[*mesh].uses += gltf_instances(node_json(node), buffers_).size();
     for (const GltfNode& node : nodes_.shown) {
       const JsonNode json = node_json(node);
       const auto mesh = mesh_of(json);
       if (!mesh) continue;
       const uint64_t n = gltf_instances(json, buffers_).size();
       instances += n;
-      for (const GltfPrimitive& p : primitives_[*mesh]) count += n * p.triangle_count();
-      if (count > max_triangles || instances > max_triangles)
-        json.fail("the scene has more than " + std::to_string(max_triangles) + " triangles");
+      for (const GltfPrimitive& p : meshes_[*mesh].primitives) {
+        placed += n * p.triangle_count();
+        // Of what is shared there is one, which counts with each of them a little.
+        stored += is_shared(p, *mesh, json)
+                      ? n * cost_of_instance + p.triangle_count() / meshes_[*mesh].uses
+                      : n * p.triangle_count();
+      }
+      if (stored > max_triangles || placed > max_placed_triangles || instances > max_triangles)
+        fail_of_size(json);
     }
+  }
+
+  [[noreturn]] static void fail_of_size(const JsonNode& node) {
+    node.fail("the scene has more than " + std::to_string(max_triangles) +
+              " triangles, or more than " + std::to_string(max_placed_triangles) + " by instances");
   }
 
   void add_node(const GltfNode& node) {
@@ -132,15 +150,40 @@ class Importer {
     const std::string name = node_name.empty() ? mesh_json.string_or("name", "") : node_name;
     for (const Affine& instance : gltf_instances(json, buffers_)) {
       pose.world_from_mesh = node.world_from_node * instance;
-      for (const GltfPrimitive& p : primitives_[*mesh]) add_mesh(p, pose, name, node_name);
+      for (const GltfPrimitive& p : meshes_[*mesh].primitives)
+        if (!is_shared(p, *mesh, json)) {
+          add_mesh(p, pose, name, node_name);
+        } else if (!add_instance(p, pose, name)) {
+          counts_.unshared += p.triangle_count();
+          if (counts_.unshared > max_triangles) fail_of_size(json);
+          add_mesh(p, pose, name, node_name);
+        }
     }
   }
 
-  void add_mesh(const GltfPrimitive& p, const GltfPose& pose, const std::string& name,
-                const std::string& node_name) {
+  // Whether it stands in several places, alike in all, and does not emit: what is worth it is then
+  // stored once, but where a transform is next to singular.
+  bool is_shared(const GltfPrimitive& p, uint32_t mesh, const JsonNode& node) {
+    const bool is_bent = !p.targets.empty() || (!p.joints.empty() && node.find("skin"));
     const GltfMaterial& material = materials_.get(p.material);
+    return meshes_[mesh].uses > 1 && !is_bent && material.emission.is_black() &&
+           instancer_.is_worth(p.triangle_count(), material.material);
+  }
+
+  // False: it is to be copied.
+  bool add_instance(const GltfPrimitive& p, const GltfPose& pose, const std::string& name) {
+    const GltfMaterial& material = materials_.get(p.material);
+    return instancer_.place({&p, material.material, 0}, p.triangle_count(), pose.world_from_mesh,
+                            name, [&] {
+                              PlacedBounds in_its_space;
+                              return make_mesh(p, {}, name, material, in_its_space);
+                            });
+  }
+
+  Mesh make_mesh(const GltfPrimitive& p, const GltfPose& pose, const std::string& name,
+                 const GltfMaterial& material, PlacedBounds& bounds) {
     std::vector<TextureValue> colors;
-    Mesh mesh = make_gltf_mesh(p, pose, material.uv_sets, scene_.warnings, bounds_, &colors);
+    Mesh mesh = make_gltf_mesh(p, pose, material.uv_sets, scene_.warnings, bounds, &colors);
     mesh.name = name;
     mesh.material = material.material;
     painter_.paint(mesh, colors, material.is_textured);
@@ -152,12 +195,19 @@ class Importer {
     if (material.is_textured && mesh.uvs.empty() && !is_empty) tell_missing(material.uv_sets.first);
     if (material.uv_sets.second >= 0 && mesh.uvs_2.empty() && !is_empty)
       tell_missing(material.uv_sets.second);
+    return mesh;
+  }
+
+  void add_mesh(const GltfPrimitive& p, const GltfPose& pose, const std::string& name,
+                const std::string& node_name) {
+    const GltfMaterial& material = materials_.get(p.material);
+    Mesh mesh = make_mesh(p, pose, name, material, bounds_);
     const bool is_emissive = !material.emission.is_black();
     // Counted whether it ends up with a source or not, so that a name depends on the file alone.
     const std::string light_name =
-        node_name.empty() ? "emitter" + std::to_string(emissive_count_) : node_name;
-    if (is_emissive) ++emissive_count_;
-    if (is_empty) return;
+        node_name.empty() ? "emitter" + std::to_string(counts_.emissive) : node_name;
+    if (is_emissive) ++counts_.emissive;
+    if (mesh.triangles.empty()) return;
     scene_.meshes.push_back(std::move(mesh));
     if (is_emissive)
       add_mesh_lights(
@@ -193,10 +243,18 @@ class Importer {
   GltfBuffers buffers_;
   GltfMaterials materials_;
   VertexPainter painter_;
-  std::vector<std::vector<GltfPrimitive>> primitives_;  // by mesh
+  MeshInstancer instancer_;
+  struct MeshUse {
+    std::vector<GltfPrimitive> primitives;
+    uint64_t uses = 0;
+  };
+  std::vector<MeshUse> meshes_;
   GltfPoses poses_;
   GltfNodes nodes_;
-  size_t emissive_count_ = 0;
+  struct Counts {
+    size_t emissive = 0;
+    uint64_t unshared = 0;  // triangles that were copied though they are shared
+  } counts_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "import/file.h"
 #include "import/gltf.h"
+#include "import/mesh_instancer.h"
 #include "import/mitsuba.h"
 #include "import/obj.h"
 #include "import/pbrt.h"
@@ -43,6 +44,7 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
 
 Scene import_scene(const std::string& path, const ImportOptions& options) {
   Scene scene = import_file(path, options);
+  settle_instances(scene);
   replace_thin_glass(scene);
   return scene;
 }

@@ -199,6 +199,7 @@ void MitsubaReader::add_shape(const MitsubaNode& node, const Affine& parent, boo
     warn_of_unused(node, scene_.warnings);
     if (material && *shape) {
       look.material = *material;
+      if (is_instance) look.shape = &**shape;
       place(**shape, world, look);
     }
   }

@@ -51,13 +51,13 @@ void PbrtPlacer::count_waiting(const PbrtShape& shape, const PbrtPlace& at) {
 
 void PbrtPlacer::place(const PbrtShape& shape, const PbrtPlace& at) {
   const bool is_flipped = shape.is_reversed != shape.world_from_object.swaps_handedness();
-  place({shape, shape.world_from_object, is_flipped, shape.light != nullptr, at});
+  place({shape, shape.world_from_object, is_flipped, shape.light != nullptr, false, at});
 }
 
 void PbrtPlacer::place_instance(const PbrtShape& shape, const Affine& world_from_instance,
                                 const PbrtPlace& at) {
   const bool is_flipped = shape.is_reversed != shape.world_from_object.swaps_handedness();
-  place({shape, world_from_instance * shape.world_from_object, is_flipped, false, at});
+  place({shape, world_from_instance * shape.world_from_object, is_flipped, false, true, at});
 }
 
 void PbrtPlacer::place(Placing placing) {
@@ -88,6 +88,12 @@ bool PbrtPlacer::needs_triangles(const Placing& placing) {
   if (placing.is_emitting) return false;
   const Material& m = scene_.materials[material_of(placing)];
   return is_textured(m) || m.is_alpha_masked;
+}
+
+// A mesh's own normals turn with ReverseOrientation; computed ones, of quadrics, also with a
+// transform that mirrors.
+bool PbrtPlacer::are_normals_turned(const Placing& placing, bool is_quadric) {
+  return is_quadric ? placing.is_flipped_quadric : placing.shape.is_reversed;
 }
 
 uint32_t PbrtPlacer::material_of(const Placing& placing) {
@@ -179,26 +185,36 @@ void PbrtPlacer::place_disk(const Placing& placing) {
   scene_.disks.push_back(disk);
 }
 
+// Of one shape of an object; false: it is to be copied.
+bool PbrtPlacer::place_shared(const Placing& placing, const AnchoredMesh& local, bool is_quadric) {
+  const PbrtShape& shape = placing.shape;
+  const size_t triangles = local.mesh.triangles.size();
+  const auto make = [&] {
+    spend(triangles, placing.place);
+    Mesh mesh = transformed({local.mesh, {}}, Affine(), are_normals_turned(placing, is_quadric),
+                            shape.is_reversed);
+    clean_mesh(mesh, scene_.warnings);
+    mesh.material = material_of(placing);
+    if (is_textured(scene_.materials[mesh.material])) add_default_uvs(mesh);
+    return mesh;
+  };
+  if (!instancer_.place({&shape, material_of(placing), 0}, triangles,
+                        placing.world_from_object * Affine::translate(local.anchor), "", make))
+    return false;
+  spend(1, placing.place);
+  placed_triangles_ += triangles;
+  if (placed_triangles_ > max_placed_triangles) fail_at(placing.place, too_many_by_instances());
+  return true;
+}
+
 void PbrtPlacer::place_mesh(const Placing& placing, const AnchoredMesh& local, bool is_quadric) {
+  if (placing.is_instance && place_shared(placing, local, is_quadric)) return;
   spend(cost_of(local.mesh), placing.place);
   const Affine& t = placing.world_from_object;
   const PbrtShape& shape = placing.shape;
-  Mesh mesh = local.mesh;
-  const auto world = [&](const Vec3& p) { return t.point(local.anchor + Vec3d(p)); };
-  for (const Triangle& v : mesh.triangles)
-    bounds_.add_triangle(world(mesh.positions[v[0]]), world(mesh.positions[v[1]]),
-                         world(mesh.positions[v[2]]));
-  for (Vec3& p : mesh.positions) p = Vec3(world(p));
-  // A mesh's own normals turn with ReverseOrientation; computed ones, of quadrics, also with a
-  // transform that mirrors.
-  const bool is_turned = is_quadric ? placing.is_flipped_quadric : shape.is_reversed;
-  for (Vec3& n : mesh.normals) {
-    const Vec3d turned = covector(t, Vec3d(n));
-    // Normalised here, so that small scales do not underflow in float.
-    const double size = length(turned);
-    n = size > 0 && std::isfinite(size) ? Vec3(turned * ((is_turned ? -1 : 1) / size)) : Vec3{};
-  }
-  orient(mesh, shape.is_reversed != t.swaps_handedness());
+  add_bounds(local, t, bounds_);
+  Mesh mesh = transformed(local, t, are_normals_turned(placing, is_quadric),
+                          shape.is_reversed != t.swaps_handedness());
   clean_mesh(mesh, scene_.warnings);
   if (mesh.triangles.empty()) {
     if (placing.is_emitting) {

@@ -1,6 +1,7 @@
 // Shapes of a pbrt file -> geometry and lights of the scene, in world space.
 #pragma once
 
+#include "import/mesh_instancer.h"
 #include "import/pbrt_shape.h"
 
 namespace troffer {
@@ -8,7 +9,7 @@ namespace troffer {
 class PbrtPlacer {
  public:
   PbrtPlacer(Scene& scene, PbrtMaterials& materials, PlacedBounds& bounds)
-      : scene_(scene), materials_(materials), bounds_(bounds) {}
+      : scene_(scene), materials_(materials), bounds_(bounds), instancer_(scene, bounds) {}
 
   // Adds the shape, emission included.
   void place(const PbrtShape& shape, const PbrtPlace& place);
@@ -29,19 +30,24 @@ class PbrtPlacer {
     Affine world_from_object;         // its translation from the scene's origin
     bool is_flipped_quadric = false;  // normals of quadrics point the other way
     bool is_emitting = false;
+    bool is_instance = false;  // one of many, of an object
     PbrtPlace place;
   };
 
   Scene& scene_;
   PbrtMaterials& materials_;
   PlacedBounds& bounds_;
+  MeshInstancer instancer_;
   size_t lights_ = 0, light_sources_ = 0;
-  size_t cost_ = 0;  // triangles so far; small shapes count as a few
+  size_t cost_ = 0;                // triangles so far; small shapes count as a few
+  uint64_t placed_triangles_ = 0;  // by instances
 
   void place(Placing placing);
   void place_sphere(const Placing& placing);
   void place_disk(const Placing& placing);
   void place_mesh(const Placing& placing, const AnchoredMesh& local, bool is_quadric);
+  bool place_shared(const Placing& placing, const AnchoredMesh& local, bool is_quadric);
+  static bool are_normals_turned(const Placing& placing, bool is_quadric);
   uint32_t material_of(const Placing& placing);
   bool needs_triangles(const Placing& placing);
   // Emission of the next light, whose area (m²) turns power into radiance.

@@ -19,6 +19,27 @@ Vec3d covector(const Affine& t, const Vec3d& n) {
   return t.swaps_handedness() ? -t.normal(n) : t.normal(n);
 }
 
+Mesh transformed(const AnchoredMesh& local, const Affine& t, bool are_normals_turned,
+                 bool is_winding_turned) {
+  Mesh mesh = local.mesh;
+  for (Vec3& p : mesh.positions) p = Vec3(t.point(local.anchor + Vec3d(p)));
+  for (Vec3& n : mesh.normals) {
+    const Vec3d turned = covector(t, Vec3d(n));
+    // Normalised here, so that small scales do not underflow in float.
+    const double size = length(turned);
+    n = size > 0 && std::isfinite(size) ? Vec3(turned * ((are_normals_turned ? -1 : 1) / size))
+                                        : Vec3{};
+  }
+  orient(mesh, is_winding_turned);
+  return mesh;
+}
+
+void add_bounds(const AnchoredMesh& local, const Affine& target_from_local, PlacedBounds& bounds) {
+  const std::vector<Vec3>& p = local.mesh.positions;
+  const auto at = [&](uint32_t v) { return target_from_local.point(local.anchor + Vec3d(p[v])); };
+  for (const Triangle& t : local.mesh.triangles) bounds.add_triangle(at(t[0]), at(t[1]), at(t[2]));
+}
+
 void orient(Mesh& mesh, bool is_turned) {
   for (Triangle& t : mesh.triangles) {
     double side = 0;
@@ -64,25 +85,42 @@ int32_t GeometryPlacer::add_light(const PlacedLook& look, LightKind kind, size_t
   return int32_t(scene_.lights.size()) - 1;
 }
 
+// Without normals the front is a matter of the winding in the world, which a transform that mirrors
+// turns: stored so that an instance, whose front stays the front, shows the same.
+bool GeometryPlacer::add_instance(const AnchoredMesh& local, const Affine& world_from_local,
+                                  bool is_turned, const PlacedLook& look) {
+  if (look.shape == nullptr || (look.emission && !look.emission->radiance.is_black())) return false;
+  const size_t triangles = local.mesh.triangles.size();
+  const bool is_mirrored = local.mesh.normals.empty() && world_from_local.swaps_handedness();
+  const bool is_winding_turned = is_turned != is_mirrored;
+  Affine t = world_from_local * Affine::translate(local.anchor);
+  t.translation -= scene_.origin;
+  const auto make = [&] {
+    spend(triangles, look.place);
+    Mesh mesh = transformed({local.mesh, {}}, Affine(), is_turned, is_winding_turned);
+    mesh.lights.clear();
+    clean_mesh(mesh, scene_.warnings);
+    mesh.material = look.material;
+    if (needs_coordinates(look)) add_default_uvs(mesh);
+    return mesh;
+  };
+  const uint32_t variant = (is_turned ? 1u : 0u) | (is_winding_turned ? 2u : 0u);
+  if (!instancer_.place({look.shape, look.material, variant}, triangles, t, "", make)) return false;
+  spend(1, look.place);
+  placed_triangles_ += triangles;
+  if (placed_triangles_ > max_placed_triangles) look.place.fail(too_many_by_instances());
+  return true;
+}
+
 void GeometryPlacer::add_mesh(const AnchoredMesh& local, const Affine& world_from_local,
                               bool is_turned, const PlacedLook& look) {
+  if (add_instance(local, world_from_local, is_turned, look)) return;
   spend(std::max(local.mesh.triangles.size(), local.mesh.positions.size() / 3), look.place);
   Affine t = world_from_local;
   t.translation -= scene_.origin;
-  Mesh mesh = local.mesh;
+  add_bounds(local, t, bounds_);
+  Mesh mesh = transformed(local, t, is_turned, is_turned);
   mesh.lights.clear();
-  const auto world = [&](const Vec3& p) { return t.point(local.anchor + Vec3d(p)); };
-  for (const Triangle& v : mesh.triangles)
-    bounds_.add_triangle(world(mesh.positions[v[0]]), world(mesh.positions[v[1]]),
-                         world(mesh.positions[v[2]]));
-  for (Vec3& p : mesh.positions) p = Vec3(world(p));
-  for (Vec3& n : mesh.normals) {
-    const Vec3d turned = covector(t, Vec3d(n));
-    // Normalised here, so that small scales do not underflow in float.
-    const double size = length(turned);
-    n = size > 0 && std::isfinite(size) ? Vec3(turned * ((is_turned ? -1 : 1) / size)) : Vec3{};
-  }
-  orient(mesh, is_turned);
   clean_mesh(mesh, scene_.warnings);
   if (mesh.triangles.empty()) {
     if (look.emission) scene_.warnings.add("area light without area is left out");

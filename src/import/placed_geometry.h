@@ -5,6 +5,7 @@
 
 #include "base/transform.h"
 #include "import/emissive.h"
+#include "import/mesh_instancer.h"
 #include "import/recentre.h"
 #include "import/source_place.h"
 
@@ -13,6 +14,7 @@ namespace troffer {
 // What a shape wears, and where its file names it.
 struct PlacedLook {
   uint32_t material = 0;
+  const void* shape = nullptr;  // the same for all places of a shape that has several; else null
   std::optional<EmissionSpec> emission;  // black: as if there were none
   SourcePlace place;
 };
@@ -23,7 +25,8 @@ struct PlacedLook {
 class GeometryPlacer {
  public:
   // Both must outlive this.
-  GeometryPlacer(Scene& scene, PlacedBounds& bounds) : scene_(scene), bounds_(bounds) {}
+  GeometryPlacer(Scene& scene, PlacedBounds& bounds)
+      : scene_(scene), bounds_(bounds), instancer_(scene, bounds) {}
 
   // Front: the side of the mesh's normals where there are some, else of its winding in the world;
   // the other one where is_turned. Normals keep their side under transforms that mirror.
@@ -40,13 +43,26 @@ class GeometryPlacer {
  private:
   Scene& scene_;
   PlacedBounds& bounds_;
+  MeshInstancer instancer_;
   size_t cost_ = 0;  // triangles so far; small shapes count as a few
+  uint64_t placed_triangles_ = 0;
 
+  bool add_instance(const AnchoredMesh& local, const Affine& world_from_local, bool is_turned,
+                    const PlacedLook& look);
   void spend(size_t triangles, const SourcePlace& place);
   bool needs_coordinates(const PlacedLook& look) const;
   // Appends the light of a sphere or disk; no_light where it is dark.
   int32_t add_light(const PlacedLook& look, LightKind kind, size_t geometry);
 };
+
+// A mesh under a transform: positions and normals in its target; the front of each triangle the
+// side of its normals where there are some, which are turned where are_normals_turned, else of its
+// winding there, turned where is_winding_turned. Not cleaned (mesh_clean.h).
+Mesh transformed(const AnchoredMesh& local, const Affine& target_from_local,
+                 bool are_normals_turned, bool is_winding_turned);
+
+// Counts its triangles, as they come to lie.
+void add_bounds(const AnchoredMesh& local, const Affine& target_from_local, PlacedBounds& bounds);
 
 // A normal taken along: inverse transpose up to a positive factor, which keeps the side that it
 // points to.

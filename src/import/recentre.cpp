@@ -45,6 +45,10 @@ void PlacedBounds::add_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) 
   box_.grow(c);
 }
 
+void PlacedBounds::add_box(const Boxd& box) {
+  if (is_usable(box.lower) && is_usable(box.upper)) box_.grow(box);
+}
+
 void PlacedBounds::add_ball(const Vec3d& centre, double radius) {
   if (!is_usable(centre - Vec3d{radius}) || !is_usable(centre + Vec3d{radius})) return;
   box_.grow(centre - Vec3d{radius});

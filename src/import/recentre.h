@@ -15,6 +15,7 @@ class PlacedBounds {
  public:
   // One without area, or farther from the origin than is ever shown, does not count.
   void add_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+  void add_box(const Boxd& box);
   void add_ball(const Vec3d& centre, double radius);
   const Boxd& box() const { return box_; }
 

@@ -10,19 +10,19 @@
 
 namespace troffer {
 
-namespace {
-
-constexpr double most_thickness = 1.0 / 30;  // of the smaller side
-constexpr double flatness = 1e-3;            // of the thickness
-constexpr size_t most_triangles = 1 << 17;   // of a mesh that is looked at
-
-bool is_clear_solid_glass(const Material& m) {
+bool may_be_thin_glass(const Material& m) {
   const bool is_glass =
       m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
                                              m.transmission.value >= 1 && m.metallic.value <= 0);
   return is_glass && !m.is_thin && !m.is_alpha_masked && m.roughness.value <= 0 &&
          m.normal_texture < 0 && !has_textured_input(m);
 }
+
+namespace {
+
+constexpr double most_thickness = 1.0 / 30;  // of the smaller side
+constexpr double flatness = 1e-3;            // of the thickness
+constexpr size_t most_triangles = 1 << 17;   // of a mesh that is looked at
 
 // The same glass as a sheet; what tints light tints it at both faces of the body.
 Material sheet_of(const Material& solid, float thickness) {
@@ -165,7 +165,7 @@ void replace_thin_glass(Scene& scene) {
   for (size_t i = 0; i < n; ++i) {
     const uint32_t material = scene.meshes[i].material;
     if (!scene.meshes[i].lights.empty() || scene.meshes[i].triangles.size() > most_triangles ||
-        !is_clear_solid_glass(scene.materials[material]))
+        !may_be_thin_glass(scene.materials[material]))
       continue;
     Bodies bodies(scene.meshes[i]);
     std::map<uint32_t, Mesh> panes;  // by material

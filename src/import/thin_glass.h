@@ -11,4 +11,7 @@ namespace troffer {
 // the thickness. Its edges are left out. A mesh may hold several, beside other glass.
 void replace_thin_glass(Scene& scene);
 
+// Whether bodies of that material are looked at.
+bool may_be_thin_glass(const Material& material);
+
 }  // namespace troffer

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/mesh_in_world.h"
+
 namespace troffer {
 
 Ray shadow_ray_to(const Surface& s, const Vec3& point, const Vec3& normal) {
@@ -44,6 +46,7 @@ float pdf_of_hit(const PreparedScene& scene, const LightPrimitive& light, const 
 
 int32_t primitive_at(const PreparedScene& scene, const Surface& s) {
   const size_t meshes = scene.scene.meshes.size();
+  if (is_instance(scene.scene, s.geometry)) return no_primitive;
   if (s.geometry < meshes) return scene.primitives.of_triangle(s.geometry, s.primitive);
   return s.geometry == meshes ? scene.primitives.of_sphere(s.primitive)
                               : scene.primitives.of_disk(s.primitive);

@@ -42,7 +42,7 @@ void ShadowWorld::candidates(std::span<const Plane> planes, const Box& receivers
   out.masked.assign(found_.masked.begin(), found_.masked.end());
   out.is_masked_known = found_.is_complete && found_.masked.size() == found_.others;
   for (const uint32_t id : found_.facets) {
-    const Occluders::Component& c = occluders_.component_of(id);
+    const Occluders::Component c = occluders_.component_of(id);
     const bool is_front_only =
         c.is_closed && is_apart(c.bounds, receivers) && is_apart(c.bounds, source);
     out.facets.push_back({occluders_.facet(id), id, is_front_only});

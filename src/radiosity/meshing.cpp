@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "radiosity/meshing_parts.h"
+#include "scene/mesh_in_world.h"
 
 namespace troffer {
 
@@ -114,8 +115,10 @@ uint32_t fragment_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t geo
                      Vec3& weights) {
   const auto meshes = uint32_t(scene.meshes.size());
   uint32_t triangle = 0;
-  if (geometry < meshes) {
-    triangle = mesh.geometry.surfaces[geometry].first_triangle + primitive;
+  const auto round = uint32_t(scene.spheres.size() + scene.disks.size());
+  if (is_mesh(scene, geometry)) {
+    const uint32_t surface = geometry < meshes ? geometry : geometry - 2 + round;
+    triangle = mesh.geometry.surfaces[surface].first_triangle + primitive;
     weights = {1 - u - v, u, v};
     const uint32_t same = mesh.same_as[triangle];
     if (same != triangle) {

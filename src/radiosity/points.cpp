@@ -10,6 +10,7 @@
 #include "bsdf/bsdf.h"
 #include "radiosity/elements.h"
 #include "radiosity/meshing_parts.h"
+#include "scene/mesh_in_world.h"
 #include "trace/surface.h"
 
 namespace troffer {
@@ -24,7 +25,8 @@ TexturePlace uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t trian
   const BaseTriangle& t = mesh.geometry.triangles[triangle];
   const BaseSurface& s = mesh.geometry.surfaces[t.surface];
   if (s.bulge != Bulge::none) return {};
-  const Mesh& m = scene.meshes[s.index];
+  const MeshInWorld in_world = mesh_at(scene, s.index);
+  const Mesh& m = in_world.mesh();
   if (m.uvs.empty()) return {};
   // weights in the fragment -> in its triangle, by areas
   const auto& v = mesh.fragments[fragment].vertices;
@@ -35,7 +37,7 @@ TexturePlace uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t trian
                                    ac = Vec3d(p[t.vertices[2]]) - a, n = cross(ab, ac);
   const double nn = dot(n, n);
   const auto w1 = float(dot(cross(at - a, ac), n) / nn), w2 = float(dot(cross(ab, at - a), n) / nn);
-  const Triangle& c = m.triangles[triangle - s.first_triangle];
+  const Triangle c = in_world.triangle(triangle - s.first_triangle);
   const auto between = [&](const std::vector<Vec2>& uvs) {
     return uvs[c[0]] * (1 - w1 - w2) + uvs[c[1]] * w1 + uvs[c[2]] * w2;
   };

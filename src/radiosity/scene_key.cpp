@@ -6,9 +6,9 @@ namespace troffer {
 
 namespace {
 
-void add_geometry(Hasher& h, const Scene& scene) {
-  h.add(scene.meshes.size());
-  for (const Mesh& m : scene.meshes) {
+void add_meshes(Hasher& h, const std::vector<Mesh>& meshes) {
+  h.add(meshes.size());
+  for (const Mesh& m : meshes) {
     h.add(m.positions.size());
     for (const Vec3& p : m.positions) h.add(p);
     h.add(m.uvs.size());
@@ -21,6 +21,21 @@ void add_geometry(Hasher& h, const Scene& scene) {
     for (const int32_t e : m.lights) h.add(uint64_t(e));
     h.add(uint64_t(m.material));
   }
+}
+
+void add_instances(Hasher& h, const Scene& scene) {
+  if (scene.instances.empty()) return;
+  add_meshes(h, scene.instanced_meshes);
+  h.add(scene.instances.size());
+  for (const Instance& i : scene.instances) {
+    h.add(uint64_t(i.mesh));
+    for (const Vec3d& v : i.world_from_mesh.columns) h.add(Vec3(v));
+    h.add(Vec3(i.world_from_mesh.translation));
+  }
+}
+
+void add_geometry(Hasher& h, const Scene& scene) {
+  add_meshes(h, scene.meshes);
   h.add(scene.spheres.size());
   for (const Sphere& s : scene.spheres) {
     h.add(s.centre);
@@ -37,6 +52,7 @@ void add_geometry(Hasher& h, const Scene& scene) {
     h.add(uint64_t(d.material));
     h.add(uint64_t(d.light));
   }
+  add_instances(h, scene);
 }
 
 void add_texture(Hasher& h, const Texture& t) {

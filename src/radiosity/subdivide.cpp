@@ -6,6 +6,7 @@
 
 #include "base/frame.h"
 #include "base/random.h"
+#include "scene/mesh_in_world.h"
 
 namespace troffer {
 
@@ -32,10 +33,10 @@ bool is_too_far(const Vec3& p, float radius = 0) {
   return !(std::max({a.x, a.y, a.z}) + radius < farthest_surface);
 }
 
-void add_mesh(const Scene& scene, uint32_t index, BaseGeometry& g) {
-  const Mesh& mesh = scene.meshes[index];
+void add_mesh(const MeshInWorld& in_world, uint32_t geometry, BaseGeometry& g) {
+  const Mesh& mesh = in_world.mesh();
   BaseSurface s;
-  s.index = index;
+  s.index = geometry;
   s.material = mesh.material;
   s.first_triangle = uint32_t(g.triangles.size());
   s.triangle_count = uint32_t(mesh.triangles.size());
@@ -44,8 +45,7 @@ void add_mesh(const Scene& scene, uint32_t index, BaseGeometry& g) {
     BaseTriangle out;
     out.surface = uint32_t(g.surfaces.size());
     out.light = mesh.lights.empty() ? no_light : mesh.lights[t];
-    std::array<Vec3, 3> p;
-    for (size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[t][k]];
+    const std::array<Vec3, 3> p = in_world.corners(t);
     const bool is_far = is_too_far(p[0]) || is_too_far(p[1]) || is_too_far(p[2]);
     g.left_out += is_far ? 1 : 0;
     out.is_degenerate = is_far || !has_area(p[0], p[1], p[2]);
@@ -96,7 +96,7 @@ void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t materia
 
 BaseGeometry base_geometry(const Scene& scene) {
   BaseGeometry g;
-  for (uint32_t i = 0; i < scene.meshes.size(); ++i) add_mesh(scene, i, g);
+  for (uint32_t i = 0; i < scene.meshes.size(); ++i) add_mesh(mesh_at(scene, i), i, g);
   for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
     add_round(scene, Bulge::sphere, i, s.material, s.light, s.is_inside_out,
@@ -105,6 +105,10 @@ BaseGeometry base_geometry(const Scene& scene) {
   for (uint32_t i = 0; i < scene.disks.size(); ++i) {
     const Disk& d = scene.disks[i];
     add_round(scene, Bulge::disk, i, d.material, d.light, false, is_too_far(d.centre, d.radius), g);
+  }
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const uint32_t geometry = first_instance(scene) + i;
+    add_mesh(mesh_at(scene, geometry), geometry, g);
   }
   return g;
 }

@@ -18,11 +18,11 @@ namespace troffer {
 
 enum class Bulge : uint8_t { none, sphere, disk };
 
-// One mesh, sphere or disk of the scene. Corners are numbers of welded vertices (by position,
-// within the surface); triangles without area have none.
+// One mesh, sphere, disk or instance of the scene. Corners are numbers of welded vertices (by
+// position, within the surface); triangles without area have none.
 struct BaseSurface {
   Bulge bulge = Bulge::none;
-  uint32_t index = 0;  // mesh, sphere or disk of the scene
+  uint32_t index = 0;  // sphere or disk of the scene; else geometry, as hits have it
   uint32_t material = 0;
   uint32_t first_triangle = 0, triangle_count = 0;  // in BaseGeometry::triangles
 };
@@ -40,7 +40,7 @@ struct BaseTriangle {
 constexpr float farthest_surface = 1e10f;
 
 struct BaseGeometry {
-  std::vector<BaseSurface> surfaces;  // meshes, then spheres, then disks
+  std::vector<BaseSurface> surfaces;  // meshes, spheres, disks, instances
   std::vector<BaseTriangle> triangles;
   std::vector<Vec3> positions;  // world
   std::vector<Vec3> flat;       // the same before bulging, in the sphere's or disk's own frame;

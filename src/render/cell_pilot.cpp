@@ -1,6 +1,7 @@
 #include "render/cell_pilot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/frame.h"
@@ -8,6 +9,7 @@
 #include "base/units.h"
 #include "base/warp.h"
 #include "integrate/purposes.h"
+#include "scene/mesh_in_world.h"
 #include "trace/surface.h"
 
 namespace troffer {
@@ -20,55 +22,91 @@ constexpr uint32_t places_of_pilot = 16384;
 // A surface, and where it ends in the sum of all areas.
 struct Area {
   double end = 0;
-  uint32_t mesh = 0, triangle = 0;  // … or of spheres and disks, their number behind the meshes
+  uint32_t geometry = 0, primitive = 0;  // as hits have them; of an instance: 0
 };
 
-struct Corners {
-  Vec3 a, b, c;
-};
-
-Corners corners_of(const Scene& scene, const Area& area) {
-  const Mesh& m = scene.meshes[area.mesh];
-  const Triangle& t = m.triangles[area.triangle];
-  return {m.positions[t[0]], m.positions[t[1]], m.positions[t[2]]};
+double area_of(const std::array<Vec3, 3>& k) {
+  return 0.5 * double(length(cross(k[1] - k[0], k[2] - k[0])));
 }
 
-std::vector<Area> areas_of(const Scene& scene) {
-  std::vector<Area> areas;
+// Where each triangle of a mesh ends in the sum of its areas.
+std::vector<double> area_sums(const Mesh& mesh) {
+  const MeshInWorld as_it_is(mesh);
+  std::vector<double> sums;
+  sums.reserve(mesh.triangles.size());
   double sum = 0;
-  const auto add = [&](double area, uint32_t mesh, uint32_t triangle) {
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const double area = area_of(as_it_is.corners(t));
+    sums.push_back(sum += area > 0 && std::isfinite(area) ? area : 0);
+  }
+  return sums;
+}
+
+struct Areas {
+  std::vector<Area> all;
+  std::vector<std::vector<double>> of_instanced;  // per instanced mesh, in its own space
+};
+
+// Triangles of an instance share its area as in the mesh's own space, whatever the transform does
+// to their shapes: places need not be spread quite evenly.
+Areas areas_of(const Scene& scene) {
+  Areas areas;
+  double sum = 0;
+  const auto add = [&](double area, uint32_t geometry, uint32_t primitive) {
     if (!(area > 0) || !std::isfinite(area)) return;
     sum += area;
-    areas.push_back({sum, mesh, triangle});
+    areas.all.push_back({sum, geometry, primitive});
   };
-  auto number = uint32_t(scene.meshes.size());
-  for (uint32_t m = 0; m < scene.meshes.size(); ++m)
-    for (uint32_t t = 0; t < scene.meshes[m].triangles.size(); ++t) {
-      const Corners k = corners_of(scene, {0, m, t});
-      add(0.5 * double(length(cross(k.b - k.a, k.c - k.a))), m, t);
-    }
-  for (const Sphere& s : scene.spheres) add(4 * pi * sqr(double(s.radius)), number++, 0);
-  for (const Disk& d : scene.disks) add(pi * sqr(double(d.radius)), number++, 0);
+  for (const Mesh& mesh : scene.instanced_meshes) areas.of_instanced.push_back(area_sums(mesh));
+  const auto meshes = uint32_t(scene.meshes.size());
+  for (uint32_t m = 0; m < meshes; ++m) {
+    const MeshInWorld mesh = mesh_at(scene, m);
+    for (uint32_t t = 0; t < mesh.size(); ++t) add(area_of(mesh.corners(t)), m, t);
+  }
+  uint32_t number = 0;
+  for (const Sphere& s : scene.spheres) add(4 * pi * sqr(double(s.radius)), meshes, number++);
+  number = 0;
+  for (const Disk& d : scene.disks) add(pi * sqr(double(d.radius)), meshes + 1, number++);
+  number = first_instance(scene);
+  for (const Instance& i : scene.instances)
+    add(areas.of_instanced[i.mesh].back() *
+            std::pow(std::abs(i.world_from_mesh.determinant()), 2.0 / 3),
+        number++, 0);
   return areas;
+}
+
+// The surface that is at `at` in the sum of all areas; of an instance its triangle.
+Area surface_at_area(const Scene& scene, const Areas& areas, double at) {
+  auto found = std::lower_bound(areas.all.begin(), areas.all.end(), at,
+                                [](const Area& a, double x) { return a.end < x; });
+  if (found == areas.all.end()) --found;
+  Area area = *found;
+  if (!is_instance(scene, area.geometry)) return area;
+  const double start = found == areas.all.begin() ? 0 : (found - 1)->end;
+  const std::vector<double>& sums =
+      areas.of_instanced[scene.instances[area.geometry - first_instance(scene)].mesh];
+  const double share = (at - start) / (area.end - start) * sums.back();
+  const auto triangle = std::lower_bound(sums.begin(), sums.end() - 1, share);
+  area.primitive = uint32_t(triangle - sums.begin());
+  return area;
 }
 
 // A point of it, and the normal there.
 void sample(const Scene& scene, const Area& area, const Vec2& u, Vec3& position, Vec3& normal) {
-  size_t i = area.mesh;
-  if (i < scene.meshes.size()) {
-    const Corners k = corners_of(scene, area);
+  if (is_mesh(scene, area.geometry)) {
+    const auto [a, b, c] = mesh_at(scene, area.geometry).corners(area.primitive);
     const Vec2 at = triangle_from_square(u);
-    position = k.a + (k.b - k.a) * at.x + (k.c - k.a) * at.y;
-    normal = normalize(cross(k.b - k.a, k.c - k.a));
+    position = a + (b - a) * at.x + (c - a) * at.y;
+    normal = normalize(cross(b - a, c - a));
     return;
   }
-  i -= scene.meshes.size();
-  if (i < scene.spheres.size()) {
+  if (area.geometry == scene.meshes.size()) {
+    const Sphere& sphere = scene.spheres[area.primitive];
     normal = sphere_from_square(u);
-    position = scene.spheres[i].centre + normal * scene.spheres[i].radius;
+    position = sphere.centre + normal * sphere.radius;
     return;
   }
-  const Disk& disk = scene.disks[i - scene.spheres.size()];
+  const Disk& disk = scene.disks[area.primitive];
   const Vec2 at = disk_from_square(u);
   const Frame frame(disk.normal);
   normal = disk.normal;
@@ -93,17 +131,15 @@ CellPilot picture_pilot(const ViewingCamera& camera, const ImageSize& size, uint
 
 CellPilot surfaces_pilot(const PreparedScene& scene, uint64_t seed) {
   CellPilot pilot;
-  const std::vector<Area> areas = areas_of(scene.scene);
-  if (areas.empty()) return pilot;
+  const Areas areas = areas_of(scene.scene);
+  if (areas.all.empty()) return pilot;
   const Box box = bounds(scene.scene);
   const uint64_t stream = hash_of(seed, uint64_t{0x7375'7266});
   for (uint32_t i = 0; i < places_of_pilot; ++i) {
     const SobolGroup random(stream, purpose_camera, i);
-    const double at = (double(i) + 0.5) / places_of_pilot * areas.back().end;
-    const auto area = std::lower_bound(areas.begin(), areas.end(), at,
-                                       [](const Area& a, double x) { return a.end < x; });
+    const double at = (double(i) + 0.5) / places_of_pilot * areas.all.back().end;
     Vec3 position, n;
-    sample(scene.scene, area == areas.end() ? areas.back() : *area, random.get2(0), position, n);
+    sample(scene.scene, surface_at_area(scene.scene, areas, at), random.get2(0), position, n);
     if (i % 2 == 1) n = -n;
     if (!is_finite(position) || !is_finite(n)) continue;
     pilot.places.push_back({position, n, n, offset_of_point(position, box)});

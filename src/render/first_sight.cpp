@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "scene/mesh_in_world.h"
 
 namespace troffer {
 
@@ -134,25 +135,39 @@ class Sight {
   std::vector<Seen> seen_;
 };
 
+// Every step-th triangle of a mesh, from `first` on.
+struct Part {
+  uint32_t geometry;
+  size_t first, step;
+};
+
+// Of very many triangles, which are small, some are enough: of instances of large meshes.
+std::vector<Part> parts_of(const Scene& scene) {
+  constexpr size_t most_triangles = 1 << 24, few_triangles = 1 << 12;
+  const size_t every = 1 + triangle_count(scene) / most_triangles;
+  std::vector<Part> parts;
+  for_each_mesh(scene, [&](uint32_t geometry, const MeshInWorld& mesh) {
+    const bool is_whole = mesh.instance() == nullptr;
+    const size_t step = is_whole ? 1 : std::min(every, 1 + mesh.size() / few_triangles);
+    for (size_t first = 0; first < mesh.size(); first += triangles_at_a_time * step)
+      parts.push_back({geometry, first, step});
+  });
+  return parts;
+}
+
 }  // namespace
 
 Image first_sight(const Scene& scene, const ViewingCamera& camera, const PixelRect& window,
                   int threads) {
   const Grid grid(camera, window);
   std::vector<Sight> sights(size_t(thread_count(threads)), Sight(camera, grid));
-  for (const Mesh& mesh : scene.meshes) {
-    const size_t n = mesh.triangles.size();
-    parallel_for_slots(
-        (n + triangles_at_a_time - 1) / triangles_at_a_time, threads,
-        [&](size_t part, size_t slot) {
-          const size_t first = part * triangles_at_a_time;
-          const size_t end = std::min(n, first + triangles_at_a_time);
-          for (size_t i = first; i < end; ++i) {
-            const Triangle& t = mesh.triangles[i];
-            sights[slot].add({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
-          }
-        });
-  }
+  const std::vector<Part> parts = parts_of(scene);
+  parallel_for_slots(parts.size(), threads, [&](size_t i, size_t slot) {
+    const Part& part = parts[i];
+    const MeshInWorld mesh = mesh_at(scene, part.geometry);
+    const size_t end = std::min(mesh.size(), part.first + triangles_at_a_time * part.step);
+    for (size_t t = part.first; t < end; t += part.step) sights[slot].add(mesh.corners(t));
+  });
   for (size_t i = 1; i < sights.size(); ++i) sights[0].merge(sights[i]);
   return sights[0].image();
 }

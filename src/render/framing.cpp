@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "render/camera.h"
+#include "scene/mesh_in_world.h"
 
 namespace troffer {
 
@@ -17,11 +18,9 @@ constexpr float room_share = 0.65f;
 // Spheres and disks count by their front too; what is thin counts from both sides.
 bool meets_front(const Scene& scene, const Ray& ray, const Hit& hit) {
   if (!hit.is_valid()) return false;
-  if (hit.geometry >= scene.meshes.size()) return hit.geometry > scene.meshes.size();
-  const Mesh& mesh = scene.meshes[hit.geometry];
-  const Triangle& t = mesh.triangles[hit.primitive];
-  const Vec3 a = mesh.positions[t[0]];
-  return dot(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a), ray.direction) < 0;
+  if (!is_mesh(scene, hit.geometry)) return hit.geometry > scene.meshes.size();
+  const auto [a, b, c] = mesh_at(scene, hit.geometry).corners(hit.primitive);
+  return dot(cross(b - a, c - a), ray.direction) < 0;
 }
 
 // Before it, a little to its right and above, so that all of its bounding sphere is seen. glTF's

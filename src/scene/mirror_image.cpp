@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/frame.h"
+#include "scene/mesh_in_world.h"
 
 namespace troffer {
 
@@ -122,7 +123,9 @@ class ImageMaker {
   void add_materials();
   void add_textures();
   void add_meshes();
-  void add_mesh_image(size_t mesh, const CutMesh& front);
+  void add_mesh_image(const Mesh& whole, const CutMesh& front);
+  void add_cut(const Mesh& mesh);
+  void add_instances();
   template <class Shape, class Reflect>
   bool add_round(const Shape& shape, float reach, std::vector<Shape>& out, const Reflect& reflect);
   bool add_spheres();
@@ -201,8 +204,7 @@ int32_t ImageMaker::light_of_image(uint32_t light, uint32_t geometry, const CutM
   return it->second;
 }
 
-void ImageMaker::add_mesh_image(size_t mesh, const CutMesh& front) {
-  const Mesh& whole = scene_.meshes[mesh];
+void ImageMaker::add_mesh_image(const Mesh& whole, const CutMesh& front) {
   const auto number = uint32_t(out_.scene.meshes.size());
   Mesh image = front.mesh;
   for (Vec3& p : image.positions) p = mirror_.reflected(p);
@@ -217,13 +219,37 @@ void ImageMaker::add_mesh_image(size_t mesh, const CutMesh& front) {
   out_.scene.meshes.push_back(std::move(image));
 }
 
-void ImageMaker::add_meshes() {
-  for (size_t m = 0; m < scene_.meshes.size(); ++m) {
-    CutMesh front = MeshCutter(scene_.meshes[m], mirror_).run();
-    if (front.mesh.triangles.empty()) continue;
-    add_mesh_image(m, front);
-    out_.scene.meshes.push_back(std::move(front.mesh));
+void ImageMaker::add_cut(const Mesh& mesh) {
+  CutMesh front = MeshCutter(mesh, mirror_).run();
+  if (front.mesh.triangles.empty()) return;
+  add_mesh_image(mesh, front);
+  out_.scene.meshes.push_back(std::move(front.mesh));
+}
+
+// Those that the plane cuts are copied out.
+void ImageMaker::add_instances() {
+  out_.scene.instanced_meshes = scene_.instanced_meshes;
+  for (Mesh& mesh : out_.scene.instanced_meshes) mesh.normals = {};
+  const Affine reflection = mirror_.reflection();
+  for (const Instance& i : scene_.instances) {
+    const auto [least, most] = mirror_.heights(i.bounds);
+    const Side side = side_of(mirror_, least, most);
+    if (side == Side::behind) continue;
+    if (side == Side::both) {
+      add_cut(copied_to_world(MeshInWorld(out_.scene.instanced_meshes[i.mesh], &i)));
+      continue;
+    }
+    const Mesh& mesh = out_.scene.instanced_meshes[i.mesh];
+    const Affine image = reflection * i.world_from_mesh;
+    out_.scene.instances.push_back(
+        make_instance(i.mesh, image, i.name, reach_of(mesh), bounds_in_world(mesh, image)));
+    out_.scene.instances.push_back(i);
   }
+}
+
+void ImageMaker::add_meshes() {
+  for (const Mesh& mesh : scene_.meshes) add_cut(mesh);
+  add_instances();
 }
 
 // A sphere or disk that reaches so far from its centre's height; false: it crosses the plane.
@@ -319,6 +345,24 @@ void ImageMaker::add_wall() {
 }
 
 }  // namespace
+
+Affine FlatMirror::reflection() const {
+  const Vec3d n(normal);
+  Affine a;
+  for (size_t k = 0; k < 3; ++k) a.columns[k] = a.columns[k] - n * (2 * n[k]);
+  a.translation = n * (2 * double(height));
+  return a;
+}
+
+std::pair<float, float> FlatMirror::heights(const Box& box) const {
+  float least = -height, most = -height;
+  for (size_t a = 0; a < 3; ++a) {
+    const float p = normal[a] * box.lower[a], q = normal[a] * box.upper[a];
+    least += std::min(p, q);
+    most += std::max(p, q);
+  }
+  return {least, most};
+}
 
 std::optional<MirrorImage> image_in(const Scene& scene, const FlatMirror& mirror) {
   return ImageMaker(scene, mirror).run();

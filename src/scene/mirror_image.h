@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -22,6 +23,9 @@ struct FlatMirror {
   float above(const Vec3& p) const { return dot(normal, p) - height; }
   Vec3 reflected(const Vec3& p) const { return p - normal * (2 * above(p)); }
   Vec3 reflected_direction(const Vec3& d) const { return d - normal * (2 * dot(normal, d)); }
+  Affine reflection() const;
+  // Of the lowest and the highest corner of a box.
+  std::pair<float, float> heights(const Box& box) const;
 };
 
 struct MirrorImage {

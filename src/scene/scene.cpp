@@ -9,6 +9,14 @@ namespace troffer {
 size_t triangle_count(const Scene& scene) {
   size_t n = 0;
   for (const Mesh& m : scene.meshes) n += m.triangles.size();
+  for (const Instance& i : scene.instances) n += scene.instanced_meshes[i.mesh].triangles.size();
+  return n;
+}
+
+size_t stored_triangle_count(const Scene& scene) {
+  size_t n = 0;
+  for (const Mesh& m : scene.meshes) n += m.triangles.size();
+  for (const Mesh& m : scene.instanced_meshes) n += m.triangles.size();
   return n;
 }
 
@@ -17,6 +25,7 @@ Box bounds(const Scene& scene) {
   for (const Mesh& m : scene.meshes)
     for (const Triangle& t : m.triangles)
       for (const uint32_t v : t) box.grow(m.positions[v]);
+  for (const Instance& i : scene.instances) box.grow(i.bounds);
   for (const Sphere& s : scene.spheres) {
     box.grow(s.centre - Vec3{s.radius});
     box.grow(s.centre + Vec3{s.radius});

@@ -10,6 +10,7 @@
 #include "base/box.h"
 #include "base/log.h"
 #include "base/rgb.h"
+#include "base/transform.h"
 #include "base/units.h"
 #include "base/vec.h"
 #include "scene/environment_map.h"
@@ -33,6 +34,18 @@ struct Mesh {
   std::vector<Triangle> triangles;
   std::vector<int32_t> lights;  // empty (nothing emits), or per triangle
   uint32_t material = 0;
+};
+
+// A mesh that is stored once and stands in several places (scene/mesh_in_world.h makes instances
+// and says where their triangles lie). The front of a triangle stays the front under transforms
+// that mirror: there its vertices run the other way round.
+struct Instance {
+  std::string name;
+  uint32_t mesh = 0;       // of Scene::instanced_meshes
+  Affine world_from_mesh;  // invertible
+  bool is_mirrored = false;
+  float reach = 0;  // metres: of what coordinates a ray's rounding is, taken to the mesh and back
+  Box bounds;       // of all triangles, in the world
 };
 
 // A whole sphere; its front is outside unless is_inside_out.
@@ -78,6 +91,8 @@ struct Scene {
   // origin, where floats are coarse. Whoever takes positions from users or shows them adds it.
   Vec3d origin;
   std::vector<Mesh> meshes;
+  std::vector<Mesh> instanced_meshes;  // each in a space of its own; nothing of them emits
+  std::vector<Instance> instances;
   std::vector<Sphere> spheres;
   std::vector<Disk> disks;
   std::vector<Material> materials;  // at least one if there is any geometry
@@ -90,7 +105,8 @@ struct Scene {
   WarningLog warnings;
 };
 
-size_t triangle_count(const Scene& scene);
+size_t triangle_count(const Scene& scene);  // those of every instance too
+size_t stored_triangle_count(const Scene& scene);
 Box bounds(const Scene& scene);           // from the scene's origin
 Boxd bounds_in_file(const Scene& scene);  // in the file's coordinates
 

@@ -1,11 +1,13 @@
 #include "trace/embree_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scene/mesh_in_world.h"
 
 namespace troffer {
 
@@ -100,12 +102,33 @@ void* Tracer::Embree::buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat
 void Tracer::Embree::attach(RTCGeometry geometry, uint32_t id) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
-  if (tests[id].has_panes) {
-    if (panes == nullptr) panes = rtcNewScene(device);
-    rtcSetSceneFlags(panes, RTC_SCENE_FLAG_ROBUST);
-    rtcAttachGeometryByID(panes, geometry, id);
-  }
+  if (tests[id].has_panes) attach_pane(geometry, id);
   rtcReleaseGeometry(geometry);
+}
+
+void Tracer::Embree::attach_pane(RTCGeometry geometry, uint32_t id) {
+  if (panes == nullptr) panes = rtcNewScene(device);
+  rtcSetSceneFlags(panes, RTC_SCENE_FLAG_ROBUST);
+  rtcAttachGeometryByID(panes, geometry, id);
+}
+
+// Coincident surfaces are told apart by the order of primitives in the tree's leaves, which is the
+// same for any number of threads only when the tree is built on one. Large scenes, where that would
+// take long, are built on all cores.
+void Tracer::Embree::commit(RTCScene to_build, size_t triangles) const {
+  constexpr size_t large = 400'000;
+  if (triangles > large)
+    rtcCommitScene(to_build);
+  else
+    run_on_one_thread([&] { rtcJoinCommitScene(to_build); });
+  throw_if_failed();
+}
+
+RTCScene Tracer::Embree::new_scene() const {
+  RTCScene made = rtcNewScene(device);
+  rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST);  // no light leaks through shared edges
+  rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
+  return made;
 }
 
 void Tracer::Embree::set_filters(RTCGeometry g, uint32_t id) {
@@ -132,9 +155,8 @@ void Tracer::Embree::set_vertices(RTCGeometry g, const std::vector<Vec3>& positi
     for (size_t a = 0; a < 3; ++a) p[3 * i + a] = positions[i][a];
 }
 
-void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass) {
-  const Mesh& mesh = s.meshes[id];
-  if (mesh.triangles.empty()) return;
+RTCGeometry Tracer::Embree::make_mesh(const Scene& s, const Mesh& mesh, uint32_t id,
+                                      const PaneGlass* glass) {
   RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   set_vertices(g, mesh.positions);
   static_assert(sizeof(Triangle) == 3 * sizeof(uint32_t));
@@ -149,7 +171,47 @@ void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glas
   test.hides_backs = m.back_faces == BackFaces::unseen;
   test.has_panes = !m.is_alpha_masked && glass != nullptr && glass->is_pane(mesh.material);
   set_filters(g, id);
-  attach(g, id);
+  return g;
+}
+
+void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass) {
+  if (!s.meshes[id].triangles.empty()) attach(make_mesh(s, s.meshes[id], id, glass), id);
+}
+
+// Filters of an instance's mesh see rays in its space, where the sides of a triangle are the same:
+// under a transform that mirrors, its vertices run the other way round.
+void Tracer::Embree::add_instances(const Scene& s, const PaneGlass* glass) {
+  const uint32_t first_test = instances.first;
+  std::vector<RTCScene> spaces;
+  for (uint32_t i = 0; i < s.instanced_meshes.size(); ++i) {
+    const Mesh& mesh = s.instanced_meshes[i];
+    spaces.push_back(new_scene());
+    RTCGeometry g = make_mesh(s, mesh, first_test + i, glass);
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(spaces.back(), g, 0);
+    rtcReleaseGeometry(g);
+    commit(spaces.back(), mesh.triangles.size());
+  }
+  instances.is_mirrored.reserve(s.instances.size());
+  for (const Instance& instance : s.instances) {
+    const uint32_t id = instances.first + uint32_t(instances.is_mirrored.size());
+    instances.is_mirrored.push_back(instance.is_mirrored ? 1 : 0);
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(g, spaces[instance.mesh]);
+    const Affine& m = instance.world_from_mesh;
+    std::array<float, 12> columns{};
+    for (size_t a = 0; a < 3; ++a) {
+      for (size_t c = 0; c < 3; ++c) columns[3 * c + a] = float(m.columns[c][a]);
+      columns[9 + a] = float(m.translation[a]);
+    }
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(scene, g, id);
+    if (tests[first_test + instance.mesh].has_panes) attach_pane(g, id);
+    rtcReleaseGeometry(g);
+    throw_if_failed();
+  }
+  for (RTCScene space : spaces) rtcReleaseScene(space);  // instances keep them
 }
 
 // Of the shapes of one geometry, which are panes.
@@ -202,21 +264,16 @@ Tracer::Embree::Embree(const Scene& s, const PaneGlass* glass) {
   device = rtcNewDevice(nullptr);
   if (device == nullptr) throw EnvironmentError("cannot start Embree");
   rtcSetDeviceErrorFunction(device, on_error, &status);
-  scene = rtcNewScene(device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no light leaks through shared edges
-  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-  tests.resize(s.meshes.size() + 2);
+  scene = new_scene();
+  instances.first = first_instance(s);
+  tests.resize(instances.first + s.instanced_meshes.size());
   for (uint32_t i = 0; i < s.meshes.size(); ++i) add_mesh(s, i, glass);
   add_spheres(s, glass);
   add_disks(s, glass);
-  // Coincident surfaces are told apart by the order of primitives in the tree's leaves, which is
-  // the same for any number of threads only when the tree is built on one. Large scenes, where
-  // that would take long, are built on all cores.
-  constexpr size_t large = 400'000;
-  if (triangle_count(s) > large)
-    rtcCommitScene(scene);
-  else
-    run_on_one_thread([&] { rtcJoinCommitScene(scene); });
+  add_instances(s, glass);
+  size_t items = s.instances.size();
+  for (const Mesh& mesh : s.meshes) items += mesh.triangles.size();
+  commit(scene, items);
   if (panes != nullptr) run_on_one_thread([&] { rtcJoinCommitScene(panes); });
   throw_if_failed();
 }

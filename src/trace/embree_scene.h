@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trace/tracer.h"
@@ -30,6 +31,20 @@ struct HitTest {
   }
 };
 
+// From what Embree says of instances to our numbers.
+struct InstanceNumbers {
+  uint32_t first = 0;  // geometry of the first one
+  std::vector<uint8_t> is_mirrored;
+
+  // instance: geometry number, or RTC_INVALID_GEOMETRY_ID. In a mirrored one vertices 1 and 2
+  // change places.
+  void apply(uint32_t instance, Hit& hit) const {
+    if (instance == RTC_INVALID_GEOMETRY_ID || !hit.is_valid()) return;
+    hit.geometry = instance;
+    if (is_mirrored[instance - first] != 0) std::swap(hit.u, hit.v);
+  }
+};
+
 struct EmbreeStatus {
   RTCError code = RTC_ERROR_NONE;
   std::string text;
@@ -40,7 +55,8 @@ struct Tracer::Embree {
   RTCScene scene = nullptr;
   RTCScene panes = nullptr;  // alone, by the same numbers; null: there are none
   EmbreeStatus status;
-  std::vector<HitTest> tests;  // per mesh, of all spheres, of all disks
+  std::vector<HitTest> tests;  // per mesh, of all spheres, of all disks, per instanced mesh
+  InstanceNumbers instances;
 
   // Throws EnvironmentError if memory runs out.
   Embree(const Scene& scene, const PaneGlass* glass);
@@ -54,7 +70,12 @@ struct Tracer::Embree {
                size_t count);
   void set_vertices(RTCGeometry geometry, const std::vector<Vec3>& positions);
   void attach(RTCGeometry geometry, uint32_t id);
+  void attach_pane(RTCGeometry geometry, uint32_t id);
+  RTCScene new_scene() const;
+  void commit(RTCScene scene, size_t triangles) const;
+  RTCGeometry make_mesh(const Scene& s, const Mesh& mesh, uint32_t test, const PaneGlass* glass);
   void add_mesh(const Scene& s, uint32_t id, const PaneGlass* glass);
+  void add_instances(const Scene& s, const PaneGlass* glass);
   void add_spheres(const Scene& s, const PaneGlass* glass);
   void add_disks(const Scene& s, const PaneGlass* glass);
   void set_filters(RTCGeometry geometry, uint32_t id);

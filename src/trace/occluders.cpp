@@ -10,76 +10,11 @@
 #include "base/error.h"
 #include "base/parallel.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define TROFFER_CULL_DISPATCH 1
-#endif
-#define TROFFER_CULL_WIDTH 4
-#define TROFFER_CULL_NAMESPACE cull_plain
-#include "trace/occluders_kernels.h"
-#ifdef TROFFER_CULL_DISPATCH
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#define TROFFER_CULL_WIDTH 8
-#define TROFFER_CULL_NAMESPACE cull_avx2
-#include "trace/occluders_kernels.h"
-#pragma GCC pop_options
-#endif
-
 namespace troffer {
 
 namespace {
 
-constexpr size_t most_planes = 32;
 constexpr uint32_t leaf_size = 4;
-
-// Planes side by side, padded with ones that nothing is outside of.
-struct PlaneSet {
-  alignas(64) float x[most_planes];
-  alignas(64) float y[most_planes];
-  alignas(64) float z[most_planes];
-  alignas(64) float distance[most_planes];
-  int count = 0, padded = 0;
-
-  explicit PlaneSet(std::span<const Plane> planes) {
-    for (const Plane& p : planes.first(std::min(planes.size(), most_planes))) {
-      x[count] = p.normal.x;
-      y[count] = p.normal.y;
-      z[count] = p.normal.z;
-      distance[count++] = p.distance;
-    }
-    padded = (count + 7) / 8 * 8;
-    for (int i = count; i < padded; ++i) {
-      x[i] = y[i] = z[i] = 0;
-      distance[i] = std::numeric_limits<float>::infinity();
-    }
-  }
-};
-
-struct Kernels {
-  decltype(&cull_plain::boxes_outside) boxes;
-  decltype(&cull_plain::facet_outside) facet;
-};
-
-Kernels best_kernels() {
-#ifdef TROFFER_CULL_DISPATCH
-  if (__builtin_cpu_supports("avx2")) return {cull_avx2::boxes_outside, cull_avx2::facet_outside};
-#endif
-  return {cull_plain::boxes_outside, cull_plain::facet_outside};
-}
-const Kernels kernels = best_kernels();
-
-bool is_outside(const Quad& q, const PlaneSet& planes) {
-  return kernels.facet(&q[0].x, planes.x, planes.y, planes.z, planes.distance, planes.padded);
-}
-
-// Of a sphere, up to `radius` from the centre.
-bool is_outside(const Vec3& centre, float radius, const PlaneSet& planes) {
-  for (int p = 0; p < planes.count; ++p)
-    if (centre.x * planes.x[p] + centre.y * planes.y[p] + centre.z * planes.z[p] - radius >
-        planes.distance[p])
-      return true;
-  return false;
-}
 
 // The tree as rtcBuildBVH makes it; children of a node lie where its allocator put them. Leaves,
 // which are most of it, take as little as they can.
@@ -247,12 +182,15 @@ void copy_tree(const RawNode& root, std::vector<Node>& nodes, std::vector<uint32
 
 void Occluders::build_tree() {
   std::vector<RTCBuildPrimitive> boxes;
-  boxes.reserve(facet_count() + others_.size());
+  boxes.reserve(facet_count() + others_.size() + instanced_.stands.size());
   for (uint32_t i = 0; i < facet_count(); ++i)
     boxes.push_back(build_primitive(bounds_of(facet(i)), i));
   for (const Other& o : others_) boxes.push_back(build_primitive(o.bounds, uint32_t(boxes.size())));
+  for (uint32_t i = 0; i < instanced_.stands.size(); ++i)
+    if (const Stand& stand = instanced_.stands[i]; stand.space != no_space)
+      boxes.push_back(build_primitive(stand.bounds, uint32_t(facet_count() + others_.size()) + i));
   if (boxes.size() <= leaf_size) {
-    for (uint32_t i = 0; i < boxes.size(); ++i) leaf_items_.push_back(i);
+    for (const RTCBuildPrimitive& box : boxes) leaf_items_.push_back(box.primID);
     root_leaf_count_ = uint32_t(boxes.size());
     return;
   }
@@ -268,64 +206,15 @@ void Occluders::build_tree() {
   copy_tree(root, nodes_, leaf_items_);
 }
 
-void Occluders::gather(std::span<const Plane> planes, size_t most, Found& found) const {
-  const PlaneSet set(planes);
-  const auto facets = uint32_t(facet_count());
-  // False when the list has become too long.
-  const auto look_at_leaf = [&](uint32_t first, uint32_t count) {
-    for (uint32_t i = first; i < first + count; ++i) {
-      const uint32_t item = leaf_items_[i];
-      if (item >= facets) {
-        const Other& o = others_[item - facets];
-        if (o.key == found.own && o.key != no_key) continue;
-        if (o.is_flat ? is_outside(o.cover, set)
-                      : is_outside(o.round.centre, o.bounds.upper.x - o.round.centre.x, set))
-          continue;
-        if (!(o.round.radius > 0)) {
-          ++found.others;
-          if (found.masked.size() < most_masked) found.masked.push_back(o.cover);
-          continue;
-        }
-        if (found.rounds.size() >= most) return false;
-        found.rounds.push_back(o.round);
-      } else if (!is_outside(facet(item), set)) {
-        if (found.facets.size() >= most) return false;
-        found.facets.push_back(item);
-      }
-    }
-    return true;
-  };
-  if (nodes_.empty()) {
-    found.is_complete = look_at_leaf(0, root_leaf_count_) && found.is_complete;
-    return;
-  }
-  std::array<uint32_t, 64 * 8> stack;  // depth × children: it cannot overflow
-  size_t size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const Node& node = nodes_[stack[--size]];
-    ++found.visited_nodes;
-    const uint32_t outside = kernels.boxes(&node.lower[0][0], &node.upper[0][0], set.x, set.y,
-                                           set.z, set.distance, set.count);
-    for (uint32_t i = 0; i < 8; ++i) {
-      if ((outside >> i & 1u) != 0 || node.count[i] == 255) continue;
-      if (node.count[i] == 0) {
-        stack[size++] = node.child[i];
-      } else if (!look_at_leaf(node.child[i], node.count[i])) {
-        found.is_complete = false;
-        return;
-      }
-    }
-  }
-}
-
-bool Occluders::may_meet(uint32_t facet, std::span<const Plane> planes) const {
-  return !is_outside(this->facet(facet), PlaneSet(planes));
-}
-
 uint32_t Occluders::facet_of(uint32_t geometry, uint32_t primitive) const {
-  if (geometry >= facet_of_.size() || primitive >= facet_of_[geometry].size()) return no_facet;
-  return facet_of_[geometry][primitive];
+  if (geometry < facet_of_.size())
+    return primitive < facet_of_[geometry].size() ? facet_of_[geometry][primitive] : no_facet;
+  const size_t first = facet_of_.size() + 2;  // behind spheres and disks
+  if (geometry < first || geometry - first >= instanced_.stands.size()) return no_facet;
+  const Stand& stand = instanced_.stands[geometry - first];
+  if (stand.space == no_space) return no_facet;
+  const uint32_t own = instanced_.spaces[stand.space]->facet_of(0, primitive);
+  return own == no_facet ? no_facet : stand.first_facet + own;
 }
 
 }  // namespace troffer

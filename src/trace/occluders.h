@@ -5,18 +5,21 @@
 // quadrilaterals where that is exact to rounding (base/merge_polygons.h), so that a tessellated
 // wall is one facet. Each triangle with area belongs to one facet, whole. Spheres and disks are
 // reported as they are, triangles with an alpha mask apart from the others: only rays can tell what
-// these hide.
+// these hide. Instances share the facets and the hierarchy of their mesh: theirs have numbers of
+// their own, behind all others, and their corners are computed when they are asked for.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "base/box.h"
 #include "base/quad.h"
 #include "base/round_body.h"
+#include "base/transform.h"
 #include "scene/scene.h"
 #include "trace/panes.h"
 
@@ -26,14 +29,17 @@ constexpr uint32_t no_facet = 0xffffffffu;
 
 class Occluders {
  public:
-  // Throws EnvironmentError if memory runs out. The scene is not kept. Works on the calling thread
-  // alone; what is built, the order of gathered lists too, depends on the scene alone.
+  // Throws EnvironmentError if memory or numbers of facets run out. The scene is not kept. Works on
+  // the calling thread alone; what is built, the order of gathered lists too, depends on the scene
+  // alone.
   explicit Occluders(const Scene& scene) : Occluders(scene, nullptr) {}
   // … and what panes are, which hide nothing: none if null.
   Occluders(const Scene& scene, const PaneGlass* glass);
 
+  // Those of instances, whose numbers follow, do not count.
   size_t facet_count() const { return component_.size(); }
   Quad facet(uint32_t id) const {
+    if (id >= component_.size()) return instance_facet(id);
     if (!quads_.empty()) return quads_[id];
     const Corners& c = corners_[id];
     return {vertices_[c[0]], vertices_[c[1]], vertices_[c[2]], vertices_[c[3]]};
@@ -49,7 +55,7 @@ class Occluders {
     Box bounds;
     bool is_closed = false;
   };
-  const Component& component_of(uint32_t facet) const { return components_[component_[facet]]; }
+  Component component_of(uint32_t facet) const;
 
   static constexpr uint64_t no_key = ~0ull;
   static uint64_t key(uint32_t geometry, uint32_t primitive) {
@@ -83,10 +89,24 @@ class Occluders {
     uint32_t child[8];  // node index; leaf: first entry of leaf_items_
     uint8_t count[8];   // leaf: items; 0: a node; 255: nothing
   };
-  void join_and_add(const Scene& scene, uint32_t mesh);
-  void add_others(const Scene& scene, const PaneGlass* glass);
+  struct PlaneSet;
+  struct Other;
+  struct Stand;
+  // Of one mesh, in its own space.
+  Occluders(const Mesh& mesh, bool is_alpha_masked);
+  void join_and_add(const Mesh& mesh, std::vector<uint32_t>& facet_of);
+  void add_masked(const Mesh& mesh);
+  void add_flat(const Quad& q, const RoundBody& round, uint64_t key);
+  void add_round(const Scene& scene, const PaneGlass* glass);
+  void add_instances(const Scene& scene, const PaneGlass* glass);
   void build_tree();
-  void reserve(const Scene& scene);
+  void reserve(std::span<const Mesh> meshes);
+  Quad instance_facet(uint32_t facet) const;
+  const Stand& stand_of(uint32_t facet) const;
+  template <class Look>
+  bool walk(const PlaneSet& set, uint64_t& visited, const Look& look) const;
+  static bool look_at_other(const Other& other, const PlaneSet& set, size_t most, Found& found);
+  bool look_at_stand(const Stand& stand, const PlaneSet& set, size_t most, Found& found) const;
 
   // Facets, in one way or the other: with their vertices, or, of large scenes, by their numbers,
   // which take a third of the memory and more time to look at.
@@ -108,8 +128,24 @@ class Occluders {
   std::vector<Other> others_;
   std::vector<std::vector<uint32_t>> facet_of_;  // per mesh, per triangle
   std::vector<Node> nodes_;
-  std::vector<uint32_t> leaf_items_;  // facet, or facet_count() + other
-  uint32_t root_leaf_count_ = 0;      // no nodes: everything is one leaf
+  // facet, or facet_count() + other, or that + number of others + stand
+  std::vector<uint32_t> leaf_items_;
+  uint32_t root_leaf_count_ = 0;                     // no nodes: everything is one leaf
+  static constexpr uint32_t no_space = 0xffffffffu;  // of panes
+  // An instance.
+  struct Stand {
+    Affine world_from_space;
+    Vec3d reach;  // per axis: no coordinate on the way to the world is larger
+    Box bounds;   // in the world
+    uint32_t space = no_space, first_facet = 0;
+    bool is_mirrored = false;
+
+    Quad placed(const Quad& own) const;
+  };
+  struct Instanced {
+    std::vector<std::unique_ptr<const Occluders>> spaces;  // per instanced mesh
+    std::vector<Stand> stands;                             // per instance
+  } instanced_;
 };
 
 }  // namespace troffer

@@ -4,14 +4,15 @@
 #include <array>
 
 #include "base/disjoint_sets.h"
+#include "base/error.h"
 #include "base/frame.h"
 #include "base/merge_polygons.h"
+#include "scene/mesh_in_world.h"
 #include "trace/occluders.h"
 
 namespace troffer {
 
-void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
-  const Mesh& mesh = scene.meshes[mesh_index];
+void Occluders::join_and_add(const Mesh& mesh, std::vector<uint32_t>& facet_of) {
   const std::vector<uint32_t> welded = weld(mesh.positions);
   PolygonList triangles;
   triangles.corners.reserve(3 * mesh.triangles.size());
@@ -54,7 +55,6 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
       quads_.push_back({vertex(0), vertex(1), vertex(2), vertex(3)});
     component_.push_back(component_at(c[0]));
   }
-  std::vector<uint32_t>& facet_of = facet_of_[mesh_index];
   facet_of.assign(mesh.triangles.size(), no_facet);
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (merged.of_piece[t] == no_polygon) continue;
@@ -64,23 +64,24 @@ void Occluders::join_and_add(const Scene& scene, uint32_t mesh_index) {
   }
 }
 
-void Occluders::add_others(const Scene& scene, const PaneGlass* glass) {
+void Occluders::add_flat(const Quad& q, const RoundBody& round, uint64_t k) {
+  Box b;
+  for (const Vec3& v : q) b.grow(v);
+  others_.push_back({b, q, true, round, k});
+}
+
+void Occluders::add_masked(const Mesh& mesh) {
+  for (const Triangle& t : mesh.triangles)
+    add_flat(
+        {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], mesh.positions[t[2]]},
+        {}, no_key);
+}
+
+void Occluders::add_round(const Scene& scene, const PaneGlass* glass) {
   const auto is_pane = [&](uint32_t material) {
     return glass != nullptr && glass->is_pane(material);
   };
-  const auto add_flat = [&](const Quad& q, const RoundBody& round, uint64_t k) {
-    Box b;
-    for (const Vec3& v : q) b.grow(v);
-    others_.push_back({b, q, true, round, k});
-  };
   const auto meshes = uint32_t(scene.meshes.size());
-  for (const Mesh& mesh : scene.meshes) {
-    if (mesh.triangles.empty() || !scene.materials[mesh.material].is_alpha_masked) continue;
-    for (const Triangle& t : mesh.triangles)
-      add_flat(
-          {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], mesh.positions[t[2]]},
-          {}, no_key);
-  }
   for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
     if (is_pane(s.material)) continue;
@@ -104,26 +105,69 @@ void Occluders::add_others(const Scene& scene, const PaneGlass* glass) {
 
 // Room for the most there can be: what is not needed of it is never touched, and growing would
 // copy.
-void Occluders::reserve(const Scene& scene) {
+void Occluders::reserve(std::span<const Mesh> meshes) {
   constexpr size_t large = 1 << 18;
-  const size_t triangles = triangle_count(scene);
+  size_t triangles = 0, vertices = 0;
+  for (const Mesh& mesh : meshes) {
+    triangles += mesh.triangles.size();
+    vertices += mesh.positions.size();
+  }
   is_large_ = triangles > large;
   component_.reserve(triangles);
   if (!is_large_) return quads_.reserve(triangles);
   corners_.reserve(triangles);
-  size_t vertices = 0;
-  for (const Mesh& mesh : scene.meshes) vertices += mesh.positions.size();
   vertices_.reserve(vertices);
 }
 
+void Occluders::add_instances(const Scene& scene, const PaneGlass* glass) {
+  std::vector<Vec3d> reaches;
+  for (const Mesh& mesh : scene.instanced_meshes) {
+    reaches.emplace_back(reach_of(mesh));
+    const bool is_pane = glass != nullptr && glass->is_pane(mesh.material);
+    const bool is_masked = scene.materials[mesh.material].is_alpha_masked;
+    instanced_.spaces.emplace_back(is_pane && !is_masked ? nullptr
+                                                         : new Occluders(mesh, is_masked));
+  }
+  uint64_t facets = facet_count();
+  for (const Instance& i : scene.instances) {
+    Stand& stand = instanced_.stands.emplace_back();
+    stand.first_facet = uint32_t(facets);
+    if (instanced_.spaces[i.mesh] == nullptr) continue;
+    stand.space = i.mesh;
+    stand.world_from_space = i.world_from_mesh;
+    stand.is_mirrored = i.is_mirrored;
+    stand.bounds = i.bounds;
+    stand.reach = abs(i.world_from_mesh.translation);
+    for (size_t a = 0; a < 3; ++a)
+      stand.reach += abs(i.world_from_mesh.columns[a]) * reaches[i.mesh][a];
+    facets += instanced_.spaces[i.mesh]->facet_count();
+    if (facets >= no_facet - 1)
+      throw EnvironmentError("cannot tell apart the facets of so many instances");
+  }
+}
+
+Occluders::Occluders(const Mesh& mesh, bool is_alpha_masked) : facet_of_(1) {
+  reserve({&mesh, 1});
+  if (is_alpha_masked)
+    add_masked(mesh);
+  else
+    join_and_add(mesh, facet_of_[0]);
+  build_tree();
+}
+
 Occluders::Occluders(const Scene& scene, const PaneGlass* glass) : facet_of_(scene.meshes.size()) {
-  reserve(scene);
+  reserve(scene.meshes);
+  const auto is_masked = [&](const Mesh& mesh) {
+    return scene.materials[mesh.material].is_alpha_masked;
+  };
   for (uint32_t i = 0; i < scene.meshes.size(); ++i)
-    if (!scene.meshes[i].triangles.empty() &&
-        !scene.materials[scene.meshes[i].material].is_alpha_masked &&
-        !(glass != nullptr && glass->is_pane(scene.meshes[i].material)))
-      join_and_add(scene, i);
-  add_others(scene, glass);
+    if (const Mesh& mesh = scene.meshes[i]; !mesh.triangles.empty() && !is_masked(mesh) &&
+                                            !(glass != nullptr && glass->is_pane(mesh.material)))
+      join_and_add(mesh, facet_of_[i]);
+  for (const Mesh& mesh : scene.meshes)
+    if (!mesh.triangles.empty() && is_masked(mesh)) add_masked(mesh);
+  add_round(scene, glass);
+  add_instances(scene, glass);
   build_tree();
 }
 

@@ -8,25 +8,26 @@
 namespace troffer {
 
 PanePlaces::PanePlaces(const Scene& scene, const PaneGlass& glass) {
-  for (const Mesh& mesh : scene.meshes) {
-    if (!glass.is_pane(mesh.material) || mesh.triangles.empty()) continue;
+  for_each_mesh(scene, [&](uint32_t, const MeshInWorld& mesh) {
+    if (!glass.is_pane(mesh.mesh().material) || mesh.size() == 0) return;
     Box box;
     Vec3 normal;
     float largest = 0;
-    for (const Triangle& t : mesh.triangles) {
-      const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-      for (const Vec3& p : {a, b, c}) box.grow(p);
+    std::vector<Vec3> points;
+    for (size_t t = 0; t < mesh.size(); ++t) {
+      const auto [a, b, c] = mesh.corners(t);
+      for (const Vec3& p : {a, b, c}) {
+        box.grow(p);
+        points.push_back(p);
+      }
       const Vec3 n = cross(b - a, c - a);
       if (const float l = length(n); l > largest) {
         largest = l;
         normal = n * (1 / l);
       }
     }
-    std::vector<Vec3> points;
-    for (const Triangle& t : mesh.triangles)
-      for (const uint32_t i : t) points.push_back(mesh.positions[i]);
     make_simple(scene, mesh, glass, add(box, normal, points));
-  }
+  });
   for (const Sphere& s : scene.spheres)
     if (glass.is_pane(s.material)) {
       Box box;
@@ -60,17 +61,19 @@ PanePlaces::Place& PanePlaces::add(const Box& bounds, const Vec3& normal,
 }
 
 // Flat and even, of few triangles, seen as it lies.
-void PanePlaces::make_simple(const Scene& scene, const Mesh& mesh, const PaneGlass& glass,
-                             Place& place) {
+void PanePlaces::make_simple(const Scene& scene, const MeshInWorld& in_world,
+                             const PaneGlass& glass, Place& place) {
   constexpr size_t most_triangles = 8;
   constexpr int steps = 1024;
+  const Mesh& mesh = in_world.mesh();
   if (!(length_squared(place.normal) > 0) || mesh.triangles.size() > most_triangles ||
       !glass.is_even(mesh.material) || scene.materials[mesh.material].normal_texture >= 0)
     return;
-  for (const Vec3& n : mesh.normals)
+  for (uint32_t v = 0; v < mesh.normals.size(); ++v) {
+    const Vec3 n = in_world.normal(v);
     if (std::abs(dot(n, place.normal)) < 0.9999f * length(n)) return;
-  for (const Triangle& t : mesh.triangles)
-    place.triangles.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+  }
+  for (size_t t = 0; t < in_world.size(); ++t) place.triangles.push_back(in_world.corners(t));
   for (int i = 0; i <= steps; ++i)
     place.by_cosine.push_back(glass.transmittance_at(mesh.material, float(i) / float(steps)));
 }

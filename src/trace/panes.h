@@ -9,6 +9,7 @@
 
 #include "base/box.h"
 #include "base/rgb.h"
+#include "scene/mesh_in_world.h"
 #include "scene/scene.h"
 #include "trace/ray.h"
 
@@ -62,7 +63,8 @@ class PanePlaces {
     std::vector<Rgb> by_cosine;
   };
   Place& add(const Box& bounds, const Vec3& normal, const std::vector<Vec3>& points);
-  void make_simple(const Scene& scene, const Mesh& mesh, const PaneGlass& glass, Place& place);
+  void make_simple(const Scene& scene, const MeshInWorld& mesh, const PaneGlass& glass,
+                   Place& place);
   std::vector<Place> places_;
 };
 

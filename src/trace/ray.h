@@ -50,8 +50,9 @@ class Segments {
 
 constexpr uint32_t no_geometry = 0xffffffffu;
 
-// geometry: a mesh's index, or mesh count (all spheres), or mesh count + 1 (all disks);
-// primitive: the triangle, sphere or disk; u, v: barycentric weights of vertices 1 and 2.
+// geometry: a mesh's index, or mesh count (all spheres), or mesh count + 1 (all disks), or mesh
+// count + 2 + an instance's index (scene/mesh_in_world.h); primitive: the triangle, sphere or disk;
+// u, v: barycentric weights of vertices 1 and 2.
 struct Hit {
   float t = 0;
   float u = 0, v = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/mesh_in_world.h"
+
 namespace troffer {
 
 // References: [1] Akenine-Möller et al., "Texture Level of Detail Strategies for Real-Time Ray
@@ -162,7 +164,7 @@ bool is_textured_at_all(const Scene& scene, const Surface& s) {
 
 // What textures make of the surface; places for those that are looked up later.
 void set_textured(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
-                  const std::array<Vec3, 3>& p, const UvSets& uv, Surface& s) {
+                  const std::array<Vec3, 3>& p, const UvSets& uv, bool has_second_uv, Surface& s) {
   if (!is_textured_at_all(scene, s)) return;
   const Material& m = scene.materials[s.material];
   const TriangleUvs uvs(p, uv.first);
@@ -170,7 +172,7 @@ void set_textured(const Scene& scene, const Ray& ray, const Hit& hit, const RayC
   s.uv.width = cone.width + cone.spread * hit.t;
   if (s.uv.width > 0 && uvs.is_fine)
     set_footprint(uvs, s.geometric_normal, ray.direction, s.uv.width, s.uv.axis_a, s.uv.axis_b);
-  if (s.uv.width > 0 && !scene.meshes[s.geometry].uvs_2.empty()) {
+  if (s.uv.width > 0 && has_second_uv) {
     const TriangleUvs second(p, uv.second);
     if (second.is_fine)
       set_footprint(second, s.geometric_normal, ray.direction, s.uv.width, s.uv.axis_2a,
@@ -189,26 +191,34 @@ void set_place(const RayCone& cone, const Hit& hit, Surface& s) {
   s.uv.width = cone.width + cone.spread * hit.t;
 }
 
-void triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
-                      Surface& s) {
-  const Mesh& mesh = scene.meshes[hit.geometry];
-  const Triangle& t = mesh.triangles[hit.primitive];
-  const std::array<Vec3, 3> p{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-  const float w = 1 - hit.u - hit.v;
+// The triangle as it stands in the world: its vertices in the order in which they show the front.
+struct TriangleHit {
+  const Mesh& mesh;
+  Triangle vertices;
+  std::array<Vec3, 3> p;
+};
+
+void set_shading_normal(const std::array<Vec3, 3>& normals, const Hit& hit, Surface& s) {
+  const Vec3 n = normals[0] * (1 - hit.u - hit.v) + normals[1] * hit.u + normals[2] * hit.v;
+  const float l = length(n);
+  if (l > 1e-6f) s.shading_normal = n / (dot(n, s.geometric_normal) < 0 ? -l : l);
+}
+
+void set_place_and_normal(const TriangleHit& t, const Hit& hit, Surface& s) {
+  const std::array<Vec3, 3>& p = t.p;
   s.geometry = hit.geometry;
   s.primitive = hit.primitive;
-  s.position = p[0] * w + p[1] * hit.u + p[2] * hit.v;
+  s.position = p[0] * (1 - hit.u - hit.v) + p[1] * hit.u + p[2] * hit.v;
   s.geometric_normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
-  s.offset = ray_offset(
-      std::max({largest_coordinate(p[0]), largest_coordinate(p[1]), largest_coordinate(p[2])}));
-  s.material = mesh.material;
-  s.light = mesh.lights.empty() ? no_light : mesh.lights[hit.primitive];
+  s.material = t.mesh.material;
   s.shading_normal = s.geometric_normal;
-  if (!mesh.normals.empty()) {
-    const Vec3 n = mesh.normals[t[0]] * w + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v;
-    const float l = length(n);
-    if (l > 1e-6f) s.shading_normal = n / (dot(n, s.geometric_normal) < 0 ? -l : l);
-  }
+}
+
+void set_look(const Scene& scene, const Ray& ray, const TriangleHit& triangle, const Hit& hit,
+              const RayCone& cone, Surface& s) {
+  const Mesh& mesh = triangle.mesh;
+  const Triangle& t = triangle.vertices;
+  const float w = 1 - hit.u - hit.v;
   s.uv = {};
   if (!mesh.uvs.empty()) {
     UvSets uv{{mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]}, {}};
@@ -217,10 +227,39 @@ void triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit, const 
       uv.second = {mesh.uvs_2[t[0]], mesh.uvs_2[t[1]], mesh.uvs_2[t[2]]};
       s.uv.uv_2 = uv.second[0] * w + uv.second[1] * hit.u + uv.second[2] * hit.v;
     }
-    set_textured(scene, ray, hit, cone, p, uv, s);
+    set_textured(scene, ray, hit, cone, triangle.p, uv, !mesh.uvs_2.empty(), s);
   } else if (is_textured_at_all(scene, s)) {
     set_place(cone, hit, s);
   }
+}
+
+void triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
+                      Surface& s) {
+  const Mesh& mesh = scene.meshes[hit.geometry];
+  const Triangle& t = mesh.triangles[hit.primitive];
+  const TriangleHit triangle{
+      mesh, t, {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]}};
+  set_place_and_normal(triangle, hit, s);
+  s.offset =
+      ray_offset(std::max({largest_coordinate(triangle.p[0]), largest_coordinate(triangle.p[1]),
+                           largest_coordinate(triangle.p[2])}));
+  s.light = mesh.lights.empty() ? no_light : mesh.lights[hit.primitive];
+  if (!mesh.normals.empty())
+    set_shading_normal({mesh.normals[t[0]], mesh.normals[t[1]], mesh.normals[t[2]]}, hit, s);
+  set_look(scene, ray, triangle, hit, cone, s);
+}
+
+void instance_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
+                      Surface& s) {
+  const MeshInWorld mesh = mesh_at(scene, hit.geometry);
+  const Triangle t = mesh.triangle(hit.primitive);
+  const TriangleHit triangle{mesh.mesh(), t, mesh.corners(hit.primitive)};
+  set_place_and_normal(triangle, hit, s);
+  s.offset = ray_offset(mesh.instance()->reach);
+  s.light = no_light;
+  if (!mesh.mesh().normals.empty())
+    set_shading_normal({mesh.normal(t[0]), mesh.normal(t[1]), mesh.normal(t[2])}, hit, s);
+  set_look(scene, ray, triangle, hit, cone, s);
 }
 
 void sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
@@ -260,6 +299,8 @@ void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out
                 const RayCone& cone) {
   if (hit.geometry < scene.meshes.size())
     triangle_surface(scene, ray, hit, cone, out);
+  else if (is_instance(scene, hit.geometry))
+    instance_surface(scene, ray, hit, cone, out);
   else if (hit.geometry == scene.meshes.size())
     sphere_surface(scene, ray, hit, cone, out);
   else

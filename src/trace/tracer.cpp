@@ -20,7 +20,8 @@ Tracer::Tracer(const Scene& scene, const PaneGlass* glass)
       glass_(embree_->panes != nullptr ? glass : nullptr) {}
 
 Scene with_room_for_tracer(Scene scene) {
-  for (Mesh& mesh : scene.meshes) mesh.positions.reserve(mesh.positions.size() + 1);
+  for (std::vector<Mesh>* const meshes : {&scene.meshes, &scene.instanced_meshes})
+    for (Mesh& mesh : *meshes) mesh.positions.reserve(mesh.positions.size() + 1);
   return scene;
 }
 
@@ -73,17 +74,20 @@ void fill(RTCRay16& p, std::span<const Ray> rays, std::array<int, packet_size>& 
   }
 }
 
-void closest_packets(RTCScene scene, Context& context, std::span<const Ray> rays,
-                     std::span<Hit> hits) {
+void closest_packets(RTCScene scene, const InstanceNumbers& instances, Context& context,
+                     std::span<const Ray> rays, std::span<Hit> hits) {
   alignas(64) std::array<int, packet_size> valid{};
   for (size_t first = 0; first < rays.size(); first += packet_size) {
     const size_t n = std::min(packet_size, rays.size() - first);
     RTCRayHit16 p;
     fill(p.ray, rays.subspan(first, n), valid);
     std::fill(std::begin(p.hit.geomID), std::end(p.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+    std::fill(std::begin(p.hit.instID[0]), std::end(p.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
     rtcIntersect16(valid.data(), scene, &context.embree, &p);
-    for (size_t i = 0; i < n; ++i)
+    for (size_t i = 0; i < n; ++i) {
       hits[first + i] = {p.ray.tfar[i], p.hit.u[i], p.hit.v[i], p.hit.geomID[i], p.hit.primID[i]};
+      instances.apply(p.hit.instID[0][i], hits[first + i]);
+    }
   }
 }
 
@@ -147,13 +151,15 @@ void append(RayLog& log, const Segments& s) {
 
 namespace {
 
-Hit closest_of(RTCScene scene, Context& context, const Ray& ray) {
+Hit closest_of(RTCScene scene, const InstanceNumbers& instances, Context& context, const Ray& ray) {
   RTCRayHit r;
   fill(r.ray, ray);
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene, &context.embree, &r);
-  return {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID};
+  Hit hit{r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID};
+  instances.apply(r.hit.instID[0], hit);
+  return hit;
 }
 
 void append(RayLog& log, std::span<const Ray> rays, Coherence coherence, bool is_occlusion) {
@@ -169,12 +175,13 @@ void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence c
   Context context(meeting);
   if (coherence == Coherence::coherent) {
     context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    closest_packets(embree_->scene, context, rays, hits);
+    closest_packets(embree_->scene, embree_->instances, context, rays, hits);
     return;
   }
   for (size_t i = 0; i < rays.size(); ++i) {
     hits[i] = {};
-    if (is_traceable(rays[i])) hits[i] = closest_of(embree_->scene, context, rays[i]);
+    if (is_traceable(rays[i]))
+      hits[i] = closest_of(embree_->scene, embree_->instances, context, rays[i]);
   }
 }
 
@@ -237,7 +244,7 @@ Rgb Tracer::transmittance(const Ray& ray) const {
   const float per_metre = 1 / length(ray.direction);
   Ray rest = ray;
   for (int i = 0; i < most_panes; ++i) {
-    const Hit hit = closest_of(embree_->panes, context, rest);
+    const Hit hit = closest_of(embree_->panes, embree_->instances, context, rest);
     if (!hit.is_valid()) return left;
     left *= glass_->transmittance(ray, hit);
     // Clear of this pane: where two of its triangles meet it counts once. By the ray's own

@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include "base/error.h"
@@ -10,6 +12,7 @@
 #include "export/export_scene.h"
 #include "import/import.h"
 #include "import/temp_folder.h"
+#include "support/instanced_scenes.h"
 
 using namespace troffer;
 
@@ -87,6 +90,18 @@ std::map<LightKind, Light> punctual(const Scene& scene) {
   for (const Light& e : scene.lights)
     if (!has_surface(e.kind)) out[e.kind] = e;
   return out;
+}
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+size_t count_of(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++n;
+  return n;
 }
 
 bool has_warning(const std::vector<Warning>& warnings, const std::string& part) {
@@ -307,4 +322,40 @@ TEST_CASE("only endings that can be written are taken, and folders that are ther
   CHECK_THROWS_AS(export_scene(Scene(), folder.path("none/a.glb")), EnvironmentError);
   export_scene(Scene(), folder.path("a.glb"));
   CHECK(import_scene(folder.path("a.glb")).meshes.empty());
+}
+
+TEST_CASE("instances stay instances in every format") {
+  Scene scene = test::room_of_instances(test::places_in_room(), 24);
+  scene.instances[1].name = "second";
+  scene.origin = {1000, 0, 0};
+  const TempFolder folder;
+  for (const std::string name : {"out.pbrt", "out.gltf", "out.glb"}) {
+    CAPTURE(name);
+    const std::string path = folder.path(name);
+    export_scene(scene, path);
+    const std::string text = name == "out.glb" ? std::string() : text_of(path);
+    if (name == "out.pbrt") {
+      CHECK(count_of(text, "ObjectInstance") == scene.instances.size());
+      CHECK(count_of(text, "plymesh") == scene.meshes.size() + 1);
+    } else if (name == "out.gltf") {
+      CHECK(count_of(text, "\"attributes\"") == scene.meshes.size() + 1);
+      CHECK(count_of(text, "\"second\"") == 1);
+    }
+    const Scene back = import_scene(path);
+    CHECK(triangle_count(back) == triangle_count(scene));
+    // So few are copied when they are read: in the places where the instances stood.
+    REQUIRE(back.meshes.size() == scene.meshes.size() + scene.instances.size());
+    const size_t first = back.meshes.size() - scene.instances.size();
+    for (uint32_t k = 0; k < scene.instances.size(); ++k) {
+      const MeshInWorld was = mesh_at(scene, first_instance(scene) + k);
+      const Mesh& is = back.meshes[first + k];
+      REQUIRE(is.triangles.size() == was.size());
+      for (size_t t = 0; t < was.size(); ++t)
+        for (size_t v = 0; v < 3; ++v) {
+          const Vec3d p = Vec3d(is.positions[is.triangles[t][v]]) + back.origin;
+          CHECK(length(p - (Vec3d(was.corners(t)[v]) + scene.origin)) < 1e-4);
+        }
+      CHECK(is.normals.size() == was.mesh().normals.size());
+    }
+  }
 }
