@@ -177,6 +177,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
   if (!integrator) return;
   RenderStatistics& statistics = result.statistics;
   statistics.cells = cells.statistics;
+  statistics.is_by_paths = integrator->sampling().is_by_noise();
   Rendering rendering(scene_, viewing_, *integrator, options_, plan_, of_tiles, stop_);
   rendering.expect_gaps(seconds_per_gap_);
   result.end = rendering.run();
