@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
+#include "integrate/path.h"
+#include "render/audit.h"
 #include "render/measuring_places.h"
 
 namespace troffer {
@@ -155,6 +157,77 @@ void add_shared_errors(const std::vector<double>& of_luminance, double lx_per_un
     m.standard_error = std::hypot(m.standard_error, relative * m.illuminance_lx);
 }
 
+struct PointsRun {
+  uint64_t seed = 0;
+  int threads = 0;
+  int samples_per_batch = largest_batch;
+  const ProgressCallback& progress;
+  const StopFlag& stop;
+};
+
+struct PointValues {
+  std::vector<Measurement> values;
+  std::vector<uint8_t> is_measured;
+  std::vector<double> shared_errors;  // of the luminance of irradiance
+  std::vector<Counters> counters;
+  size_t done = 0;
+};
+
+PointValues measure_points(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
+                           const PointPlan& plan, const PointsRun& run) {
+  const size_t points = places.size();
+  PointValues found{std::vector<Measurement>(points), std::vector<uint8_t>(points, 0),
+                    std::vector<double>(points, 0), std::vector<Counters>(points), 0};
+  std::vector<Worker> workers(size_t(thread_count(run.threads)));
+  std::mutex progress_mutex;
+  parallel_for_slots(points, run.threads, [&](size_t i, size_t slot) {
+    if (run.stop.load(std::memory_order_relaxed)) return;
+    Worker& w = workers[slot];
+    if (!w.scratch) w.scratch = integrator.make_scratch();
+    w.place = places[i];
+    w.sensors.offset = w.place.offset;
+    w.samples_per_batch = run.samples_per_batch;
+    w.point = i;
+    found.values[i] =
+        measure_to_error(integrator, hash_of(run.seed, i), plan, run.stop, w, found.counters[i]);
+    found.shared_errors[i] = w.shared_error;
+    if (run.stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
+    found.is_measured[i] = 1;
+    const std::lock_guard lock(progress_mutex);
+    ++found.done;
+    if (run.progress) run.progress(double(found.done) / double(points));
+  });
+  return found;
+}
+
+// Every so many-th of them, so that a long list takes little longer.
+std::vector<size_t> audited_of(size_t points) {
+  constexpr size_t most = 32;
+  std::vector<size_t> which;
+  for (size_t i = 0; i < points; i += (points + most - 1) / most) which.push_back(i);
+  return which;
+}
+
+// Looks at points that were measured by cells by paths.
+void audit(const PreparedScene& scene, const std::vector<MeasuringPlace>& places,
+           const MeasureOptions& options, PointPlan plan, const StopFlag& stop,
+           std::vector<Measurement>& values) {
+  constexpr int paths_per_sample = 4;
+  const std::vector<size_t> which = audited_of(places.size());
+  std::vector<MeasuringPlace> at;
+  std::vector<Measurement> audited;
+  for (const size_t i : which) {
+    at.push_back(places[i]);
+    audited.push_back(values[i]);
+  }
+  plan = {plan.samples * paths_per_sample, 1, 0, plan.lx_per_unit};
+  const PathIntegrator by_paths(scene, {options.depth, false, {}});
+  const PointValues paths = measure_points(
+      by_paths, at, plan,
+      {hash_of(options.seed, uint64_t{0x6175'6469}), options.threads, largest_batch, {}, stop});
+  if (paths.done == at.size()) add_error(values, relative_bias(audited, paths.values));
+}
+
 MeasureResult nothing_measured(size_t points) {
   MeasureResult result;
   result.values.resize(points);
@@ -223,36 +296,18 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
                  scene.scene.is_photometric ? 1.0 : luminous_efficacy};
   if (row.measures_to_error && options.spp == 0) plan.error = share_of_error * options.error;
 
+  PointValues found =
+      measure_points(*integrator, places, plan,
+                     {options.seed, options.threads, samples_per_batch, progress, stop});
+  add_shared_errors(found.shared_errors, plan.lx_per_unit, found.values);
   MeasureResult result;
-  result.values.resize(points.size());
+  result.is_complete = found.done == points.size();
+  if (result.is_complete && needs_cells(options.method, options.indirect))
+    audit(scene, places, options, plan, stop, found.values);
+  result.values = std::move(found.values);
   result.in_surfaces = in_others(places);
-  std::vector<uint8_t> is_measured(points.size(), 0);
-  std::vector<Counters> counters(points.size());
-  std::vector<double> shared_errors(points.size(), 0);
-  std::vector<Worker> workers(size_t(thread_count(options.threads)));
-  std::mutex progress_mutex;
-  size_t done = 0;
-  parallel_for_slots(points.size(), options.threads, [&](size_t i, size_t slot) {
-    if (stop.load(std::memory_order_relaxed)) return;
-    Worker& w = workers[slot];
-    if (!w.scratch) w.scratch = integrator->make_scratch();
-    w.place = places[i];
-    w.sensors.offset = w.place.offset;
-    w.samples_per_batch = samples_per_batch;
-    w.point = i;
-    result.values[i] =
-        measure_to_error(*integrator, hash_of(options.seed, i), plan, stop, w, counters[i]);
-    shared_errors[i] = w.shared_error;
-    if (stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
-    is_measured[i] = 1;
-    const std::lock_guard lock(progress_mutex);
-    ++done;
-    if (progress) progress(double(done) / double(points.size()));
-  });
-  add_shared_errors(shared_errors, plan.lx_per_unit, result.values);
-  for (const Counters& c : counters) result.counters += c;
-  result.is_measured.assign(is_measured.begin(), is_measured.end());
-  result.is_complete = done == points.size();
+  for (const Counters& c : found.counters) result.counters += c;
+  result.is_measured.assign(found.is_measured.begin(), found.is_measured.end());
   return result;
 }
 
