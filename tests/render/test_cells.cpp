@@ -48,6 +48,7 @@ double mean_irradiance(const MeasureResult& r, size_t first, size_t last) {
 
 RenderOptions picture_by_cells() {
   RenderOptions o;
+  o.max_spp = 64;
   o.indirect = Indirect::cells;
   o.width = 48;
   o.height = 36;

@@ -93,6 +93,7 @@ TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
     add_ceiling_light(s, 1, 2.4f, Rgb{10});
     const PreparedScene scene(std::move(s));
     RenderOptions o = picture(32, 0.01);
+    o.max_spp = 64;
     const Ensemble mine = render_ensemble(scene, mixed_room_camera(), o, 4);
     o.method = Method::path;
     o.spp = 1024;
