@@ -3,8 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace troffer {
+
+// What is usual in a picture of such luminances, at least one: their mean but for the brightest
+// twentieth, what shines.
+inline double usual_luminance(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.resize(values.size() - values.size() / 20);
+  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
 
 // Of luminance, for `error` of a pixel of this luminance in a picture in which `typical` is usual.
 // What is dark may err by as much as what is usual; what is bright by an error between that of its

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "base/error.h"
@@ -16,8 +15,8 @@ namespace troffer {
 namespace {
 
 constexpr uint32_t pixels_looked_at = 2048;
-// Measured (docs/cells.md): the least that cells take for a picture, in rays of paths, for each
-// pixel, and for the rays that look for cells.
+// About the least that cells take for a picture, in rays of paths, for each pixel, and for the rays
+// that look for cells: chosen low, from the times of a few scenes.
 constexpr double rays_of_pixel = 80, rays_of_search = 1.5e5;
 // First rays of a pixel tell of its noise, and more than these few are needed for that.
 constexpr int least_first = 8, most_first = 64;
@@ -62,13 +61,6 @@ std::vector<double> luminances(const PreparedScene& scene, const ViewingRays& ra
   return values;
 }
 
-// Mean but of the brightest twentieth: what shines.
-double typical_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  values.resize(values.size() - values.size() / 20);
-  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
-}
-
 }  // namespace
 
 PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view, double error,
@@ -77,7 +69,7 @@ PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view,
   const ViewingRays rays = pairs_of_rays(view, seed);
   const std::vector<double> values = luminances(scene, rays, own);
   counters += own;
-  const double typical = typical_of(values);
+  const double typical = usual_luminance(values);
   double wanted = 0;
   for (size_t i = 0; i + 1 < values.size(); i += 2) {
     const double variance = sqr(values[i] - values[i + 1]) / 2;

@@ -208,8 +208,8 @@ std::vector<size_t> audited_of(size_t points) {
   return which;
 }
 
-// Looks at points that were measured by cells by paths.
-void audit(const PreparedScene& scene, const std::vector<MeasuringPlace>& places,
+// Looks at points that were measured by cells by paths; false where a stop came before.
+bool audit(const PreparedScene& scene, const std::vector<MeasuringPlace>& places,
            const MeasureOptions& options, PointPlan plan, const StopFlag& stop,
            std::vector<Measurement>& values) {
   constexpr int paths_per_sample = 4;
@@ -225,7 +225,9 @@ void audit(const PreparedScene& scene, const std::vector<MeasuringPlace>& places
   const PointValues paths = measure_points(
       by_paths, at, plan,
       {hash_of(options.seed, uint64_t{0x6175'6469}), options.threads, largest_batch, {}, stop});
-  if (paths.done == at.size()) add_error(values, relative_bias(audited, paths.values));
+  if (paths.done < at.size()) return false;
+  add_error(values, relative_bias(audited, paths.values));
+  return true;
 }
 
 MeasureResult nothing_measured(size_t points) {
@@ -303,7 +305,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   MeasureResult result;
   result.is_complete = found.done == points.size();
   if (result.is_complete && needs_cells(options.method, options.indirect))
-    audit(scene, places, options, plan, stop, found.values);
+    result.is_complete = audit(scene, places, options, plan, stop, found.values);
   result.values = std::move(found.values);
   result.in_surfaces = in_others(places);
   for (const Counters& c : found.counters) result.counters += c;

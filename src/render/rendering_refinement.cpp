@@ -1,9 +1,9 @@
 // Refinement of a rendering under way (rendering.h).
 #include <algorithm>
-#include <numeric>
 
 #include "base/error.h"
 #include "base/random.h"
+#include "integrate/allowed_error.h"
 #include "render/edge_map.h"
 #include "render/rendering.h"
 
@@ -129,8 +129,9 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
   });
   constexpr int glances_in_mean = 1024;
   for (const PixelRect& tile : plan_.tiles) {
-    keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
-    keep_in_bounds(tile, glances_in_mean, wanted.glances);
+    if (refining_.most.in_mean < refining_.most.in_pixel)
+      keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
+    if (refining_.can_glance) keep_in_bounds(tile, glances_in_mean, wanted.glances);
   }
   return wanted;
 }
@@ -208,11 +209,8 @@ double Rendering::typical_luminance() {
     const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
     values.push_back(is_finite(l) ? double(luminance(l)) : 0);
   }
-  std::sort(values.begin(), values.end());
-  values.resize(values.size() - values.size() / 20);
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
-  refining_.typical = mean;
-  return mean;
+  refining_.typical = usual_luminance(std::move(values));
+  return *refining_.typical;
 }
 
 }  // namespace troffer
