@@ -342,8 +342,17 @@ Bsdf diffuse_part(const Bsdf& b) {
   return d;
 }
 
+Bsdf through_part(const Bsdf& b) {
+  Bsdf d = diffuse_part(b);
+  d.diffuse = b.through;
+  d.through = Rgb{0};
+  d.has_separable = !d.diffuse.is_black();
+  return d;
+}
+
 Bsdf specular_part(const Bsdf& b) {
   Bsdf s = b;
+  s.through = Rgb{0};
   s.is_lambertian = false;
   s.coat = Bsdf::Coat::none;
   s.diffuse = Rgb{0};
@@ -358,8 +367,13 @@ float coat_share(const Bsdf& b, float cos_i) {
 }
 
 Rgb albedo(const Bsdf& b, float cos_o) {
-  if (b.is_lambertian) return b.diffuse;
+  if (b.is_lambertian) return b.diffuse + b.through;
   if (!(cos_o > 0)) return Rgb{0};
+  if (!b.through.is_black()) {
+    Bsdf near = b;
+    near.through = Rgb{0};
+    return albedo(near, cos_o) + albedo(through_part(b), cos_o);
+  }
   const float c = std::min(cos_o, 1.0f);
   const Gains g = b.has_separable ? gains_at(b, {0, 0, c}) : Gains{};
   const Energies e = energies_at(b, g, c);

@@ -29,6 +29,11 @@
 //   takes the largest channel of a coloured specular, as KHR_materials_specular asks. The share
 //   that transmits is glass of exact Fresnel reflectance scaled by specular and specular_color,
 //   tinted by base_color on the way through; its compensation ignores that scaling.
+// - Diffuse transmission: light that falls on the far side leaves this one by the diffuse lobe's
+// law,
+//   its coat included, with `through` in place of `diffuse`. The functions below leave it out, but
+//   albedo(): who meets such a surface takes both sides, each with its part
+//   (integrate/two_sides.h).
 // - Thin sheets: R = 2r / (1 + r) for each polarisation, the rest goes straight on. Rough thin
 // sheets transmit GGX's
 //   reflection lobe mirrored to the other side, as glTF's viewers do, with R's roughness.
@@ -92,6 +97,7 @@ struct Bsdf {
 
   // Separable lobes: colour × g(wo) g(wi) / pi, each g = 1 - a directional albedo.
   Rgb diffuse;                     // g of the coat, or 1
+  Rgb through;                     // the same for diffuse transmission
   Rgb glass_again, glass_through;  // glass's: reflected, transmitted (without 1/eta²)
   float diffuse_mean = 1;          // cosine-weighted mean of the g of each
   float near_mean = 0, far_mean = 0;
@@ -171,6 +177,10 @@ Rgb albedo(const Bsdf& bsdf, float cos_o);
 Bsdf diffuse_part(const Bsdf& bsdf);
 // … and all else: mirrors, gloss with its lost energy, everything that transmits.
 Bsdf specular_part(const Bsdf& bsdf);
+
+// What diffuse transmission does with light on the far side, for a viewer of whom the same is said
+// in that side's frame: a diffuse lobe.
+Bsdf through_part(const Bsdf& bsdf);
 
 // What the coat lets through to the diffuse lobe from a direction of cosine cos_i, over its mean by
 // the cosine; 1 without a coat. The lobe is separable: what it sends to wo is albedo(diffuse_part,

@@ -43,6 +43,22 @@ void set_lambertian(Bsdf& b, Rgb rho) {
   b.diffuse = rho;
 }
 
+// Light from beyond, beside what is reflected: together no more than all.
+void set_translucent(Bsdf& b, const Inputs& in, Rgb rho) {
+  const Material& m = in.material;
+  Rgb through;
+  if (m.diffuse_transmission.value > 0)
+    through = safe01(evaluate(in.textures, m.diffuse_transmission_color, in.uv)) *
+              in.value(m.diffuse_transmission);
+  for (size_t k = 0; k < 3; ++k) {
+    const float both = std::max(rho[k] + through[k], 1.0f);
+    rho[k] /= both;
+    through[k] /= both;
+  }
+  set_lambertian(b, rho);
+  b.through = through;
+}
+
 float alpha_of(float roughness, RoughnessMeaning meaning) {
   switch (meaning) {
     case RoughnessMeaning::alpha:
@@ -237,7 +253,14 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   const Rgb coat_f0 = safe01(tint * r0) * specular;
 
   const bool is_covered = has_sheen(m) && glass == 0;
-  if (metallic == 0 && glass == 0 && specular == 0 && !is_covered) return set_lambertian(b, base);
+  const float passing = m.diffuse_transmission.value > 0 ? in.value(m.diffuse_transmission) : 0;
+  const Rgb through =
+      passing > 0 ? safe01(evaluate(in.textures, m.diffuse_transmission_color, in.uv)) * passing
+                  : Rgb{0};
+  if (metallic == 0 && glass == 0 && specular == 0 && !is_covered) {
+    b.through = through;
+    return set_lambertian(b, base * (1 - passing));
+  }
   set_roughness(b, in, glass == 0);
   b.fresnel = Bsdf::Fresnel::schlick;
   b.f0 = base * metallic + coat_f0 * opaque;
@@ -254,7 +277,10 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
     }
     b.diffuse_mean = 1 - average;
     if (is_covered) cover_with_sheen(b, in);
-    if (b.diffuse_mean > negligible) b.diffuse = base * (opaque / b.diffuse_mean);
+    if (b.diffuse_mean > negligible) {
+      b.diffuse = base * ((1 - passing) * opaque / b.diffuse_mean);
+      b.through = through * (opaque / b.diffuse_mean);
+    }
     b.has_separable |= !b.diffuse.is_black();
   }
   if (glass > 0) add_glass(b, in, glass, safe01(tint * specular), base);
@@ -323,7 +349,7 @@ Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
   }
   switch (in.material.kind) {
     case MaterialKind::diffuse:
-      set_lambertian(b, in.base());
+      set_translucent(b, in, in.base());
       break;
     case MaterialKind::coated_diffuse:
       set_coated_diffuse(b, in);

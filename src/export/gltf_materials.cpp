@@ -166,6 +166,32 @@ void GltfMaterialWriter::add_cloth_and_grain(const Material& m, Json& out) {
         {"anisotropyRotation", m.anisotropy_rotation_rad}};
 }
 
+// KHR_materials_diffuse_transmission: the base is what does not come through.
+void GltfMaterialWriter::add_diffuse_transmission(const Material& m, Json& out) {
+  if (m.diffuse_transmission.value <= 0) return;
+  if (m.diffuse_transmission.texture >= 0 || m.diffuse_transmission_color.texture >= 0)
+    warnings_.add("textures of diffuse transmission are written as one value");
+  const float share =
+      std::clamp(evaluate(scene_.textures, m.diffuse_transmission, Vec2{0, 0}), 0.0f, 1.0f);
+  Rgb color = clamp01(evaluate(scene_.textures, m.diffuse_transmission_color, Vec2{0, 0}));
+  float factor = share;
+  if (m.kind == MaterialKind::diffuse) {
+    const float back = max_component(clamp01(evaluate(scene_.textures, m.base_color, Vec2{0, 0})));
+    const float most = share * max_component(color);
+    if (!(most > 0)) return;
+    factor = most / std::max(most + back, 1.0f);
+    color = clamp01(color * (share / factor));
+    Json& pbr = out["pbrMetallicRoughness"];
+    if (pbr.contains("baseColorTexture"))
+      warnings_.add("textures of what lets light through are written darker than they are");
+    for (size_t k = 0; k < 3 && factor < 1; ++k)
+      pbr["baseColorFactor"][k] =
+          std::min(pbr["baseColorFactor"][k].get<float>() / (1 - factor), 1.0f);
+  }
+  out["extensions"]["KHR_materials_diffuse_transmission"] = {
+      {"diffuseTransmissionFactor", factor}, {"diffuseTransmissionColorFactor", list(color)}};
+}
+
 Json GltfMaterialWriter::surface(const Material& m) {
   Json out;
   if (!m.name.empty()) out["name"] = m.name;
@@ -183,6 +209,7 @@ Json GltfMaterialWriter::surface(const Material& m) {
   if (m.kind == MaterialKind::diffuse) {  // without specular reflection: Lambert's model
     pbr["metallicFactor"] = 0;
     out["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+    add_diffuse_transmission(m, out);
     return out;
   }
   add_roughness(m, pbr);
@@ -196,6 +223,7 @@ Json GltfMaterialWriter::surface(const Material& m) {
     warnings_.add("coats over diffuse bases are written as glTF's, which differ a little");
   out["extensions"]["KHR_materials_ior"] = {{"ior", m.ior >= 1 ? m.ior : 1.5f}};
   if (m.kind == MaterialKind::metallic_roughness) {
+    add_diffuse_transmission(m, out);
     const bool is_plain =
         m.specular.value == 1 && m.specular_color.value == Rgb{1} && m.specular.texture < 0;
     if (m.specular.texture >= 0 || m.specular_color.texture >= 0)

@@ -39,6 +39,7 @@ class GltfMaterialWriter {
   void add_roughness(const Material& m, Json& pbr);
   void add_glass(const Material& m, Json& out);
   void add_cloth_and_grain(const Material& m, Json& out);
+  void add_diffuse_transmission(const Material& m, Json& out);
   void add_emission(const Light& light, Rgb radiance, Json& out);
   size_t texture(const std::string& key, const BakedImage& image, const Texture& look);
   Json reference(size_t texture, const Texture& look) const;

@@ -179,8 +179,9 @@ Json GltfWriter::file() {
   Json used = Json::array();
   for (const char* name :
        {"KHR_lights_punctual", "KHR_materials_anisotropy", "KHR_materials_emissive_strength",
-        "KHR_materials_ior", "KHR_materials_sheen", "KHR_materials_specular",
-        "KHR_materials_transmission", "KHR_materials_volume", "KHR_texture_transform"})
+        "KHR_materials_diffuse_transmission", "KHR_materials_ior", "KHR_materials_sheen",
+        "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume",
+        "KHR_texture_transform"})
     if (text.find(std::string("\"") + name + "\"") != std::string::npos) used.push_back(name);
   if (!used.empty()) json["extensionsUsed"] = used;
   return json;

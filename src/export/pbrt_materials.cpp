@@ -95,6 +95,15 @@ std::string PbrtMaterialWriter::roughness(const Material& m, float power) {
   return fmt::format(" \"texture roughness\" \"{}\" \"bool remaproughness\" false", name);
 }
 
+// What comes back and what comes through; base: the former.
+std::string PbrtMaterialWriter::translucent_text(const Material& m, const ColorInput& base) {
+  ColorInput through = m.diffuse_transmission_color;
+  through.value *= m.diffuse_transmission.value;
+  if (m.diffuse_transmission.texture >= 0)
+    warnings_.add("textures of how much light comes through are written as one value");
+  return "\"diffusetransmission\"" + color("reflectance", base) + color("transmittance", through);
+}
+
 // glTF's mixture by the part of it that has most weight.
 std::string PbrtMaterialWriter::mixed_text(const Material& m) {
   const float metallic = evaluate(scene_.textures, m.metallic, Vec2{0.5f, 0.5f});
@@ -110,6 +119,13 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
   if (transmission >= 0.5f)
     return m.is_thin ? fmt::format("\"thindielectric\" \"float eta\" {}", m.ior)
                      : fmt::format("\"dielectric\" \"float eta\" {}", m.ior) + roughness(m, power);
+  if (m.diffuse_transmission.value > 0) {
+    if (m.specular.value > 0)
+      warnings_.add("the gloss of what light passes evenly is not written: pbrt has none");
+    ColorInput base = m.base_color;
+    base.value *= 1 - m.diffuse_transmission.value;
+    return translucent_text(m, base);
+  }
   if (m.specular.value <= 0) return "\"diffuse\"" + color("reflectance", m.base_color);
   // glTF's base reflects as if all that comes back to it met a white one.
   const float f = mean_reflectance_inside(double(m.ior));
@@ -122,7 +138,8 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
   const float power = power_of(m.roughness_meaning);
   switch (m.kind) {
     case MaterialKind::diffuse:
-      return "\"diffuse\"" + color("reflectance", m.base_color);
+      return m.diffuse_transmission.value > 0 ? translucent_text(m, m.base_color)
+                                              : "\"diffuse\"" + color("reflectance", m.base_color);
     case MaterialKind::coated_diffuse:
       return fmt::format("\"coateddiffuse\" \"float eta\" {}", m.ior) +
              color("reflectance", m.base_color) + roughness(m, power);

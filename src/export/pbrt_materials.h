@@ -35,6 +35,7 @@ class PbrtMaterialWriter {
   std::string material_text(const Material& m);
   std::string medium_text(const Material& m);
   std::string mixed_text(const Material& m);
+  std::string translucent_text(const Material& m, const ColorInput& base);
   std::string color(const char* parameter, const ColorInput& input, const ColorChange& change = {});
   std::string roughness(const Material& m, float power);
   std::string image_texture(const BakedImage& image, const Texture* look, bool is_number);

@@ -30,6 +30,7 @@ class GltfMaterials::Reader {
     read_transmission();
     read_clearcoat();
     read_sheen();
+    read_diffuse_transmission();
     read_anisotropy();
     read_iridescence();
     tell_what_is_left_out();
@@ -172,6 +173,22 @@ class GltfMaterials::Reader {
     material_.sheen_roughness.texture = texture(*sheen, "sheenRoughnessTexture", false);
   }
 
+  void read_diffuse_transmission() {
+    const auto passing = node_.extension("KHR_materials_diffuse_transmission");
+    if (!passing) return;
+    FloatInput& share = material_.diffuse_transmission;
+    share.value = unit_number(*passing, "diffuseTransmissionFactor", 0);
+    if (share.value == 0) return;
+    share.texture = texture(*passing, "diffuseTransmissionTexture", false);
+    ColorInput& color = material_.diffuse_transmission_color;
+    if (const auto factor = passing->find("diffuseTransmissionColorFactor")) {
+      factor->as_numbers(3);
+      color.value = unit_color(*factor);
+    }
+    color.texture = texture(*passing, "diffuseTransmissionColorTexture", true);
+    color.value *= stand_in_;
+  }
+
   void read_anisotropy() {
     const auto anisotropy = node_.extension("KHR_materials_anisotropy");
     if (!anisotropy) return;
@@ -219,10 +236,9 @@ class GltfMaterials::Reader {
     struct Told {
       const char *extension, *what;
     };
-    constexpr std::array<Told, 4> list{
+    constexpr std::array<Told, 3> list{
         {{"KHR_materials_unlit", "unlit: shown diffuse, as lit as its place is"},
          {"KHR_materials_dispersion", "dispersion is left out"},
-         {"KHR_materials_diffuse_transmission", "diffuse transmission is left out"},
          {"KHR_materials_volume_scatter", "scattering inside a volume is left out"}}};
     for (const Told& told : list)
       if (node_.extension(told.extension)) warn(told.what);
@@ -323,7 +339,8 @@ class GltfMaterials::Reader {
   // Without metal, specular reflection and transmission the model is Lambert's, exactly.
   void reduce_to_diffuse() {
     if (material_.metallic.value == 0 && material_.specular.value == 0 &&
-        material_.transmission.value == 0 && material_.sheen_color.value.is_black())
+        material_.transmission.value == 0 && material_.diffuse_transmission.value == 0 &&
+        material_.sheen_color.value.is_black())
       material_.kind = MaterialKind::diffuse;
   }
 

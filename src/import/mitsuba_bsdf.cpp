@@ -201,9 +201,14 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
     const double specular = std::clamp(get_number(node, "specular", 0.5), 0.0, 1.0);
     m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
   }
+  if (m.is_thin) {  // 2: all of what is diffuse
+    m.diffuse_transmission = textures_.real(node, {"diff_trans"}, 0);
+    m.diffuse_transmission.value *= 0.5f;
+    m.diffuse_transmission_color = m.base_color;
+  }
   std::string left_out;
   for (const char* name : {"anisotropic", "spec_tint", "sheen", "sheen_tint", "flatness",
-                           "clearcoat", "clearcoat_gloss", "diff_trans"}) {
+                           "clearcoat", "clearcoat_gloss"}) {
     const MitsubaNode* p = find_parameter(node, name);
     if (p && p->attribute("value") != "0" && p->attribute("value") != "0.0")
       left_out += std::string(left_out.empty() ? "" : ", ") + name;
@@ -351,6 +356,13 @@ std::optional<Material> MitsubaBsdfs::convert_simple(const MitsubaNode& node) {
   if (is_any({"plastic", "roughplastic"})) return one_sided(plastic(node));
   if (is_any({"principled", "principledthin"})) return principled(node);
   if (is_any({"phong", "ward"})) return one_sided(phong(node));
+  if (is_any({"difftrans"})) {
+    Material m;
+    m.base_color.value = Rgb{0};
+    m.diffuse_transmission.value = 1;
+    m.diffuse_transmission_color = textures_.color(node, {"transmittance"}, Rgb{0.5f});
+    return m;
+  }
   if (is_any({"mask"})) return masked(node);
   if (is_any({"blendbsdf", "mixturebsdf"})) return blended(node);
   if (is_any({"coating", "roughcoating"})) return coated(node);

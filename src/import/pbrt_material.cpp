@@ -177,11 +177,12 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
   } else if (type == "measured") {
     m = measured_material(textures.folder(), params.get_string("filename", ""), scene_.warnings);
   } else if (type == "diffusetransmission") {
+    const auto scale = float(params.get_float("scale", 1));
     m.base_color = textures.color(params, "reflectance", Rgb{0.25f});
-    m.base_color.value *= float(params.get_float("scale", 1));
-    params.ignore({"transmittance"});
-    scene_.warnings.add(
-        "material \"diffusetransmission\": the light that comes through is left out");
+    m.diffuse_transmission_color = textures.color(params, "transmittance", Rgb{0.25f});
+    m.base_color.value *= scale;
+    m.diffuse_transmission_color.value *= scale;
+    m.diffuse_transmission.value = m.diffuse_transmission_color.value.is_black() ? 0.0f : 1.0f;
   } else {
     scene_.warnings.add("material \"" + type + "\" is not supported: shown as diffuse");
     m.base_color = textures.color(params, "reflectance", Rgb{0.5f});

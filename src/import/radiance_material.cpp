@@ -168,21 +168,21 @@ bool RadianceMaterials::convert_emission(const RadianceModifier& m, RadianceLook
   return true;
 }
 
-// Light that is scattered on its way through is not there; what goes straight through is.
+// What is neither absorbed nor reflected as gloss: 1 - trans of it goes back evenly, trans goes
+// through, of which tspec straight on.
 Material RadianceMaterials::translucent(const std::vector<double>& v) {
   const double trans = std::clamp(v[5], 0.0, 1.0);
   const double straight = trans * std::clamp(v[6], 0.0, 1.0);
-  scene_.warnings.add("\"trans\" is approximated: what it scatters to the other side is absorbed");
   Material m = glossy(v, v[4], false);
-  const double kept = 1 - trans + straight;
-  m.base_color.value *= float(kept);
-  if (straight <= 0) return m;
+  if (trans <= 0) return m;
   if (m.kind == MaterialKind::diffuse) {
     m.kind = MaterialKind::metallic_roughness;
     m.specular.value = 0;
   }
   m.is_thin = true;
-  m.transmission.value = float(straight / kept);
+  m.transmission.value = float(straight);
+  m.diffuse_transmission.value = straight < 1 ? float((trans - straight) / (1 - straight)) : 0.0f;
+  m.diffuse_transmission_color = m.base_color;
   return m;
 }
 

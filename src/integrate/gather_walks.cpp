@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/warp.h"
+#include "integrate/two_sides.h"
 
 namespace troffer {
 
@@ -122,9 +123,11 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
   arrive_at(scene_.scene, hit, walk, v);
   if (v.surface.light >= 0 && counts(walk, uint32_t(v.surface.light)))
     see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
-  const Bsdf bsdf =
+  Bsdf bsdf =
       make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
   const float distance = hit.t * length(walk.ray.direction);
+  const bool is_passing = has_two_sides(bsdf);
+  if (is_passing) arrive_beyond(walk, v, bsdf, distance, s);
   GlossPlace gloss;
   float gloss_weight = 0;
   Rgb reflectance = bsdf.diffuse;
@@ -153,7 +156,7 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
     }
   }
   if (reflectance.is_black() && !gloss.is_there()) {
-    if (goes_on) return;
+    if (goes_on || is_passing) return;
     s.black[walk.index] = walk.length + distance;
     if (!s.is_view) return;
   }
@@ -163,6 +166,19 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
   a.hit = cell_hit_of(v, bsdf);
   a.gloss = gloss;
   a.gloss_weight = gloss_weight;
+  a.distance = distance;
+  a.length = walk.length + distance;
+}
+
+// At the far side of a surface that light passes evenly; takes its part from bsdf.
+void GatherWalks::arrive_beyond(const Walk& walk, const Vertex& v, Bsdf& bsdf, float distance,
+                                GatherScratch& s) const {
+  GatherArrival& a = s.arrivals.emplace_back();
+  a.walk = walk;
+  Vertex far;
+  const Bsdf part = take_far_side(v, bsdf, a.walk, far);
+  a.walk.throughput *= albedo(part, far.wo.z);
+  a.hit = cell_hit_of(far, part);
   a.distance = distance;
   a.length = walk.length + distance;
 }

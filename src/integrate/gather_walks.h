@@ -75,6 +75,8 @@ class GatherWalks {
 
  private:
   void arrive(Walk& walk, const Hit& hit, GatherScratch& s) const;
+  void arrive_beyond(const Walk& walk, const Vertex& v, Bsdf& bsdf, float distance,
+                     GatherScratch& s) const;
   void see(const Walk& walk, Rgb radiance, float weight, GatherScratch& s) const;
   bool counts(const Walk& walk, uint32_t light) const;
   void light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,

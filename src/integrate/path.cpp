@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "integrate/look_through_panes.h"
 #include "integrate/purposes.h"
+#include "integrate/two_sides.h"
 
 namespace troffer {
 
@@ -143,6 +144,7 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
     new (&bsdfs[i]) Bsdf(make_bsdf(scene_.bsdf_tables, scene_.scene, surface.material, surface.uv,
                                    vertices[i].is_front));
     if (walks[i].vertex == 0) record_first_hit(walks[i], vertices[i], bsdfs[i], out);
+    if (has_two_sides(bsdfs[i])) choose_side(walks[i], vertices[i], bsdfs[i]);
   }
   if (alive > 0 && is_last(walks[0])) alive = 0;  // seen, but not followed
   walks.resize(alive);

@@ -36,8 +36,9 @@ Rgb RadiosityLight::radiance_seen(const Ray& ray, const Hit& hit) const {
   Interpolation at;
   interpolate(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u, hit.v,
               v.surface.position, !v.is_front, at);
-  const Bsdf bsdf =
+  Bsdf bsdf =
       make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+  bsdf.through = Rgb{0};  // not in the exchange
   return albedo(bsdf, v.wo.z) * inv_pi_f *
          (interpolated_irradiance(solution_, at) + solution_.ambient);
 }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "integrate/look_through_panes.h"
+#include "integrate/two_sides.h"
 
 namespace troffer {
 
@@ -18,12 +19,26 @@ constexpr size_t hits_at_a_time = 64;
 
 }  // namespace
 
+namespace {
+
+// Of a surface that light passes evenly, behind what was hit.
+struct FarSide {
+  FarSide(const Walk& w, const Hit& h) : walk(w), hit(h) {}
+  Walk walk;
+  Hit hit;
+  Vertex vertex;
+  Bsdf bsdf;
+};
+
+}  // namespace
+
 struct WaveIntegrator::Scratch final : IntegratorScratch {
   std::unique_ptr<DirectLightScratch> direct;
   std::unique_ptr<IndirectLightScratch> indirect;  // null: there is none
   std::vector<Walk> walks, next_walks;
   WalkScratch trace;
   WaveHits wave;
+  std::vector<FarSide> far;
   SeenEmission seen;       // what competes with the sampling of sources
   SeenEmission undivided;  // what does not
   // Behind panes: what those refer to.
@@ -194,7 +209,16 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
   // What is gathered is by pixels.
   const bool gathers_gloss = indirect_ && indirect_->gathers_gloss() && !w.viewing->pixels.empty();
+  const auto add = [&](const Walk& walk, const Bsdf& bsdf) {
+    if (is_whole) {
+      w.bsdfs.push_back(bsdf);
+      return;
+    }
+    SurfaceScattering& scattering = w.scatterings.emplace_back(bsdf);
+    if (walk.scatterings == 0 && gathers_gloss && scattering.is_wide()) scattering.gather_gloss();
+  };
   size_t kept = 0;
+  s.far.clear();
   CheckItems items;
   for (size_t i = 0; i < w.size(); ++i) {
     const Walk& walk = w.walks[i];
@@ -207,20 +231,25 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
       w.vertices[kept] = w.vertices[i];
     }
     const Vertex& v = w.vertices[kept];
-    const Bsdf bsdf =
+    Bsdf bsdf =
         make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
     if (w.walks[kept].vertex == 0) record_first_hit(w.walks[kept], v, bsdf, out);
-    ++kept;
-    if (is_whole) {
-      w.bsdfs.push_back(bsdf);
-      continue;
+    if (has_two_sides(bsdf)) {
+      FarSide& far = s.far.emplace_back(w.walks[kept], w.hits[kept]);
+      far.bsdf = take_far_side(v, bsdf, far.walk, far.vertex);
     }
-    SurfaceScattering& scattering = w.scatterings.emplace_back(bsdf);
-    if (walk.scatterings == 0 && gathers_gloss && scattering.is_wide()) scattering.gather_gloss();
+    add(w.walks[kept], bsdf);
+    ++kept;
   }
   w.walks.resize(kept);
   w.hits.resize(kept);
   w.vertices.resize(kept);
+  for (const FarSide& far : s.far) {
+    w.walks.push_back(far.walk);
+    w.hits.push_back(far.hit);
+    w.vertices.push_back(far.vertex);
+    add(far.walk, far.bsdf);
+  }
 }
 
 // The next viewing rays: those that the hits' surfaces spawn. At the first panes both that which

@@ -206,7 +206,8 @@ Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh&
 
 Reflectances reflectances(const BsdfTables& tables, const Scene& scene, uint32_t material,
                           const TexturePlace& uv, bool is_front) {
-  const Bsdf b = make_bsdf(tables, scene, material, uv, is_front);
+  Bsdf b = make_bsdf(tables, scene, material, uv, is_front);
+  b.through = Rgb{0};  // not in the exchange
   Rgb rho;
   if (is_lambertian(b, &rho)) return {rho, Rgb{0}};
   // Gauss–Legendre over cos²: the cosine-weighted mean of the directional albedo

@@ -66,7 +66,13 @@ struct Material {
   FloatInput specular{1, no_texture, 3};          // KHR_materials_specular: specularFactor
   ColorInput specular_color{Rgb{1}, no_texture};  // … specularColorFactor
   FloatInput transmission{0, no_texture, 0};      // KHR_materials_transmission
-  bool is_thin = false;                           // dielectric, transmission: no refraction
+  // Light that comes through and leaves the other side evenly, as through paper, curtains and opal
+  // glass: of diffuse ones the share `diffuse_transmission` × its colour, beside base_color; of
+  // metallic_roughness so much of what is diffuse passes, in that colour, in place of base_color
+  // (KHR_materials_diffuse_transmission).
+  FloatInput diffuse_transmission{0, no_texture, 3};
+  ColorInput diffuse_transmission_color{Rgb{1}, no_texture};
+  bool is_thin = false;  // dielectric, transmission: no refraction
   // Inside solid glass: the share exp(-absorption × metres) is left. Of a sheet: the exponent
   // straight through it.
   Rgb absorption{0};
@@ -87,9 +93,11 @@ struct Material {
 // Calls visit(input) for every input that says how a material scatters light: what may be textured.
 template <class Visit>
 void for_each_input(const Material& m, const Visit& visit) {
-  for (const ColorInput* c : {&m.base_color, &m.specular_color, &m.sheen_color}) visit(*c);
-  for (const FloatInput* f :
-       {&m.roughness, &m.metallic, &m.specular, &m.transmission, &m.anisotropy, &m.sheen_roughness})
+  for (const ColorInput* c :
+       {&m.base_color, &m.specular_color, &m.sheen_color, &m.diffuse_transmission_color})
+    visit(*c);
+  for (const FloatInput* f : {&m.roughness, &m.metallic, &m.specular, &m.transmission,
+                              &m.diffuse_transmission, &m.anisotropy, &m.sheen_roughness})
     visit(*f);
 }
 
