@@ -13,6 +13,7 @@
 #include "import/polygon.h"
 #include "import/recentre.h"
 #include "import/text_lines.h"
+#include "import/vertex_paint.h"
 
 namespace troffer {
 
@@ -30,6 +31,7 @@ struct Corner {
 struct Part {
   std::string material;
   Mesh mesh;
+  std::vector<TextureValue> colors;  // empty, or per vertex
   bool has_uvs = false, has_normals = false;
   // Per vertex: the other two indices it was made of, and the next vertex at the same position.
   struct Made {
@@ -46,7 +48,8 @@ class ObjReader {
         scene_(scene),
         text_(as_utf8(read_text_file(path))),
         lines_(path_, text_),
-        loader_(scene) {
+        loader_(scene),
+        painter_(scene) {
     vertices_.bounds = &bounds;
   }
   void read();
@@ -57,12 +60,14 @@ class ObjReader {
   std::string text_;
   TextLines lines_;
   TextureLoader loader_;
+  VertexPainter painter_;
 
   struct Vertices {
     PlacedBounds* bounds = nullptr;  // of those in triangles
     std::vector<Vec3d> positions;    // from the scene's origin
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;
+    std::vector<Rgb> colors;  // of the first positions; white of further ones
   } vertices_;
   struct Names {
     std::string object, group, material;
@@ -80,7 +85,7 @@ class ObjReader {
   } parts_;
   struct Counts {
     size_t triangles = 0, lights = 0;
-    size_t colored_vertices = 0, points_and_lines = 0, short_faces = 0, dangling = 0;  // told of
+    size_t points_and_lines = 0, short_faces = 0, dangling = 0;  // told of
   } counts_;
   struct Face {
     std::vector<Corner> corners;
@@ -107,6 +112,7 @@ class ObjReader {
   const MtlConverted& material_named(const std::string& name);
   void finish();
   void finish_part(Part& part);
+  void paint(Part& part, bool needs_uvs);
 };
 
 void ObjReader::read() {
@@ -153,14 +159,18 @@ void ObjReader::read_statement(std::string_view keyword) {
   }
 }
 
-// x y z, then nothing, a weight, a colour or both; the latter are left out.
+// x y z, then nothing, a weight (left out), a colour (sRGB, as programs mean it) or both.
 void ObjReader::read_vertex() {
   const double x = lines_.precise_number(), y = lines_.precise_number();
   vertices_.positions.push_back(Vec3d{x, y, lines_.precise_number()} - scene_.origin);
+  std::array<float, 4> v{};
   size_t more = 0;
-  for (; lines_.has_word(); ++more) lines_.number();
-  if (more == 2 || more > 4) lines_.fail("a vertex has 3, 4, 6 or 7 numbers");
-  if (more >= 3) ++counts_.colored_vertices;
+  for (; lines_.has_word() && more < 4; ++more) v[more] = lines_.number();
+  if (more == 2 || lines_.has_word()) lines_.fail("a vertex has 3, 4, 6 or 7 numbers");
+  if (more < 3) return;
+  vertices_.colors.resize(vertices_.positions.size(), Rgb{1});
+  for (size_t k = 0; k < 3; ++k)
+    vertices_.colors.back()[k] = linear_from_srgb(std::clamp(v[more - 3 + k], 0.0f, 1.0f));
 }
 
 // An index counts from 1, or backwards from -1; the result from 0.
@@ -225,6 +235,11 @@ uint32_t ObjReader::vertex_of(const Corner& corner) {
   part.mesh.positions.emplace_back(vertices_.positions[corner.position]);
   part.mesh.uvs.push_back(corner.uv != nothing ? vertices_.uvs[corner.uv] : Vec2{});
   part.mesh.normals.push_back(corner.normal != nothing ? vertices_.normals[corner.normal] : Vec3{});
+  if (!vertices_.colors.empty()) {
+    part.colors.resize(size_t(vertex) + 1);  // white where there is none
+    if (corner.position < vertices_.colors.size())
+      part.colors.back().rgb = vertices_.colors[corner.position];
+  }
   part.has_uvs = part.has_uvs || corner.uv != nothing;
   part.has_normals = part.has_normals || corner.normal != nothing;
   return vertex;
@@ -331,9 +346,10 @@ void ObjReader::finish_part(Part& part) {
   if (!part.has_uvs) mesh.uvs.clear();
   if (!part.has_normals) mesh.normals.clear();
   part.made = {};
-  clean_mesh(mesh, scene_.warnings);
   const MtlConverted& material = material_named(part.material);
   mesh.material = materials_.index[part.material];
+  paint(part, material.emission_texture >= 0);
+  clean_mesh(mesh, scene_.warnings);
   const auto index = uint32_t(scene_.meshes.size());
   const bool is_empty = mesh.triangles.empty();
   if (!is_empty) scene_.meshes.push_back(std::move(mesh));
@@ -346,9 +362,19 @@ void ObjReader::finish_part(Part& part) {
     add_mesh_lights(scene_, index, {name, material.emission, material.emission_texture, false});
 }
 
+// Colours of vertices are factors on a material's colour, or the colour where there is none.
+void ObjReader::paint(Part& part, bool needs_uvs) {
+  if (part.colors.empty()) return;
+  if (!materials_.library.contains(part.material)) {
+    scene_.materials.push_back(Material(scene_.materials[part.mesh.material]));
+    scene_.materials.back().base_color.value = Rgb{1};
+    part.mesh.material = uint32_t(scene_.materials.size() - 1);
+  }
+  painter_.paint(part.mesh, part.colors, needs_uvs);
+  part.colors = {};
+}
+
 void ObjReader::finish() {
-  if (counts_.colored_vertices > 0)
-    scene_.warnings.add("OBJ: vertex colours are left out", counts_.colored_vertices);
   if (counts_.points_and_lines > 0)
     scene_.warnings.add("OBJ: points and lines are left out", counts_.points_and_lines);
   if (counts_.short_faces > 0)

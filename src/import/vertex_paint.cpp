@@ -44,16 +44,29 @@ TextureValue mean_over(const Mesh& mesh, const std::vector<TextureValue>& colors
 // Vertices of its own for every triangle.
 void separate_triangles(Mesh& mesh) {
   std::vector<Vec3> positions, normals;
+  std::vector<Vec2> uvs;
   positions.reserve(3 * mesh.triangles.size());
   for (Triangle& t : mesh.triangles) {
     for (uint32_t& v : t) {
       positions.push_back(mesh.positions[v]);
       if (!mesh.normals.empty()) normals.push_back(mesh.normals[v]);
+      if (!mesh.uvs.empty()) uvs.push_back(mesh.uvs[v]);
       v = uint32_t(positions.size() - 1);
     }
   }
   mesh.positions = std::move(positions);
   mesh.normals = std::move(normals);
+  mesh.uvs = std::move(uvs);
+}
+
+bool uses_second_uvs(const Scene& scene, const Material& m) {
+  bool is_any = m.normal_texture >= 0 &&
+                scene.textures[size_t(m.normal_texture)].mapping == TextureMapping::second_uv;
+  for_each_input(m, [&](const auto& input) {
+    is_any |= input.texture >= 0 &&
+              scene.textures[size_t(input.texture)].mapping == TextureMapping::second_uv;
+  });
+  return is_any;
 }
 
 }  // namespace
@@ -70,14 +83,17 @@ uint32_t VertexPainter::tinted(uint32_t material, const TextureValue& factor) {
   return tinted_[{material, key}] = uint32_t(scene_.materials.size() - 1);
 }
 
-uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& colors) {
+// with_uvs: the mesh keeps its (u,v), and the image is a factor on what they show.
+uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& colors,
+                                  bool with_uvs) {
   Material m = scene_.materials[mesh.material];
   Texture image;
   image.name = "colours of the vertices of '" + mesh.name + "'";
   image.kind = TextureKind::image;
   image.is_srgb = false;
   image.wrap_u = image.wrap_v = WrapMode::clamp;
-  image.channels = m.is_alpha_masked ? 4 : 3;
+  image.channels = m.is_alpha_masked && !with_uvs ? 4 : 3;
+  if (with_uvs) image.mapping = TextureMapping::second_uv;
   const size_t n = mesh.triangles.size();
   const auto columns = size_t(std::ceil(std::sqrt(double(n)))), rows = (n + columns - 1) / columns;
   image.width = int(2 * columns);
@@ -107,11 +123,19 @@ uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& c
                        float((double(y) + dy) / double(image.height)));
   }
   separate_triangles(mesh);
-  mesh.uvs = std::move(uvs);
-  const auto texture = int32_t(scene_.textures.size());
+  (with_uvs ? mesh.uvs_2 : mesh.uvs) = std::move(uvs);
+  auto texture = int32_t(scene_.textures.size());
   scene_.textures.push_back(std::move(image));
+  if (with_uvs && m.base_color.texture >= 0) {
+    Texture both;
+    both.name = "colours of the vertices on an image";
+    both.kind = TextureKind::product;
+    both.factor_a = uint32_t(m.base_color.texture);
+    both.factor_b = uint32_t(texture++);
+    scene_.textures.push_back(std::move(both));
+  }
   m.base_color.texture = texture;
-  if (m.is_alpha_masked) m.alpha = {m.alpha.value, texture, 3};
+  if (m.is_alpha_masked && !with_uvs) m.alpha = {m.alpha.value, texture, 3};
   scene_.materials.push_back(std::move(m));
   return uint32_t(scene_.materials.size() - 1);
 }
@@ -130,15 +154,24 @@ void VertexPainter::paint(Mesh& mesh, const std::vector<TextureValue>& colors, b
   const Material& m = scene_.materials[mesh.material];
   const bool is_textured =
       needs_uvs || has_textured_input(m) || m.normal_texture >= 0 || m.alpha.texture >= 0;
-  if (is_textured || 4 * mesh.triangles.size() > max_texels - texels_) {
-    scene_.warnings.add(is_textured
-                            ? "colours of the vertices of textured meshes are shown as their mean"
+  const bool is_second_free = mesh.uvs_2.empty() && !uses_second_uvs(scene_, m);
+  if ((is_textured && !is_second_free) || 4 * mesh.triangles.size() > max_texels - texels_) {
+    scene_.warnings.add(is_textured && !is_second_free
+                            ? "colours of the vertices of meshes with two sets of texture "
+                              "coordinates are shown as their mean"
                             : "too many coloured vertices: the mean of a mesh is shown");
     mesh.material = tinted(mesh.material, mean_over(mesh, colors));
     return;
   }
   texels_ += 4 * mesh.triangles.size();
-  mesh.material = add_image(mesh, colors);
+  if (is_textured && m.is_alpha_masked) {
+    const TextureValue mean = mean_over(mesh, colors);
+    if (mean.alpha < 1) {
+      scene_.warnings.add("alpha of the vertices of textured meshes is shown as its mean");
+      mesh.material = tinted(mesh.material, {Rgb{1}, mean.alpha});
+    }
+  }
+  mesh.material = add_image(mesh, colors, is_textured);
 }
 
 }  // namespace troffer

@@ -13,7 +13,8 @@ namespace troffer {
 // Scenes have no colours per vertex. One colour for a whole mesh is a factor on its material's base
 // colour. Where colours differ, the mesh gets vertices and (u,v) of its own for every triangle, and
 // an image in which each triangle has 2 x 2 texels whose bilinear mean is the linear one between
-// its three corners. A mesh that needs its (u,v) for images gets its mean colour, with a warning.
+// its three corners. A mesh that needs its (u,v) for images gets a second set for that one, which
+// is a factor on its base colour; one that needs two sets gets its mean colour, with a warning.
 class VertexPainter {
  public:
   // The scene must outlive the painter.
@@ -25,7 +26,7 @@ class VertexPainter {
 
  private:
   uint32_t tinted(uint32_t material, const TextureValue& factor);
-  uint32_t add_image(Mesh& mesh, const std::vector<TextureValue>& colors);
+  uint32_t add_image(Mesh& mesh, const std::vector<TextureValue>& colors, bool with_uvs);
 
   Scene& scene_;
   std::map<std::pair<uint32_t, std::array<float, 4>>, uint32_t> tinted_;

@@ -166,19 +166,40 @@ TEST_CASE("COLOR_0: one colour is a factor; several are interpolated exactly") {
     }
 }
 
-TEST_CASE("COLOR_0 of a textured mesh is its mean, with a warning") {
+TEST_CASE("COLOR_0 of a textured mesh is a factor on what its texture shows") {
   const TempFolder folder;
-  folder.write("a.pfm", "PF\n1 1\n-1.0\n" + bytes_of<float>({1, 1, 1}));
-  const Scene scene = import_gltf(folder.write(
-      "s.gltf", gltf_text(square_with(bytes_of<uint8_t>({255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0,
-                                                         255, 255, 255, 0, 255}),
-                                      {{"VEC4", 5121, 4, 16, true}}) +
-                          ",'meshes':[{'primitives':[{'attributes':{'POSITION':0,'TEXCOORD_0':3,"
-                          "'COLOR_0':4},'indices':1,'material':0}]}],'images':[{'uri':'a.pfm'}],"
-                          "'textures':[{'source':0}],'materials':[{'pbrMetallicRoughness':{"
-                          "'baseColorTexture':{'index':0}}}],'nodes':[{'mesh':0}]")));
-  const Rgb c = scene.materials[scene.meshes.at(0).material].base_color.value;
-  CHECK(c.r == 1);
-  CHECK(c.g == doctest::Approx(1.0 / 6));  // one corner of six
-  CHECK(has_warning(scene, "as their mean"));
+  folder.write("a.pfm", "PF\n1 1\n-1.0\n" + bytes_of<float>({1, 0.5f, 1}));
+  const auto scene_of = [&](const std::string& second) {
+    return import_gltf(folder.write(
+        "s.gltf",
+        gltf_text(square_with(bytes_of<uint8_t>({255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255,
+                                                 255, 255, 0, 255}),
+                              {{"VEC4", 5121, 4, 16, true}}) +
+                  ",'meshes':[{'primitives':[{'attributes':{'POSITION':0,'TEXCOORD_0':3," + second +
+                  "'COLOR_0':4},'indices':1,'material':0}]}],'images':[{'uri':'a.pfm'}],"
+                  "'textures':[{'source':0}],'materials':[{'pbrMetallicRoughness':{"
+                  "'baseColorTexture':{'index':0}" +
+                  (second.empty() ? "" : ",'metallicRoughnessTexture':{'index':0,'texCoord':1}") +
+                  "}}],'nodes':[{'mesh':0}]")));
+  };
+  const Scene scene = scene_of("");
+  CHECK(scene.warnings.total() == 0);
+  const Mesh& mesh = scene.meshes.at(0);
+  REQUIRE(mesh.uvs.size() == 6);
+  REQUIRE(mesh.uvs_2.size() == 6);
+  CHECK(mesh.uvs[0] == Vec2{0, 0});  // as the file has them
+  const Material& m = scene.materials[mesh.material];
+  const std::array<std::array<size_t, 3>, 2> corners{{{0, 1, 2}, {0, 2, 3}}};
+  for (size_t t = 0; t < 2; ++t)
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t v = mesh.triangles[t][k];
+      const Rgb c = evaluate(scene.textures, m.base_color, {mesh.uvs[v], mesh.uvs_2[v]});
+      CHECK(c.r == doctest::Approx(1));
+      CHECK(c.g == doctest::Approx(corners[t][k] == 3 ? 0.5 : 0));
+      CHECK(c.b == doctest::Approx(0));
+    }
+  // Both sets are taken: the mean, over six corners.
+  const Scene two = scene_of("'TEXCOORD_1':3,");
+  CHECK(two.materials[two.meshes.at(0).material].base_color.value.g == doctest::Approx(1.0 / 6));
+  CHECK(has_warning(two, "as their mean"));
 }

@@ -254,11 +254,28 @@ TEST_CASE("what OBJ files hold besides is left out with warnings") {
       "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\np 1\nl 1 2\ns off\n"
       "curv 0 1 1 2\nf 1 2\nv nan 1 1.#INF\nf 1 2 3\nf 1 2 4\nf 1 1 2\n");
   CHECK(triangle_count(scene) == 1);
-  for (const char* part : {"vertex colours", "points and lines", "curv", "fewer than three",
-                           "not finite", "without area"}) {
+  for (const char* part :
+       {"points and lines", "curv", "fewer than three", "not finite", "without area"}) {
     CAPTURE(part);
     CHECK(has_warning(scene, part));
   }
+}
+
+TEST_CASE("OBJ: colours of vertices, from sRGB") {
+  const Scene scene = import_text(
+      "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nv 0 1 1 1 0 1 0\nv 5 5 5\nf 1 2 3\nf 1 2 5\n"
+      "f 4 4 4\n");
+  REQUIRE(triangle_count(scene) == 2);
+  const Mesh& mesh = scene.meshes.at(0);
+  const Material& m = scene.materials[mesh.material];
+  REQUIRE(m.base_color.texture >= 0);
+  const auto color = [&](size_t t, size_t k) {
+    return evaluate(scene.textures, m.base_color, mesh.uvs.at(mesh.triangles[t][k]));
+  };
+  CHECK(color(0, 0) == Rgb{1, 0, 0});
+  CHECK(color(0, 1).g == doctest::Approx(linear_from_srgb(0.5f)));
+  CHECK(color(0, 2) == Rgb{0, 0, 1});
+  CHECK(color(1, 2) == Rgb{1, 1, 1});  // says none
 }
 
 TEST_CASE("kj92room as OBJ has four sources that face into the room") {
