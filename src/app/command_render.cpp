@@ -18,6 +18,7 @@
 #include "render/camera.h"
 #include "render/framing.h"
 #include "render/preview.h"
+#include "scene/orientation.h"
 
 namespace troffer {
 

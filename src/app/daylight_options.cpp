@@ -17,6 +17,7 @@
 #include "daylight/sun_position.h"
 #include "import/environment_file.h"
 #include "import/light_radius.h"
+#include "scene/orientation.h"
 #include "scene/portal_corners.h"
 
 namespace troffer {
@@ -128,14 +129,6 @@ std::optional<SunRequest> parse_sun(const DaylightOptions& o) {
   sun.altitude_deg = p.altitude_deg;
   sun.distance_au = p.distance_au;
   return sun;
-}
-
-// A camera that keeps the hand of a right-handed world says that the world is one; pbrt's own is
-// not, where its camera has not mirrored it back.
-bool is_mirrored(const Scene& scene) {
-  if (scene.cameras.empty()) return false;
-  const Camera& c = scene.cameras.front();
-  return dot(cross(c.forward, c.up), c.right) < 0;
 }
 
 // Nothing at night.
@@ -277,13 +270,6 @@ Vec3d parse_vector(const std::string& text, const char* option) {
     p = end + 1;
   }
   return v;
-}
-
-Vec3 guess_up(const Scene& scene) {
-  const Box box = bounds(scene);
-  if (scene.is_photometric || box.is_empty()) return {0, 1, 0};
-  const Vec3 e = box.extent();
-  return e.z < e.y ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
 }
 
 void add_daylight_options(CLI::App& command, DaylightOptions& o) {

@@ -36,8 +36,4 @@ void add_daylight(Scene& scene, const DaylightOptions& options);
 // Three numbers "x,y,z"; UsageError that names the option for others.
 Vec3d parse_vector(const std::string& text, const char* option);
 
-// The axis a scene stands on: y for glTF; for formats that do not say, the one of y and z along
-// which it extends less.
-Vec3 guess_up(const Scene& scene);
-
 }  // namespace troffer

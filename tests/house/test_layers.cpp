@@ -115,11 +115,12 @@ TEST_CASE("rooms include only what their rows name, and all of that") {
 
 TEST_CASE("one door per dependency") {
   const std::map<std::string, std::set<std::string>> doors{
-      {"embree3/", {"trace"}}, {"tbb/", {"base"}},
-      {"OpenEXR/", {"image"}}, {"Imf", {"image"}},
-      {"png.h", {"image"}},    {"jpeglib.h", {"image"}},
-      {"CLI/", {"app"}},       {"nlohmann/", {"import", "export", "app"}},
-      {"pugixml", {"import"}}, {"zlib.h", {"import"}}};
+      {"embree3/", {"trace"}},  {"tbb/", {"base"}},
+      {"OpenEXR/", {"image"}},  {"Imf", {"image"}},
+      {"png.h", {"image"}},     {"jpeglib.h", {"image"}},
+      {"CLI/", {"app"}},        {"nlohmann/", {"import", "export", "app"}},
+      {"pugixml", {"import"}},  {"zlib.h", {"import"}},
+      {"pybind11/", {"python"}}};
   const Layers layers = read_layers();
   for (const std::string& room : layers.order)
     for (const fs::path& file : files_of(room))

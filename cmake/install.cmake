@@ -1,0 +1,55 @@
+# What `cmake --install` and `cpack` hand out: the program with its manual and completion, the
+# library as troffer::<room> with headers (find_package(troffer)), the Python module.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS troffer)
+foreach(_room IN LISTS TROFFER_ROOMS)
+  if(_room MATCHES "^(app|python)$")
+    continue()
+  endif()
+  set_target_properties(troffer_${_room} PROPERTIES EXPORT_NAME ${_room})
+  install(TARGETS troffer_${_room} EXPORT troffer-targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/troffer)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/${_room} DESTINATION include/troffer
+    FILES_MATCHING PATTERN "*.h")
+endforeach()
+set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/troffer)
+install(EXPORT troffer-targets NAMESPACE troffer:: DESTINATION ${_package})
+configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/troffer-config.cmake.in
+  ${CMAKE_BINARY_DIR}/troffer-config.cmake INSTALL_DESTINATION ${_package})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/troffer-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/troffer-config.cmake
+  ${CMAKE_BINARY_DIR}/troffer-config-version.cmake DESTINATION ${_package})
+
+# Manual pages and completion say what the program says of itself.
+if(Python_Interpreter_FOUND)
+  set(_manual ${CMAKE_BINARY_DIR}/manual)
+  add_custom_command(OUTPUT ${_manual}/troffer.1
+    COMMAND ${Python_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/manual.py $<TARGET_FILE:troffer>
+      ${PROJECT_VERSION} ${_manual}
+    DEPENDS troffer ${CMAKE_SOURCE_DIR}/tools/manual.py VERBATIM)
+  add_custom_target(manual ALL DEPENDS ${_manual}/troffer.1)
+  install(DIRECTORY ${_manual}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+    FILES_MATCHING PATTERN "*.1")
+  install(FILES ${_manual}/troffer.bash RENAME troffer
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+endif()
+if(TROFFER_PYTHON)
+  install(TARGETS troffer_module DESTINATION lib/python3/dist-packages)
+endif()
+install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME troffer)
+set(CPACK_PACKAGE_CONTACT "the troffer project")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Physically based light in rooms: pictures and lux figures")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3, python3-numpy")
+include(CPack)
