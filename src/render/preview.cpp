@@ -16,12 +16,8 @@ namespace troffer {
 
 namespace {
 
-constexpr int first_blocks = 64;  // along the longer side
 constexpr uint32_t paths_of_block = 4;
-constexpr std::chrono::duration<double> time_to_look{0.8};
-// Pictures follow each other at this interval, or more slowly where writing takes long.
-constexpr std::chrono::duration<double> interval{2.0};
-constexpr double interval_per_writing = 10;
+constexpr double interval_per_showing = 10;
 
 // The window in square blocks of pixels, those at its right and lower border smaller.
 struct Blocks {
@@ -176,9 +172,10 @@ void Preview::look(const PreparedScene& scene, const Camera& camera, const Rende
   const std::unique_ptr<Integrator> paths = paths_for(scene, options);
   const int longest = std::max(window_.width(), window_.height());
   const Clock::time_point end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(time_to_look);
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(pace_.look_seconds));
   Values values;
-  for (int side = (longest + first_blocks - 1) / first_blocks; side > 0; side /= 2) {
+  for (int side = (longest + pace_.first_blocks - 1) / pace_.first_blocks; side > 0; side /= 2) {
     const Clock::time_point start = Clock::now();
     const Blocks blocks{window_, side};
     if (!sample(*paths, viewing, blocks, options, stop, values)) break;
@@ -192,11 +189,19 @@ void Preview::look(const PreparedScene& scene, const Camera& camera, const Rende
   }
 }
 
+void Preview::go_on_from(const Image& coarse, const PixelRect& window) {
+  window_ = window;
+  image_ = coarse;
+  next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                             std::chrono::duration<double>(pace_.interval));
+}
+
 void Preview::show(const Image& image) {
   const Clock::time_point start = Clock::now();
   show_(image);
   const std::chrono::duration<double> took = Clock::now() - start;
-  const auto pause = std::max(interval, interval_per_writing * took);
+  const std::chrono::duration<double> pause =
+      std::max(std::chrono::duration<double>(pace_.interval), interval_per_showing * took);
   const std::lock_guard lock(mutex_);
   next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
 }
