@@ -90,8 +90,8 @@ int run_view(const ViewCommand& c) {
   settings.file = c.scene.file;
   read_size(c.size, settings);
   Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
-  settings.up = c.daylight.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.daylight.up, "--up"));
   settings.camera = camera_named(scene, c.camera);
+  settings.up = up_of(scene, settings.camera, c.daylight.up);
   const PlaceOfTime at = split_at(c.daylight.at);
   if (!at.time.empty()) {
     settings.time = at.time;

@@ -120,7 +120,8 @@ void Painter::paint(const Orders& orders) {
   const size_t dimmers = orders.request.lighting->dimmers().size();
   for (Work& w : works_) {
     const bool is_whole = w.layer == "whole";
-    if (w.has_first || (!is_whole && !(orders.extras.wants_dimmers && w.dimmer >= 0))) continue;
+    if (w.has_first || w.next > 0 || (!is_whole && !(orders.extras.wants_dimmers && w.dimmer >= 0)))
+      continue;
     look(orders, w, is_whole ? 1 : dimmers);
   }
   {

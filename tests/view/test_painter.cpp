@@ -113,8 +113,8 @@ TEST_CASE("light from elsewhere, on the cells that are kept: the picture is that
   wait_until([&] { return painter.state().stage == "done"; });
   const double before = mean_of(board.get("whole")->image);
   Scene turned = room();
-  std::swap(turned.lights[0].radiance, turned.lights[1].radiance);
-  turned.lights[0].radiance = Rgb{1};
+  turned.lights[0].radiance = Rgb{1, 0, 2};
+  turned.lights[1].radiance = Rgb{0, 2, 0};
   const auto lighting = std::make_shared<Lighting>(std::move(turned));
   const uint64_t view = painter.show(request_of(lighting));
   wait_until([&] { return painter.state().view == view && painter.state().stage == "done"; });
