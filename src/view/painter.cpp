@@ -14,7 +14,9 @@ namespace troffer {
 
 namespace {
 
-// By doubling and halving at pixels' middles.
+constexpr int fewest_blocks = 16;  // of a first picture, along its longer side
+
+// Nearest pixels.
 Image resized(const Image& from, int width, int height) {
   Image to(width, height);
   for (int y = 0; y < height; ++y)
@@ -189,12 +191,12 @@ void Painter::look(const Orders& orders, Work& work, size_t of) {
   if (cancel_) return;
   const ViewRequest& r = orders.request;
   PreviewPace pace;
-  constexpr int fewest_blocks = 20;
   pace.look_seconds /= double(of);
-  pace.first_blocks =
-      std::max(fewest_blocks, int(double(pace.first_blocks) / std::sqrt(double(of))));
+  pace.first_blocks = std::max(fewest_blocks, int(blocks_ / std::sqrt(double(of))));
+  const Clock::time_point start = Clock::now();
   Preview preview(
       [&](const Image& image) {
+        if (!work.has_first && of == 1) learn_pace(Clock::now() - start);
         work.has_first = true;
         put(work, image, orders.view, 0);
       },
@@ -203,6 +205,15 @@ void Painter::look(const Orders& orders, Work& work, size_t of) {
   const RenderOptions options = options_of(r, work, Pass());
   check_options(scene, r.camera, options);
   preview.look(scene, r.camera, options, cancel_);
+}
+
+// A first picture took so long: the next one is as coarse as lets it come in time. Twice as many
+// blocks along a side are four times the work.
+void Painter::learn_pace(std::chrono::duration<double> taken) {
+  constexpr double aim = 0.08;
+  const double most = PreviewPace().first_blocks;
+  blocks_ = std::clamp(blocks_ * std::sqrt(aim / std::max(taken.count(), 1e-3)),
+                       double(fewest_blocks), most);
 }
 
 // Pass by pass: of what is shown first, and of each layer's coarse ones first.

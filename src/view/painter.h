@@ -50,7 +50,7 @@ struct PaintingState {
   std::string failure;          // why there is none; empty: all is well
 };
 
-// Thirteen members: what it is made with, what other threads tell it, and what is under way.
+// Fourteen members: what it is made with, what other threads tell it, and what is under way.
 class Painter {
  public:
   using Shown = std::function<void(const Image&)>;
@@ -102,6 +102,7 @@ class Painter {
   void add_works(const Orders& orders);
   void sight(const Orders& orders);
   void look(const Orders& orders, Work& work, size_t of);
+  void learn_pace(std::chrono::duration<double> taken);
   void go_through(const Orders& orders);
   void pass(const Orders& orders, Work& work);
   Kept& kept(const Work& work);
@@ -117,6 +118,7 @@ class Painter {
   Orders orders_;  // by the mutex
   StopFlag cancel_ = false;
   std::vector<Work> works_;  // of this view
+  double blocks_ = PreviewPace().first_blocks;
   uint64_t view_ = 0;
   Clock::time_point begun_;
   std::shared_ptr<Lighting> lighting_;

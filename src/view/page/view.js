@@ -39,13 +39,14 @@ function currentPicture() {
 const scaleOf = () => (app.state.is_photometric ? 1 : 179);
 const unitOf = (kind) => ({illuminance: 'lx', luminance: 'cd/m²', error: '%'})[kind];
 
-function drawSide(picture, kind, pixels, from, to) {
+// As what is beside it, up to the same value.
+function drawSide(picture, kind, pixels, from, to, mostBeside) {
   if (kind === 'picture') {
     drawPicture(picture, Number($('stops').value), $('filmic').checked, pixels, from, to);
     return null;
   }
   const map = valuesOf(kind, picture, app.layers.albedo, app.layers.error, scaleOf());
-  const most = kind === $('show').value ? mostOf(map, kind) : roundUp(quantile(map.values, 0.98));
+  const most = kind !== $('show').value ? roundUp(quantile(map.values, 0.98)) : mostBeside ?? mostOf(map);
   drawValues(map, most, $('log').checked, pixels, from, to);
   return {map, most};
 }
@@ -66,9 +67,11 @@ function draw() {
   const kind = $('show').value, beside = $('beside').value;
   const split = beside ? Math.round(width * $('split-at').value / 1000) : width;
   app.map = drawSide(picture, kind, image.data, 0, split);
+  app.besideText = '';
   if (split < width) {
-    const second = beside === 'error' ? picture : fitted(app.layers.second, width, height);
-    if (second) drawSide(second, beside === 'error' ? 'error' : kind, image.data, split, width);
+    const isError = beside === 'error', second = isError ? picture : fitted(app.layers.second, width, height);
+    const side = second && drawSide(second, isError ? 'error' : kind, image.data, split, width, app.map?.most);
+    app.besideText = isError ? `standard error, to ${side.most} %` : second ? `by ${beside}` : `${beside}: to come`;
   }
   g.putImageData(image, 0, 0);
   if (app.map) drawLegend($('legend'), app.map.most, $('log').checked, unitOf(kind));
@@ -108,6 +111,12 @@ function drawOverlay() {
     const x = canvas.width * $('split-at').value / 1000;
     g.fillStyle = '#ffd166';
     g.fillRect(x - 1, 0, 2, canvas.height);
+    g.font = '12px system-ui, "DejaVu Sans", sans-serif';
+    g.textAlign = 'left';
+    g.lineWidth = 3;
+    g.strokeStyle = '#000';
+    g.strokeText(app.besideText, x + 8, 18);
+    g.fillText(app.besideText, x + 8, 18);
   }
   measurements.draw(g, (p) => {
     const at = app.camera.project(p.slice(0, 3), aspect);
@@ -127,6 +136,11 @@ function drawLines(g, canvas) {
   const [sx, sy] = [block * canvas.width / app.map.map.width, block * canvas.height / app.map.map.height];
   g.font = '11px system-ui, "DejaVu Sans", sans-serif';
   app.lines = {};
+  // Of what is left of the split.
+  g.save();
+  g.beginPath();
+  g.rect(0, 0, $('beside').value ? canvas.width * $('split-at').value / 1000 : canvas.width, canvas.height);
+  g.clip();
   for (const level of $('levels').value.split(/[,;\s]+/).map(Number).filter((v) => v > 0)) {
     const segments = linesAt(map, level);
     app.lines[level] = segments.length;
@@ -148,6 +162,7 @@ function drawLines(g, canvas) {
     g.strokeText(level, x * sx, y * sy);
     g.fillText(level, x * sx, y * sy);
   }
+  g.restore();
 }
 
 function drawMeasured() {
@@ -252,77 +267,10 @@ const sendExtras = () => {
     second: beside === 'error' ? '' : beside});
 };
 
-async function onDimmer() {
-  const wants = areDimmed() && app.dimmers.length > 1;
-  if (wants !== app.wantsDimmers) {
-    app.wantsDimmers = wants;
-    await sendExtras();
-  }
-  if (wants && measurements.needsDimmers(app.dimmers.length))
-    await measurements.again((m) => m.rows && m.rows.length !== app.dimmers.length);
-  if (await fetchLayers(app.state)) { /* drawn below */ }
-  draw();
-  drawMeasured();
-  updateLinks();
-}
-
-function makeDimmers(state) {
-  app.dimmers = state.dimmers.map((d) => ({...d, isOn: true, level: 1, colour: [1, 1, 1]}));
-  $('dimmers').replaceChildren(...app.dimmers.map((d, i) => {
-    const row = document.createElement('label');
-    row.className = 'dimmer';
-    row.innerHTML = '<input type="checkbox" checked><span></span><input type="range" min="0" max="1" step="0.01" value="1"><output>100 %</output><input type="color" value="#ffffff">';
-    const [on, name, level, shown, colour] = row.children;
-    name.textContent = d.name || `light ${i}`;
-    name.title = d.power > 0 ? `${d.name}: ${d.power.toPrecision(4)} ${state.is_photometric ? 'lm' : 'W'}` : d.name;
-    [on, level, colour].forEach((input) => input.setAttribute('aria-label', `${d.name} ${input.type}`));
-    const change = () => {
-      d.isOn = on.checked;
-      d.level = Number(level.value);
-      // Of equal luminance, whatever the colour.
-      const c = [1, 3, 5].map((k) => (parseInt(colour.value.slice(k, k + 2), 16) / 255) ** 2.2);
-      const l = luminanceOf(...c);
-      d.colour = colour.value === '#ffffff' || !(l > 0) ? [1, 1, 1] : c.map((v) => v / l);
-      shown.textContent = `${Math.round(100 * d.level)} %`;
-      onDimmer().catch((error) => say(error.message));
-    };
-    on.onchange = level.oninput = colour.oninput = change;
-    return row;
-  }));
-}
-
-function makeTime(state) {
-  $('time-section').hidden = !state.has_time;
-  if (!state.has_time) return;
-  const parts = /^(\d{4}-\d\d-\d\d)T(\d\d):(\d\d)(:[\d.]+)?(.*)$/.exec(state.time);
-  if (!parts) return;
-  $('date').value = parts[1];
-  $('minutes').value = 60 * parts[2] + Number(parts[3]);
-  const text = () => {
-    const m = Number($('minutes').value), two = (v) => String(v).padStart(2, '0');
-    return `${two(Math.floor(m / 60))}:${two(m % 60)}`;
-  };
-  const show = () => { $('clock').textContent = `${text()} ${parts[5]}`; };
-  let timer = 0;
-  const send = () => {
-    show();
-    clearTimeout(timer);
-    timer = setTimeout(async () => {
-      try {
-        await post('time', {time: `${$('date').value}T${text()}${parts[5]}`});
-        makeDimmers(await getJson('state'));
-        await measurements.again();
-        app.movedAt = performance.now();
-      } catch (error) { say(error.message); }
-    }, 150);
-  };
-  $('date').onchange = $('minutes').oninput = send;
-  show();
-}
-
 function begin(state) {
   document.title = `${state.file.split('/').pop()} – troffer view`;
-  $('file').textContent = state.file;
+  $('file').textContent = state.file.split('/').pop();
+  $('file').title = state.file;
   app.home = state.camera;
   app.camera = new RoomCamera(state.camera, state.up, state.bounds);
   const cameras = state.cameras.length ? state.cameras : [state.camera];
