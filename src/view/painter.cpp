@@ -64,6 +64,7 @@ uint64_t Painter::show(const ViewRequest& request) {
 
 void Painter::set_extras(const ViewExtras& extras) {
   const std::lock_guard lock(mutex_);
+  if (orders_.extras == extras) return;
   orders_.extras = extras;
   if (orders_.may_cancel) cancel_ = true;
   ++orders_.number;

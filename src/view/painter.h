@@ -40,6 +40,7 @@ struct ViewRequest {
 struct ViewExtras {
   bool wants_dimmers = false;    // before anything else, and as fine
   std::optional<Method> second;  // shown beside
+  bool operator==(const ViewExtras&) const = default;
 };
 
 struct PaintingState {

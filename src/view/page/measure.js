@@ -13,10 +13,9 @@ class Measurements {
   }
   async begin(item, path, body) {
     const answer = await this.ask(path, body);
+    // From here on `rows` are of values, by luminaires.
     Object.assign(item, answer, {rows: null});
-    item.label = item.kind === 'grid' ? `grid ${item.columns} × ${item.rows}` : item.name || 'point';
-    if (answer.rows !== undefined) item.gridRows = answer.rows;
-    item.rows = null;
+    item.label = item.kind === 'grid' ? `grid ${answer.columns} × ${answer.rows}` : answer.name || 'point';
     this.all.push(item);
     this.changed();
   }
