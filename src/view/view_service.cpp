@@ -138,8 +138,7 @@ HttpResponse ViewService::state() const {
             {"up", troffer::json_of(Vec3d(settings_.up))},
             {"camera", json_of_camera(request.camera, lighting_->origin())}};
   const Boxd& box = lighting_->bounds();
-  if (!box.is_empty())
-    j["bounds"] = {troffer::json_of(box.lower), troffer::json_of(box.upper)};
+  if (!box.is_empty()) j["bounds"] = {troffer::json_of(box.lower), troffer::json_of(box.upper)};
   j["cameras"] = json::array();
   for (const Camera& c : lighting_->cameras())
     j["cameras"].push_back(json_of_camera(c, lighting_->origin()));
