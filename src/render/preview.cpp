@@ -64,20 +64,25 @@ bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blo
   std::vector<Work> work(size_t(thread_count(options.threads)));
   values = {Image(blocks.across(), blocks.down()), Image(blocks.across(), blocks.down()), {}};
   values.normals.assign(values.light.pixels.size(), Vec3{});
-  parallel_for_slots(size_t(blocks.down()), options.threads, [&](size_t row, size_t slot) {
+  // Between these a stop is looked for: whoever turns around in a room waits for no more than one.
+  constexpr int blocks_at_once = 32;
+  const auto across = size_t((blocks.across() + blocks_at_once - 1) / blocks_at_once);
+  parallel_for_slots(across * size_t(blocks.down()), options.threads, [&](size_t n, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
+    const size_t row = n / across;
+    const int first = int(n % across) * blocks_at_once;
+    const int end = std::min(first + blocks_at_once, blocks.across());
     Work& w = work[slot];
     if (!w.scratch) w.scratch = integrator.make_scratch();
     w.rays.clear();
     w.rays.cone = camera.cone(1);
-    for (int i = 0; i < blocks.across(); ++i)
-      add_block_rays(camera, blocks, i, int(row), seed, w.rays);
+    for (int i = first; i < end; ++i) add_block_rays(camera, blocks, i, int(row), seed, w.rays);
     w.radiance.reset(w.rays.size());
     integrator.radiance(w.rays, *w.scratch, w.radiance, w.counters);
     for (size_t i = 0; i < w.rays.size(); ++i) {
       const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
       if (!is_finite(l)) continue;
-      const size_t at = row * size_t(blocks.across()) + i / paths_of_block;
+      const size_t at = row * size_t(blocks.across()) + size_t(first) + i / paths_of_block;
       values.light.pixels[at] += l * (1.0f / float(paths_of_block));
       values.albedo.pixels[at] += w.radiance.albedo[i] * (1.0f / float(paths_of_block));
       values.normals[at] += w.radiance.normal[i];
