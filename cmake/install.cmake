@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS troffer)
 foreach(_room IN LISTS TROFFER_ROOMS)
-  if(_room MATCHES "^(app|python)$")
+  if(_room MATCHES "^(app|python|view)$")
     continue()
   endif()
   set_target_properties(troffer_${_room} PROPERTIES EXPORT_NAME ${_room})

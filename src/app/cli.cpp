@@ -150,7 +150,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
 }
 
 // What is seen, at what size.
-void add_view(CLI::App* r, RenderCommand& c, RawOptions& raw) {
+void add_camera(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   r->add_option("--size", raw.size, "Image size WxH in pixels [by the scene]");
   r->add_option("--crop", raw.crop, "Window X0,Y0,X1,Y1 of the image, in pixels");
   r->add_option("--camera", c.camera, "Camera by name [the first]");
@@ -195,7 +195,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->capture_default_str();
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
       ->check(CLI::Range(0, 1 << 20));
-  add_view(r, c, raw);
+  add_camera(r, c, raw);
   r->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -294,6 +294,7 @@ int parse_and_run(int argc, const char* const* argv) {
   InfoCommand info;
   ConvertCommand convert;
   MergeCommand merge;
+  ViewCommand view;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -302,6 +303,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_info(app, info);
   add_convert(app, convert);
   add_merge(app, merge);
+  add_view(app, view);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -324,6 +326,7 @@ int parse_and_run(int argc, const char* const* argv) {
     return run_measure(measure);
   }
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
+  if (app.got_subcommand("view")) return run_view(view);
   if (app.got_subcommand("convert")) return run_convert(convert);
   if (app.got_subcommand("merge")) {
     check_exposure(merge.exposure);

@@ -101,6 +101,23 @@ struct RadiosityCommand {
 void add_radiosity(CLI::App& app, RadiosityCommand& command);  // its options
 int run_radiosity(const RadiosityCommand& command);
 
+struct ViewCommand {
+  SceneChoice scene;
+  int port = 0;      // 0: any
+  std::string size;  // WxH, or empty
+  std::string camera;
+  std::string method = "certified";
+  double error = 0.02;
+  std::vector<std::string> lights;
+  DaylightOptions daylight;
+  std::string tev;  // HOST:PORT, or empty
+  int threads = 0;
+  uint64_t seed = 0;
+  bool is_quiet = false;
+};
+void add_view(CLI::App& app, ViewCommand& command);  // its options
+int run_view(const ViewCommand& command);
+
 struct InfoCommand {
   SceneChoice scene;
   std::string polar;  // a drawing to make of a luminaire; empty: none

@@ -16,12 +16,8 @@ namespace troffer {
 
 namespace {
 
-constexpr int first_blocks = 64;  // along the longer side
 constexpr uint32_t paths_of_block = 4;
-constexpr std::chrono::duration<double> time_to_look{0.8};
-// Pictures follow each other at this interval, or more slowly where writing takes long.
-constexpr std::chrono::duration<double> interval{2.0};
-constexpr double interval_per_writing = 10;
+constexpr double interval_per_showing = 10;
 
 // The window in square blocks of pixels, those at its right and lower border smaller.
 struct Blocks {
@@ -68,20 +64,25 @@ bool sample(const Integrator& integrator, const ViewingCamera& camera, const Blo
   std::vector<Work> work(size_t(thread_count(options.threads)));
   values = {Image(blocks.across(), blocks.down()), Image(blocks.across(), blocks.down()), {}};
   values.normals.assign(values.light.pixels.size(), Vec3{});
-  parallel_for_slots(size_t(blocks.down()), options.threads, [&](size_t row, size_t slot) {
+  // Between these a stop is looked for: whoever turns around in a room waits for no more than one.
+  constexpr int blocks_at_once = 32;
+  const auto across = size_t((blocks.across() + blocks_at_once - 1) / blocks_at_once);
+  parallel_for_slots(across * size_t(blocks.down()), options.threads, [&](size_t n, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
+    const size_t row = n / across;
+    const int first = int(n % across) * blocks_at_once;
+    const int end = std::min(first + blocks_at_once, blocks.across());
     Work& w = work[slot];
     if (!w.scratch) w.scratch = integrator.make_scratch();
     w.rays.clear();
     w.rays.cone = camera.cone(1);
-    for (int i = 0; i < blocks.across(); ++i)
-      add_block_rays(camera, blocks, i, int(row), seed, w.rays);
+    for (int i = first; i < end; ++i) add_block_rays(camera, blocks, i, int(row), seed, w.rays);
     w.radiance.reset(w.rays.size());
     integrator.radiance(w.rays, *w.scratch, w.radiance, w.counters);
     for (size_t i = 0; i < w.rays.size(); ++i) {
       const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];
       if (!is_finite(l)) continue;
-      const size_t at = row * size_t(blocks.across()) + i / paths_of_block;
+      const size_t at = row * size_t(blocks.across()) + size_t(first) + i / paths_of_block;
       values.light.pixels[at] += l * (1.0f / float(paths_of_block));
       values.albedo.pixels[at] += w.radiance.albedo[i] * (1.0f / float(paths_of_block));
       values.normals[at] += w.radiance.normal[i];
@@ -176,9 +177,10 @@ void Preview::look(const PreparedScene& scene, const Camera& camera, const Rende
   const std::unique_ptr<Integrator> paths = paths_for(scene, options);
   const int longest = std::max(window_.width(), window_.height());
   const Clock::time_point end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(time_to_look);
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(pace_.look_seconds));
   Values values;
-  for (int side = (longest + first_blocks - 1) / first_blocks; side > 0; side /= 2) {
+  for (int side = (longest + pace_.first_blocks - 1) / pace_.first_blocks; side > 0; side /= 2) {
     const Clock::time_point start = Clock::now();
     const Blocks blocks{window_, side};
     if (!sample(*paths, viewing, blocks, options, stop, values)) break;
@@ -192,11 +194,19 @@ void Preview::look(const PreparedScene& scene, const Camera& camera, const Rende
   }
 }
 
+void Preview::go_on_from(const Image& coarse, const PixelRect& window) {
+  window_ = window;
+  image_ = coarse;
+  next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                             std::chrono::duration<double>(pace_.interval));
+}
+
 void Preview::show(const Image& image) {
   const Clock::time_point start = Clock::now();
   show_(image);
   const std::chrono::duration<double> took = Clock::now() - start;
-  const auto pause = std::max(interval, interval_per_writing * took);
+  const std::chrono::duration<double> pause =
+      std::max(std::chrono::duration<double>(pace_.interval), interval_per_showing * took);
   const std::lock_guard lock(mutex_);
   next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
 }

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+
+#include "app/commands.h"
+#include "app/signals.h"
+#include "base/error.h"
+#include "daylight/sun_position.h"
+#include "view/view.h"
+
+namespace troffer {
+
+namespace {
+
+Camera camera_named(const Scene& scene, const std::string& name) {
+  for (const Camera& camera : scene.cameras)
+    if (name.empty() || camera.name == name) return camera;
+  if (name.empty()) return {};
+  throw UsageError("no camera is named '" + name + "' (troffer info lists them)");
+}
+
+// The direction that walks and turns take as upward: as asked; or the axis nearest to the camera's.
+Vec3 up_of(const Scene& scene, const Camera& camera, const std::string& asked) {
+  if (!asked.empty()) {
+    const Vec3 up(parse_vector(asked, "--up"));
+    if (!(length(up) > 0)) throw UsageError("--up has no length");
+    return normalize(up);
+  }
+  if (scene.cameras.empty()) return guess_up(scene);
+  size_t axis = 0;
+  for (const size_t a : {size_t(1), size_t(2)})
+    if (std::abs(camera.up[a]) > std::abs(camera.up[axis])) axis = a;
+  Vec3 up;
+  up[axis] = camera.up[axis] < 0 ? -1.0f : 1.0f;
+  return up;
+}
+
+// "LATITUDE,LONGITUDE,TIME" before and after its second comma.
+struct PlaceOfTime {
+  std::string place, time;
+};
+PlaceOfTime split_at(const std::string& text) {
+  const size_t comma = text.rfind(',');
+  if (comma == text.npos) return {};
+  return {text.substr(0, comma + 1), text.substr(comma + 1)};
+}
+
+void read_size(const std::string& text, ViewSettings& settings) {
+  if (text.empty()) return;
+  constexpr int most = 4096;
+  char after = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &settings.width, &settings.height, &after) != 2 ||
+      settings.width < 1 || settings.height < 1 || settings.width > most || settings.height > most)
+    throw UsageError("--size: '" + text + "' is not WxH with sides of up to 4096");
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, ViewCommand& c) {
+  CLI::App* s = app.add_subcommand("view", "Look at a scene and measure in it, in a browser");
+  add_scene_choice(*s, c.scene);
+  s->add_option("--port", c.port, "Of the page's address on this machine [any that is free]")
+      ->check(CLI::Range(1, 65535));
+  s->add_option("--size", c.size, "Of the picture, WxH in pixels [about 640x480]");
+  s->add_option("--camera", c.camera, "Camera to begin with, by name [the first]");
+  s->add_option("--method", c.method, "How light is computed: " + Method::names())
+      ->capture_default_str();
+  s->add_option("--error", c.error, "Standard error at which a picture is done")
+      ->check(CLI::Range(1e-3, 1.0))
+      ->capture_default_str();
+  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_daylight_options(*s, c.daylight);
+  s->add_option("--tev", c.tev, "HOST:PORT of a tev that is to show the pictures too");
+  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
+  s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
+  s->add_flag("--quiet", c.is_quiet, "No warnings");
+}
+
+int run_view(const ViewCommand& c) {
+  if (!std::isfinite(c.error)) throw UsageError("--error: not a number");
+  ViewSettings settings;
+  settings.options.method = parse_method(c.method);
+  settings.options.error = c.error;
+  settings.options.threads = c.threads;
+  settings.options.seed = c.seed;
+  settings.file = c.scene.file;
+  read_size(c.size, settings);
+  Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
+  settings.camera = camera_named(scene, c.camera);
+  settings.up = up_of(scene, settings.camera, c.daylight.up);
+  const PlaceOfTime at = split_at(c.daylight.at);
+  if (!at.time.empty()) {
+    settings.time = at.time;
+    settings.relit = [&c, at](const std::string& time) {
+      parse_time(time, "time");
+      DaylightOptions daylight = c.daylight;
+      daylight.at = at.place + time;
+      return load_scene(c.scene, c.lights, &daylight, true);
+    };
+  }
+  ViewStart start;
+  start.port = uint16_t(c.port);
+  start.tev = c.tev;
+  start.has_camera = !scene.cameras.empty();
+  start.tell = [](const std::string& address) {
+    fmt::print("{}\n", address);
+    std::fflush(stdout);
+  };
+  const StopFlag& stop = install_stop_handlers();
+  return view(std::move(scene), settings, start, stop) ? exit_done : exit_interrupted;
+}
+
+}  // namespace troffer

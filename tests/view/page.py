@@ -1,0 +1,259 @@
+"""The page of `troffer view` in headless Chromium:  page.py PROGRAM [FOLDER for screenshots]
+
+Ends with status 77, and says why, where Chromium, its driver or python3-selenium is not installed.
+"""
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import urllib.request
+
+root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.support.select import Select
+except ImportError:
+    print("skipped: python3-selenium is not installed")
+    sys.exit(77)
+chromium, driver_path = "/usr/bin/chromium", "/usr/bin/chromedriver"
+if not (os.path.exists(chromium) and os.path.exists(driver_path)):
+    print("skipped: chromium and chromium-driver are not installed")
+    sys.exit(77)
+
+patience = 600  # seconds, against what never ends only
+
+
+def start_browser():
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu",
+                     "--window-size=1200,800", "--force-device-scale-factor=1",
+                     "--disable-background-networking", "--disable-extensions"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    from selenium.webdriver.chrome.service import Service
+    browser = webdriver.Chrome(service=Service(driver_path), options=options)
+    browser.set_script_timeout(patience)
+    return browser
+
+
+class Page:
+    """The program and a page that shows what it serves."""
+
+    def __init__(self, program, arguments, browser):
+        self.process = subprocess.Popen([program, "view"] + arguments, stdout=subprocess.PIPE, text=True)
+        self.address = self.process.stdout.readline().strip()
+        assert self.address.startswith("http://127.0.0.1:"), self.address
+        self.browser = browser
+        browser.get(self.address)
+
+    def js(self, script, *arguments):
+        return self.browser.execute_script("return " + script, *arguments)
+
+    def wait(self, script, *arguments):
+        for _ in range(patience * 20):
+            value = self.js(script, *arguments)
+            if value:
+                return value
+            time.sleep(0.05)
+        raise AssertionError(f"never: {script}; {self.js('document.body.innerText')}")
+
+    def get(self, path):
+        with urllib.request.urlopen(self.address + path) as answer:
+            return answer.read()
+
+    def state(self):
+        return json.loads(self.get("state"))
+
+    def set(self, name, value):
+        """As a user would: a new value, and the events that come with it."""
+        self.browser.execute_script("""const e = document.getElementById(arguments[0]);
+          if (e.type === 'checkbox') e.checked = arguments[1]; else e.value = arguments[1];
+          e.dispatchEvent(new Event('input')); e.dispatchEvent(new Event('change'));""", name, value)
+
+    def drag(self, a, b, steps=4):
+        """Between places given as shares of the picture's sides."""
+        overlay = self.browser.find_element(By.ID, "overlay")
+        width, height = overlay.size["width"], overlay.size["height"]
+        def at(p):
+            return int((p[0] - 0.5) * width), int((p[1] - 0.5) * height)
+        chain = ActionChains(self.browser, duration=20)
+        chain.move_to_element_with_offset(overlay, *at(a)).click_and_hold()
+        for k in range(1, steps + 1):
+            p = [a[i] + (b[i] - a[i]) * k / steps for i in (0, 1)]
+            chain.move_to_element_with_offset(overlay, *at(p))
+        chain.release().perform()
+
+    def tool(self, name):
+        self.browser.find_element(By.CSS_SELECTOR, f"input[name=tool][value={name}]").click()
+
+    def mean(self):
+        """Of what the canvas shows."""
+        return self.js("""(() => { const c = document.getElementById('picture');
+          const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let sum = 0;
+          for (let i = 0; i < d.length; ++i) if (i % 4 < 3) sum += d[i]; return sum / d.length; })()""")
+
+    def wait_done(self):
+        self.wait("app.state && app.state.stage === 'done' && app.layers.whole && "
+                  "app.layers.whole.version === app.state.layers.whole.version")
+
+    def screenshot(self, name):
+        if len(sys.argv) > 2:
+            self.browser.save_screenshot(os.path.join(sys.argv[2], name + ".png"))
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        return self.process.wait(patience)
+
+
+def check_no_complaints(browser):
+    entries = [e for e in browser.get_log("browser") if e["level"] == "SEVERE"]
+    assert not entries, entries
+
+
+def check_looking(page):
+    page.wait("app.layers.whole && document.getElementById('picture').width > 1")
+    assert page.mean() > 5, page.mean()
+    assert page.js("document.title").startswith("kj92room"), page.js("document.title")
+    names = page.js("performance.getEntriesByType('resource').map((e) => e.name)")
+    assert names and all(n.startswith(page.address) for n in names), names
+    page.wait_done()
+    first = page.state()
+    assert first["layers"]["whole"]["error"] > 0
+    page.drag([0.5, 0.5], [0.6, 0.5])
+    page.wait("app.state.view > arguments[0]", first["view"])
+    assert page.state()["camera"]["eye"] != first["camera"]["eye"]
+    page.tool("walk")
+    before = page.state()
+    page.browser.find_element(By.ID, "overlay").send_keys("w")
+    page.wait("app.state.view > arguments[0]", before["view"])
+    Select(page.browser.find_element(By.ID, "camera")).select_by_index(0)
+    page.set("camera", "0")
+    page.wait_done()
+    eye = page.state()["camera"]["eye"]
+    assert all(abs(a - b) < 1e-3 for a, b in zip(eye, first["camera"]["eye"])), eye
+    darker = page.mean()
+    page.set("stops", "6")
+    assert page.mean() > darker
+
+
+def check_false_colours(page):
+    for show in ("luminance", "illuminance", "error"):
+        page.set("show", show)
+        assert page.js("app.map.most") > 0
+    page.set("show", "illuminance")
+    page.set("levels", "1, 2, 3, 5, 8, 12, 20")
+    page.set("lines", True)
+    assert sum(page.js("app.lines").values()) > 20
+    page.set("show", "picture")
+
+
+def check_measuring(page):
+    page.tool("point")
+    page.drag([0.5, 0.9], [0.5, 0.9], 1)
+    page.wait("document.getElementById('measured').innerText.includes('±')")
+    item = page.js("measurements.all[0]")
+    lx, error = item["rows"][0][0][:2]
+    assert lx > 0 and 0 < error < 0.1 * lx, (lx, error)
+    csv = page.get(f"measured.csv?number={item['number']}").decode().splitlines()
+    assert len(csv) == 2 and abs(float(csv[1].split(",")[9]) - lx) < 1e-3 * lx, csv
+    page.tool("grid")
+    page.set("along", "3")
+    page.drag([0.35, 0.85], [0.6, 0.95])
+    page.wait("measurements.all.length === 2 && measurements.all[1].rows")
+    text = page.js("document.getElementById('measured').innerText")
+    assert "uniformity" in text, text
+    page.tool("orbit")
+    return lx
+
+
+def check_dimmers(page, lx):
+    count = page.js("app.dimmers.length")
+    assert count == 4, count
+    page.set("stops", "0")
+    page.wait_done()
+    bright = page.mean()
+    page.browser.find_elements(By.CSS_SELECTOR, ".dimmer input[type=checkbox]")[0].click()
+    page.wait("currentPicture() !== null")
+    page.wait("measurements.values(measurements.all[0]) !== null")
+    assert page.mean() < 0.9 * bright, (page.mean(), bright)
+    less = page.js("measurements.values(measurements.all[0])[0][0]")
+    assert less < lx, (less, lx)
+    # From here on nothing is rendered again: the layers that there are, weighted.
+    page.wait_done()
+    versions, view = page.js("app.state.layers"), page.js("app.state.view")
+    dark = page.mean()
+    page.js("""(() => { const e = document.querySelectorAll('.dimmer input[type=range]')[1];
+      e.value = 0.2; e.dispatchEvent(new Event('input')); })()""")
+    page.wait("Math.abs(app.dimmers[1].level - 0.2) < 1e-9")
+    assert page.mean() < dark
+    state = page.state()
+    assert state["view"] == view and state["layers"] == versions
+    # All on again: the picture of all light.
+    for e in page.browser.find_elements(By.CSS_SELECTOR, ".dimmer input[type=checkbox]")[:1]:
+        e.click()
+    page.js("""(() => { const e = document.querySelectorAll('.dimmer input[type=range]')[1];
+      e.value = 1; e.dispatchEvent(new Event('input')); })()""")
+    page.wait_done()
+    assert abs(page.mean() - bright) < 0.02 * bright, (page.mean(), bright)
+
+
+def check_split(page):
+    page.set("beside", "error")
+    assert not page.js("document.getElementById('split-at').hidden")
+    page.set("beside", "path")
+    page.wait("app.layers.second && app.layers.second.width > 1")
+    page.set("split-at", "300")
+    page.set("beside", "")
+
+
+def check_saving(page):
+    page.wait_done()
+    href = page.js("document.getElementById('save-png').getAttribute('href')")
+    assert page.get(href)[:8] == b"\x89PNG\r\n\x1a\n"
+    assert page.get(page.js("document.getElementById('save-exr').getAttribute('href')"))[:4] == b"v/1\x01"
+    assert page.get(page.js("document.getElementById('save-hdr').getAttribute('href')"))[:10] == b"#?RADIANCE"
+
+
+def check_time(program, browser):
+    page = Page(program, [os.path.join(root, "scenes/daylight-room/daylight-room.gltf"), "--at",
+                          "48.2,16.4,2026-06-21T08:00+02:00", "--size", "96x72", "--error", "0.2",
+                          "--quiet"], browser)
+    page.wait_done()
+    assert page.js("document.getElementById('clock').textContent") == "08:00 +02:00"
+    before = page.state()
+    page.set("minutes", str(12 * 60))
+    page.wait("app.state.time === '2026-06-21T12:00+02:00' && app.state.view > arguments[0]",
+              before["view"])
+    page.wait_done()
+    assert page.mean() > 5
+    assert page.end() == 130
+
+
+def main():
+    browser = start_browser()
+    try:
+        page = Page(sys.argv[1], [os.path.join(root, "scenes/kj92room/kj92room.gltf"), "--size", "160x120",
+                                  "--error", "0.1", "--quiet"], browser)
+        check_looking(page)
+        check_false_colours(page)
+        lx = check_measuring(page)
+        check_dimmers(page, lx)
+        check_split(page)
+        check_saving(page)
+        check_no_complaints(browser)
+        page.js("document.getElementById('close').click()")
+        assert page.process.wait(patience) == 0
+        browser.get("about:blank")
+        browser.get_log("browser")
+        check_time(sys.argv[1], browser)
+    finally:
+        browser.quit()
+
+
+main()
