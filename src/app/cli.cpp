@@ -8,6 +8,7 @@
 #include <map>
 #include <new>
 
+#include "app/command_report.h"
 #include "app/commands.h"
 #include "app/printable.h"
 #include "app/signals.h"
@@ -282,6 +283,20 @@ int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& 
   return run_render(std::move(render));
 }
 
+// As typed, but for what does not change the result.
+std::string command_without_threads(int argc, const char* const* argv) {
+  std::string command = "troffer";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.starts_with("--threads=")) continue;
+    if (word == "--threads")
+      ++i;
+    else
+      command += " " + word;
+  }
+  return command;
+}
+
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"troffer lights rooms: images and lighting figures of interiors."};
   app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
@@ -293,6 +308,7 @@ int parse_and_run(int argc, const char* const* argv) {
   InfoCommand info;
   ConvertCommand convert;
   MergeCommand merge;
+  ReportCommand lighting;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -301,6 +317,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_info(app, info);
   add_convert(app, convert);
   add_merge(app, merge);
+  add_report(app, lighting);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -324,6 +341,10 @@ int parse_and_run(int argc, const char* const* argv) {
   }
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
   if (app.got_subcommand("convert")) return run_convert(convert);
+  if (app.got_subcommand("report")) {
+    lighting.command_line = command_without_threads(argc, argv);
+    return run_report(lighting);
+  }
   if (app.got_subcommand("merge")) {
     check_exposure(merge.exposure);
     return run_merge(merge);
