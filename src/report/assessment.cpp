@@ -179,13 +179,20 @@ bool measure_groups(const Scene& scene, Work& work, Assessment& a) {
   return true;
 }
 
-void drop_covered(const PreparedScene& scene, const Vec3d& up, SurfaceResult& s) {
+// Points under what stands on a level surface say nothing of its light.
+void drop_covered(const PreparedScene& scene, const Vec3d& up, SurfaceResult& s,
+                  std::vector<std::string>& notes) {
   constexpr double level = 0.99;
-  if (s.surface.kind == SurfaceKind::desk || dot(s.surface.normal(), up) < level) return;
+  if (dot(s.surface.normal(), up) < level) return;
   std::vector<Vec3d> points;
   for (const GridPoint& p : s.grid.points) points.push_back(p.position);
   const std::vector<uint8_t> is_covered = covered_points(scene, points, up);
-  if (std::count(is_covered.begin(), is_covered.end(), 0) == 0) return;
+  const auto open = std::count(is_covered.begin(), is_covered.end(), 0);
+  if (open == std::ptrdiff_t(points.size())) return;
+  notes.push_back(fmt::format("{}: {} of {} points lie under or within something{}", s.surface.name,
+                              points.size() - size_t(open), points.size(),
+                              open > 0 ? " and are left out" : "; they are measured all the same"));
+  if (open == 0) return;
   size_t i = 0;
   std::erase_if(s.grid.points, [&](const GridPoint&) { return is_covered[i++] != 0; });
 }
@@ -211,7 +218,7 @@ void place_surfaces(const PreparedScene& scene, const AssessmentOptions& o, Asse
       throw UsageError(fmt::format("the grids have more than {} points", most_points));
     SurfaceResult r{std::move(s), {}, {}, {}, {}, {}};
     r.grid = grid_of(r.surface);
-    drop_covered(scene, o.up, r);
+    drop_covered(scene, o.up, r, a.notes);
     a.surfaces.push_back(std::move(r));
   }
   if (a.surfaces.empty())

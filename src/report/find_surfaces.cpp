@@ -271,7 +271,7 @@ FoundSurfaces asked_surfaces(const PreparedScene& scene, const Vec3d& up,
 
 std::vector<uint8_t> covered_points(const PreparedScene& scene, const std::vector<Vec3d>& points,
                                     const Vec3d& up) {
-  constexpr double touching = 1e-3;  // m
+  constexpr double touching = 0.03;  // m: no photometer fits under it
   const std::vector<Above> found = above(scene, points, up);
   std::vector<uint8_t> is_covered;
   for (const Above& a : found) is_covered.push_back(a.is_from_behind || a.height < touching);

@@ -47,9 +47,9 @@ FoundSurfaces asked_surfaces(const PreparedScene& scene, const Vec3d& up,
                              const std::vector<SurfaceRequest>& requests,
                              const std::string& profile);
 
-// How many of the points (in the file's coordinates) stand within a closed body, or under something
-// that lies on them: what first is met in the direction `up` is met from behind, or within a
-// millimetre. One per point, 1 where so.
+// Which of the points (in the file's coordinates) stand within a closed body, or under something
+// that lies on them: what first is met in the direction `up` is met from behind, or within
+// 3 cm. One per point, 1 where so.
 std::vector<uint8_t> covered_points(const PreparedScene& scene, const std::vector<Vec3d>& points,
                                     const Vec3d& up);
 

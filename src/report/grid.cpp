@@ -12,9 +12,10 @@ double largest_cell(double d) {
 
 GridShape grid_shape(double width, double height) {
   const double longer = std::max(width, height), shorter = std::min(width, height);
-  const bool is_long = longer >= 2 * shorter;
+  // 10 m are ten cells, and 1.6 m are twice .8, whatever rounding to float makes of them.
+  constexpr double slack = 1e-4;
+  const bool is_long = longer >= (2 - slack) * shorter;
   const double d = is_long ? shorter : longer, other = is_long ? longer : shorter;
-  constexpr double slack = 1e-9;  // 10 m are ten cells, whatever rounding makes of the power
   const double cells = std::max(1.0, std::ceil(d / largest_cell(d) - slack));
   const double others = std::max(1.0, std::ceil(other / (d / cells) - slack));
   // Whoever has surfaces of many kilometres is told by the number of points.

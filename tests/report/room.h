@@ -1,4 +1,5 @@
-// A small office to assess: 4 × 5 × 2.8 m, z up, a desk, a shelf, a cabinet, two panels.
+// A small office to assess: 4 × 5 × 2.8 m, z up, a desk with a keyboard, a shelf, a cabinet,
+// two panels.
 #pragma once
 
 #include "support/scenes.h"
@@ -45,7 +46,8 @@ inline Scene small_office(Rgb walls = Rgb{0.5f}) {
     s.meshes[m].name = "wall";
   s.meshes[0].name = "floor";
   add_body(s, grey, {1, 1.5f, 0.7f}, {2.6f, 2.3f, 0.74f}, "desk");
-  add_body(s, grey, {3.4f, 0.1f, 0}, {3.9f, 1.7f, 1.1f}, "cabinet");
+  add_body(s, grey, {1.2f, 1.6f, 0.74f}, {1.6f, 1.9f, 0.76f}, "keyboard");
+  add_body(s, grey, {2.9f, 0.1f, 0}, {3.9f, 1.7f, 1.1f}, "cabinet");
   add_body(s, grey, {0.1f, 4, 0.8f}, {1.3f, 4.4f, 0.82f}, "shelf");
   add_body(s, grey, {0.1f, 4, 1.1f}, {1.3f, 4.4f, 1.12f}, "shelf");
   add_panel(s, "left", 1, 2.5f, 0.6f, 2.79f, Rgb{6000});

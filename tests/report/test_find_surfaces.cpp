@@ -68,7 +68,7 @@ TEST_CASE("surfaces by name: tops of bodies, boards, rectangles; what is none is
   const FoundSurfaces found = asked_surfaces(scene, up, {cabinet, board}, "none");
   REQUIRE(found.surfaces.size() == 2);
   CHECK(found.surfaces[0].corner.z == doctest::Approx(1.11));
-  CHECK(found.surfaces[0].area == doctest::Approx(0.8));
+  CHECK(found.surfaces[0].area == doctest::Approx(1.6));
   CHECK(found.surfaces[0].profile == "archive");
   CHECK(found.surfaces[1].normal().y == doctest::Approx(1));
   CHECK(asked_surfaces(scene, up, {{"shelf", "", "", 0, -1, {}, {}, {}}}, "none").surfaces.size() ==
