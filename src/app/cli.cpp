@@ -283,20 +283,6 @@ int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& 
   return run_render(std::move(render));
 }
 
-// As typed, but for what does not change the result.
-std::string command_without_threads(int argc, const char* const* argv) {
-  std::string command = "troffer";
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.starts_with("--threads=")) continue;
-    if (word == "--threads")
-      ++i;
-    else
-      command += " " + word;
-  }
-  return command;
-}
-
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"troffer lights rooms: images and lighting figures of interiors."};
   app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
@@ -342,7 +328,7 @@ int parse_and_run(int argc, const char* const* argv) {
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
   if (app.got_subcommand("convert")) return run_convert(convert);
   if (app.got_subcommand("report")) {
-    lighting.command_line = command_without_threads(argc, argv);
+    lighting.command_line = told_command(argc, argv);
     return run_report(lighting);
   }
   if (app.got_subcommand("merge")) {

@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <string_view>
 
 #include "app/command_report.h"
 #include "app/report_files.h"
@@ -46,6 +48,18 @@ Observer parse_observer(const std::string& text) {
   if (!(length(o.direction) > 0)) throw UsageError("--observer: its direction has no length");
   o.direction = normalize(o.direction);
   return o;
+}
+
+// As a shell takes it for one word.
+std::string in_quotes(const std::string& word) {
+  const auto is_plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_-+=./,:@%").find(c) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 CLI::Option* add_switch(CLI::App& s, const char* name, std::string& value, const char* text) {
@@ -148,6 +162,19 @@ AssessmentOptions assessment_options(const ReportCommand& c, const Vec3& up) {
   if (find_profile(o.profiles, o.profile) == nullptr)
     throw UsageError("--profile: there is no '" + o.profile + "', but " + profile_ids(o.profiles));
   return o;
+}
+
+std::string told_command(int argc, const char* const* argv) {
+  std::string command = "troffer";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.starts_with("--threads=")) continue;
+    if (word == "--threads")
+      ++i;
+    else
+      command += " " + in_quotes(word);
+  }
+  return command;
 }
 
 }  // namespace troffer

@@ -31,6 +31,11 @@ Frame2 frame_of(const AssessedSurface& s) {
   return f;
 }
 
+// Of a mark: as few digits as tell it.
+std::string mark_text(double v) {
+  return std::abs(v) >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.3g}", v);
+}
+
 struct Range {
   double least, largest;
   double share(double v) const { return largest > least ? (v - least) / (largest - least) : 0.5; }
@@ -95,7 +100,7 @@ std::string lines(const SurfaceGrid& g, const std::vector<Figure>& values, const
       const Vec2d& at = line[line.size() / 2];
       labels +=
           fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", f.x(g.first.x + g.cell.x * at.x),
-                      f.y(g.first.y + g.cell.y * at.y) + 3.5, short_number(level));
+                      f.y(g.first.y + g.cell.y * at.y) + 3.5, mark_text(level));
     }
   return "<g fill=\"none\" stroke=\"#fff\" stroke-width=\"3\" stroke-opacity=\".55\">" + drawn +
          "</g><g fill=\"none\" stroke=\"#111\" stroke-width=\"1.1\">" + drawn +
@@ -154,7 +159,7 @@ std::string bar(double x, double height, const std::vector<double>& marks, const
     out += fmt::format(
         "<path d=\"M{0:.1f},{1:.1f}h4\" stroke=\"#444\"/><text x=\"{2:.1f}\" "
         "y=\"{3:.1f}\">{4}</text>",
-        x + 14, y, x + 21, y + 4, short_number(v));
+        x + 14, y, x + 21, y + 4, mark_text(v));
   }
   return out + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text></g>", x, top + height + 17,
                            html_text(unit));

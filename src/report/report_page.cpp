@@ -28,7 +28,7 @@ th{font-weight:600;color:#56606b}td{overflow-wrap:anywhere}
 .result{font-size:1.05rem;margin:.8rem 0}
 figure{margin:.6rem 0 1.2rem}figcaption{font-size:.85rem;color:#56606b}
 svg{max-width:100%;height:auto}.pictures{display:flex;gap:.8rem;align-items:flex-start;flex-wrap:wrap}
-.pictures img{width:26rem;max-width:100%;height:auto}.pictures svg{flex:none}
+.pictures img{width:23.5rem;max-width:100%;height:auto}.pictures svg{flex:none}
 code{font-size:.82rem;overflow-wrap:anywhere}.notes li{margin:.15rem 0}
 @page{size:A4;margin:16mm 14mm}
 @media print{body{max-width:none;padding:0;font-size:10pt;-webkit-print-color-adjust:exact;
