@@ -8,6 +8,7 @@
 #include <map>
 #include <new>
 
+#include "app/command_report.h"
 #include "app/commands.h"
 #include "app/printable.h"
 #include "app/signals.h"
@@ -295,6 +296,7 @@ int parse_and_run(int argc, const char* const* argv) {
   ConvertCommand convert;
   MergeCommand merge;
   ViewCommand view;
+  ReportCommand lighting;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -304,6 +306,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_convert(app, convert);
   add_merge(app, merge);
   add_view(app, view);
+  add_report(app, lighting);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -328,6 +331,10 @@ int parse_and_run(int argc, const char* const* argv) {
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
   if (app.got_subcommand("view")) return run_view(view);
   if (app.got_subcommand("convert")) return run_convert(convert);
+  if (app.got_subcommand("report")) {
+    lighting.command_line = told_command(argc, argv);
+    return run_report(lighting);
+  }
   if (app.got_subcommand("merge")) {
     check_exposure(merge.exposure);
     return run_merge(merge);

@@ -158,4 +158,17 @@ void add_luminaire_list(Scene& scene, const std::string& path, const Vec3& down)
   }
 }
 
+std::vector<double> watts_of_luminaire_list(const std::string& path, const Vec3& down) {
+  std::map<std::string, double> known;
+  std::vector<double> watts;
+  WarningLog ignored;  // told when the luminaires are added
+  for (const Row& row : read_rows(path, down)) {
+    auto at = known.find(row.file);
+    if (at == known.end())
+      at = known.emplace(row.file, read_listed(path, row, ignored).watts).first;
+    watts.push_back(at->second);
+  }
+  return watts;
+}
+
 }  // namespace troffer

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -14,5 +15,9 @@ namespace troffer {
 // about that from the scene's x (clockwise seen from above where it looks down), and a factor (1).
 // They are called luminaire0, luminaire1 … InputError with line and column.
 void add_luminaire_list(Scene& scene, const std::string& path, const Vec3& down);
+
+// What each of the list's luminaires takes by its file, W, in order: 0 where the file states
+// nothing.
+std::vector<double> watts_of_luminaire_list(const std::string& path, const Vec3& down);
 
 }  // namespace troffer

@@ -132,6 +132,17 @@ void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires,
   }
 }
 
+std::vector<std::pair<std::string, double>> watts_of_luminaires(
+    const std::vector<std::string>& luminaires) {
+  std::vector<std::pair<std::string, double>> watts;
+  WarningLog ignored;  // told when they are attached
+  for (const std::string& text : luminaires) {
+    const LuminaireOption o = parse_luminaire(text);
+    watts.emplace_back(o.node, read_luminaire(o.file, ignored).watts);
+  }
+  return watts;
+}
+
 bool is_luminaire(const std::string& path) {
   const std::string ending = lower_case_ending(path);
   return ending == "ies" || ending == "ldt";

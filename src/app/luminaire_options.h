@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "import/luminaire.h"
@@ -22,6 +23,11 @@ Rgb luminaire_scale(const Scene& scene, const Luminaire& luminaire, const std::s
 // Each "NODE=FILE[,LUMENS[,KELVIN]]". UsageError for what cannot be read so and for nodes that
 // cannot shine so; InputError for files.
 void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down);
+
+// Of each such option the node and what its luminaire takes by the file, W: 0 where that states
+// nothing.
+std::vector<std::pair<std::string, double>> watts_of_luminaires(
+    const std::vector<std::string>& luminaires);
 
 // By the ending of a file: .ies or .ldt.
 bool is_luminaire(const std::string& path);

@@ -1,0 +1,224 @@
+#include "app/command_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/luminaire_list.h"
+#include "app/luminaire_options.h"
+#include "app/outputs.h"
+#include "app/progress.h"
+#include "app/signals.h"
+#include "base/error.h"
+#include "image/atomic_file.h"
+#include "image/read_image.h"
+#include "render/camera.h"
+#include "render/framing.h"
+#include "report/report.h"
+#include "report/sha256.h"
+
+namespace troffer {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The folder of the report's files: made where it is not there, and removed again where nothing is
+// written.
+class ReportFolder {
+ public:
+  explicit ReportFolder(std::string path) : path_(std::move(path)) {
+    std::error_code error;
+    is_new_ = !fs::exists(path_, error);
+    fs::create_directories(path_, error);
+    if (error || !fs::is_directory(path_, error))
+      throw EnvironmentError("cannot make the folder " + path_ +
+                             (error ? ": " + error.message() : ""));
+  }
+  ~ReportFolder() {
+    std::error_code ignored;  // not empty: it stays
+    if (is_new_) fs::remove(path_, ignored);
+  }
+  ReportFolder(const ReportFolder&) = delete;
+  ReportFolder& operator=(const ReportFolder&) = delete;
+  std::string file(const std::string& name) const { return (fs::path(path_) / name).string(); }
+
+ private:
+  std::string path_;
+  bool is_new_ = false;
+};
+
+// "FILE[,NUMBER…]": what of it is there as a file; empty: nothing.
+std::string existing_file(std::string text) {
+  std::error_code error;
+  while (!text.empty() && !fs::is_regular_file(text, error)) {
+    const size_t comma = text.rfind(',');
+    text.resize(comma == std::string::npos ? 0 : comma);
+  }
+  return text;
+}
+
+std::vector<InputHash> hashes_of(const ReportCommand& c) {
+  std::vector<std::string> files{c.scene.file};
+  for (const std::string& l : c.daylight.luminaires)
+    files.push_back(existing_file(l.substr(l.find('=') + 1)));
+  files.push_back(c.daylight.luminaire_list);
+  files.push_back(existing_file(c.daylight.environment));
+  files.push_back(c.daylight.weather);
+  files.insert(files.end(), c.surface_files.begin(), c.surface_files.end());
+  std::vector<InputHash> hashes;
+  for (const std::string& f : files) {
+    const bool is_known =
+        std::any_of(hashes.begin(), hashes.end(), [&](const InputHash& h) { return h.file == f; });
+    if (f.empty() || is_known) continue;
+    const std::vector<uint8_t> bytes = read_file_bytes(f);
+    hashes.push_back({f, bytes.size(), sha256(bytes)});
+  }
+  return hashes;
+}
+
+// Under the sky of daylight factors, and no other light.
+Scene overcast_scene(const ReportCommand& c) {
+  DaylightOptions sky = c.daylight;
+  sky.sky = fmt::format("overcast,{}", overcast_lx);
+  sky.sun = sky.at = sky.weather = sky.date = sky.environment = "";
+  sky.turbidity = 0;
+  const Scene scene = with_daylight_apart(load_scene(c.scene, {}, &sky, true));
+  std::vector<std::string> names;
+  for (const Light& e : scene.lights)
+    if (e.kind == LightKind::sky) names.push_back(e.name);
+  return with_only_lights(scene, names);
+}
+
+// Those that are named; none where none is: the first, or one for the scene.
+std::vector<Camera> named_cameras(const Scene& scene, const std::vector<std::string>& names) {
+  std::vector<Camera> chosen;
+  for (const std::string& name : names) {
+    const auto at = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                 [&](const Camera& e) { return e.name == name; });
+    if (at == scene.cameras.end())
+      throw UsageError("no camera is named '" + name + "' (troffer info lists them)");
+    chosen.push_back(*at);
+  }
+  return chosen;
+}
+
+std::vector<Camera> cameras_of(const PreparedScene& scene, const ReportCommand& c, const Vec3& up) {
+  const std::vector<Camera>& all = scene.scene.cameras;
+  if (!c.cameras.empty()) return named_cameras(scene.scene, c.cameras);
+  return {all.empty() ? framing_camera(scene, up) : all.front()};
+}
+
+// False where it was stopped.
+bool add_pictures(const PreparedScene& scene, const ReportCommand& c, const Vec3& up,
+                  const StopFlag& stop, Report& report) {
+  for (const Camera& camera : cameras_of(scene, c, up)) {
+    RenderOptions options;
+    options.method = report.options.measure.method;
+    options.indirect = Indirect::automatic;
+    options.error = c.picture_error;
+    options.threads = c.threads;
+    options.seed = c.seed;
+    const ImageSize usual = image_size(camera, 0, 0);
+    options.width = c.width;
+    options.height = std::max(1, int(std::lround(double(c.width) * usual.height / usual.width)));
+    check_options(scene, camera, options);
+    ProgressBar bar("picture", c.is_quiet);
+    report.pictures.push_back(make_picture(
+        scene, camera, options, [&](double f) { bar.update(f); }, stop));
+    if (!report.pictures.back().is_complete) return false;
+  }
+  return true;
+}
+
+// What luminaires' files state, before what the command line says of the same ones.
+std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& scene,
+                                         const Vec3& up) {
+  std::vector<PowerRequest> power;
+  const auto add = [&](const std::string& name, double watts) {
+    const bool is_lit = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                    [&](const Light& e) { return e.name == name; });
+    if (is_lit && watts > 0) power.push_back({name, watts});
+  };
+  for (const auto& [node, watts] : watts_of_luminaires(c.daylight.luminaires)) add(node, watts);
+  if (c.daylight.luminaire_list.empty()) return power;
+  const std::vector<double> listed = watts_of_luminaire_list(c.daylight.luminaire_list, -up);
+  for (size_t i = 0; i < listed.size(); ++i) add("luminaire" + std::to_string(i), listed[i]);
+  return power;
+}
+
+ReportInfo info_of(const ReportCommand& c, const Scene& scene) {
+  ReportInfo info;
+  info.scene = c.scene.file;
+  info.title = c.title.empty() ? fs::path(c.scene.file).filename().string() : c.title;
+  info.date = c.date;
+  info.version = TROFFER_VERSION;
+  info.command = c.command_line;
+  info.settings = {{"Method", c.method},
+                   {"Samples per point", std::to_string(c.spp)},
+                   {"Allowed error of a point", fmt::format("{}", c.error)},
+                   {"Allowed error of a picture's pixel", fmt::format("{}", c.picture_error)},
+                   {"Seed", std::to_string(c.seed)},
+                   {"Profile", c.profile},
+                   {"Maintenance factor", fmt::format("{}", c.maintenance)}};
+  info.inputs = hashes_of(c);
+  for (const Warning& w : scene.warnings.entries())
+    info.warnings.push_back(w.count > 1 ? fmt::format("{} ({} times)", w.text, w.count) : w.text);
+  return info;
+}
+
+void write_report(const Report& report, const ReportFolder& folder) {
+  for (size_t i = 0; i < report.pictures.size(); ++i) {
+    const auto write = [&](const char* name, const std::vector<uint8_t>& png) {
+      AtomicFile file(folder.file(fmt::format("{}{}.png", name, i + 1)));
+      file.write(png);
+      file.commit();
+    };
+    write("luminance", report.pictures[i].luminances);
+    write("picture", report.pictures[i].seen);
+  }
+  write_file(folder.file("report.json"), report_json(report));
+  write_file(folder.file("points.csv"), report_points(report));
+  write_file(folder.file("report.html"), report_page(report));
+}
+
+int tell_interrupted() {
+  fmt::print(stderr, "interrupted: no report was written\n");
+  return exit_interrupted;
+}
+
+}  // namespace
+
+int run_report(const ReportCommand& c) {
+  Report report;
+  check_method(parse_method(c.method), Indirect::automatic, "");
+  assessment_options(c, {0, 0, 1});  // mistakes are told before any work
+  const Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
+  const Vec3 up =
+      c.daylight.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.daylight.up, "--up"));
+  report.options = assessment_options(c, up);
+  const std::vector<PowerRequest> stated = power_of_files(c, scene, up);
+  report.options.power.insert(report.options.power.begin(), stated.begin(), stated.end());
+  if (c.daylight_factor != "off") report.options.overcast = [&] { return overcast_scene(c); };
+  named_cameras(scene, c.cameras);
+  report.info = info_of(c, scene);
+  const ReportFolder folder(c.output);
+  const std::vector<OutputReservation> reserved = reserve_outputs(
+      {folder.file("report.html"), folder.file("report.json")}, folder.file("points.csv"));
+  const StopFlag& stop = install_stop_handlers();
+  {
+    ProgressBar bar("measure", c.is_quiet);
+    report.assessment = assess(
+        scene, report.options, [&](double f) { bar.update(f); }, stop);
+  }
+  if (!report.assessment.is_complete) return tell_interrupted();
+  if (c.pictures == "on" && !add_pictures(PreparedScene(Scene(scene)), c, up, stop, report))
+    return tell_interrupted();
+  write_report(report, folder);
+  return exit_done;
+}
+
+}  // namespace troffer

@@ -1,0 +1,236 @@
+#include "report/glare.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <unordered_map>
+
+#include "base/disjoint_sets.h"
+#include "base/random.h"
+#include "base/units.h"
+#include "light/light.h"
+#include "report/groups.h"
+#include "trace/surface.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double least_area = 0.005;         // m² [2]
+constexpr double most_solid_angle = 0.1;     // sr [1]
+constexpr double highest = 1.9, widest = 3;  // of CIE 117's table
+constexpr size_t replicates = 4;
+
+// Guth's, at and above the line of sight: angles in degrees from the vertical and from the line of
+// sight [3].
+double index_above(double tau, double sigma) {
+  const double a = 35.2 - 0.31889 * tau - 1.22 * std::exp(-2 * tau / 9);
+  const double b = 21 + 0.26667 * tau - 0.002963 * tau * tau;
+  return std::exp(a * 1e-3 * sigma + b * 1e-5 * sigma * sigma);
+}
+
+double index_below(double off_axis) {  // how far beside the axis, of the way ahead [4]
+  return 1 + (off_axis < 0.6 ? 0.8 : 1.2) * off_axis;
+}
+
+// Sums over what is seen of a luminaire, or of a part of it that hangs together.
+struct Sums {
+  double solid_angle = 0, illuminance = 0;  // ∫dω, ∫L dω
+  double area = 0;                          // ∫r² dω, m²
+  double point_strength = 0;                // Σ I² / (least_area r²), of points
+  Vec3d direction;                          // ∫ω dω, or to the point
+  Sums& operator+=(const Sums& o) {
+    solid_angle += o.solid_angle;
+    illuminance += o.illuminance;
+    area += o.area;
+    point_strength += o.point_strength;
+    direction += o.direction;
+    return *this;
+  }
+  double luminance() const { return solid_angle > 0 ? illuminance / solid_angle : 0; }
+  // L² ω, or as if its area were the least.
+  double strength() const {
+    return point_strength + sqr(luminance()) * solid_angle * std::min(1.0, area / least_area);
+  }
+};
+
+class Eye {
+ public:
+  Eye(const PreparedScene& scene, const Observer& observer, const Vec3d& up)
+      : scene_(scene),
+        place_(Vec3(observer.position - scene.scene.origin)),
+        sight_(observer.direction),
+        up_(up),
+        lm_per_unit_(scene.scene.is_photometric ? 1 : luminous_efficacy) {
+    const Vec3 reach = abs(place_);
+    offset_ = 4 * ray_offset(std::max(1.0f, std::max(reach.x, std::max(reach.y, reach.z))));
+  }
+
+  // Adds what `side` × `side` samples see of a piece.
+  void look(const LightPrimitive& p, int side, Random& random, Sums& sums) const {
+    const int n = p.shape == PrimitiveShape::point ? 1 : side * side;
+    for (int i = 0; i < n; ++i) {
+      const Vec2 jitter = random.next_vec2();
+      const Vec2 u{(float(i % side) + jitter.x) / float(side),
+                   (float(i / side) + jitter.y) / float(side)};
+      LightSample s;
+      if (!sample(scene_.scene, p, place_, u, s) || !(dot(Vec3d(s.wi), sight_) > 0)) continue;
+      const double open = open_share(s);
+      if (open > 0) add(s, open, 1.0 / n, sums);
+    }
+  }
+  double index_of(const Sums& sums) const { return position_index(sums.direction, sight_, up_); }
+
+ private:
+  void add(const LightSample& s, double open, double weight, Sums& sums) const {
+    const double light = double(luminance(s.radiance)) * lm_per_unit_ * open;
+    const double r2 = sqr(double(s.distance));
+    if (s.is_delta) {  // of irradiance I / r²
+      sums.point_strength += light * light * r2 / least_area;
+      sums.direction += Vec3d(s.wi);
+      return;
+    }
+    const double w = weight / double(s.pdf_solid_angle);
+    sums.solid_angle += w;
+    sums.illuminance += w * light;
+    sums.area += w * r2;
+    sums.direction += Vec3d(s.wi) * w;
+  }
+  // What of a sample's light arrives: 0 where something hides it, less than 1 behind glass.
+  double open_share(const LightSample& s) const {
+    Ray ray;
+    ray.origin = place_;
+    ray.direction = ended_before_light(s.wi * s.distance, s.normal, offset_);
+    ray.t_max = 1;
+    std::array<uint8_t, 1> hidden{};
+    PaneFactors factors;
+    scene_.tracer.occluded(std::span<const Ray>(&ray, 1), hidden, Coherence::none, factors);
+    return hidden[0] != 0 ? 0 : double(luminance(factors[0]));
+  }
+
+  const PreparedScene& scene_;
+  Vec3 place_;
+  Vec3d sight_, up_;
+  double lm_per_unit_;
+  float offset_ = 0;
+};
+
+using Pieces = std::vector<uint32_t>;
+
+int samples_of(size_t pieces) {
+  constexpr double each = 64;  // of a replicate
+  return std::max(1, int(std::sqrt(each / double(std::max<size_t>(pieces, 1)))));
+}
+
+// Those together that share a corner, to a tenth of a millimetre: lamps of one name may hang far
+// from each other, and faces of one lamp are one.
+std::vector<Pieces> connected(const LightPrimitives& all, const Pieces& pieces) {
+  DisjointSets sets(pieces.size());
+  std::unordered_map<uint64_t, uint32_t> first;
+  for (uint32_t i = 0; i < pieces.size(); ++i)
+    for (uint32_t k = 0; k < all[pieces[i]].vertex_count; ++k) {
+      const Vec3 p = all[pieces[i]].vertex(k) * 1e4f;
+      const uint64_t key =
+          hash_of(uint64_t(std::llround(p.x)), std::llround(p.y), std::llround(p.z));
+      const auto [at, is_new] = first.emplace(key, i);
+      if (!is_new) sets.join(at->second, i);
+    }
+  std::map<uint32_t, Pieces> parts;
+  for (uint32_t i = 0; i < pieces.size(); ++i) parts[sets.find(i)].push_back(pieces[i]);
+  std::vector<Pieces> list;
+  for (auto& [root, part] : parts) list.push_back(std::move(part));
+  return list;
+}
+
+std::map<std::string, Pieces> luminaires_of(const PreparedScene& scene) {
+  std::map<std::string, Pieces> luminaires;
+  for (uint32_t i = 0; i < scene.scene.lights.size(); ++i) {
+    const Light& e = scene.scene.lights[i];
+    if (is_daylight(e)) continue;
+    const LightPrimitives::Range range = scene.primitives.of_light(i);
+    for (uint32_t k = range.first; k < range.last; ++k) luminaires[e.name].push_back(k);
+  }
+  return luminaires;
+}
+
+// False where nothing of it is seen, or it does not count.
+bool see(const PreparedScene& scene, const Eye& eye, const Pieces& pieces, int side, uint64_t seed,
+         SeenLuminaire& l) {
+  std::array<Sums, replicates> sums;
+  Sums all;
+  double mean = 0, squares = 0;
+  for (size_t r = 0; r < replicates; ++r) {
+    for (const uint32_t k : pieces) {
+      Random random(hash_of(seed, r, k));
+      eye.look(scene.primitives[k], side, random, sums[r]);
+    }
+    all += sums[r];
+    mean += sums[r].strength() / replicates;
+  }
+  if (!(mean > 0)) return false;
+  l.position_index = eye.index_of(all);
+  if (!std::isfinite(l.position_index)) return false;
+  for (const Sums& s : sums) squares += sqr(s.strength() - mean);
+  l.solid_angle = all.solid_angle / replicates;
+  l.luminance = all.luminance();
+  l.is_small = all.area / replicates < least_area;
+  l.term = scaled({mean, std::sqrt(squares / (replicates * (replicates - 1)))},
+                  1 / sqr(l.position_index));
+  return true;
+}
+
+}  // namespace
+
+double position_index(const Vec3d& towards, const Vec3d& line_of_sight, const Vec3d& up) {
+  constexpr double outside = std::numeric_limits<double>::infinity();
+  const Vec3d vertical = normalize(up - line_of_sight * dot(up, line_of_sight));
+  const double ahead = dot(towards, line_of_sight), height = dot(towards, vertical);
+  const double beside = std::abs(dot(towards, cross(line_of_sight, vertical)));
+  if (!(ahead > 0) || height > highest * ahead || beside > widest * ahead) return outside;
+  const double off_axis = std::hypot(height, beside) / ahead;
+  if (height < 0) return index_below(off_axis);
+  const double tau = deg_from_rad(std::atan2(beside, height));
+  return index_above(off_axis > 0 ? tau : 0, deg_from_rad(std::atan(off_axis)));
+}
+
+std::vector<SeenLuminaire> seen_luminaires(const PreparedScene& scene, const Observer& observer,
+                                           const Vec3d& up, uint64_t seed) {
+  const Eye eye(scene, observer, up);
+  std::vector<SeenLuminaire> seen;
+  for (const auto& [name, pieces] : luminaires_of(scene)) {
+    const std::vector<Pieces> parts = connected(scene.primitives, pieces);
+    const int side = samples_of(pieces.size() / parts.size());
+    for (const Pieces& part : parts) {
+      SeenLuminaire l;
+      l.name = name;
+      if (see(scene, eye, part, side, seed, l)) seen.push_back(std::move(l));
+    }
+  }
+  std::stable_sort(seen.begin(), seen.end(), [](const SeenLuminaire& a, const SeenLuminaire& b) {
+    return a.term.value > b.term.value;
+  });
+  return seen;
+}
+
+Glare glare_of(const Observer& observer, const Figure& indirect,
+               std::vector<SeenLuminaire> luminaires) {
+  Glare g;
+  g.observer = observer;
+  g.background = scaled(indirect, 1 / pi);
+  Figure terms;
+  for (const SeenLuminaire& l : luminaires) {
+    terms = sum(terms, l.term);
+    g.is_large = g.is_large || l.solid_angle > most_solid_angle;
+  }
+  g.luminaires = std::move(luminaires);
+  g.is_defined = terms.value > 0 && g.background.value > 2 * g.background.error;
+  if (!g.is_defined) return g;
+  const double relative =
+      std::hypot(terms.error / terms.value, g.background.error / g.background.value);
+  g.ugr = {8 * std::log10(0.25 / g.background.value * terms.value), 8 / std::log(10.0) * relative};
+  return g;
+}
+
+}  // namespace troffer

@@ -1,0 +1,57 @@
+// Flat surfaces whose light is assessed, and the points on them where it is measured.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+#include "report/grid.h"
+
+namespace troffer {
+
+enum class SurfaceKind : uint8_t { desk, floor, work_plane, given };
+const char* name_of(SurfaceKind kind);
+
+using PlaneTriangle = std::array<Vec2d, 3>;
+
+// Positions are in the file's coordinates, m; those within the plane count from `corner` along
+// `along` and `across`.
+struct AssessedSurface {
+  std::string name;
+  std::string profile;  // id
+  SurfaceKind kind = SurfaceKind::given;
+  Vec3d corner;                                 // of the bounding rectangle
+  Vec3d along{1, 0, 0}, across{0, 1, 0};        // unit, orthogonal; across = normal × along
+  double width = 0, height = 0;                 // of the bounding rectangle, m
+  std::vector<PlaneTriangle> triangles;         // empty: the rectangle is full
+  std::vector<std::array<Vec2d, 2>> rim;        // edges that it ends at; empty: the rectangle's
+  double area = 0;                              // m²
+  double border = 0;                            // m off the rim, without points
+  double height_of_eye = 1.2, above_floor = 0;  // m; of the surface over the floor it belongs to
+
+  Vec3d normal() const { return cross(along, across); }
+  Vec3d place(const Vec2d& p) const { return corner + along * p.x + across * p.y; }
+};
+
+struct GridPoint {
+  int column = 0, row = 0;
+  Vec3d position;  // in the file's coordinates
+};
+
+// Cells of the bounding rectangle without its border; those count as points whose middles lie on
+// the surface, off its rim. There is always one: the surface's middle, where there would be none.
+struct SurfaceGrid {
+  GridShape shape;
+  Vec2d first, cell;  // corner of cell (0,0), and a cell's sides, in the plane, m
+  std::vector<GridPoint> points;
+};
+
+SurfaceGrid grid_of(const AssessedSurface& surface);
+
+// What a surface has of corners, m, in the directions u (unit) and n × u of the plane with the unit
+// normal n: all but name, kind and profile are set. Triangles with their corners in any order.
+AssessedSurface surface_of_triangles(const std::vector<std::array<Vec3d, 3>>& triangles,
+                                     const Vec3d& n);
+
+}  // namespace troffer
