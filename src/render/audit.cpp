@@ -24,9 +24,4 @@ double relative_bias(const std::vector<Measurement>& points,
   return std::sqrt((squares - count) / weights);
 }
 
-void add_error(std::vector<Measurement>& points, double relative) {
-  for (Measurement& m : points)
-    m.standard_error = std::hypot(m.standard_error, relative * m.illuminance_lx);
-}
-
 }  // namespace troffer

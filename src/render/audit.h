@@ -1,7 +1,7 @@
 // Whether measurements may be trusted as far as they say.
 //
 // What a method takes on trust (that light is even across a cell) no spread of its own samples
-// tells. A few paths, which trust nothing, do.
+// tells. A few paths, which trust nothing, do; where they say otherwise, more paths take its place.
 // Reference: [1] DerSimonian & Laird, "Meta-analysis in clinical trials", Controlled Clinical
 //   Trials 7, 1986: the moments' estimate of what spreads measurements beyond their errors.
 #pragma once
@@ -17,8 +17,5 @@ namespace troffer {
 // root mean square. 0 where chance alone would let them differ by as much in one list of a hundred.
 double relative_bias(const std::vector<Measurement>& points,
                      const std::vector<Measurement>& others);
-
-// Adds an error of so much of each point's light to what is told.
-void add_error(std::vector<Measurement>& points, double relative);
 
 }  // namespace troffer

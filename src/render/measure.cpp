@@ -1,7 +1,6 @@
 #include "render/measure.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -12,37 +11,42 @@
 #include "integrate/path.h"
 #include "render/audit.h"
 #include "render/measuring_places.h"
+#include "render/sample_sets.h"
 
 namespace troffer {
 
 namespace {
 
-// The samples of a point are dealt to so many independently scrambled sets; the spread of their
-// means tells the error truly, which the spread of stratified samples would not.
-constexpr int most_replicates = 32;
 // Of a point whose usual samples err by more than this share of the allowed error …
 constexpr double share_of_error = 0.25;
 // … at most so many times as many are taken.
 constexpr double most_times_usual = 128;
+// Paths of a point that is audited, for each of its samples; and so many times as many at most
+// where all points are measured by paths.
+constexpr int paths_of_sample = 4;
+constexpr double most_times_audit = 16;
+constexpr double much_more = 2;  // than another error
 // Stops are looked for between batches: those of scenes with many sources are smaller.
 constexpr int largest_batch = 4096;
 constexpr double most_rays_per_batch = 1 << 22;
 
-// Two-sided 95 % quantile of Student's t with n degrees of freedom, within 0.3 % for n >= 1
-// (Cornish-Fisher expansion about the normal quantile; exact values for the first few).
-double t_quantile_95(int n) {
-  constexpr std::array<double, 5> exact{12.7062, 4.3027, 3.1824, 2.7764, 2.5706};
-  if (n <= 5) return exact[size_t(n - 1)];
-  const double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  const double v = n;
-  return z + (z3 + z) / (4 * v) + (5 * z5 + 16 * z3 + 3 * z) / (96 * v * v) +
-         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * v * v * v);
-}
-
-struct Sums {
+struct Sum {
   Vec3d irradiance;
   double luminance = 0;
+  void add(const Rgb& e) {
+    irradiance += Vec3d{double(e.r), double(e.g), double(e.b)};
+    luminance += double(troffer::luminance(e));
+  }
+};
+struct Sums {
+  Sum all, direct, indirect;
   double shared_error = 0;  // as RadianceBatch::drawn_error has it
+};
+
+// Light straight from sources, the rest, and both together, whose error is less than their errors'
+// sum where these have to do with each other.
+struct PointLight {
+  Measurement all, direct, indirect;
 };
 
 struct Worker {
@@ -60,9 +64,9 @@ std::string name_of_sensor(const void* worker, size_t i) {
   return "point " + std::to_string(w.point) + ", sample " + std::to_string(w.sensors.samples[i]);
 }
 
-// Sum of `samples` estimates of one replicate at the worker's point; cut short by a stop.
-Sums sum_of_replicate(const Integrator& integrator, uint64_t stream, int samples,
-                      const StopFlag& stop, Worker& w, Counters& counters) {
+// Sum of `samples` estimates of one set at the worker's point; cut short by a stop.
+Sums sum_of_set(const Integrator& integrator, uint64_t stream, int samples, const StopFlag& stop,
+                Worker& w, Counters& counters) {
   Sums sums;
   for (int first = 0; first < samples; first += w.samples_per_batch) {
     if (stop.load(std::memory_order_relaxed)) break;
@@ -81,8 +85,9 @@ Sums sum_of_replicate(const Integrator& integrator, uint64_t stream, int samples
         ++counters.nan_samples;
         continue;
       }
-      sums.irradiance += Vec3d{double(e.r), double(e.g), double(e.b)};
-      sums.luminance += double(luminance(e));
+      sums.all.add(e);
+      sums.direct.add(w.out.direct[i]);
+      sums.indirect.add(w.out.indirect[i]);
       if (!w.out.drawn_error.empty()) sums.shared_error += double(w.out.drawn_error[i]);
     }
   }
@@ -95,46 +100,46 @@ struct PointPlan {
   int samples_per_estimate;
   double error = 0;  // relative, that is aimed at; 0: so many samples do
   double lx_per_unit = 1;
+  double most_times = most_times_usual;  // … as many are taken for that
+  bool is_of_indirect = false;           // the error aimed at is that of indirect light alone
 };
 
-Measurement measure_point(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
-                          const StopFlag& stop, Worker& w, Counters& counters) {
-  const int spp = plan.samples, samples_per_estimate = plan.samples_per_estimate;
-  const int replicates = std::min(most_replicates, spp);
-  const int samples = (spp + replicates - 1) / replicates;
-  Vec3d irradiance;
-  double mean = 0, sum_squares = 0;
+Measurement measurement_of(const SampleSets& sets, double lx_per_unit) {
+  const Vec3d& e = sets.irradiance();
+  return {{float(e.x), float(e.y), float(e.z)},
+          sets.luminance() * lx_per_unit,
+          sets.standard_error() * lx_per_unit};
+}
+
+PointLight measure_point(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
+                         const StopFlag& stop, Worker& w, Counters& counters) {
+  const int sets = std::min(most_sets, plan.samples);
+  const int estimates = std::max(1, (plan.samples + sets - 1) / sets / plan.samples_per_estimate);
+  const double weight = 1.0 / estimates;
+  SampleSets all, direct, indirect;
   w.shared_error = 0;
-  for (int r = 0; r < replicates; ++r) {
-    const Sums s = sum_of_replicate(integrator, hash_combine(stream, uint64_t(r)),
-                                    std::max(1, samples / samples_per_estimate), stop, w, counters);
-    const double weight = 1.0 / std::max(1, samples / samples_per_estimate);
-    irradiance += s.irradiance * (weight / replicates);
-    w.shared_error += s.shared_error * (weight / replicates);
-    const double value = s.luminance * weight, before = value - mean;
-    mean += before / (r + 1);
-    sum_squares += before * (value - mean);
+  for (int k = 0; k < sets; ++k) {
+    const Sums s =
+        sum_of_set(integrator, hash_combine(stream, uint64_t(k)), estimates, stop, w, counters);
+    all.add(s.all.irradiance * weight, s.all.luminance * weight);
+    direct.add(s.direct.irradiance * weight, s.direct.luminance * weight);
+    indirect.add(s.indirect.irradiance * weight, s.indirect.luminance * weight);
+    w.shared_error += s.shared_error * (weight / sets);
   }
-  Measurement m;
-  m.irradiance = {float(irradiance.x), float(irradiance.y), float(irradiance.z)};
-  m.illuminance_lx = mean * plan.lx_per_unit;
-  if (replicates > 1) {
-    const double variance_of_mean = sum_squares / (replicates - 1) / replicates;
-    m.standard_error =
-        std::sqrt(variance_of_mean) * plan.lx_per_unit * (t_quantile_95(replicates - 1) / 1.959964);
-  }
-  return m;
+  return {measurement_of(all, plan.lx_per_unit), measurement_of(direct, plan.lx_per_unit),
+          measurement_of(indirect, plan.lx_per_unit)};
 }
 
 // The same, and once more where the error is larger than the plan has it. The first samples only
 // say how many are taken then: were they used again, a sum that is small by chance, with a small
 // error, would stay, and one that is large would not.
-Measurement measure_to_error(const Integrator& integrator, uint64_t stream, PointPlan plan,
-                             const StopFlag& stop, Worker& w, Counters& counters) {
-  const Measurement first = measure_point(integrator, stream, plan, stop, w, counters);
-  const double aim = plan.error * first.illuminance_lx;
-  if (!(aim > 0) || first.standard_error <= aim) return first;
-  const double times = std::min(sqr(first.standard_error / aim), most_times_usual);
+PointLight measure_to_error(const Integrator& integrator, uint64_t stream, PointPlan plan,
+                            const StopFlag& stop, Worker& w, Counters& counters) {
+  const PointLight first = measure_point(integrator, stream, plan, stop, w, counters);
+  const double aim = plan.error * first.all.illuminance_lx;
+  const double error = (plan.is_of_indirect ? first.indirect : first.all).standard_error;
+  if (!(aim > 0) || error <= aim) return first;
+  const double times = std::min(sqr(error / aim), plan.most_times);
   plan.samples = int(double(plan.samples) * std::exp2(std::ceil(std::log2(times))));
   return measure_point(integrator, hash_of(stream, 1u), plan, stop, w, counters);
 }
@@ -143,18 +148,19 @@ Measurement measure_to_error(const Integrator& integrator, uint64_t stream, Poin
 // two halves of what it has learnt is one draw of that error. Relative to the light it is much the
 // same at all points.
 void add_shared_errors(const std::vector<double>& of_luminance, double lx_per_unit,
-                       std::vector<Measurement>& values) {
+                       std::vector<PointLight>& values) {
   double squares = 0;
   int points = 0;
   for (size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i].illuminance_lx > 0)) continue;
-    squares += sqr(of_luminance[i] * lx_per_unit / values[i].illuminance_lx);
+    if (!(values[i].all.illuminance_lx > 0)) continue;
+    squares += sqr(of_luminance[i] * lx_per_unit / values[i].all.illuminance_lx);
     ++points;
   }
   if (!(squares > 0)) return;
   const double relative = std::sqrt(squares / points) * t_quantile_95(points) / 1.959964;
-  for (Measurement& m : values)
-    m.standard_error = std::hypot(m.standard_error, relative * m.illuminance_lx);
+  for (PointLight& v : values)
+    for (Measurement* m : {&v.all, &v.indirect})
+      m->standard_error = std::hypot(m->standard_error, relative * v.all.illuminance_lx);
 }
 
 struct PointsRun {
@@ -166,7 +172,7 @@ struct PointsRun {
 };
 
 struct PointValues {
-  std::vector<Measurement> values;
+  std::vector<PointLight> values;
   std::vector<uint8_t> is_measured;
   std::vector<double> shared_errors;  // of the luminance of irradiance
   std::vector<Counters> counters;
@@ -176,7 +182,7 @@ struct PointValues {
 PointValues measure_points(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
                            const PointPlan& plan, const PointsRun& run) {
   const size_t points = places.size();
-  PointValues found{std::vector<Measurement>(points), std::vector<uint8_t>(points, 0),
+  PointValues found{std::vector<PointLight>(points), std::vector<uint8_t>(points, 0),
                     std::vector<double>(points, 0), std::vector<Counters>(points), 0};
   std::vector<Worker> workers(size_t(thread_count(run.threads)));
   std::mutex progress_mutex;
@@ -200,6 +206,40 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
   return found;
 }
 
+// Indirect light by paths in place of that by cells, which is biased by about so much of it; but
+// not where paths err by more.
+void take_better(const Measurement& by_paths, double bias, PointLight& v) {
+  const double more = bias * v.indirect.illuminance_lx;
+  if (by_paths.standard_error >= std::hypot(v.indirect.standard_error, more)) {
+    v.all.standard_error = std::hypot(v.all.standard_error, more);
+    return;
+  }
+  v.all = {v.direct.irradiance + by_paths.irradiance,
+           v.direct.illuminance_lx + by_paths.illuminance_lx,
+           std::hypot(v.direct.standard_error, by_paths.standard_error)};
+}
+
+// Root mean square, relative to all light.
+double relative_error(const std::vector<PointLight>& points, Measurement PointLight::*part) {
+  double squares = 0;
+  int lit = 0;
+  for (const PointLight& p : points) {
+    if (!(p.all.illuminance_lx > 0)) continue;
+    squares += sqr((p.*part).standard_error / p.all.illuminance_lx);
+    ++lit;
+  }
+  return lit > 0 ? std::sqrt(squares / lit) : 0;
+}
+
+// Whether points by cells err by more than is aimed at, and as many paths as are allowed, of which
+// `few` were some, would err by much less.
+bool is_worth_paths(const std::vector<PointLight>& by_cells, const std::vector<PointLight>& few,
+                    double aim) {
+  const double told = relative_error(by_cells, &PointLight::all);
+  const double by_paths = relative_error(few, &PointLight::indirect) / std::sqrt(most_times_audit);
+  return aim > 0 && told > much_more * aim && told > much_more * by_paths;
+}
+
 // Every so many-th of them, so that a long list takes little longer.
 std::vector<size_t> audited_of(size_t points) {
   constexpr size_t most = 32;
@@ -208,25 +248,39 @@ std::vector<size_t> audited_of(size_t points) {
   return which;
 }
 
-// Looks at points that were measured by cells by paths; false where a stop came before.
+// Measures light that was reflected before, of points that were measured by cells, by paths as
+// well: few points, and where cells are found wrong there, or far from sure, all. False where a
+// stop came before.
 bool audit(const PreparedScene& scene, const std::vector<MeasuringPlace>& places,
-           const MeasureOptions& options, PointPlan plan, const StopFlag& stop,
-           std::vector<Measurement>& values) {
-  constexpr int paths_per_sample = 4;
-  const std::vector<size_t> which = audited_of(places.size());
+           const MeasureOptions& options, const PointPlan& plan, const StopFlag& stop,
+           std::vector<PointLight>& values) {
   std::vector<MeasuringPlace> at;
-  std::vector<Measurement> audited;
-  for (const size_t i : which) {
+  std::vector<Measurement> by_cells, by_paths;
+  for (const size_t i : audited_of(places.size())) {
     at.push_back(places[i]);
-    audited.push_back(values[i]);
+    by_cells.push_back(values[i].indirect);
   }
-  plan = {plan.samples * paths_per_sample, 1, 0, plan.lx_per_unit};
-  const PathIntegrator by_paths(scene, {options.depth, false, {}});
-  const PointValues paths = measure_points(
-      by_paths, at, plan,
-      {hash_of(options.seed, uint64_t{0x6175'6469}), options.threads, largest_batch, {}, stop});
-  if (paths.done < at.size()) return false;
-  add_error(values, relative_bias(audited, paths.values));
+  PointPlan of_paths{
+      plan.samples * paths_of_sample, 1, 0, plan.lx_per_unit, most_times_audit, true};
+  const PathIntegrator integrator(scene, {options.depth, false, {}});
+  const auto measured = [&](const std::vector<MeasuringPlace>& points, uint64_t round) {
+    return measure_points(integrator, points, of_paths,
+                          {hash_of(options.seed, round, uint64_t{0x6175'6469}),
+                           options.threads,
+                           largest_batch,
+                           {},
+                           stop});
+  };
+  const PointValues few = measured(at, 0);
+  if (few.done < at.size()) return false;
+  for (const PointLight& p : few.values) by_paths.push_back(p.indirect);
+  const double bias = relative_bias(by_cells, by_paths);
+  if (bias == 0 && !is_worth_paths(values, few.values, plan.error)) return true;
+  of_paths.error = plan.error;
+  // By numbers of their own: those of the audit are why these are taken.
+  const PointValues all = measured(places, 1);
+  if (all.done < places.size()) return false;
+  for (size_t i = 0; i < values.size(); ++i) take_better(all.values[i].indirect, bias, values[i]);
   return true;
 }
 
@@ -306,7 +360,7 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   result.is_complete = found.done == points.size();
   if (result.is_complete && needs_cells(options.method, options.indirect))
     result.is_complete = audit(scene, places, options, plan, stop, found.values);
-  result.values = std::move(found.values);
+  for (const PointLight& v : found.values) result.values.push_back(v.all);
   result.in_surfaces = in_others(places);
   for (const Counters& c : found.counters) result.counters += c;
   result.is_measured.assign(found.is_measured.begin(), found.is_measured.end());

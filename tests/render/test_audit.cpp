@@ -1,11 +1,14 @@
-// Measurements beside others that trust nothing: what is told of a bias.
+// Measurements beside others that trust nothing: what is told of a bias, and what comes in place of
+// what is biased.
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 #include "base/random.h"
 #include "render/audit.h"
+#include "render/window_room.h"
 #include "support/statistics.h"
+#include "support/surfaceless_lights.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -36,6 +39,41 @@ Lists lists(int points, double bias, Random& random) {
     b.illuminance_lx = truth + b.standard_error * normal(random);
   }
   return l;
+}
+
+const StopFlag never_stopped = false;
+
+// A high sun on slats of 25 mm, which cells are wider than: of what it shines on, their outer
+// parts, one sees the less the higher one stands.
+Scene blinds_in_the_sun() {
+  Scene s = WindowRoom::make(0.5f);
+  const uint32_t white = add_diffuse(s, Rgb{0.8f});
+  const float x = WindowRoom::X, y0 = WindowRoom::y0, y1 = WindowRoom::y1;
+  for (int i = 0; i < 48; ++i) {
+    const float z = WindowRoom::z0 + 0.025f * float(i);
+    add_quad(s, white, {Vec3{x - 0.025f, y0, z}, {x, y0, z}, {x, y1, z}, {x - 0.025f, y1, z}});
+  }
+  add_distant(s, {-0.5f, 0.1f, -0.75f}, Rgb{100});
+  return s;
+}
+
+// Turned to the blinds, and seeing them from above; the sun is behind them.
+std::vector<MeasuringPoint> points_above(int n) {
+  std::vector<MeasuringPoint> points;
+  Random random(7);
+  for (int i = 0; i < n; ++i) {
+    MeasuringPoint& p = points.emplace_back();
+    p.position = {4.2 + 0.6 * random.next_double(), 1.2 + 1.6 * random.next_double(), 2.4};
+    p.normal = {0.5f, 0.4f * random.next_float() - 0.2f, -0.8f};
+  }
+  return points;
+}
+
+MeasureOptions by_cells(int threads) {
+  MeasureOptions o;
+  o.indirect = Indirect::cells;
+  o.threads = threads;
+  return o;
 }
 
 }  // namespace
@@ -77,6 +115,53 @@ TEST_CASE("audit: dark points, and others without an error, have no say") {
   CHECK(relative_bias({}, {}) == 0);
   others[1].standard_error = 1;
   CHECK(relative_bias(points, others) == doctest::Approx(0.5).epsilon(0.01));
-  add_error(points, 0.5);
-  CHECK(points[1].standard_error == doctest::Approx(50));
+}
+
+TEST_CASE("audit: behind blinds in the sun points get what paths find, and intervals hold it") {
+  const PreparedScene scene(blinds_in_the_sun());
+  const std::vector<MeasuringPoint> points = points_above(24);
+  MeasureOptions o = by_cells(2);
+  o.spp = 1024;
+  const MeasureResult mine = measure(scene, points, o, {}, never_stopped);
+  o.method = Method::path;
+  o.indirect = Indirect::automatic;
+  o.spp = 1 << 14;
+  o.seed = 5;
+  const MeasureResult paths = measure(scene, points, o, {}, never_stopped);
+  double sum = 0, expected = 0, variance = 0, told = 0;
+  int inside = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Measurement &a = mine.values[i], &b = paths.values[i];
+    const double error = std::hypot(a.standard_error, b.standard_error);
+    inside += std::abs(a.illuminance_lx - b.illuminance_lx) <= 1.96 * error ? 1 : 0;
+    sum += a.illuminance_lx;
+    expected += b.illuminance_lx;
+    variance += error * error;
+    told += a.standard_error / a.illuminance_lx / double(points.size());
+  }
+  CAPTURE(told);
+  CAPTURE(sum / expected - 1);
+  CAPTURE(std::sqrt(variance) / expected);
+  CHECK(inside >= 20);
+  CHECK(std::abs(sum - expected) < 3.5 * std::sqrt(variance));
+  CHECK(told < 0.05);
+}
+
+TEST_CASE("audit: the same for any number of threads, and a stop within it is told") {
+  const PreparedScene scene(blinds_in_the_sun());
+  const std::vector<MeasuringPoint> points = points_above(5);
+  MeasureOptions o = by_cells(1);
+  o.spp = 256;
+  const MeasureResult one = measure(scene, points, o, {}, never_stopped);
+  o.threads = 3;
+  const MeasureResult three = measure(scene, points, o, {}, never_stopped);
+  CHECK(one.is_complete);
+  for (size_t i = 0; i < points.size(); ++i) {
+    CHECK(one.values[i].illuminance_lx == three.values[i].illuminance_lx);
+    CHECK(one.values[i].standard_error == three.values[i].standard_error);
+    CHECK(one.values[i].irradiance.g == three.values[i].irradiance.g);
+  }
+  StopFlag stop = false;
+  const auto stop_at_last = [&](double f) { stop = f >= 1; };
+  CHECK_FALSE(measure(scene, points, o, stop_at_last, stop).is_complete);
 }

@@ -1,0 +1,32 @@
+#include "render/sample_sets.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace troffer {
+
+// Cornish-Fisher expansion about the normal quantile; exact values for the first few.
+double t_quantile_95(int n) {
+  constexpr std::array<double, 5> exact{12.7062, 4.3027, 3.1824, 2.7764, 2.5706};
+  if (n <= 5) return exact[size_t(n - 1)];
+  const double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  const double v = n;
+  return z + (z3 + z) / (4 * v) + (5 * z5 + 16 * z3 + 3 * z) / (96 * v * v) +
+         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * v * v * v);
+}
+
+void SampleSets::add(const Vec3d& irradiance, double luminance) {
+  ++sets_;
+  irradiance_ += (irradiance - irradiance_) * (1.0 / sets_);
+  const double before = luminance - mean_;
+  mean_ += before / sets_;
+  squares_ += before * (luminance - mean_);
+}
+
+double SampleSets::standard_error() const {
+  if (sets_ < 2) return 0;
+  return std::sqrt(squares_ / (sets_ - 1) / sets_) * (t_quantile_95(sets_ - 1) / 1.959964);
+}
+
+}  // namespace troffer
