@@ -57,7 +57,8 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
       occluders_(std::move(occluders)),
       settings_(settings),
       rough_(certified_settings(std::max(rough_error, settings.error), 1, 1)),
-      lights_(scene, {float(settings.error), float(settings.viewing_rays)},
+      lights_(scene,
+              {float(settings.error), float(settings.viewing_rays), uint32_t(settings.draws)},
               uint32_t(settings.gloss_samples)),
       sampler_(scene) {
   lights_.set_occluders(*occluders_);

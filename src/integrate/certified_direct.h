@@ -23,6 +23,7 @@ struct CertifiedSettings {
   int shadow_rays = 64;    // per source and viewing ray where there are no certificates
   int gloss_samples = 32;  // points of a source at which gloss and textures are looked at
   int viewing_rays = 1;    // of a pixel, which share what is drawn
+  int draws = 0;           // points of near lights from each hit, in place of certificates; 0: none
 };
 
 // Settings for an allowed standard error of a viewing ray's direct light, relative to what its

@@ -21,13 +21,6 @@ constexpr uint32_t most_pieces = 256;
 constexpr float reach_of_diagonal = 0.1f;
 constexpr double reach_of_frame = 16;
 
-// Light at a hit of this weight that makes a hundredth of what is usual in the picture: nobody sees
-// what less of it errs by.
-float least_light(float weight, float typical) {
-  constexpr float share = 0.01f;
-  return weight > 0 ? std::min(share * typical / weight, 1e15f) : 0;
-}
-
 }  // namespace
 
 CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget,
@@ -43,7 +36,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
   add_far_lights(scene);
   add_drawn_lights(scene);
   groups_.finish();
-  competition_ = LobeCompetition(scene, gloss_points, groups_.are_many());
+  competition_ = LobeCompetition(scene, gloss_points, groups_.are_many() || budget.draws > 0);
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }
@@ -234,43 +227,6 @@ void CertifiedLights::illuminate(CertifiedLightsScratch& s, RadianceBatch& out,
   s.hits.clear();
 }
 
-void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
-                                         CertifiedLightsScratch& s, RadianceBatch& out,
-                                         Counters& counters) const {
-  s.cluster.receivers.clear();
-  s.integrand.hits().clear();
-  for (const uint32_t m : members) {
-    s.cluster.receivers.push_back(s.hits.receivers[m]);
-    s.cluster.receivers.back().floor = least_light(luminance(s.hits.weights[m]), out.typical);
-    const int32_t g = s.hits.glossy[m];
-    s.integrand.hits().push_back(
-        {s.hits.positions[m], g < 0 || s.hits.glossy_hits[size_t(g)].is_gentle
-                                  ? nullptr
-                                  : &s.hits.glossy_hits[size_t(g)]});
-  }
-  choose_lights(groups_, ball_about(s.hits, members), members.size(), budget_, s.chosen);
-  draw(members, s, out, counters);
-  const bool is_closed_off = std::all_of(members.begin(), members.end(),
-                                         [&](uint32_t m) { return s.is_closed_off[m] != 0; });
-  const bool has_far = !is_closed_off && is_proof_of_far_worth(members, s, out.typical > 0);
-  if (is_closed_off) count_closed_off(members, s, out, counters);
-  set_requests(s, has_far);
-  std::span<const float> seen;
-  if (!s.cluster.requests.empty()) {
-    s.cluster.shadow.set(s.cluster.receivers);
-    certified_light(s.cluster.shadow, s.cluster.requests, &s.integrand, s.world, s.options,
-                    s.cluster.memory,
-                    [&](uint32_t request, std::span<const SourceVisibility> answers) {
-                      add_answers(request, members, answers, s, out, counters);
-                    });
-    draw_left({scene_, competition_, s.hits, members, s.cluster, s.integrand.sources()}, budget_,
-              s.drawn, out, counters);
-    seen = s.cluster.memory.light;
-  }
-  if (!is_closed_off && !has_far)
-    cast_far_rays(far_draws(s), members, s.far, seen, budget_, s.far_rays, out, counters);
-}
-
 bool CertifiedLights::find_closed_off(CertifiedLightsScratch& s) const {
   s.is_closed_off.assign(s.hits.size(), far_.points.is_empty() ? 1 : 0);
   if (far_.points.is_empty()) return true;
@@ -291,13 +247,6 @@ void CertifiedLights::count_closed_off(std::span<const uint32_t> members,
   counters.dark_certified += members.size() * far;
   for (const uint32_t m : members)
     if (s.hits.is_first[m] != 0) out.sources[s.hits.indices[m]] += Rgb{0, 0, float(far)};
-}
-
-void CertifiedLights::draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
-                           RadianceBatch& out, Counters& counters) const {
-  s.drawing.assign(members.begin(), members.end());
-  draw_lights({scene_, groups_, sources_, competition_}, s.hits, s.drawing, s.chosen, s.drawn, out,
-              counters);
 }
 
 namespace {

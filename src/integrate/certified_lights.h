@@ -37,8 +37,9 @@ struct CertifiedLightsScratch {
   ReceiverClusters clusters;
   CertifiedCluster cluster;
   LightsOfCluster chosen;
-  std::vector<uint32_t> requested;  // sources of the cluster's requests
-  std::vector<uint32_t> drawing;    // hits of the cluster
+  std::vector<uint32_t> requested;    // sources of the cluster's requests
+  std::vector<uint32_t> drawing;      // hits of the cluster
+  std::vector<uint32_t> first, rest;  // … that are certified to see what that takes, and others
   DrawnLightsScratch drawn;
   FarRays far_rays;
   FarShare far;                        // of the light of far sources, what arrives at the hits
@@ -92,6 +93,11 @@ class CertifiedLights {
   void set_requests(CertifiedLightsScratch& s, bool has_far) const;
   void draw(std::span<const uint32_t> members, CertifiedLightsScratch& s, RadianceBatch& out,
             Counters& counters) const;
+  std::span<const float> certify(std::span<const uint32_t> members, bool has_far,
+                                 CertifiedLightsScratch& s, RadianceBatch& out,
+                                 Counters& counters) const;
+  void certify_or_draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
+                       RadianceBatch& out, Counters& counters) const;
   void add_answers(uint32_t request, std::span<const uint32_t> members,
                    std::span<const SourceVisibility> answers, CertifiedLightsScratch& s,
                    RadianceBatch& out, Counters& counters) const;

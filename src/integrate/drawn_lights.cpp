@@ -22,6 +22,12 @@ float points_of_pixel(float share, float error) {
   return std::pow(share * error_of_one / error, 1.5f);
 }
 
+void sort_by_sources(const LightGroups& groups, std::vector<uint32_t>& chosen) {
+  std::sort(chosen.begin(), chosen.end(), [&](uint32_t a, uint32_t b) {
+    return groups[a].first_source < groups[b].first_source;
+  });
+}
+
 }  // namespace
 
 // Greedily from the strongest on, by what each saves: of the N ~ r^3/2 points that stand for a
@@ -31,6 +37,9 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   const uint32_t n = groups.size();
   groups.estimate(ball, out.estimates, out.near);
   out.is_certified.assign(n, 0);
+  out.certified.clear();
+  out.draws = budget.draws;
+  if (budget.draws > 0 && !groups.are_many()) return;
   out.order.clear();
   double total = 0;
   for (uint32_t g = 0; g < n; ++g) total += double(out.estimates[g]);
@@ -52,18 +61,34 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
     out.is_certified[g] = 1;
     rest -= e;
   }
-  out.certified.clear();
   rest = 0;
   for (uint32_t g = 0; g < n; ++g)
     if (out.is_certified[g] != 0)
       out.certified.push_back(g);
     else if (groups[g].first_source == groups[g].last_source || !are_all)
       rest += double(out.estimates[g]);
-  std::sort(out.certified.begin(), out.certified.end(), [&](uint32_t a, uint32_t b) {
-    return groups[a].first_source < groups[b].first_source;
-  });
+  sort_by_sources(groups, out.certified);
   const float of_pixel = rest > 0 ? points_of_pixel(float(rest / total), budget.error) : 0;
   out.draws = uint32_t(std::ceil(std::min(of_pixel / budget.viewing_rays, most_draws)));
+}
+
+bool certify_all(const LightGroups& groups, LightsOfCluster& out) {
+  out.certified.clear();
+  bool are_others = false;
+  for (uint32_t g = 0; g < groups.size(); ++g) {
+    const bool is_certified =
+        groups[g].first_source < groups[g].last_source && out.estimates[g] > 0;
+    out.is_certified[g] = is_certified ? 1 : 0;
+    if (is_certified) out.certified.push_back(g);
+    are_others = are_others || (!is_certified && out.estimates[g] > 0);
+  }
+  sort_by_sources(groups, out.certified);
+  return are_others;
+}
+
+void certify_none(LightsOfCluster& out) {
+  out.is_certified.assign(out.is_certified.size(), 0);
+  out.certified.clear();
 }
 
 ClusterBall ball_about(const WaitingHits& hits, std::span<const uint32_t> members) {

@@ -23,6 +23,8 @@ namespace troffer {
 struct DrawingBudget {
   float error = 0.01f;
   float viewing_rays = 1;
+  // Of few lights: points from each hit where that takes less than certificates; 0: no points.
+  uint32_t draws = 0;
 };
 
 // Which lights of a cluster are drawn; memory, and the result.
@@ -37,6 +39,10 @@ struct LightsOfCluster {
 // Groups without sources are drawn in any case, others where they are many. hits: in the ball.
 void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hits,
                    const DrawingBudget& budget, LightsOfCluster& out);
+
+// All of them that can be certified are, and false if no other sends anything; or none is.
+bool certify_all(const LightGroups& groups, LightsOfCluster& out);
+void certify_none(LightsOfCluster& out);
 
 // A ball about the hits' receivers.
 ClusterBall ball_about(const WaitingHits& hits, std::span<const uint32_t> members);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -33,6 +34,17 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
   constexpr int few_points = 8;
   CertifiedSettings s = certified_settings(error_beyond(in), in.scene.scene.lights.size());
   s.gloss_samples = few_points;
+  return s;
+}
+
+// … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
+// shows of all of them: by draws where certificates take more. Powers of two are stratified best.
+CertifiedSettings settings_of_further(const MethodInput& in) {
+  constexpr double least_draws = 8, most_draws = 32, error_of_one = 0.16;
+  CertifiedSettings s = settings_beyond(in);
+  if (in.cells->view != nullptr)
+    s.draws = int(std::bit_floor(
+        unsigned(std::clamp(error_of_one / in.settings.error, least_draws, most_draws))));
   return s;
 }
 
@@ -76,17 +88,19 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in, const 
   return std::make_unique<CellsIndirect>(std::move(cells), std::move(records));
 }
 
-// Lights in mirrors, for both.
-void add_images(const MethodInput& in, const CertifiedSettings& settings,
-                std::unique_ptr<DirectLight>& direct, std::unique_ptr<DirectLight>& beyond) {
+// Lights in mirrors, for all of them.
+struct Stage {
+  std::unique_ptr<DirectLight>& direct;
+  CertifiedSettings settings;
+};
+void add_images(const MethodInput& in, const std::array<Stage, 3>& stages) {
   const std::shared_ptr<const MirrorImages> images = MirrorImages::make(in.scene);
   if (!images) return;
   std::vector<std::shared_ptr<const Occluders>> occluders;
   for (const MirrorImages::Image& image : images->all())
     occluders.push_back(std::make_shared<const Occluders>(image.scene->scene, &image.scene->glass));
-  direct = std::make_unique<ImagedDirect>(std::move(direct), images, occluders, settings);
-  beyond =
-      std::make_unique<ImagedDirect>(std::move(beyond), images, occluders, settings_beyond(in));
+  for (const Stage& s : stages)
+    s.direct = std::make_unique<ImagedDirect>(std::move(s.direct), images, occluders, s.settings);
 }
 
 // What may hide a light that has a certificate: asked for nothing else, and empty where there is
@@ -135,7 +149,10 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   if (needs_cells(Method::certified, in.settings.indirect)) {
     std::unique_ptr<DirectLight> beyond =
         std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
-    add_images(in, settings, direct, beyond);
+    const CertifiedSettings drawn = settings_of_further(in);
+    std::unique_ptr<DirectLight> further =
+        std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
+    add_images(in, {{{direct, settings}, {beyond, settings_beyond(in)}, {further, drawn}}});
     constexpr double any = std::numeric_limits<double>::infinity();
     const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : any;
     indirect = make_cells_indirect(in, *beyond, most_cells);
@@ -143,7 +160,7 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
     constexpr auto all = std::numeric_limits<uint32_t>::max();
     const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
     return std::make_unique<WaveIntegrator>(
-        in.scene, std::make_unique<StagedDirect>(std::move(direct), std::move(beyond), samples),
+        in.scene, std::make_unique<StagedDirect>(std::move(direct), std::move(further), samples),
         std::move(indirect));
   }
   if (in.radiosity != nullptr && !in.settings.is_direct_only())

@@ -254,3 +254,68 @@ TEST_CASE("many lights: curved meshes take few rays, without bias, over matte an
     }
   }
 }
+
+namespace {
+
+// As `further` rays of a pixel are lit: points are drawn where certificates take more.
+WaveIntegrator drawn_or_certified(const PreparedScene& scene, int draws) {
+  CertifiedSettings settings = certified_settings(0.1, scene.scene.lights.size());
+  settings.draws = draws;
+  return {scene,
+          std::make_unique<CertifiedDirect>(scene, std::make_shared<const Occluders>(scene.scene),
+                                            settings),
+          nullptr};
+}
+
+// Eight lights; over the floor, where x < 0, a net of many small strips.
+Scene room_with_net() {
+  Scene s = room_of_lights(2);
+  for (const Vec3& at : {Vec3{-2, -1, 2}, {-1, -1, 2}, {-2, 0.4f, 2}, {-1, 0.4f, 2}})
+    make_light(
+        s,
+        add_quad(s, 0,
+                 {at, at + Vec3{0, 0.6f, 0}, at + Vec3{0.6f, 0.6f, 0}, at + Vec3{0.6f, 0, 0}}),
+        Rgb{5});
+  for (int i = 0; i < 40; ++i)
+    for (int k = 0; k < 40; ++k) {
+      const Vec3 at{-3 + 0.07f * float(i), -1.4f + 0.07f * float(k), 0.2f};
+      add_quad(s, 0,
+               {at, at + Vec3{0.03f, 0, 0}, at + Vec3{0.03f, 0.06f, 0}, at + Vec3{0, 0.06f, 0}});
+    }
+  return s;
+}
+
+Counters counted(const Integrator& integrator, const Ray& ray) {
+  const auto scratch = integrator.make_scratch();
+  RadianceBatch batch;
+  Counters counters;
+  const ViewingRays rays = repeated(ray, 3, 64);
+  batch.reset(rays.size());
+  integrator.radiance(rays, *scratch, batch, counters);
+  return counters;
+}
+
+}  // namespace
+
+TEST_CASE("few lights: certified in the open, drawn behind a net, the same in the mean") {
+  const PreparedScene scene(room_with_net());
+  const Vec3 in_the_open{2, 0, 0}, below_the_net{-1.5f, 0, 0};
+  const WaveIntegrator some = drawn_or_certified(scene, 5), none = drawn_or_certified(scene, 0);
+  const Counters open = counted(some, ray_to(in_the_open));
+  CHECK(open.mixed == 0);
+  CHECK(open.lit_certified + open.dark_certified + open.masked == 8 * 64);
+  // All but the first few, each of which draws from all lights at once; its rays go up.
+  Ray up = ray_towards(below_the_net + Vec3{0.02f, 0.01f, 0.15f}, below_the_net);
+  const Counters net = counted(some, up);
+  CHECK(net.mixed >= 60);
+  CHECK(net.masked <= 8 * 4);
+  CHECK(net.shadow_rays > 0);
+  for (const Ray& ray : {up, ray_to(in_the_open)}) {
+    const Moments a = probe(some, ray, 32, 100).direct, b = probe(none, ray, 32, 100, 9).direct;
+    CAPTURE(a.mean());
+    CAPTURE(b.mean());
+    const double sigma = std::sqrt(a.variance_of_mean() + b.variance_of_mean());
+    CHECK(b.mean() > 0);
+    CHECK(std::abs(a.mean() - b.mean()) < 5 * sigma + 0.003 * b.mean());
+  }
+}
