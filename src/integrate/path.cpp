@@ -22,8 +22,11 @@ constexpr float roulette_threshold = 0.25f;
 // 5 % end all the same.
 constexpr uint32_t long_path = 32;
 constexpr float long_path_survival = 0.95f;
+// So many paths and what is known of their vertices fit a core's second cache.
+constexpr size_t most_at_a_time = 256;
 
-// Ends paths that carry little, and strengthens those that survive; false where it ends.
+// Ends paths that carry little, and strengthens those that survive; false where it ends. By a
+// number of the vertex that the path has left, stratified over the samples of a pixel.
 bool survives_roulette(Walk& walk) {
   if (walk.vertex < roulette_first_vertex) return true;
   // The factor 1/eta² of radiance inside glass comes back when the path leaves it.
@@ -31,7 +34,8 @@ bool survives_roulette(Walk& walk) {
   const float most = walk.vertex < long_path ? 1 : long_path_survival;
   const float survival = std::min(carried / roulette_threshold, most);
   if (survival >= 1) return true;
-  if (roulette_number(walk) >= survival) return false;
+  const SobolGroup numbers(walk.stream, purpose_scatter(walk.vertex - 1), walk.sample);
+  if (numbers.get(3) >= survival) return false;
   walk.throughput *= 1 / survival;
   return true;
 }
@@ -44,6 +48,7 @@ struct PathIntegrator::Scratch final : IntegratorScratch {
   WaveHits wave;  // walks[i] stands at vertices[i]; without `hits`
   WalkScratch trace;
   LightTreeDirectScratch lights;
+  ResampledDirectScratch few_lights;
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
   std::vector<float> numbers;
@@ -71,9 +76,11 @@ std::unique_ptr<IntegratorScratch> PathIntegrator::make_scratch() const {
 void PathIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratch,
                               RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
-  start_walks(rays, s.wave.walks);
   counters.viewing_rays += rays.size();
-  follow(s, Coherence::coherent, out, counters);
+  for (size_t first = 0; first < rays.size(); first += most_at_a_time) {
+    start_walks(rays, first, std::min(first + most_at_a_time, rays.size()), s.wave.walks);
+    follow(s, Coherence::coherent, out, counters);
+  }
 }
 
 void PathIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
@@ -155,16 +162,24 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
 // Next-event estimation at all vertices, then a step from each.
 void PathIntegrator::shade(Scratch& s, RadianceBatch& out, Counters& counters) const {
   if (s.wave.size() == 0) return;
-  lights_.queue(s.wave, s.lights, out, counters);
-  lights_.flush(s.lights, out, counters);
+  if (few_lights_) {
+    few_lights_->add(s.wave, s.few_lights, out, counters);
+  } else {
+    tree_.queue(s.wave, s.lights, out, counters);
+    tree_.flush(s.lights, out, counters);
+  }
   step_on(s);
+}
+
+float PathIntegrator::weight_of(const Walk& walk, const Vertex& v) const {
+  return few_lights_ ? few_lights_->weight_of(walk, v) : tree_.weight_of(walk, v);
 }
 
 // Emission that the path runs into, weighted against next-event estimation from the vertex before.
 void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const {
   const Rgb radiance = emission_at(scene_, v);
   if (radiance.is_black()) return;
-  add_seen(walk, radiance, walk.pdf > 0 ? lights_.weight_of(walk, v) : 1, out);
+  add_seen(walk, radiance, walk.pdf > 0 ? weight_of(walk, v) : 1, out);
 }
 
 // What lights at infinity show to a path that has left the scene.
@@ -173,7 +188,7 @@ void PathIntegrator::add_miss(const Walk& walk, RadianceBatch& out) const {
     add_seen(walk,
              radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.last_position,
                                   walk.ray.direction),
-             walk.pdf > 0 ? lights_.weight_of_miss(walk, p) : 1, out);
+             walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, out);
 }
 
 void PathIntegrator::add_seen(const Walk& walk, Rgb radiance, float weight,

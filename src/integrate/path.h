@@ -1,14 +1,17 @@
 // Unidirectional path tracing: the reference for every other method.
-// Next-event estimation with one light chosen by a light tree and sampled by solid angle, combined
-// with BSDF sampling by the power heuristic; Russian roulette. Unbiased but for the depth limit.
+// Next-event estimation with one light chosen by a light tree, or picked of few that are all asked,
+// and sampled by solid angle, combined with BSDF sampling by the power heuristic; Russian roulette.
+// Unbiased but for the depth limit.
 //
 // References: [1] Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, ch. 9.
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "integrate/integrator.h"
 #include "integrate/light_tree_direct.h"
+#include "integrate/resampled_direct.h"
 
 namespace troffer {
 
@@ -21,7 +24,9 @@ struct PathOptions {
 class PathIntegrator final : public Integrator {
  public:
   PathIntegrator(const PreparedScene& scene, const PathOptions& options)
-      : scene_(scene), options_(options), lights_(scene, LightTreeDirect::Competition::all) {}
+      : scene_(scene), options_(options), tree_(scene, LightTreeDirect::Competition::all) {
+    if (ResampledDirect::suits(scene)) few_lights_.emplace(scene);
+  }
 
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
   PixelSampling sampling() const override { return options_.sampling; }
@@ -40,11 +45,13 @@ class PathIntegrator final : public Integrator {
   void add_miss(const Walk& walk, RadianceBatch& out) const;
   void add_seen(const Walk& walk, Rgb radiance, float weight, RadianceBatch& out) const;
   void step_on(Scratch& scratch) const;
+  float weight_of(const Walk& walk, const Vertex& vertex) const;
   bool is_last(const Walk& walk) const;
 
   const PreparedScene& scene_;
   PathOptions options_;
-  LightTreeDirect lights_;
+  LightTreeDirect tree_;
+  std::optional<ResampledDirect> few_lights_;  // in place of the tree
 };
 
 }  // namespace troffer

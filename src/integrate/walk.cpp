@@ -9,13 +9,17 @@
 namespace troffer {
 
 void start_walks(const ViewingRays& rays, std::vector<Walk>& walks) {
-  walks.assign(rays.size(), Walk{});
-  for (uint32_t i = 0; i < rays.size(); ++i) {
-    Walk& w = walks[i];
+  start_walks(rays, 0, rays.size(), walks);
+}
+
+void start_walks(const ViewingRays& rays, size_t first, size_t last, std::vector<Walk>& walks) {
+  walks.assign(last - first, Walk{});
+  for (size_t i = first; i < last; ++i) {
+    Walk& w = walks[i - first];
     w.ray = rays.rays[i];
     w.last_position = w.ray.origin;
     w.cone = rays.cone;
-    w.index = i;
+    w.index = uint32_t(i);
     w.sample = rays.samples[i];
     w.stream = rays.streams[i];
   }

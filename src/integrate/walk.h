@@ -34,8 +34,10 @@ struct Walk {
   uint64_t stream = 0;
 };
 
-// One walk per viewing ray.
+// One walk per viewing ray …
 void start_walks(const ViewingRays& rays, std::vector<Walk>& walks);
+// … or for those in [first, last) alone.
+void start_walks(const ViewingRays& rays, size_t first, size_t last, std::vector<Walk>& walks);
 
 // One walk of a sensor, at its vertex 0; its ray is still to be chosen.
 Walk sensor_walk(const SensorBatch& sensors, uint32_t i);
@@ -56,7 +58,7 @@ void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence
 void arrive_at(const Scene& scene, const Hit& hit, Walk& walk, Vertex& v);
 
 // Random numbers at a walk's vertex: for choosing a direction (with purpose_scatter, dimensions 0
-// and 1), a lobe (dimension 2), and for Russian roulette, which gains nothing by stratification.
+// and 1), a lobe (dimension 2), and for Russian roulette of spawned walks.
 Vec2 direction_number(const Walk& walk);
 float lobe_number(const Walk& walk);
 float roulette_number(const Walk& walk);

@@ -264,6 +264,8 @@ Tracer::Embree::Embree(const Scene& s, const PaneGlass* glass) {
   device = rtcNewDevice(nullptr);
   if (device == nullptr) throw EnvironmentError("cannot start Embree");
   rtcSetDeviceErrorFunction(device, on_error, &status);
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
+    packet_size = 16;
   scene = new_scene();
   instances.first = first_instance(s);
   tests.resize(instances.first + s.instanced_meshes.size());

@@ -57,6 +57,7 @@ struct Tracer::Embree {
   EmbreeStatus status;
   std::vector<HitTest> tests;  // per mesh, of all spheres, of all disks, per instanced mesh
   InstanceNumbers instances;
+  size_t packet_size = 8;  // of rays: 8, or 16 where Embree has these as they are
 
   // Throws EnvironmentError if memory runs out.
   Embree(const Scene& scene, const PaneGlass* glass);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "trace/embree_scene.h"
 #include "trace/surface.h"
@@ -11,7 +12,24 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t packet_size = 16;
+// Packets of N rays, by Embree's names. It takes those as they are that fill the processor's
+// registers, and packs others anew.
+template <size_t N>
+struct Packets;
+template <>
+struct Packets<8> {
+  using Rays = RTCRay8;
+  using RayHits = RTCRayHit8;
+  static constexpr auto intersect = rtcIntersect8;
+  static constexpr auto occluded = rtcOccluded8;
+};
+template <>
+struct Packets<16> {
+  using Rays = RTCRay16;
+  using RayHits = RTCRayHit16;
+  static constexpr auto intersect = rtcIntersect16;
+  static constexpr auto occluded = rtcOccluded16;
+};
 
 }  // namespace
 
@@ -53,9 +71,10 @@ bool is_traceable(const Ray& ray) {
 }
 
 // Lanes beyond n and untraceable ones stay inactive through `valid`, but are given finite values.
-void fill(RTCRay16& p, std::span<const Ray> rays, std::array<int, packet_size>& valid) {
+template <size_t N>
+void fill(typename Packets<N>::Rays& p, std::span<const Ray> rays, std::array<int, N>& valid) {
   static constexpr Ray harmless{{0, 0, 0}, 0, {0, 0, 1}, 0};
-  for (size_t i = 0; i < packet_size; ++i) {
+  for (size_t i = 0; i < N; ++i) {
     const bool is_used = i < rays.size() && is_traceable(rays[i]);
     const Ray& ray = is_used ? rays[i] : harmless;
     valid[i] = is_used ? -1 : 0;
@@ -74,16 +93,17 @@ void fill(RTCRay16& p, std::span<const Ray> rays, std::array<int, packet_size>& 
   }
 }
 
+template <size_t N>
 void closest_packets(RTCScene scene, const InstanceNumbers& instances, Context& context,
                      std::span<const Ray> rays, std::span<Hit> hits) {
-  alignas(64) std::array<int, packet_size> valid{};
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t n = std::min(packet_size, rays.size() - first);
-    RTCRayHit16 p;
-    fill(p.ray, rays.subspan(first, n), valid);
+  alignas(64) std::array<int, N> valid{};
+  for (size_t first = 0; first < rays.size(); first += N) {
+    const size_t n = std::min(N, rays.size() - first);
+    typename Packets<N>::RayHits p;
+    fill<N>(p.ray, rays.subspan(first, n), valid);
     std::fill(std::begin(p.hit.geomID), std::end(p.hit.geomID), RTC_INVALID_GEOMETRY_ID);
     std::fill(std::begin(p.hit.instID[0]), std::end(p.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect16(valid.data(), scene, &context.embree, &p);
+    Packets<N>::intersect(valid.data(), scene, &context.embree, &p);
     for (size_t i = 0; i < n; ++i) {
       hits[first + i] = {p.ray.tfar[i], p.hit.u[i], p.hit.v[i], p.hit.geomID[i], p.hit.primID[i]};
       instances.apply(p.hit.instID[0][i], hits[first + i]);
@@ -93,32 +113,35 @@ void closest_packets(RTCScene scene, const InstanceNumbers& instances, Context& 
 
 // Not told that they are coherent: Embree's frusta of rays pay in scenes of few large triangles (a
 // tenth), and cost up to twice the time behind wires and leaves.
+template <size_t N>
 void occluded_packets(RTCScene scene, Context& context, std::span<const Ray> rays,
                       std::span<uint8_t> is_occluded) {
-  alignas(64) std::array<int, packet_size> valid{};
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t n = std::min(packet_size, rays.size() - first);
-    RTCRay16 p;
-    fill(p, rays.subspan(first, n), valid);
-    rtcOccluded16(valid.data(), scene, &context.embree, &p);
+  alignas(64) std::array<int, N> valid{};
+  for (size_t first = 0; first < rays.size(); first += N) {
+    const size_t n = std::min(N, rays.size() - first);
+    typename Packets<N>::Rays p;
+    fill<N>(p, rays.subspan(first, n), valid);
+    Packets<N>::occluded(valid.data(), scene, &context.embree, &p);
     for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
   }
 }
 
-// 16 segments from `first` on; lanes without one, and untraceable ones, as in the fill above.
-void fill(RTCRay16& p, const Segments& s, size_t first, std::array<int, packet_size>& valid) {
-  const size_t n = std::min(packet_size, s.size() - first);
+// N segments from `first` on; lanes without one, and untraceable ones, as in the fill above.
+template <size_t N>
+void fill(typename Packets<N>::Rays& p, const Segments& s, size_t first,
+          std::array<int, N>& valid) {
+  const size_t n = std::min(N, s.size() - first);
   const std::array<float*, Segments::coordinates> lanes{p.org_x, p.org_y, p.org_z,
                                                         p.dir_x, p.dir_y, p.dir_z};
-  std::array<float, packet_size> reach{};
+  std::array<float, N> reach{};
   for (size_t c = 0; c < lanes.size(); ++c) {
     const float* from = s.coordinate(c) + first;
     for (size_t i = 0; i < n; ++i) lanes[c][i] = from[i];
-    for (size_t i = n; i < packet_size; ++i) lanes[c][i] = 1;
-    for (size_t i = 0; i < packet_size; ++i) reach[i] += std::abs(lanes[c][i]);
+    for (size_t i = n; i < N; ++i) lanes[c][i] = 1;
+    for (size_t i = 0; i < N; ++i) reach[i] += std::abs(lanes[c][i]);
   }
   bool are_fine = true;
-  for (size_t i = 0; i < packet_size; ++i) {
+  for (size_t i = 0; i < N; ++i) {
     const bool is_fine = reach[i] < 1e18f;
     are_fine &= is_fine;
     valid[i] = is_fine && i < n ? -1 : 0;
@@ -131,8 +154,21 @@ void fill(RTCRay16& p, const Segments& s, size_t first, std::array<int, packet_s
   }
   if (are_fine) return;
   for (float* lane : lanes)
-    for (size_t i = 0; i < packet_size; ++i)
+    for (size_t i = 0; i < N; ++i)
       if (!(reach[i] < 1e18f)) lane[i] = 1;
+}
+
+template <size_t N>
+void occluded_packets(RTCScene scene, Context& context, const Segments& segments,
+                      std::span<uint8_t> is_occluded) {
+  alignas(64) std::array<int, N> valid{};
+  typename Packets<N>::Rays p;
+  for (size_t first = 0; first < segments.size(); first += N) {
+    fill<N>(p, segments, first, valid);
+    Packets<N>::occluded(valid.data(), scene, &context.embree, &p);
+    const size_t n = std::min(N, segments.size() - first);
+    for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
+  }
 }
 
 Ray ray_of(const Segments& s, size_t i) {
@@ -169,13 +205,28 @@ void append(RayLog& log, std::span<const Ray> rays, Coherence coherence, bool is
 
 }  // namespace
 
+namespace {
+
+// act(N) with the packets' size as a constant.
+template <class Act>
+void in_packets(size_t size, const Act& act) {
+  if (size == 16)
+    act(std::integral_constant<size_t, 16>());
+  else
+    act(std::integral_constant<size_t, 8>());
+}
+
+}  // namespace
+
 void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence,
                      Meeting meeting) const {
   if (log_ != nullptr) append(*log_, rays, coherence, false);
   Context context(meeting);
   if (coherence == Coherence::coherent) {
     context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    closest_packets(embree_->scene, embree_->instances, context, rays, hits);
+    in_packets(embree_->packet_size, [&](auto n) {
+      closest_packets<n>(embree_->scene, embree_->instances, context, rays, hits);
+    });
     return;
   }
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -190,7 +241,8 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
   if (log_ != nullptr) append(*log_, rays, coherence, true);
   Context context(Meeting::all);
   if (coherence == Coherence::coherent) {
-    occluded_packets(embree_->scene, context, rays, is_occluded);
+    in_packets(embree_->packet_size,
+               [&](auto n) { occluded_packets<n>(embree_->scene, context, rays, is_occluded); });
     return;
   }
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -206,14 +258,8 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
 void Tracer::occluded(const Segments& segments, std::span<uint8_t> is_occluded) const {
   if (log_ != nullptr) append(*log_, segments);
   Context context(Meeting::all);
-  alignas(64) std::array<int, packet_size> valid{};
-  RTCRay16 p;
-  for (size_t first = 0; first < segments.size(); first += packet_size) {
-    fill(p, segments, first, valid);
-    rtcOccluded16(valid.data(), embree_->scene, &context.embree, &p);
-    const size_t n = std::min(packet_size, segments.size() - first);
-    for (size_t i = 0; i < n; ++i) is_occluded[first + i] = valid[i] == 0 || p.tfar[i] < 0 ? 1 : 0;
-  }
+  in_packets(embree_->packet_size,
+             [&](auto n) { occluded_packets<n>(embree_->scene, context, segments, is_occluded); });
 }
 
 void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
