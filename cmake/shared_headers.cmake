@@ -18,6 +18,6 @@ function(troffer_shared_headers first)
     endif()
     # GCC 12 forgets that these are a system's headers, and warns of sound strings.
     target_compile_options(troffer_${_room} PRIVATE
-      $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
   endforeach()
 endfunction()
