@@ -19,6 +19,7 @@
 #include "render/framing.h"
 #include "report/report.h"
 #include "report/sha256.h"
+#include "scene/orientation.h"
 
 namespace troffer {
 

@@ -8,6 +8,7 @@
 #include "app/signals.h"
 #include "base/error.h"
 #include "daylight/sun_position.h"
+#include "scene/orientation.h"
 #include "view/view.h"
 
 namespace troffer {
