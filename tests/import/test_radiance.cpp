@@ -162,9 +162,11 @@ TEST_CASE("what a pane of trans sends back and lets through") {
       import_text("void trans m 0 0 7 1 1 1 0 0 .6 .5\nm polygon p 0 0 9 0 0 0 1 0 0 0 1 0");
   const Material& m = scene.materials.at(0);
   const float t = m.transmission.value, base = m.base_color.value.r;
-  CHECK(base * (1 - t) == doctest::Approx(0.4));
+  const float evenly = m.diffuse_transmission.value, color = m.diffuse_transmission_color.value.r;
+  CHECK(base * (1 - t) * (1 - evenly) == doctest::Approx(0.4));
   CHECK(base * t == doctest::Approx(0.3));
-  CHECK(has_warning(scene, "absorbed"));
+  CHECK(color * (1 - t) * evenly == doctest::Approx(0.3));
+  CHECK(scene.warnings.total() == 0);
 }
 
 TEST_CASE("sun, sky and ground as gensky writes them") {
