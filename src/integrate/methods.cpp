@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -38,13 +37,13 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
 }
 
 // … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
-// shows of all of them: by draws where certificates take more. Powers of two are stratified best.
+// shows of all of them: by draws where certificates take more, in pictures that may be coarse. In
+// others one rare draw among a few would be seen: a bright dot that no error told of.
 CertifiedSettings settings_of_further(const MethodInput& in) {
-  constexpr double least_draws = 8, most_draws = 32, error_of_one = 0.16;
+  constexpr double coarse = 0.1;
+  constexpr int few_draws = 8;  // a power of two: stratified best
   CertifiedSettings s = settings_beyond(in);
-  if (in.cells->view != nullptr)
-    s.draws = int(std::bit_floor(
-        unsigned(std::clamp(error_of_one / in.settings.error, least_draws, most_draws))));
+  if (in.cells->view != nullptr && in.settings.error >= coarse) s.draws = few_draws;
   return s;
 }
 
