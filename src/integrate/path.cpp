@@ -34,8 +34,7 @@ bool survives_roulette(Walk& walk) {
   const float most = walk.vertex < long_path ? 1 : long_path_survival;
   const float survival = std::min(carried / roulette_threshold, most);
   if (survival >= 1) return true;
-  const SobolGroup numbers(walk.stream, purpose_scatter(walk.vertex - 1), walk.sample);
-  if (numbers.get(3) >= survival) return false;
+  if (left_vertex_number(walk) >= survival) return false;
   walk.throughput *= 1 / survival;
   return true;
 }

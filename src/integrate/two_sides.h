@@ -43,8 +43,7 @@ inline void choose_side(Walk& walk, Vertex& v, Bsdf& bsdf) {
   bsdf.through = Rgb{0};
   const float near = luminance(albedo(bsdf, v.wo.z)), far = luminance(albedo(part, v.wo.z));
   const float share = far / (near + far);
-  const float number = SobolGroup(walk.stream, purpose_scatter(walk.vertex), walk.sample).get(3);
-  if (!(number < share)) {
+  if (!(side_number(walk) < share)) {
     if (share > 0) walk.throughput *= 1 / (1 - share);
     return;
   }

@@ -71,6 +71,14 @@ float lobe_number(const Walk& walk) {
   return SobolGroup(walk.stream, purpose_scatter(walk.vertex), walk.sample).get(2);
 }
 
+float left_vertex_number(const Walk& walk) {
+  return SobolGroup(walk.stream, purpose_scatter(walk.vertex - 1), walk.sample).get(3);
+}
+
+float side_number(const Walk& walk) {
+  return SobolGroup(walk.stream, purpose_scatter(walk.vertex), walk.sample).get(4);
+}
+
 float roulette_number(const Walk& walk) {
   return unit_float(
       uint32_t(hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample) >> 32));

@@ -57,10 +57,14 @@ void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence
 // hit on the inside of glass; glass inside glass ends at the first surface of either.
 void arrive_at(const Scene& scene, const Hit& hit, Walk& walk, Vertex& v);
 
-// Random numbers at a walk's vertex: for choosing a direction (with purpose_scatter, dimensions 0
-// and 1), a lobe (dimension 2), and for Russian roulette of spawned walks.
+// Random numbers at a walk's vertex, by the dimensions of purpose_scatter: for choosing a direction
+// (0 and 1), a lobe (2), whether the next vertex goes on (3; told there), and the side of a surface
+// that light passes evenly (4).
 Vec2 direction_number(const Walk& walk);
 float lobe_number(const Walk& walk);
+float left_vertex_number(const Walk& walk);
+float side_number(const Walk& walk);
+// For Russian roulette of spawned walks: of no dimension.
 float roulette_number(const Walk& walk);
 
 // How often it has been sent on by a surface: panes that it went straight through do not count.
