@@ -30,13 +30,12 @@
 //   that transmits is glass of exact Fresnel reflectance scaled by specular and specular_color,
 //   tinted by base_color on the way through; its compensation ignores that scaling.
 // - Diffuse transmission: light that falls on the far side leaves this one by the diffuse lobe's
-// law,
-//   its coat included, with `through` in place of `diffuse`. The functions below leave it out, but
-//   albedo(): who meets such a surface takes both sides, each with its part
+//   law, its coat included, with `through` in place of `diffuse`. The functions below leave it out,
+//   but albedo(): who meets such a surface takes both sides, each with its part
 //   (integrate/two_sides.h).
 // - Thin sheets: R = 2r / (1 + r) for each polarisation, the rest goes straight on. Rough thin
-// sheets transmit GGX's
-//   reflection lobe mirrored to the other side, as glTF's viewers do, with R's roughness.
+//   sheets transmit GGX's reflection lobe mirrored to the other side, as glTF's viewers do, with
+//   R's roughness.
 //
 // How well energy is kept, measured at cosines of 0.02 and more and all alpha (the white furnace
 // tests): white opaque surfaces reflect 0.9985 to 1.001 of the light; lossless glass sends on 0.998

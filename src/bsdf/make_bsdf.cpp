@@ -43,20 +43,30 @@ void set_lambertian(Bsdf& b, Rgb rho) {
   b.diffuse = rho;
 }
 
-// Light from beyond, beside what is reflected: together no more than all.
-void set_translucent(Bsdf& b, const Inputs& in, Rgb rho) {
-  const Material& m = in.material;
+// Of what falls on a surface, the share that diffuse transmission takes, and what passes of it.
+struct Passing {
+  float share = 0;
   Rgb through;
-  if (m.diffuse_transmission.value > 0)
-    through = safe01(evaluate(in.textures, m.diffuse_transmission_color, in.uv)) *
-              in.value(m.diffuse_transmission);
-  for (size_t k = 0; k < 3; ++k) {
-    const float both = std::max(rho[k] + through[k], 1.0f);
-    rho[k] /= both;
-    through[k] /= both;
+};
+Passing passing(const Inputs& in) {
+  const Material& m = in.material;
+  if (!(m.diffuse_transmission.value > 0)) return {};
+  const float share = in.value(m.diffuse_transmission);
+  return {share, safe01(evaluate(in.textures, m.diffuse_transmission_color, in.uv)) * share};
+}
+
+// Light from beyond comes beside what is reflected: together no more than all.
+void set_diffuse(Bsdf& b, const Inputs& in) {
+  Rgb rho = in.base(), through = passing(in).through;
+  if (!through.is_black()) {
+    for (size_t k = 0; k < 3; ++k) {
+      const float both = std::max(rho[k] + through[k], 1.0f);
+      rho[k] /= both;
+      through[k] /= both;
+    }
+    b.through = through;
   }
   set_lambertian(b, rho);
-  b.through = through;
 }
 
 float alpha_of(float roughness, RoughnessMeaning meaning) {
@@ -253,13 +263,10 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   const Rgb coat_f0 = safe01(tint * r0) * specular;
 
   const bool is_covered = has_sheen(m) && glass == 0;
-  const float passing = m.diffuse_transmission.value > 0 ? in.value(m.diffuse_transmission) : 0;
-  const Rgb through =
-      passing > 0 ? safe01(evaluate(in.textures, m.diffuse_transmission_color, in.uv)) * passing
-                  : Rgb{0};
+  const Passing passes = passing(in);
   if (metallic == 0 && glass == 0 && specular == 0 && !is_covered) {
-    b.through = through;
-    return set_lambertian(b, base * (1 - passing));
+    b.through = passes.through;
+    return set_lambertian(b, base * (1 - passes.share));
   }
   set_roughness(b, in, glass == 0);
   b.fresnel = Bsdf::Fresnel::schlick;
@@ -278,8 +285,8 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
     b.diffuse_mean = 1 - average;
     if (is_covered) cover_with_sheen(b, in);
     if (b.diffuse_mean > negligible) {
-      b.diffuse = base * ((1 - passing) * opaque / b.diffuse_mean);
-      b.through = through * (opaque / b.diffuse_mean);
+      b.diffuse = base * ((1 - passes.share) * opaque / b.diffuse_mean);
+      b.through = passes.through * (opaque / b.diffuse_mean);
     }
     b.has_separable |= !b.diffuse.is_black();
   }
@@ -349,7 +356,7 @@ Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
   }
   switch (in.material.kind) {
     case MaterialKind::diffuse:
-      set_translucent(b, in, in.base());
+      set_diffuse(b, in);
       break;
     case MaterialKind::coated_diffuse:
       set_coated_diffuse(b, in);

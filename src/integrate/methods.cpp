@@ -92,14 +92,15 @@ struct Stage {
   std::unique_ptr<DirectLight>& direct;
   CertifiedSettings settings;
 };
-void add_images(const MethodInput& in, const std::array<Stage, 3>& stages) {
+void add_images(const MethodInput& in, std::initializer_list<Stage> stages) {
   const std::shared_ptr<const MirrorImages> images = MirrorImages::make(in.scene);
   if (!images) return;
   std::vector<std::shared_ptr<const Occluders>> occluders;
   for (const MirrorImages::Image& image : images->all())
     occluders.push_back(std::make_shared<const Occluders>(image.scene->scene, &image.scene->glass));
   for (const Stage& s : stages)
-    s.direct = std::make_unique<ImagedDirect>(std::move(s.direct), images, occluders, s.settings);
+    if (s.direct)
+      s.direct = std::make_unique<ImagedDirect>(std::move(s.direct), images, occluders, s.settings);
 }
 
 // What may hide a light that has a certificate: asked for nothing else, and empty where there is
@@ -149,13 +150,14 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
     std::unique_ptr<DirectLight> beyond =
         std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
     const CertifiedSettings drawn = settings_of_further(in);
-    std::unique_ptr<DirectLight> further =
-        std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
-    add_images(in, {{{direct, settings}, {beyond, settings_beyond(in)}, {further, drawn}}});
+    std::unique_ptr<DirectLight> further;
+    if (drawn.draws > 0) further = std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
+    add_images(in, {{direct, settings}, {beyond, settings_beyond(in)}, {further, drawn}});
     constexpr double any = std::numeric_limits<double>::infinity();
     const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : any;
     indirect = make_cells_indirect(in, *beyond, most_cells);
     if (!indirect) return paths && !in.cells->stop.load() ? make_paths(in, *paths) : nullptr;
+    if (!further) further = std::move(beyond);
     constexpr auto all = std::numeric_limits<uint32_t>::max();
     const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
     return std::make_unique<WaveIntegrator>(

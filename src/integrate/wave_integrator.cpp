@@ -17,10 +17,6 @@ constexpr uint32_t most_divisions = 3;  // of a viewing ray at panes, one after 
 // Hits that go to a method at a time: few enough for what is known of them to stay in the caches.
 constexpr size_t hits_at_a_time = 64;
 
-}  // namespace
-
-namespace {
-
 // Of a surface that light passes evenly, behind what was hit.
 struct FarSide {
   FarSide(const Walk& w, const Hit& h) : walk(w), hit(h) {}
