@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <new>
 
 #include "app/command_report.h"
@@ -13,21 +12,11 @@
 #include "app/printable.h"
 #include "app/signals.h"
 #include "base/error.h"
+#include "render/aov_rows.h"
 
 namespace troffer {
 
 namespace {
-
-const std::map<std::string, Aov> aov_names{{"albedo", Aov::albedo},
-                                           {"normal", Aov::normal},
-                                           {"depth", Aov::depth},
-                                           {"position", Aov::position},
-                                           {"direct", Aov::direct},
-                                           {"indirect", Aov::indirect},
-                                           {"shadow_rays", Aov::shadow_rays},
-                                           {"sources", Aov::sources},
-                                           {"error", Aov::error},
-                                           {"viewing_error", Aov::viewing_error}};
 
 // Values as typed; turned into options after parsing, where errors become UsageError.
 struct RawOptions {
@@ -101,10 +90,9 @@ void apply(const RawOptions& raw, RenderOptions& o) {
   o.kj92.sampling.has_coherence = raw.coherence == "on";
   o.kj92.selection.is_enabled = raw.selection == "on";
   for (const std::string& name : raw.aovs) {
-    const auto it = aov_names.find(name);
-    if (it == aov_names.end()) throw UsageError("--aov: there is no layer '" + name + "'");
-    if (std::find(o.aovs.begin(), o.aovs.end(), it->second) == o.aovs.end())
-      o.aovs.push_back(it->second);
+    const std::optional<Aov> aov = find_aov(name);
+    if (!aov) throw UsageError("--aov: there is no layer '" + name + "'");
+    if (std::find(o.aovs.begin(), o.aovs.end(), *aov) == o.aovs.end()) o.aovs.push_back(*aov);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "app/signals.h"
 #include "app/solution_file.h"
 #include "image/atomic_file.h"
+#include "render/measurements_csv.h"
 
 namespace troffer {
 

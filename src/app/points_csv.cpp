@@ -110,19 +110,4 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
   return points;
 }
 
-std::string measurements_csv(const std::vector<MeasuringPoint>& points,
-                             const MeasureResult& result) {
-  std::string csv =
-      "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,illuminance_lx,standard_error\n";
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (!result.is_measured[i]) continue;
-    const auto& [p, n] = points[i];
-    const Measurement& m = result.values[i];
-    csv += fmt::format("{},{},{},{},{},{},{:.7g},{:.7g},{:.7g},{:.7g},{:.4g}\n", p.x, p.y, p.z, n.x,
-                       n.y, n.z, m.irradiance.r, m.irradiance.g, m.irradiance.b, m.illuminance_lx,
-                       m.standard_error);
-  }
-  return csv;
-}
-
 }  // namespace troffer

@@ -12,8 +12,4 @@ namespace troffer {
 // InputError names line and column of what cannot be read (a zero normal, say).
 std::vector<MeasuringPoint> read_points(const std::string& path);
 
-// The points with what was measured; points that were not measured are left out.
-std::string measurements_csv(const std::vector<MeasuringPoint>& points,
-                             const MeasureResult& result);
-
 }  // namespace troffer

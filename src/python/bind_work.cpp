@@ -10,6 +10,7 @@
 #include "image/write_image.h"
 #include "python/bindings.h"
 #include "python/script_scene.h"
+#include "render/aov_rows.h"
 #include "render/measure.h"
 #include "render/preparation.h"
 #include "render/render.h"
@@ -80,18 +81,7 @@ void bind_picture(py::module_& m) {
 }
 
 Aov aov_named(const std::string& name) {
-  constexpr std::pair<const char*, Aov> all[] = {{"albedo", Aov::albedo},
-                                                 {"normal", Aov::normal},
-                                                 {"depth", Aov::depth},
-                                                 {"position", Aov::position},
-                                                 {"direct", Aov::direct},
-                                                 {"indirect", Aov::indirect},
-                                                 {"shadow_rays", Aov::shadow_rays},
-                                                 {"sources", Aov::sources},
-                                                 {"error", Aov::error},
-                                                 {"viewing_error", Aov::viewing_error}};
-  for (const auto& [known, aov] : all)
-    if (name == known) return aov;
+  if (const std::optional<Aov> aov = find_aov(name)) return *aov;
   throw UsageError("there is no layer '" + name + "'");
 }
 
@@ -149,11 +139,15 @@ std::unique_ptr<RenderResult> render_scene(ScriptScene& s, const py::object& cam
                                            const Common& common, const PictureRequest& request,
                                            const py::object& progress) {
   RenderOptions options = request.options(common);
-  const bool is_named = camera.is_none() || py::isinstance<py::str>(camera);
-  const Camera seen_from = is_named ? s.camera(camera.is_none() ? "" : camera.cast<std::string>())
-                                    : camera.cast<Camera>();
+  std::optional<std::string> name;
+  std::optional<Camera> given;
+  if (camera.is_none() || py::isinstance<py::str>(camera))
+    name = camera.is_none() ? "" : camera.cast<std::string>();
+  else
+    given = camera.cast<Camera>();
   auto result = std::make_unique<RenderResult>();
   run_for_python(progress, [&](const StopFlag& stop, std::atomic<double>& fraction) {
+    const Camera seen_from = name ? s.camera(*name) : *given;
     const std::shared_ptr<const PreparedScene> scene = s.prepared();
     check_options(*scene, seen_from, options);
     const std::unique_ptr<Preparation> preparation = prepared_for(*scene, options, stop);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "render/aov_rows.h"
+
 namespace troffer {
 
 namespace {
@@ -32,33 +34,10 @@ bool needs_first_hit(Aov a) {
 
 // Black, with the name and the channels that files have of it.
 Layer empty_layer(Aov aov, const PixelRect& window) {
-  const auto layer = [&](const char* name, std::vector<std::string> channels) {
-    return Layer{name, std::move(channels), Image(window.width(), window.height())};
-  };
-  const std::vector<std::string> rgb{"R", "G", "B"}, xyz{"X", "Y", "Z"};
-  switch (aov) {
-    case Aov::direct:
-      return layer("direct", rgb);
-    case Aov::indirect:
-      return layer("indirect", rgb);
-    case Aov::albedo:
-      return layer("albedo", rgb);
-    case Aov::normal:
-      return layer("normal", xyz);
-    case Aov::position:
-      return layer("position", xyz);
-    case Aov::depth:
-      return layer("depth", {"Z"});
-    case Aov::shadow_rays:
-      return layer("shadow_rays", {"V"});
-    case Aov::sources:
-      return layer("sources", rgb);
-    case Aov::error:
-      return layer("error", {"V"});
-    case Aov::viewing_error:
-      return layer("viewing_error", {"V"});
-  }
-  return {};
+  const AovRow& row = row_of(aov);
+  return {std::string(row.name),
+          {row.channels.begin(), row.channels.end()},
+          Image(window.width(), window.height())};
 }
 
 }  // namespace

@@ -78,19 +78,4 @@ std::vector<Measurement> dimmed_measurements(const MeasuringAnswer& answer,
   return sums;
 }
 
-std::string measurements_csv_of(const std::vector<MeasuringPoint>& points,
-                                const std::vector<Measurement>& values) {
-  std::string csv =
-      "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,illuminance_lx,standard_error\n";
-  for (size_t i = 0; i < std::min(points.size(), values.size()); ++i) {
-    const auto& [p, n] = points[i];
-    const Measurement& m = values[i];
-    csv += fmt::format(
-        "{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{:.7g},{:.7g},{:.7g},{:.7g},{:.4g}\n", p.x, p.y,
-        p.z, n.x, n.y, n.z, m.irradiance.r, m.irradiance.g, m.irradiance.b, m.illuminance_lx,
-        m.standard_error);
-  }
-  return csv;
-}
-
 }  // namespace troffer

@@ -27,8 +27,4 @@ Image dimmed_picture(const LayerBoard& board, const DimmerSettings& settings);
 std::vector<Measurement> dimmed_measurements(const MeasuringAnswer& answer,
                                              const DimmerSettings& settings);
 
-// A line of names, and one for each point.
-std::string measurements_csv_of(const std::vector<MeasuringPoint>& points,
-                                const std::vector<Measurement>& values);
-
 }  // namespace troffer

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image/encode.h"
+#include "render/measurements_csv.h"
 #include "render/seen_point.h"
 #include "view/dimmed.h"
 #include "view/json_values.h"
@@ -207,7 +208,7 @@ HttpResponse ViewService::measured(const HttpRequest& r, bool is_csv) const {
     const DimmerSettings dimmers =
         parse_dimmers(value_of(r, "dimmers"), a->task.lighting->dimmers().size());
     return {200, "text/csv; charset=utf-8",
-            measurements_csv_of(a->task.points, dimmed_measurements(*a, dimmers)), "measured.csv"};
+            measurements_csv(a->task.points, dimmed_measurements(*a, dimmers)), "measured.csv"};
   }
   json values = json::array();
   for (const auto& row : a->values) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "render/camera.h"
+#include "render/measurements_csv.h"
 #include "support/scenes.h"
 #include "view/dimmed.h"
 #include "view/dimmers.h"
@@ -84,7 +85,7 @@ TEST_CASE("measurements by single luminaires add up, their errors as independent
   CHECK(m[0].illuminance_lx == 0);
   a.values.resize(1);  // by all light together
   CHECK(dimmed_measurements(a, {Rgb{0.5f}, Rgb{1}})[0].illuminance_lx == doctest::Approx(300));
-  const std::string csv = measurements_csv_of({{{1, 2, 3}, {0, 0, 1}}}, a.values[0]);
+  const std::string csv = measurements_csv({{{1, 2, 3}, {0, 0, 1}}}, a.values[0]);
   CHECK(csv.find("\n1,2,3,0,0,1,3,3,3,300,4\n") != csv.npos);
 }
 
