@@ -3,6 +3,7 @@ import gc
 import os
 import pathlib
 import signal
+import subprocess
 import tempfile
 import threading
 import time
@@ -90,6 +91,21 @@ class Pictures(unittest.TestCase):
                 picture.save(folder + '/no/such/folder/a.exr')
             with self.assertRaises(ValueError):
                 picture.save(folder + '/a.txt')
+
+    @unittest.skipUnless('TROFFER' in os.environ, 'the program is not told')
+    def test_is_that_of_the_program(self):
+        scene = load()
+        for method, options in (('certified', dict(error=.1)), ('path', dict(spp=4)),
+                                ('kj92', dict(spp=1))):
+            picture = scene.render(width=48, height=36, method=method, aovs=['direct'], **options)
+            with tempfile.TemporaryDirectory() as folder:
+                ours, theirs = folder + '/ours.exr', folder + '/theirs.exr'
+                picture.save(ours)
+                words = [w for k, v in options.items() for w in ('--' + k, str(v))]
+                subprocess.run([os.environ['TROFFER'], 'render', str(ROOM), '-o', theirs, '--size',
+                                '48x36', '--method', method, '--aov', 'direct', *words],
+                               check=True, capture_output=True)
+                np.testing.assert_array_equal(troffer.read_image(ours), troffer.read_image(theirs))
 
     def test_cameras(self):
         scene = load()
@@ -195,8 +211,10 @@ class Working(unittest.TestCase):
     def test_interrupt(self):
         scene = load()
         threading.Timer(.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        begun = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
             scene.render(method='path', spp=1 << 16)
+        self.assertLess(time.monotonic() - begun, 10)  # alone it would take hours
         scene.render(**FAST)  # and all is well
 
 
