@@ -154,7 +154,8 @@ void Builder::ask(const CellPilot& pilot) {
     t.from = {&places[i].hit, 1};
   }
   CellsSeen seen;
-  trace_cell_rays(walks_, nullptr, tasks, options_.threads, seen, counters_);
+  trace_cell_rays(walks_, nullptr, tasks, options_.threads, options_.crew, stop_, seen, counters_);
+  if (stop_.load()) seen.seen.clear();  // not all of them
   for (const Place& p : places) {
     if (!p.is_gloss) continue;
     seen.seen.push_back({uint32_t(tasks.size()), no_cell, p.distance, Rgb{1}, p.hit});
@@ -219,7 +220,9 @@ bool Builder::run(const std::vector<CellTask>& tasks) {
     some.assign(tasks.begin() + std::ptrdiff_t(first),
                 tasks.begin() + std::ptrdiff_t(std::min(first + tasks_at_a_time, tasks.size())));
     for (CellTask& t : some) t.from = hits_of(t);
-    trace_cell_rays(walks_, map_.get(), some, options_.threads, seen, counters_);
+    trace_cell_rays(walks_, map_.get(), some, options_.threads, options_.crew, stop_, seen,
+                    counters_);
+    if (stop_.load()) return false;
     note(some, seen);
   }
   asked_.light.resize(map_->size(), 0);
@@ -331,7 +334,8 @@ bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
   std::vector<uint8_t> draws(map_->size(), 0);
   for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c)
     if (first_rays(c) < rays_for_proofs) draws[c] = uint8_t(draws_of_ray * first_rays(c));
-  add_direct_light(*map_, walks_, direct, draws, first, options_.threads, stop_, lit, counters_);
+  add_direct_light(*map_, walks_, direct, draws, first, options_.threads, options_.crew, stop_, lit,
+                   counters_);
   return !stop_.load();
 }
 

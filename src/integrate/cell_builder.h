@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/crew.h"
 #include "cells/cell_rows.h"
 #include "cells/cell_store.h"
 #include "integrate/cells.h"
@@ -29,6 +29,7 @@ struct CellBuilderOptions {
   double error = 0.01;      // asked of the picture
   // None are made where there would be more than this.
   double most_cells = std::numeric_limits<double>::infinity();
+  Crew* crew = nullptr;  // others that make the same cells; may be null
 };
 
 // direct: light straight from sources. store: what is kept from before, or nothing yet; left with

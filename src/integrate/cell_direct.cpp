@@ -139,25 +139,42 @@ void sample_group(const CellMap& map, const GatherWalks& walks, std::span<const 
 }  // namespace
 
 void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                      std::span<const uint8_t> samples, size_t first_cell, int threads,
+                      std::span<const uint8_t> samples, size_t first_cell, int threads, Crew* crew,
                       const StopFlag& stop, CellDirectLight& light, Counters& counters) {
   const std::vector<uint32_t> order = cells_in_order(map, first_cell);
   light.irradiance.resize(map.size());
   light.half_difference.resize(map.size(), 0);
   std::vector<Worker> workers(size_t(thread_count(threads)));
-  const size_t groups = (order.size() + cells_of_group - 1) / cells_of_group;
-  parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
-    if (stop.load(std::memory_order_relaxed)) return;
+  const auto group = [&](size_t g) {
     const size_t first = g * cells_of_group;
+    return std::span(order).subspan(first, std::min(cells_of_group, order.size() - first));
+  };
+  SharedWork work;
+  work.items = (order.size() + cells_of_group - 1) / cells_of_group;
+  work.threads = threads;
+  work.act = [&](size_t g, size_t slot) {
     Worker& w = workers[slot];
     w.certified.clear();
     w.sampled.clear();
-    for (const uint32_t c :
-         std::span(order).subspan(first, std::min(cells_of_group, order.size() - first)))
+    for (const uint32_t c : group(g))
       (c < samples.size() && samples[c] > 0 ? w.sampled : w.certified).push_back(c);
     if (!w.certified.empty()) light_group(map, walks, direct, w.certified, w, light);
     if (!w.sampled.empty()) sample_group(map, walks, w.sampled, samples, w, light);
-  });
+    return true;
+  };
+  work.save = [&](size_t g, SharedWork::Bytes& bytes) {
+    for (const uint32_t c : group(g)) {
+      append(bytes, light.irradiance[c]);
+      append(bytes, light.half_difference[c]);
+    }
+  };
+  work.load = [&](size_t g, ByteReader in) {
+    for (const uint32_t c : group(g)) {
+      light.irradiance[c] = in.next<Rgb>();
+      light.half_difference[c] = in.next<float>();
+    }
+  };
+  share(crew, work, stop);
   for (const Worker& w : workers) counters += w.counters;
 }
 

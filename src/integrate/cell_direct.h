@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/crew.h"
 #include "cells/cell_map.h"
 #include "integrate/direct_light.h"
 #include "integrate/gather_walks.h"
@@ -20,8 +20,9 @@ struct CellDirectLight {
 // Of all cells from number `first` on; what is in `light` of those before stays. Cells near each
 // other are lit together, in the same groups for any number of threads. samples: of each cell, by
 // so many draws of one source each, as in path tracing; by `direct` where it is 0.
+// crew: may be null. Not all of them once `stop` is set.
 void add_direct_light(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                      std::span<const uint8_t> samples, size_t first, int threads,
+                      std::span<const uint8_t> samples, size_t first, int threads, Crew* crew,
                       const StopFlag& stop, CellDirectLight& light, Counters& counters);
 
 }  // namespace troffer

@@ -75,14 +75,31 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
 }  // namespace
 
 void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
-                     int threads, CellsSeen& out, Counters& counters) {
+                     int threads, Crew* crew, const StopFlag& stop, CellsSeen& out,
+                     Counters& counters) {
   out.seen.clear();
   out.emission.assign(tasks.size(), Rgb{0});
   std::vector<Chunk> chunks = chunks_of(tasks);
   std::vector<Worker> workers(size_t(thread_count(threads)));
-  parallel_for_slots(chunks.size(), threads, [&](size_t c, size_t slot) {
+  SharedWork work;
+  work.items = chunks.size();
+  work.threads = threads;
+  work.act = [&](size_t c, size_t slot) {
     trace_chunk(walks, map, tasks, chunks[c], out.emission, workers[slot]);
-  });
+    return true;
+  };
+  const auto emission_of = [&](const Chunk& c) {
+    return std::span(out.emission).subspan(c.first, c.last - c.first);
+  };
+  work.save = [&](size_t c, SharedWork::Bytes& bytes) {
+    append_all(bytes, std::span<const CellSeen>(chunks[c].seen));
+    for (const Rgb& e : emission_of(chunks[c])) append(bytes, e);
+  };
+  work.load = [&](size_t c, ByteReader in) {
+    chunks[c].seen = next_all<CellSeen>(in);
+    for (Rgb& e : emission_of(chunks[c])) e = in.next<Rgb>();
+  };
+  share(crew, work, stop);
   for (const Worker& w : workers) counters += w.counters;
   for (const Chunk& c : chunks) out.seen.insert(out.seen.end(), c.seen.begin(), c.seen.end());
 }

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/crew.h"
 #include "integrate/cells.h"
 
 namespace troffer {
@@ -31,8 +31,10 @@ struct CellsSeen {
   std::vector<Rgb> emission;   // of each task: irradiance times rays, of sources run into
 };
 
-// map: may be null; else cells that it has are found.
+// map: may be null; else cells that it has are found. crew: may be null. Not all of them once
+// `stop` is set.
 void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
-                     int threads, CellsSeen& out, Counters& counters);
+                     int threads, Crew* crew, const StopFlag& stop, CellsSeen& out,
+                     Counters& counters);
 
 }  // namespace troffer

@@ -63,16 +63,89 @@ GatherPass::GatherPass(const Cells& cells, const PictureView& view, const Gather
       out_(out),
       workers_(size_t(thread_count(options.threads))) {}
 
-template <class Do>
-bool GatherPass::over_tiles(std::vector<Tile>& tiles, Counters& counters, const Do& act) {
-  parallel_for_slots(tiles.size(), options_.threads, [&](size_t t, size_t slot) {
-    if (!stop_.load(std::memory_order_relaxed)) act(tiles[t], workers_[slot]);
-  });
+bool GatherPass::over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters& counters) {
+  work.items = tiles.size();
+  work.threads = options_.threads;
+  const bool is_done = share(options_.crew, work, stop_);
   for (Worker& w : workers_) {
     counters += w.counters;
     w.counters = {};
   }
-  return !stop_.load();
+  return is_done && !stop_.load();
+}
+
+// Visits (x, y, record).
+template <class Visit>
+void GatherPass::records_of(const Tile& t, const Visit& visit) const {
+  for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
+    for (int x = t.pixels.x0; x < t.pixels.x1; ++x)
+      out_.of_pixel(x, y, [&](uint32_t r) { visit(x, y, r); });
+}
+
+// A value for every record, of(x, y, record), which looks at records around it, not at these
+// values.
+template <class T, class Of>
+bool GatherPass::for_records(std::vector<Tile>& tiles, Counters& counters, std::vector<T>& values,
+                             const Of& of) {
+  SharedWork work;
+  work.act = [&](size_t t, size_t) {
+    records_of(tiles[t], [&](int x, int y, uint32_t r) { values[r] = of(x, y, r); });
+    return true;
+  };
+  work.save = [&](size_t t, SharedWork::Bytes& out) {
+    records_of(tiles[t], [&](int, int, uint32_t r) { append(out, values[r]); });
+  };
+  work.load = [&](size_t t, ByteReader in) {
+    records_of(tiles[t], [&](int, int, uint32_t r) { values[r] = in.next<T>(); });
+  };
+  return over_tiles(tiles, std::move(work), counters);
+}
+
+bool GatherPass::see_all(std::vector<Tile>& tiles, Counters& counters) {
+  SharedWork work;
+  work.act = [&](size_t t, size_t slot) {
+    see(tiles[t], workers_[slot]);
+    return true;
+  };
+  work.save = [&](size_t t, SharedWork::Bytes& out) {
+    append_all(out, std::span<const GatherRecord>(tiles[t].records));
+    append_all(out, std::span<const uint16_t>(tiles[t].counts));
+  };
+  work.load = [&](size_t t, ByteReader in) {
+    tiles[t].records = next_all<GatherRecord>(in);
+    tiles[t].counts = next_all<uint16_t>(in);
+  };
+  return over_tiles(tiles, std::move(work), counters);
+}
+
+bool GatherPass::gather_further(std::vector<Tile>& tiles, Counters& counters) {
+  SharedWork work;
+  work.act = [&](size_t t, size_t slot) {
+    gather_further(tiles[t], workers_[slot]);
+    return true;
+  };
+  const auto wanting = [&](size_t t, const auto& visit) {
+    records_of(tiles[t], [&](int, int, uint32_t r) {
+      if (wanted_[r] > 0) visit(out_.records_[r]);
+    });
+  };
+  work.save = [&](size_t t, SharedWork::Bytes& out) {
+    wanting(t, [&](const GatherRecord& r) {
+      append(out, r.rays);
+      append(out, r.nearness);
+      append(out, r.matte);
+      append(out, r.gloss);
+    });
+  };
+  work.load = [&](size_t t, ByteReader in) {
+    wanting(t, [&](GatherRecord& r) {
+      r.rays = in.next<float>();
+      r.nearness = in.next<float>();
+      r.matte = in.next<GatherSums>();
+      r.gloss = in.next<GatherSums>();
+    });
+  };
+  return over_tiles(tiles, std::move(work), counters);
 }
 
 bool GatherPass::run(const std::function<void(double)>& progress, Counters& counters) {
@@ -89,41 +162,30 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
   const auto tell = [&](double share) {
     if (progress) progress(share);
   };
-  if (!over_tiles(tiles, counters, [&](Tile& t, Worker& worker) { see(t, worker); })) return false;
+  if (!see_all(tiles, counters)) return false;
   tell(0.3);
   join(tiles);
   wanted_.assign(out_.records_.size(), 0);
   usual_rays_.assign(out_.records_.size(), float(first_rays));
-  const auto of_all = [&](const Tile& t, const auto& act) {
-    for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
-      for (int x = t.pixels.x0; x < t.pixels.x1; ++x)
-        out_.of_pixel(x, y, [&](uint32_t r) { act(x, y, r); });
-  };
   beside_.resize(out_.records_.size());
-  if (!over_tiles(tiles, counters, [&](Tile& t, Worker&) {
-        of_all(t, [&](int x, int y, uint32_t r) { beside_[r] = is_beside(x, y, r); });
-      }))
+  if (!for_records(tiles, counters, beside_,
+                   [&](int x, int y, uint32_t r) { return uint8_t(is_beside(x, y, r)); }))
     return false;
-  if (!over_tiles(tiles, counters, [&](Tile& t, Worker&) {
-        of_all(t, [&](int x, int y, uint32_t r) {
-          wanted_[r] = further_rays(x, y, r, &GatherRecord::matte);
-          if (out_.records_[r].place.is_there())
-            wanted_[r] = std::max(wanted_[r], further_rays(x, y, r, &GatherRecord::gloss));
-        });
+  if (!for_records(tiles, counters, wanted_, [&](int x, int y, uint32_t r) {
+        const uint32_t matte = further_rays(x, y, r, &GatherRecord::matte);
+        if (!out_.records_[r].place.is_there()) return matte;
+        return std::max(matte, further_rays(x, y, r, &GatherRecord::gloss));
       }))
     return false;
   tell(0.4);
-  if (!over_tiles(tiles, counters, [&](Tile& t, Worker& worker) { gather_further(t, worker); }))
-    return false;
-  if (!over_tiles(tiles, counters, [&](Tile& t, Worker&) {
-        of_all(t, [&](int x, int y, uint32_t r) { usual_rays_[r] = usual_rays(x, y, r); });
-      }))
+  if (!gather_further(tiles, counters)) return false;
+  if (!for_records(tiles, counters, usual_rays_,
+                   [&](int x, int y, uint32_t r) { return usual_rays(x, y, r); }))
     return false;
   tell(0.8);
   out_.fitted_.resize(out_.records_.size());
-  return over_tiles(tiles, counters, [&](Tile& t, Worker&) {
-    of_all(t, [&](int x, int y, uint32_t r) { out_.fitted_[r] = fitted(x, y, r); });
-  });
+  return for_records(tiles, counters, out_.fitted_,
+                     [&](int x, int y, uint32_t r) { return fitted(x, y, r); });
 }
 
 // Through the middle of a pixel; spread: by how much the next pixel's ray is farther away, per

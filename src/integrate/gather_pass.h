@@ -59,8 +59,15 @@ class GatherPass {
   float own_rays(int x, int y, uint32_t r, Part part) const;
   FittedRecord fitted(int x, int y, uint32_t r) const;
   void gather_further(const Tile& tile, Worker& w);
-  template <class Do>
-  bool over_tiles(std::vector<Tile>& tiles, Counters& counters, const Do& act);
+  // work: all but how many tiles and threads there are.
+  bool over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters& counters);
+  bool see_all(std::vector<Tile>& tiles, Counters& counters);
+  bool gather_further(std::vector<Tile>& tiles, Counters& counters);
+  template <class Visit>
+  void records_of(const Tile& tile, const Visit& visit) const;
+  template <class T, class Of>
+  bool for_records(std::vector<Tile>& tiles, Counters& counters, std::vector<T>& values,
+                   const Of& of);
 
   const Cells& cells_;
   const PictureView& view_;

@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/crew.h"
 #include "integrate/cells.h"
 
 namespace troffer {
@@ -36,6 +36,7 @@ struct GatherOptions {
   double typical = 0;   // luminance of indirect light in the picture
   int threads = 0;
   uint64_t seed = 0;
+  Crew* crew = nullptr;  // others that make the same picture; may be null
 };
 
 // What rays bring, over them.

@@ -70,16 +70,17 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in, const 
     if (!in.cells->progress) return nullptr;
     return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
   };
-  std::unique_ptr<Cells> cells = make_cells(
-      in.scene, direct, in.cells->pilot,
-      {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error, most_cells},
-      in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
+  std::unique_ptr<Cells> cells =
+      make_cells(in.scene, direct, in.cells->pilot,
+                 {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error,
+                  most_cells, in.cells->crew},
+                 in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
   std::unique_ptr<GatherRecords> records;
   if (in.cells->view != nullptr) {
     const GatherOptions options{error_of_gather(in.settings.error), cells->statistics().typical,
-                                in.settings.threads, in.cells->seed};
+                                in.settings.threads, in.cells->seed, in.cells->crew};
     records = GatherRecords::make(*cells, *in.cells->view, options, part(0.4, 1), in.cells->stop,
                                   in.cells->counters);
     if (!records) return nullptr;

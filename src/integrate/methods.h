@@ -84,6 +84,7 @@ struct CellInput {
   Counters counters;
   CellStatistics statistics;
   CellStore* store = nullptr;  // make_cells
+  Crew* crew = nullptr;        // others that make the same; may be null
 };
 
 // What a method is made from. radiosity, cells: null where there is none; radiosity is copied.
