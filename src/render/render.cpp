@@ -170,7 +170,8 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
                   stop_,
                   {},
                   {},
-                  options_.cells};
+                  options_.cells,
+                  options_.crew};
   const MethodSettings settings = method_settings(options_);
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene_, options_.method, settings, preparation, &cells);

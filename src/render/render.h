@@ -18,6 +18,7 @@
 namespace troffer {
 
 class Checkpoint;
+class Crew;
 class Deadline;
 class Preview;
 
@@ -58,6 +59,10 @@ struct RenderOptions {
   double error_limit = 0;
   Checkpoint* checkpoint = nullptr;  // is written, and gone on from; may be null
   int part = 1, parts = 1;           // the part-th of so many shares of the picture, from 1
+  // Other processes that call render() for the same picture, all of them alike but for preview,
+  // deadline and checkpoint, which are rank 0's, as the result is: that of others is not whole. The
+  // stop flag of these must be the crew's. May be null.
+  Crew* crew = nullptr;
   // automatic: cells, or paths where these take less.
   Indirect indirect = Indirect::cells;
   int depth = -1;             // path: most bounces; -1 = unlimited

@@ -74,17 +74,19 @@ RenderEnd Rendering::run() {
   const bool wants_typical = options_.method.row().wants_typical;
   const auto typical = wants_typical ? float(typical_luminance()) : 0;
   for (Work& w : work_) w.radiance.typical = typical;
+  agree_on_limits();
   RenderEnd end = RenderEnd::complete;
-  for (uint32_t pass = 0; pass < steps_.first && end == RenderEnd::complete; ++pass) {
-    const int first = int(pass) * samples_per_batch;
-    const auto count = uint32_t(std::min(samples_per_batch, refining_.first_spp - first));
-    step(pass, all_tiles(), [&](const PixelRect& tile, Work& w) {
+  const uint32_t at_a_time = refining_.takes_turns ? 1 : steps_.first;
+  for (uint32_t pass = 0; pass < steps_.first && end == RenderEnd::complete; pass += at_a_time) {
+    step({pass, pass + at_a_time}, all_tiles(), [&](uint32_t n, const PixelRect& tile, Work& w) {
+      const int first = int(n) * samples_per_batch;
+      const auto count = uint32_t(std::min(samples_per_batch, refining_.first_spp - first));
       for (const Pixel2& p : pixels_in_order(tile)) add_rays(p, count, w);
       return trace_all(w);
     });
     if (progress_.was_stopped)
       end = RenderEnd::stopped;
-    else if (pass + 1 < steps_.all() && is_good_enough(pass, all_tiles()))
+    else if (pass + at_a_time < steps_.all() && is_good_enough(pass + at_a_time - 1, all_tiles()))
       end = RenderEnd::good_enough;
   }
   if (refining_.records && end == RenderEnd::complete) end = refine();
@@ -142,35 +144,46 @@ std::string Rendering::name_of_ray(const void* work, size_t i) {
          "), sample " + std::to_string(w.rays.samples[i]);
 }
 
-// Does step `number` of those of the tiles, in this order, that have not done it yet.
-void Rendering::step(uint32_t number, const Tiles& tiles, const Act& act) {
-  Tiles left;
-  for (const size_t t : tiles)
-    if (book_.steps(t) == number) left.push_back(t);
-  std::atomic<size_t> next = 0;
-  parallel_for_slots(left.size(), options_.threads, [&](size_t, size_t slot) {
-    if (stop_.load(std::memory_order_relaxed)) {
-      progress_.was_stopped = true;
-      return;
-    }
-    const size_t t = left[next.fetch_add(1)];
-    Work& w = work_[slot];
-    if (!w.scratch) w.scratch = integrator_.make_scratch();
-    w.rays.clear();
-    w.pixels.clear();
-    book_.begin(t, slot, [&](std::vector<uint8_t>& out) { save_tile(t, out); });
-    if (!act(plan_.tiles[t], w)) {
-      progress_.was_stopped = true;
-      return;
-    }
-    const CheckContext context(&w, w.rays.size(), name_of_ray);  // for who is told
-    book_.finish(slot, w.counters);
-    w.counters = {};
-    tell_progress(t, number);
-  });
+// Does these steps of those of the tiles, in this order, that have not done them yet.
+void Rendering::step(const StepSpan& steps, const Tiles& tiles, const Act& act) {
+  if (options_.crew != nullptr) return share_steps(steps, tiles, act);
+  for (uint32_t number = steps.first; number < steps.end; ++number) {
+    Tiles left;
+    for (const size_t t : tiles)
+      if (book_.steps(t) == number) left.push_back(t);
+    std::atomic<size_t> next = 0;
+    parallel_for_slots(left.size(), options_.threads, [&](size_t, size_t slot) {
+      do_step(number, left[next.fetch_add(1)], slot, act);
+    });
+    if (progress_.was_stopped) return;
+  }
 }
 
-// Of a tile that this thread has just been busy with.
+// False where it was stopped.
+bool Rendering::do_step(uint32_t number, size_t t, size_t slot, const Act& act) {
+  if (stop_.load(std::memory_order_relaxed)) {
+    progress_.was_stopped = true;
+    return false;
+  }
+  Work& w = work_[slot];
+  if (!w.scratch) w.scratch = integrator_.make_scratch();
+  w.rays.clear();
+  w.pixels.clear();
+  book_.begin(t, slot, [&](std::vector<uint8_t>& out) { save_tile(t, out); });
+  if (!act(number, plan_.tiles[t], w)) {
+    progress_.was_stopped = true;
+    return false;
+  }
+  const CheckContext context(&w, w.rays.size(), name_of_ray);  // for who is told
+  book_.finish(slot, w.counters);
+  w.counters = {};
+  if (!leads()) return true;
+  tell_progress(t, number);
+  save_in_time();
+  return true;
+}
+
+// Of a tile that no thread is busy with but this.
 void Rendering::tell_progress(size_t tile, uint32_t step) {
   const PixelRect& r = plan_.tiles[tile];
   if (options_.preview != nullptr) options_.preview->update(film_, r);
@@ -184,16 +197,19 @@ void Rendering::tell_progress(size_t tile, uint32_t step) {
     if (!is_glance) ++progress_.tiles_done;
     if (report_) report_(share_done());
   }
+}
+
+void Rendering::save_in_time() {
   if (options_.checkpoint != nullptr && options_.checkpoint->take_turn()) save();
 }
 
 // Whether the work may end after a step; later: tiles that would go on.
-bool Rendering::is_good_enough(uint32_t step, const Tiles& later) const {
+bool Rendering::is_good_enough(uint32_t step, const Tiles& later) {
   if (!(options_.error_limit > 0)) return false;
   // Whoever went on knew that it was not.
-  for (const size_t t : later)
-    if (book_.steps(t) > step + 1) return false;
-  return told_error() <= options_.error_limit;
+  bool has_gone_on = false;
+  for (const size_t t : later) has_gone_on |= book_.steps(t) > step + 1;
+  return agree(leads() && !has_gone_on && told_error() <= options_.error_limit);
 }
 
 Rendering::Tiles Rendering::all_tiles() const {

@@ -70,6 +70,7 @@ class Rendering {
     std::optional<double> typical;  // luminance
     std::optional<FurtherRays> wanted;
     bool has_begun = false;
+    bool takes_turns = true;  // a step of all tiles comes before the next: a limit may cut in
     bool can_glance = false;
   };
   // How many steps of a tile (tile_book.h) are passes over all of the picture, looks at what is
@@ -87,11 +88,16 @@ class Rendering {
   };
   using Tiles = std::vector<size_t>;
   // Does a step of a tile; false where it was stopped on the way.
-  using Act = std::function<bool(const PixelRect& tile, Work& work)>;
+  using Act = std::function<bool(uint32_t step, const PixelRect& tile, Work& work)>;
+  struct StepSpan {
+    uint32_t first = 0, end = 0;
+  };
 
   static std::string name_of_ray(const void* work, size_t i);
-  void step(uint32_t number, const Tiles& tiles, const Act& act);
-  bool is_good_enough(uint32_t step, const Tiles& later) const;
+  void step(const StepSpan& steps, const Tiles& tiles, const Act& act);
+  bool do_step(uint32_t number, size_t tile, size_t slot, const Act& act);
+  bool is_good_enough(uint32_t step, const Tiles& later);
+  bool is_limited() const { return options_.deadline != nullptr || options_.error_limit > 0; }
   void add_rays(const Pixel2& p, uint32_t count, Work& w) const;
   void trace(Work& w);
   bool trace_all(Work& w);
@@ -109,6 +115,18 @@ class Rendering {
   double typical_luminance();  // looked at once
   double mean_luminance(const PixelRect& window) const;
   void tell_progress(size_t tile, uint32_t step);
+  void save_in_time();
+  // With a crew (rendering_crew.cpp).
+  bool leads() const;
+  void agree_on_limits();
+  bool agree(bool value);
+  void share_steps(const StepSpan& steps, const Tiles& tiles, const Act& act);
+  void save_for_crew(size_t tile, std::vector<uint8_t>& out) const;
+  void load_from_crew(size_t tile, ByteReader& in);
+  void take_over(size_t tile, ByteReader in);
+  void brief(size_t tile, std::vector<uint8_t>& out) const;
+  void take_brief(size_t tile, ByteReader in);
+  void share_records();
   void save_tile(size_t tile, std::vector<uint8_t>& out) const;
   void save();
   void restore();

@@ -19,7 +19,11 @@ constexpr size_t looks = 32;
 // Further rays, as many as the first pass has called for, in passes that fit a batch.
 RenderEnd Rendering::refine() {
   const bool is_same_in_crops = options_.method.row().is_same_in_crops;
-  if (!refining_.wanted)
+  if (!leads())  // told tile by tile
+    refining_.wanted.emplace(
+        FurtherRays{std::vector<int>(refining_.records->records.size(), refining_.first_spp),
+                    std::vector<int>(refining_.records->records.size(), 0)});
+  else if (!refining_.wanted)
     refining_.wanted =
         further_rays(is_same_in_crops ? typical_luminance() : mean_luminance(plan_.asked));
   refining_.has_begun = true;
@@ -27,11 +31,13 @@ RenderEnd Rendering::refine() {
 }
 
 RenderEnd Rendering::refine_by_passes() {
+  if (options_.crew != nullptr) share_records();
   const PixelRecords& records = *refining_.records;
-  for (uint32_t pass = 0; pass < steps_.further; ++pass) {
-    const int first = refining_.first_spp + int(pass) * samples_per_batch;
-    const uint32_t number = steps_.first + pass;
-    step(number, all_tiles(), [&](const PixelRect& tile, Work& w) {
+  const uint32_t at_a_time = refining_.takes_turns ? 1 : steps_.further;
+  for (uint32_t pass = 0; pass < steps_.further; pass += at_a_time) {
+    const uint32_t begin = steps_.first + pass, end = begin + at_a_time;
+    step({begin, end}, all_tiles(), [&](uint32_t number, const PixelRect& tile, Work& w) {
+      const int first = refining_.first_spp + int(number - steps_.first) * samples_per_batch;
       for (const Pixel2& p : pixels_in_order(tile)) {
         const int count =
             std::min(samples_per_batch, refining_.wanted->samples[records.index(p.x, p.y)] - first);
@@ -42,7 +48,7 @@ RenderEnd Rendering::refine_by_passes() {
       return trace_all(w);
     });
     if (progress_.was_stopped) return RenderEnd::stopped;
-    if (pass + 1 < steps_.further && is_good_enough(number, all_tiles()))
+    if (pass + at_a_time < steps_.further && is_good_enough(end - 1, all_tiles()))
       return RenderEnd::good_enough;
   }
   return RenderEnd::complete;
@@ -51,18 +57,23 @@ RenderEnd Rendering::refine_by_passes() {
 // All further rays of a tile at once: few pixels may get many.
 RenderEnd Rendering::refine_by_tiles() {
   const uint32_t further = steps_.first + steps_.glances;
-  const auto glance_at = [&](const PixelRect& tile, Work& w) { return glance(tile, w); };
-  const auto refine_tile = [&](const PixelRect& tile, Work& w) { return refine(tile, w); };
-  if (steps_.glances > 0) step(steps_.first, all_tiles(), glance_at);
-  const bool is_limited = options_.deadline != nullptr || options_.error_limit > 0;
-  Tiles left = is_limited ? noisiest_first() : all_tiles();
+  const auto act = [&](uint32_t number, const PixelRect& tile, Work& w) {
+    return number < further ? glance(tile, w) : refine(tile, w);
+  };
+  if (!refining_.takes_turns) {
+    // What takes longest is not to be begun last.
+    step({steps_.first, steps_.all()}, leads() ? noisiest_first() : all_tiles(), act);
+    return progress_.was_stopped ? RenderEnd::stopped : RenderEnd::complete;
+  }
+  if (steps_.glances > 0) step({steps_.first, further}, all_tiles(), act);
+  Tiles left = is_limited() && leads() ? noisiest_first() : all_tiles();
   const size_t parts = options_.error_limit > 0 ? std::min(looks, left.size()) : 1;
   const size_t in_all = left.size();
   for (size_t part = 0; part < parts; ++part) {
     if (progress_.was_stopped) return RenderEnd::stopped;
     if (is_good_enough(further - 1, left)) return RenderEnd::good_enough;
     const auto end = std::ptrdiff_t(in_all * (part + 1) / parts - (in_all - left.size()));
-    step(further, Tiles(left.begin(), left.begin() + end), refine_tile);
+    step({further, further + 1}, Tiles(left.begin(), left.begin() + end), act);
     left.erase(left.begin(), left.begin() + end);
   }
   return progress_.was_stopped ? RenderEnd::stopped : RenderEnd::complete;

@@ -28,6 +28,12 @@ void TileBook::finish(size_t slot, const Counters& counters) {
   busy_[slot].tile = none;
 }
 
+void TileBook::replace(size_t tile, const State& state, const std::function<void()>& load) {
+  const std::lock_guard lock(mutex_);
+  load();
+  states_[tile] = state;
+}
+
 // While the lock is held nobody begins to change a tile.
 TileBook::State TileBook::snapshot(size_t tile, const Pixels& pixels,
                                    std::vector<uint8_t>& out) const {

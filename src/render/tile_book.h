@@ -28,6 +28,7 @@ class TileBook {
 
   size_t size() const { return states_.size(); }
   uint32_t steps(size_t tile) const { return states_[tile].steps; }
+  const State& state(size_t tile) const { return states_[tile]; }
   Counters counters() const;  // of all that is done
 
   // The thread of this slot is about to change the tile's pixels …
@@ -35,8 +36,10 @@ class TileBook {
   // … and has done its next step, with so much work.
   void finish(size_t slot, const Counters& counters);
 
-  // For who goes on with what another has begun. Before any begin().
+  // For who goes on with what another has begun; while no thread is busy with the tile.
   void restore(size_t tile, const State& state) { states_[tile] = state; }
+  // The same while others are at work: load() is to make its pixels what they are then.
+  void replace(size_t tile, const State& state, const std::function<void()>& load);
   // A tile as it was when it had last done a step, its pixels added to `out`. By any thread.
   State snapshot(size_t tile, const Pixels& pixels, std::vector<uint8_t>& out) const;
 
