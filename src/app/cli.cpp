@@ -272,7 +272,7 @@ int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& 
   return run_render(std::move(render));
 }
 
-int parse_and_run(int argc, const char* const* argv) {
+int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   CLI::App app{"troffer lights rooms: images and lighting figures of interiors."};
   app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
   app.require_subcommand(1);
@@ -299,13 +299,15 @@ int parse_and_run(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) {  // --help, --version
-      app.exit(e);
+      if (crew == nullptr || crew->leads()) app.exit(e);
       return exit_done;
     }
     throw UsageError(e.what());
   }
+  render.options.crew = crew;
   if (app.got_subcommand("render"))
     return check_and_run(*app.get_subcommand("render"), render, render_raw);
+  if (crew != nullptr && !crew->leads()) return exit_done;  // all else is for one
   if (app.got_subcommand("compare")) return run_compare(compare);
   if (app.got_subcommand("measure")) {
     if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
@@ -338,29 +340,37 @@ int report(const char* text, int status) {
   return status;
 }
 
+// The process that leads tells the user, and ends with that status; another leaves the work to the
+// rest: a status of its own would end them too.
+int report(const char* text, int status, Crew* crew) {
+  if (crew == nullptr || crew->leads()) return report(text, status);
+  crew->leave(text);
+  return exit_done;
+}
+
 }  // namespace
 
-int run(int argc, const char* const* argv) {
+int run(int argc, const char* const* argv, Crew* crew) {
   std::string command;
   for (int i = 0; i < argc; ++i) command += (i > 0 ? " " : "") + std::string(argv[i]);
   set_check_command(command);
   exit_on_stop_signals();
   try {
-    const int status = parse_and_run(argc, argv);
+    const int status = parse_and_run(argc, argv, crew);
     // What was printed may still wait in the buffer: a full disk shows here.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw EnvironmentError("cannot write to standard output");
     return status;
   } catch (const UsageError& e) {
-    return report(e.what(), exit_usage);
+    return report(e.what(), exit_usage, crew);
   } catch (const InputError& e) {
-    return report(e.what(), exit_bad_input);
+    return report(e.what(), exit_bad_input, crew);
   } catch (const EnvironmentError& e) {
-    return report(e.what(), exit_bad_input);
+    return report(e.what(), exit_bad_input, crew);
   } catch (const std::bad_alloc&) {
-    return report("out of memory", exit_bad_input);
+    return report("out of memory", exit_bad_input, crew);
   } catch (const std::exception& e) {  // threads, the file system, text formatting
-    return report(e.what(), exit_bad_input);
+    return report(e.what(), exit_bad_input, crew);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "base/crew.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
 #include "render/camera.h"
@@ -85,6 +86,7 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result, 
   j["width"] = s.width;
   j["height"] = s.height;
   j["threads"] = thread_count(c.options.threads);
+  if (c.options.crew != nullptr) j["processes"] = c.options.crew->size();
   j["viewing_rays"] = n.viewing_rays;
   j["glances"] = n.glances;
   j["shadow_rays"] = n.shadow_rays;
@@ -136,6 +138,7 @@ std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
   c.options.indirect = indirect_with(c.solution, c.options.method, c.options.indirect);
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
+  if (c.options.crew != nullptr && !c.options.crew->leads()) return {};
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   // Shares leave the cells as they are for each other.
   if (c.options.parts == 1)
@@ -223,10 +226,31 @@ void write_outputs(const RenderCommand& c, const RenderResult& result, const Cam
   }
 }
 
+// What is seen of the picture, and kept, is the leading process's.
+void join(RenderCommand& c, Crew& crew) {
+  if (c.options.threads == 0) c.options.threads = crew.usual_threads();
+  if (crew.leads()) return;
+  c.is_quiet = true;
+  c.has_preview = false;
+  c.stats.clear();
+  c.lasting.checkpoint.clear();
+  c.lasting.time_limit = 0;
+}
+
+const StopFlag& stop_flag_of(Crew* crew) {
+  const StopFlag& asked = install_stop_handlers();
+  if (crew == nullptr) return asked;
+  stop_on_user_signal();
+  crew->watch(asked);
+  return crew->stop_flag();
+}
+
 }  // namespace
 
 int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
+  Crew* crew = c.options.crew;
+  if (crew != nullptr) join(c, *crew);
   const std::vector<OutputReservation> reserved = check_and_reserve(c);
 
   Seconds seconds;
@@ -249,14 +273,16 @@ int run_render(RenderCommand c) {
     c.options.kj92.selection.is_restricted = true;
     c.options.kj92.selection.only = lights_named(scene.scene, c.selected_lights);
   }
-  LastingRun lasting(c, start, install_stop_handlers());
+  LastingRun lasting(c, start, stop_flag_of(crew));
   lasting.begin(scene.scene, camera);
   const StopFlag& stop = lasting.stop();
   if (c.has_preview) {
     preview.look(scene, camera, c.options, stop);
     c.options.preview = &preview;
   }
+  lasting.agree();
   const auto [result, cells] = prepare_and_render(scene, camera, c, stop, seconds);
+  if (crew != nullptr && !crew->leads()) return exit_done;
   mark = Clock::now();
   write_outputs(c, result, camera, lasting, files);
   lasting.finish(result);

@@ -20,6 +20,8 @@ class App;
 
 namespace troffer {
 
+class Crew;
+
 constexpr int exit_done = 0;
 constexpr int exit_bad_input = 1;
 constexpr int exit_usage = 2;
@@ -163,6 +165,6 @@ std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method m
                                             const StopFlag& stop);
 
 // Parses the command line and runs it: the whole program but main.
-int run(int argc, const char* const* argv);
+int run(int argc, const char* const* argv, Crew* crew = nullptr);
 
 }  // namespace troffer

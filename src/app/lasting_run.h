@@ -28,6 +28,9 @@ class LastingRun {
   // Once all else of the command's options is settled: sets what they have of all this. Reads the
   // checkpoint: InputError where it cannot be gone on from.
   void begin(const Scene& scene, const Camera& camera);
+  // Makes sure that all of RenderOptions::crew make the same picture: EnvironmentError where this
+  // process would make another than rank 0.
+  void agree() const;
   // For the file of a share; empty where it is all of the picture.
   std::string note(const RenderResult& result, const Camera& camera) const;
   // Outputs are written: a checkpoint of a whole picture goes. Throws EnvironmentError where there

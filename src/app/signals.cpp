@@ -47,4 +47,11 @@ const StopFlag& install_stop_handlers() {
   return stop_requested;
 }
 
+void stop_on_user_signal() {
+  struct sigaction action = {};
+  action.sa_handler = on_stop_signal;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGUSR1, &action, nullptr);
+}
+
 }  // namespace troffer

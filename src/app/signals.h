@@ -12,5 +12,7 @@ void exit_on_stop_signals();
 
 // Installs the handlers and returns the flag that they set.
 const StopFlag& install_stop_handlers();
+// SIGUSR1 asks for the same: mpirun hands it on and lets the work end as it will.
+void stop_on_user_signal();
 
 }  // namespace troffer

@@ -120,7 +120,8 @@ TEST_CASE("one door per dependency") {
       {"png.h", {"image"}},     {"jpeglib.h", {"image"}},
       {"CLI/", {"app"}},        {"nlohmann/", {"import", "export", "report", "view", "app"}},
       {"pugixml", {"import"}},  {"zlib.h", {"import"}},
-      {"microhttpd", {"view"}}, {"pybind11/", {"python"}}};
+      {"microhttpd", {"view"}}, {"pybind11/", {"python"}},
+      {"mpi.h", {"mpi"}}};
   const Layers layers = read_layers();
   for (const std::string& room : layers.order)
     for (const fs::path& file : files_of(room))

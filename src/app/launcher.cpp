@@ -1,0 +1,48 @@
+#include "app/launcher.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "app/commands.h"
+
+namespace troffer {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+int number_in(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr ? std::atoi(value) : 0;
+}
+
+// Open MPI's mpirun; Slurm's srun and others that speak PMIx, which say no size.
+bool is_one_of_several() {
+  return number_in("OMPI_COMM_WORLD_SIZE") > 1 || number_in("PMI_SIZE") > 1 ||
+         (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr && std::getenv("PMIX_RANK") != nullptr);
+}
+
+}  // namespace
+
+int hand_over_to_mpi(int argc, char** argv) {
+  if (argc < 2 || std::strcmp(argv[1], "render") != 0 || !is_one_of_several()) return 0;
+  std::error_code error;
+  const fs::path other = fs::read_symlink("/proc/self/exe", error).parent_path() / "troffer-mpi";
+  execv(other.c_str(), argv);
+  const bool is_first =
+      number_in("OMPI_COMM_WORLD_RANK") + number_in("PMI_RANK") + number_in("PMIX_RANK") == 0;
+  if (is_first)
+    fmt::print(
+        stderr,
+        "error: mpirun has started this program several times, but it was built without MPI: "
+        "there is no {} (--part shares a picture out without MPI)\n",
+        other.string());
+  return exit_usage;
+}
+
+}  // namespace troffer

@@ -1,0 +1,189 @@
+#include "mpi/follower.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "mpi/journal.h"
+#include "mpi/tree.h"
+
+namespace troffer {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto ask_interval = 3s;  // for results that have not come
+
+}  // namespace
+
+Follower::Follower(Post& post, int usual_threads, double patience, std::function<void()> forsaken)
+    : rank_(post.rank()),
+      size_(post.size()),
+      usual_threads_(usual_threads),
+      patience_(patience),
+      forsaken_(std::move(forsaken)),
+      courier_(
+          post, [this](Letter&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
+
+// Others may need it to pass on what they are to know.
+Follower::~Follower() {
+  {
+    std::unique_lock lock(mutex_);
+    news_.wait(lock, [&] { return talk_.is_over; });
+  }
+  courier_.end();
+}
+
+void Follower::leave(const std::string& why) {
+  const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(why.data()), why.size());
+  courier_.send(0, letter({LetterKind::left, 0, 0, 0}, bytes));
+}
+
+void Follower::receive(Letter&& l) {
+  const LetterHeader h = header_of(l);
+  const std::lock_guard lock(mutex_);
+  talk_.heard_at = Clock::now();
+  switch (h.kind) {
+    case LetterKind::lease:
+      if (h.job == number_) leases_.push_back(std::move(l));
+      break;
+    case LetterKind::result:
+    case LetterKind::repeat:
+      on_result(l, h);
+      break;
+    case LetterKind::end:
+      talk_.is_over = true;
+      stop_ = true;
+      break;
+    case LetterKind::stop:
+      stop_ = true;
+      break;
+    default:
+      break;
+  }
+  news_.notify_all();
+}
+
+void Follower::on_result(const Letter& l, const LetterHeader& h) {
+  if (h.kind == LetterKind::result) {
+    const Post::Bytes same = std::make_shared<const std::vector<uint8_t>>(l.bytes);
+    for (const int child : children_of(rank_, size_)) courier_.send(child, same);
+  }
+  if (h.job < number_) return;  // told before
+  Results& r = results_[h.job];
+  if (r.pieces.empty()) {
+    r.pieces.resize(h.count);
+    r.missing = h.count;
+  }
+  if (h.item >= r.pieces.size() || r.pieces[h.item]) return;
+  r.pieces[h.item].emplace(rest_of(l).begin(), rest_of(l).end());
+  --r.missing;
+}
+
+void Follower::tick() {
+  const std::lock_guard lock(mutex_);
+  const StopFlag* asked = asked_.load();
+  if (asked != nullptr && asked->load() && !talk_.has_halted) {
+    talk_.has_halted = true;
+    courier_.send(0, letter({LetterKind::halt, 0, 0, 0}));
+  }
+  const Clock::time_point now = Clock::now();
+  if (talk_.is_waiting && now - talk_.asked_at > ask_interval) {
+    talk_.asked_at = now;
+    courier_.send(0, letter({LetterKind::ask, 0, number_, 0}));
+  }
+  if (!talk_.is_over && std::chrono::duration<double>(now - talk_.heard_at).count() > patience_)
+    forsaken_();
+}
+
+void Follower::begin(uint32_t items_wanted) {
+  const std::lock_guard lock(mutex_);
+  ++number_;
+  leases_.clear();
+  results_.erase(results_.begin(), results_.lower_bound(number_));
+  talk_.asked_at = Clock::now();
+  courier_.send(0, letter({LetterKind::want, items_wanted, number_, 0}));
+}
+
+// With the lock held.
+bool Follower::has_results() const {
+  const auto r = results_.find(number_);
+  return r != results_.end() && r->second.missing == 0;
+}
+
+// What has been done counts, even if work is to end.
+bool Follower::is_through() {
+  const std::lock_guard lock(mutex_);
+  return has_results();
+}
+
+// Waits for one; none once the job is over.
+std::optional<Letter> Follower::next_lease(const StopFlag& stop) {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    if (has_results() || stop_.load() || stop.load()) return std::nullopt;
+    if (!leases_.empty()) {
+      Letter lease = std::move(leases_.front());
+      leases_.pop_front();
+      return lease;
+    }
+    talk_.is_waiting = true;
+    news_.wait_for(lock, 100ms);
+    talk_.is_waiting = false;
+  }
+}
+
+// One thread.
+void Follower::work_on(const SharedWork& work, size_t slot, const StopFlag& stop) {
+  while (const std::optional<Letter> lease = next_lease(stop)) {
+    LetterHeader h = header_of(*lease);
+    if (work.take_brief) work.take_brief(h.item, ByteReader(rest_of(*lease)));
+    const double start = thread_seconds();
+    if (!work.act(h.item, slot)) return;
+    h.count = std::bit_cast<uint32_t>(float(thread_seconds() - start));
+    SharedWork::Bytes result;
+    work.save(h.item, result);
+    h.kind = LetterKind::done;
+    courier_.send(0, letter(h, result));
+  }
+}
+
+bool Follower::share(const SharedWork& work, const StopFlag& stop) {
+  const auto threads = size_t(thread_count(work.threads));
+  // Some are there before they are needed.
+  begin(work.items > 0 ? uint32_t(threads + (threads + 1) / 2) : 0);
+  parallel_for_slots(threads, int(threads),
+                     [&](size_t, size_t slot) { work_on(work, slot, stop); });
+  if (!is_through()) return false;
+  if (!work.is_for_all) return true;
+  const SharedWork::Bytes all = joined_results();
+  ByteReader in(all);
+  while (in.left() > 0) {
+    const auto item = in.next<uint64_t>();
+    const std::vector<uint8_t> bytes = next_all<uint8_t>(in);
+    work.load(item, ByteReader(bytes));
+  }
+  return true;
+}
+
+bool Follower::tell(SharedWork::Bytes& bytes, const StopFlag& stop) {
+  begin(0);
+  while (next_lease(stop)) {
+  }
+  if (!is_through()) return false;
+  bytes = joined_results();
+  return true;
+}
+
+SharedWork::Bytes Follower::joined_results() {
+  const std::lock_guard lock(mutex_);
+  Results& r = results_[number_];
+  SharedWork::Bytes all;
+  for (std::optional<SharedWork::Bytes>& piece : r.pieces) {
+    all.insert(all.end(), piece->begin(), piece->end());
+    piece.reset();
+  }
+  return all;
+}
+
+}  // namespace troffer

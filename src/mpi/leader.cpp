@@ -1,0 +1,357 @@
+#include "mpi/leader.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "mpi/letters.h"
+#include "mpi/tree.h"
+
+namespace troffer {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr size_t piece_size = size_t(8) << 20;
+constexpr auto alive_interval = 10s;
+// An item is late after so many times what others took, and not before.
+constexpr double late_by = 4, least_late = 0.25;  // seconds
+constexpr auto late_interval = 10ms;
+constexpr double first_late = 10;   // … where none has come back yet
+constexpr auto time_for_tree = 2s;  // before somebody is told directly
+
+}  // namespace
+
+Leader::Leader(Post& post, int usual_threads, Warn warn, std::unique_ptr<Journal> journal)
+    : size_(post.size()),
+      usual_threads_(usual_threads),
+      warn_(std::move(warn)),
+      journal_(std::move(journal)),
+      others_(size_t(post.size())),
+      courier_(
+          post, [this](Letter&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
+
+Leader::~Leader() {
+  JobRecord rest;
+  rest.seconds_before = thread_seconds() - last_end_;
+  write_down(std::move(rest), 0);
+  stop_ = true;
+  send_all({LetterKind::end, 0, 0, 0});
+  courier_.end();
+}
+
+void Leader::send_all(const LetterHeader& header) {
+  const Post::Bytes bytes = letter(header);
+  for (int r = 1; r < size_; ++r) courier_.send(r, bytes);
+}
+
+void Leader::receive(Letter&& l) {
+  const LetterHeader h = header_of(l);
+  if (h.kind == LetterKind::done) return on_done(l, h);
+  const std::lock_guard lock(mutex_);
+  const auto from = size_t(l.from);
+  switch (h.kind) {
+    case LetterKind::want:
+      others_.entered[from] = std::max(others_.entered[from], h.job);
+      if (job_ && h.job == number_)
+        wanting_.insert(wanting_.end(), h.count, l.from);
+      else if (h.job > number_)
+        others_.early[from] = h.count;
+      break;
+    case LetterKind::ask:
+      on_ask(l.from, h.job);
+      break;
+    case LetterKind::left: {
+      const std::span<const uint8_t> why = rest_of(l);
+      others_.last_words[from].assign(why.begin(), why.end());
+      others_.is_gone[from] = true;
+      break;
+    }
+    case LetterKind::halt:
+      stop_ = true;
+      break;
+    default:
+      break;
+  }
+  news_.notify_all();
+}
+
+// The first answer counts. Others work on meanwhile.
+void Leader::on_done(const Letter& l, const LetterHeader& h) {
+  const SharedWork* work = nullptr;
+  double start = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    start = thread_seconds();
+    if (!job_ || h.job != number_ || h.item >= job_->items.size()) return;
+    wanting_.push_back(l.from);
+    Item& item = job_->items[h.item];
+    if (item.is_done || item.is_mine) return;
+    item.is_done = true;
+    job_->seconds += std::chrono::duration<double>(Clock::now() - item.leased_at).count();
+    ++job_->answers;
+    job_->record.item_seconds[h.item] = std::bit_cast<float>(h.count);
+    job_->record.answer_bytes += l.bytes.size();
+    job_->is_loading = true;
+    work = job_->work;
+  }
+  work->load(h.item, ByteReader(rest_of(l)));
+  const std::lock_guard lock(mutex_);
+  if (work->is_for_all) job_->results[h.item].assign(rest_of(l).begin(), rest_of(l).end());
+  job_->is_loading = false;
+  ++job_->done;
+  job_->record.letter_seconds += thread_seconds() - start;
+  ++job_->record.letters;
+  news_.notify_all();
+}
+
+// With the lock held.
+void Leader::on_ask(int from, uint64_t job) {
+  const auto t = told_.find(job);
+  if (t == told_.end() || Clock::now() - t->second.at < time_for_tree) return;
+  if (t->second.repeated[size_t(from)]) return;
+  t->second.repeated[size_t(from)] = true;
+  const std::vector<Post::Bytes>& pieces = t->second.pieces;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const LetterHeader h{LetterKind::repeat, uint32_t(pieces.size()), job, i};
+    courier_.send(from, letter(h, std::span(*pieces[i]).subspan(sizeof(LetterHeader))));
+  }
+}
+
+void Leader::tick() {
+  if (const StopFlag* asked = asked_.load(); asked != nullptr && asked->load()) stop_ = true;
+  const std::lock_guard lock(mutex_);
+  if (stop_.load()) is_ending_ = true;
+  if (is_ending_.load() && !said_.has_stopped) {
+    said_.has_stopped = true;
+    send_all({LetterKind::stop, 0, 0, 0});
+    news_.notify_all();
+  }
+  if (Clock::now() - said_.last_alive > alive_interval) {
+    said_.last_alive = Clock::now();
+    send_all({LetterKind::alive, 0, 0, 0});
+  }
+  if (job_ && !is_ending_.load()) hand_out();
+}
+
+// With the lock held, as all that follows up to work_on().
+void Leader::hand_out() {
+  for (size_t left = wanting_.size(); left > 0; --left) {
+    const int to = wanting_.front();
+    const std::optional<size_t> item = next_item(to);
+    wanting_.pop_front();
+    if (!item) {
+      wanting_.push_back(to);
+      continue;
+    }
+    const double start = thread_seconds();
+    SharedWork::Bytes brief;
+    if (job_->work->brief) job_->work->brief(*item, brief);
+    courier_.send(to, letter({LetterKind::lease, 0, number_, *item}, brief));
+    job_->record.brief_bytes += sizeof(LetterHeader) + brief.size();
+    job_->record.letter_seconds += thread_seconds() - start;
+  }
+}
+
+// For a process to do; it counts as having it.
+std::optional<size_t> Leader::next_item(int rank) {
+  if (others_.is_gone[size_t(rank)]) return std::nullopt;
+  Job& j = *job_;
+  std::optional<size_t> found;
+  if (j.next < j.order.size())
+    found = j.order[j.next++];
+  else
+    found = late_item(rank);
+  if (!found) return found;
+  Item& item = j.items[*found];
+  ++item.leases;
+  item.holder = rank;
+  item.leased_at = Clock::now();
+  item.is_mine = rank == 0;
+  return found;
+}
+
+// One that somebody else should have done by now.
+std::optional<size_t> Leader::late_item(int rank) {
+  Job& j = *job_;
+  if (j.done == j.order.size()) return std::nullopt;
+  if (j.late.empty()) look_for_late();
+  if (j.late.empty() || j.items[j.late.front()].holder == rank) return std::nullopt;
+  const size_t found = j.late.front();
+  j.late.pop_front();
+  if (j.items[found].is_done || j.items[found].is_mine) return std::nullopt;
+  return found;
+}
+
+void Leader::look_for_late() {
+  Job& j = *job_;
+  const Clock::time_point now = Clock::now();
+  if (now - j.late_at < late_interval) return;
+  j.late_at = now;
+  const double usual =
+      j.answers == 0 ? first_late : std::max(late_by * j.seconds / double(j.answers), least_late);
+  for (const size_t i : j.order) {
+    const Item& item = j.items[i];
+    if (item.is_done || item.is_mine) continue;
+    // Each time longer.
+    const double allowed = usual * double(1 << std::min(item.leases - 1, 10));
+    if (others_.is_gone[size_t(item.holder)] ||
+        std::chrono::duration<double>(now - item.leased_at).count() > allowed)
+      j.late.push_back(i);
+  }
+}
+
+void Leader::begin(const SharedWork& work) {
+  const std::lock_guard lock(mutex_);
+  ++number_;
+  job_.emplace();
+  job_->work = &work;
+  job_->order = work.order;
+  if (!work.has_order)
+    for (size_t i = 0; i < work.items; ++i) job_->order.push_back(i);
+  job_->items.resize(work.items);
+  if (work.is_for_all) job_->results.resize(work.items);
+  job_->record.items = job_->order.size();
+  job_->record.is_for_all = work.is_for_all;
+  job_->record.item_seconds.resize(work.items);
+  job_->record.seconds_before = thread_seconds() - last_end_;
+  wanting_.clear();
+  for (int r = 1; r < size_; ++r)
+    if (others_.entered[size_t(r)] == number_)
+      wanting_.insert(wanting_.end(), others_.early[size_t(r)], r);
+  warn_of_gone();
+}
+
+// By words of its own: what all say, rank 0 has said by now.
+void Leader::warn_of_gone() {
+  for (size_t r = 1; r < others_.last_words.size(); ++r) {
+    std::string& words = others_.last_words[r];
+    if (!words.empty() && warn_) warn_("process " + std::to_string(r) + " does no work: " + words);
+    words.clear();
+  }
+}
+
+// One thread of this process. False where it was broken off.
+bool Leader::work_on(size_t slot, const StopFlag& stop) {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    Job& j = *job_;
+    if (stop.load() || is_ending_.load()) j.is_broken_off = true;
+    if (j.is_broken_off || j.done == j.order.size()) return !j.is_broken_off;
+    const std::optional<size_t> item = next_item(0);
+    if (!item) {
+      news_.wait_for(lock, 2ms);
+      continue;
+    }
+    lock.unlock();
+    SharedWork::Bytes result;
+    const double start = thread_seconds();
+    const bool is_done = j.work->act(*item, slot);
+    const auto seconds = float(thread_seconds() - start);
+    if (is_done && j.work->is_for_all) j.work->save(*item, result);
+    lock.lock();
+    if (!is_done) {
+      j.is_broken_off = true;
+      continue;
+    }
+    j.items[*item].is_done = true;
+    j.record.item_seconds[*item] = seconds;
+    if (j.work->is_for_all) j.results[*item] = std::move(result);
+    ++j.done;
+    news_.notify_all();
+  }
+}
+
+bool Leader::share(const SharedWork& work, const StopFlag& stop) {
+  begin(work);
+  struct Closing {  // whatever is thrown
+    Leader& l;
+    ~Closing() {
+      std::unique_lock lock(l.mutex_);
+      l.news_.wait(lock, [&] { return !l.job_->is_loading; });
+      l.job_.reset();
+    }
+  };
+  SharedWork::Bytes all;
+  JobRecord record;
+  bool is_broken_off = false;
+  {
+    const Closing closing{*this};
+    const auto threads = size_t(thread_count(work.threads));
+    parallel_for_slots(threads, int(threads), [&](size_t, size_t slot) { work_on(slot, stop); });
+    const std::lock_guard lock(mutex_);
+    is_broken_off = job_->is_broken_off;
+    if (!is_broken_off && work.is_for_all) all = joined_results();
+    job_->record.wall_seconds = std::chrono::duration<double>(Clock::now() - job_->begun).count();
+    record = std::move(job_->record);
+  }
+  if (is_broken_off) {
+    is_ending_ = true;
+    return false;
+  }
+  publish(all);
+  write_down(std::move(record), all.size());
+  return true;
+}
+
+void Leader::write_down(JobRecord record, size_t told_bytes) {
+  record.told_bytes = told_bytes;
+  if (journal_) journal_->add(record);
+  last_end_ = thread_seconds();
+}
+
+bool Leader::tell(SharedWork::Bytes& bytes, const StopFlag& stop) {
+  {
+    const std::lock_guard lock(mutex_);
+    ++number_;
+    warn_of_gone();
+  }
+  if (stop.load() || stop_.load()) is_ending_ = true;
+  if (is_ending_.load()) return false;
+  JobRecord record;
+  record.is_for_all = true;
+  record.seconds_before = thread_seconds() - last_end_;
+  publish(bytes);
+  write_down(std::move(record), bytes.size());
+  return true;
+}
+
+SharedWork::Bytes Leader::joined_results() {
+  SharedWork::Bytes all;
+  size_t size = 0;
+  for (const SharedWork::Bytes& r : job_->results) size += r.size() + 16;
+  all.reserve(size);
+  for (size_t i = 0; i < job_->results.size(); ++i) {
+    append(all, uint64_t(i));
+    append_all(all, std::span<const uint8_t>(job_->results[i]));
+    job_->results[i] = {};
+  }
+  return all;
+}
+
+// To all, in pieces, each of which goes on as soon as it has come.
+void Leader::publish(const SharedWork::Bytes& bytes) {
+  const std::lock_guard lock(mutex_);
+  Told& told = told_[number_];
+  told.at = Clock::now();
+  told.repeated.resize(size_t(size_));
+  const size_t count = std::max<size_t>(1, (bytes.size() + piece_size - 1) / piece_size);
+  for (size_t i = 0; i < count; ++i) {
+    const size_t first = i * piece_size;
+    const LetterHeader h{LetterKind::result, uint32_t(count), number_, i};
+    told.pieces.push_back(
+        letter(h, std::span(bytes).subspan(first, std::min(piece_size, bytes.size() - first))));
+    for (const int child : children_of(0, size_)) courier_.send(child, told.pieces.back());
+  }
+  forget_told();
+}
+
+// What everybody has: who is at a later job.
+void Leader::forget_told() {
+  uint64_t first = number_;
+  for (size_t r = 1; r < others_.entered.size(); ++r)
+    if (!others_.is_gone[r]) first = std::min(first, others_.entered[r]);
+  told_.erase(told_.begin(), told_.lower_bound(first));
+}
+
+}  // namespace troffer

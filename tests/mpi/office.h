@@ -1,0 +1,85 @@
+// Processes that are threads, and letters between them: what leads and follows, without MPI.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "mpi/follower.h"
+#include "mpi/leader.h"
+#include "mpi/post.h"
+
+namespace troffer::test {
+
+class Office {
+ public:
+  explicit Office(int size) : boxes_(size_t(size)), is_dead_(size_t(size), false) {}
+  int size() const { return int(boxes_.size()); }
+  // Nothing that it sends from now on arrives, nor what is sent to it.
+  void kill(int rank) {
+    const std::lock_guard lock(mutex_);
+    is_dead_[size_t(rank)] = true;
+    // So that its threads end too.
+    boxes_[size_t(rank)] = {{0, *letter({LetterKind::end, 0, 0, 0})}};
+  }
+  void put(int from, int to, const Post::Bytes& bytes) {
+    const std::lock_guard lock(mutex_);
+    if (!is_dead_[size_t(from)] && !is_dead_[size_t(to)])
+      boxes_[size_t(to)].push_back({from, *bytes});
+  }
+  std::optional<Letter> take(int rank) {
+    const std::lock_guard lock(mutex_);
+    std::deque<Letter>& box = boxes_[size_t(rank)];
+    if (box.empty()) return std::nullopt;
+    Letter l = std::move(box.front());
+    box.pop_front();
+    return l;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::deque<Letter>> boxes_;
+  std::vector<bool> is_dead_;
+};
+
+class OfficePost final : public Post {
+ public:
+  OfficePost(Office& office, int rank) : office_(office), rank_(rank) {}
+  int rank() const override { return rank_; }
+  int size() const override { return office_.size(); }
+  std::optional<Letter> receive() override { return office_.take(rank_); }
+  void send(int to, Bytes bytes) override { office_.put(rank_, to, bytes); }
+  bool is_moving() override { return false; }
+
+ private:
+  Office& office_;
+  int rank_;
+};
+
+// Runs body(crew) as each of so many processes, rank 0 in this thread, which waits for all.
+template <class Body>
+void run_crew(Office& office, const Leader::Warn& warn, const Body& body) {
+  std::vector<std::thread> others;
+  std::atomic<int> at_work = office.size() - 1;
+  for (int r = 1; r < office.size(); ++r)
+    others.emplace_back([&, r] {
+      OfficePost post(office, r);
+      Follower crew(post, 1, 1e9, [] {});
+      body(crew);
+      --at_work;
+    });
+  {
+    OfficePost post(office, 0);
+    Leader crew(post, 1, warn);
+    body(crew);
+    while (at_work > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  for (std::thread& t : others) t.join();
+}
+
+}  // namespace troffer::test
