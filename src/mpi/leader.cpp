@@ -65,6 +65,7 @@ void Leader::receive(Letter&& l) {
       const std::span<const uint8_t> why = rest_of(l);
       others_.last_words[from].assign(why.begin(), why.end());
       others_.is_gone[from] = true;
+      if (number_ > 0) warn_of_gone();
       break;
     }
     case LetterKind::halt:
