@@ -165,8 +165,7 @@ std::optional<size_t> Leader::next_item(int rank) {
     found = late_item(rank);
   if (!found) return found;
   Item& item = j.items[*found];
-  ++item.leases;
-  item.holder = rank;
+  item.holders.push_back(rank);
   item.leased_at = Clock::now();
   item.is_mine = rank == 0;
   return found;
@@ -177,7 +176,10 @@ std::optional<size_t> Leader::late_item(int rank) {
   Job& j = *job_;
   if (j.done == j.order.size()) return std::nullopt;
   if (j.late.empty()) look_for_late();
-  if (j.late.empty() || j.items[j.late.front()].holder == rank) return std::nullopt;
+  if (j.late.empty()) return std::nullopt;
+  // Nobody works on the same item twice at a time.
+  const std::vector<int>& holders = j.items[j.late.front()].holders;
+  if (std::find(holders.begin(), holders.end(), rank) != holders.end()) return std::nullopt;
   const size_t found = j.late.front();
   j.late.pop_front();
   if (j.items[found].is_done || j.items[found].is_mine) return std::nullopt;
@@ -195,8 +197,8 @@ void Leader::look_for_late() {
     const Item& item = j.items[i];
     if (item.is_done || item.is_mine) continue;
     // Each time longer.
-    const double allowed = usual * double(1 << std::min(item.leases - 1, 10));
-    if (others_.is_gone[size_t(item.holder)] ||
+    const double allowed = usual * double(1 << std::min<size_t>(item.holders.size() - 1, 10));
+    if (others_.is_gone[size_t(item.holders.back())] ||
         std::chrono::duration<double>(now - item.leased_at).count() > allowed)
       j.late.push_back(i);
   }

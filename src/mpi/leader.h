@@ -48,8 +48,7 @@ class Leader final : public Crew {
   using Clock = std::chrono::steady_clock;
   struct Item {
     bool is_done = false, is_mine = false;
-    int leases = 0;
-    int holder = 0;  // the last one
+    std::vector<int> holders;  // processes that have been given it
     Clock::time_point leased_at;
   };
   struct Job {
