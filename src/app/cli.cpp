@@ -44,12 +44,6 @@ std::vector<int> integers(const std::string& text, char separator, size_t count,
   return values;
 }
 
-Indirect parse_indirect(const std::string& name) {
-  const std::optional<Indirect> indirect = Indirect::find(name);
-  if (!indirect) throw UsageError("--indirect: there is no '" + name + "'");
-  return *indirect;
-}
-
 // kj92 with 0 initial rays samples no source: the picture is the radiosity solution.
 void apply_shadow_rays(int asked, RenderOptions& o) {
   if (asked < 0) return;
@@ -58,15 +52,6 @@ void apply_shadow_rays(int asked, RenderOptions& o) {
   o.shadow_rays = std::max(asked, 1);
   tree.initial_rays = std::max(asked, 1);
   tree.most_rays = std::max(tree.most_rays, tree.initial_rays);
-}
-
-void check_exposure(const std::string& text) {
-  if (text.empty() || text == "auto") return;
-  constexpr double most = 60;
-  char* end = nullptr;
-  const double stops = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !(std::abs(stops) <= most))
-    throw UsageError("--exposure: '" + text + "' is neither auto nor stops between -60 and 60");
 }
 
 void apply(const RawOptions& raw, RenderOptions& o) {
@@ -285,6 +270,7 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   MergeCommand merge;
   ViewCommand view;
   ReportCommand lighting;
+  BakeCommand light;
   RawOptions render_raw, measure_raw;
   add_render(app, render, render_raw);
   add_compare(app, compare);
@@ -295,6 +281,7 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   add_merge(app, merge);
   add_view(app, view);
   add_report(app, lighting);
+  add_bake(app, light);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -325,6 +312,7 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
     lighting.command_line = told_command(argc, argv);
     return run_report(lighting);
   }
+  if (app.got_subcommand("bake")) return check_and_bake(*app.get_subcommand("bake"), light);
   if (app.got_subcommand("merge")) {
     check_exposure(merge.exposure);
     return run_merge(merge);

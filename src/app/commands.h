@@ -135,6 +135,26 @@ struct ConvertCommand {
 void add_convert(CLI::App& app, ConvertCommand& command);  // its options
 int run_convert(const ConvertCommand& command);
 
+struct BakeCommand {
+  SceneChoice scene;
+  std::string output;
+  std::string hdr = "exr";  // of the pages beside it: exr, hdr, none
+  bool has_vertex_colors = false, is_unlit = false, is_emissive = false;
+  double texels_per_metre = 0;  // 0: as many as fill a page of --resolution
+  int resolution = 512, largest_page = 4096, gutter = 2, spp = 64;
+  std::string exposure = "auto";
+  std::string method = "certified", solution, indirect = "auto";
+  double error = 0.01;
+  int depth = -1, threads = 0;
+  std::vector<std::string> lights;
+  DaylightOptions daylight;
+  uint64_t seed = 0;
+  bool is_quiet = false;
+};
+void add_bake(CLI::App& app, BakeCommand& command);  // its options
+// UsageError where options are at odds; warns of those that the method does not use.
+int check_and_bake(const CLI::App& command_line, BakeCommand command);
+
 // The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
 // emitting (all if empty), warnings printed to standard error unless is_quiet.
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
@@ -142,6 +162,9 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
 
 // "certified", "kj92", "fixed" and "path"; UsageError for others.
 Method parse_method(const std::string& name);
+Indirect parse_indirect(const std::string& name);  // likewise
+// Nothing, auto or stops; UsageError for others.
+void check_exposure(const std::string& text);
 
 // `automatic` where the file `solution` holds a radiosity solution: what takes it.
 Indirect indirect_with(const std::string& solution, Method method, Indirect indirect);

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "app/commands.h"
 #include "app/printable.h"
@@ -46,6 +48,21 @@ Method parse_method(const std::string& name) {
   if (!method)
     throw UsageError("--method: there is no method '" + name + "', but " + Method::names());
   return *method;
+}
+
+Indirect parse_indirect(const std::string& name) {
+  const std::optional<Indirect> indirect = Indirect::find(name);
+  if (!indirect) throw UsageError("--indirect: there is no '" + name + "'");
+  return *indirect;
+}
+
+void check_exposure(const std::string& text) {
+  if (text.empty() || text == "auto") return;
+  constexpr double most = 60;
+  char* end = nullptr;
+  const double stops = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !(std::abs(stops) <= most))
+    throw UsageError("--exposure: '" + text + "' is neither auto nor stops between -60 and 60");
 }
 
 }  // namespace troffer

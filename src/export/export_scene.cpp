@@ -43,11 +43,11 @@ void check_scene_format(const std::string& path) {
     throw UsageError("cannot write " + path + ": its name should end in .pbrt, .gltf or .glb");
 }
 
-std::vector<Warning> export_scene(Scene scene, const std::string& path) {
+std::vector<Warning> export_scene(Scene scene, const std::string& path, const BakedLight* baked) {
   check_scene_format(path);
   const size_t measured = make_even(scene);
   std::vector<Warning> lost =
-      ending_of(path) == ".pbrt" ? write_pbrt(scene, path) : write_gltf(scene, path);
+      ending_of(path) == ".pbrt" ? write_pbrt(scene, path) : write_gltf(scene, path, baked);
   if (measured > 0)
     lost.push_back({"measured luminaires are written as even sources of the same flux", measured});
   return lost;

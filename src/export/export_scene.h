@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "export/baked_light.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -15,6 +16,8 @@ void check_scene_format(const std::string& path);
 // Writes the scene, emission, lights, cameras and materials included, with the files it needs
 // beside it. Returns what the format cannot hold, in words. UsageError as above; EnvironmentError:
 // what cannot be written.
-std::vector<Warning> export_scene(Scene scene, const std::string& path);
+// baked: of .gltf and .glb, light for its surfaces; null: none.
+std::vector<Warning> export_scene(Scene scene, const std::string& path,
+                                  const BakedLight* baked = nullptr);
 
 }  // namespace troffer

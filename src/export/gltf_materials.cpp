@@ -254,20 +254,70 @@ void GltfMaterialWriter::add_emission(const Light& light, Rgb radiance, Json& ou
   if (light.is_two_sided) out["doubleSided"] = true;
 }
 
-size_t GltfMaterialWriter::index_of(uint32_t material, const Light* light, Rgb radiance) {
+// Texels of lightmaps stand for themselves alone: no neighbour across an edge, no smaller copies.
+size_t GltfMaterialWriter::page_texture(int32_t page) {
+  const std::string key = fmt::format("baked {}", page);
+  const auto found = texture_by_key_.find(key);
+  if (found != texture_by_key_.end()) return found->second;
+  images_.push_back({{"bufferView", buffer_.add_view(baked_->pages[size_t(page)])},
+                     {"mimeType", "image/png"},
+                     {"name", fmt::format("light{}", page)}});
+  samplers_.push_back(
+      {{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33071}});
+  textures_.push_back({{"source", images_.size() - 1}, {"sampler", samplers_.size() - 1}});
+  return texture_by_key_[key] = textures_.size() - 1;
+}
+
+void GltfMaterialWriter::add_baked(const Material& m, const BakedPlace& place, Json& out) {
+  Json texture;
+  if (place.page >= 0) texture = {{"index", page_texture(place.page)}, {"texCoord", place.set}};
+  if (baked_->shading == BakedShading::lightmap) {
+    texture["intensity"] = baked_->white;
+    out["extensions"]["MOZ_lightmap"] = texture;
+  } else if (baked_->shading == BakedShading::emissive) {
+    // Holes stay where the base colour's image has them.
+    for (size_t k = 0; k < 3; ++k) out["pbrMetallicRoughness"]["baseColorFactor"][k] = 0;
+    out["pbrMetallicRoughness"]["metallicFactor"] = 0;
+    out["pbrMetallicRoughness"].erase("metallicRoughnessTexture");
+    out["extensions"] = Json{{"KHR_materials_emissive_strength", {{"emissiveStrength", 1}}},
+                             {"KHR_materials_specular", {{"specularFactor", 0}}}};
+    out["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = baked_->white;
+    out["emissiveFactor"] = {1, 1, 1};
+    out["emissiveTexture"] = texture;
+  } else {
+    out["extensions"] = Json{{"KHR_materials_unlit", Json::object()}};
+    out.erase("normalTexture");
+    Json& pbr = out["pbrMetallicRoughness"];
+    pbr["metallicFactor"] = 0;
+    pbr["roughnessFactor"] = 1;
+    pbr.erase("metallicRoughnessTexture");
+    if (baked_->shading == BakedShading::unlit) {
+      pbr["baseColorFactor"] = {1, 1, 1, 1};  // alpha too is in the page
+      pbr["baseColorTexture"] = texture;
+    }
+  }
+  out["doubleSided"] = m.back_faces != BackFaces::unseen;
+}
+
+size_t GltfMaterialWriter::index_of(uint32_t material, const Light* light, Rgb radiance,
+                                    const BakedPlace& place) {
   std::string emission;
   if (light)
     emission = fmt::format("{} {} {} {} {}", radiance.r, radiance.g, radiance.b, light->texture,
                            light->is_two_sided);
+  if (place.is_baked())
+    emission += fmt::format("baked {} {} {}", place.page, place.set, place.has_colors);
   const auto key = std::pair{material, emission};
   const auto found = made_.find(key);
   if (found != made_.end()) return found->second;
-  Json out = surface(scene_.materials[material]);
+  const Material& m = scene_.materials[material];
+  Json out = surface(m);
   if (light)
     add_emission(*light, radiance, out);
   else
-    out["doubleSided"] = scene_.materials[material].back_faces != BackFaces::unseen;
-  tell_what_is_left_out(scene_, scene_.materials[material], true, warnings_);
+    out["doubleSided"] = m.back_faces != BackFaces::unseen;
+  if (place.is_baked()) add_baked(m, place, out);
+  tell_what_is_left_out(scene_, m, true, warnings_);
   materials_.push_back(std::move(out));
   return made_[key] = materials_.size() - 1;
 }

@@ -24,15 +24,17 @@ constexpr uint64_t max_bytes = 0xfffffff0u;
 
 class GltfWriter {
  public:
-  explicit GltfWriter(const Scene& scene)
+  GltfWriter(const Scene& scene, const BakedLight* baked)
       : scene_(scene),
+        baked_(baked),
         unit_(scene.is_photometric ? 1 : luminous_efficacy),
-        materials_(scene, buffer_, unit_, warnings_) {}
+        materials_(scene, buffer_, unit_, baked, warnings_) {}
   std::vector<Warning> write(const std::string& path);
 
  private:
   const Scene& scene_;
-  double unit_;  // cd/m² per the scene's radiance
+  const BakedLight* baked_;  // may be null
+  double unit_;              // cd/m² per the scene's radiance
   WarningLog warnings_;
   GltfBuffer buffer_;
   GltfMaterialWriter materials_;
@@ -40,7 +42,9 @@ class GltfWriter {
        lights_ = Json::array();
 
   void add_part(const ScenePart& part, Rgb radiance);
-  void add_mesh(const Mesh& mesh, const Light* light, Rgb radiance);
+  Json primitive_of(const Mesh& mesh);
+  void add_mesh(Json primitive, const Mesh& mesh, const Light* light, Rgb radiance,
+                const BakedSurface* baked);
   void add_instances();
   void add_node(const std::string& name, Json node);
   void add_light(const Light& e);
@@ -61,32 +65,65 @@ void GltfWriter::add_node(const std::string& name, Json node) {
   nodes_.push_back(std::move(node));
 }
 
-void GltfWriter::add_mesh(const Mesh& m, const Light* light, Rgb radiance) {
+// What all that wear a mesh share.
+Json GltfWriter::primitive_of(const Mesh& m) {
   Json attributes{{"POSITION", buffer_.add(m.positions, true)}};
   if (!m.normals.empty()) attributes["NORMAL"] = buffer_.add(m.normals, false);
   if (!m.uvs.empty()) attributes["TEXCOORD_0"] = buffer_.add(m.uvs);
   if (!m.uvs_2.empty()) attributes["TEXCOORD_1"] = buffer_.add(m.uvs_2);
   const size_t indices = buffer_.add(m.triangles);
-  const size_t material = materials_.index_of(m.material, light, radiance);
+  return {{"attributes", attributes}, {"indices", indices}};
+}
+
+void GltfWriter::add_mesh(Json primitive, const Mesh& m, const Light* light, Rgb radiance,
+                          const BakedSurface* baked) {
+  if (baked && !baked->is_baked()) baked = nullptr;
+  BakedPlace place;
+  if (baked && baked->page >= 0) {
+    Json& attributes = primitive["attributes"];
+    const size_t uvs = buffer_.add(baked->uvs);
+    // Sets are numbered without gaps: a mesh that has none gets this one twice.
+    if (m.uvs.empty()) attributes["TEXCOORD_0"] = uvs;
+    place = {baked->page, m.uvs_2.empty() ? 1 : 2};
+    attributes[place.set == 1 ? "TEXCOORD_1" : "TEXCOORD_2"] = uvs;
+  } else if (baked) {
+    std::vector<Vec3> colors;
+    for (const Rgb& c : baked->colors) colors.emplace_back(c.r, c.g, c.b);
+    primitive["attributes"]["COLOR_0"] = buffer_.add(colors, false);
+    place.has_colors = true;
+  }
+  primitive["material"] = materials_.index_of(m.material, light, radiance, place);
   Json mesh;
-  mesh["primitives"] =
-      Json::array({Json{{"attributes", attributes}, {"indices", indices}, {"material", material}}});
+  mesh["primitives"] = Json::array({std::move(primitive)});
   meshes_.push_back(std::move(mesh));
 }
 
 void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
   const Light* light = part.light >= 0 ? &scene_.lights[size_t(part.light)] : nullptr;
-  add_mesh(part.mesh, light, radiance);
+  const BakedSurface* baked =
+      baked_ && part.number != no_mesh ? &baked_->meshes[part.number] : nullptr;
+  add_mesh(primitive_of(part.mesh), part.mesh, light, radiance, baked);
   add_node(light ? light->name : part.mesh.name, {{"mesh", meshes_.size() - 1}});
 }
 
-// A node each, which share their mesh.
+// A node each, which share their mesh; or, where light is baked for each, its data.
 void GltfWriter::add_instances() {
   const size_t first = meshes_.size();
-  for (const Mesh& mesh : scene_.instanced_meshes) add_mesh(mesh, nullptr, {});
+  std::vector<Json> shared;
+  for (const Mesh& mesh : scene_.instanced_meshes) {
+    shared.push_back(primitive_of(mesh));
+    if (!baked_) add_mesh(shared.back(), mesh, nullptr, {}, nullptr);
+  }
   for (const Instance& i : scene_.instances) {
     const Affine& m = i.world_from_mesh;
-    add_node(i.name, {{"mesh", first + i.mesh},
+    size_t mesh = first + i.mesh;
+    if (baked_) {
+      const auto number = size_t(&i - scene_.instances.data());
+      add_mesh(shared[i.mesh], scene_.instanced_meshes[i.mesh], nullptr, {},
+               &baked_->instances[number]);
+      mesh = meshes_.size() - 1;
+    }
+    add_node(i.name, {{"mesh", mesh},
                       {"matrix", matrix(m.columns[0], m.columns[1], m.columns[2], m.translation)}});
   }
 }
@@ -156,6 +193,9 @@ void GltfWriter::add_camera(const Camera& c) {
 Json GltfWriter::file() {
   Json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "troffer"}};
+  if (baked_)
+    for (const auto& [name, value] : baked_->notes)
+      json["asset"]["extras"][name] = Json::parse(value);
   json["scene"] = 0;
   Json top = Json::array();
   for (size_t i = 0; i < nodes_.size(); ++i) top.push_back(i);
@@ -180,8 +220,8 @@ Json GltfWriter::file() {
   for (const char* name :
        {"KHR_lights_punctual", "KHR_materials_anisotropy", "KHR_materials_emissive_strength",
         "KHR_materials_diffuse_transmission", "KHR_materials_ior", "KHR_materials_sheen",
-        "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume",
-        "KHR_texture_transform"})
+        "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit",
+        "KHR_materials_volume", "KHR_texture_transform", "MOZ_lightmap"})
     if (text.find(std::string("\"") + name + "\"") != std::string::npos) used.push_back(name);
   if (!used.empty()) json["extensionsUsed"] = used;
   return json;
@@ -250,8 +290,9 @@ std::vector<Warning> GltfWriter::write(const std::string& path) {
 
 }  // namespace
 
-std::vector<Warning> write_gltf(const Scene& scene, const std::string& path) {
-  return GltfWriter(scene).write(path);
+std::vector<Warning> write_gltf(const Scene& scene, const std::string& path,
+                                const BakedLight* baked) {
+  return GltfWriter(scene, baked).write(path);
 }
 
 }  // namespace troffer

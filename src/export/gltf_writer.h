@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "export/baked_light.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -15,6 +16,9 @@ namespace troffer {
 // Writes `path`: a .glb with all in it, or a .gltf and, beside it, a folder of its name with
 // "_files" for its data. Emission is in cd/m², 179 lm/W for scenes in W. Returns what the format or
 // its materials cannot hold, in words. EnvironmentError: what cannot be written, or is above 4 GiB.
-std::vector<Warning> write_gltf(const Scene& scene, const std::string& path);
+// baked: light for its meshes and instances; null: none. Lightmaps go by TEXCOORD_1, or by
+// TEXCOORD_2 for meshes that have a second set of their own.
+std::vector<Warning> write_gltf(const Scene& scene, const std::string& path,
+                                const BakedLight* baked = nullptr);
 
 }  // namespace troffer

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int around = 96, from_pole_to_pole = 48;
 
+}  // namespace
+
 Mesh extracted(const Mesh& from, const std::vector<Triangle>& triangles) {
   Mesh to;
   to.name = from.name;
@@ -36,6 +38,8 @@ Mesh extracted(const Mesh& from, const std::vector<Triangle>& triangles) {
   return to;
 }
 
+namespace {
+
 double area_of_triangles(const Mesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
@@ -44,6 +48,8 @@ double area_of_triangles(const Mesh& mesh) {
   }
   return sum;
 }
+
+}  // namespace
 
 Mesh sphere_mesh(const Sphere& s) {
   Mesh m;
@@ -86,6 +92,8 @@ Mesh disk_mesh(const Disk& d) {
   return m;
 }
 
+namespace {
+
 void add_round(SceneParts& out, Mesh mesh, int32_t light, double area) {
   if (light >= 0) out.radiances[size_t(light)] *= float(area / area_of_triangles(mesh));
   out.parts.push_back({std::move(mesh), light});
@@ -98,7 +106,7 @@ SceneParts parts_of(const Scene& scene, bool with_round) {
   for (const Light& e : scene.lights) out.radiances.push_back(e.radiance);
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.lights.empty()) {
-      out.parts.push_back({mesh, no_light});
+      out.parts.push_back({mesh, no_light, uint32_t(&mesh - scene.meshes.data())});
       continue;
     }
     std::vector<size_t> order(mesh.triangles.size());

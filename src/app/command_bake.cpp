@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/outputs.h"
+#include "app/printable.h"
+#include "app/progress.h"
+#include "app/signals.h"
+#include "app/solution_file.h"
+#include "bake/bake.h"
+#include "base/error.h"
+#include "export/export_scene.h"
+#include "export/output_folder.h"
+#include "image/encode.h"
+
+namespace troffer {
+
+namespace {
+
+BakedShading shading_of(const BakeCommand& c) {
+  if (int(c.has_vertex_colors) + int(c.is_unlit) + int(c.is_emissive) > 1)
+    throw UsageError("only one of --vertex-colours, --unlit and --emissive can be had at a time");
+  return c.has_vertex_colors ? BakedShading::vertex_colors
+         : c.is_unlit        ? BakedShading::unlit
+         : c.is_emissive     ? BakedShading::emissive
+                             : BakedShading::lightmap;
+}
+
+// All that can be told before any work is done.
+BakeOptions options_of(const BakeCommand& c) {
+  const std::string ending = std::filesystem::path(c.output).extension().string();
+  if (ending != ".gltf" && ending != ".glb")
+    throw UsageError("cannot write " + c.output + ": its name should end in .gltf or .glb");
+  if (!std::isfinite(c.error)) throw UsageError("--error: not a number");
+  if (!std::isfinite(c.texels_per_metre)) throw UsageError("--texels-per-metre: not a number");
+  check_exposure(c.exposure);
+  BakeOptions o;
+  o.shading = shading_of(c);
+  o.atlas = {c.texels_per_metre, c.resolution, c.largest_page, c.gutter};
+  o.samples = c.spp;
+  if (c.exposure != "auto" && !c.exposure.empty())
+    o.exposure_stops = std::strtod(c.exposure.c_str(), nullptr);
+  o.light.method = parse_method(c.method);
+  o.light.indirect = indirect_with(c.solution, o.light.method, parse_indirect(c.indirect));
+  check_method(o.light.method, o.light.indirect, c.solution);
+  o.light.depth = c.depth;
+  o.light.error = c.error;
+  o.light.threads = c.threads;
+  o.light.seed = c.seed;
+  return o;
+}
+
+// The pages' irradiance, in lx, beside the scene.
+void write_pages(const BakeCommand& c, BakeResult& result) {
+  if (c.hdr == "none" || result.irradiance.empty()) return;
+  OutputFolder files(c.output);
+  std::string names;
+  for (size_t i = 0; i < result.irradiance.size(); ++i) {
+    const std::string name = fmt::format("light{}.{}", i, c.hdr);
+    if (c.hdr == "exr") {
+      const std::vector<Layer> layers{{"", {"R", "G", "B"}, std::move(result.irradiance[i])},
+                                      {"error", {"V"}, std::move(result.error[i])}};
+      files.write(name, encode_exr(layers, {}, "irradiance in lx, its standard error"));
+    } else {
+      files.write(name, encode_hdr(result.irradiance[i]));
+    }
+    names += fmt::format("{}\"{}\"", i > 0 ? "," : "", files.relative(name));
+  }
+  result.baked.notes.emplace_back("irradiance_lx", "[" + names + "]");
+}
+
+void tell(const BakeResult& result, const std::vector<Warning>& lost) {
+  for (const std::vector<Warning>* list : {&result.warnings, &lost})
+    for (const Warning& w : *list) {
+      fmt::print(stderr, "warning: {}", printable(w.text));
+      if (w.count > 1) fmt::print(stderr, " ({} times)", w.count);
+      fmt::print(stderr, "\n");
+    }
+  if (result.counters.nan_samples > 0)
+    fmt::print(stderr, "warning: {} samples were not finite and count as 0\n",
+               result.counters.nan_samples);
+  const BakeFigures& f = result.figures;
+  if (result.atlas.size > 0)
+    fmt::print(
+        "{} page{} of {} x {} texels, {:.3g} per metre, {} of them lit; {} charts on {} "
+        "surfaces\n",
+        result.atlas.pages, result.atlas.pages == 1 ? "" : "s", result.atlas.size,
+        result.atlas.size, result.atlas.texels_per_metre, f.sites, f.charts, f.stands);
+  else
+    fmt::print("{} vertices on {} surfaces\n", f.sites, f.stands);
+  fmt::print("mean illuminance {:.4g} lx, standard error of a {} {:.2g} lx ({:.2g} %)\n", f.mean_lx,
+             result.atlas.size > 0 ? "texel" : "vertex", f.error_lx,
+             f.mean_lx > 0 ? 100 * f.error_lx / f.mean_lx : 0.0);
+}
+
+int run_bake(const BakeCommand& c, BakeOptions options) {
+  std::vector<OutputReservation> reserved = reserve_outputs({c.output}, "");
+  reserve_cells(c.solution, options.light.method, options.light.indirect, reserved);
+  const PreparedScene scene(as_meshes(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet)));
+  const StopFlag& stop = install_stop_handlers();
+  const std::unique_ptr<Preparation> preparation =
+      prepare_method(scene, options.light.method, options.light.kj92, options.light.indirect,
+                     c.solution, c.threads, c.is_quiet, stop);
+  options.light.preparation = preparation.get();
+  const std::unique_ptr<CellStore> cells =
+      cells_of_file(scene, options.light.method, options.light.indirect, c.solution);
+  options.light.cells = cells.get();
+  BakeResult result;
+  {
+    ProgressBar bar("bake", c.is_quiet);
+    if (!stop)
+      result = bake(
+          scene, options, [&](double f) { bar.update(f); }, stop);
+  }
+  if (!result.is_complete) {
+    fmt::print(stderr, "interrupted: wrote nothing\n");
+    return exit_interrupted;
+  }
+  keep_cells(scene, cells.get(), c.solution, c.is_quiet);
+  write_pages(c, result);
+  const std::vector<Warning> lost = export_scene(std::move(result.scene), c.output, &result.baked);
+  if (!c.is_quiet) tell(result, lost);
+  return exit_done;
+}
+
+void add_texel_options(CLI::App* s, BakeCommand& c) {
+  s->add_option("--texels-per-metre", c.texels_per_metre,
+                "Texels along a metre of surface [as many as fill one page of --resolution]")
+      ->check(CLI::Range(1e-3, 1e5));
+  s->add_option("--resolution", c.resolution, "Texels along the side of the one page")
+      ->check(CLI::Range(16, 16384))
+      ->capture_default_str();
+  s->add_option("--max-size", c.largest_page,
+                "Texels along the side of the largest page; what does not fit goes on further ones")
+      ->check(CLI::Range(64, 16384))
+      ->capture_default_str();
+  s->add_option("--gutter", c.gutter, "Texels around each chart that repeat its edge")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_bake(CLI::App& app, BakeCommand& c) {
+  CLI::App* s = app.add_subcommand("bake", "Keep a scene's light in lightmaps, for engines");
+  add_scene_choice(*s, c.scene);
+  s->add_option("-o,--output", c.output, "Scene with its light: .gltf or .glb")->required();
+  add_texel_options(s, c);
+  s->add_flag("--vertex-colours,--vertex-colors", c.has_vertex_colors,
+              "Light in colours of vertices, by which unlit base colours are multiplied");
+  s->add_flag("--unlit", c.is_unlit, "Surfaces as they look, for viewers without lights");
+  s->add_flag("--emissive", c.is_emissive, "Black surfaces that emit what they send, in cd/m2");
+  s->add_option("--exposure", c.exposure, "--unlit, --vertex-colours: stops, or auto")
+      ->capture_default_str();
+  s->add_option("--hdr", c.hdr, "Irradiance in lx beside the scene: exr, hdr or none")
+      ->check(CLI::IsMember({"exr", "hdr", "none"}))
+      ->capture_default_str();
+  s->add_option("--spp", c.spp, "Samples per texel, or vertex")
+      ->check(CLI::Range(4, 1 << 14))
+      ->capture_default_str();
+  s->add_option("--method", c.method, "How light is computed: " + Method::names())
+      ->capture_default_str();
+  s->add_option("--error", c.error, "certified: standard error asked of light from sources")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  s->add_option("--indirect", c.indirect, "auto, or none: direct light only")
+      ->capture_default_str();
+  s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")
+      ->check(CLI::Range(0, 1 << 20));
+  s->add_option("--solution", c.solution,
+                "certified: keep cells in this file, and go on from them; kj92: what troffer "
+                "radiosity made");
+  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_daylight_options(*s, c.daylight);
+  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
+  s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
+  s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings, no figures");
+}
+
+int check_and_bake(const CLI::App& command_line, BakeCommand command) {
+  BakeOptions options = options_of(command);
+  if (command_line.get_option("--texels-per-metre")->count() > 0 &&
+      command_line.get_option("--resolution")->count() > 0)
+    throw UsageError("--resolution and --texels-per-metre both say how fine: give one");
+  warn_of_unused_options(command_line, options.light.method, options.light.indirect,
+                         command.is_quiet);
+  return run_bake(command, std::move(options));
+}
+
+}  // namespace troffer

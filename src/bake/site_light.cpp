@@ -1,0 +1,314 @@
+#include "bake/site_light.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/frame.h"
+#include "base/random.h"
+#include "base/warp.h"
+#include "integrate/prepared_scene.h"
+#include "integrate/purposes.h"
+#include "render/cell_pilot.h"
+#include "render/sample_sets.h"
+#include "trace/surface.h"
+
+namespace troffer {
+
+namespace {
+
+// Sites that are lit together, and samples of them together, at most: a stop waits for them.
+constexpr size_t most_sites_of_block = 64, most_samples_of_block = 4096;
+constexpr int most_sets_of_site = 4;
+constexpr size_t looks = 8;  // from a sample, before it is taken to be within a body
+// Light within a body, as a share of that before it, at most.
+constexpr float most_within = 0.01f;
+constexpr uint64_t of_looks = 0x6c6f'6f6b, of_sites = 0x7369'7465;
+
+size_t sites_of_block(int samples) {
+  return std::clamp(most_samples_of_block / size_t(std::max(samples, 1)), size_t{1},
+                    most_sites_of_block);
+}
+
+struct Place {
+  Vec3 position, normal;
+};
+
+// Weight of corner 0 where it is spread by itself: the inverse of 3t² - 2t³.
+float hat_weight(float u) {
+  return 0.5f - std::sin(std::asin(std::clamp(1 - 2 * u, -1.0f, 1.0f)) / 3);
+}
+
+Place place_on(const Piece& piece, const Vec2& u) {
+  float a, b;
+  if (piece.is_about_corner) {
+    a = hat_weight(u.x);
+    b = (1 - a) * u.y;
+  } else {
+    const Vec2 at = triangle_from_square(u);
+    a = at.x;
+    b = at.y;
+  }
+  const float c = std::max(0.0f, 1 - a - b);
+  const auto& p = piece.positions;
+  const auto& n = piece.normals;
+  Place place{p[0] + (p[1] - p[0]) * b + (p[2] - p[0]) * c, n[0] * a + n[1] * b + n[2] * c};
+  // A normal that leans far over would look into the surface.
+  const float size = length(place.normal);
+  const bool is_sound = size > 0.1f && dot(place.normal, piece.geometric_normal) > 0.5f * size;
+  place.normal = is_sound ? place.normal / size : piece.geometric_normal;
+  return place;
+}
+
+// Pieces of one site, to be picked by weight.
+struct Pieces {
+  std::vector<Piece> all;
+  std::vector<double> sums;
+
+  void take(const SiteList& sites, size_t site) {
+    all.clear();
+    sums.clear();
+    sites.pieces(site, all);
+    double sum = 0;
+    for (const Piece& p : all) sums.push_back(sum += p.weight);
+  }
+  bool is_empty() const { return sums.empty() || !(sums.back() > 0); }
+  Place place(float pick, const Vec2& u) const {
+    const double at = double(pick) * sums.back();
+    auto i = size_t(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin());
+    i = std::min(i, all.size() - 1);
+    // What is left of the number picks nothing more: each piece is sampled by numbers of its own.
+    return place_on(all[i], u);
+  }
+};
+
+Ray look(const Place& place, float offset, const Vec2& u) {
+  Ray ray;
+  ray.origin = place.position + place.normal * offset;
+  ray.direction = Frame(place.normal).to_world(cosine_hemisphere_from_square(u));
+  return ray;
+}
+
+enum class Seen : uint8_t { nothing, front, back };
+
+Seen seen_by(const PreparedScene& scene, const Ray& ray, const Hit& hit) {
+  if (!hit.is_valid()) return Seen::nothing;
+  const Vec3 normal = surface_at(scene.scene, ray, hit).geometric_normal;
+  return dot(normal, ray.direction) > 0 ? Seen::back : Seen::front;
+}
+
+// Which places look at backs alone: one look each, and more where that meets a back.
+std::vector<uint8_t> within_bodies(const PreparedScene& scene, const std::vector<Place>& places,
+                                   float offset, uint64_t stream) {
+  std::vector<uint8_t> is_within(places.size(), 1);
+  std::vector<uint32_t> left(places.size());
+  for (uint32_t i = 0; i < left.size(); ++i) left[i] = i;
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+  for (uint32_t k = 0; k < looks && !left.empty(); ++k) {
+    rays.clear();
+    for (const uint32_t i : left)
+      rays.push_back(
+          look(places[i], offset, SobolGroup(hash_combine(stream, i), purpose_camera, k).get2(0)));
+    hits.assign(rays.size(), {});
+    scene.tracer.closest(rays, hits);
+    size_t kept = 0;
+    for (size_t j = 0; j < left.size(); ++j) {
+      if (seen_by(scene, rays[j], hits[j]) == Seen::back)
+        left[kept++] = left[j];
+      else
+        is_within[left[j]] = 0;
+    }
+    left.resize(kept);
+  }
+  return is_within;
+}
+
+struct Sum {
+  Rgb light{0};
+  int samples = 0;
+  Rgb mean() const { return samples > 0 ? light / float(samples) : Rgb{0}; }
+};
+// Before bodies and within them, by set.
+struct SiteSums {
+  std::array<Sum, most_sets_of_site> open, within;
+  bool has_area = false;
+};
+
+SiteLight light_of(const SiteSums& s) {
+  if (!s.has_area) return {};
+  Sum open, within;
+  for (int k = 0; k < most_sets_of_site; ++k) {
+    open.light += s.open[size_t(k)].light;
+    open.samples += s.open[size_t(k)].samples;
+    within.light += s.within[size_t(k)].light;
+    within.samples += s.within[size_t(k)].samples;
+  }
+  SiteLight out;
+  // Backs alone do not make a body: a room may have all its walls turned outward.
+  const float before = luminance(open.mean()), behind = luminance(within.mean());
+  const bool is_left_out = within.samples > 0 && behind <= most_within * before;
+  const bool is_all_within = open.samples == 0 && !(behind > 0);
+  out.is_known = !is_all_within;
+  SampleSets sets;
+  Rgb sum{0};
+  int samples = 0, used = 0;
+  for (size_t k = 0; k < size_t(most_sets_of_site); ++k) {
+    Sum of_set = s.open[k];
+    if (!is_left_out) {
+      of_set.light += s.within[k].light;
+      of_set.samples += s.within[k].samples;
+    }
+    if (of_set.samples == 0) continue;
+    ++used;
+    sets.add({}, double(luminance(of_set.mean())));
+    sum += of_set.light;
+    samples += of_set.samples;
+  }
+  if (samples > 0) out.irradiance = sum / float(samples);
+  // Errors of many sites are taken together, so without what Student's t makes of a single one's.
+  if (used > 1) out.error = float(sets.standard_error() * 1.959964 / t_quantile_95(used - 1));
+  return out;
+}
+
+struct Worker {
+  std::unique_ptr<IntegratorScratch> scratch;
+  Pieces pieces;
+  std::vector<Place> places;
+  std::vector<uint32_t> sites;  // of the places, counted within the block
+  SensorBatch sensors;
+  RadianceBatch out;
+  size_t first = 0;  // site of the block
+};
+
+std::string name_of_sensor(const void* worker, size_t i) {
+  const Worker& w = *static_cast<const Worker*>(worker);
+  return "site " + std::to_string(w.first + w.sites[i]) + ", sample " +
+         std::to_string(w.sensors.samples[i]);
+}
+
+class Lighting {
+ public:
+  Lighting(const PreparedScene& scene, const Integrator& integrator, const SiteList& sites,
+           const SiteSettings& settings)
+      : scene_(scene),
+        integrator_(integrator),
+        sites_(sites),
+        settings_(settings),
+        bounds_(bounds(scene.scene)) {}
+
+  void light(size_t block, Worker& w, std::vector<SiteLight>& out, Counters& counters) const {
+    w.first = block * sites_of_block(settings_.samples);
+    const size_t end = std::min(w.first + sites_of_block(settings_.samples), sites_.size());
+    std::vector<SiteSums> sums(end - w.first);
+    const int sets = std::min(most_sets_of_site, std::max(1, settings_.samples));
+    for (int k = 0; k < sets; ++k)
+      add_set(k, (settings_.samples + sets - 1) / sets, end, w, sums, counters);
+    for (size_t i = 0; i < sums.size(); ++i) out[w.first + i] = light_of(sums[i]);
+  }
+
+ private:
+  const PreparedScene& scene_;
+  const Integrator& integrator_;
+  const SiteList& sites_;
+  const SiteSettings& settings_;
+  const Box bounds_;
+
+  void place_sensors(int set, int samples, size_t end, Worker& w,
+                     std::vector<SiteSums>& sums) const {
+    w.places.clear();
+    w.sites.clear();
+    w.sensors = {};
+    for (size_t site = w.first; site < end; ++site) {
+      w.pieces.take(sites_, site);
+      if (w.pieces.is_empty()) continue;
+      sums[site - w.first].has_area = true;
+      const uint64_t stream = hash_of(settings_.seed, of_sites, site, uint64_t(set));
+      for (uint32_t i = 0; i < uint32_t(samples); ++i) {
+        const SobolGroup random(stream, purpose_camera, i);
+        w.places.push_back(w.pieces.place(random.get2(2).x, random.get2(0)));
+        w.sites.push_back(uint32_t(site - w.first));
+        const Place& p = w.places.back();
+        w.sensors.positions.push_back(p.position);
+        w.sensors.normals.push_back(p.normal);
+        w.sensors.streams.push_back(stream);
+        w.sensors.samples.push_back(i);
+        w.sensors.offset = std::max(w.sensors.offset, offset_of_point(p.position, bounds_));
+      }
+    }
+  }
+
+  void add_set(int set, int samples, size_t end, Worker& w, std::vector<SiteSums>& sums,
+               Counters& counters) const {
+    place_sensors(set, samples, end, w, sums);
+    if (w.places.empty()) return;
+    const std::vector<uint8_t> is_within =
+        within_bodies(scene_, w.places, w.sensors.offset,
+                      hash_of(settings_.seed, of_looks, w.first, uint64_t(set)));
+    w.out.reset(w.places.size());
+    const CheckContext context(&w, w.places.size(), name_of_sensor);
+    integrator_.irradiance(w.sensors, *w.scratch, w.out, counters);
+    for (size_t i = 0; i < w.places.size(); ++i) {
+      const Rgb e = w.out.direct[i] + w.out.indirect[i];
+      SiteSums& s = sums[w.sites[i]];
+      Sum& sum = (is_within[i] ? s.within : s.open)[size_t(set)];
+      ++sum.samples;
+      if (is_finite(e))
+        sum.light += e;
+      else
+        ++counters.nan_samples;
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<SiteLight> light_sites(const PreparedScene& scene, const Integrator& integrator,
+                                   const SiteList& sites, const SiteSettings& settings,
+                                   const ProgressCallback& progress, const StopFlag& stop,
+                                   Counters& counters) {
+  const Lighting lighting(scene, integrator, sites, settings);
+  const size_t each = sites_of_block(settings.samples);
+  const size_t blocks = (sites.size() + each - 1) / each;
+  std::vector<SiteLight> out(sites.size());
+  std::vector<Worker> workers(size_t(thread_count(settings.threads)));
+  std::mutex mutex;
+  size_t done = 0;
+  parallel_for_slots(blocks, settings.threads, [&](size_t block, size_t slot) {
+    if (stop.load(std::memory_order_relaxed)) return;
+    Worker& w = workers[slot];
+    if (!w.scratch) w.scratch = integrator.make_scratch();
+    Counters own;
+    lighting.light(block, w, out, own);
+    const std::lock_guard lock(mutex);
+    counters += own;
+    if (progress) progress(double(++done) / double(blocks));
+  });
+  if (stop.load(std::memory_order_relaxed)) out.clear();
+  return out;
+}
+
+float share_of_fronts(const PreparedScene& scene, const SiteList& sites, size_t site,
+                      uint64_t seed) {
+  constexpr uint32_t rays = 64;
+  Pieces pieces;
+  pieces.take(sites, site);
+  if (pieces.is_empty()) return 0;
+  const Box box = bounds(scene.scene);
+  int fronts = 0;
+  for (uint32_t i = 0; i < rays; ++i) {
+    const SobolGroup random(hash_of(seed, of_looks, site), purpose_camera, i);
+    const SobolGroup direction(hash_of(seed, of_looks, site), purpose_scatter(0), i);
+    const Place place = pieces.place(random.get2(2).x, random.get2(0));
+    const Ray ray = look(place, offset_of_point(place.position, box), direction.get2(0));
+    std::array<Hit, 1> hit;
+    scene.tracer.closest({&ray, 1}, hit);
+    fronts += seen_by(scene, ray, hit[0]) == Seen::front;
+  }
+  return float(fronts) / float(rays);
+}
+
+}  // namespace troffer
