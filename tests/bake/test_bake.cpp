@@ -50,9 +50,11 @@ Rgb bilinear(const Image& image, const Vec2& uv) {
 // What a lightmap shows at places of a surface: weights of three corners.
 template <class Visit>
 void for_places(const BakeResult& r, const MeshInWorld& mesh, const BakedSurface& surface,
-                const Visit& visit) {
+                const Visit& visit, const Vec3& facing = {}) {
   for (uint32_t t = 0; t < mesh.size(); ++t) {
     const Triangle k = mesh.triangle(t);
+    const auto [a, b, c] = mesh.corners(t);
+    if (dot(cross(b - a, c - a), facing) < 0) continue;
     for (const Vec3 w : {Vec3{0.98f, 0.01f, 0.01f},
                          {0.01f, 0.98f, 0.01f},
                          {0.01f, 0.01f, 0.98f},
@@ -194,14 +196,17 @@ TEST_CASE("a wall without thickness lets nothing through, nor does a floor under
   const BakeResult r = baked(s, quick(256));
   const Mesh* mesh = nullptr;
   const BakedSurface& dark = surface_named(r, "dark side", mesh);
+  // Each wall is seen from both sides, and so has a layer for each.
   double brightest = 0;
   for_places(r, MeshInWorld(*mesh), dark,
-             [&](const Vec3&, Rgb e) { brightest = std::max(brightest, double(luminance(e))); });
+             [&](const Vec3&, Rgb e) { brightest = std::max(brightest, double(luminance(e))); },
+             {1, 0, 0});
   CHECK(brightest < 1e-6 * r.figures.mean_lx);
   const BakedSurface& lit = surface_named(r, "lit side", mesh);
   double darkest = 1e9;
   for_places(r, MeshInWorld(*mesh), lit,
-             [&](const Vec3&, Rgb e) { darkest = std::min(darkest, double(luminance(e))); });
+             [&](const Vec3&, Rgb e) { darkest = std::min(darkest, double(luminance(e))); },
+             {-1, 0, 0});
   CHECK(darkest > 0.1 * r.figures.mean_lx);
   // Along the foot of the box, a third of a texel before it, the lightmap shows what measure finds.
   const PreparedScene prepared(as_meshes(s));
