@@ -273,14 +273,17 @@ BakeResult Baking::run() {
                   {},
                   {},
                   options_.light.cells};
+  // Without light there is nothing to gather, and paths find that out soonest.
+  const Method method = scene_.scene.lights.empty() ? Method::path : options_.light.method;
   const std::unique_ptr<Integrator> integrator =
-      make_integrator(scene_, options_.light.method, settings_, options_.light.preparation, &cells);
+      make_integrator(scene_, method, settings_, options_.light.preparation, &cells);
   if (!integrator) return {};
   BakedSurfaces surfaces = surfaces_of(scene_.scene, options_.light.threads);
   const size_t before = surfaces.stands.size();
   const auto sides = lit_sides(scene_, *integrator, surfaces, site_settings(), stop_);
   if (stop_.load(std::memory_order_relaxed)) return {};
   surfaces = with_sides(std::move(surfaces), sides);
+  if (options_.shading == BakedShading::emissive) lift_layers(surfaces);
   result_.figures.layered = surfaces.stands.size() - std::min(before, surfaces.stands.size());
   result_.baked.shading = options_.shading;
   result_.baked.meshes.resize(surfaces.scene.meshes.size());

@@ -21,8 +21,9 @@ namespace troffer {
 
 struct Chart {
   std::vector<uint32_t> triangles;
-  Vec2 size;           // of its rectangle, in the mesh's metres; the longer side lies along x
-  float fineness = 1;  // texels per metre, as a share of what others get
+  Vec2 size;              // of its rectangle, in the mesh's metres; the longer side lies along x
+  float fineness = 1;     // texels per metre, as a share of what others get
+  bool is_layer = false;  // of two in one place, one for each side
 };
 
 // A mesh of the same triangles, in the same order, with vertices that no two charts share.

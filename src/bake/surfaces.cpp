@@ -103,7 +103,7 @@ void round_to_meshes(Scene& scene) {
 // Some charts of a mesh, as a mesh.
 class ChartPicker {
  public:
-  explicit ChartPicker(const ChartedMesh& from) : from_(from) {
+  ChartPicker(const ChartedMesh& from, bool is_layer) : from_(from), is_layer_(is_layer) {
     out_.mesh.name = from.mesh.name;
     out_.mesh.material = from.mesh.material;
     number_.assign(from.mesh.positions.size(), none);
@@ -112,6 +112,7 @@ class ChartPicker {
     Chart added;
     added.size = chart.size;
     added.fineness = fineness;
+    added.is_layer = is_layer_;
     add_triangles(chart.triangles, is_turned, &added);
     out_.charts.push_back(std::move(added));
   }
@@ -131,6 +132,7 @@ class ChartPicker {
  private:
   static constexpr uint32_t none = 0xffffffffu;
   const ChartedMesh& from_;
+  const bool is_layer_;
   ChartedMesh out_;
   std::vector<uint32_t> number_;
 
@@ -169,7 +171,7 @@ struct Divided {
 };
 
 Divided divided(const ChartedMesh& from, const std::vector<LitSides>& sides) {
-  ChartPicker single(from), layers(from);
+  ChartPicker single(from, false), layers(from, true);
   for (size_t c = 0; c < from.charts.size(); ++c) {
     const Chart& chart = from.charts[c];
     if (sides[c] == LitSides::front || sides[c] == LitSides::back) {
@@ -296,6 +298,35 @@ BakedSurfaces with_sides(BakedSurfaces from, const std::vector<std::vector<LitSi
   out.scene = std::move(scene);
   list_stands(out);
   return out;
+}
+
+void lift_layers(BakedSurfaces& s) {
+  constexpr float roundings = 8e-6f;
+  for (size_t i = 0; i < s.charted.size(); ++i) {
+    ChartedMesh& m = s.charted[i];
+    const Vec3 reach = reach_of(m.mesh);
+    const float lift = std::max(1e-5f, roundings * std::max({reach.x, reach.y, reach.z}));
+    bool is_any = false;
+    for (const Chart& chart : m.charts) {
+      if (!chart.is_layer) continue;
+      is_any = true;
+      Vec3d normal;
+      std::vector<uint32_t> vertices;
+      for (const uint32_t t : chart.triangles) {
+        const auto& [a, b, c] = m.mesh.triangles[t];
+        const Vec3d p(m.mesh.positions[a]);
+        normal += cross(Vec3d(m.mesh.positions[b]) - p, Vec3d(m.mesh.positions[c]) - p);
+        vertices.insert(vertices.end(), {a, b, c});
+      }
+      std::sort(vertices.begin(), vertices.end());
+      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      const Vec3 way = Vec3(normal / std::max(length(normal), 1e-300)) * lift;
+      for (const uint32_t v : vertices) m.mesh.positions[v] += way;
+    }
+    if (!is_any) continue;
+    const size_t meshes = s.scene.meshes.size();
+    (i < meshes ? s.scene.meshes[i] : s.scene.instanced_meshes[i - meshes]) = m.mesh;
+  }
 }
 
 }  // namespace troffer

@@ -61,4 +61,8 @@ enum class LitSides : uint8_t {
 // both get light, the mesh is divided.
 BakedSurfaces with_sides(BakedSurfaces surfaces, const std::vector<std::vector<LitSides>>& sides);
 
+// Moves layers that lie in one place apart, each to its front by a few roundings of coordinates:
+// for readers that show the backs of what shines, as troffer does.
+void lift_layers(BakedSurfaces& surfaces);
+
 }  // namespace troffer
