@@ -9,6 +9,7 @@
 
 #include "app/command_report.h"
 #include "app/commands.h"
+#include "app/daylight_flags.h"
 #include "app/printable.h"
 #include "app/signals.h"
 #include "base/error.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/luminaire_options.h"
+#include "app/luminaire_info.h"
 #include "app/printable.h"
 #include "app/process.h"
 #include "base/box.h"

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/daylight_flags.h"
 #include "app/outputs.h"
 #include "app/process.h"
 #include "app/progress.h"

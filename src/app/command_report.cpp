@@ -7,14 +7,14 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/luminaire_list.h"
-#include "app/luminaire_options.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "base/error.h"
 #include "image/atomic_file.h"
 #include "image/read_image.h"
+#include "lighting/attached_luminaires.h"
+#include "lighting/luminaire_list.h"
 #include "render/camera.h"
 #include "render/framing.h"
 #include "report/report.h"

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/daylight_flags.h"
 #include "app/signals.h"
 #include "base/error.h"
 #include "daylight/sun_position.h"

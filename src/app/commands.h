@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/daylight_options.h"
+#include "lighting/daylight_options.h"
 #include "app/lasting_options.h"
 #include "import/import_options.h"
 #include "render/radiosity.h"

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "app/command_report.h"
+#include "app/daylight_flags.h"
 #include "app/report_files.h"
 #include "base/error.h"
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "python/asked_light.h"
 #include "python/bindings.h"
 #include "python/script_scene.h"
 #include "render/camera.h"
@@ -182,6 +183,21 @@ void bind_parts(SceneClass& scene) {
           "the file's; ground: its reflectance.");
 }
 
+void bind_added_light(SceneClass& scene) {
+  scene.def(
+      "add_light",
+      [](ScriptScene& s, const py::kwargs& asked) {
+        const DaylightOptions options = daylight_options(asked);
+        const py::gil_scoped_release unlocked;
+        try {
+          s.add_light(options);
+        } catch (const UsageError& e) {
+          throw UsageError(in_script_words(e.what()));
+        }
+      },
+      add_light_help);
+}
+
 void bind_facts(SceneClass& scene) {
   scene.def_property_readonly("file", [](const ScriptScene& s) { return s.scene().file; })
       .def_property_readonly("warnings", &warnings, "What was odd in the file, in words.")
@@ -222,6 +238,7 @@ void bind_scene(py::module_& m) {
                    "on. Not for use from several threads at once.");
   bind_facts(scene);
   bind_parts(scene);
+  bind_added_light(scene);
   scene
       .def("camera", &ScriptScene::camera, py::arg("name") = "",
            "The camera of this name; else the first one, or one that frames the scene.")

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -84,6 +85,23 @@ void ScriptScene::add_sky(const SkyRequest& request, Vec3 up, double north_deg) 
   troffer::add_sky(scene, request, make_compass(up, north_deg, is_mirrored(scene_)));
   for (size_t i = dimmed_.size(); i < scene.lights.size(); ++i)
     dimmed_.push_back({scene.lights[i].radiance});
+}
+
+void ScriptScene::add_light(const DaylightOptions& options) {
+  Scene changed = scene_;
+  std::map<std::string, double> dimmers;
+  for (size_t i = 0; i < dimmed_.size(); ++i) {
+    changed.lights[i].radiance = dimmed_[i].radiance;
+    dimmers[changed.lights[i].name] = dimmed_[i].dimmer;
+  }
+  add_daylight(changed, options);
+  change() = with_joined_lights(std::move(changed));
+  dimmed_.clear();
+  for (const Light& e : scene_.lights) {
+    const auto known = dimmers.find(e.name);
+    dimmed_.push_back({e.radiance, known == dimmers.end() ? 1 : known->second});
+  }
+  apply_dimmers();
 }
 
 Camera ScriptScene::camera(const std::string& name) {

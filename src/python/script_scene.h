@@ -10,6 +10,7 @@
 #include "daylight/sky_lights.h"
 #include "import/import_options.h"
 #include "integrate/prepared_scene.h"
+#include "lighting/daylight_options.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -40,6 +41,9 @@ class ScriptScene {
 
   // Adds a sky; to a scene whose up is `up`, as `north_deg` says (make_compass).
   void add_sky(const SkyRequest& request, Vec3 up, double north_deg);
+  // Light as the program's options bring it: troffer::add_daylight, with its errors, after which
+  // the scene is as it was. Lights keep their dimmers by name.
+  void add_light(const DaylightOptions& options);
 
   // The camera of that name, or the first one for ""; where the scene has none, one that frames it.
   // UsageError where none has this name.

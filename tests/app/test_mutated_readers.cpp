@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "app/luminaire_list.h"
-#include "app/weather.h"
+#include "lighting/luminaire_list.h"
+#include "lighting/weather.h"
 #include "import/mutations.h"
 #include "program.h"
 #include "support/beam_ies.h"

@@ -1,4 +1,4 @@
-#include "app/weather.h"
+#include "lighting/weather.h"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "app/csv_table.h"
 #include "base/error.h"
 #include "daylight/sun_position.h"
 #include "import/file.h"
+#include "lighting/csv_table.h"
 
 namespace troffer {
 

@@ -1,4 +1,5 @@
-// Options that bring light from beyond a scene: --sky, --sun, --at, --turbidity, --weather,
+// Options that bring light to a scene, beside what its file has: --luminaire, --luminaires,
+// --light-radius; and from beyond it: --sky, --sun, --at, --turbidity, --weather,
 // --north, --ground, --environment, --portal.
 #pragma once
 
@@ -7,26 +8,20 @@
 
 #include "scene/scene.h"
 
-namespace CLI {
-class App;
-}
-
 namespace troffer {
 
 // As typed.
 struct DaylightOptions {
-  std::vector<std::string> luminaires;  // light of the scene's own: app/luminaire_options.h
-  std::string luminaire_list;           // app/luminaire_list.h
+  std::vector<std::string> luminaires;  // light of the scene's own: attached_luminaires.h
+  std::string luminaire_list;           // lighting/luminaire_list.h
   std::string sky, sun, at;
-  std::string weather, date;  // app/weather.h
+  std::string weather, date;  // lighting/weather.h
   double light_radius = 0;    // m; 0: points stay points
   std::string environment, portal;
   std::string up;  // x,y,z; empty: guessed
   double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;
   double turbidity = 0;  // Linke's; 0: what is typical
 };
-
-void add_daylight_options(CLI::App& command, DaylightOptions& options);
 
 // Adds to the scene the lights that are asked for; to one that has none the even sky that a warning
 // tells of, unless it is told to stay dark. UsageError for values that make no sense, InputError

@@ -1,4 +1,4 @@
-#include "app/luminaire_list.h"
+#include "lighting/luminaire_list.h"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,12 @@
 #include <string_view>
 #include <vector>
 
-#include "app/csv_table.h"
-#include "app/luminaire_options.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "import/attach_luminaire.h"
 #include "import/file.h"
+#include "lighting/attached_luminaires.h"
+#include "lighting/csv_table.h"
 
 namespace troffer {
 

@@ -1,22 +1,21 @@
-#include "app/daylight_options.h"
+#include "lighting/daylight_options.h"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <vector>
 
-#include "app/luminaire_list.h"
-#include "app/luminaire_options.h"
-#include "app/weather.h"
 #include "base/error.h"
 #include "daylight/sky_lights.h"
 #include "daylight/sun_position.h"
 #include "import/environment_file.h"
 #include "import/light_radius.h"
+#include "lighting/attached_luminaires.h"
+#include "lighting/luminaire_list.h"
+#include "lighting/weather.h"
 #include "scene/orientation.h"
 #include "scene/portal_corners.h"
 
@@ -270,63 +269,6 @@ Vec3d parse_vector(const std::string& text, const char* option) {
     p = end + 1;
   }
   return v;
-}
-
-void add_daylight_options(CLI::App& command, DaylightOptions& o) {
-  command.add_option("--sky", o.sky,
-                     "Light of a sky: even, overcast, clear, cie:1 to cie:15 [,LUX of a horizontal "
-                     "plane]; perez:DNI,DHI in W/m²; none [even where a scene has no light]");
-  command.add_option("--sun", o.sun,
-                     "The sun: AZIMUTH,ALTITUDE[,LUX], degrees clockwise from north and above the "
-                     "horizon; with a clear sky unless --sky or --environment says else");
-  command.add_option("--at", o.at,
-                     "The sun by LATITUDE,LONGITUDE,TIME, such as "
-                     "48.2,16.4,2026-06-21T12:00+02:00");
-  command
-      .add_option("--turbidity", o.turbidity,
-                  "Linke's turbidity of a clear sky: how much light it and the sun bring")
-      ->check(CLI::Range(1.0, 10.0));
-  command.add_option("--weather", o.weather,
-                     "Sky and sun of an hour of a weather file (.epw), by Perez' model and --date "
-                     "or --at");
-  command.add_option("--date", o.date, "Of --weather: MM-DDTHH:MM, in the file's standard time");
-  command
-      .add_option("--north", o.north_deg,
-                  "Where north lies: degrees clockwise, seen from above, from -z; +y where z is "
-                  "up")
-      ->check(CLI::Range(-360.0, 360.0))
-      ->capture_default_str();
-  command.add_option("--ground", o.ground, "Reflectance of the ground below a sky")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command.add_option(
-      "--environment", o.environment,
-      "Image of the surroundings, FILE[,SCALE]: .exr .hdr .pfm .png .jpg, azimuth by "
-      "height, or square and equal-area");
-  command
-      .add_option("--environment-rotation", o.environment_rotation_deg,
-                  "Turns it clockwise, seen from above, in degrees")
-      ->check(CLI::Range(-360.0, 360.0))
-      ->capture_default_str();
-  command.add_option(
-      "--portal", o.portal,
-      "The rectangle that light of the sky, the sun and images comes through alone: "
-      "four corners x,y,z, … counterclockwise seen from where it arrives, or the name "
-      "of a part of the scene whose front faces there");
-  command
-      .add_option(
-          "--luminaire", o.luminaires,
-          "NODE=FILE[,LUMENS[,KELVIN]]: a flat surface, a point or a spot shines as an .ies "
-          "or .ldt file says, in the colour of a black body; may be repeated")
-      ->allow_extra_args(false);
-  command.add_option("--luminaires", o.luminaire_list,
-                     "LIST.csv of luminaires to add: file,x,y,z[,dx,dy,dz[,rotation[,dimming]]]");
-  command
-      .add_option("--light-radius", o.light_radius,
-                  "Makes points and spots spheres of this radius, in metres: soft shadows")
-      ->check(CLI::Range(1e-6, 1e6));
-  if (command.get_option_no_throw("--up") == nullptr)
-    command.add_option("--up", o.up, "Upward direction x,y,z, for what comes from the sky");
 }
 
 void add_daylight(Scene& scene, const DaylightOptions& o) {

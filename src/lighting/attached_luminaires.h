@@ -1,4 +1,4 @@
-// --luminaire, and what info tells of photometric files.
+// Measured luminaires that take the place of parts of a scene: --luminaire.
 #pragma once
 
 #include <string>
@@ -28,12 +28,5 @@ void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires,
 // nothing.
 std::vector<std::pair<std::string, double>> watts_of_luminaires(
     const std::vector<std::string>& luminaires);
-
-// By the ending of a file: .ies or .ldt.
-bool is_luminaire(const std::string& path);
-
-// Lumens, efficacy, beam and field angles, the opening: as text, or as JSON. Draws the polar curves
-// to the file `polar` (polar_curve.h) where it has a name.
-std::string luminaire_info(const std::string& path, bool is_json, const std::string& polar);
 
 }  // namespace troffer
