@@ -137,6 +137,24 @@ std::unique_ptr<Integrator> make_paths(const MethodInput& in, const PathForecast
                                               most_by_paths(in.settings))});
 }
 
+// Light straight from sources alone. A pixel's further viewing rays are many, and what they show is
+// what it errs by: each may err by more, and is drawn where certificates take more than that.
+std::unique_ptr<Integrator> make_refined_direct(const MethodInput& in,
+                                                const std::shared_ptr<const Occluders>& occluders,
+                                                std::unique_ptr<DirectLight> first) {
+  constexpr double more = 3;
+  constexpr int few_draws = 8;  // a power of two: stratified best
+  CertifiedSettings s =
+      certified_settings(std::min(more * in.settings.error, 1.0), in.scene.scene.lights.size());
+  s.draws = few_draws;
+  std::unique_ptr<DirectLight> further = std::make_unique<CertifiedDirect>(in.scene, occluders, s);
+  return std::make_unique<WaveIntegrator>(
+      in.scene,
+      std::make_unique<StagedDirect>(std::move(first), std::move(further),
+                                     uint32_t(in.settings.viewing_rays)),
+      nullptr, true);
+}
+
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   std::optional<PathForecast> paths;
   if (needs_cells(Method::certified, in.settings.indirect)) paths = forecast(in);
@@ -165,6 +183,8 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
         in.scene, std::make_unique<StagedDirect>(std::move(direct), std::move(further), samples),
         std::move(indirect));
   }
+  if (in.settings.is_direct_only() && in.settings.is_refined)
+    return make_refined_direct(in, occluders, std::move(direct));
   if (in.radiosity != nullptr && !in.settings.is_direct_only())
     indirect =
         std::make_unique<RadiosityIndirect>(in.scene, *in.radiosity, occluders, settings.estimator);

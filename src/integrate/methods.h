@@ -68,6 +68,7 @@ struct MethodSettings {
   TreeSamplingOptions trees;  // kj92
   // certified: of a pixel, all in all, where they are not left to the method; 0: they are
   int most_viewing_rays = 0;
+  bool is_refined = false;  // certified: pixels of a picture get further ones where they want them
   int depth = -1;   // path: most bounces; -1 = unlimited
   int threads = 0;  // for what is built; 0 = all cores
 

@@ -43,8 +43,11 @@ struct WaveIntegrator::Scratch final : IntegratorScratch {
 };
 
 WaveIntegrator::WaveIntegrator(const PreparedScene& scene, std::unique_ptr<DirectLight> direct,
-                               std::unique_ptr<IndirectLight> indirect)
-    : scene_(scene), direct_(std::move(direct)), indirect_(std::move(indirect)) {
+                               std::unique_ptr<IndirectLight> indirect, bool has_glances)
+    : scene_(scene),
+      direct_(std::move(direct)),
+      indirect_(std::move(indirect)),
+      has_glances_(has_glances) {
   TROFFER_CHECK(!indirect_ || direct_->walked_part() == WalkedPart::specular);
 }
 
@@ -59,6 +62,8 @@ void WaveIntegrator::begin(Scratch& s, RadianceBatch& out) const {
   direct_->begin(*s.direct);
   if (indirect_) indirect_->begin(*s.indirect);
   if (direct_->tells_variance()) out.tell_variance();
+  // All there is, is told.
+  if (!indirect_ && has_glances_) out.told_indirect.assign(out.direct.size(), 0);
 }
 
 void WaveIntegrator::flush(Scratch& s, RadianceBatch& out, Counters& counters) const {
@@ -80,7 +85,7 @@ void WaveIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
       s.wave.viewing = &rays;
       scatter(s, out);
       if (s.wave.size() == 0) continue;
-      if (!out.known.empty() && c == Coherence::coherent) indirect_->know(s.wave, out);
+      if (indirect_ && !out.known.empty() && c == Coherence::coherent) indirect_->know(s.wave, out);
       direct_->queue(s.wave, *s.direct, out, counters);
       if (indirect_) indirect_->queue(s.wave, *s.indirect, out, counters);
       step_on(s);
@@ -101,7 +106,7 @@ void WaveIntegrator::glance(const ViewingRays& rays, IntegratorScratch& scratch,
     arrive(first, std::min(first + hits_at_a_time, s.walks.size()), s, out);
     s.wave.viewing = &rays;
     scatter(s, out);
-    indirect_->know(s.wave, out);
+    if (indirect_) indirect_->know(s.wave, out);
   }
 }
 

@@ -23,14 +23,15 @@ namespace troffer {
 
 class WaveIntegrator final : public Integrator {
  public:
-  // indirect: may be null; else DirectLight leaves the specular part to walks.
+  // indirect: may be null; else DirectLight leaves the specular part to walks. Without it a picture
+  // may be refined by what its viewing rays run into (has_glances): of light no more is known then.
   WaveIntegrator(const PreparedScene& scene, std::unique_ptr<DirectLight> direct,
-                 std::unique_ptr<IndirectLight> indirect);
+                 std::unique_ptr<IndirectLight> indirect, bool has_glances = false);
 
   std::unique_ptr<IntegratorScratch> make_scratch() const override;
   void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
                 Counters& counters) const override;
-  bool can_glance() const override { return indirect_ && indirect_->is_known(); }
+  bool can_glance() const override { return indirect_ ? indirect_->is_known() : has_glances_; }
   void glance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
               Counters& counters) const override;
   void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch, RadianceBatch& out,
@@ -51,6 +52,7 @@ class WaveIntegrator final : public Integrator {
   const PreparedScene& scene_;
   std::unique_ptr<DirectLight> direct_;
   std::unique_ptr<IndirectLight> indirect_;
+  bool has_glances_;
 };
 
 }  // namespace troffer

@@ -195,6 +195,7 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   double wanted = variance > 0 ? variance / sqr(allowed) : 0;
   const double even = double(options.most_even);
   if (even > 0 && wanted > sqr(even)) wanted = even * std::sqrt(wanted);
+  if (has_glances) wanted = std::max(wanted, double(options.least_beside_glances));
   return wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most;
 }
 

@@ -36,6 +36,9 @@ struct RefinementOptions {
   // More rays than this squared are in proportion to the pixel's standard deviation, not to its
   // variance: so many rays leave the picture the least error. 0: all by the variance.
   float most_even = 0;
+  // Pixels that are glanced at get so many rays at least: where a glance knows what shines, but not
+  // what is lit, thin things that are lit would be left to the first few.
+  int least_beside_glances = 0;
 };
 
 // One record for each pixel of the window, row by row: that of its last viewing ray.

@@ -61,7 +61,7 @@ double film_bytes(const PixelRect& window, const RenderOptions& o) {
   constexpr double corner = 32;  // EdgeMap
   constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern) + corner + sizeof(int);
   const bool is_refined = most_viewing_rays(o).in_pixel > o.spp;
-  const bool has_glances = is_refined && needs_cells(o.method, o.indirect);
+  const bool has_glances = is_refined && o.method == Method::certified;
   return Film::bytes(pixels, o.aovs, has_glances) + (is_refined ? pixels * record : 0);
 }
 
@@ -196,9 +196,12 @@ MostViewingRays most_viewing_rays(const RenderOptions& options) {
   const auto all = [](int n) { return MostViewingRays{n, n, n}; };
   if (options.max_spp > 0) return all(std::max(options.max_spp, options.spp));
   const MethodRow& row = options.method.row();
-  // By what cells know, edges cost little, and further rays are for what is left.
-  if (row.refinement > 1 && needs_cells(options.method, options.indirect))
-    return {256 * options.spp, 64 * options.spp, 16 * options.spp};
+  // By what is known beforehand edges cost little, and further rays are for what is left: fewer
+  // where only what shines is known.
+  if (row.refinement > 1 && !needs_radiosity(options.method, options.indirect))
+    return {256 * options.spp,
+            (needs_cells(options.method, options.indirect) ? 64 : 32) * options.spp,
+            16 * options.spp};
   return all(row.refinement * options.spp);
 }
 
@@ -209,6 +212,7 @@ MethodSettings method_settings(const RenderOptions& o) {
   s.error = o.error;
   s.viewing_rays = o.spp;
   s.most_viewing_rays = o.max_spp > 0 ? std::max(o.max_spp, o.spp) : 0;
+  s.is_refined = most_viewing_rays(o).in_pixel > o.spp;
   s.trees = o.kj92.sampling;
   s.depth = o.depth;
   s.threads = o.threads;

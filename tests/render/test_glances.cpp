@@ -113,6 +113,47 @@ TEST_CASE("glances: the mean of a picture with blinds stays") {
   CHECK(std::abs(refined.mean() - even.mean()) < 3.3 * spread);
 }
 
+TEST_CASE("direct light alone: edges get the rays that they want, and the error is told") {
+  const PreparedScene scene(room_behind_blinds());
+  RenderOptions o = small_picture();
+  o.indirect = Indirect::none;
+  o.max_spp = 0;
+  o.spp = 4;
+  constexpr int pictures = 6;
+  std::vector<Image> all;
+  double told = 0;
+  Moments means;
+  for (int i = 0; i < pictures; ++i) {
+    o.seed = uint64_t(i);
+    const RenderResult r = render_now(scene, at_window, o);
+    CHECK(r.statistics.counters.glances > 0);
+    CHECK(r.statistics.counters.viewing_rays > 16 * uint64_t(o.width * o.height));
+    told += r.statistics.told_error / pictures;
+    all.push_back(r.layers[0].image);
+    double sum = 0;
+    for (const Rgb& c : all.back().pixels) sum += double(luminance(c));
+    means.add(sum / double(all.back().pixels.size()));
+  }
+  double squares = 0;
+  for (size_t p = 0; p < all[0].pixels.size(); ++p) {
+    Moments pixel;
+    for (const Image& image : all) pixel.add(double(luminance(image.pixels[p])));
+    squares += pixel.variance_of_mean() * pictures / double(all[0].pixels.size());
+  }
+  const double made = std::sqrt(squares) / means.mean();
+  MESSAGE("made ", made, ", told ", told);
+  CHECK(made < 0.05);  // 0.5 with 16 rays at edges
+  CHECK(told > 0.8 * made);
+  CHECK(told < 2.5 * made);
+  o.method = Method::fixed;
+  o.spp = 64;
+  o.shadow_rays = 16;
+  const Moments fixed = render_ensemble(scene, at_window, o, 6).mean;
+  const double spread = std::sqrt(means.variance_of_mean() + fixed.variance_of_mean());
+  CHECK(spread < 0.01 * fixed.mean());  // it could see a bias
+  CHECK(std::abs(means.mean() - fixed.mean()) < 3.3 * spread);
+}
+
 TEST_CASE("glances: blinds before a window err by less than half, with fewer viewing rays") {
   const PreparedScene scene(room_behind_blinds());
   RenderOptions o = small_picture();
