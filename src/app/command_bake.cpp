@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/daylight_flags.h"
 #include "app/outputs.h"
 #include "app/printable.h"
 #include "app/progress.h"
