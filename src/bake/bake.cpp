@@ -273,10 +273,8 @@ BakeResult Baking::run() {
                   {},
                   {},
                   options_.light.cells};
-  // Without light there is nothing to gather, and paths find that out soonest.
-  const Method method = scene_.scene.lights.empty() ? Method::path : options_.light.method;
   const std::unique_ptr<Integrator> integrator =
-      make_integrator(scene_, method, settings_, options_.light.preparation, &cells);
+      make_integrator(scene_, options_.light.method, settings_, options_.light.preparation, &cells);
   if (!integrator) return {};
   BakedSurfaces surfaces = surfaces_of(scene_.scene, options_.light.threads);
   const size_t before = surfaces.stands.size();

@@ -155,7 +155,15 @@ std::unique_ptr<Integrator> make_refined_direct(const MethodInput& in,
       nullptr, true);
 }
 
+std::unique_ptr<Integrator> make_path(const MethodInput& in) {
+  return std::make_unique<PathIntegrator>(
+      in.scene, PathOptions{in.settings.depth, in.settings.is_direct_only()});
+}
+
 std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
+  // Where nothing shines, cells would look for light as long as they may.
+  const bool keeps_cells = in.cells != nullptr && in.cells->store != nullptr;
+  if (in.scene.scene.lights.empty() && !keeps_cells) return make_path(in);
   std::optional<PathForecast> paths;
   if (needs_cells(Method::certified, in.settings.indirect)) paths = forecast(in);
   if (paths && paths->rays_for_cells < 0) return make_paths(in, *paths);
@@ -205,11 +213,6 @@ std::unique_ptr<Integrator> make_kj92(const MethodInput& in) {
 std::unique_ptr<Integrator> make_fixed(const MethodInput& in) {
   return std::make_unique<WaveIntegrator>(
       in.scene, std::make_unique<FixedDirect>(in.scene, in.settings.shadow_rays), nullptr);
-}
-
-std::unique_ptr<Integrator> make_path(const MethodInput& in) {
-  return std::make_unique<PathIntegrator>(
-      in.scene, PathOptions{in.settings.depth, in.settings.is_direct_only()});
 }
 
 // Of many lights most are drawn.
