@@ -258,6 +258,15 @@ int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& 
   return run_render(std::move(render));
 }
 
+int check_and_run(const CLI::App& app, MeasureCommand& measure, const RawOptions& raw) {
+  if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
+  measure.indirect = parse_indirect(raw.indirect);
+  const Method method = parse_method(measure.method);
+  warn_of_unused_options(app, method, indirect_with(measure.solution, method, measure.indirect),
+                         measure.is_quiet);
+  return run_measure(measure);
+}
+
 int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   CLI::App app{"troffer lights rooms: images and lighting figures of interiors."};
   app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
@@ -297,15 +306,8 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
     return check_and_run(*app.get_subcommand("render"), render, render_raw);
   if (crew != nullptr && !crew->leads()) return exit_done;  // all else is for one
   if (app.got_subcommand("compare")) return run_compare(compare);
-  if (app.got_subcommand("measure")) {
-    if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
-    measure.indirect = parse_indirect(measure_raw.indirect);
-    const Method method = parse_method(measure.method);
-    warn_of_unused_options(*app.get_subcommand("measure"), method,
-                           indirect_with(measure.solution, method, measure.indirect),
-                           measure.is_quiet);
-    return run_measure(measure);
-  }
+  if (app.got_subcommand("measure"))
+    return check_and_run(*app.get_subcommand("measure"), measure, measure_raw);
   if (app.got_subcommand("radiosity")) return run_radiosity(radiosity);
   if (app.got_subcommand("view")) return run_view(view);
   if (app.got_subcommand("convert")) return run_convert(convert);
