@@ -131,7 +131,7 @@ int run_bake(const BakeCommand& c, BakeOptions options) {
 void add_texel_options(CLI::App* s, BakeCommand& c) {
   s->add_option("--texels-per-metre", c.texels_per_metre,
                 "Texels along a metre of surface [as many as fill one page of --resolution]")
-      ->check(CLI::Range(1e-3, 1e5));
+      ->check(CLI::Range(1e-3, 1e4));
   s->add_option("--resolution", c.resolution, "Texels along the side of the one page")
       ->check(CLI::Range(16, 16384))
       ->capture_default_str();
