@@ -115,7 +115,7 @@ TEST_CASE("texels in a room are what measure finds there") {
   add_box_inside(s, grey, {-2, -2, 0}, {2, 2, 2.5f});
   add_ceiling_light(s, 1, 2.4f, Rgb{10});
   for (const Method method : {Method::certified, Method::path}) {
-    BakeOptions o = quick(96, method == Method::path ? 1024 : 128);
+    BakeOptions o = quick(96, method == Method::path ? 512 : 128);
     o.light.method = method;
     const PreparedScene prepared(as_meshes(s));
     const BakeResult r = bake(prepared, o, {}, never_stop);
@@ -131,7 +131,7 @@ TEST_CASE("texels in a room are what measure finds there") {
       });
     MeasureOptions by;
     by.method = Method::path;
-    by.spp = 8192;
+    by.spp = 2048;
     const MeasureResult truth = measure(prepared, points, by, {}, never_stop);
     double squares = 0, sum = 0, total = 0;
     for (size_t i = 0; i < points.size(); ++i) {

@@ -96,7 +96,7 @@ TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
     o.max_spp = 64;
     const Ensemble mine = render_ensemble(scene, mixed_room_camera(), o, 4);
     o.method = Method::path;
-    o.spp = 1024;
+    o.spp = 512;
     const Ensemble paths = render_ensemble(scene, mixed_room_camera(), o, 4);
     CAPTURE(m.roughness.value);
     CAPTURE(paths.mean.standard_error() / paths.mean.mean());
