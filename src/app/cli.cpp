@@ -9,6 +9,7 @@
 
 #include "app/command_report.h"
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "app/daylight_flags.h"
 #include "app/printable.h"
 #include "app/signals.h"
@@ -171,14 +172,10 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
       ->check(CLI::Range(0, 1 << 20));
   add_camera(r, c, raw);
-  r->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  r->add_option("--threads", c.options.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
-  r->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
-  r->add_option("--aov", raw.aovs,
-                "Further layers for .exr: albedo,normal,depth,position,direct,indirect,"
-                "shadow_rays,sources,error,viewing_error")
+  add_light_choice(*r, c.lights);
+  add_threads(*r, c.options.threads);
+  add_seed(*r, c.options.seed);
+  r->add_option("--aov", raw.aovs, "Further layers for .exr: " + aov_names())
       ->delimiter(',')
       ->allow_extra_args(false);
   r->add_option(
@@ -222,12 +219,10 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
       ->check(CLI::Range(0, 1 << 20));
   s->add_option("--indirect", raw.indirect, "auto, or none: direct light only")
       ->capture_default_str();
-  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
-  s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
+  add_threads(*s, c.threads);
+  add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "app/daylight_flags.h"
 #include "app/outputs.h"
 #include "app/printable.h"
@@ -175,12 +176,10 @@ void add_bake(CLI::App& app, BakeCommand& c) {
   s->add_option("--solution", c.solution,
                 "certified: keep cells in this file, and go on from them; kj92: what troffer "
                 "radiosity made");
-  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
-  s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
+  add_threads(*s, c.threads);
+  add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings, no figures");
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "app/daylight_flags.h"
 #include "app/outputs.h"
 #include "app/process.h"
@@ -163,12 +164,10 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
                 "lights to diffuse surfaces")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
-  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
-  s->add_option("--seed", c.options.seed, "Seed of the random numbers")->capture_default_str();
+  add_threads(*s, c.threads);
+  add_seed(*s, c.options.seed);
   s->add_option("--stats", c.stats, "Write counts and times to this JSON file");
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings, no summary");
 }

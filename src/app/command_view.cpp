@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "app/daylight_flags.h"
 #include "app/signals.h"
 #include "base/error.h"
@@ -72,13 +73,11 @@ void add_view(CLI::App& app, ViewCommand& c) {
   s->add_option("--error", c.error, "Standard error at which a picture is done")
       ->check(CLI::Range(1e-3, 1.0))
       ->capture_default_str();
-  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
   s->add_option("--tev", c.tev, "HOST:PORT of a tev that is to show the pictures too");
-  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
-  s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
+  add_threads(*s, c.threads);
+  add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No warnings");
 }
 

@@ -21,16 +21,20 @@ int number_in(const char* name) {
   return value != nullptr ? std::atoi(value) : 0;
 }
 
-// Open MPI's mpirun; Slurm's srun and others that speak PMIx, which say no size.
-bool is_one_of_several() {
-  return number_in("OMPI_COMM_WORLD_SIZE") > 1 || number_in("PMI_SIZE") > 1 ||
-         (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr && std::getenv("PMIX_RANK") != nullptr);
+// Open MPI's mpirun; Slurm's srun, by PMI or by PMIx, which says no size. The latter two are set
+// for any program that srun starts, shares of a picture among them: those are for one process each.
+bool is_one_of_several(int argc, char** argv) {
+  if (number_in("OMPI_COMM_WORLD_SIZE") > 0) return number_in("OMPI_COMM_WORLD_SIZE") > 1;
+  for (int i = 2; i < argc; ++i)
+    if (std::strncmp(argv[i], "--part", 6) == 0) return false;
+  const bool speaks_pmix = std::getenv("PMIX_RANK") != nullptr;
+  return number_in("PMI_SIZE") > 1 || (speaks_pmix && number_in("SLURM_STEP_NUM_TASKS") > 1);
 }
 
 }  // namespace
 
 int hand_over_to_mpi(int argc, char** argv) {
-  if (argc < 2 || std::strcmp(argv[1], "render") != 0 || !is_one_of_several()) return 0;
+  if (argc < 2 || std::strcmp(argv[1], "render") != 0 || !is_one_of_several(argc, argv)) return 0;
   std::error_code error;
   const fs::path other = fs::read_symlink("/proc/self/exe", error).parent_path() / "troffer-mpi";
   execv(other.c_str(), argv);

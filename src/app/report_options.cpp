@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "app/command_report.h"
+#include "app/common_options.h"
 #include "app/daylight_flags.h"
 #include "app/report_files.h"
 #include "base/error.h"
@@ -131,12 +132,10 @@ void add_report(CLI::App& app, ReportCommand& c) {
   s->add_option("--dated", c.date, "A date to be told, as text");
   add_what(*s, c);
   add_how(*s, c);
-  s->add_option("--light", c.lights, "Only these sources emit (names as info lists them)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  s->add_option("--threads", c.threads, "Threads [all cores]")->check(CLI::Range(1, 4096));
-  s->add_option("--seed", c.seed, "Seed of the random numbers")->capture_default_str();
+  add_threads(*s, c.threads);
+  add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
 }
 

@@ -33,4 +33,10 @@ std::optional<Aov> find_aov(std::string_view name) {
   return std::nullopt;
 }
 
+std::string aov_names() {
+  std::string names;
+  for (const AovRow& row : aov_rows()) names.append(names.empty() ? "" : ",").append(row.name);
+  return names;
+}
+
 }  // namespace troffer

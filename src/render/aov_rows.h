@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,5 +19,6 @@ struct AovRow {
 const std::vector<AovRow>& aov_rows();
 const AovRow& row_of(Aov aov);
 std::optional<Aov> find_aov(std::string_view name);
+std::string aov_names();  // with commas between them
 
 }  // namespace troffer

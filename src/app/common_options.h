@@ -1,0 +1,18 @@
+// Options that most commands share, word for word.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace troffer {
+
+void add_light_choice(CLI::App& command, std::vector<std::string>& lights);
+void add_threads(CLI::App& command, int& threads);
+void add_seed(CLI::App& command, uint64_t& seed);
+
+}  // namespace troffer
