@@ -54,6 +54,7 @@ void Follower::receive(Letter&& l) {
     case LetterKind::end:
       talk_.is_over = true;
       stop_ = true;
+      courier_.send(0, letter({LetterKind::bye, 0, 0, 0}));
       break;
     case LetterKind::stop:
       stop_ = true;

@@ -19,6 +19,7 @@ constexpr double late_by = 4, least_late = 0.25;  // seconds
 constexpr auto late_interval = 10ms;
 constexpr double first_late = 10;   // … where none has come back yet
 constexpr auto time_for_tree = 2s;  // before somebody is told directly
+constexpr auto time_for_byes = 3s;  // of who may have died
 
 }  // namespace
 
@@ -37,6 +38,11 @@ Leader::~Leader() {
   write_down(std::move(rest), 0);
   stop_ = true;
   send_all({LetterKind::end, 0, 0, 0});
+  {
+    // All have to know before this process goes: what is still to be sent goes with it.
+    std::unique_lock lock(mutex_);
+    news_.wait_for(lock, time_for_byes, [&] { return others_.byes + 1 == size_; });
+  }
   courier_.end();
 }
 
@@ -70,6 +76,9 @@ void Leader::receive(Letter&& l) {
     }
     case LetterKind::halt:
       stop_ = true;
+      break;
+    case LetterKind::bye:
+      ++others_.byes;
       break;
     default:
       break;

@@ -77,6 +77,7 @@ class Leader final : public Crew {
     std::vector<uint32_t> early;    // items wanted of a job that has not begun
     std::vector<bool> is_gone;
     std::vector<std::string> last_words;
+    int byes = 0;
   };
 
   void receive(Letter&& l);

@@ -19,6 +19,7 @@ enum class LetterKind : uint32_t {
   ask,   // results of the job have not come
   left,  // the process takes no part any more, for the reason that follows
   halt,  // the process was asked to stop: all should
+  bye,   // it knows that nothing more will come
   // From rank 0.
   lease,   // item `item` is to be done; what is to be known for it follows
   result,  // piece `item` of `count` of what the job has come to

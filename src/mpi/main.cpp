@@ -61,7 +61,10 @@ int run_together(troffer::MpiPost& post, int argc, char** argv) {
   } else {
     crew = std::make_unique<troffer::Follower>(post, threads, patience, is_forsaken);
   }
-  return troffer::run(argc, argv, crew.get());
+  const int status = troffer::run(argc, argv, crew.get());
+  crew.reset();
+  post.close(status);
+  return status;
 }
 
 }  // namespace

@@ -1,10 +1,14 @@
 #include "mpi/mpi_post.h"
 
 #include <mpi.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <list>
+#include <thread>
 
 #include "base/error.h"
 
@@ -18,11 +22,22 @@ using namespace std::chrono_literals;
 constexpr int tag = 0;
 constexpr size_t large = 4096;          // bytes: more than MPI sends unasked
 constexpr auto usual_journey = 1000ms;  // what takes longer may be for the dead
+constexpr auto time_to_finish = 10s;
 
-bool is_through(MPI_Request& request) {
+// Settings of Open MPI, unless the user has chosen. Letters say when all is done, and its own
+// waiting for all at the end can last for ever where one has died. To copy from process to process
+// in one go is forbidden in many containers, and then each letter costs a line on stderr.
+void prepare() {
+  setenv("OMPI_MCA_async_mpi_finalize", "1", 0);
+  setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
+}
+
+enum class Journey { under_way, arrived, lost };
+
+Journey look_at(MPI_Request& request) {
   int flag = 0;
-  // What cannot be sent is lost.
-  return MPI_Test(&request, &flag, MPI_STATUS_IGNORE) != MPI_SUCCESS || flag != 0;
+  if (MPI_Test(&request, &flag, MPI_STATUS_IGNORE) != MPI_SUCCESS) return Journey::lost;
+  return flag != 0 ? Journey::arrived : Journey::under_way;
 }
 
 }  // namespace
@@ -42,6 +57,7 @@ struct MpiPost::Moving {
 };
 
 MpiPost::MpiPost(int& argc, char**& argv) : moving_(std::make_unique<Moving>()) {
+  prepare();
   int provided = MPI_THREAD_SINGLE;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
   MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
@@ -53,10 +69,21 @@ MpiPost::MpiPost(int& argc, char**& argv) : moving_(std::make_unique<Moving>()) 
   }
 }
 
-// Letters to who is dead never arrive.
 MpiPost::~MpiPost() {
+  close(EXIT_FAILURE);
+}
+
+// Letters to who is dead never arrive.
+void MpiPost::close(int status) {
+  if (is_closed_) return;
+  is_closed_ = true;
   for (Moving::Out& o : moving_->out) MPI_Request_free(&o.request);
   for (Moving::In& i : moving_->in) MPI_Cancel(&i.request);
+  std::thread([status] {
+    std::this_thread::sleep_for(time_to_finish);
+    std::fflush(nullptr);
+    _exit(status);
+  }).detach();
   MPI_Finalize();
 }
 
@@ -73,12 +100,16 @@ std::optional<Letter> MpiPost::receive() {
     in.letter.bytes.resize(size_t(size));
     MPI_Imrecv(in.letter.bytes.data(), size, MPI_BYTE, &message, &in.request);
   }
-  for (auto in = moving_->in.begin(); in != moving_->in.end(); ++in)
-    if (is_through(in->request)) {
-      Letter letter = std::move(in->letter);
-      moving_->in.erase(in);
-      return letter;
+  for (auto in = moving_->in.begin(); in != moving_->in.end();) {
+    const Journey journey = look_at(in->request);
+    if (journey == Journey::under_way) {
+      ++in;
+      continue;
     }
+    Letter letter = std::move(in->letter);
+    in = moving_->in.erase(in);
+    if (journey == Journey::arrived) return letter;
+  }
   return std::nullopt;
 }
 
@@ -91,7 +122,7 @@ void MpiPost::send(int to, Bytes bytes) {
 }
 
 bool MpiPost::is_moving() {
-  moving_->out.remove_if([](Moving::Out& o) { return is_through(o.request); });
+  moving_->out.remove_if([](Moving::Out& o) { return look_at(o.request) != Journey::under_way; });
   const Clock::time_point now = Clock::now();
   return !moving_->in.empty() ||
          std::any_of(moving_->out.begin(), moving_->out.end(), [&](const Moving::Out& o) {

@@ -13,6 +13,9 @@ class MpiPost final : public Post {
   // be called from a thread of the program's own.
   MpiPost(int& argc, char**& argv);
   ~MpiPost() override;
+  // Ends MPI; nothing is sent or received after it. Where MPI does not come to an end because
+  // somebody died, the program does, with this status.
+  void close(int status);
   MpiPost(const MpiPost&) = delete;
   MpiPost& operator=(const MpiPost&) = delete;
 
@@ -25,6 +28,7 @@ class MpiPost final : public Post {
  private:
   struct Moving;
   int rank_ = 0, size_ = 1;
+  bool is_closed_ = false;
   std::unique_ptr<Moving> moving_;
 };
 
