@@ -16,20 +16,21 @@ namespace troffer {
 class FarCounts {
  public:
   // of_pixel: points of a pixel, all of its usual viewing rays together; open: the share of the
-  // light that arrives.
+  // light that arrives; least: points of a hit, if it gets any.
   FarCounts(const WaitingHits& hits, std::span<const uint32_t> members, const DrawingBudget& budget,
-            bool is_picture, double of_pixel, double open)
+            bool is_picture, double of_pixel, double open, double least = 0)
       : hits_(hits),
         members_(members),
         first_(uint32_t(budget.viewing_rays)),
         is_picture_(is_picture) {
     constexpr double most_points = 256;
-    const double each = std::min(of_pixel / double(budget.viewing_rays), most_points);
+    if (!(of_pixel > 0)) return;
+    const double each = std::clamp(of_pixel / double(budget.viewing_rays), least, most_points);
     usual_ = power_near(each);
     constexpr double most_fewer = 4, least_most_few = 8, much = 0.4;
     const double fewer = std::clamp(most_fewer * open / much, 1.0, most_fewer);
     const double most_few = least_most_few * sqr(most_fewer / fewer);
-    few_ = std::min(power_near(std::min(each / fewer, most_few)), usual_);
+    few_ = std::min(power_near(std::clamp(each / fewer, least, std::max(most_few, least))), usual_);
   }
 
   uint32_t usual() const { return usual_; }

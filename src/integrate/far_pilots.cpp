@@ -20,24 +20,41 @@ class Pilots {
  public:
   explicit Pilots(const FarPointDraws& draws) : d_(draws) {}
 
-  // Those from number `first` to `last`, of skies and images.
+  // Those from number `first` to `last`, of skies and images. Of four rays two come from one hit,
+  // and a third from the next of its pixel.
   void look_at_sky(size_t first, size_t last) {
     begin();
     for (size_t k = first; k < last; ++k) {
-      const ShadowReceiver& r = d_.hits.receivers[index(k - first, last - first)];
-      if (!d_.points.set_chances(r, chances_)) continue;
-      sums_.sky += double(chances_.all());
-      sums_.suns += double(chances_.suns());
-      if (!(chances_.all() > 0)) continue;
+      const size_t role = (k - first) % 4, with = role < 3 ? k - first - role : k - first;
+      size_t i = index(with, last - first);
+      if (role == 2 && has_next(i)) ++i;
+      const ShadowReceiver& r = d_.hits.receivers[i];
+      ray_of_.push_back(-1);
+      const FarPoints::Chances& chances = d_.points.chances_about(r.normal);
+      sums_.sky += double(chances.all());
+      sums_.suns += double(chances.suns());
+      if (!(chances.all() > 0)) continue;
       const uint64_t a = hash_of(r.stream, k, purpose_pilot);
       const FarPoints::Choice c =
-          d_.points.choose(chances_, unit_float(uint32_t(a)), unit_float(uint32_t(a >> 32)));
+          d_.points.choose(chances, unit_float(uint32_t(a)), unit_float(uint32_t(a >> 32)));
+      const size_t before = weights_.size();
       add(r, c);
+      if (weights_.size() > before) ray_of_.back() = int32_t(before);
     }
     trace();
     for (size_t k = 0; k < weights_.size(); ++k) {
       sums_.of_sky += double(weights_[k]);
       if (is_occluded_[k] == 0) sums_.open_sky += double(weights_[k]);
+    }
+    for (size_t k = 0; k + 3 < ray_of_.size(); k += 4) {
+      const auto arrives = [&](size_t r) {
+        return ray_of_[r] >= 0 && is_occluded_[size_t(ray_of_[r])] == 0
+                   ? double(weights_[size_t(ray_of_[r])])
+                   : 0.0;
+      };
+      sums_.sky_differs += sqr(arrives(k) - arrives(k + 1));
+      sums_.sky_differs_in_pixel += sqr(arrives(k) - arrives(k + 2));
+      ++sums_.sky_triples;
     }
     rays_ += weights_.size();
     sums_.sky_rays += double(weights_.size());
@@ -50,12 +67,11 @@ class Pilots {
     if (d_.points.suns() == 0) return;
     for (size_t k = first; k < last; ++k) {
       const size_t i = index(k - first, last - first);
-      const bool has_next = i + 1 < d_.hits.size() && d_.hits.pixels[i + 1] == d_.hits.pixels[i];
       uint64_t random = hash_of(d_.hits.receivers[i].stream, k, purpose_pilot + 1);
-      if (!d_.points.set_chances(d_.hits.receivers[i], chances_) || !(chances_.suns() > 0))
-        continue;
-      FarPoints::Choice c = d_.points.choose_any_sun(chances_, 0, 0, unit_float(uint32_t(random)));
-      for (const size_t from : {i, i, has_next ? i + 1 : i}) {
+      const FarPoints::Chances& chances = d_.points.chances_about(d_.hits.receivers[i].normal);
+      if (!(chances.suns() > 0)) continue;
+      FarPoints::Choice c = d_.points.choose_any_sun(chances, 0, 0, unit_float(uint32_t(random)));
+      for (const size_t from : {i, i, has_next(i) ? i + 1 : i}) {
         random = mix64(random);
         c.u = unit_float(uint32_t(random));
         c.v = unit_float(uint32_t(random >> 32));
@@ -102,6 +118,12 @@ class Pilots {
         sums_.triples > 0
             ? std::max(0.5 * (sums_.differ_in_pixel - sums_.differ) / sums_.triples, 0.0)
             : 0;
+    // of what arrives if nothing is in the way
+    const double whole = n > 0 ? sums_.of_sky / n : 0;
+    s.spread_of_sky_in_pixel =
+        whole > 0 ? std::max(0.5 * (sums_.sky_differs_in_pixel - sums_.sky_differs), 0.0) /
+                        (sums_.sky_triples * sqr(whole))
+                  : 0;
     const double all = sums_.sky + sums_.suns;
     s.open = all > 0 ? (s.open_sky * sums_.sky + s.open_sun * sums_.suns) / all : 0.5;
     return s;
@@ -109,8 +131,12 @@ class Pilots {
 
  private:
   size_t index(size_t k, size_t of) const { return (2 * k + 1) * d_.hits.size() / (2 * of); }
+  bool has_next(size_t i) const {
+    return i + 1 < d_.hits.size() && d_.hits.pixels[i + 1] == d_.hits.pixels[i];
+  }
   void begin() {
     rays_of_.clear();
+    ray_of_.clear();
     weights_.clear();
     is_shown_.clear();
   }
@@ -146,13 +172,14 @@ class Pilots {
   }
 
   const FarPointDraws& d_;
-  FarPoints::Chances chances_;
   std::vector<Ray> rays_of_, hidden_;
   std::vector<float> weights_;
+  std::vector<int32_t> ray_of_;  // of each look at the sky; -1: none
   std::vector<uint8_t> is_occluded_, is_shown_;
   struct Sums {
     double sky = 0, suns = 0;  // chances, of all receivers
     double of_sky = 0, open_sky = 0, sky_rays = 0;
+    double sky_triples = 0, sky_differs = 0, sky_differs_in_pixel = 0;  // squares
     double triples = 0, open_sun = 0, differ = 0, differ_in_pixel = 0;
   } sums_;
   size_t rays_ = 0;

@@ -14,8 +14,8 @@ struct FarShare {
   double open_sky = 0.5, open_sun = 0.5;  // of skies and images, of suns
   // Mean variance of what two rays from one hit to the same sun say.
   double spread_of_sun = 0.25;
-  // … and of what suns send to the hits of one pixel.
-  double spread_in_pixel = 0;
+  // … and of what suns send to the hits of one pixel, and skies and images.
+  double spread_in_pixel = 0, spread_of_sky_in_pixel = 0;
   bool seems_closed = false;  // shut out, and of many rays none has arrived
   // Much of it arrives, and almost every ray that does not has met another facet: lists of what is
   // in the way are long, and prove little.

@@ -17,6 +17,9 @@ namespace {
 constexpr double most_share = 1.0 / 48, most_sine = 0.15;
 constexpr int most_halvings = 8;
 constexpr float tiny = 1e-30f;
+// Normals that chances are made for beforehand: along an edge of a face of a cube; and of all of
+// them times the parts.
+constexpr size_t most_normals = 8, most_about = size_t(1) << 20;
 
 Vec3d middle_of(const Parallelogram& p) {
   return p.origin + (p.u + p.v) * 0.5;
@@ -57,6 +60,7 @@ FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
       z_[k].push_back(corner.z);
       strength_[k].push_back(p.strength[k]);
     }
+  make_chances_about();
 }
 
 void FarPoints::plant(std::span<Part> parts, size_t leaf, size_t leaves) {
@@ -153,6 +157,17 @@ void set_branches(size_t n, const float* __restrict node, float* __restrict left
   }
 }
 
+// The normal through (x, y), both in [-1,1], of a cube's face: its axes in turn, each upwards
+// first.
+Vec3 on_cube(size_t face, float x, float y) {
+  Vec3 v;
+  const size_t axis = face / 2;
+  v[axis] = face % 2 == 0 ? 1.0f : -1.0f;
+  v[(axis + 1) % 3] = x;
+  v[(axis + 2) % 3] = y;
+  return normalize(v);
+}
+
 // In [0,1] with density in proportion to the line from a to b, not both 0.
 float sample_line(float a, float b, float u) {
   const float root = std::sqrt(a * a + (b * b - a * a) * u);
@@ -160,6 +175,75 @@ float sample_line(float a, float b, float u) {
 }
 
 }  // namespace
+
+// From the leaves' chances.
+void FarPoints::Chances::set_tree() {
+  const size_t n = of_node_.size() / 2;
+  float* node = of_node_.data();
+  for (size_t i = n; i-- > 1;) node[i] = node[2 * i] + node[2 * i + 1];
+  left_.resize(n);
+  first_.resize(2 * n);
+  inverse_.resize(2 * n);
+  set_branches(n, node, left_.data(), first_.data(), inverse_.data());
+}
+
+void FarPoints::set_suns(const Vec3& normal, float reach_of_normals, Chances& c) const {
+  c.suns_ = 0;
+  c.of_sun_.clear();
+  for (const Part& p : suns_) {
+    const Vec3 middle = p.middle();
+    const float cosine = dot(normal, normalize(middle));
+    // 1.01: no sun of which some is above the horizon is left out
+    const float reach = 0.505f * length(p.u + p.v) / length(middle) + 1e-3f + reach_of_normals;
+    c.of_sun_.push_back(cosine + reach > 0 ? p.strength[0] * std::max(cosine, 0.3f * reach) : 0.0f);
+    c.suns_ += c.of_sun_.back();
+  }
+}
+
+void FarPoints::make_chances_about() {
+  normals_ = parts_.size() * 6 * sqr(most_normals) <= most_about ? most_normals : most_normals / 2;
+  for (size_t face = 0; face < 6; ++face)
+    for (size_t j = 0; j < normals_; ++j)
+      for (size_t i = 0; i < normals_; ++i) {
+        const auto normal_at = [&](float x, float y) {
+          const float scale = 2 / float(normals_);
+          return on_cube(face, (float(i) + x) * scale - 1, (float(j) + y) * scale - 1);
+        };
+        const Vec3 middle = normal_at(0.5f, 0.5f);
+        float reach = 0;  // of the square's normals
+        for (const float x : {0.0f, 1.0f})
+          for (const float y : {0.0f, 1.0f})
+            reach = std::max(reach, 1.001f * length(normal_at(x, y) - middle));
+        about_.push_back(chances_within(middle, reach));
+      }
+}
+
+FarPoints::Chances FarPoints::chances_within(const Vec3& normal, float reach) const {
+  const size_t n = parts_.size();
+  Chances c;
+  c.of_node_.assign(2 * n, 0.0f);
+  for (size_t k = 0; k < 4; ++k)
+    for (size_t p = 0; p < n; ++p) {
+      const Vec3 corner{x_[k][p], y_[k][p], z_[k][p]};
+      const float height = dot(normal, corner), most = reach * length(corner);
+      const float about = height > most ? height : 0.5f * std::max(height + most, 0.0f);
+      c.of_node_[n + p] += 0.25f * strength_[k][p] * about;
+    }
+  if (n > 0) c.set_tree();
+  set_suns(normal, reach, c);
+  return c;
+}
+
+const FarPoints::Chances& FarPoints::chances_about(const Vec3& normal) const {
+  const Vec3 size = abs(normal);
+  const size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const size_t face = 2 * axis + (normal[axis] < 0 ? 1 : 0);
+  const auto cell = [&](size_t other) {
+    const float x = normal[(axis + other) % 3] / std::max(size[axis], tiny);
+    return std::min(size_t(std::max(0.5f * (x + 1), 0.0f) * float(normals_)), normals_ - 1);
+  };
+  return about_[(face * normals_ + cell(2)) * normals_ + cell(1)];
+}
 
 bool FarPoints::set_chances(const ShadowReceiver& r, Chances& c) const {
   const size_t n = parts_.size();
@@ -174,21 +258,8 @@ bool FarPoints::set_chances(const ShadowReceiver& r, Chances& c) const {
   for (size_t k = 0; k < 4 && n > 0; ++k)
     add_chances(r.normal, n, x_[k].data(), y_[k].data(), z_[k].data(), strength_[k].data(),
                 node + n);
-  for (size_t i = n; i-- > 1;) node[i] = node[2 * i] + node[2 * i + 1];
-  c.left_.resize(n);
-  c.first_.resize(2 * n);
-  c.inverse_.resize(2 * n);
-  set_branches(n, node, c.left_.data(), c.first_.data(), c.inverse_.data());
-  c.suns_ = 0;
-  c.of_sun_.clear();
-  for (const Part& p : suns_) {
-    const Vec3 middle = p.middle();
-    const float cosine = dot(r.normal, normalize(middle));
-    // 1.01: no sun of which some is above the horizon is left out
-    const float reach = 0.505f * length(p.u + p.v) / length(middle) + 1e-3f;
-    c.of_sun_.push_back(cosine + reach > 0 ? p.strength[0] * std::max(cosine, 0.3f * reach) : 0.0f);
-    c.suns_ += c.of_sun_.back();
-  }
+  c.set_tree();
+  set_suns(r.normal, 0, c);
   return c.all() + c.suns() > 0;
 }
 

@@ -44,6 +44,7 @@ class FarPoints {
 
    private:
     friend class FarPoints;
+    void set_tree();
     Vec3 normal_;
     std::vector<float> of_node_, of_sun_;
     // What of a node's chance is its left child's; where a child's share begins in its parent's,
@@ -54,6 +55,10 @@ class FarPoints {
   // False where all parts are below the receiver's horizon. What is there for the same normal
   // stays.
   bool set_chances(const ShadowReceiver& receiver, Chances& chances) const;
+  // For receivers of about this normal, made beforehand: what sends light to any of them has at
+  // least half the chance that it would have by its own normal, but for what all are in sum. What a
+  // few points cost would else be little beside their chances.
+  const Chances& chances_about(const Vec3& normal) const;
 
   // Of skies and images, by (u, v) in [0,1)²: even points become points that are as even, since
   // every branch of the tree goes on with its share of u or v. chances.all() is over 0. Parts of
@@ -68,7 +73,7 @@ class FarPoints {
   Choice choose_any_sun(const Chances& chances, float u, float v, float place) const;
   size_t parts() const { return parts_.size() + suns_.size(); }
 
-  // For a receiver of the normal that the choice was made for.
+  // For a receiver of the normal that the choice was made for, or about which it was.
   Point point(const Choice& choice, const Vec3& normal) const;
   // The radiance that the points send.
   void radiance(std::span<const Point> points, std::vector<Rgb>& out) const;
@@ -88,6 +93,10 @@ class FarPoints {
     std::array<float, 4> strength{};
   };
   void add(const CertifiedSource& source, const Parallelogram& plane, double all, int halvings);
+  void make_chances_about();
+  Chances chances_within(const Vec3& normal, float reach) const;
+  // reach: of the normals, about this one.
+  void set_suns(const Vec3& normal, float reach, Chances& chances) const;
   // Puts parts into leaves from `leaf` on, neighbours together.
   void plant(std::span<Part> parts, size_t leaf, size_t leaves);
   const Part& part(uint32_t i) const {
@@ -97,6 +106,8 @@ class FarPoints {
   std::vector<Part> suns_;
   // Per leaf: its corners and their strengths.
   std::array<std::vector<float>, 4> x_, y_, z_, strength_;
+  size_t normals_ = 0;          // of those below, along an edge of a face of a cube
+  std::vector<Chances> about_;  // face by face, row by row
 };
 
 // The radiance that a point of a source at infinity sends.

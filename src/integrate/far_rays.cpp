@@ -18,6 +18,9 @@ constexpr size_t most_waiting = 16384;
 constexpr double most_of_closed = 1;
 // As for other lights (far_draws.cpp).
 constexpr double clutter = 2;
+// Points of a hit: what it costs is worth so many, where what arrives differs from place to place.
+constexpr double least_of_sky = 8, least_of_sun = 4;
+constexpr uint32_t most_few = 16;       // points that are not worth chances of their own
 constexpr uint32_t fewest_points = 16;  // of a hit that asks for fewer because suns shine there
 
 // Rays of a cluster's members to the sky and images, or to a sun.
@@ -47,8 +50,8 @@ class Casting {
   // Of the sky's points, fewer where more has arrived already, of which the sky is a small part.
   void set_numbers(uint32_t usual, double open_sky) {
     for (size_t i = 0; i < members_.size(); ++i) {
-      const bool is_any = d_.points.set_chances(d_.hits.receivers[members_[i]], s_.chances);
-      const double own = is_any ? open_sky * double(s_.chances.all()) : 0;
+      const Vec3& normal = d_.hits.receivers[members_[i]].normal;
+      const double own = open_sky * double(d_.points.chances_about(normal).all());
       const double part = own > 0 ? own / (own + double(s_.arrived[i])) : 0;
       const double wanted = double(usual) * std::pow(part, 4.0 / 3);
       uint32_t n = usual;
@@ -60,8 +63,8 @@ class Casting {
  private:
   void choose(int sun, size_t i, uint32_t n, uint32_t first) {
     const uint32_t m = members_[i];
-    if (!d_.points.set_chances(d_.hits.receivers[m], s_.chances)) return;
-    if (!((sun < 0 ? s_.chances.all() : s_.chances.of_sun(size_t(sun))) > 0)) return;
+    const FarPoints::Chances& chances = chances_of(i, n);
+    if (!((sun < 0 ? chances.all() : chances.of_sun(size_t(sun))) > 0)) return;
     s_.streams.assign(n, hash_combine(d_.hits.draw_streams[m], purpose_points + uint64_t(sun + 1)));
     s_.samples.resize(n);
     s_.uniform.resize(2 * size_t(n));
@@ -70,11 +73,25 @@ class Casting {
     for (uint32_t j = 0; j < n; ++j) {
       const float u = s_.uniform[j], v = s_.uniform[n + j];
       FarPoints::Choice c =
-          sun < 0 ? d_.points.choose(s_.chances, u, v) : d_.points.choose_sun(size_t(sun), u, v);
+          sun < 0 ? d_.points.choose(chances, u, v) : d_.points.choose_sun(size_t(sun), u, v);
       c.chance *= float(n);
       s_.choices.push_back(c);
       s_.of_choice.push_back(uint32_t(i));
     }
+  }
+
+  // By the member's own normal, unless that is no neighbour's and for a few points only.
+  const FarPoints::Chances& chances_of(size_t i, uint32_t n) {
+    const ShadowReceiver& r = d_.hits.receivers[members_[i]];
+    const auto is_as_of = [&](size_t j) {
+      const Vec3& other = d_.hits.receivers[members_[j]].normal;
+      return other.x == r.normal.x && other.y == r.normal.y && other.z == r.normal.z;
+    };
+    const bool is_shared =
+        (i > 0 && is_as_of(i - 1)) || (i + 1 < members_.size() && is_as_of(i + 1));
+    if (n <= most_few && !is_shared) return d_.points.chances_about(r.normal);
+    d_.points.set_chances(r, s_.chances);
+    return s_.chances;
   }
 
   // By the number of the part, so that rays side by side go almost the same way.
@@ -195,14 +212,14 @@ struct FarLight {
 };
 
 FarLight mean_light(const FarPointDraws& d, std::span<const uint32_t> members,
-                    std::span<const float> seen, FarPoints::Chances& chances) {
+                    std::span<const float> seen) {
   constexpr size_t most_looks = 16;
   const size_t looks = std::min(members.size(), most_looks);
   FarLight l;
   for (size_t k = 0; k < looks; ++k) {
     const size_t i = k * members.size() / looks;
     if (!seen.empty()) l.others += double(seen[i]) / double(looks);
-    if (!d.points.set_chances(d.hits.receivers[members[i]], chances)) continue;
+    const FarPoints::Chances& chances = d.points.chances_about(d.hits.receivers[members[i]].normal);
     l.sky += double(chances.all()) / double(looks);
     l.suns += double(chances.suns()) / double(looks);
   }
@@ -226,8 +243,10 @@ FarNumbers numbers_for(const FarPointDraws& d, const FarLight& light, const FarS
   // much better.
   constexpr double most_viewing_rays = 4, part_of_rest = 0.05;
   const auto error = double(budget.error);
-  const double left = part_of_rest * share.spread_in_pixel * sqr(light.suns) /
-                      (most_viewing_rays * double(budget.viewing_rays));
+  const double left =
+      part_of_rest *
+      (share.spread_in_pixel * sqr(light.suns) + share.spread_of_sky_in_pixel * sqr(light.sky)) /
+      (most_viewing_rays * double(budget.viewing_rays));
   const double sky = share.open_sky * light.sky;
   const double arrives = sky + share.open_sun * light.suns + light.others;
   const auto allowed = [&](double of) { return std::sqrt(sqr(error * of) + left); };
@@ -244,7 +263,7 @@ void cast_far_rays(const FarPointDraws& d, std::span<const uint32_t> members, co
                    std::span<const float> seen, const DrawingBudget& budget, FarRays& s,
                    RadianceBatch& out, Counters& counters) {
   const bool is_picture = out.typical > 0;
-  const FarNumbers wanted = numbers_for(d, mean_light(d, members, seen, s.chances), share, budget);
+  const FarNumbers wanted = numbers_for(d, mean_light(d, members, seen), share, budget);
   const double most = share.seems_closed ? most_of_closed * double(budget.viewing_rays) : 1e30;
   // What little gets into what seems closed is left to a pixel's first rays, as if much did.
   const double open = share.seems_closed ? 0.5 : share.open;
@@ -255,9 +274,11 @@ void cast_far_rays(const FarPointDraws& d, std::span<const uint32_t> members, co
   s.arrived.assign(members.size(), 0);
   if (!seen.empty()) s.arrived.assign(seen.begin(), seen.end());
   s.numbers.assign(members.size(), ~0u);
-  FarCounts of_sun(d.hits, members, budget, is_picture, std::min(wanted.sun, most), open);
+  FarCounts of_sun(d.hits, members, budget, is_picture, std::min(wanted.sun, most), open,
+                   share.seems_closed ? 0 : least_of_sun);
   for (size_t sun = 0; sun < d.points.suns(); ++sun) casting.cast(int(sun), of_sun);
-  FarCounts of_sky(d.hits, members, budget, is_picture, std::min(wanted.sky, most), open);
+  const double least = share.seems_closed ? 0 : least_of_sky;
+  FarCounts of_sky(d.hits, members, budget, is_picture, std::min(wanted.sky, most), open, least);
   casting.set_numbers(of_sky.usual(), share.open_sky);
   casting.cast(-1, of_sky);
 }
