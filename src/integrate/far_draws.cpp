@@ -32,7 +32,9 @@ class Drawing {
       : d_(draws), left_(draws.cluster.memory.left), s_(s) {
     for (const LeftPart& part : left_) {
       points_.emplace_back(part.cell);
-      brightness_.push_back(double(luminance(d_.sources[part.request]->radiance)));
+      const CertifiedSource& source = *d_.sources[part.request];
+      brightness_.push_back(double(luminance(source.radiance)));
+      unevenness_.push_back(double(source.far->unevenness));
     }
     expected_ = float(std::max(2 * d_.cluster.memory.far_open - 1, 0.0));
   }
@@ -53,7 +55,8 @@ class Drawing {
 
   void of_member(size_t i, uint32_t n, uint32_t before, RadianceBatch& out) {
     const uint32_t m = d_.members[i];
-    const double all = left_of(i);
+    double all = 0;
+    for (size_t p = 0; p < left_.size(); ++p) all += chance_of(p, i);
     if (!(all > 0)) return;
     set_numbers(m, n, before);
     if (expected_ > 0 && d_.hits.glossy[m] < 0) expect(i, out);
@@ -64,12 +67,12 @@ class Drawing {
       double below = 0;
       size_t part = 0;
       for (; part + 1 < left_.size(); ++part) {
-        const double own = light_of(part, i);
+        const double own = chance_of(part, i);
         if (target < below + own) break;
         below += own;
       }
-      if (light_of(part, i) > 0)
-        connect(draw, part, light_of(part, i) / all * n, s_.numbers[j], s_.numbers[n + j]);
+      if (chance_of(part, i) > 0)
+        connect(draw, part, chance_of(part, i) / all * n, s_.numbers[j], s_.numbers[n + j]);
     }
   }
 
@@ -77,6 +80,9 @@ class Drawing {
   double light_of(size_t part, size_t i) const {
     return brightness_[part] * double(left_[part].unoccluded[i]);
   }
+  // In proportion to this a part is drawn: by its light alone a dim part that holds something
+  // bright would seldom be, and then count for much.
+  double chance_of(size_t part, size_t i) const { return light_of(part, i) * unevenness_[part]; }
   double left_of(size_t i) const {
     double sum = 0;
     for (size_t p = 0; p < left_.size(); ++p) sum += light_of(p, i);
@@ -139,7 +145,7 @@ class Drawing {
   const std::vector<LeftPart>& left_;
   DrawnLightsScratch& s_;
   std::vector<CellPoints> points_;  // per part
-  std::vector<double> brightness_;
+  std::vector<double> brightness_, unevenness_;
   float expected_ = 0;  // share of the unoccluded light of matte hits that is counted beforehand
 };
 

@@ -40,6 +40,22 @@ bool is_through_portal(const LightPrimitives& primitives, const CertifiedSource&
   return portal == nullptr || portal->shows(x, wi);
 }
 
+namespace {
+
+// Root of the mean square of the luminance over a part of an image, by a few of its points.
+float usual_luminance(const CertifiedSource& source, const Vec3d& middle, const Parallelogram& p) {
+  constexpr int side = 4;
+  float squares = 0;
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const double u = (i + 0.5) / side - 0.5, v = (j + 0.5) / side - 0.5;
+      squares += sqr(luminance(far_radiance_of(source, Vec3(middle + p.u * u + p.v * v))));
+    }
+  return std::sqrt(squares / (side * side));
+}
+
+}  // namespace
+
 FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
   double all = 0;
   for (const CertifiedSource& s : sources)
@@ -95,8 +111,12 @@ void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, d
   const double steradians = area * height / (distance * sqr(distance));
   const double sine = 0.5 * length(plane.u + plane.v) / distance;
   const Rgb l = far_radiance_of(source, Vec3(way));
-  const double strength =
-      steradians * (0.9 * double(luminance(l)) + 0.1 * double(luminance(source.radiance)));
+  // What is no polynomial may shine anywhere between a part's corners, and elsewhere than at the
+  // few points that are looked at.
+  const bool is_image = source.far->table != nullptr;
+  const float usual = is_image ? usual_luminance(source, way, plane) : luminance(l);
+  const float of_cell = luminance(source.radiance) * source.far->unevenness;
+  const double strength = steradians * double(0.9f * usual + 0.1f * of_cell);
   if (!source.flat.is_disk && halvings > 0 && (strength > most_share * all || sine > most_sine)) {
     const bool is_u = length_squared(plane.u) >= length_squared(plane.v);
     Parallelogram half = plane;
@@ -117,14 +137,12 @@ void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, d
     suns_.push_back(part);
     return;
   }
-  // What is no polynomial may shine anywhere between its corners.
   for (size_t k = 0; k < 4; ++k) {
     const Vec3 corner = part.corner(k);
-    const float shine = source.far->table != nullptr || !source.is_textured
-                            ? luminance(l)
+    const float shine = is_image || !source.is_textured
+                            ? usual
                             : luminance(far_radiance_of(source, corner * float(height)));
-    part.strength[k] = part.area * (0.9f * shine + 0.1f * luminance(source.radiance)) /
-                       sqr(length_squared(corner));
+    part.strength[k] = part.area * (0.9f * shine + 0.1f * of_cell) / sqr(length_squared(corner));
   }
   parts_.push_back(part);
 }

@@ -64,6 +64,10 @@ class FarPoints {
   // every branch of the tree goes on with its share of u or v. chances.all() is over 0. Parts of
   // neighbouring numbers lie close to each other.
   Choice choose(const Chances& chances, float u, float v) const;
+  // With which it becomes one of this part, of a sky or image.
+  float chance_of(const Chances& chances, uint32_t part) const {
+    return chances.of_node_[parts_.size() + part] / chances.all();
+  }
   // Of one of the suns, whose numbers follow those of all others.
   size_t suns() const { return suns_.size(); }
   Choice choose_sun(size_t sun, float u, float v) const {

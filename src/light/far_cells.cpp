@@ -252,8 +252,10 @@ class Cutter {
                          max_component(first - l) <= 1e-6f * max_component(first);
       }
     cell.mean = {float(r / weights), float(g / weights), float(b / weights)};
-    spread.deviation = std::sqrt(std::min(
-        std::max(squares / weights - sqr(double(luminance(cell.mean))), 0.0), from_fit / weights));
+    const auto mean = double(luminance(cell.mean));
+    if (mean > 0) cell.unevenness = float(std::sqrt(std::max(squares / weights / sqr(mean), 1.0)));
+    spread.deviation =
+        std::sqrt(std::min(std::max(squares / weights - sqr(mean), 0.0), from_fit / weights));
     spread.steradians = weights * sqr(s.size / cell.table_size);
     return spread;
   }

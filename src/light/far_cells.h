@@ -33,6 +33,7 @@ struct FarCell {
   bool is_disk = false;    // the disk inscribed in it
   bool is_even = false;    // of one radiance, `mean`
   Rgb mean;                // radiance, by solid angle
+  float unevenness = 1;    // root of the mean square of luminance over its mean
   // Radiance in the direction d by (u,v) = (d · along_u - from_u, …), d ending on the cell: by
   // polynomials for r, g, b, or by the part of a table that begins at (table_x, table_y).
   Vec3 along_u, along_v;

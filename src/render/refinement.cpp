@@ -145,6 +145,34 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
   return s;
 }
 
+// Amid clutter a pixel whose neighbours look all alike may have something in it that their rays
+// have missed: n rays that saw nothing leave a chance of 1 / (n + 2) that the next one does
+// (Laplace's rule of succession), and it then differs as others do around. A line through the
+// surroundings is no clutter. `noticed`: the variance of a sample that counts.
+template <class Of>
+double variance_amid_clutter(const RefinementView& v, int x, int y, double noticed, const Of& of) {
+  constexpr int reach = 2;
+  constexpr double rays = 32;  // of eight neighbours
+  // Of a share p of a pixel that differs by c the variance is p (1 - p) c²; its mean over p, c²
+  // / 6.
+  constexpr double squares_of_variance = 6;
+  int all = 0, varying = 0;
+  double sum = 0;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      if ((dx == 0 && dy == 0) || !is_inside(v.records.window, x + dx, y + dy)) continue;
+      const double variance = of(x + dx, y + dy).variance;
+      ++all;
+      if (variance <= noticed) continue;
+      ++varying;
+      sum += variance;
+    }
+  constexpr double least = 0.25, full = 0.5;
+  if (varying <= least * all) return 0;
+  const double weight = std::min((double(varying) / all - least) / (full - least), 1.0);
+  return weight * squares_of_variance / (rays + 2) * sum / varying;
+}
+
 // Of the luminance of a pixel amid such a mean.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
                      double most_times_less = usual_times_less) {
@@ -158,13 +186,15 @@ double allowed_error(double mean, double typical, const RefinementOptions& optio
 int glances_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
   // Rays that cost so little may go for all that a picture's mean asks of what is bright.
   constexpr double most_times_less = 100;
-  const Surroundings s =
-      look_around(v, x, y, options, [&](int px, int py) { return known_of(v.film.known(px, py)); });
+  const auto of = [&](int px, int py) { return known_of(v.film.known(px, py)); };
+  const Surroundings s = look_around(v, x, y, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
-  if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things) return 0;
-  const bool is_divided = has_edge || has_light;
-  const double variance = std::max(s.sample_variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0);
   const double allowed = allowed_error(s.mean, v.typical, options, most_times_less);
+  const double clutter = variance_amid_clutter(v, x, y, sqr(allowed), of);
+  if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0) return 0;
+  const bool is_divided = has_edge || has_light;
+  const double variance =
+      std::max({s.sample_variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0, clutter});
   // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
   // seen what shines.)
   const double least = has_light ? 256 : 0;
@@ -178,11 +208,12 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
 int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first, int most,
                    const RefinementOptions& options) {
   if (v.edges.has_light_edge(x, y) && !has_glances && !options.is_noise) return most;
-  const Surroundings s = look_around(v, x, y, options, [&](int px, int py) -> Varying {
+  const auto of = [&](int px, int py) -> Varying {
     const PixelEstimate e = v.film.estimate(px, py);
     if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples};
     return {e.luminance, sqr(e.standard_error) * e.samples};
-  });
+  };
+  const Surroundings s = look_around(v, x, y, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y);
   const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
   if (!is_uneven && !options.is_everywhere) return first;
@@ -191,6 +222,8 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
   if (has_edge && !options.is_noise) variance = std::max(variance, sqr(s.high - s.low) / 4);
   const double allowed = allowed_error(s.mean, v.typical, options);
+  if (!options.is_noise)
+    variance = std::max(variance, variance_amid_clutter(v, x, y, sqr(allowed), of));
   // As of independent samples. (Nothing to see by: no light is allowed, none varies.)
   double wanted = variance > 0 ? variance / sqr(allowed) : 0;
   const double even = double(options.most_even);

@@ -82,43 +82,82 @@ double expected(const Points& p, const Frame& frame) {
   return sum * pi / (double(n) * n);
 }
 
+// Mean and root mean square error of runs of so many even points, relative to the whole.
+struct Estimates {
+  double mean = 0, error = 0;
+};
+Estimates estimates_of(const Points& p, const FarPoints::Chances& chances, const Vec3& normal,
+                       size_t n, int runs) {
+  const double whole = expected(p, Frame(normal));
+  double mean = 0, squares = 0;
+  for (int run = 0; run < runs; ++run) {
+    const std::vector<uint64_t> streams(n, hash_of(uint64_t(run), 5u));
+    std::vector<uint32_t> samples;
+    for (uint32_t j = 0; j < n; ++j) samples.push_back(j);
+    std::vector<float> u(2 * n);
+    sobol_groups(streams.data(), samples.data(), n, 0, 2, u.data());
+    double sum = 0;
+    for (size_t j = 0; j < n; ++j) {
+      const FarPoints::Point at = p.points.point(p.points.choose(chances, u[j], u[n + j]), normal);
+      if (at.source == nullptr) continue;
+      sum += double(luminance(far_radiance_of(*at.source, at.way)) *
+                    std::max(dot(at.wi, normal), 0.0f) * at.inverse_pdf) /
+             double(n);
+    }
+    mean += sum / runs;
+    squares += sqr(sum / whole - 1) / runs;
+  }
+  return {mean / whole, std::sqrt(squares)};
+}
+
 }  // namespace
 
 TEST_CASE("sixty-four points of a sky say what arrives where nothing hides it") {
   for (const Kind kind : {Kind::overcast, Kind::clear, Kind::image}) {
     const Points p(kind);
     for (const Vec3& normal : {Vec3{0, 0, 1}, normalize(Vec3{0.4f, -0.7f, 0.6f})}) {
-      const double whole = expected(p, Frame(normal));
       ShadowReceiver r{};
       r.normal = r.horizon = normal;
       FarPoints::Chances chances;
       REQUIRE(p.points.set_chances(r, chances));
-      double mean = 0, squares = 0;
-      constexpr int runs = 256, n = 64;
-      for (int run = 0; run < runs; ++run) {
-        const std::vector<uint64_t> streams(n, hash_of(uint64_t(run), 5u));
-        std::vector<uint32_t> samples;
-        for (uint32_t j = 0; j < n; ++j) samples.push_back(j);
-        std::vector<float> u(2 * n);
-        sobol_groups(streams.data(), samples.data(), n, 0, 2, u.data());
-        double sum = 0;
-        for (size_t j = 0; j < n; ++j) {
-          const FarPoints::Point at =
-              p.points.point(p.points.choose(chances, u[j], u[n + j]), normal);
-          if (at.source == nullptr) continue;
-          sum += double(luminance(far_radiance_of(*at.source, at.way)) *
-                        std::max(dot(at.wi, normal), 0.0f) * at.inverse_pdf) /
-                 n;
-        }
-        mean += sum / runs;
-        squares += sqr(sum / whole - 1) / runs;
-      }
+      constexpr int runs = 256;
+      const Estimates e = estimates_of(p, chances, normal, 64, runs);
       CAPTURE(int(kind));
       CAPTURE(normal.z);
-      const double error = std::sqrt(squares);
-      CHECK(std::abs(mean / whole - 1) < 0.002 + 4 * error / std::sqrt(double(runs)));
+      CHECK(std::abs(e.mean - 1) < 0.002 + 4 * e.error / std::sqrt(double(runs)));
       // Tables are as even as parts are small.
-      CHECK(error < (kind == Kind::image ? 0.04 : 0.015));
+      CHECK(e.error < (kind == Kind::image ? 0.04 : 0.015));
+    }
+  }
+}
+
+// Chances that were made for normals about a receiver's serve it as well: nothing that it sees is
+// without chance, and a few points err by little more.
+TEST_CASE("chances for normals about a receiver's leave none of its light out") {
+  for (const Kind kind : {Kind::overcast, Kind::clear, Kind::image}) {
+    const Points p(kind);
+    Random random(7 + uint64_t(kind));
+    for (int k = 0; k < 12; ++k) {
+      Vec3 normal = sphere_from_square(random.next_vec2());
+      if (k < 3) normal = {0, 0, k == 0 ? -1.0f : 1.0f};  // a face's middle
+      if (k == 2) normal = normalize(Vec3{1, 1, 1});      // … and corner
+      ShadowReceiver r{};
+      r.normal = r.horizon = normal;
+      FarPoints::Chances own;
+      REQUIRE(p.points.set_chances(r, own));
+      const FarPoints::Chances& about = p.points.chances_about(normal);
+      for (int j = 0; j < 2000; ++j) {
+        const Vec2 u = random.next_vec2();
+        const FarPoints::Choice c = p.points.choose(own, u.x, u.y);
+        const float chance = p.points.chance_of(about, c.part);
+        REQUIRE(chance * about.all() >= 0.499f * c.chance * own.all());
+      }
+      constexpr int runs = 128;
+      const Estimates e = estimates_of(p, about, normal, 16, runs);
+      CAPTURE(int(kind));
+      CAPTURE(k);
+      CHECK(std::abs(e.mean - 1) < 0.003 + 4 * e.error / std::sqrt(double(runs)));
+      CHECK(e.error < 0.12);
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include "pictures.h"
 #include "render/edge_map.h"
+#include "render/refinement.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -142,4 +143,42 @@ TEST_CASE("the layer viewing_error is the spread of a pixel's rays, and the stat
   CHECK(squares > 100 * told);  // lights as edges, of which the sampling of sources knows nothing
   CHECK(e.share_above > 0.05);
   CHECK(e.share_above < 1);
+}
+
+// Amid clutter a few rays that all see the same are no proof that nothing else is there.
+TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none beside a line") {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});
+  make_light(s, 0, Rgb{1});
+  const PreparedScene scene(std::move(s));
+  const Camera camera = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 40);
+  constexpr int side = 13, middle = 6;
+  const PixelRect window{0, 0, side, side};
+  const EdgeMap edges(scene, ViewingCamera(camera, side, side), window, 1);
+  const auto wanted = [&](const auto& varies) {
+    Film film(window, {});
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x)
+        for (int k = 0; k < 4; ++k) {
+          RadianceBatch batch;
+          batch.reset(1);
+          batch.direct[0] = Rgb{k == 0 && varies(x, y) ? 0.2f : 1.0f};
+          film.add(x, y, batch, 0, 3);
+        }
+    const PixelRecords records(window);
+    RefinementOptions options;
+    options.error = 0.02f;
+    options.is_everywhere = true;
+    return samples_wanted({film, records, edges, 1}, middle, middle, false, 4, 1024, options);
+  };
+  const auto is_far = [](int x, int y) {
+    return std::max(std::abs(x - middle), std::abs(y - middle)) > 1;
+  };
+  CHECK(wanted([](int, int) { return false; }) == 4);
+  CHECK(wanted([](int x, int) { return x == middle + 2; }) == 4);
+  // Others around get 400: that is what a share of a quarter wants.
+  const int amid = wanted(is_far);
+  CHECK(amid > 16);
+  CHECK(amid < 200);
+  CHECK(wanted([](int x, int) { return x == middle + 1; }) > 200);
 }
