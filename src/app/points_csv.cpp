@@ -101,8 +101,9 @@ std::vector<MeasuringPoint> read_points(const std::string& path) {
     if (std::max(reach.x, std::max(reach.y, reach.z)) > farthest)
       throw InputError(path, line_number, fields[where[0]].column,
                        "the point lies more than 1e9 from the origin");
+    constexpr float shortest = 1e-15f;  // the square of less loses digits
     const float l = length(p.normal);
-    if (!(l > 0) || !std::isfinite(l))
+    if (!(l >= shortest) || !std::isfinite(l))
       throw InputError(path, line_number, fields[where[3]].column, "the normal has no direction");
     points.push_back(p);
   }

@@ -13,7 +13,8 @@ namespace troffer {
 namespace {
 
 constexpr size_t most_items = 1000, longest_text = 200;
-constexpr double farthest = 1e9;  // m
+constexpr double farthest = 1e9;   // m
+constexpr double shortest = 1e-9;  // of a direction: squares of products of less lose digits
 
 void check_keys(const JsonNode& node, std::initializer_list<std::string_view> known) {
   for (const std::string& key : node.keys())
@@ -47,7 +48,7 @@ Vec3d vector_of(const JsonNode& node) {
 
 Vec3d direction_of(const JsonNode& node) {
   const Vec3d v = vector_of(node);
-  if (!(length(v) > 0)) node.fail("has no length");
+  if (!(length(v) >= shortest)) node.fail("has no length");
   return v;
 }
 

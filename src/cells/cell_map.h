@@ -21,6 +21,8 @@
 namespace troffer {
 
 constexpr uint32_t no_cell = 0xffffffffu;
+// No map has smaller ones: within reach of float positions their voxels have numbers.
+constexpr float least_cell = 1e-6f;
 // Hits of a cell that are kept: those from which its rays start and at which it is lit.
 constexpr size_t hits_per_cell = 8;
 // … of one to which a picture's own rays come (CellMap::add, is_asked). Light changes much within a

@@ -15,6 +15,8 @@ constexpr size_t cells_at_a_time = 1024;
 constexpr int most_iterations = 400;
 constexpr int bounces_of_noise = 6;
 constexpr double most_unbalanced = 2e-6;  // of the light, both by what is asked
+// More than any rows pass on that light made: those of a file may amplify it to infinity.
+constexpr float most_importance = 1e30f;
 
 template <typename F>
 void by_cells(size_t n, int threads, const F& f) {
@@ -144,16 +146,22 @@ std::vector<float> CellRows::importance(const std::vector<float>& asked, std::ve
     }
     wave.swap(next);
   };
+  const auto is_bounded = [&] {
+    return std::all_of(wave.begin(), wave.end(),
+                       [](float w) { return std::abs(w) <= most_importance; });
+  };
   if (!known.empty()) {
     known.resize(asked.size(), 0);
     wave = known;
     pass_on();
     for (size_t i = 0; i < y.size(); ++i) wave[i] += asked[i] - known[i];
     y = std::move(known);
+    if (!is_bounded()) return y;
     for (size_t i = 0; i < y.size(); ++i) y[i] += wave[i];
   }
   for (int it = 0; it < iterations; ++it) {
     pass_on();
+    if (!is_bounded()) break;
     double sum = 0, all = 0;
     for (size_t i = 0; i < y.size(); ++i) {
       y[i] += wave[i];

@@ -149,7 +149,8 @@ Header header_of(std::span<const uint8_t> bytes, const std::string& file, uint64
     body.take(h.entries, sizeof(RowEntry));
   };
   const auto h = checked_header<Header>(cell_file, bytes, file, count);
-  if (!(h.size > 0) || !std::isfinite(h.size) || !(h.direct_error >= 0) || h.cells >= no_cell)
+  if (!(h.size >= least_cell) || !std::isfinite(h.size) || !(h.direct_error >= 0) ||
+      h.cells >= no_cell)
     refuse("file of cells has values that none can have");
   if (h.scene_key != scene_key)
     refuse("file of cells belongs to another scene, or other light: make it anew");

@@ -135,7 +135,7 @@ void Builder::start_map(const CellsSeen& seen) {
       size_of_median * float(std::pow(coarseness(options_.error, fine_error), size_by_error));
   // Finer than this, voxels would be no larger than the rounding of positions.
   const Box box = bounds(scene_.scene);
-  const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), 1e-6f);
+  const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), least_cell);
   map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size * median, least));
 }
 

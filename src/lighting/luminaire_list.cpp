@@ -24,6 +24,7 @@ namespace {
 constexpr std::array<std::string_view, 11> columns{
     "file", "x", "y", "z", "dx", "dy", "dz", "rotation", "dimming", "lumens", "kelvin"};
 constexpr size_t needed_columns = 4, most_rows = 100'000;
+constexpr double shortest = 1e-9;  // of a direction: squares of much less lose digits
 
 struct Row {
   std::string file;
@@ -96,7 +97,8 @@ Row parse_row(const CsvTable& table, const CsvRow& source, const std::vector<siz
   row.dimming = v[8];
   row.lumens = v[9];
   row.kelvin = v[10];
-  if (!(length(row.down) > 0)) throw InputError(path, row.line, 1, "the direction has no length");
+  if (!(length(row.down) >= shortest))
+    throw InputError(path, row.line, 1, "the direction has no length");
   check_range(row.dimming, 0, 1e6, path, row.line, "dimming");
   check_range(row.lumens, 0, 1e9, path, row.line, "lumens");
   if (row.kelvin != 0) check_range(row.kelvin, 1000, 40'000, path, row.line, "kelvin");

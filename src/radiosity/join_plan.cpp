@@ -10,6 +10,8 @@ namespace troffer {
 
 namespace {
 
+constexpr double step = 1.3;  // from one size that does not do to the next
+
 double total_area(const BaseGeometry& g, const std::vector<uint32_t>& same_as) {
   double sum = 0;
   for (uint32_t i = 0; i < g.triangles.size(); ++i) {
@@ -42,6 +44,16 @@ size_t count_cut(const BaseGeometry& g, const std::vector<uint32_t>& same_as,
   return count;
 }
 
+// The first of a size's steps at which so many pieces of it may do. Those of asked sizes down to a
+// hundredth of what would are tried one by one, for what they say of the rules; a file may ask for
+// 1e-38 m.
+double within_reach(double size, double area, uint32_t most) {
+  constexpr double pieces_short = 1e4;
+  const double least = std::sqrt(area / (pieces_short * std::max(most, 1u)));
+  while (size < least) size *= step;
+  return size;
+}
+
 }  // namespace
 
 JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_as,
@@ -69,7 +81,9 @@ JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_a
       is_small[i] = !g.triangles[i].is_degenerate && same_as[i] == i && lengths[i] <= size;
     return is_small;
   };
-  const double first_element = element, first_patch = patch;
+  const double wanted = element;
+  const double first_element = element = within_reach(element, area, options.max_elements);
+  const double first_patch = patch = within_reach(patch, area, options.max_sheets);
   JoinPlan plan;
   for (int round = 0;; ++round) {
     if (round == strict_rounds) {  // sizes were not to blame: back to them, under looser rules
@@ -91,15 +105,15 @@ JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_a
       const bool elements_fit = plan.elements.count + cut_elements <= max_elements;
       if (is_last || (sheets_fit && elements_fit)) break;
       angle = std::min(75.0, angle * 1.6);
-      if (!sheets_fit) patch *= 1.3;
-      if (!elements_fit) element *= 1.3;
+      if (!sheets_fit) patch *= step;
+      if (!elements_fit) element *= step;
       continue;
     }
-    if (cut_sheets > max_sheets) patch *= 1.3;
-    if (cut_elements > max_elements) element *= 1.3;
+    if (cut_sheets > max_sheets) patch *= step;
+    if (cut_elements > max_elements) element *= step;
     if (round < strict_rounds) --round;  // sizes alone: no reason to loosen the rules
   }
-  plan.set_sizes(element, patch, angle, element / first_element);
+  plan.set_sizes(element, patch, angle, element / wanted);
   return plan;
 }
 

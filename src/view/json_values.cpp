@@ -1,5 +1,6 @@
 #include "view/json_values.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -65,7 +66,9 @@ Camera camera_of_json(const nlohmann::json& object, const Camera& base, const Ve
   c.position = Vec3(vector_in(object, "eye") - origin);
   const Vec3 forward(vector_in(object, "forward")), up(vector_in(object, "up"));
   const Vec3 side = cross(forward, up);
-  if (!(length(side) > 1e-6f * length(forward) * length(up)))
+  constexpr float shortest = 1e-6f;  // squares of products of much less lose digits
+  if (!(std::min(length(forward), length(up)) >= shortest) ||
+      !(length(side) > 1e-6f * length(forward) * length(up)))
     throw UsageError("forward and up must have a length, and differ");
   c.forward = normalize(forward);
   c.right = normalize(side) * hand_of(base);

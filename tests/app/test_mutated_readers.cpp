@@ -5,9 +5,12 @@
 #include <cmath>
 #include <string>
 
+#include "app/points_csv.h"
+#include "app/report_files.h"
+#include "base/error.h"
+#include "import/mutations.h"
 #include "lighting/luminaire_list.h"
 #include "lighting/weather.h"
-#include "import/mutations.h"
 #include "program.h"
 #include "support/beam_ies.h"
 
@@ -45,4 +48,20 @@ TEST_CASE("three thousand mutated lists of luminaires are read whole or refused"
       CHECK(is_finite(l.radiance));
     }
   });
+}
+
+// Their squares are lost, or have but a digit left: what is made of them is no unit vector.
+TEST_CASE("directions that are too short are refused") {
+  const Folder folder;
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n1,2,3,0,0,3e-23\n");
+  CHECK_THROWS_AS(read_points(points), InputError);
+  folder.write("a.ies", beam_ies(1, {0, 45, 90}, {0}));
+  const std::string list = folder.write("l.csv", "file,x,y,z,dx,dy,dz\na.ies,0,0,3,0,0,-2e-162\n");
+  Scene scene;
+  CHECK_THROWS_AS(add_luminaire_list(scene, list, {0, 0, -1}), InputError);
+  const std::string surface = folder.write(
+      "s.json",
+      R"({"surfaces": [{"corner": [0, 0, 0], "sides": [[1e-90, 0, 0], [0, 1e-90, 0]]}]})");
+  AssessmentOptions options;
+  CHECK_THROWS_AS(read_report_file(surface, options), InputError);
 }

@@ -144,3 +144,16 @@ TEST_CASE("what halves differ by goes on to the cells that see it") {
   CHECK(light.half_difference[1] == doctest::Approx(0.2f));
   CHECK(light.half_difference[0] == doctest::Approx(0.1f));
 }
+
+TEST_CASE("importance stays a number where rows of somebody's file make light grow without end") {
+  CellRows rows;
+  constexpr uint32_t cells = 4;
+  for (uint32_t c = 0; c < cells; ++c)
+    rows.add({c, 1, 0, false, Rgb{0}},
+             std::vector<RowEntry>{{(c + 1) % cells, Rgb{1e30f}}, {(c + 2) % cells, Rgb{1e38f}}});
+  rows.finish(cells);
+  const std::vector<float> asked(cells, 1);
+  const std::vector<float> first = rows.importance(asked, {}, 24);
+  for (const std::vector<float>& y : {first, rows.importance(asked, first, 24)})
+    for (const float v : y) CHECK(std::isfinite(v));
+}

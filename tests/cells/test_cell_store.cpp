@@ -147,4 +147,14 @@ TEST_CASE("values that no cells have are refused, though the file is whole") {
                 s.rows.add({0, 8, 0, false, Rgb{0}}, std::vector<RowEntry>{{0, Rgb{-1}}});
               }).empty());
   CHECK_FALSE(with([](CellStore& s) { s.rows.add({0, 0, 0, false, Rgb{0}}, {}); }).empty());
+  // Voxels of such a size have no numbers.
+  CHECK_FALSE(with([&](CellStore& s) {
+                s = {};
+                auto map = std::make_shared<CellMap>(tracer, 1e-7f);
+                map->add(on_floor(0.1f, 0.1f), 5);
+                s.map = std::move(map);
+                s.direct.assign(1, Rgb{1});
+                s.direct_half_difference.assign(1, 0);
+                s.rows.finish(1);
+              }).empty());
 }

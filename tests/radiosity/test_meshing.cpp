@@ -295,3 +295,15 @@ TEST_CASE("textures give elements their reflectance, masks their area") {
     if (p.position.x > 0.6f) CHECK(p.reflectance.g == doctest::Approx(0.6f));
   }
 }
+
+// A file of a solution may ask for both.
+TEST_CASE("sizes that no bound allows end at the bound, not at a mesh without end") {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {4, 3, 2.5f});
+  MeshingOptions o = sizes(1e-30f, 1e-30f);
+  o.max_elements = 100;
+  o.max_sheets = 1;  // fewer than walls: no joining does
+  const RadiosityMesh mesh = Ready(std::move(s)).mesh(o);
+  CHECK(mesh.element_count <= 1000);
+  CHECK(mesh.coarsened > 1e20f);
+}

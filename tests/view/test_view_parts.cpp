@@ -148,7 +148,9 @@ TEST_CASE("cameras that are none are refused") {
   for (const std::string& bad :
        {R"({"eye":[0,0],"forward":[2,0,0])" + rest, R"({"eye":[0,0,"a"],"forward":[2,0,0])" + rest,
         R"({"eye":[0,0,1e300],"forward":[2,0,0])" + rest, R"({"forward":[2,0,0])" + rest,
-        R"({"eye":[0,0,0],"forward":[0,0,0])" + rest, R"({"eye":[0,0,0],"forward":[0,0,3])" + rest,
+        R"({"eye":[0,0,0],"forward":[0,0,0])" + rest,
+        R"({"eye":[0,0,0],"forward":[3e-23,0,0])" + rest,
+        R"({"eye":[0,0,0],"forward":[0,0,3])" + rest,
         std::string(R"({"eye":[0,0,0],"forward":[2,0,0],"up":[0,0,1],"half_extent":0})"),
         std::string("[1,2]"), std::string("{"), std::string(100'000, '['), std::string()})
     CHECK_THROWS_AS(with(bad), UsageError);
