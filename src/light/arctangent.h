@@ -55,7 +55,9 @@ TROFFER_ALWAYS_INLINE T upper_angle(T y, T x) {
 
 // Sine and cosine of an angle in [0, 2 pi]; in float by polynomials (Chebyshev interpolation,
 // absolute error under 2e-7) that loops over them vectorise.
-TROFFER_ALWAYS_INLINE void sine_cosine(float angle, float& sine, float& cosine) {
+// Of no number, which loops without branches may bring along, they are those of 0.
+TROFFER_ALWAYS_INLINE void sine_cosine(float any, float& sine, float& cosine) {
+  const float angle = std::min(float(2 * pi), std::max(0.0f, any));
   const float quarter = float(int(angle * float(2 / pi) + 0.5f));
   const float r = (angle - quarter * 1.5703125f) - quarter * 4.83826794897e-4f;  // in ±pi/4
   const float z = r * r;
