@@ -42,16 +42,26 @@ bool is_through_portal(const LightPrimitives& primitives, const CertifiedSource&
 
 namespace {
 
-// Root of the mean square of the luminance over a part of an image, by a few of its points.
-float usual_luminance(const CertifiedSource& source, const Vec3d& middle, const Parallelogram& p) {
-  constexpr int side = 4;
-  float squares = 0;
-  for (int j = 0; j < side; ++j)
-    for (int i = 0; i < side; ++i) {
-      const double u = (i + 0.5) / side - 0.5, v = (j + 0.5) / side - 0.5;
-      squares += sqr(luminance(far_radiance_of(source, Vec3(middle + p.u * u + p.v * v))));
+// Root of the mean square of the luminance over a part of an image's cell, by all values that it
+// shows: from (s0, t0) to (s1, t1) of the cell.
+float usual_luminance(const FarCell& cell, double s0, double s1, double t0, double t1) {
+  const int last = cell.table_size - 1;
+  const auto first_of = [&](double x) {
+    return std::clamp(int(std::floor(x * cell.table_size + 1e-6)), 0, last);
+  };
+  const auto last_of = [&](double x) {
+    return std::clamp(int(std::ceil(x * cell.table_size - 1e-6)) - 1, 0, last);
+  };
+  const int columns = last_of(s1) - first_of(s0) + 1, rows = last_of(t1) - first_of(t0) + 1;
+  double squares = 0;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const size_t row = size_t(cell.table_y + first_of(t0) + j),
+                   column = size_t(cell.table_x + first_of(s0) + i);
+      squares +=
+          sqr(double(luminance(cell.table->values[row * size_t(cell.table->size) + column])));
     }
-  return std::sqrt(squares / (side * side));
+  return float(std::sqrt(squares / (double(columns) * rows)));
 }
 
 }  // namespace
@@ -111,11 +121,13 @@ void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, d
   const double steradians = area * height / (distance * sqr(distance));
   const double sine = 0.5 * length(plane.u + plane.v) / distance;
   const Rgb l = far_radiance_of(source, Vec3(way));
-  // What is no polynomial may shine anywhere between a part's corners, and elsewhere than at the
-  // few points that are looked at.
   const bool is_image = source.far->table != nullptr;
-  const float usual = is_image ? usual_luminance(source, way, plane) : luminance(l);
-  const float of_cell = luminance(source.radiance) * source.far->unevenness;
+  const double half_s = 0.5 * length(plane.u) / length(u),
+               half_t = 0.5 * length(plane.v) / length(v);
+  const float usual =
+      is_image ? usual_luminance(*source.far, s - half_s, s + half_s, t - half_t, t + half_t)
+               : luminance(l);
+  const float of_cell = is_image ? usual : luminance(source.radiance);
   const double strength = steradians * double(0.9f * usual + 0.1f * of_cell);
   if (!source.flat.is_disk && halvings > 0 && (strength > most_share * all || sine > most_sine)) {
     const bool is_u = length_squared(plane.u) >= length_squared(plane.v);

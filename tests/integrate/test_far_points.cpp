@@ -1,6 +1,7 @@
 // Points of skies that rays are cast to: even, and in proportion to what they would send.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/random.h"
@@ -17,16 +18,24 @@ using namespace troffer::test;
 
 namespace {
 
-enum class Kind { overcast, clear, image };
+enum class Kind { overcast, clear, image, sunny };
 
 Scene under(Kind kind) {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
-  if (kind == Kind::image) {
+  if (kind == Kind::image || kind == Kind::sunny) {
+    const bool is_sunny = kind == Kind::sunny;
     EnvironmentMap map;
-    map.width = 64;
-    map.height = 32;
-    for (int i = 0; i < 64 * 32; ++i) map.texels.push_back(Rgb{1 + std::sin(0.1f * float(i % 64))});
+    map.width = is_sunny ? 256 : 64;
+    map.height = map.width / 2;
+    for (int i = 0; i < map.width * map.height; ++i)
+      map.texels.push_back(Rgb{1 + std::sin(0.1f * float(i % map.width))});
+    // A sun of 4 degrees, and no ground.
+    for (int i = 0; is_sunny && i < map.width * map.height; ++i) {
+      const double altitude = 90 - 180 * (i / map.width + 0.5) / map.height;
+      const double azimuth = 360 * (i % map.width + 0.5) / map.width - 180;
+      map.texels[size_t(i)] = Rgb{std::hypot(altitude - 35, azimuth - 30) < 2 ? 5e4f : 40.0f};
+    }
     s.environments.push_back(map);
     add_light(s, LightKind::environment, Rgb{1}).environment = 0;
     return s;
@@ -158,6 +167,35 @@ TEST_CASE("chances for normals about a receiver's leave none of its light out") 
       CAPTURE(k);
       CHECK(std::abs(e.mean - 1) < 0.003 + 4 * e.error / std::sqrt(double(runs)));
       CHECK(e.error < 0.12);
+    }
+  }
+}
+
+// A part that is dim but for a few texels must not be drawn by what it is elsewhere.
+TEST_CASE("no point of an image with a small sun counts for much more than all light") {
+  const Points p(Kind::sunny);
+  Random random(11);
+  for (const Vec3& normal : {Vec3{0, 0, 1}, normalize(Vec3{0.3f, 0.5f, 0.4f})}) {
+    ShadowReceiver r{};
+    r.normal = r.horizon = normal;
+    FarPoints::Chances own;
+    REQUIRE(p.points.set_chances(r, own));
+    for (const FarPoints::Chances* chances :
+         std::array<const FarPoints::Chances*, 2>{&own, &p.points.chances_about(normal)}) {
+      double mean = 0, most = 0;
+      constexpr int n = 200'000;
+      for (int j = 0; j < n; ++j) {
+        const Vec2 u = random.next_vec2();
+        const FarPoints::Point at = p.points.point(p.points.choose(*chances, u.x, u.y), normal);
+        if (at.source == nullptr) continue;
+        const double value = double(luminance(far_radiance_of(*at.source, at.way)) *
+                                    std::max(dot(at.wi, normal), 0.0f) * at.inverse_pdf);
+        mean += value / n;
+        most = std::max(most, value);
+      }
+      CAPTURE(normal.z);
+      CHECK(mean == doctest::Approx(expected(p, Frame(normal))).epsilon(0.02));
+      CHECK(most < 15 * mean);
     }
   }
 }
