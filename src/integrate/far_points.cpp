@@ -74,7 +74,10 @@ FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
   for (const CertifiedSource& s : sources) add(s, s.flat.plane, all, most_halvings);
   std::vector<Part> parts;
   parts.swap(parts_);
-  if (parts.empty()) return;
+  if (parts.empty()) {
+    if (!suns_.empty()) make_chances_about();
+    return;
+  }
   const size_t leaves = std::bit_ceil(std::max(parts.size(), size_t(2)));
   parts_.resize(leaves);
   plant(parts, 0, leaves);
