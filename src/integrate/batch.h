@@ -84,6 +84,9 @@ struct RadianceBatch {
   // Set by the caller and kept: luminance that is usual in the picture; 0: not known. What is far
   // below it may err by more (methods that keep an error).
   float typical = 0;
+  // Set by the caller and kept: so many times the usual error may each ray have, since a pixel gets
+  // many of them (methods that keep an error).
+  float looseness = 1;
   // Set by the caller and kept: nothing but the mean over many rays counts, each may be off by a
   // third of its light.
   bool is_rough = false;

@@ -56,7 +56,6 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
     : scene_(scene),
       occluders_(std::move(occluders)),
       settings_(settings),
-      rough_(certified_settings(std::max(rough_error, settings.error), 1, 1)),
       lights_(scene,
               {float(settings.error), float(settings.viewing_rays), uint32_t(settings.draws)},
               uint32_t(settings.gloss_samples)),
@@ -92,9 +91,17 @@ void CertifiedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, Radianc
 void CertifiedDirect::flush(DirectLightScratch& scratch, RadianceBatch& out,
                             Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
-  s.lights.options = (out.is_rough ? rough_ : settings_).estimator;
+  s.lights.options = options_for(out);
   lights_.illuminate(s.lights, out, counters);
   sampler_.resolve(s.rays, out, counters);
+}
+
+CertifiedOptions CertifiedDirect::options_for(const RadianceBatch& out) const {
+  const double largest = std::max(rough_error, settings_.error);
+  if (out.is_rough) return certified_settings(largest, 1, 1).estimator;
+  if (out.looseness <= 1) return settings_.estimator;
+  const double error = std::min(settings_.error * double(out.looseness), largest);
+  return certified_settings(error, 1, settings_.viewing_rays).estimator;
 }
 
 // Light straight from all sources: by certificates later, or by rays.

@@ -49,6 +49,7 @@ class CertifiedDirect final : public DirectLight {
  private:
   struct Scratch;
 
+  CertifiedOptions options_for(const RadianceBatch& out) const;
   void queue_hit(const WaveHits& wave, size_t i, Scratch& s, RadianceBatch& out,
                  Counters& counters) const;
   float weight_of(const Walk& walk, const Vertex& v) const;
@@ -56,7 +57,7 @@ class CertifiedDirect final : public DirectLight {
 
   const PreparedScene& scene_;
   std::shared_ptr<const Occluders> occluders_;
-  CertifiedSettings settings_, rough_;
+  CertifiedSettings settings_;
   CertifiedLights lights_;
   SourceSampler sampler_;
   // Lights that get rays of their own: on opaque surfaces, and where light goes through.

@@ -71,10 +71,15 @@ double Film::told_error(size_t i) const {
   const Pixel& p = pixels_[i];
   if (!p.has_source_variance) return standard_error(p);
   const double n = p.samples;
-  const double untold = error_of_mean(p.untold, p.untold_squared, n) * n;
-  double independent = p.source_variance + sqr(untold);
+  double independent = independent_variance(p);
   if (p.is_told_whole) independent += variance_beyond(i, independent);
   return std::sqrt(independent + sqr(p.shared_error) + sqr(p.drawn_error)) / n;
+}
+
+// Of a pixel's sum, what is told of its samples, and all that others than these vary by.
+double Film::independent_variance(const Pixel& p) {
+  const double n = p.samples;
+  return p.source_variance + sqr(error_of_mean(p.untold, p.untold_squared, n) * n);
 }
 
 // Of a pixel's sum, what its samples are spread by more than this. Each four of them lie in four
@@ -101,6 +106,8 @@ PixelEstimate Film::estimate_of(size_t i) const {
   if (p.samples == 0) return e;
   e.luminance = e.rest = p.sum_luminance / p.samples;
   e.standard_error = e.error_of_rest = standard_error(p);
+  e.independent_variance =
+      p.is_told_whole ? independent_variance(p) / p.samples : sqr(e.standard_error) * p.samples;
   if (known_.empty()) return e;
   const Known& k = known_[i];
   const double n = p.samples;

@@ -27,6 +27,8 @@ struct PixelEstimate {
   // Of samples by themselves, without what is known of them (Film::add_known): the mean, and its
   // standard error.
   double rest = 0, error_of_rest = 0;
+  // How much of the variance of one sample is chance of its own, whatever its place in the pixel.
+  double independent_variance = 0;
 };
 
 // What glances at a pixel (Integrator::glance) have seen, or what is known of its samples.
@@ -128,6 +130,7 @@ class Film {
   Light light_of(size_t i) const;
   static double standard_error(const Pixel& p);
   double told_error(size_t i) const;
+  static double independent_variance(const Pixel& p);
   double variance_beyond(size_t i, double independent) const;
   Layer make_layer(Aov aov) const;
 

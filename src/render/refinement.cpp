@@ -85,6 +85,10 @@ struct Surroundings {
   double sample_variance = 0;  // the largest among theirs, of one sample, likewise
   double usual_variance = 0;   // … and the middle one
   double mean_variance = 0;
+  double independent_variance = 0;  // the middle one of what chance alone leaves a sample
+  // Within a pixel, of the even slope that fits the neighbours' means: as a pixel's samples are
+  // spread over it, they err little by it. The variances above are without it.
+  double slope_variance = 0;
   bool has_contrast = false;  // between neighbours at opposite sides
   // A neighbour's rays have met different surfaces where no corner of it shows an edge.
   bool has_thin_things = false;
@@ -104,6 +108,7 @@ bool differ(const RefinementView& v, int ax, int ay, int bx, int by,
 // What varies from sample to sample of a pixel.
 struct Varying {
   double mean = 0, variance = 0;
+  double independent = 0;  // of the variance, what is not by places in the pixel
 };
 
 Varying known_of(const KnownSums& k) {
@@ -111,13 +116,59 @@ Varying known_of(const KnownSums& k) {
   return {mean, n > 1 ? std::max(double(k.squares) / n - sqr(mean), 0.0) * n / (n - 1) : 0.0};
 }
 
+// Of samples of one pixel, by a plane through the means of those around it.
+class Slope {
+ public:
+  void add(int dx, int dy, double mean) {
+    n_ += 1;
+    sum_ += Vec3d(dx, dy, mean);
+    xx_ += dx * dx, yy_ += dy * dy, xy_ += dx * dy;
+    xz_ += dx * mean, yz_ += dy * mean;
+  }
+  double variance() const {
+    constexpr double of_unit_slope = 1.0 / 12;
+    const Vec3d m = sum_ * (1 / std::max(n_, 1.0));
+    const double xx = xx_ - n_ * m.x * m.x, yy = yy_ - n_ * m.y * m.y, xy = xy_ - n_ * m.x * m.y,
+                 xz = xz_ - n_ * m.x * m.z, yz = yz_ - n_ * m.y * m.z;
+    const double determinant = xx * yy - xy * xy;
+    if (!(determinant > 0.5)) return 0;  // neighbours in a line, or too few
+    const double sx = (xz * yy - yz * xy) / determinant, sy = (yz * xx - xz * xy) / determinant;
+    return (sqr(sx) + sqr(sy)) * of_unit_slope;
+  }
+
+ private:
+  double n_ = 0, xx_ = 0, yy_ = 0, xy_ = 0, xz_ = 0, yz_ = 0;
+  Vec3d sum_;
+};
+
+// Of a pixel's few samples, which lie in its four quarters, a slope shows with so much more than
+// its variance: they are spread more evenly than by chance.
+constexpr double slope_in_samples = 1.25;
+
+// The values of up to eight neighbours, by size.
+class Ordered {
+ public:
+  void add(double value) {
+    size_t at = count_++;
+    for (; at > 0 && values_[at - 1] > value; --at) values_[at] = values_[at - 1];
+    values_[at] = value;
+  }
+  double largest() const { return values_[count_ - 1]; }
+  double middle() const { return values_[count_ / 2]; }
+
+ private:
+  std::array<double, 8> values_{};
+  size_t count_ = 0;
+};
+
 // of: what varies; takes a pixel.
 template <class Of>
 Surroundings look_around(const RefinementView& v, int x, int y, const RefinementOptions& options,
                          const Of& of) {
   const PixelRect& w = v.records.window;
   Surroundings s;
-  std::array<double, 8> variances{};
+  Ordered variances, independent;
+  Slope slope;
   size_t count = 0;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
@@ -126,10 +177,10 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
       s.low = count > 0 ? std::min(s.low, e.mean) : e.mean;
       s.high = count > 0 ? std::max(s.high, e.mean) : e.mean;
       s.mean_variance += e.variance;
+      slope.add(dx, dy, e.mean);
       s.mean += v.film.estimate(x + dx, y + dy).luminance;
-      size_t at = count;  // they are sorted
-      for (; at > 0 && variances[at - 1] > e.variance; --at) variances[at] = variances[at - 1];
-      variances[at] = e.variance;
+      variances.add(e.variance);
+      independent.add(e.independent);
       s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
                            !v.edges.has_surface_edge(x + dx, y + dy);
       ++count;
@@ -140,17 +191,24 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
   if (count == 0) return s;
   s.mean /= double(count);
   s.mean_variance /= double(count);
-  s.sample_variance = variances[count - 1];
-  s.usual_variance = variances[count / 2];
+  s.slope_variance = slope.variance();
+  const auto beyond = [&](double variance) {
+    return std::max(variance - slope_in_samples * s.slope_variance, 0.0);
+  };
+  s.sample_variance = beyond(variances.largest());
+  s.usual_variance = beyond(variances.middle());
+  s.independent_variance = independent.middle();
   return s;
 }
 
 // Amid clutter a pixel whose neighbours look all alike may have something in it that their rays
 // have missed: n rays that saw nothing leave a chance of 1 / (n + 2) that the next one does
 // (Laplace's rule of succession), and it then differs as others do around. A line through the
-// surroundings is no clutter. `noticed`: the variance of a sample that counts.
+// surroundings is no clutter. `of_slope`: Surroundings::slope_variance; `noticed`: the variance of
+// a sample that counts.
 template <class Of>
-double variance_amid_clutter(const RefinementView& v, int x, int y, double noticed, const Of& of) {
+double variance_amid_clutter(const RefinementView& v, int x, int y, double of_slope, double noticed,
+                             const Of& of) {
   constexpr int reach = 2;
   constexpr double rays = 32;  // of eight neighbours
   // Of a share p of a pixel that differs by c the variance is p (1 - p) c²; its mean over p, c²
@@ -161,7 +219,7 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double notic
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx) {
       if ((dx == 0 && dy == 0) || !is_inside(v.records.window, x + dx, y + dy)) continue;
-      const double variance = of(x + dx, y + dy).variance;
+      const double variance = of(x + dx, y + dy).variance - slope_in_samples * of_slope;
       ++all;
       if (variance <= noticed) continue;
       ++varying;
@@ -190,7 +248,7 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   const Surroundings s = look_around(v, x, y, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
   const double allowed = allowed_error(s.mean, v.typical, options, most_times_less);
-  const double clutter = variance_amid_clutter(v, x, y, sqr(allowed), of);
+  const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
   if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0) return 0;
   const bool is_divided = has_edge || has_light;
   const double variance =
@@ -210,8 +268,8 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   if (v.edges.has_light_edge(x, y) && !has_glances && !options.is_noise) return most;
   const auto of = [&](int px, int py) -> Varying {
     const PixelEstimate e = v.film.estimate(px, py);
-    if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples};
-    return {e.luminance, sqr(e.standard_error) * e.samples};
+    if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples, e.independent_variance};
+    return {e.luminance, sqr(e.standard_error) * e.samples, e.independent_variance};
   };
   const Surroundings s = look_around(v, x, y, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y);
@@ -222,12 +280,22 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
   if (has_edge && !options.is_noise) variance = std::max(variance, sqr(s.high - s.low) / 4);
   const double allowed = allowed_error(s.mean, v.typical, options);
-  if (!options.is_noise)
-    variance = std::max(variance, variance_amid_clutter(v, x, y, sqr(allowed), of));
-  // As of independent samples. (Nothing to see by: no light is allowed, none varies.)
-  double wanted = variance > 0 ? variance / sqr(allowed) : 0;
+  // Samples that are spread over a pixel err by n^-3/4 by what an edge divides (of thin things they
+  // know too little), and by n^-1/2 by chance of their own. (Nothing to see by: no light is
+  // allowed, none varies.)
+  const double independent =
+      options.is_noise || s.has_thin_things ? variance : std::min(variance, s.independent_variance);
+  double wanted = variance > 0 ? independent / sqr(allowed) +
+                                     std::pow((variance - independent) / sqr(allowed), 2.0 / 3)
+                               : 0;
+  if (!options.is_noise) {
+    const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
+    if (clutter > 0) wanted = std::max(wanted, clutter / sqr(allowed));
+  }
   const double even = double(options.most_even);
   if (even > 0 && wanted > sqr(even)) wanted = even * std::sqrt(wanted);
+  // Of a slope n samples that are spread over the pixel leave a variance of n^-3.
+  if (!options.is_noise) wanted = std::max(wanted, std::cbrt(s.slope_variance / sqr(allowed)));
   if (has_glances) wanted = std::max(wanted, double(options.least_beside_glances));
   return wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most;
 }

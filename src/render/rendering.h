@@ -105,6 +105,7 @@ class Rendering {
   RenderEnd refine_by_passes();
   RenderEnd refine_by_tiles();
   bool refine(const PixelRect& tile, Work& w);
+  float looseness(int rays) const;
   Tiles all_tiles() const;
   Tiles noisiest_first() const;
   FurtherRays further_rays(double typical) const;

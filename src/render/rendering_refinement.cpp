@@ -95,6 +95,15 @@ Rendering::Tiles Rendering::noisiest_first() const {
   return tiles;
 }
 
+// How many times the usual error each of so many rays of a pixel may have: together they still
+// leave it at most half of what the usual number does. A power of two, so that rays of many pixels
+// go together.
+float Rendering::looseness(int rays) const {
+  float loose = 1;
+  for (int n = rays / (16 * std::max(options_.spp, 1)); n > 0; n /= 4) loose *= 2;
+  return loose;
+}
+
 // False where it was stopped before all of the tile's rays were sent.
 bool Rendering::refine(const PixelRect& tile, Work& w) {
   constexpr size_t rays_at_a_time = 1024;
@@ -103,21 +112,29 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
     w.rays.clear();
     w.pixels.clear();
   };
-  for (const Pixel2& p : pixels_in_order(tile)) {
-    int left = refining_.wanted->samples[refining_.records->index(p.x, p.y)] - refining_.first_spp;
-    while (left > 0) {
-      if (stop_.load(std::memory_order_relaxed)) {
-        send();
-        return false;
-      }
-      const int count = std::min(left, int(rays_at_a_time - w.rays.size()));
+  const auto wanted = [&](const Pixel2& p) {
+    return refining_.wanted->samples[refining_.records->index(p.x, p.y)];
+  };
+  std::vector<Pixel2> pixels = pixels_in_order(tile);
+  std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {
+    return looseness(wanted(a)) < looseness(wanted(b));
+  });
+  bool is_whole = true;
+  for (const Pixel2& p : pixels) {
+    if (looseness(wanted(p)) != w.radiance.looseness) send();
+    w.radiance.looseness = looseness(wanted(p));
+    int left = wanted(p) - refining_.first_spp;
+    while (left > 0 && is_whole) {
+      is_whole = !stop_.load(std::memory_order_relaxed);
+      const int count = is_whole ? std::min(left, int(rays_at_a_time - w.rays.size())) : 0;
       add_rays(p, uint32_t(count), w);
       left -= count;
       if (w.rays.size() == rays_at_a_time) send();
     }
   }
   send();
-  return true;
+  w.radiance.looseness = 1;
+  return is_whole;
 }
 
 // How many of them the pixels of the region get, by what the first pass has seen.
@@ -138,7 +155,7 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
                                          refining_.most.in_pixel, refining_.options);
     }
   });
-  constexpr int glances_in_mean = 1024;
+  constexpr int glances_in_mean = 4096;
   for (const PixelRect& tile : plan_.tiles) {
     if (refining_.most.in_mean < refining_.most.in_pixel)
       keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
