@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "image/atomic_file.h"
 #include "image/read_image.h"
+#include "import/file.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/luminaire_list.h"
 #include "render/camera.h"
@@ -52,30 +53,15 @@ class ReportFolder {
   bool is_new_ = false;
 };
 
-// "FILE[,NUMBER…]": what of it is there as a file; empty: nothing.
-std::string existing_file(std::string text) {
-  std::error_code error;
-  while (!text.empty() && !fs::is_regular_file(text, error)) {
-    const size_t comma = text.rfind(',');
-    text.resize(comma == std::string::npos ? 0 : comma);
-  }
-  return text;
-}
-
-std::vector<InputHash> hashes_of(const ReportCommand& c) {
-  std::vector<std::string> files{c.scene.file};
-  for (const std::string& l : c.daylight.luminaires)
-    files.push_back(existing_file(l.substr(l.find('=') + 1)));
-  files.push_back(c.daylight.luminaire_list);
-  files.push_back(existing_file(c.daylight.environment));
-  files.push_back(c.daylight.weather);
-  files.insert(files.end(), c.surface_files.begin(), c.surface_files.end());
+// Of all files that were read, the scene's first.
+std::vector<InputHash> hashes_of(const ReportCommand& c, const FilesRead& read) {
+  constexpr size_t most_bytes = size_t(1) << 33;
+  std::vector<std::string> files = read.paths();
+  std::stable_partition(files.begin(), files.end(),
+                        [&](const std::string& f) { return f == c.scene.file; });
   std::vector<InputHash> hashes;
   for (const std::string& f : files) {
-    const bool is_known =
-        std::any_of(hashes.begin(), hashes.end(), [&](const InputHash& h) { return h.file == f; });
-    if (f.empty() || is_known) continue;
-    const std::vector<uint8_t> bytes = read_file_bytes(f);
+    const std::vector<uint8_t> bytes = read_file_bytes(f, most_bytes);
     hashes.push_back({f, bytes.size(), sha256(bytes)});
   }
   return hashes;
@@ -151,7 +137,7 @@ std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& sc
   return power;
 }
 
-ReportInfo info_of(const ReportCommand& c, const Scene& scene) {
+ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& read) {
   ReportInfo info;
   info.scene = c.scene.file;
   info.title = c.title.empty() ? fs::path(c.scene.file).filename().string() : c.title;
@@ -165,7 +151,7 @@ ReportInfo info_of(const ReportCommand& c, const Scene& scene) {
                    {"Seed", std::to_string(c.seed)},
                    {"Profile", c.profile},
                    {"Maintenance factor", fmt::format("{}", c.maintenance)}};
-  info.inputs = hashes_of(c);
+  info.inputs = hashes_of(c, read);
   for (const Warning& w : scene.warnings.entries())
     info.warnings.push_back(w.count > 1 ? fmt::format("{} ({} times)", w.text, w.count) : w.text);
   return info;
@@ -194,6 +180,7 @@ int tell_interrupted() {
 }  // namespace
 
 int run_report(const ReportCommand& c) {
+  const FilesRead read;
   Report report;
   check_method(parse_method(c.method), Indirect::automatic, "");
   assessment_options(c, {0, 0, 1});  // mistakes are told before any work
@@ -205,7 +192,7 @@ int run_report(const ReportCommand& c) {
   report.options.power.insert(report.options.power.begin(), stated.begin(), stated.end());
   if (c.daylight_factor != "off") report.options.overcast = [&] { return overcast_scene(c); };
   named_cameras(scene, c.cameras);
-  report.info = info_of(c, scene);
+  report.info = info_of(c, scene, read);
   const ReportFolder folder(c.output);
   const std::vector<OutputReservation> reserved = reserve_outputs(
       {folder.file("report.html"), folder.file("report.json")}, folder.file("points.csv"));

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -18,6 +19,33 @@ namespace fs = std::filesystem;
 
 namespace {
 
+std::atomic<FilesRead*> asked{nullptr};
+
+}  // namespace
+
+FilesRead::FilesRead() {
+  FilesRead* none = nullptr;
+  TROFFER_CHECK(asked.compare_exchange_strong(none, this));
+}
+
+FilesRead::~FilesRead() {
+  asked = nullptr;
+}
+
+std::vector<std::string> FilesRead::paths() const {
+  const std::lock_guard lock(mutex_);
+  return {paths_.begin(), paths_.end()};
+}
+
+void note_file_read(const std::string& path) {
+  FilesRead* files = asked;
+  if (files == nullptr) return;
+  const std::lock_guard lock(files->mutex_);
+  files->paths_.insert(path);
+}
+
+namespace {
+
 template <class Bytes>
 Bytes read_whole(const std::string& path, uint64_t max_bytes) {
   const uint64_t size = size_of_file(path);
@@ -28,6 +56,7 @@ Bytes read_whole(const std::string& path, uint64_t max_bytes) {
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path, 0, 0, std::string("cannot be opened: ") + std::strerror(errno));
+  note_file_read(path);
   Bytes bytes(size_t(size), {});
   in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
   // A file that shrank since is cut short here and found out by its parser.

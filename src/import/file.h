@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +21,23 @@ uint64_t size_of_file(const std::string& path);
 std::vector<uint8_t> read_file(const std::string& path,
                                uint64_t max_bytes = default_max_file_bytes);
 std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
+
+// Names every file that read_file and read_text_file open while it lives, on whatever thread: what
+// a scene was made of. One at a time.
+class FilesRead {
+ public:
+  FilesRead();
+  ~FilesRead();
+  FilesRead(const FilesRead&) = delete;
+  FilesRead& operator=(const FilesRead&) = delete;
+
+  std::vector<std::string> paths() const;  // sorted, each once
+
+ private:
+  friend void note_file_read(const std::string& path);
+  mutable std::mutex mutex_;
+  std::set<std::string> paths_;
+};
 
 // The folder a path's file lies in, "." for a bare file name.
 std::string folder_of(const std::string& path);

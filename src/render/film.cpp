@@ -10,9 +10,6 @@ namespace troffer {
 
 namespace {
 
-// Viewing rays that share a pixel evenly.
-constexpr uint32_t samples_of_block = 4;
-
 Vec3d as_vec(Rgb c) {
   return {double(c.r), double(c.g), double(c.b)};
 }
@@ -83,16 +80,18 @@ double Film::independent_variance(const Pixel& p) {
 }
 
 // Of a pixel's sum, what its samples are spread by more than this. Each four of them lie in four
-// quarters of the pixel: an edge through it leaves the mean of these four half the variance of
-// independent ones; what is smaller than their share of the pixel, all of it.
+// quarters of the pixel, each sixteen in sixteenths, each 64 likewise: an edge through it leaves
+// the mean of a block a half, a quarter, an eighth of the variance of independent ones; what is
+// smaller than their share of the pixel, all of it.
 double Film::variance_beyond(size_t i, double independent) const {
   constexpr double gain_of_edges = 0.5;
-  const double n = pixels_[i].samples, fours = std::floor(n / samples_of_block);
-  if (known_.empty() || fours < 2)
+  const double n = pixels_[i].samples;
+  const double size = known_.empty() ? 1 : known_[i].block_size, blocks = std::floor(n / size);
+  if (known_.empty() || blocks < 2)
     return gain_of_edges * std::max(sqr(estimate_of(i).standard_error * n) - independent, 0.0);
   const Known& k = known_[i];
-  const double spread = sqr(error_of_mean(k.fours, k.squares_of_fours, fours) * fours);
-  return std::max(spread * n / (fours * samples_of_block) - independent, 0.0);
+  const double spread = sqr(error_of_mean(k.blocks, k.squares_of_blocks, blocks) * blocks);
+  return std::max(spread * n / (blocks * size) - independent, 0.0);
 }
 
 PixelEstimate Film::estimate(int x, int y) const {
@@ -168,11 +167,24 @@ void Film::add_glance(int x, int y, const RadianceBatch& batch, size_t i, float 
 void Film::Known::add_rest(float value, uint32_t so_far) {
   rest += value;
   squares_of_rest += value * value;
-  four += value;
-  if (so_far % samples_of_block != 0) return;
-  fours += four;
-  squares_of_fours += four * four;
-  four = 0;
+  block += value;
+  if (so_far % block_size != 0) return;
+  blocks += block;
+  squares_of_blocks += block * block;
+  block = 0;
+}
+
+void Film::expect_samples(int x, int y, uint32_t count) {
+  constexpr uint32_t fewest_blocks = 4, largest = 64;
+  const size_t i = index(x, y);
+  if (known_.empty() || pixels_[i].samples > first_block_size) return;
+  Known& k = known_[i];
+  uint32_t size = first_block_size;
+  while (size < largest && count >= 4 * size * fewest_blocks) size *= 4;
+  if (size == k.block_size) return;
+  k.block_size = size;
+  k.block += k.blocks;
+  k.blocks = k.squares_of_blocks = 0;
 }
 
 bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) {

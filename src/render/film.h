@@ -69,6 +69,9 @@ class Film {
   void expect_glances() { known_.resize(pixels_.size()); }
   // Layers of first hits are those of glances where there are any, as light is.
   void add_glance(int x, int y, const RadianceBatch& batch, size_t i, float depth);
+  // So many samples will the pixel have, of which it has no more than the first four yet: how far
+  // they differ is told by larger blocks of them, which are spread more evenly.
+  void expect_samples(int x, int y, uint32_t count);
   // Of samples.
   const KnownSums& known(int x, int y) const { return known_[index(x, y)].samples; }
 
@@ -95,6 +98,7 @@ class Film {
   }
 
  private:
+  static constexpr uint32_t first_block_size = 4;
   struct Pixel {
     Vec3d direct, indirect;
     double sum_luminance = 0, sum_luminance_squared = 0;
@@ -119,8 +123,9 @@ class Film {
   struct Known {
     KnownSums samples, glances;
     float rest = 0, squares_of_rest = 0;  // luminance of samples, less what is known
-    // … summed over fours; those sums, and their squares
-    float four = 0, fours = 0, squares_of_fours = 0;
+    // … summed over blocks of so many samples; the sums of whole blocks, and their squares
+    uint32_t block_size = first_block_size;
+    float block = 0, blocks = 0, squares_of_blocks = 0;
     void add_rest(float value, uint32_t so_far);
   };
   size_t index(int x, int y) const {

@@ -28,7 +28,7 @@ constexpr uint32_t has_variance_flag = 1, is_told_flag = 2;
 }  // namespace
 
 size_t Film::bytes_of_pixel() const {
-  static_assert(sizeof(Known) == 92);
+  static_assert(sizeof(Known) == 96);
   return sizeof(PixelBytes) + (first_hits_.empty() ? 0 : sizeof(FirstHitBytes)) +
          (known_.empty() ? 0 : sizeof(Known));
 }
@@ -74,7 +74,11 @@ bool Film::load(int x, int y, ByteReader& in) {
     first_hits_[i] = {f.albedo, f.normal, f.position, f.sources, f.depth, f.shadow_rays, f.hits};
     is_sound = is_sound && f.unused == 0;
   }
-  if (!known_.empty()) known_[i] = in.next<Known>();
+  if (!known_.empty()) {
+    known_[i] = in.next<Known>();
+    const uint32_t size = known_[i].block_size;
+    is_sound = is_sound && (size == 4 || size == 16 || size == 64);
+  }
   return is_sound;
 }
 

@@ -78,14 +78,19 @@ NeighbourRecords PixelRecords::around(int x, int y) const {
 
 namespace {
 
+// What varies from sample to sample of a pixel.
+struct Varying {
+  double mean = 0, variance = 0;
+  double independent = 0;  // of the variance, what is not by places in the pixel
+};
+
 // What the first pass saw around a pixel, its own samples left out.
 struct Surroundings {
-  double mean = 0;             // of the neighbours' luminances
-  double low = 0, high = 0;    // … of them, or of what is not known of them
-  double sample_variance = 0;  // the largest among theirs, of one sample, likewise
-  double usual_variance = 0;   // … and the middle one
+  double mean = 0;           // of the neighbours' luminances
+  double low = 0, high = 0;  // … of them, or of what is not known of them
+  Varying largest;           // the one whose samples vary most, likewise
+  Varying usual;             // … and the middle one
   double mean_variance = 0;
-  double independent_variance = 0;  // the middle one of what chance alone leaves a sample
   // Within a pixel, of the even slope that fits the neighbours' means: as a pixel's samples are
   // spread over it, they err little by it. The variances above are without it.
   double slope_variance = 0;
@@ -104,12 +109,6 @@ bool differ(const RefinementView& v, int ax, int ay, int bx, int by,
          double(pattern_contrast(p, q)) >
              double(options.pattern_contrast) * std::max({a, b, v.typical});
 }
-
-// What varies from sample to sample of a pixel.
-struct Varying {
-  double mean = 0, variance = 0;
-  double independent = 0;  // of the variance, what is not by places in the pixel
-};
 
 Varying known_of(const KnownSums& k) {
   const double n = k.count, mean = double(k.luminance) / n;
@@ -145,19 +144,19 @@ class Slope {
 // its variance: they are spread more evenly than by chance.
 constexpr double slope_in_samples = 1.25;
 
-// The values of up to eight neighbours, by size.
+// Up to eight neighbours, by their variances.
 class Ordered {
  public:
-  void add(double value) {
+  void add(const Varying& v) {
     size_t at = count_++;
-    for (; at > 0 && values_[at - 1] > value; --at) values_[at] = values_[at - 1];
-    values_[at] = value;
+    for (; at > 0 && values_[at - 1].variance > v.variance; --at) values_[at] = values_[at - 1];
+    values_[at] = v;
   }
-  double largest() const { return values_[count_ - 1]; }
-  double middle() const { return values_[count_ / 2]; }
+  const Varying& largest() const { return values_[count_ - 1]; }
+  const Varying& middle() const { return values_[count_ / 2]; }
 
  private:
-  std::array<double, 8> values_{};
+  std::array<Varying, 8> values_{};
   size_t count_ = 0;
 };
 
@@ -167,7 +166,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
                          const Of& of) {
   const PixelRect& w = v.records.window;
   Surroundings s;
-  Ordered variances, independent;
+  Ordered varying;
   Slope slope;
   size_t count = 0;
   for (int dy = -1; dy <= 1; ++dy)
@@ -179,8 +178,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
       s.mean_variance += e.variance;
       slope.add(dx, dy, e.mean);
       s.mean += v.film.estimate(x + dx, y + dy).luminance;
-      variances.add(e.variance);
-      independent.add(e.independent);
+      varying.add(e);
       s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
                            !v.edges.has_surface_edge(x + dx, y + dy);
       ++count;
@@ -192,12 +190,10 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
   s.mean /= double(count);
   s.mean_variance /= double(count);
   s.slope_variance = slope.variance();
-  const auto beyond = [&](double variance) {
-    return std::max(variance - slope_in_samples * s.slope_variance, 0.0);
-  };
-  s.sample_variance = beyond(variances.largest());
-  s.usual_variance = beyond(variances.middle());
-  s.independent_variance = independent.middle();
+  s.largest = varying.largest();
+  s.usual = varying.middle();
+  for (Varying* of_sample : {&s.largest, &s.usual})
+    of_sample->variance = std::max(of_sample->variance - slope_in_samples * s.slope_variance, 0.0);
   return s;
 }
 
@@ -252,7 +248,7 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0) return 0;
   const bool is_divided = has_edge || has_light;
   const double variance =
-      std::max({s.sample_variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0, clutter});
+      std::max({s.largest.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0, clutter});
   // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
   // seen what shines.)
   const double least = has_light ? 256 : 0;
@@ -275,7 +271,8 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   const bool has_edge = v.edges.has_surface_edge(x, y);
   const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
   if (!is_uneven && !options.is_everywhere) return first;
-  double variance = is_uneven ? s.sample_variance : s.usual_variance;
+  const Varying& neighbour = is_uneven ? s.largest : s.usual;
+  double variance = neighbour.variance;
   if (options.is_noise) variance = s.mean_variance;
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
   if (has_edge && !options.is_noise) variance = std::max(variance, sqr(s.high - s.low) / 4);
@@ -284,7 +281,7 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   // know too little), and by n^-1/2 by chance of their own. (Nothing to see by: no light is
   // allowed, none varies.)
   const double independent =
-      options.is_noise || s.has_thin_things ? variance : std::min(variance, s.independent_variance);
+      options.is_noise || s.has_thin_things ? variance : std::min(variance, neighbour.independent);
   double wanted = variance > 0 ? independent / sqr(allowed) +
                                      std::pow((variance - independent) / sqr(allowed), 2.0 / 3)
                                : 0;

@@ -123,6 +123,7 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
   for (const Pixel2& p : pixels) {
     if (looseness(wanted(p)) != w.radiance.looseness) send();
     w.radiance.looseness = looseness(wanted(p));
+    film_.expect_samples(p.x, p.y, uint32_t(wanted(p)));
     int left = wanted(p) - refining_.first_spp;
     while (left > 0 && is_whole) {
       is_whole = !stop_.load(std::memory_order_relaxed);

@@ -32,7 +32,7 @@ svg{max-width:100%;height:auto}.pictures{display:flex;gap:.8rem;align-items:flex
 code{font-size:.82rem;overflow-wrap:anywhere}.notes li{margin:.15rem 0}
 @page{size:A4;margin:16mm 14mm}
 @media print{body{max-width:none;padding:0;font-size:10pt;-webkit-print-color-adjust:exact;
- print-color-adjust:exact}h2{break-after:avoid}h3{break-after:avoid}
+ print-color-adjust:exact}h2,h3,h2+p{break-after:avoid}
  section.surface,figure,tr{break-inside:avoid}.pictures{flex-wrap:nowrap}.pictures img{width:13rem}
  .table{overflow:visible}}
 )";

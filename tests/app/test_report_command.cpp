@@ -85,6 +85,26 @@ TEST_CASE("a report: one page without anything from elsewhere, JSON and a table,
   CHECK(read_file(folder.path("r/points.csv")) == points);
 }
 
+TEST_CASE("inputs are all files that were read, the scene's first") {
+  const Folder folder;
+  folder.write("a part.pbrt", room_pbrt);
+  folder.write("unread.pbrt", room_pbrt);
+  const std::string scene = folder.write("room.pbrt", "Include \"a part.pbrt\"\n");
+  const std::string list = folder.write("list.csv", "file,x,y,z\n");
+  REQUIRE(run_program(folder, command(folder, scene, "r",
+                                      {"--luminaires", list, "--pictures", "off", "--contributions",
+                                       "off"}))
+              .status == 0);
+  const std::string json = read_file(folder.path("r/report.json"));
+  const auto at = [&](const std::string& name) { return json.find("/" + name + "\""); };
+  const size_t inputs = json.find("\"inputs\""), first = json.find("/room.pbrt\"", inputs);
+  CHECK(first != std::string::npos);
+  CHECK(json.find("/a part.pbrt\"", first) != std::string::npos);
+  CHECK(json.find("/list.csv\"", first) != std::string::npos);
+  CHECK(at("unread.pbrt") == std::string::npos);
+  CHECK(count(json, "\"sha256\"") == 3);
+}
+
 TEST_CASE("points of the table are what measure says of them") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", room_pbrt);

@@ -193,7 +193,7 @@ TEST_CASE("cells: the error that is told is about the one that is made") {
   const RenderResult mine = render_now(scene, mixed_room_camera(), o),
                      paths = render_now(scene, mixed_room_camera(), path);
   double made = 0, told = 0, noise = 0, mean = 0;
-  const Image &a = mine.layers[1].image, &b = paths.layers[1].image;
+  const Image &a = mine.layers[0].image, &b = paths.layers[0].image;
   for (size_t i = 0; i < a.pixels.size(); ++i) {
     const double off = double(luminance(a.pixels[i])) - double(luminance(b.pixels[i]));
     made += off * off;

@@ -145,31 +145,48 @@ TEST_CASE("the layer viewing_error is the spread of a pixel's rays, and the stat
   CHECK(e.share_above < 1);
 }
 
-// Amid clutter a few rays that all see the same are no proof that nothing else is there.
-TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none beside a line") {
+namespace {
+
+constexpr int middle = 6;
+
+// How many rays the middle pixel of an even panel should get, of an error of 2 %, after four that
+// had these values. tells: the method has told that none of it is chance.
+template <class Value>
+int wanted_amid(const Value& value, bool tells = false) {
+  constexpr int side = 2 * middle + 1;
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});
   make_light(s, 0, Rgb{1});
   const PreparedScene scene(std::move(s));
   const Camera camera = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 40);
-  constexpr int side = 13, middle = 6;
   const PixelRect window{0, 0, side, side};
   const EdgeMap edges(scene, ViewingCamera(camera, side, side), window, 1);
-  const auto wanted = [&](const auto& varies) {
-    Film film(window, {});
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x)
-        for (int k = 0; k < 4; ++k) {
-          RadianceBatch batch;
-          batch.reset(1);
-          batch.direct[0] = Rgb{k == 0 && varies(x, y) ? 0.2f : 1.0f};
-          film.add(x, y, batch, 0, 3);
+  Film film(window, {});
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      for (int k = 0; k < 4; ++k) {
+        RadianceBatch batch;
+        batch.reset(1);
+        if (tells) {
+          batch.tell_variance();
+          batch.told_indirect.assign(1, 0);
         }
-    const PixelRecords records(window);
-    RefinementOptions options;
-    options.error = 0.02f;
-    options.is_everywhere = true;
-    return samples_wanted({film, records, edges, 1}, middle, middle, false, 4, 1024, options);
+        batch.direct[0] = Rgb{float(value(x, y, k))};
+        film.add(x, y, batch, 0, 3);
+      }
+  const PixelRecords records(window);
+  RefinementOptions options;
+  options.error = 0.02f;
+  options.is_everywhere = true;
+  return samples_wanted({film, records, edges, 1}, middle, middle, false, 4, 1024, options);
+}
+
+}  // namespace
+
+// Amid clutter a few rays that all see the same are no proof that nothing else is there.
+TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none beside a line") {
+  const auto wanted = [&](const auto& varies) {
+    return wanted_amid([&](int x, int y, int k) { return k == 0 && varies(x, y) ? 0.2 : 1.0; });
   };
   const auto is_far = [](int x, int y) {
     return std::max(std::abs(x - middle), std::abs(y - middle)) > 1;
@@ -181,4 +198,17 @@ TEST_CASE("a pixel with even neighbours gets further rays amid clutter, and none
   CHECK(amid > 16);
   CHECK(amid < 200);
   CHECK(wanted([](int x, int) { return x == middle + 1; }) > 200);
+}
+
+TEST_CASE("a slope wants no further rays, an edge fewer than chance") {
+  // Of samples in the quarters of a pixel, 40 % from one pixel to the next.
+  const auto slope = [](int x, int, int k) {
+    return 1 + 0.4 * (x - middle) + (k % 2 == 0 ? -0.1 : 0.1);
+  };
+  const auto uneven = [](int, int, int k) { return k % 2 == 0 ? 0.9 : 1.1; };
+  CHECK(wanted_amid(slope) == 4);
+  CHECK(wanted_amid(slope, true) == 4);
+  // .0133 / .0004 of them, and that to the power of 2/3.
+  CHECK(wanted_amid(uneven) == 34);
+  CHECK(wanted_amid(uneven, true) == 11);
 }
