@@ -227,6 +227,23 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
   return weight * squares_of_variance / (rays + 2) * sum / varying;
 }
 
+// An edge goes on beyond the nearest neighbours: what is thin along it, a reveal or a rim, their
+// few rays may all have missed. The mean variance in pixels with an edge around.
+template <class Of>
+double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) {
+  constexpr int reach = 3;
+  int count = 0;
+  double sum = 0;
+  for (int py = y - reach; py <= y + reach; ++py)
+    for (int px = x - reach; px <= x + reach; ++px) {
+      if ((px == x && py == y) || !is_inside(v.records.window, px, py)) continue;
+      if (!v.edges.has_surface_edge(px, py)) continue;
+      sum += of(px, py).variance;
+      ++count;
+    }
+  return count > 0 ? sum / count : 0;
+}
+
 // Of the luminance of a pixel amid such a mean.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
                      double most_times_less = usual_times_less) {
@@ -275,7 +292,8 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   double variance = neighbour.variance;
   if (options.is_noise) variance = s.mean_variance;
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
-  if (has_edge && !options.is_noise) variance = std::max(variance, sqr(s.high - s.low) / 4);
+  if (has_edge && !options.is_noise)
+    variance = std::max({variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of)});
   const double allowed = allowed_error(s.mean, v.typical, options);
   // Samples that are spread over a pixel err by n^-3/4 by what an edge divides (of thin things they
   // know too little), and by n^-1/2 by chance of their own. (Nothing to see by: no light is

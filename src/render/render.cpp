@@ -196,9 +196,12 @@ MostViewingRays most_viewing_rays(const RenderOptions& options) {
   const auto all = [](int n) { return MostViewingRays{n, n, n}; };
   if (options.max_spp > 0) return all(std::max(options.max_spp, options.spp));
   const MethodRow& row = options.method.row();
-  // By what is known beforehand edges cost little, and further rays are for what is left.
+  // By what is known beforehand edges cost little, and further rays are for what is left: more
+  // where only what shines is known.
   if (row.refinement > 1 && !needs_radiosity(options.method, options.indirect))
-    return {256 * options.spp, 64 * options.spp, 16 * options.spp};
+    return {256 * options.spp,
+            (needs_cells(options.method, options.indirect) ? 64 : 128) * options.spp,
+            16 * options.spp};
   return all(row.refinement * options.spp);
 }
 

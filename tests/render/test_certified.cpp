@@ -138,7 +138,7 @@ TEST_CASE("certified: refinement goes to edges, and gains by it") {
   o.spp = 4;
   o.max_spp = 0;
   CHECK(most_viewing_rays(o).in_pixel == 1024);
-  CHECK(most_viewing_rays(o).in_mean == 256);
+  CHECK(most_viewing_rays(o).in_mean == 512);
   const RenderResult refined = render_now(scene, scene.scene.cameras.at(0), o);
   o.threads = 3;
   CHECK(is_identical(refined.layers, render_now(scene, scene.scene.cameras.at(0), o).layers));
