@@ -34,13 +34,16 @@ for light in scene.lights:
     print(f'  {light.name:12} gives the desk {gives[light.name].mean():7.1f} lx')
 
 # ---- Dimmers d, 0 to 1, for which the mean of all points is what is wanted and the points differ
-# least: minimise |A d - wanted|^2 by projected gradients.
+# little: minimise |A d - wanted|^2 by projected gradients, the mean being one more row that counts
+# for much.
 
 a = np.column_stack(list(gives.values()))
+a = np.vstack([a, 30 * a.mean(axis=0)])
+wanted = np.append(np.full(len(desk), WANTED_LX), 30 * WANTED_LX)
 d = np.ones(a.shape[1])
 step = 1 / np.linalg.norm(a.T @ a, 2)
 for _ in range(20000):
-    d = np.clip(d - step * (a.T @ (a @ d - WANTED_LX)), 0, 1)
+    d = np.clip(d - step * (a.T @ (a @ d - wanted)), 0, 1)
 for (name, alone), dimmer in zip(gives.items(), d):
     scene.light(name).dimmer = dimmer
     print(f'  {name:12} {100 * dimmer:5.1f} %')
