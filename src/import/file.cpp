@@ -37,7 +37,7 @@ std::vector<std::string> FilesRead::paths() const {
   return {paths_.begin(), paths_.end()};
 }
 
-void note_file_read(const std::string& path) {
+void FilesRead::note(const std::string& path) {
   FilesRead* files = asked;
   if (files == nullptr) return;
   const std::lock_guard lock(files->mutex_);
@@ -56,7 +56,7 @@ Bytes read_whole(const std::string& path, uint64_t max_bytes) {
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path, 0, 0, std::string("cannot be opened: ") + std::strerror(errno));
-  note_file_read(path);
+  FilesRead::note(path);
   Bytes bytes(size_t(size), {});
   in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
   // A file that shrank since is cut short here and found out by its parser.

@@ -32,9 +32,10 @@ class FilesRead {
   FilesRead& operator=(const FilesRead&) = delete;
 
   std::vector<std::string> paths() const;  // sorted, each once
+  // What read_file and read_text_file do, whether or not anybody asks.
+  static void note(const std::string& path);
 
  private:
-  friend void note_file_read(const std::string& path);
   mutable std::mutex mutex_;
   std::set<std::string> paths_;
 };

@@ -119,23 +119,25 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
   std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {
     return looseness(wanted(a)) < looseness(wanted(b));
   });
-  bool is_whole = true;
+  const auto end = [&](bool is_whole) {
+    send();
+    w.radiance.looseness = 1;
+    return is_whole;
+  };
   for (const Pixel2& p : pixels) {
     if (looseness(wanted(p)) != w.radiance.looseness) send();
     w.radiance.looseness = looseness(wanted(p));
     film_.expect_samples(p.x, p.y, uint32_t(wanted(p)));
     int left = wanted(p) - refining_.first_spp;
-    while (left > 0 && is_whole) {
-      is_whole = !stop_.load(std::memory_order_relaxed);
-      const int count = is_whole ? std::min(left, int(rays_at_a_time - w.rays.size())) : 0;
+    while (left > 0) {
+      if (stop_.load(std::memory_order_relaxed)) return end(false);
+      const int count = std::min(left, int(rays_at_a_time - w.rays.size()));
       add_rays(p, uint32_t(count), w);
       left -= count;
       if (w.rays.size() == rays_at_a_time) send();
     }
   }
-  send();
-  w.radiance.looseness = 1;
-  return is_whole;
+  return end(true);
 }
 
 // How many of them the pixels of the region get, by what the first pass has seen.

@@ -1,77 +1,138 @@
-// What a film tells of its pixels' errors.
+// Sums of samples per pixel: means, errors, first hits, samples that are not numbers.
+#include "render/film.h"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 
-#include "base/random.h"
-#include "render/film.h"
+#include "support/statistics.h"
 
 using namespace troffer;
+using troffer::test::Moments;
 
 namespace {
 
-// The error told of a pixel of n samples over that which is made, in the root of mean squares over
-// many pixels. value: what a sample there in the pixel sees; takes a hash of the pixel as well.
-template <class Value>
-double told_over_made(uint32_t n, bool is_expected, const Value& value) {
-  constexpr int pixels = 600;
-  Film film({0, 0, pixels, 1}, {});
-  film.expect_glances();
-  double told = 0, made = 0;
-  for (int x = 0; x < pixels; ++x) {
-    const uint64_t stream = hash_of(uint64_t(x));
-    const auto sample = [&](uint32_t first, uint32_t end) {
-      double sum = 0;
-      for (uint32_t i = first; i < end; ++i) {
-        RadianceBatch batch;
-        batch.reset(1);
-        batch.tell_variance();
-        batch.told_indirect.assign(1, 0);
-        batch.known.assign(1, {});
-        const double v = value(stream, i, SobolGroup(stream, 0, i).get2());
-        batch.direct[0] = Rgb{float(v)};
-        film.add(x, 0, batch, 0, 1);
-        sum += v;
-      }
-      return sum;
-    };
-    double sum = sample(0, 4);
-    if (is_expected) film.expect_samples(x, 0, n);
-    sum += sample(4, n);
-    told += sqr(film.told_error(x, 0));
-    constexpr double mean = 0.5;
-    made += sqr(sum / n - mean);
-  }
-  return std::sqrt(told / made);
+RadianceBatch batch_of(const std::vector<Rgb>& direct) {
+  RadianceBatch b;
+  b.reset(direct.size());
+  b.direct = direct;
+  return b;
+}
+
+const Layer& layer_named(const std::vector<Layer>& layers, const std::string& name) {
+  for (const Layer& l : layers)
+    if (l.name == name) return l;
+  FAIL("no layer " << name);
+  return layers[0];
 }
 
 }  // namespace
 
-TEST_CASE("the error told of a pixel with an edge: larger blocks of samples tell less too much") {
-  // Through the pixel's centre, any way.
-  const auto edge = [](uint64_t pixel, uint32_t, const Vec2& p) {
-    const float angle = 2 * pi_f * unit_float(uint32_t(pixel >> 32));
-    return (p.x - 0.5f) * std::cos(angle) + (p.y - 0.5f) * std::sin(angle) > 0 ? 1.0 : 0.0;
-  };
-  const double by_fours = told_over_made(256, false, edge);
-  CHECK(by_fours > 2.5);
-  for (const uint32_t n : {16u, 64u, 128u, 256u, 1024u}) {
-    CAPTURE(n);
-    const double ratio = told_over_made(n, true, edge);
-    CHECK(ratio > 1);
-    CHECK(ratio < (n > 256 ? 3 : 2.2));
-    CHECK(ratio < 0.8 * told_over_made(n, false, edge) + (n < 64 ? 1 : 0));
+TEST_CASE("the picture is the mean of its samples, the error layer their standard error") {
+  Film film({3, 5, 5, 6}, {Aov::error, Aov::direct, Aov::indirect});
+  RadianceBatch b = batch_of({Rgb{1}, Rgb{2}, Rgb{6}});
+  b.indirect[2] = Rgb{0, 3, 0};
+  for (size_t i = 0; i < 3; ++i) CHECK(film.add(4, 5, b, i, 0));
+  const std::vector<Layer> layers = film.layers();
+  REQUIRE(layers.size() == 4);
+  CHECK(layers[0].name.empty());
+  CHECK(layers[0].image.width == 2);
+  CHECK(layers[0].image.height == 1);
+  CHECK(layers[0].image.at(0, 0) == Rgb{0});
+  CHECK(layers[0].image.at(1, 0) == Rgb{3, 4, 3});
+  CHECK(layer_named(layers, "direct").image.at(1, 0) == Rgb{3});
+  CHECK(layer_named(layers, "indirect").image.at(1, 0) == Rgb{0, 1, 0});
+  // Luminances 1, 2, 6 + 3 × 0.7152.
+  const double y[] = {1, 2, 6 + 3 * 0.7152}, m = (y[0] + y[1] + y[2]) / 3;
+  double squares = 0;
+  for (const double v : y) squares += (v - m) * (v - m);
+  CHECK(double(layer_named(layers, "error").image.at(1, 0).r) ==
+        doctest::Approx(std::sqrt(squares / 2 / 3)).epsilon(1e-5));
+  CHECK(layer_named(layers, "error").channels.size() == 1);
+}
+
+TEST_CASE("samples that are all alike have no error, however bright") {
+  for (const float value : {0.1f, 3.3f, 1.2345e5f}) {
+    Film film({0, 0, 1, 1}, {Aov::error});
+    const RadianceBatch b = batch_of(std::vector<Rgb>(100, Rgb{value, value * 0.7f, value * 0.3f}));
+    for (size_t i = 0; i < 100; ++i) film.add(0, 0, b, i, 0);
+    CHECK(film.layers()[1].image.at(0, 0).r < 1e-6f * value);
   }
 }
 
-TEST_CASE("the error told of a pixel that glitters is what it makes, by blocks of any size") {
-  const auto glitter = [](uint64_t pixel, uint32_t i, const Vec2&) {
-    return double(hash_of(pixel, uint64_t{i}) & 1);
-  };
-  for (const uint32_t n : {16u, 64u, 100u, 256u, 1024u}) {
-    CAPTURE(n);
-    const double ratio = told_over_made(n, true, glitter);
-    CHECK(ratio > 0.9);
-    CHECK(ratio < 1.1);
+TEST_CASE("samples that are not finite count as black and are reported") {
+  Film film({0, 0, 1, 1}, {Aov::error});
+  const RadianceBatch b = batch_of(
+      {Rgb{1}, Rgb{1, std::nanf(""), 1}, Rgb{std::numeric_limits<float>::infinity()}, Rgb{1}});
+  CHECK(film.add(0, 0, b, 0, 0));
+  CHECK_FALSE(film.add(0, 0, b, 1, 0));
+  CHECK_FALSE(film.add(0, 0, b, 2, 0));
+  CHECK(film.add(0, 0, b, 3, 0));
+  const auto layers = film.layers();
+  CHECK(layers[0].image.at(0, 0) == Rgb{0.5f});
+  CHECK(std::isfinite(layers[1].image.at(0, 0).r));
+}
+
+TEST_CASE("first-hit layers are means over the samples that hit, normals of unit length") {
+  Film film({0, 0, 1, 1}, {Aov::normal, Aov::depth, Aov::albedo, Aov::position, Aov::shadow_rays});
+  RadianceBatch b = batch_of({Rgb{0}, Rgb{0}, Rgb{0}});
+  b.is_hit = {1, 0, 1};
+  b.normal = {{1, 0, 0}, {}, {0, 1, 0}};
+  b.albedo = {Rgb{0.2f}, Rgb{0}, Rgb{0.4f}};
+  b.position = {{1, 2, 3}, {}, {3, 2, 1}};
+  b.shadow_rays = {6, 0, 3};
+  const float depths[] = {2, 99, 4};
+  for (size_t i = 0; i < 3; ++i) film.add(0, 0, b, i, depths[i]);
+  const auto layers = film.layers();
+  const auto pixel = [&](const char* name) { return layer_named(layers, name).image.at(0, 0); };
+  CHECK(double(pixel("normal").r) == doctest::Approx(std::sqrt(0.5)));
+  CHECK(double(pixel("normal").g) == doctest::Approx(std::sqrt(0.5)));
+  CHECK(pixel("depth").r == 3);
+  CHECK(double(pixel("albedo").g) == doctest::Approx(0.3));
+  CHECK(pixel("position") == Rgb{2, 2, 2});
+  CHECK(pixel("shadow_rays").r == 3);
+}
+
+namespace {
+
+// What is told of one pixel whose samples the method tells to be without error, but for what they
+// differ by.
+double told_error_of(const std::vector<float>& values, bool expects_glances) {
+  Film film({0, 0, 1, 1}, {Aov::error});
+  if (expects_glances) film.expect_glances();
+  RadianceBatch b;
+  b.reset(values.size());
+  b.tell_variance();
+  b.tell_shared_error();
+  b.known.assign(values.size(), {});
+  for (size_t i = 0; i < values.size(); ++i) {
+    b.direct[i] = Rgb{values[i]};
+    film.add(0, 0, b, i, 0);
   }
+  return double(film.layers()[1].image.at(0, 0).r);
+}
+
+double independent_error_of(const std::vector<float>& values) {
+  Moments m;
+  for (const float v : values) m.add(double(v));
+  return m.standard_error();
+}
+
+}  // namespace
+
+TEST_CASE("of whole pictures, what samples differ by within a pixel is told") {
+  // An edge: as many samples of each four on either side.
+  std::vector<float> edge, spikes;
+  for (int i = 0; i < 64; ++i) {
+    edge.push_back(i % 2 == 0 ? 1.0f : 2.0f);
+    spikes.push_back(i % 13 == 5 ? 9.0f : 1.0f);
+  }
+  CHECK(told_error_of(edge, true) < 0.01);
+  CHECK(told_error_of(spikes, true) == doctest::Approx(independent_error_of(spikes)).epsilon(0.2));
+  // Of few samples one cannot know: what edges would leave of it.
+  const std::vector<float> few{1, 1, 2, 2};
+  for (const bool expects_glances : {false, true})
+    CHECK(told_error_of(few, expects_glances) ==
+          doctest::Approx(std::sqrt(0.5) * independent_error_of(few)).epsilon(1e-4));
 }
