@@ -5,6 +5,7 @@
 #include "bsdf/bsdf.h"
 #include "integrate/scene_glass.h"
 #include "light/light_primitive.h"
+#include "light/web.h"
 #include "scene/scene.h"
 #include "select/light_tree.h"
 #include "trace/tracer.h"
@@ -26,6 +27,7 @@ struct PreparedScene {
         panes(scene, glass),
         tracer(scene, panes.is_empty() ? nullptr : &glass),
         primitives(scene),
+        webs(scene.webs.begin(), scene.webs.end()),
         light_tree(primitives) {}
   PreparedScene(const PreparedScene&) = delete;
   PreparedScene& operator=(const PreparedScene&) = delete;
@@ -36,6 +38,7 @@ struct PreparedScene {
   const PanePlaces panes;
   Tracer tracer;
   const LightPrimitives primitives;
+  const std::vector<WebLookup> webs;  // of those of the scene
   const LightTree light_tree;
 };
 

@@ -277,8 +277,8 @@ void SourceIntegrand::multiply_by_web(const CertifiedSource& source, const Integ
                                       PointArrays& p) {
   const Light& light = scene_.scene.lights[scene_.primitives[source.primitive].light];
   far_values_.resize(p.size());
-  radiance_many(scene_.scene.webs[size_t(light.web)], light.axes, p.size(), p.x.data(), p.y.data(),
-                p.z.data(), web_lanes_, far_values_.data());
+  scene_.webs[size_t(light.web)].radiance_many(light.axes, p.size(), p.x.data(), p.y.data(),
+                                               p.z.data(), web_lanes_, far_values_.data());
   if (hit.glossy == nullptr) {
     p.r.assign(p.size(), light.radiance.r);
     p.g.assign(p.size(), light.radiance.g);

@@ -76,17 +76,6 @@ float projected_area(const LightWeb& web, const Vec3& w) {
 
 namespace {
 
-// The same as step_of(), beginning where the step would be if all were as wide.
-size_t quick_step_of(const std::vector<float>& angles, float x, float& t) {
-  const auto last = angles.size() - 2;
-  const float share = (x - angles.front()) / (angles.back() - angles.front());
-  auto i = size_t(std::clamp(share * float(last + 1), 0.0f, float(last)));
-  while (i > 0 && x < angles[i]) --i;
-  while (i < last && x >= angles[i + 1]) ++i;
-  t = std::clamp((x - angles[i]) / (angles[i + 1] - angles[i]), 0.0f, 1.0f);
-  return i;
-}
-
 // Angles of the directions in which light leaves the points for the receiver; turns from -pi.
 TROFFER_MULTIVERSION
 void angles_of(const Vec3& first, const Vec3& second, const Vec3& pole, size_t n,
@@ -112,38 +101,116 @@ void add_seen(const Vec3& face, size_t n, const float* __restrict x, const float
   }
 }
 
+// Where the turns of a web begin before -pi's, they go on beyond pi. Directions that no angle of
+// the web goes with are told by height = -1.
+TROFFER_MULTIVERSION
+void keep_within(const LightWeb& web, size_t n, float* __restrict height, float* __restrict turn) {
+  constexpr float slack = 1e-5f;
+  const float least_turn = web.turns_rad.front() - slack, most_turn = web.turns_rad.back() + slack,
+              least = web.heights_rad.front() - slack, most = web.heights_rad.back() + slack;
+  for (size_t i = 0; i < n; ++i) {
+    turn[i] += turn[i] < least_turn ? 2 * pi_f : 0.0f;
+    const bool is_within = (height[i] >= least) & (height[i] <= most) & (turn[i] <= most_turn);
+    height[i] = is_within ? height[i] : -1.0f;
+  }
+}
+
+// Linear between the four values about a direction; 0 where the height is negative.
+TROFFER_MULTIVERSION
+void interpolate(const float* __restrict values, int32_t per_turn, float least_area, size_t n,
+                 const int32_t* __restrict turn, const int32_t* __restrict height,
+                 const float* __restrict s, const float* __restrict t,
+                 const float* __restrict angle, const float* __restrict area,
+                 float* __restrict out) {
+  for (size_t i = 0; i < n; ++i) {
+    const int32_t at = turn[i] * per_turn + height[i];
+    const float a = lerp(values[at], values[at + 1], t[i]);
+    const float b = lerp(values[at + per_turn], values[at + per_turn + 1], t[i]);
+    const float value = lerp(a, b, s[i]) / std::max(area[i], least_area);
+    out[i] = angle[i] < 0 ? 0.0f : value;
+  }
+}
+
+TROFFER_ALWAYS_INLINE int32_t bucket_of(float angle, float first, float per_radian, float last) {
+  return int32_t(std::min(std::max((angle - first) * per_radian, 0.0f), last));
+}
+
+// The step that an angle lies in is one of so many behind that which its bucket begins in: beyond
+// the ends, the first or the last.
+struct Buckets {
+  const float* angles;
+  int32_t last_step, most_within;
+  float per_radian, last;
+  const int32_t* before;
+};
+TROFFER_MULTIVERSION
+void find_steps(const Buckets& b, size_t n, const float* __restrict x, int32_t* __restrict step) {
+  const float first = b.angles[0];
+  for (size_t i = 0; i < n; ++i) step[i] = b.before[bucket_of(x[i], first, b.per_radian, b.last)];
+  for (int32_t k = 0; k < b.most_within; ++k)
+    for (size_t i = 0; i < n; ++i)
+      step[i] += (step[i] < b.last_step) & (x[i] >= b.angles[step[i] + 1]) ? 1 : 0;
+}
+TROFFER_MULTIVERSION
+void find_shares(const float* __restrict angles, size_t n, const float* __restrict x,
+                 const int32_t* __restrict step, float* __restrict share) {
+  for (size_t i = 0; i < n; ++i) {
+    const float from = angles[step[i]];
+    share[i] = std::min(std::max((x[i] - from) / (angles[step[i] + 1] - from), 0.0f), 1.0f);
+  }
+}
+
 }  // namespace
 
-void radiance_many(const LightWeb& web, const std::array<Vec3, 3>& axes, size_t n, const float* x,
-                   const float* y, const float* z, WebLanes& lanes, float* out) {
+WebLookup::Steps::Steps(const std::vector<float>& a) : angles(a) {
+  // As narrow as the narrowest step, so that no bucket has two angles within, if they are not too
+  // many then.
+  constexpr float most_buckets = 4096;
+  const float all = std::max(a.back() - a.front(), 1e-9f);
+  float narrowest = all;
+  for (size_t i = 1; i < a.size(); ++i)
+    if (a[i] > a[i - 1]) narrowest = std::min(narrowest, a[i] - a[i - 1]);
+  const float buckets = std::min(std::ceil(all / narrowest) + 1, most_buckets);
+  buckets_per_radian = buckets / all;
+  before.assign(size_t(buckets) + 1, 0);
+  std::vector<int32_t> within(before.size(), 0);
+  for (size_t i = 1; i + 1 < a.size(); ++i)
+    ++within[size_t(bucket_of(a[i], a[0], buckets_per_radian, buckets))];
+  for (size_t k = 1; k < before.size(); ++k) before[k] = before[k - 1] + within[k - 1];
+  most_within = *std::max_element(within.begin(), within.end());
+}
+
+void WebLookup::Steps::find(size_t n, const float* x, int32_t* step, float* share) const {
+  find_steps({angles.data(), int32_t(angles.size()) - 2, most_within, buckets_per_radian,
+              float(before.size() - 1), before.data()},
+             n, x, step);
+  find_shares(angles.data(), n, x, step, share);
+}
+
+WebLookup::WebLookup(const LightWeb& web)
+    : web_(web), heights_(web.heights_rad), turns_(web.turns_rad) {}
+
+void WebLookup::radiance_many(const std::array<Vec3, 3>& axes, size_t n, const float* x,
+                              const float* y, const float* z, WebLanes& lanes, float* out) const {
   const auto world = [&](const Vec3& v) { return axes[0] * v.x + axes[1] * v.y + axes[2] * v.z; };
-  lanes.height.resize(n);
-  lanes.turn.resize(n);
-  lanes.area.assign(n, web.cross_section);
-  const auto own = axes_of(web.pole);
-  angles_of(world(own[0]), world(own[1]), world(own[2]), n, x, y, z, lanes.height.data(),
-            lanes.turn.data());
+  WebLanes& l = lanes;
+  for (auto* a : {&l.height, &l.turn, &l.height_share, &l.turn_share}) a->resize(n);
+  for (auto* a : {&l.height_step, &l.turn_step}) a->resize(n);
+  l.area.assign(n, web_.cross_section);
+  const auto own = axes_of(web_.pole);
+  angles_of(world(own[0]), world(own[1]), world(own[2]), n, x, y, z, l.height.data(),
+            l.turn.data());
   float least = 0;
-  for (const Vec3& face : web.faces) {
-    add_seen(world(face), n, x, y, z, lanes.area.data());
+  for (const Vec3& face : web_.faces) {
+    add_seen(world(face), n, x, y, z, l.area.data());
     least = std::max(least, least_area_share * length(face));
   }
-  constexpr float slack = 1e-5f;
-  const size_t heights = web.heights_rad.size();
-  for (size_t k = 0; k < n; ++k) {
-    const float height = lanes.height[k];
-    float turn = lanes.turn[k], s = 0, t = 0;
-    if (turn < web.turns_rad.front() - slack) turn += 2 * pi_f;
-    out[k] = 0;
-    if (height < web.heights_rad.front() - slack || height > web.heights_rad.back() + slack ||
-        turn > web.turns_rad.back() + slack)
-      continue;
-    const size_t i = quick_step_of(web.turns_rad, turn, s),
-                 j = quick_step_of(web.heights_rad, height, t);
-    const float* at = web.intensities.data() + i * heights + j;
-    out[k] = lerp(lerp(at[0], at[1], t), lerp(at[heights], at[heights + 1], t), s) /
-             std::max(lanes.area[k], least);
-  }
+  keep_within(web_, n, l.height.data(), l.turn.data());
+  heights_.find(n, l.height.data(), l.height_step.data(), l.height_share.data());
+  turns_.find(n, l.turn.data(), l.turn_step.data(), l.turn_share.data());
+  interpolate(web_.intensities.data(), int32_t(web_.heights_rad.size()), least, n,
+              l.turn_step.data(), l.height_step.data(), l.turn_share.data(), l.height_share.data(),
+              l.height.data(), l.area.data(), out);
 }
 
 WebSamples::WebSamples(const LightWeb& web) {

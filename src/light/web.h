@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "base/vec.h"
@@ -29,15 +30,40 @@ inline float radiance(const LightWeb& web, const Vec3& w) {
   return intensity(web, w) / projected_area(web, w);
 }
 
-// Memory for radiance_many().
+// Memory for WebLookup.
 struct WebLanes {
   std::vector<float> height, turn, area;
+  std::vector<int32_t> height_step, turn_step;
+  std::vector<float> height_share, turn_share;
 };
 
-// radiance() of n points of the opening at (x, y, z) from a receiver, which they are seen from; the
-// luminaire's axes are these of the world. Several times faster, and in the last bits different.
-void radiance_many(const LightWeb& web, const std::array<Vec3, 3>& axes, size_t n, const float* x,
-                   const float* y, const float* z, WebLanes& lanes, float* out);
+// A web with tables that find the steps of its angles without a search.
+class WebLookup {
+ public:
+  explicit WebLookup(const LightWeb& web);  // which must stay where it is
+
+  // radiance() of n points of the opening at (x, y, z) from a receiver, which they are seen from;
+  // the luminaire's axes are these of the world. Several times faster, and in the last bits
+  // different.
+  void radiance_many(const std::array<Vec3, 3>& axes, size_t n, const float* x, const float* y,
+                     const float* z, WebLanes& lanes, float* out) const;
+
+ private:
+  // Ascending angles, and buckets of equal width from the first to the last: of each, how many
+  // angles behind the first lie in buckets before it.
+  struct Steps {
+    explicit Steps(const std::vector<float>& angles);
+    void find(size_t n, const float* angles, int32_t* step, float* share) const;
+
+    const std::vector<float>& angles;
+    float buckets_per_radian = 0;
+    std::vector<int32_t> before;
+    int32_t most_within = 0;  // of the inner angles, in one bucket
+  };
+
+  const LightWeb& web_;
+  Steps heights_, turns_;
+};
 
 // Radiance in many directions, for integrals over all of them.
 class WebSamples {

@@ -3,9 +3,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include "base/random.h"
 #include "base/units.h"
 #include "import/luminaire.h"
 #include "support/beam_ies.h"
@@ -82,4 +85,59 @@ TEST_CASE("what leaves the faces of an opening adds up to the flux") {
   }
   CHECK(sum == doctest::Approx(flux(web)).epsilon(2e-3));
   CHECK(samples.exitance({0, 0, -1}) == doctest::Approx(0));
+}
+
+namespace {
+
+// Ascending, some steps ten thousand times as wide as others.
+std::vector<float> uneven_angles(Random& random, float from, float to, size_t n) {
+  std::vector<float> steps(n), angles{from};
+  float all = 0;
+  for (float& s : steps) all += s = std::pow(10.0f, -4 * random.next_float());
+  for (const float s : steps) angles.push_back(angles.back() + (to - from) * s / all);
+  angles.back() = to;
+  angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
+  return angles;
+}
+
+}  // namespace
+
+TEST_CASE("looked up for many points, a web shines as by one search for each") {
+  Random random(7);
+  for (int trial = 0; trial < 30; ++trial) {
+    LightWeb web;
+    web.pole = WebPole(trial % 3);
+    // Whole, or without what is near the pole, the equator and half of the turns.
+    const bool is_whole = trial % 2 == 0;
+    const size_t wanted = trial < 3 ? 1 : trial < 10 ? 20 : 700;
+    web.heights_rad = uneven_angles(random, is_whole ? 0 : .3f, is_whole ? pi_f : 1.4f, wanted);
+    web.turns_rad = uneven_angles(random, is_whole ? -pi_f : .2f, is_whole ? pi_f : 4.2f, wanted);
+    // smooth: rounding of angles must not be seen
+    const size_t n = web.heights_rad.size();
+    for (size_t i = 0; i < web.turns_rad.size(); ++i)
+      for (size_t j = 0; j < n; ++j)
+        web.intensities.push_back(500 + 400 * std::cos(3 * web.turns_rad[i]) *
+                                            std::sin(2 * web.heights_rad[j]));
+    web.faces = {{.1f, 0, 0}, {0, 0, .4f}};
+    std::vector<float> x, y, z;
+    std::vector<Vec3> directions;
+    while (x.size() < 1000) {
+      const Vec3 d{random.next_float() - .5f, random.next_float() - .5f, random.next_float() - .5f};
+      if (length(d) < .01f) continue;
+      directions.push_back(normalize(d));
+      x.push_back(-3 * d.x), y.push_back(-3 * d.y), z.push_back(-3 * d.z);
+    }
+    std::vector<float> found(x.size());
+    WebLanes lanes;
+    WebLookup(web).radiance_many({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, x.size(), x.data(),
+                                 y.data(), z.data(), lanes, found.data());
+    CAPTURE(trial);
+    int dark = 0;
+    for (size_t i = 0; i < x.size(); ++i) {
+      const float right = radiance(web, directions[i]);
+      dark += right == 0;
+      CHECK(double(found[i]) == doctest::Approx(double(right)).epsilon(2e-5));
+    }
+    CHECK((dark > 0) == !is_whole);
+  }
 }
