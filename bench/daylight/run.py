@@ -1,25 +1,32 @@
 #!/usr/bin/env python3
-"""Error against processor time of the sky's direct light: run.py TROFFER [--lights "ARGS" ...]
+"""Error against processor time of the sky's direct light:
+run.py TROFFER [--output TABLES.md] [--lights "ARGS" ...] [--scenes NAME ...] [--seeds N]
 image.pfm in ARGS is an image of the surroundings that is written beside the rooms. SIZE=WxH in the
 environment: of the pictures, for a quick look.
 
-Renders the rooms of rooms.py by the default and by `fixed`, each with two seeds, and prints as a
-table: processor seconds of a picture, its error, and how many times longer `fixed` would take for
-the same error, by the power law between its two runs. Errors come from the difference of the two
-pictures: the relative RMSE of all pixels, most of which is made by edges where the sky itself is
-seen, and the median pixel's relative error (as a standard deviation). Times are compared by the
-median pixel with 4 viewing rays a pixel; and by all pixels with the best one of 16 viewing rays of
-16 shadow rays, 64 of 4 and 1024 of 4, since 4 viewing rays leave edges an error that no shadow rays
-take away (errors fall with the root of the time, as they do for noise; the last of the three takes
-about as long as the default does, so that little hangs on it).
+Renders the rooms of rooms.py by the default, by `fixed` and by `path` (direct light alone), each
+with some seeds, and writes two tables: processor seconds of a picture and its errors, and how many
+times longer `fixed` and `path` would take for the default's error. With --output they go to that
+file after each row (headings and all, ready for docs/daylight.md), and the runs to one of its name
+that ends in .csv. Errors come from the differences of pictures: the relative RMSE of all pixels,
+most of which is made by edges where the sky itself is seen, and the median pixel's relative error
+(as a standard deviation).
+
+Times longer for `fixed`: by the median pixel with the power law between its two runs of 4 viewing
+rays a pixel, or with the best run of all where that is quicker; by all pixels with the best one of 16 viewing rays of 16 shadow rays, 64 of 4 and 1024
+of 4, since 4 viewing rays leave edges an error that no shadow rays take away. For `path`: by the
+best one of its three runs, likewise for both. Errors fall with the root of the time, as they do for
+noise; `fixed` 1024 x 4 and the last run of `path` take about as long as the default does, so that
+little hangs on it.
 """
+import argparse
 import array
+import csv
 import json
 import math
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 
 import rooms
@@ -27,6 +34,10 @@ import rooms
 
 SIZE = ['--size', os.environ['SIZE']] if 'SIZE' in os.environ else []
 LIGHTS = ['--sky overcast', '--sky clear --sun 60,35', '--environment image.pfm']
+FIXED = [('`fixed` 64', ['--shadow-rays', '64']), ('`fixed` 256', ['--shadow-rays', '256']),
+         *((f'`fixed` {spp} × {rays}', ['--spp', spp, '--shadow-rays', rays])
+           for spp, rays in (('16', '16'), ('64', '4'), ('1024', '4')))]
+PATH_SPP = [64, 1024]
 
 
 def luminances(path):
@@ -39,49 +50,125 @@ def luminances(path):
     return [.2126 * v[i] + .7152 * v[i + 1] + .0722 * v[i + 2] for i in range(0, len(v), 3)]
 
 
-def measure(troffer, scene, options, folder):
-    """Seconds, error of all pixels, of the median one among those that get light."""
-    pictures, seconds = [], 0
-    for seed in ('1', '2'):
-        out, stats = folder / f'{seed}.pfm', folder / 'stats.json'
-        subprocess.run([troffer, 'render', scene, '--quiet', '--indirect', 'none', '--seed', seed,
-                        '-o', out, '--stats', stats, *SIZE, *options], check=True, cwd=folder)
-        pictures.append(luminances(out))
-        seconds += json.loads(stats.read_text())['seconds']['render_cpu'] / 2
-    a, b = pictures
-    mean = [(x + y) / 2 for x, y in zip(a, b)]
-    middle = sorted(mean)[len(mean) // 2]
-    differences = [abs(x - y) / math.sqrt(2) for x, y in zip(a, b)]
-    overall = math.sqrt(sum(d * d for d in differences) / len(a)) / (sum(mean) / len(mean))
-    relative = sorted(d / (m + .05 * middle + 1e-9) for d, m in zip(differences, mean) if m > 0)
-    return seconds, overall, relative[len(relative) // 2] / .6745
+class Bench:
+    """Runs of one light and one scene."""
+
+    def __init__(self, troffer, folder, seeds):
+        self.troffer, self.folder, self.seeds = troffer, folder, seeds
+
+    def run(self, scene, light, options):
+        """Seconds, error of all pixels, of the median one among those that get light."""
+        pictures, seconds = [], 0
+        for seed in range(1, self.seeds + 1):
+            out, stats = self.folder / f'{seed}.pfm', self.folder / 'stats.json'
+            subprocess.run([self.troffer, 'render', self.folder / f'{scene}.pbrt', '--quiet',
+                            '--indirect', 'none', '--seed', str(seed), '-o', out, '--stats', stats,
+                            *SIZE, *light.split(), *options], check=True, cwd=self.folder)
+            pictures.append(luminances(out))
+            seconds += json.loads(stats.read_text())['seconds']['render_cpu'] / self.seeds
+        pixels = list(zip(*pictures))
+        mean = [sum(p) / len(p) for p in pixels]
+        variance = [sum((v - m) ** 2 for v in p) / (len(p) - 1) for p, m in zip(pixels, mean)]
+        middle = sorted(mean)[len(mean) // 2]
+        overall = math.sqrt(sum(variance) / len(variance)) / (sum(mean) / len(mean))
+        relative = sorted(math.sqrt(v) / (m + .05 * middle + 1e-9)
+                          for v, m in zip(variance, mean) if m > 0)
+        return seconds, overall, relative[len(relative) // 2] / median_of_spread(self.seeds)
+
+
+def median_of_spread(n):
+    """The median of the spread of n values from a normal distribution of deviation 1."""
+    return .6745 if n == 2 else (1 - 2 / (9 * (n - 1))) ** 1.5  # Wilson & Hilferty
+
+
+def times_longer(run, ours, error):
+    return run[0] / ours[0] * (run[error] / ours[error]) ** 2
+
+
+def times_by_law(few, many, ours):
+    """By the power law of the median pixel; no law where more rays did not help."""
+    gain = math.log(few[2] / many[2]) if many[2] < .9 * few[2] else math.nan
+    return many[0] * (many[2] / ours[2]) ** (math.log(many[0] / few[0]) / gain) / ours[0]
+
+
+def runs_of(bench, scene, light):
+    """Runs by name, the default's first."""
+    runs = {'default': bench.run(scene, light, [])}
+    for name, options in FIXED:
+        runs[name] = bench.run(scene, light, ['--method', 'fixed', *options])
+
+    def path(spp):
+        return bench.run(scene, light, ['--method', 'path', '--depth', '1', '--spp', str(spp)])
+    for spp in PATH_SPP:
+        runs[f'`path` {spp}'] = path(spp)
+    a_ray = runs[f'`path` {PATH_SPP[-1]}'][0] / PATH_SPP[-1]
+    as_long = 2 ** max(round(math.log2(runs['default'][0] / a_ray)), 2)
+    runs['`path` as long'] = path(as_long)
+    return runs, as_long
+
+
+def summary(runs):
+    ours = runs['default']
+    fixed, path = ([runs[name] for name in runs if name.startswith(f'`{method}`')]
+                   for method in ('fixed', 'path'))
+    by_law = times_by_law(fixed[0], fixed[1], ours)
+    by_root = min(times_longer(r, ours, 2) for r in fixed)
+    return (by_root if math.isnan(by_law) else min(by_law, by_root),
+            min(times_longer(r, ours, 1) for r in fixed[2:]),
+            min(times_longer(r, ours, 2) for r in path), min(times_longer(r, ours, 1) for r in path))
+
+
+def table(heads, rows):
+    return '\n'.join('| ' + ' | '.join(r) + ' |' for r in [heads, ['---'] * len(heads), *rows]) + '\n'
+
+
+def write(output, done):
+    """Both tables of what is done: (scene, light, runs, spp of the last one of `path`)."""
+    names = list(done[0][2])
+    times = [[scene, f'`{light}`',
+              *(f'{s:.2f} s, {e:.3f} / {m:.4f}' + (f' (spp {spp})' if name.endswith('as long') else '')
+                for name, (s, e, m) in runs.items())] for scene, light, runs, spp in done]
+    longer = [[scene, f'`{light}`', *(f'{t:.1f}' for t in summary(runs))]
+              for scene, light, runs, _ in done]
+    text = (table(['scene', 'light', *names], times) + '\nTimes longer for the error of the default:\n\n' +
+            table(['scene', 'light', '`fixed`: median', 'all', '`path`: median', 'all'], longer))
+    if output is None:
+        return text
+    output.write_text(text)
+    with open(output.with_suffix('.csv'), 'w', newline='') as f:
+        out = csv.writer(f)
+        out.writerow(['scene', 'light', 'run', 'seconds', 'error_all', 'error_median',
+                      'times_longer_all', 'times_longer_median'])
+        for scene, light, runs, spp in done:
+            for name, run in runs.items():
+                ours = runs['default']
+                out.writerow([scene, light, name.replace('`', '').replace('as long', str(spp)),
+                              *(f'{v:.6g}' for v in run),
+                              *(f'{times_longer(run, ours, k):.4g}' for k in (1, 2))])
+    return text
 
 
 def main():
-    troffer, lights = pathlib.Path(sys.argv[1]).resolve(), sys.argv[3:] or LIGHTS
-    print('| scene | light | default, s | error | `fixed` 64, s | error | `fixed` 256, s | error '
-          '| `fixed` 16 × 16, s | error | `fixed` 64 × 4, s | error | `fixed` 1024 × 4, s | error | times longer: median | all |\n' +
-          '|---' * 16 + '|')
+    parser = argparse.ArgumentParser()
+    parser.add_argument('troffer', type=pathlib.Path)
+    parser.add_argument('--output', type=pathlib.Path)
+    parser.add_argument('--lights', nargs='+', default=LIGHTS)
+    parser.add_argument('--scenes', nargs='+', default=list(rooms.SCENES), choices=rooms.SCENES)
+    parser.add_argument('--seeds', type=int, default=4)
+    args = parser.parse_args()
+    done = []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         rooms.write(folder)
-        for light in lights:
-            for scene in rooms.SCENES:
-                path = folder / f'{scene}.pbrt'
-                ours = measure(troffer, path, light.split(), folder)
-                few, many = (measure(troffer, path,
-                                     [*light.split(), '--method', 'fixed', '--shadow-rays', n], folder)
-                             for n in ('64', '256'))
-                # No law where more rays did not help.
-                gain = math.log(few[2] / many[2]) if many[2] < .9 * few[2] else math.nan
-                needed = many[0] * (many[2] / ours[2]) ** (math.log(many[0] / few[0]) / gain)
-                even = [measure(troffer, path, [*light.split(), '--method', 'fixed', '--spp', spp,
-                                                '--shadow-rays', rays], folder)
-                        for spp, rays in (('16', '16'), ('64', '4'), ('1024', '4'))]
-                cells = [f'{s:.2f} | {e:.3f} / {b:.4f}' for s, e, b in (ours, few, many, *even)]
-                by_all = min(s / ours[0] * (e / ours[1]) ** 2 for s, e, _ in even)
-                print(f'| {scene} | `{light}` | {" | ".join(cells)} | {needed / ours[0]:.1f} '
-                      f'| {by_all:.1f} |', flush=True)
+        bench = Bench(args.troffer.resolve(), folder, max(args.seeds, 2))
+        for light in args.lights:
+            for scene in args.scenes:
+                runs, as_long = runs_of(bench, scene, light)
+                done.append((scene, light, runs, as_long))
+                text = write(args.output, done)
+                print(f'{scene}, {light}: times longer for `fixed` (median, all), `path` (median, all): '
+                      + ', '.join(f'{t:.1f}' for t in summary(runs)), flush=True)
+    print('\n' + text)
 
 
 if __name__ == '__main__':
