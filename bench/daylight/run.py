@@ -13,11 +13,11 @@ most of which is made by edges where the sky itself is seen, and the median pixe
 (as a standard deviation).
 
 Times longer for `fixed`: by the median pixel with the power law between its two runs of 4 viewing
-rays a pixel, or with the best run of all where that is quicker; by all pixels with the best one of 16 viewing rays of 16 shadow rays, 64 of 4 and 1024
-of 4, since 4 viewing rays leave edges an error that no shadow rays take away. For `path`: by the
-best one of its three runs, likewise for both. Errors fall with the root of the time, as they do for
-noise; `fixed` 1024 x 4 and the last run of `path` take about as long as the default does, so that
-little hangs on it.
+rays a pixel, or with the best run of all where that is quicker; by all pixels with the best one of
+16 viewing rays of 16 shadow rays, 64 of 4 and 1024 of 4, since 4 viewing rays leave edges an error
+that no shadow rays take away. For `path`: by the best one of its three runs, likewise for both.
+Errors fall with the root of the time, as they do for noise; `fixed` 1024 x 4 and the last run of
+`path` take about as long as the default does, so that little hangs on it.
 """
 import argparse
 import array
