@@ -11,8 +11,6 @@ namespace troffer {
 
 namespace {
 
-// Surfaces that a ray is followed to.
-constexpr uint32_t longest_walk = 24;
 // A walk's note about where it comes from: what shines on a matte surface is not for it to say;
 constexpr uint32_t from_matte = 1;
 // nor what image i shines on it: first_image + i, from there by way of its mirror.
@@ -139,7 +137,7 @@ void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
     if (s.is_view && scattering.is_wide()) {
       gloss = {v.surface.material, v.is_front, v.surface.uv, v.wo};
       gloss_weight = luminance(walk.throughput * albedo(scattering.specular, v.wo.z));
-    } else if (scattering.has_specular && walk.vertex < longest_walk) {
+    } else if (scattering.has_specular) {
       goes_on = true;
       if (scattering.has_rough && !s.is_view) {
         s.rough.walks.push_back(walk);

@@ -1,5 +1,6 @@
 #include "integrate/walk.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -142,7 +143,13 @@ bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
 
 bool survives_spawning(Walk& walk) {
   constexpr float threshold = 0.1f;
-  const float survival = max_component(walk.throughput) * walk.eta_squared / threshold;
+  // Between white metals throughput alone would hardly ever end a walk: from this vertex on some 5
+  // % end all the same. To end all of them would lose the light of all further bounces.
+  constexpr uint32_t long_walk = 24;
+  constexpr float long_walk_survival = 0.95f;
+  const float most = walk.vertex < long_walk ? 1 : long_walk_survival;
+  const float carried = max_component(walk.throughput) * walk.eta_squared;
+  const float survival = std::min(carried / threshold, most);
   if (survival >= 1) return true;
   if (roulette_number(walk) >= survival) return false;
   walk.throughput *= 1 / survival;

@@ -83,7 +83,7 @@ bool pass_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
 bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
 
 // Spawned walks that carry less than a tenth of the light go on as rarely as they are weak, and
-// carry more: false where the walk ends.
+// carry more; so do those of many vertices, whatever they carry: false where the walk ends.
 bool survives_spawning(Walk& walk);
 
 // Fills in what AOVs want to know of the first surface.

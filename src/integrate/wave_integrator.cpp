@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-// Mirrors facing each other would reflect for ever.
+// Of walks that no roulette ends: mirrors facing each other would reflect for ever.
 constexpr uint32_t longest_chain = 64;
 constexpr uint32_t most_divisions = 3;  // of a viewing ray at panes, one after the other
 // Hits that go to a method at a time: few enough for what is known of them to stay in the caches.
@@ -262,7 +262,7 @@ void WaveIntegrator::step_on(Scratch& s) const {
   for (size_t i = 0; i < s.wave.size(); ++i) {
     Walk& walk = s.wave.walks[i];
     items.at(walk.index);
-    if (walk.vertex >= longest_chain) continue;
+    if (is_whole && walk.vertex >= longest_chain) continue;
     const Vertex& v = s.wave.vertices[i];
     const Bsdf& sent = is_whole ? s.wave.bsdfs[i] : s.wave.scatterings[i].specular;
     if (sent.is_pane && walk.vertex < most_divisions && is_purely_delta(sent)) {
