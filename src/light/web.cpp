@@ -132,7 +132,8 @@ void interpolate(const float* __restrict values, int32_t per_turn, float least_a
 }
 
 TROFFER_ALWAYS_INLINE int32_t bucket_of(float angle, float first, float per_radian, float last) {
-  return int32_t(std::min(std::max((angle - first) * per_radian, 0.0f), last));
+  // no number is the first's: a comparison with it fails
+  return int32_t(std::min(std::max(0.0f, (angle - first) * per_radian), last));
 }
 
 // The step that an angle lies in is one of so many behind that which its bucket begins in: beyond
@@ -156,7 +157,7 @@ void find_shares(const float* __restrict angles, size_t n, const float* __restri
                  const int32_t* __restrict step, float* __restrict share) {
   for (size_t i = 0; i < n; ++i) {
     const float from = angles[step[i]];
-    share[i] = std::min(std::max((x[i] - from) / (angles[step[i] + 1] - from), 0.0f), 1.0f);
+    share[i] = std::min(std::max(0.0f, (x[i] - from) / (angles[step[i] + 1] - from)), 1.0f);
   }
 }
 

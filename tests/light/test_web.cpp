@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -140,4 +141,17 @@ TEST_CASE("looked up for many points, a web shines as by one search for each") {
     }
     CHECK((dark > 0) == !is_whole);
   }
+}
+
+TEST_CASE("looked up where a point has no direction, a web is dark") {
+  const LightWeb web = read(beam_ies(2, {-90, -60, 0, 60, 90}, {-90, -45, 0, 45, 90}));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> x{nan, 1e30f, 0}, y{nan, 1e30f, 0}, z{nan, 1e30f, -1};
+  std::vector<float> found(x.size());
+  WebLanes lanes;
+  WebLookup(web).radiance_many({Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, x.size(), x.data(),
+                               y.data(), z.data(), lanes, found.data());
+  CHECK(found[0] == 0);
+  CHECK(found[1] == 0);
+  CHECK(found[2] > 0);
 }
