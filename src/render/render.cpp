@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "render/camera.h"
 #include "render/cell_pilot.h"
+#include "render/checkpoint.h"
 #include "render/film.h"
 #include "render/gap_filler.h"
 #include "render/rendering.h"
@@ -105,6 +106,7 @@ class Picture {
  private:
   void render(const Preparation* preparation, RenderResult& result);
   void finish(Film& film, RenderResult& result);
+  void keep_beginning() const;
 
   const PreparedScene& scene_;
   const RenderOptions& options_;
@@ -136,6 +138,7 @@ RenderResult Picture::make() {
   result.end = RenderEnd::stopped;
   if (!is_prepared || preparation != nullptr) render(preparation, result);
   if (result.layers.empty()) {  // stopped before there was anything to show
+    keep_beginning();
     Film film(plan_.region, options_.aovs, scene_.scene.origin);
     finish(film, result);
     result.layers = film.layers();
@@ -145,6 +148,13 @@ RenderResult Picture::make() {
   result.statistics.render_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+// Whoever stops a rendering finds its checkpoint, at whatever time that was; what an earlier one
+// holds stays.
+void Picture::keep_beginning() const {
+  if (options_.checkpoint != nullptr && options_.checkpoint->chunks().empty())
+    options_.checkpoint->write([](const Checkpoint::Add&) {});
 }
 
 // Where it was broken off for want of time: whole all the same.

@@ -121,6 +121,27 @@ TEST_CASE("… by the default, with cells, without reflected light, and as a sha
   check_resumed(o);
 }
 
+TEST_CASE(
+    "broken off before the first tile: a checkpoint all the same, or the one that was there") {
+  const Room room;
+  const RenderOptions o = options_for(Method::certified, 0);
+  const File file;
+  constexpr double in_cells = 0.01;
+  const RenderResult begun = broken_off(room, o, file, false, in_cells, 1e9);
+  CHECK(begun.end == RenderEnd::stopped);
+  CHECK(begun.statistics.counters.viewing_rays == 0);
+  const std::string of_beginning = file.bytes();
+  CHECK(!of_beginning.empty());
+  broken_off(room, o, file, true, 0.8, 1e9);
+  const std::string of_some = file.bytes();
+  CHECK(of_some.size() > of_beginning.size());
+  broken_off(room, o, file, true, in_cells, 1e9);
+  CHECK(file.bytes() == of_some);
+  const RenderResult resumed = broken_off(room, o, file, true, 2, 1e9);
+  CHECK(resumed.is_complete);
+  CHECK(is_identical(resumed.layers, render_now(room.scene, room.camera, o).layers));
+}
+
 TEST_CASE("a checkpoint of another picture is refused in a line that says why") {
   const Room room;
   const RenderOptions o = options_for(Method::fixed, 6);
