@@ -17,6 +17,8 @@ constexpr float lift = 0.1f;
 // Cells of one voxel; what is compatible with none of so many joins the least incompatible, or the
 // leaves of a tree would be a list each voxel.
 constexpr int most_in_voxel = 12;
+// How often a cell is halved.
+constexpr uint32_t most_halvings = 6;
 
 // The axis along which a normal points most, and which way. Weights keep surfaces at 45° from being
 // torn by rounding.
@@ -37,6 +39,27 @@ uint64_t key_of(const CellHit& h, float size, uint32_t level) {
       hash_of(uint64_t(voxel_of(h.position.x, size)), uint64_t(voxel_of(h.position.y, size)),
               uint64_t(voxel_of(h.position.z, size)), face_of(h.normal) + 8 * level);
   return key == 0 ? 1 : key;  // 0: an empty slot
+}
+
+// Of the voxel of a hit whose normal is not far from the axis along which it points most.
+CellOutline outline_of(const CellHit& hit, float size) {
+  const Vec3& n = hit.horizon;
+  const size_t up = face_of(hit.normal) / 2, u = (up + 1) % 3, v = (up + 2) % 3;
+  CellOutline outline;
+  outline.normal = n;
+  outline.offset = hit.offset;
+  for (size_t i = 0; i < 4; ++i) {
+    Vec3 d;
+    const auto low = [&](size_t axis) {
+      return float((double(voxel_of(hit.position[axis], size)) - shift) * double(size)) -
+             hit.position[axis];
+    };
+    d[u] = low(u) + (i == 1 || i == 2 ? size : 0.0f);
+    d[v] = low(v) + (i >= 2 ? size : 0.0f);
+    d[up] = -(n[u] * d[u] + n[v] * d[v]) / n[up];
+    outline.corners[i] = hit.position + d;
+  }
+  return outline;
 }
 
 Ray segment(const Vec3& from, const Vec3& to) {
@@ -105,9 +128,12 @@ CellMap::Found CellMap::search(uint32_t first, const CellHit& hit) const {
 }
 
 uint32_t CellMap::find(const CellHit& hit, float distance) const {
-  const bool is_near = distance < near();
-  const Slot& slot = slots_[slot_of(key_of(hit, is_near ? 0.5f * size_ : size_, is_near ? 1 : 0))];
-  return slot.first == no_cell ? no_cell : search(slot.first, hit).cell;
+  for (uint32_t level = distance < near() ? 1 : 0;; ++level) {
+    const Slot& slot = slots_[slot_of(key_of(hit, size_at(level), level))];
+    if (slot.first == no_cell) return no_cell;
+    const uint32_t cell = search(slot.first, hit).cell;
+    if (cell == no_cell || !anchors_[cell].is_halved || level == most_halvings) return cell;
+  }
 }
 
 void CellMap::keep(const CellHit& hit, bool is_asked, Hits& h) {
@@ -125,17 +151,21 @@ void CellMap::keep(const CellHit& hit, bool is_asked, Hits& h) {
 }
 
 uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
-  const bool is_near = distance < near();
-  const float size = is_near ? 0.5f * size_ : size_;
-  const uint64_t key = key_of(hit, size, is_near ? 1 : 0);
+  uint32_t level = distance < near() ? 1 : 0;
+  uint32_t cell = add_at(hit, level);
+  while (anchors_[cell].is_halved && level < most_halvings) cell = add_at(hit, ++level);
+  if (cell >= frozen_) keep(hit, is_asked, hits_[cell]);
+  return cell;
+}
+
+// The cell of one level there, or what was halved.
+uint32_t CellMap::add_at(const CellHit& hit, uint32_t level) {
+  const uint64_t key = key_of(hit, size_at(level), level);
   Slot& slot = slots_[slot_of(key)];
   Found found;
   if (slot.first != no_cell) found = search(slot.first, hit);
-  if (found.cell != no_cell) {
-    if (found.cell >= frozen_) keep(hit, is_asked, hits_[found.cell]);
-    return found.cell;
-  }
-  const uint32_t cell = make(hit, size);
+  if (found.cell != no_cell) return found.cell;
+  const uint32_t cell = make(hit, level);
   if (found.last != no_cell) {
     anchors_[found.last].next = cell;
     return cell;
@@ -145,42 +175,34 @@ uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
   return cell;
 }
 
-uint32_t CellMap::make(const CellHit& hit, float size) {
+uint32_t CellMap::make(const CellHit& hit, uint32_t level) {
   Anchor a;
   a.position = hit.position;
   a.normal = hit.horizon;
-  a.size = size;
-  a.is_divided = is_divided(hit, size);
+  a.size = size_at(level);
+  const size_t up = face_of(hit.normal) / 2;
+  // Where shading turns it too far from its plane there is no outline to look at.
+  a.is_divided = std::abs(hit.horizon[up]) < 0.2f;
+  if (!a.is_divided) {
+    const CellOutline outline = outline_of(hit, a.size);
+    a.is_divided = is_divided(hit, outline, a.size);
+    a.is_halved = level < most_halvings && is_uneven_ && is_uneven_(outline);
+  }
   anchors_.push_back(a);
-  Hits& h = hits_.emplace_back();
-  h.hits[0] = hit;
-  h.count = 1;
+  hits_.emplace_back();
   return uint32_t(anchors_.size() - 1);
 }
 
 // Whatever parts the surface within the voxel also crosses the outline of the voxel on the
 // surface's plane: four short rays above it.
-bool CellMap::is_divided(const CellHit& hit, float size) const {
-  const Vec3& n = hit.horizon;
-  const size_t up = face_of(hit.normal) / 2, u = (up + 1) % 3, v = (up + 2) % 3;
-  if (std::abs(n[up]) < 0.2f) return true;  // shading turns it too far from its plane to say
-  std::array<Vec3, 4> corners;
-  for (size_t i = 0; i < 4; ++i) {
-    Vec3 d;
-    const auto low = [&](size_t axis) {
-      return float((double(voxel_of(hit.position[axis], size)) - shift) * double(size)) -
-             hit.position[axis];
-    };
-    d[u] = low(u) + (i == 1 || i == 2 ? size : 0.0f);
-    d[v] = low(v) + (i >= 2 ? size : 0.0f);
-    d[up] = -(n[u] * d[u] + n[v] * d[v]) / n[up];
-    corners[i] = hit.position + d + n * (lift * size);
-  }
+bool CellMap::is_divided(const CellHit& hit, const CellOutline& outline, float size) const {
+  const Vec3 up = outline.normal * (lift * size);
+  const auto corner = [&](size_t i) { return outline.corners[i % 4] + up; };
   for (size_t i = 0; i < 4; ++i)
-    if (is_blocked(tracer_, segment(corners[i], corners[(i + 1) % 4]))) return true;
+    if (is_blocked(tracer_, segment(corner(i), corner(i + 1)))) return true;
   // … and stands between the outline and the hit, if it is small
-  return is_blocked(tracer_, segment(hit.position + n * (lift * size), corners[0])) ||
-         is_blocked(tracer_, segment(hit.position + n * (lift * size), corners[2]));
+  return is_blocked(tracer_, segment(hit.position + up, corner(0))) ||
+         is_blocked(tracer_, segment(hit.position + up, corner(2)));
 }
 
 void CellMap::grow() {

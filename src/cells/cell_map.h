@@ -6,12 +6,17 @@
 // and, where something stands in the voxel, seen from it. So neither the two sides of a thin wall
 // share a cell, nor the boards of a shelf, nor two rooms that stand on one floor.
 //
+// Where light straight from sources nearby differs much within a voxel (a lamp close to a wall),
+// there are cells of half its size in place of one, and of half that, and so on.
+//
 // Cells are made one after the other in the order of add(), and never change: the same cells for
 // any number of threads. A copy can be added to without a change to those it was copied from.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,8 +34,19 @@ constexpr size_t hits_per_cell = 8;
 // cell at the edge of a shadow, and some pictures get theirs from few cells.
 constexpr size_t hits_of_asked_cell = 32;
 
+// A voxel's outline on the plane of a surface in it, the surface's normal, and how far above it
+// rays set out.
+struct CellOutline {
+  std::array<Vec3, 4> corners;
+  Vec3 normal;
+  float offset = 0;
+};
+
 class CellMap {
  public:
+  // Whether one value of irradiance is too little for a piece of surface.
+  using IsUneven = std::function<bool(const CellOutline&)>;
+
   // size: of voxels, metres. The tracer must outlive it.
   CellMap(const Tracer& tracer, float size);
 
@@ -45,11 +61,13 @@ class CellMap {
   uint32_t find(const CellHit& hit, float distance) const;
   // The same, made if there is none. is_asked: by one of the rays that the picture will send.
   uint32_t add(const CellHit& hit, float distance, bool is_asked = false);
+  // Of cells that are made from here on; any number of halvings, up to a limit.
+  void halve_where(IsUneven is_uneven) { is_uneven_ = std::move(is_uneven); }
   // From here on the cells that there are keep the hits that they have.
   void freeze() { frozen_ = anchors_.size(); }
   size_t frozen() const { return frozen_; }
 
-  // Of one cell; empty after forget_hits().
+  // Of one cell; empty after forget_hits(), and where there are smaller ones in its place.
   std::span<const CellHit> hits(size_t cell) const {
     if (hits_.empty()) return {};
     const Hits& h = hits_[cell];
@@ -70,6 +88,7 @@ class CellMap {
     uint32_t next = no_cell;  // of the same voxel
     float size = 0;
     bool is_divided = false;  // something stands in the voxel: sight decides
+    bool is_halved = false;   // no cell: smaller ones are in its place
   };
   struct Hits {
     std::array<CellHit, hits_per_cell> hits;
@@ -88,8 +107,10 @@ class CellMap {
   size_t slot_of(uint64_t key) const;
   Found search(uint32_t first, const CellHit& hit) const;
   bool sees(const Anchor& a, const CellHit& hit) const;
-  bool is_divided(const CellHit& hit, float size) const;
-  uint32_t make(const CellHit& hit, float size);
+  bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
+  float size_at(uint32_t level) const { return std::ldexp(size_, -int(level)); }
+  uint32_t make(const CellHit& hit, uint32_t level);
+  uint32_t add_at(const CellHit& hit, uint32_t level);
   void keep(const CellHit& hit, bool is_asked, Hits& hits);
   void grow();
 
@@ -101,6 +122,7 @@ class CellMap {
   std::vector<Slot> slots_;  // open addressing; a power of two of them
   size_t used_ = 0;
   size_t frozen_ = 0;  // cells from 0 that get no more hits
+  IsUneven is_uneven_;
 };
 
 }  // namespace troffer

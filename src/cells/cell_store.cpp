@@ -1,5 +1,6 @@
 #include "cells/cell_store.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/own_file.h"
@@ -8,8 +9,9 @@ namespace troffer {
 
 namespace {
 
-constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 3, "file of cells"};
+constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 4, "file of cells"};
 constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
+constexpr uint32_t divided_flag = 1, halved_flag = 2;
 
 struct Header {
   char magic[8];
@@ -26,7 +28,7 @@ struct FileCell {
   Vec3 position, normal;
   uint32_t next;
   float size;
-  uint32_t is_divided, hits;
+  uint32_t flags, hits;
   Rgb direct;
   float direct_half_difference;
 };
@@ -65,23 +67,32 @@ struct CellMapParts {
     const CellMap& map = *s.map;
     for (size_t c = 0; c < map.size(); ++c) {
       const CellMap::Anchor& a = map.anchors_[c];
-      append(out, FileCell{a.position, a.normal, a.next, a.size, a.is_divided ? 1u : 0u,
-                           map.hits_[c].count, s.direct[c], s.direct_half_difference[c]});
+      const uint32_t flags = (a.is_divided ? divided_flag : 0) | (a.is_halved ? halved_flag : 0);
+      append(out, FileCell{a.position, a.normal, a.next, a.size, flags, map.hits_[c].count,
+                           s.direct[c], s.direct_half_difference[c]});
     }
     for (const CellMap::Hits& h : map.hits_)
       for (uint32_t i = 0; i < h.count; ++i) append(out, h.hits[i]);
+    std::vector<FileSlot> slots;
     for (const CellMap::Slot& slot : map.slots_)
-      if (slot.key != 0) append(out, FileSlot{slot.key, slot.first, 0});
+      if (slot.key != 0) slots.push_back({slot.key, slot.first, 0});
+    // Where they stand in a table depends on the order in which it was filled.
+    std::sort(slots.begin(), slots.end(),
+              [](const FileSlot& a, const FileSlot& b) { return a.key < b.key; });
+    for (const FileSlot& slot : slots) append(out, slot);
   }
 
   // False where something is not as a map can be. Cells of a voxel come in the order in which they
   // were made, so their lists end.
   static bool read_cell(const FileCell& f, size_t cell, size_t cells, CellMap& map) {
     if (!is_finite(f.position) || !is_unit(f.normal) || !(f.size > 0) || !std::isfinite(f.size) ||
-        f.is_divided > 1 || f.hits < 1 || f.hits > hits_per_cell)
+        f.flags > (divided_flag | halved_flag) || f.hits > hits_per_cell)
       return false;
+    const bool is_halved = (f.flags & halved_flag) != 0;
+    if (is_halved != (f.hits == 0)) return false;
     if (f.next != no_cell && (f.next <= cell || f.next >= cells)) return false;
-    map.anchors_.push_back({f.position, f.normal, f.next, f.size, f.is_divided != 0});
+    map.anchors_.push_back(
+        {f.position, f.normal, f.next, f.size, (f.flags & divided_flag) != 0, is_halved});
     map.hits_.emplace_back().count = f.hits;
     return true;
   }

@@ -44,7 +44,8 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
   GatherScratch& g = w.gather;
   g.walks.clear();
   w.tasks.clear();
-  for (size_t t = chunk.first; t < chunk.last; ++t)
+  for (size_t t = chunk.first; t < chunk.last; ++t) {
+    if (tasks[t].from.empty()) continue;  // of a file of cells that lies
     for (uint32_t k = 0; k < tasks[t].count; ++k) {
       Walk walk;
       walk.index = uint32_t(w.tasks.size());
@@ -54,6 +55,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
       walks.leave(tasks[t].from[walk.sample % tasks[t].from.size()], direction_number(walk), walk);
       if (!walk.throughput.is_black()) g.walks.push_back(walk);
     }
+  }
   const CheckContext context(&w, w.tasks.size(), name_of_ray);
   walks.follow(w.tasks.size(), Coherence::none, g, w.counters);
   chunk.seen.reserve(g.arrivals.size());

@@ -228,6 +228,25 @@ void LightTree::choose_many(const LightReceivers& r, LightChoice* out,
   }
 }
 
+void LightTree::near_below(uint32_t at, const Vec3& x, float reach, size_t most,
+                           std::vector<uint32_t>& out) const {
+  const Node& node = nodes_[at];
+  for (uint32_t k = 0; k < width && out.size() < most; ++k) {
+    if (node.power[k] == 0) continue;
+    const Vec3 d = x - Vec3(node.centre_x[k], node.centre_y[k], node.centre_z[k]);
+    if (length_squared(d) > sqr(reach + std::sqrt(node.radius_squared[k]))) continue;
+    if (node.is_leaf[k])
+      out.push_back(node.child[k]);
+    else
+      near_below(node.child[k], x, reach, most, out);
+  }
+}
+
+void LightTree::near(const Vec3& x, float reach, size_t most, std::vector<uint32_t>& out) const {
+  out.clear();
+  if (!nodes_.empty()) near_below(0, x, reach, most, out);
+}
+
 float LightTree::pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const {
   const Place place = places_[primitive - first_];
   if (place.node == no_node) {

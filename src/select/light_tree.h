@@ -69,6 +69,10 @@ class LightTree {
   // The probability with which choose() picks the primitive, which must be one of the tree's.
   float pmf(const Vec3& x, const Vec3& n, bool both_sides, uint32_t primitive) const;
 
+  // Those within `reach` of x, by the spheres around their bounds, but those at infinity; no more
+  // than `most` of them.
+  void near(const Vec3& x, float reach, size_t most, std::vector<uint32_t>& out) const;
+
  private:
   static constexpr uint32_t width = 4;
   using Lanes = std::array<float, width>;
@@ -106,6 +110,8 @@ class LightTree {
   static void importances(const Node& node, const Vec3& x, const Vec3& n, bool both_sides,
                           Lanes& out);
   static uint32_t pick(const Lanes& weight, float& pmf, float& u);
+  void near_below(uint32_t at, const Vec3& x, float reach, size_t most,
+                  std::vector<uint32_t>& out) const;
   void choose_sorted_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides, size_t count,
                            LightChoice* out) const;
   LightChoice choose_below(uint32_t at, const Vec3& x, const Vec3& n, bool both_sides, float pmf,

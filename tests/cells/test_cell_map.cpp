@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "base/warp.h"
 #include "cells/cell_map.h"
@@ -45,6 +47,42 @@ TEST_CASE("hits in one voxel share a cell, those of another side, plane or dista
   CHECK(map.find(shelf, 5) == no_cell);
   CHECK(map.add(shelf, 5) != cell);
   CHECK(map.find(on_floor(0.3f, 0.2f), 5) == cell);
+}
+
+TEST_CASE("where light is uneven there are halves of cells, and halves of them, up to a limit") {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  const Tracer tracer(s);
+  CellMap map(tracer, 1);
+  // As by a lamp at the origin: nothing wider than its distance from there.
+  map.halve_where([](const CellOutline& cell) {
+    const Vec3 d = (cell.corners[0] + cell.corners[2]) * 0.5f;
+    CHECK(cell.normal == Vec3{0, 0, 1});
+    CHECK(cell.offset == 1e-5f);
+    return length(cell.corners[1] - cell.corners[0]) > length(d);
+  });
+  Random random(4);
+  for (int i = 0; i < 4000; ++i) {
+    const float scale = i % 2 == 0 ? 2.0f : 0.1f;
+    const float x = scale * (2 * random.next_float() - 1), y = scale * random.next_float();
+    const float distance = i % 3 == 0 ? 1.0f : 5.0f;
+    const uint32_t cell = map.add(on_floor(x, y), distance);
+    CHECK(map.find(on_floor(x, y), distance) == cell);
+    for (const CellHit& hit : map.hits(cell))
+      CHECK(length(hit.position - Vec3{x, y, 0}) <=
+            1.4143f * std::max(1 / 64.0f, std::min(1.0f, 2 * length(hit.position))));
+  }
+  // Far away they are as wide as ever; at the lamp as narrow as they get.
+  const auto width = [&](float x) {
+    const uint32_t cell = map.find(on_floor(x, 0.01f), 5);
+    float end = x;
+    while (map.find(on_floor(end, 0.01f), 5) == cell) end += 1e-4f;
+    float begin = x;
+    while (map.find(on_floor(begin, 0.01f), 5) == cell) begin -= 1e-4f;
+    return end - begin;
+  };
+  CHECK(width(1.5f) == doctest::Approx(1).epsilon(0.01));
+  CHECK(width(0.001f) == doctest::Approx(1 / 64.0).epsilon(0.03));
 }
 
 TEST_CASE("cells keep more of the hits that a picture asks for") {

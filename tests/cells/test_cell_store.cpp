@@ -30,20 +30,25 @@ Scene floor_scene() {
 CellStore random_store(const Tracer& tracer, int hits) {
   CellStore store;
   auto map = std::make_shared<CellMap>(tracer, 0.5f);
+  map->halve_where([](const CellOutline& cell) { return cell.corners[0].x < -3.5f; });
   Random random(3);
   for (int i = 0; i < hits; ++i)
     map->add(on_floor(8 * random.next_float() - 4, 8 * random.next_float() - 4),
              i % 3 == 0 ? 0.5f : 5.0f);
-  const auto cells = uint32_t(map->size());
-  for (uint32_t c = 0; c < cells; ++c) {
+  std::vector<uint32_t> cells;
+  for (uint32_t c = 0; c < map->size(); ++c)
+    if (!map->hits(c).empty()) cells.push_back(c);
+  CHECK(cells.size() < map->size());  // others are halved
+  for (uint32_t c = 0; c < map->size(); ++c) {
     std::vector<RowEntry> entries(c % 5);
     for (RowEntry& e : entries)
-      e = {random.next_u32() % cells, {random.next_float(), random.next_float(), 0.5f}};
-    store.rows.add({c, 8, 0, c % 2 == 1, Rgb{float(c % 7)}}, entries);
+      e = {cells[random.next_u32() % cells.size()],
+           {random.next_float(), random.next_float(), 0.5f}};
+    if (!map->hits(c).empty()) store.rows.add({c, 8, 0, c % 2 == 1, Rgb{float(c % 7)}}, entries);
     store.direct.emplace_back(random.next_float());
     store.direct_half_difference.push_back(random.next_float() - 0.5f);
   }
-  store.rows.finish(cells);
+  store.rows.finish(map->size());
   store.map = std::move(map);
   store.direct_error = 0.1;
   return store;
