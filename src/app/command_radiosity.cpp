@@ -105,11 +105,12 @@ const char* end_name(RadiosityEnd end) {
   return "";
 }
 
-struct Seconds {
+struct RadiositySeconds {
   double import = 0, build = 0, write = 0, total = 0;
 };
 
-std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r, const Seconds& t) {
+std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
+                            const RadiositySeconds& t) {
   const RadiositySolution& s = r.solution;
   const EnergyBalance& b = s.balance;
   nlohmann::ordered_json j;
@@ -176,7 +177,7 @@ int run_radiosity(const RadiosityCommand& c) {
   const Clock::time_point start = Clock::now();
   check_command(c);
   const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
-  Seconds seconds;
+  RadiositySeconds seconds;
   Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();

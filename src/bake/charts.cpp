@@ -20,7 +20,7 @@ constexpr size_t most_triangles = 8192;
 constexpr uint32_t none = 0xffffffffu;
 
 // Triangles, their normals, and who shares an edge with whom.
-struct Surface {
+struct ChartSurface {
   std::vector<Vec3d> normals;                   // unit; 0: not a triangle
   std::vector<double> areas;                    // m²
   std::vector<std::array<uint32_t, 3>> beside;  // across edge k, from corner k to the next; none
@@ -63,7 +63,7 @@ bool is_smooth(const Mesh& mesh, const Edge& a, const Edge& b) {
          dot(normal(a, false), normal(b, false)) > least_smooth;
 }
 
-void join_edges(const Mesh& mesh, const std::vector<uint32_t>& weld, Surface& s) {
+void join_edges(const Mesh& mesh, const std::vector<uint32_t>& weld, ChartSurface& s) {
   std::vector<Edge> edges;
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (s.areas[t] <= 0) continue;
@@ -90,8 +90,8 @@ void join_edges(const Mesh& mesh, const std::vector<uint32_t>& weld, Surface& s)
   }
 }
 
-Surface surface_of(const Mesh& mesh) {
-  Surface s;
+ChartSurface surface_of(const Mesh& mesh) {
+  ChartSurface s;
   const size_t n = mesh.triangles.size();
   s.normals.assign(n, Vec3d{});
   s.areas.assign(n, 0);
@@ -110,9 +110,9 @@ Surface surface_of(const Mesh& mesh) {
 }
 
 // Coordinates in the plane of a chart.
-struct Plane {
+struct ChartPlane {
   Vec3d origin, x, y;
-  Plane(const Vec3d& at, const Vec3d& normal) : origin(at) {
+  ChartPlane(const Vec3d& at, const Vec3d& normal) : origin(at) {
     const Frame frame{Vec3(normal)};
     x = Vec3d(frame.tangent);
     x = normalize(x - normal * dot(x, normal));
@@ -128,8 +128,8 @@ struct Plane {
 };
 
 // The triangles of the chart that grows from `seed`; of those that are in none yet.
-std::vector<uint32_t> grown(const Mesh& mesh, const Surface& s, uint32_t seed, const Plane& plane,
-                            std::vector<uint8_t>& is_taken) {
+std::vector<uint32_t> grown(const Mesh& mesh, const ChartSurface& s, uint32_t seed,
+                            const ChartPlane& plane, std::vector<uint8_t>& is_taken) {
   std::vector<uint32_t> chart{seed};
   is_taken[seed] = 1;
   LaidTriangles laid(std::sqrt(2 * s.areas[seed]) / 2);
@@ -235,7 +235,7 @@ class Vertices {
   std::vector<uint32_t> copy_, group_;
 };
 
-void lay_out(const Mesh& mesh, const Plane& plane, std::vector<uint32_t> triangles,
+void lay_out(const Mesh& mesh, const ChartPlane& plane, std::vector<uint32_t> triangles,
              Vertices& vertices, ChartedMesh& out) {
   std::vector<Vec2d> points;
   for (const uint32_t t : triangles)
@@ -265,7 +265,7 @@ void add_rest(const std::vector<uint32_t>& rest, Vertices& vertices, ChartedMesh
 
 ChartedMesh charted(const Mesh& mesh) {
   ChartedMesh out;
-  const Surface s = surface_of(mesh);
+  const ChartSurface s = surface_of(mesh);
   Vertices vertices(mesh, out);
   std::vector<uint32_t> seeds, rest;
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t) (s.areas[t] > 0 ? seeds : rest).push_back(t);
@@ -274,7 +274,7 @@ ChartedMesh charted(const Mesh& mesh) {
   std::vector<uint8_t> is_taken(mesh.triangles.size(), 0);
   for (const uint32_t seed : seeds) {
     if (is_taken[seed]) continue;
-    const Plane plane(Vec3d(mesh.positions[mesh.triangles[seed][0]]), s.normals[seed]);
+    const ChartPlane plane(Vec3d(mesh.positions[mesh.triangles[seed][0]]), s.normals[seed]);
     lay_out(mesh, plane, grown(mesh, s, seed, plane, is_taken), vertices, out);
   }
   add_rest(rest, vertices, out);
@@ -282,7 +282,7 @@ ChartedMesh charted(const Mesh& mesh) {
 }
 
 bool chart_of_uvs(const Mesh& mesh, const std::vector<Vec2>& uvs, ChartedMesh& out) {
-  const Surface s = surface_of(mesh);
+  const ChartSurface s = surface_of(mesh);
   std::vector<uint32_t> all, rest;
   double area = 0, flat_area = 0;
   Vec2d lower{1, 1}, upper{0, 0};

@@ -8,7 +8,8 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t azimuths = 24, heights = 32, facet_count = azimuths * heights;
+constexpr size_t facet_azimuths = 24, facet_heights = 32,
+                 facet_count = facet_azimuths * facet_heights;
 
 // Microfacets seen from a direction in the plane y = 0, for integrals over visible normals: one
 // array per field, as these loops are what building the tables costs.
@@ -45,18 +46,18 @@ void set_visible_facets(Facets& f, float cosine, float alpha) {
   f.lambda = ggx_lambda(cosine, alpha);
   const float view_x = std::sqrt(1 - cosine * cosine);
   const Vec3 w = normalize(Vec3{alpha * view_x, 0, cosine});
-  std::array<float, azimuths> cos_phi, sin_phi;
-  for (size_t i = 0; i < azimuths; ++i) {
-    const float phi = pi_f * (float(i) + 0.5f) / float(azimuths);
+  std::array<float, facet_azimuths> cos_phi, sin_phi;
+  for (size_t i = 0; i < facet_azimuths; ++i) {
+    const float phi = pi_f * (float(i) + 0.5f) / float(facet_azimuths);
     cos_phi[i] = std::cos(phi);
     sin_phi[i] = std::sin(phi);
   }
-  for (size_t j = 0; j < heights; ++j) {
-    const float rest = 1 - (float(j) + 0.5f) / float(heights);
+  for (size_t j = 0; j < facet_heights; ++j) {
+    const float rest = 1 - (float(j) + 0.5f) / float(facet_heights);
     const float weight = 2 * rest / float(facet_count);
     const float z = rest * rest * (1 + w.z) - w.z, r = std::sqrt(std::max(0.0f, 1 - z * z));
-    for (size_t i = 0; i < azimuths; ++i) {
-      const size_t at = j * azimuths + i;
+    for (size_t i = 0; i < facet_azimuths; ++i) {
+      const size_t at = j * facet_azimuths + i;
       const float x = alpha * (r * cos_phi[i] + w.x), y = alpha * r * sin_phi[i], n = z + w.z;
       const float scale = 1 / std::sqrt(x * x + y * y + n * n);
       const float c = (view_x * x + cosine * n) * scale;

@@ -72,6 +72,14 @@ inline float fresnel_conductor(float cos_i, float eta, float k) {
   const float parallel = perpendicular * (t3 - t4) / (t3 + t4);
   return std::clamp(0.5f * (parallel + perpendicular), 0.0f, 1.0f);
 }
+
+// An index, or what it absorbs, that a texture or a file may have got wrong:
+// beyond these bounds it is a mirror to all digits; NaN reads as 0.
+inline Rgb safe_index(Rgb v) {
+  const auto safe = [](float x) { return x > 0 ? std::min(x, 1e4f) : 0.0f; };
+  return {safe(v.r), safe(v.g), safe(v.b)};
+}
+
 inline Rgb fresnel_conductor(float cos_i, Rgb eta, Rgb k) {
   return {fresnel_conductor(cos_i, eta.r, k.r), fresnel_conductor(cos_i, eta.g, k.g),
           fresnel_conductor(cos_i, eta.b, k.b)};

@@ -16,11 +16,6 @@ float safe01(float x) {
 Rgb safe01(Rgb c) {
   return {safe01(c.r), safe01(c.g), safe01(c.b)};
 }
-Rgb safe_index(Rgb v) {
-  const auto safe = [](float x) { return x > 0 ? std::min(x, 1e4f) : 0.0f; };
-  return {safe(v.r), safe(v.g), safe(v.b)};
-}
-
 Rgb safe_depth(Rgb v) {
   const auto safe = [](float x) { return x > 0 ? std::min(x, 1e6f) : 0.0f; };
   return {safe(v.r), safe(v.g), safe(v.b)};

@@ -14,12 +14,6 @@ float safe_ior(float ior) {
   return std::isfinite(ior) && ior > 0 ? std::clamp(ior, 0.01f, 100.0f) : 1.5f;
 }
 
-// Conductor constants beyond these are mirrors to all digits; NaN reads as 0.
-Rgb safe_index(Rgb v) {
-  const auto safe = [](float x) { return x > 0 ? std::min(x, 1e4f) : 0.0f; };
-  return {safe(v.r), safe(v.g), safe(v.b)};
-}
-
 // Index of the table of this ior, making one while there is room, else of the nearest.
 template <class Table>
 int32_t table_for(std::vector<Table>& tables, float ior, size_t max_tables) {

@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t cells_at_a_time = 1024;
+constexpr size_t rows_at_a_time = 1024;
 constexpr int most_iterations = 400;
 constexpr int bounces_of_noise = 6;
 constexpr double most_unbalanced = 2e-6;  // of the light, both by what is asked
@@ -20,9 +20,9 @@ constexpr float most_importance = 1e30f;
 
 template <typename F>
 void by_cells(size_t n, int threads, const F& f) {
-  parallel_for((n + cells_at_a_time - 1) / cells_at_a_time, threads, [&](size_t chunk) {
-    const size_t end = std::min(n, (chunk + 1) * cells_at_a_time);
-    for (size_t i = chunk * cells_at_a_time; i < end; ++i) f(i);
+  parallel_for((n + rows_at_a_time - 1) / rows_at_a_time, threads, [&](size_t chunk) {
+    const size_t end = std::min(n, (chunk + 1) * rows_at_a_time);
+    for (size_t i = chunk * rows_at_a_time; i < end; ++i) f(i);
   });
 }
 

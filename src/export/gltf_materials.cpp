@@ -21,7 +21,7 @@ int wrap_code(WrapMode mode) {
 }
 
 // glTF's roughness is the root of the width of ggx.
-float power_of(RoughnessMeaning meaning) {
+float power_for_gltf(RoughnessMeaning meaning) {
   return meaning == RoughnessMeaning::alpha           ? 0.5f
          : meaning == RoughnessMeaning::alpha_is_sqrt ? 0.25f
                                                       : 1;
@@ -113,7 +113,7 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
 
 void GltfMaterialWriter::add_roughness(const Material& m, Json& pbr) {
   const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
-  const float power = power_of(m.roughness_meaning);
+  const float power = power_for_gltf(m.roughness_meaning);
   FloatInput metal = is_mixed ? m.metallic : FloatInput{0, no_texture, 0};
   if (m.kind == MaterialKind::conductor) metal.value = 1;
   const Texture* rough_image = image_of(scene_, m.roughness.texture);

@@ -28,7 +28,7 @@ std::string mapping(const Texture& t) {
       wrap_name(t.wrap_u), t.is_filtered ? "bilinear" : "point");
 }
 
-float power_of(RoughnessMeaning meaning) {
+float power_for_pbrt(RoughnessMeaning meaning) {
   return meaning == RoughnessMeaning::alpha_is_square ? 2
          : meaning == RoughnessMeaning::alpha_is_sqrt ? 0.5f
                                                       : 1;
@@ -108,7 +108,7 @@ std::string PbrtMaterialWriter::translucent_text(const Material& m, const ColorI
 std::string PbrtMaterialWriter::mixed_text(const Material& m) {
   const float metallic = evaluate(scene_.textures, m.metallic, Vec2{0.5f, 0.5f});
   const float transmission = evaluate(scene_.textures, m.transmission, Vec2{0.5f, 0.5f});
-  const float power = power_of(m.roughness_meaning);
+  const float power = power_for_pbrt(m.roughness_meaning);
   const bool is_mixed = (metallic > 0 && metallic < 1) || (transmission > 0 && transmission < 1);
   warnings_.add(is_mixed ? "mixtures of metal, coat and glass are written as the one that has most "
                            "weight: pbrt has none"
@@ -135,7 +135,7 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
 }
 
 std::string PbrtMaterialWriter::material_text(const Material& m) {
-  const float power = power_of(m.roughness_meaning);
+  const float power = power_for_pbrt(m.roughness_meaning);
   switch (m.kind) {
     case MaterialKind::diffuse:
       return m.diffuse_transmission.value > 0 ? translucent_text(m, m.base_color)

@@ -24,11 +24,11 @@ struct PngRows {
   size_t row_bytes;
 };
 
-void on_error(png_structp png, png_const_charp message) {
+void on_write_error(png_structp png, png_const_charp message) {
   static_cast<PngWriter*>(png_get_error_ptr(png))->error = message;
   png_longjmp(png, 1);
 }
-void on_warning(png_structp, png_const_charp) {}
+void on_write_warning(png_structp, png_const_charp) {}
 void on_write(png_structp png, png_bytep data, size_t n) {
   auto& bytes = static_cast<PngWriter*>(png_get_io_ptr(png))->bytes;
   bytes.insert(bytes.end(), data, data + n);
@@ -52,7 +52,8 @@ bool write(png_structp png, png_infop info, PngWriter& writer, const PngRows& ro
 
 std::vector<uint8_t> encode(const PngRows& rows) {
   PngWriter writer;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_write_error, on_write_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   const bool is_written = info != nullptr && write(png, info, writer, rows);
   png_destroy_write_struct(&png, &info);

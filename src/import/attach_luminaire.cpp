@@ -15,7 +15,7 @@ namespace troffer {
 
 namespace {
 
-constexpr double flatness = 0.999;  // of the length of the sum of areas over their sum
+constexpr double least_flatness = 0.999;  // of the length of the sum of areas over their sum
 
 using Axes = std::array<Vec3, 3>;
 
@@ -90,7 +90,7 @@ void attach_to_meshes(Scene& scene, const std::string& node, const Luminaire& lu
       !o.meshes.empty() || std::any_of(scene.lights.begin(), scene.lights.end(),
                                        [&](const Light& e) { return e.name == node; });
   if (!is_known) throw UsageError("--luminaire: nothing is named '" + node + "'");
-  if (!(length(o.area_vector) >= flatness * o.area) || !(o.area > 0))
+  if (!(length(o.area_vector) >= least_flatness * o.area) || !(o.area > 0))
     throw UsageError("--luminaire: '" + node + "' is neither a flat surface nor a point");
   const Vec3d axis = normalize(o.area_vector);
   const auto axes = axes_of_surface(luminaire, axis, o.longest_edge);

@@ -13,8 +13,8 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t max_texels = size_t(1) << 23;  // 4096 × 2048
-constexpr uint64_t max_file_bytes = uint64_t(1) << 31;
+constexpr size_t max_environment_texels = size_t(1) << 23;  // 4096 × 2048
+constexpr uint64_t max_environment_bytes = uint64_t(1) << 31;
 constexpr float largest_half = 65504;
 
 struct Cleaned {
@@ -72,7 +72,7 @@ EnvironmentMap reduced(const EnvironmentMap& from, int by) {
 }  // namespace
 
 EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
-  const Raster raster = linear_raster(decode_raster(read_file(path, max_file_bytes), path));
+  const Raster raster = linear_raster(decode_raster(read_file(path, max_environment_bytes), path));
   EnvironmentMap map;
   map.name = path;
   map.width = raster.width;
@@ -93,9 +93,9 @@ EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
         "{}: {} x {} is neither square (equal-area) nor twice as wide as high (azimuth and "
         "height); read as the latter",
         path, map.width, map.height));
-  if (map.texels.size() <= max_texels) return map;
+  if (map.texels.size() <= max_environment_texels) return map;
   int by = 2;
-  while (map.texels.size() / (size_t(by) * size_t(by)) > max_texels) ++by;
+  while (map.texels.size() / (size_t(by) * size_t(by)) > max_environment_texels) ++by;
   warnings.add(
       fmt::format("{}: {} x {} texels are averaged down by {}", path, map.width, map.height, by));
   return reduced(map, by);

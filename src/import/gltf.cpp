@@ -18,6 +18,7 @@
 #include "import/gltf_pose.h"
 #include "import/gltf_schema.h"
 #include "import/gltf_variant.h"
+#include "import/limits.h"
 #include "import/mesh_instancer.h"
 #include "import/recentre.h"
 #include "import/vertex_paint.h"
@@ -27,7 +28,6 @@ namespace troffer {
 namespace {
 
 // Of all that is stored: about 3 GB of vertices and triangles.
-constexpr uint64_t max_triangles = 60'000'000;
 constexpr uint64_t cost_of_instance = 20;  // in triangles
 constexpr const char* lights_extension = "KHR_lights_punctual";
 
@@ -115,13 +115,14 @@ class Importer {
                       ? n * cost_of_instance + p.triangle_count() / meshes_[*mesh].uses
                       : n * p.triangle_count();
       }
-      if (stored > max_triangles || placed > max_placed_triangles || instances > max_triangles)
+      if (stored > max_scene_triangles || placed > max_placed_triangles ||
+          instances > max_scene_triangles)
         fail_of_size(json);
     }
   }
 
   [[noreturn]] static void fail_of_size(const JsonNode& node) {
-    node.fail("the scene has more than " + std::to_string(max_triangles) +
+    node.fail("the scene has more than " + std::to_string(max_scene_triangles) +
               " triangles, or more than " + std::to_string(max_placed_triangles) + " by instances");
   }
 
@@ -155,7 +156,7 @@ class Importer {
           add_mesh(p, pose, name, node_name);
         } else if (!add_instance(p, pose, name)) {
           counts_.unshared += p.triangle_count();
-          if (counts_.unshared > max_triangles) fail_of_size(json);
+          if (counts_.unshared > max_scene_triangles) fail_of_size(json);
           add_mesh(p, pose, name, node_name);
         }
     }

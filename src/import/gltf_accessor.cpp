@@ -13,17 +13,6 @@ namespace troffer {
 
 namespace {
 
-enum ComponentType : uint32_t {
-  type_byte = 5120,
-  type_unsigned_byte = 5121,
-  type_short = 5122,
-  type_unsigned_short = 5123,
-  type_int = 5124,  // for attributes of an application's own only, which are not read
-  type_unsigned_int = 5125,
-  type_float = 5126,
-  type_double = 5130,  // likewise
-};
-
 // Of accessors without a buffer view, which cost the file nothing.
 constexpr uint64_t max_elements_without_data = 4u << 20;
 // What many accessors over the same data may cost in all.
@@ -32,17 +21,17 @@ constexpr uint64_t max_sparse_elements = 100'000'000, max_checked_indices = 1'00
 
 uint32_t component_size(uint32_t type) {
   switch (type) {
-    case type_byte:
-    case type_unsigned_byte:
+    case gltf_byte:
+    case gltf_unsigned_byte:
       return 1;
-    case type_short:
-    case type_unsigned_short:
+    case gltf_short:
+    case gltf_unsigned_short:
       return 2;
-    case type_int:
-    case type_unsigned_int:
-    case type_float:
+    case gltf_int:
+    case gltf_unsigned_int:
+    case gltf_float:
       return 4;
-    case type_double:
+    case gltf_double:
       return 8;
     default:
       return 0;
@@ -90,27 +79,27 @@ T load(const uint8_t* at) {
 // [1] §3.6.2.2 for the normalised ones.
 float component_as_float(const uint8_t* at, uint32_t type, bool is_normalized) {
   switch (type) {
-    case type_byte: {
+    case gltf_byte: {
       const auto v = float(load<int8_t>(at));
       return is_normalized ? std::max(v / 127.0f, -1.0f) : v;
     }
-    case type_unsigned_byte: {
+    case gltf_unsigned_byte: {
       const auto v = float(*at);
       return is_normalized ? v / 255.0f : v;
     }
-    case type_short: {
+    case gltf_short: {
       const auto v = float(load<int16_t>(at));
       return is_normalized ? std::max(v / 32767.0f, -1.0f) : v;
     }
-    case type_unsigned_short: {
+    case gltf_unsigned_short: {
       const auto v = float(load<uint16_t>(at));
       return is_normalized ? v / 65535.0f : v;
     }
-    case type_int:
+    case gltf_int:
       return float(load<int32_t>(at));
-    case type_unsigned_int:
+    case gltf_unsigned_int:
       return float(load<uint32_t>(at));
-    case type_double:
+    case gltf_double:
       return float(load<double>(at));
     default:
       return load<float>(at);
@@ -119,9 +108,9 @@ float component_as_float(const uint8_t* at, uint32_t type, bool is_normalized) {
 
 uint32_t integer_at(const uint8_t* at, uint32_t type) {
   switch (type) {
-    case type_unsigned_byte:
+    case gltf_unsigned_byte:
       return *at;
-    case type_unsigned_short:
+    case gltf_unsigned_short:
       return load<uint16_t>(at);
     default:
       return load<uint32_t>(at);
@@ -129,7 +118,7 @@ uint32_t integer_at(const uint8_t* at, uint32_t type) {
 }
 
 bool is_unsigned_integer(uint32_t type) {
-  return type == type_unsigned_byte || type == type_unsigned_short || type == type_unsigned_int;
+  return type == gltf_unsigned_byte || type == gltf_unsigned_short || type == gltf_unsigned_int;
 }
 
 // Position of element i in the ascending list, or `count`.

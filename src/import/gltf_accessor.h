@@ -17,13 +17,25 @@
 
 namespace troffer {
 
+// What a component is, as files number it [1] §3.6.2.2.
+enum GltfComponentType : uint32_t {
+  gltf_byte = 5120,
+  gltf_unsigned_byte = 5121,
+  gltf_short = 5122,
+  gltf_unsigned_short = 5123,
+  gltf_int = 5124,  // for attributes of an application's own only, which are not read
+  gltf_unsigned_int = 5125,
+  gltf_float = 5126,
+  gltf_double = 5130,  // likewise
+};
+
 // A checked accessor: any index below `count` may be read. Elements are decoded when asked for, so
 // that a view costs no memory, whatever its count.
 struct AccessorView {
   const uint8_t* data = nullptr;  // null: zeros, but for the sparse elements
   uint64_t count = 0;
   uint64_t stride = 0;
-  uint32_t component_type = 0;  // 5120 … 5126
+  uint32_t component_type = 0;  // GltfComponentType
   uint32_t components = 0;      // 1 … 16
   bool is_normalized = false;
   // Substituted elements [1] §3.6.2.3; indices ascend.

@@ -9,13 +9,12 @@ namespace troffer {
 
 namespace {
 
-constexpr uint32_t type_float = 5126;
 constexpr uint64_t max_weights = 10'000;
 
 enum class Interpolation { step, linear, cubic };
 
 // One sampler: `width` numbers at each key.
-struct Curve {
+struct AnimationCurve {
   const AccessorView& times;
   const AccessorView& values;
   Interpolation interpolation;
@@ -94,7 +93,7 @@ Numbers slerp(const Numbers& a, Numbers b, double t) {
                sign * std::sin(t * angle) / std::sin(angle));
 }
 
-Numbers value_at(const Curve& curve, const Moment& m, uint64_t k, bool is_rotation) {
+Numbers value_at(const AnimationCurve& curve, const Moment& m, uint64_t k, bool is_rotation) {
   const Numbers here = widened(curve.at(m.key, 1, k));
   if (m.is_at_key || curve.interpolation == Interpolation::step) return here;
   const Numbers next = widened(curve.at(m.key + 1, 1, k));
@@ -107,13 +106,13 @@ Numbers value_at(const Curve& curve, const Moment& m, uint64_t k, bool is_rotati
 }
 
 // The animation's curve, once its accessors fit each other.
-Curve read_curve(const JsonNode& sampler, const GltfBuffers& buffers, uint32_t components,
-                 bool has_many) {
+AnimationCurve read_curve(const JsonNode& sampler, const GltfBuffers& buffers, uint32_t components,
+                          bool has_many) {
   const JsonNode input = sampler.member("input"), output = sampler.member("output");
   const AccessorView& times = buffers.accessor(input);
   const AccessorView& values = buffers.accessor(output);
   const Interpolation interpolation = interpolation_of(sampler);
-  if (times.components != 1 || times.component_type != type_float || times.count == 0)
+  if (times.components != 1 || times.component_type != gltf_float || times.count == 0)
     input.fail("its accessor should hold times: scalars of floats, one at least");
   if (values.components != components)
     output.fail("its accessor should have " + std::to_string(components) + " components");
@@ -151,7 +150,7 @@ void apply_channel(const JsonNode& animation, const JsonNode& channel, size_t no
   }
   GltfNodePose& pose = poses[node->as_index(nodes, "nodes")];
   const uint32_t components = is_weights ? 1 : is_rotation ? 4 : 3;
-  const Curve curve = read_curve(sampler, buffers, components, is_weights);
+  const AnimationCurve curve = read_curve(sampler, buffers, components, is_weights);
   const Moment m = find_moment(curve.times, time);
   if (is_weights) {
     pose.weights.emplace();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint64_t max_json_bytes = uint64_t(1) << 30;
 constexpr uint32_t magic_gltf = 0x46546c67, chunk_json = 0x4e4f534a, chunk_binary = 0x004e4942;
-constexpr size_t header_size = 12, chunk_header_size = 8;
+constexpr size_t glb_header_size = 12, chunk_header_size = 8;
 
 uint32_t little_endian_32(std::span<const uint8_t> bytes, size_t at) {
   return uint32_t(bytes[at]) | uint32_t(bytes[at + 1]) << 8 | uint32_t(bytes[at + 2]) << 16 |
@@ -24,7 +24,7 @@ bool has_magic(std::span<const uint8_t> bytes) {
 
 // The bytes that the header declares [1] §4.4.2.
 std::span<const uint8_t> checked_extent(const std::string& path, std::span<const uint8_t> bytes) {
-  if (bytes.size() < header_size) throw InputError(path, 0, 0, "the GLB header is cut short");
+  if (bytes.size() < glb_header_size) throw InputError(path, 0, 0, "the GLB header is cut short");
   const uint32_t version = little_endian_32(bytes, 4), length = little_endian_32(bytes, 8);
   if (version != 2)
     throw InputError(path, 0, 0,
@@ -33,7 +33,7 @@ std::span<const uint8_t> checked_extent(const std::string& path, std::span<const
     throw InputError(path, 0, 0,
                      "the GLB header declares " + std::to_string(length) +
                          " bytes, but the file has " + std::to_string(bytes.size()));
-  if (length < header_size + chunk_header_size)
+  if (length < glb_header_size + chunk_header_size)
     throw InputError(path, 0, 0, "the GLB header declares a length too short for any content");
   return bytes.first(length);
 }
@@ -42,7 +42,7 @@ GltfFile read_chunks(const std::string& path, std::span<const uint8_t> bytes) {
   GltfFile file;
   file.is_glb = true;
   bytes = checked_extent(path, bytes);
-  size_t at = header_size;
+  size_t at = glb_header_size;
   for (int index = 0; at < bytes.size(); ++index) {
     const std::string name = "GLB chunk " + std::to_string(index);
     if (bytes.size() - at < chunk_header_size)

@@ -16,8 +16,8 @@ namespace troffer {
 
 namespace {
 
-constexpr const char* extension = "EXT_lights_image_based";
-constexpr uint64_t max_file_bytes = uint64_t(1) << 30;
+constexpr const char* image_light_extension = "EXT_lights_image_based";
+constexpr uint64_t max_image_bytes = uint64_t(1) << 30;
 constexpr size_t max_face_pixels = size_t(4096) * 4096;
 constexpr int fewest_texels_across = 64, most_texels_across = 2048;
 
@@ -34,7 +34,7 @@ std::vector<uint8_t> bytes_of(const JsonNode& image, const GltfBuffers& buffers)
   const auto uri = image.find("uri");
   if (!uri) image.fail("has neither a uri nor a buffer view");
   if (!is_data_uri(uri->as_string()))
-    return read_file(path_of_uri(*uri, folder_of(image.file())), max_file_bytes);
+    return read_file(path_of_uri(*uri, folder_of(image.file())), max_image_bytes);
   auto data = parse_data_uri(uri->as_string());
   if (!data) uri->fail("is a malformed data URI");
   return std::move(data->bytes);
@@ -110,9 +110,9 @@ std::optional<JsonNode> light_of_scene(const JsonNode& root) {
   if (!scenes || scenes->size() == 0) return std::nullopt;
   const auto chosen = root.find("scene");
   const uint32_t i = chosen ? chosen->as_index(scenes->size(), "scenes") : 0;
-  const auto instance = scenes->element(i).extension(extension);
+  const auto instance = scenes->element(i).extension(image_light_extension);
   if (!instance) return std::nullopt;
-  const auto definition = root.extension(extension);
+  const auto definition = root.extension(image_light_extension);
   if (!definition) instance->fail("the document has no lights of that kind");
   const JsonNode lights = definition->member("lights");
   return lights.element(instance->member("light").as_index(lights.size(), "lights"));
@@ -140,7 +140,7 @@ void add_gltf_image_light(const JsonNode& root, const GltfBuffers& buffers, Scen
       cube[i] = read_face(image, buffers);
     }
   } catch (const InputError& error) {
-    scene.warnings.add(std::string(extension) + ": " + error.reason() + "; left out");
+    scene.warnings.add(std::string(image_light_extension) + ": " + error.reason() + "; left out");
     return;
   }
   EnvironmentMap map = map_of(cube);

@@ -8,7 +8,7 @@ namespace {
 
 // Sixteen zeros of one byte of sixteen vertices take two bits, so that data cannot shrink by more
 // than 64; with room.
-constexpr uint64_t max_ratio = 256, always_allowed = 4096;
+constexpr uint64_t max_ratio = 256, always_allowed_bytes = 4096;
 
 void decode_mode(const JsonNode& extension, std::span<const uint8_t> in, size_t count,
                  size_t stride, std::vector<uint8_t>& out) {
@@ -64,7 +64,7 @@ std::vector<uint8_t> decode_meshopt(const JsonNode& extension, std::span<const u
   const uint64_t count = extension.member("count").as_integer(0xffffffffu);
   if (stride * count != byte_length)
     extension.fail("its count times its byteStride is not the length of the buffer view");
-  if (byte_length > compressed.size() * max_ratio + always_allowed)
+  if (byte_length > compressed.size() * max_ratio + always_allowed_bytes)
     extension.fail("its data is too short for what it should become");
   std::vector<uint8_t> out(size_t(byte_length), uint8_t(0));
   decode_mode(extension, compressed, size_t(count), size_t(stride), out);

@@ -7,7 +7,6 @@ namespace troffer {
 
 namespace {
 
-constexpr uint32_t type_float = 5126, type_unsigned_int = 5125;
 constexpr uint64_t max_instances = 10'000'000;
 
 Affine inverse_bind(const AccessorView& matrices, uint64_t i) {
@@ -30,7 +29,7 @@ std::vector<Affine> gltf_joints(const JsonNode& skin, const GltfBuffers& buffers
   const AccessorView* matrices = nullptr;
   if (reference) {
     matrices = &buffers.accessor(*reference);
-    if (matrices->components != 16 || matrices->component_type != type_float)
+    if (matrices->components != 16 || matrices->component_type != gltf_float)
       reference->fail("its accessor should be of type MAT4, of floats");
     if (matrices->count < list.size())
       reference->fail("its accessor has fewer elements than the skin has joints");
@@ -62,7 +61,7 @@ std::vector<Affine> gltf_instances(const JsonNode& node, const GltfBuffers& buff
     const auto reference = attributes.find(name);
     if (!reference) return nullptr;
     const AccessorView& view = buffers.accessor(*reference);
-    if (view.components != components || view.component_type == type_unsigned_int)
+    if (view.components != components || view.component_type == gltf_unsigned_int)
       reference->fail("its accessor should be of type VEC" + std::to_string(components));
     if ((is_known && view.count != count) || view.count > max_instances)
       reference->fail("its accessor has another count than its neighbours, or too many elements");

@@ -2,14 +2,13 @@
 
 #include <string>
 
+#include "import/limits.h"
+
 namespace troffer {
 
 namespace {
 
 constexpr uint64_t mode_triangles = 4, mode_strip = 5, mode_fan = 6;
-constexpr uint32_t type_unsigned_byte = 5121, type_unsigned_short = 5123, type_unsigned_int = 5125,
-                   type_float = 5126;
-constexpr uint64_t max_draco_triangles = 60'000'000;
 
 // Vertices that the primitive's corners run through: of the index list, or of the vertex list.
 uint64_t corner_count(const GltfPrimitive& p) {
@@ -19,9 +18,9 @@ uint64_t corner_count(const GltfPrimitive& p) {
 AccessorView index_accessor(const JsonNode& reference, GltfBuffers& buffers,
                             uint64_t vertex_count) {
   const AccessorView& view = buffers.accessor(reference);
-  const bool is_integer = view.component_type == type_unsigned_byte ||
-                          view.component_type == type_unsigned_short ||
-                          view.component_type == type_unsigned_int;
+  const bool is_integer = view.component_type == gltf_unsigned_byte ||
+                          view.component_type == gltf_unsigned_short ||
+                          view.component_type == gltf_unsigned_int;
   if (view.components != 1 || !is_integer || view.is_normalized)
     reference.fail("its accessor should be of unsigned integer scalars");
   const uint32_t largest =
@@ -50,7 +49,7 @@ class Attributes {
     const AccessorView view = decoded_ ? decoded_view(*node, name) : buffers_.accessor(*node);
     if (view.components != components && view.components != most_components)
       node->fail("its accessor should be of type VEC" + std::to_string(components));
-    if (view.component_type == type_unsigned_int)
+    if (view.component_type == gltf_unsigned_int)
       node->fail("its accessor may not be of 32-bit integers");
     if (name == "POSITION") vertex_count_ = view.count;  // asked for first
     if (view.count != vertex_count_)
@@ -72,7 +71,7 @@ class Attributes {
       ids_[name] = ids.back();
     }
     const std::span<const uint8_t> bytes = buffers_.buffer_view(extension.member("bufferView"));
-    DracoMesh mesh = decode_draco(bytes, ids, max_draco_triangles);
+    DracoMesh mesh = decode_draco(bytes, ids, max_scene_triangles);
     if (!mesh.problem.empty()) extension.fail(mesh.problem);
     decoded_ = std::make_shared<DracoMesh>(std::move(mesh));
   }
@@ -93,7 +92,7 @@ class Attributes {
     view.count = decoded_->vertex_count;
     view.components = found->components;
     view.stride = sizeof(float) * view.components;
-    view.component_type = type_float;
+    view.component_type = gltf_float;
     return view;
   }
 
@@ -122,7 +121,7 @@ void read_targets(const JsonNode& primitive, const GltfBuffers& buffers, GltfPri
       const auto node = list.find(name);
       if (!node) return std::nullopt;
       const AccessorView& view = buffers.accessor(*node);
-      if (view.components != 3 || view.component_type == type_unsigned_int)
+      if (view.components != 3 || view.component_type == gltf_unsigned_int)
         node->fail("its accessor should be of type VEC3");
       if (view.count != p.positions.count)
         node->fail("its accessor has " + std::to_string(view.count) + " elements, but POSITION " +
@@ -141,7 +140,7 @@ void read_indices(const JsonNode& primitive, GltfBuffers& buffers, GltfPrimitive
     view.count = p.decoded->indices.size();
     view.components = 1;
     view.stride = sizeof(uint32_t);
-    view.component_type = type_unsigned_int;
+    view.component_type = gltf_unsigned_int;
     p.indices = view;
     p.topology = GltfTopology::triangles;  // whatever they were before
   } else if (indices) {

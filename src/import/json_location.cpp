@@ -4,31 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "import/text_lines.h"
+
 namespace troffer {
 
 namespace {
 
 bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
-// Appends a code point as UTF-8.
-void append_utf8(std::string& out, uint32_t c) {
-  if (c < 0x80) {
-    out += char(c);
-  } else if (c < 0x800) {
-    out += char(0xc0 | (c >> 6));
-    out += char(0x80 | (c & 0x3f));
-  } else if (c < 0x10000) {
-    out += char(0xe0 | (c >> 12));
-    out += char(0x80 | ((c >> 6) & 0x3f));
-    out += char(0x80 | (c & 0x3f));
-  } else {
-    out += char(0xf0 | (c >> 18));
-    out += char(0x80 | ((c >> 12) & 0x3f));
-    out += char(0x80 | ((c >> 6) & 0x3f));
-    out += char(0x80 | (c & 0x3f));
-  }
 }
 
 uint32_t hex4(std::string_view digits) {
@@ -44,7 +27,7 @@ uint32_t hex4(std::string_view digits) {
 }
 
 // The characters that a JSON string (without its quotes) stands for [2] §7.
-std::string unescaped(std::string_view raw) {
+std::string json_unescaped(std::string_view raw) {
   std::string out;
   for (size_t i = 0; i < raw.size(); ++i) {
     if (raw[i] != '\\' || i + 1 >= raw.size()) {
@@ -149,7 +132,7 @@ class Scanner {
       if (peek() == ':') ++at_;
       skip_space();
       const bool is_it =
-          raw.find('\\') == std::string_view::npos ? raw == key : unescaped(raw) == key;
+          raw.find('\\') == std::string_view::npos ? raw == key : json_unescaped(raw) == key;
       if (is_it) found = at_;
       skip_value();
     } while (next());

@@ -20,7 +20,7 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_file_bytes = uint64_t(1) << 29;
+constexpr uint64_t max_measured_bytes = uint64_t(1) << 29;
 constexpr size_t max_fields = 256, max_dimensions = 8;
 constexpr uint8_t type_float = 10;  // 32 bits, little-endian
 
@@ -88,7 +88,7 @@ class TensorFile {
     t.count = 1;
     for (uint16_t d = 0; d < dimensions; ++d) {
       t.shape.push_back(take<uint64_t>());
-      if (t.shape.back() == 0 || t.shape.back() > max_file_bytes / t.count) t.count = 0;
+      if (t.shape.back() == 0 || t.shape.back() > max_measured_bytes / t.count) t.count = 0;
       if (t.count == 0) break;
       t.count *= t.shape.back();
     }
@@ -220,7 +220,7 @@ Material measured_material(const std::string& folder, const std::string& name,
   m.base_color.value = Rgb{0.5f};
   const std::string shown = "measured '" + printable(name) + "': ";
   try {
-    const TensorFile file(read_file(path_of(folder, name), max_file_bytes));
+    const TensorFile file(read_file(path_of(folder, name), max_measured_bytes));
     const Rgb colour = colour_of(file);
     const Peak peak = peak_of(file.field("ndf", 2));
     m.kind = MaterialKind::metallic_roughness;

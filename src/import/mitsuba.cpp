@@ -12,7 +12,7 @@ namespace troffer {
 
 namespace {
 
-constexpr int max_depth = 8;  // of shapes in shapes
+constexpr int max_shape_depth = 8;  // of shapes in shapes
 
 class MitsubaReader {
  public:
@@ -165,7 +165,7 @@ void MitsubaReader::add_children(const MitsubaNode& group, const Affine& parent,
 
 void MitsubaReader::add_shape(const MitsubaNode& node, const Affine& parent, bool is_instance) {
   if (node.type == "shapegroup") return;  // shown by its instances
-  if (++depth_ > max_depth) node.place.fail("shapes contain each other too deeply");
+  if (++depth_ > max_shape_depth) node.place.fail("shapes contain each other too deeply");
   if (node.type == "instance") {
     add_instance(node, parent);
   } else if (node.type == "merge") {

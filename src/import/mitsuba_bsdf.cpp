@@ -13,7 +13,7 @@ namespace troffer {
 
 namespace {
 
-constexpr int max_depth = 16;
+constexpr int max_bsdf_depth = 16;
 constexpr float default_alpha = 0.1f;
 
 bool is_texture(const ColorInput& c) {
@@ -383,7 +383,7 @@ std::optional<Material> MitsubaBsdfs::convert_simple(const MitsubaNode& node) {
 }
 
 std::optional<Material> MitsubaBsdfs::convert(const MitsubaNode& node) {
-  if (++depth_ > max_depth) node.place.fail("bsdfs contain each other too deeply");
+  if (++depth_ > max_bsdf_depth) node.place.fail("bsdfs contain each other too deeply");
   node.is_used = true;
   std::optional<Material> m = convert_simple(node);
   warn_of_unused(node, scene_.warnings);

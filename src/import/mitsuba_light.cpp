@@ -15,9 +15,9 @@ namespace {
 // observer's luminance curve.
 constexpr double luminance_per_radiance = 683 * 106.857;
 
-class LightReader {
+class MitsubaLightReader {
  public:
-  LightReader(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene)
+  MitsubaLightReader(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene)
       : node_(node), tree_(tree), scene_(scene), world_(get_transform(node, "to_world")) {}
 
   void read();
@@ -48,7 +48,7 @@ class LightReader {
   Vec3d sun_direction();
 };
 
-void LightReader::add(Light e) {
+void MitsubaLightReader::add(Light e) {
   if (!is_finite(e.radiance)) {
     scene_.warnings.add(label() + "too bright for a number: left out");
     return;
@@ -57,7 +57,7 @@ void LightReader::add(Light e) {
   scene_.lights.push_back(std::move(e));
 }
 
-bool LightReader::turn(Light& e, const Vec3d& direction) {
+bool MitsubaLightReader::turn(Light& e, const Vec3d& direction) {
   const double size = length(direction);
   if (!(size > 0) || !std::isfinite(size)) {
     scene_.warnings.add(label() + "its direction cannot be used: left out");
@@ -67,7 +67,7 @@ bool LightReader::turn(Light& e, const Vec3d& direction) {
   return true;
 }
 
-void LightReader::point() {
+void MitsubaLightReader::point() {
   Light e;
   e.kind = LightKind::point;
   e.radiance = color("intensity", Rgb{1});
@@ -77,7 +77,7 @@ void LightReader::point() {
 }
 
 // Linear in the angle between beam_width and cutoff_angle; ours is smooth in its cosine.
-void LightReader::spot() {
+void MitsubaLightReader::spot() {
   Light e;
   e.kind = LightKind::spot;
   const double cutoff = get_number(node_, "cutoff_angle", 20);
@@ -95,7 +95,7 @@ void LightReader::spot() {
   if (turn(e, world_.columns[2]) && is_finite(e.position)) add(std::move(e));
 }
 
-void LightReader::directional() {
+void MitsubaLightReader::directional() {
   Light e;
   e.kind = LightKind::distant;
   e.radiance = color("irradiance", Rgb{1});
@@ -104,7 +104,7 @@ void LightReader::directional() {
 }
 
 // The image's +z is the world's +y, its azimuth runs from -z to +x.
-bool LightReader::set_axes(Light& e) {
+bool MitsubaLightReader::set_axes(Light& e) {
   const Vec3d up = normalize(world_.columns[1]);
   const Vec3d x = normalize(-world_.columns[2] + up * dot(world_.columns[2], up));
   Vec3d y = cross(x, up);
@@ -117,7 +117,7 @@ bool LightReader::set_axes(Light& e) {
   return true;
 }
 
-void LightReader::envmap() {
+void MitsubaLightReader::envmap() {
   Light e;
   e.kind = LightKind::environment;
   e.radiance = Rgb{float(get_number(node_, "scale", 1))};
@@ -142,7 +142,7 @@ void LightReader::envmap() {
 }
 
 // Where none is given: 45° high, over +x and +z.
-Vec3d LightReader::sun_direction() {
+Vec3d MitsubaLightReader::sun_direction() {
   const auto given = get_vector(node_, "sun_direction");
   for (const char* name :
        {"latitude", "longitude", "timezone", "year", "month", "day", "hour", "minute", "second"})
@@ -156,7 +156,7 @@ Vec3d LightReader::sun_direction() {
 }
 
 // Luminances of clear skies by turbidity [3]; both white.
-void LightReader::daylight(bool has_sky, bool has_sun) {
+void MitsubaLightReader::daylight(bool has_sky, bool has_sun) {
   const double turbidity = std::clamp(get_number(node_, "turbidity", 3), 1.7, 10.0);
   const double both = get_number(node_, "scale", 1);
   const double sky_scale = get_number(node_, "sky_scale", both);
@@ -182,8 +182,8 @@ void LightReader::daylight(bool has_sky, bool has_sun) {
   if (turn(e, -to_sun)) add(std::move(e));
 }
 
-void LightReader::add_sky(double turbidity, double height, double scale, const Vec3d& to_sun,
-                          const Vec3d& up) {
+void MitsubaLightReader::add_sky(double turbidity, double height, double scale, const Vec3d& to_sun,
+                                 const Vec3d& up) {
   const double t = turbidity, theta = pi / 2 - height;
   Light e;
   e.kind = LightKind::sky;
@@ -203,7 +203,7 @@ void LightReader::add_sky(double turbidity, double height, double scale, const V
   if (turn(e, -to_sun)) add(std::move(e));
 }
 
-void LightReader::read() {
+void MitsubaLightReader::read() {
   find_parameter(node_, "sampling_weight");
   const std::string& type = node_.type;
   if (type == "point") {
@@ -231,7 +231,7 @@ void LightReader::read() {
 }  // namespace
 
 void add_mitsuba_light(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene) {
-  LightReader(node, tree, scene).read();
+  MitsubaLightReader(node, tree, scene).read();
 }
 
 }  // namespace troffer

@@ -3,13 +3,12 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "import/limits.h"
 #include "import/mitsuba_values.h"
 
 namespace troffer {
 
 namespace {
-
-constexpr int max_resolution = 65536;
 
 struct Film {
   int width = 768, height = 576;  // of the whole picture
@@ -24,8 +23,8 @@ Film read_film(const MitsubaNode& sensor, const MitsubaTree& tree) {
     child->is_used = true;
     film.width = get_integer(node, "width", film.width);
     film.height = get_integer(node, "height", film.height);
-    if (film.width < 1 || film.width > max_resolution || film.height < 1 ||
-        film.height > max_resolution)
+    if (film.width < 1 || film.width > max_picture_side || film.height < 1 ||
+        film.height > max_picture_side)
       node.place.fail("width and height of the film must lie in [1, 65536]");
     film.crop_x = get_integer(node, "crop_offset_x", 0);
     film.crop_y = get_integer(node, "crop_offset_y", 0);

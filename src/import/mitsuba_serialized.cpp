@@ -6,13 +6,14 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "import/limits.h"
 
 namespace troffer {
 
 namespace {
 
 constexpr uint16_t magic = 0x041C;
-constexpr uint64_t max_triangles = 60'000'000, max_vertices = 180'000'000;
+constexpr uint64_t max_vertices = 180'000'000;
 constexpr size_t chunk = size_t(1) << 16;  // numbers that memory is taken for at once
 
 enum Flag : uint32_t {
@@ -152,7 +153,7 @@ SerializedMesh read_serialized(std::span<const uint8_t> file, size_t index,
     }
   }
   const auto vertices = in.value<uint64_t>(), triangles = in.value<uint64_t>();
-  if (vertices > max_vertices || triangles > max_triangles) in.fail("the mesh is too large");
+  if (vertices > max_vertices || triangles > max_scene_triangles) in.fail("the mesh is too large");
   read_vertices(in, flags, vertices, out.mesh);
   read_triangles(in, triangles, vertices, out.mesh.mesh);
   return out;

@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-constexpr int max_depth = 16;
+constexpr int max_texture_depth = 16;
 constexpr Rgb unknown_color{0.5f};
 
 WrapMode wrap_mode(const MitsubaNode& node, const std::string& text) {
@@ -111,7 +111,7 @@ ColorInput MitsubaTextures::scaled(const MitsubaNode& node, bool is_raw) {
 }
 
 ColorInput MitsubaTextures::texture(const MitsubaNode& node, bool is_raw) {
-  if (++depth_ > max_depth) node.place.fail("textures contain each other too deeply");
+  if (++depth_ > max_texture_depth) node.place.fail("textures contain each other too deeply");
   ColorInput out{unknown_color, no_texture};
   if (node.type == "bitmap") {
     out = {Rgb{1}, bitmap(node, is_raw)};

@@ -9,9 +9,9 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_file_bytes = uint64_t(256) << 20;  // of all files
+constexpr uint64_t max_mitsuba_bytes = uint64_t(256) << 20;  // of all files
 constexpr size_t max_nodes = 8'000'000;
-constexpr size_t max_depth = 64, max_files = 200, max_open_files = 16;
+constexpr size_t max_element_depth = 64, max_included_files = 200, max_nested_files = 16;
 constexpr size_t max_expanded_bytes = size_t(64) << 20;  // of values with $parameters
 constexpr size_t max_value = size_t(1) << 20;
 
@@ -93,11 +93,11 @@ void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlac
                                        MitsubaNode& parent, size_t depth) {
   const auto name = std::make_shared<const std::string>(path);
   const SourcePlace top{name, 0, 0};
-  if (++files_ > max_files || open_files_ >= max_open_files)
+  if (++files_ > max_included_files || open_files_ >= max_nested_files)
     (from ? *from : top).fail("includes too many files, or itself");
-  const std::string text = read_text_file(path, max_file_bytes);
+  const std::string text = read_text_file(path, max_mitsuba_bytes);
   bytes_ += text.size();
-  if (bytes_ > max_file_bytes) top.fail("the files of this scene are too large");
+  if (bytes_ > max_mitsuba_bytes) top.fail("the files of this scene are too large");
   const Lines lines(text);
   pugi::xml_document document;
   // Entities of a document type are never expanded.
@@ -149,7 +149,7 @@ void MitsubaTreeReader::fill(const pugi::xml_node& from, MitsubaNode& node) {
 void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to,
                                   size_t depth) {
   const SourcePlace place = open.lines.place(open.path, from.offset_debug());
-  if (depth >= max_depth) place.fail("elements nest too deeply");
+  if (depth >= max_element_depth) place.fail("elements nest too deeply");
   if (tree_.nodes_.size() >= max_nodes) place.fail("the scene has too many elements");
   MitsubaNode& node = tree_.nodes_.emplace_back();
   node.tag = from.name();

@@ -14,8 +14,6 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_spectrum_file_bytes = uint64_t(1) << 24;
-constexpr double sodium_nm = 587.6;
 // Linear sRGB of X = Y = Z = 1.
 constexpr Rgb equal_energy_white{1.2048f, 0.9484f, 0.9089f};
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "import/emissive.h"
 #include "import/file.h"
+#include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/mtl.h"
 #include "import/polygon.h"
@@ -19,7 +20,6 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t max_triangles = 60'000'000;
 constexpr uint32_t nothing = 0xffffffffu;
 
 // Indices of one corner of a face, from 0; `nothing` where not given.
@@ -255,8 +255,9 @@ void ObjReader::read_face() {
     return;
   }
   counts_.triangles += face_.corners.size() - 2;
-  if (counts_.triangles > max_triangles)
-    lines_.fail("more than " + std::to_string(max_triangles / 1'000'000) + " million triangles");
+  if (counts_.triangles > max_scene_triangles)
+    lines_.fail("more than " + std::to_string(max_scene_triangles / 1'000'000) +
+                " million triangles");
   if (!parts_.current) select_part();
   parts_.firsts.resize(vertices_.positions.size());
   if (face_.corners.size() == 3) {

@@ -2,17 +2,17 @@
 
 #include <cmath>
 
+#include "import/limits.h"
+
 namespace troffer {
 
 namespace {
 
-constexpr int max_resolution = 65536;
-
 int resolution(const PbrtParams& params, const char* name, int fallback) {
   const int n = params.get_int(name, fallback);
-  if (n < 1 || n > max_resolution)
+  if (n < 1 || n > max_picture_side)
     fail_at(params.find(name)->place,
-            std::string(name) + " must be in [1, " + std::to_string(max_resolution) + "]");
+            std::string(name) + " must be in [1, " + std::to_string(max_picture_side) + "]");
   return n;
 }
 

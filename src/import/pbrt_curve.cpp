@@ -14,7 +14,7 @@ constexpr int tube_sides = 6;
 constexpr double most_turn_rad = 0.2;  // of a cell of a tube
 constexpr int most_cells = 16;         // of a segment
 
-struct Curve {
+struct PbrtCurve {
   std::vector<std::array<Vec3d, 4>> segments;  // cubic Bézier
   std::vector<Vec3d> normals;                  // at the segments' ends; empty: a tube
   double width0 = 1, width1 = 1;
@@ -37,14 +37,14 @@ std::array<Vec3d, 4> piece(const std::vector<Vec3d>& p, size_t i, size_t degree,
           c * 0.5 + (p[i + 2] * 2 + p[i + 3]) * (1.0 / 6)};
 }
 
-std::vector<Vec3d> vectors_of(const std::vector<double>& numbers) {
+std::vector<Vec3d> control_vectors(const std::vector<double>& numbers) {
   std::vector<Vec3d> out;
   for (size_t i = 0; i + 2 < numbers.size(); i += 3)
     out.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
   return out;
 }
 
-Curve read_curve(const PbrtParams& params, Vec3d& anchor) {
+PbrtCurve read_curve(const PbrtParams& params, Vec3d& anchor) {
   const std::string basis = params.get_string("basis", "bezier");
   const std::string type = params.get_string("type", "flat");
   const int degree = params.get_int("degree", 3);
@@ -54,20 +54,20 @@ Curve read_curve(const PbrtParams& params, Vec3d& anchor) {
     fail_at(params.place, params.owner + ": \"type\" should be flat, cylinder or ribbon");
   if (degree != 2 && degree != 3)
     fail_at(params.place, params.owner + ": \"degree\" should be 2 or 3");
-  std::vector<Vec3d> points = vectors_of(params.numbers("P", PbrtType::point3));
+  std::vector<Vec3d> points = control_vectors(params.numbers("P", PbrtType::point3));
   if (!points.empty()) anchor = points[0];
   for (Vec3d& p : points) p -= anchor;
   const auto d = size_t(degree), n = points.size();
   const bool is_bezier = basis == "bezier";
   if (n < d + 1 || (is_bezier && (n - 1) % d != 0))
     fail_at(params.place, params.owner + ": that number of points makes no curve");
-  Curve curve;
+  PbrtCurve curve;
   const size_t step = is_bezier ? d : 1;
   for (size_t i = 0; i + d < n; i += step) curve.segments.push_back(piece(points, i, d, is_bezier));
   const double width = params.get_float("width", 1);
   curve.width0 = params.get_float("width0", width);
   curve.width1 = params.get_float("width1", width);
-  curve.normals = vectors_of(params.numbers("N", PbrtType::normal));
+  curve.normals = control_vectors(params.numbers("N", PbrtType::normal));
   if (type != "ribbon") curve.normals.clear();
   if (type == "ribbon" && curve.normals.size() != curve.segments.size() + 1)
     fail_at(params.place, params.owner + ": a ribbon has one normal more than segments");
@@ -146,7 +146,7 @@ Vec3d side_of(const Vec3d& tangent, const Vec3d& wanted) {
 
 AnchoredMesh read_pbrt_curve(const PbrtParams& params, size_t max_triangles, WarningLog& warnings) {
   AnchoredMesh made;
-  const Curve curve = read_curve(params, made.anchor);
+  const PbrtCurve curve = read_curve(params, made.anchor);
   const bool is_strip = !curve.normals.empty();
   const size_t across = is_strip ? 1 : tube_sides, n = curve.segments.size();
   if (n > max_triangles / (2 * across * most_cells)) fail_at(params.place, "too many triangles");

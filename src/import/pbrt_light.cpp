@@ -15,10 +15,10 @@ namespace troffer {
 
 namespace {
 
-class LightReader {
+class PbrtLightReader {
  public:
-  LightReader(const PbrtParams& params, const Affine& world_from_light,
-              const PbrtSpectrumContext& context, Scene& scene)
+  PbrtLightReader(const PbrtParams& params, const Affine& world_from_light,
+                  const PbrtSpectrumContext& context, Scene& scene)
       : params_(params), transform_(world_from_light), context_(context), scene_(scene) {}
 
   std::optional<Light> point() {
@@ -228,7 +228,7 @@ std::optional<Light> read_pbrt_light(const std::string& type, const PbrtParams& 
                                      const PbrtSpectrumContext& context, Scene& scene) {
   Affine from_origin = world_from_light;
   from_origin.translation -= scene.origin;
-  LightReader reader(params, from_origin, context, scene);
+  PbrtLightReader reader(params, from_origin, context, scene);
   std::optional<Light> light;
   if (type == "point") {
     light = reader.point();

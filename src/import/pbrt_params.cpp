@@ -55,7 +55,7 @@ bool takes_strings(PbrtType type) {
   return type == PbrtType::string || type == PbrtType::texture || type == PbrtType::spectrum;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   return "\"" + std::string(text) + "\"";
 }
 
@@ -63,9 +63,9 @@ PbrtType find_type(std::string_view word, const PbrtPlace& place) {
   for (const TypeRow& row : type_rows)
     if (row.word == word) return row.type;
   if (word == "color" || word == "xyz")
-    fail_at(place, "parameter type " + quoted(word) +
+    fail_at(place, "parameter type " + in_quotes(word) +
                        " is pbrt-v3 syntax; pbrt-v4 files say \"rgb\" or \"spectrum\"");
-  fail_at(place, "unknown parameter type " + quoted(word.substr(0, 40)));
+  fail_at(place, "unknown parameter type " + in_quotes(word.substr(0, 40)));
 }
 
 // "type name" of a declaration, blanks between.
@@ -78,7 +78,7 @@ PbrtParam parse_declaration(const PbrtToken& token, const PbrtPlace& place) {
   const size_t name_begin =
       type_end == std::string_view::npos ? type_end : text.find_first_not_of(blank, type_end);
   if (name_begin == std::string_view::npos)
-    fail_at(place, "expected a parameter \"type name\", found " + quoted(text.substr(0, 40)));
+    fail_at(place, "expected a parameter \"type name\", found " + in_quotes(text.substr(0, 40)));
   const size_t name_end = std::min(text.find_first_of(blank, name_begin), text.size());
   PbrtParam param;
   param.type = find_type(text.substr(type_begin, type_end - type_begin), place);
@@ -89,7 +89,7 @@ PbrtParam parse_declaration(const PbrtToken& token, const PbrtPlace& place) {
 
 void check_integer(const PbrtParam& param, double value, const PbrtPlace& place) {
   if (!(std::floor(value) == value && std::abs(value) < 2147483648.0))
-    fail_at(place, "parameter " + quoted(param.name) + " needs 32-bit integers");
+    fail_at(place, "parameter " + in_quotes(param.name) + " needs 32-bit integers");
 }
 
 void add_value(PbrtParam& param, const PbrtToken& token, const PbrtTokenizer& tokens,
@@ -108,14 +108,14 @@ void add_value(PbrtParam& param, const PbrtToken& token, const PbrtTokenizer& to
   } else {
     fail_at(tokens.place(token), "'" + std::string(token.text.substr(0, 40)) +
                                      "' is no value for the " + type_name(param.type) +
-                                     " parameter " + quoted(param.name));
+                                     " parameter " + in_quotes(param.name));
   }
 }
 
 void parse_values(PbrtParam& param, PbrtTokenizer& tokens, WarningLog& warnings) {
   const PbrtToken first = tokens.next();
   if (first.kind == PbrtTokenKind::end || first.kind == PbrtTokenKind::close_bracket)
-    fail_at(tokens.place(first), "parameter " + quoted(param.name) + " has no value");
+    fail_at(tokens.place(first), "parameter " + in_quotes(param.name) + " has no value");
   if (first.kind != PbrtTokenKind::open_bracket) {
     add_value(param, first, tokens, warnings);
   } else {
@@ -126,18 +126,18 @@ void parse_values(PbrtParam& param, PbrtTokenizer& tokens, WarningLog& warnings)
     }
   }
   if (param.numbers.size() % group_size(param.type) != 0)
-    fail_at(param.place, "parameter " + quoted(param.name) + ": " +
+    fail_at(param.place, "parameter " + in_quotes(param.name) + ": " +
                              std::to_string(param.numbers.size()) + " numbers do not make whole " +
                              type_name(param.type) + " values");
 }
 
 [[noreturn]] void fail_type(const PbrtParam& param, const char* wanted) {
-  fail_at(param.place, "parameter " + quoted(param.name) + " should be of type " + wanted +
+  fail_at(param.place, "parameter " + in_quotes(param.name) + " should be of type " + wanted +
                            ", not " + type_name(param.type));
 }
 
 [[noreturn]] void fail_count(const PbrtParam& param) {
-  fail_at(param.place, "parameter " + quoted(param.name) + " should have one value");
+  fail_at(param.place, "parameter " + in_quotes(param.name) + " should have one value");
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ double PbrtParams::get_float(std::string_view name, double fallback) const {
   if (param->type != PbrtType::real && param->type != PbrtType::integer) fail_type(*param, "float");
   if (param->numbers.size() != 1) fail_count(*param);
   if (!std::isfinite(param->numbers[0]))
-    fail_at(param->place, "parameter " + quoted(name) + " is not finite");
+    fail_at(param->place, "parameter " + in_quotes(name) + " is not finite");
   return param->numbers[0];
 }
 

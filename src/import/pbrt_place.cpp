@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "import/emissive.h"
+#include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/placed_geometry.h"
 #include "import/tessellate.h"
@@ -10,8 +11,6 @@
 namespace troffer {
 
 namespace {
-
-constexpr size_t smallest_cost = 20;  // of a shape, in triangles
 
 bool is_similarity(const Affine& t) {
   return keeps_circles(t, 0, 1) && keeps_circles(t, 1, 2) && keeps_circles(t, 2, 0);
@@ -39,7 +38,7 @@ double mean_luminance(const Scene& scene, int32_t texture) {
 }  // namespace
 
 void PbrtPlacer::spend(size_t triangles, const PbrtPlace& place) {
-  cost_ += std::max(triangles, smallest_cost);
+  cost_ += std::max(triangles, least_shape_cost);
   if (cost_ > max_scene_triangles)
     fail_at(place, "the scene has too much geometry (over " +
                        std::to_string(max_scene_triangles / 1'000'000) + " million triangles)");

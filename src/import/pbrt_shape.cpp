@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "import/file.h"
+#include "import/limits.h"
 #include "import/pbrt_curve.h"
 #include "import/ply.h"
 #include "import/subdivide_loop.h"

@@ -14,7 +14,6 @@
 namespace troffer {
 
 // Most triangles of one scene, all instances counted.
-constexpr size_t max_scene_triangles = 60'000'000;
 
 // What an AreaLightSource directive says.
 struct PbrtAreaLight {

@@ -11,9 +11,6 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_spectrum_file_bytes = uint64_t(1) << 24;
-constexpr double sodium_nm = 587.6;
-
 [[noreturn]] void fail_param(const PbrtParam& param, const std::string& what) {
   fail_at(param.place, "parameter \"" + param.name + "\": " + what);
 }

@@ -10,7 +10,7 @@ namespace troffer {
 namespace {
 
 constexpr size_t max_images_per_lookup = 64;
-constexpr int max_texture_depth = 100;
+constexpr int max_pbrt_texture_depth = 100;
 
 // pbrt's v points up; the scene's textures have v down.
 void turn_upside_down(Texture& look, Vec2 scale, Vec2 offset) {
@@ -98,7 +98,8 @@ PbrtTextures::Named& PbrtTextures::find(const std::string& name, bool is_float,
 }
 
 void PbrtTextures::make(Named& texture, const std::string& name) {
-  if (++depth_ > max_texture_depth) fail_at(texture.params.place, "textures are nested too deeply");
+  if (++depth_ > max_pbrt_texture_depth)
+    fail_at(texture.params.place, "textures are nested too deeply");
   texture.is_being_made = true;
   if (texture.kind == "constant") {
     texture.value = argument(texture.params, "value", texture.is_float, Rgb{1}, texture.images);

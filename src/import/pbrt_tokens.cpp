@@ -11,11 +11,11 @@ namespace troffer {
 
 namespace {
 
-bool is_blank(char c) {
+bool is_pbrt_blank(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
 bool ends_word(char c) {
-  return is_blank(c) || c == '"' || c == '[' || c == ']' || c == '#' || c == '\0';
+  return is_pbrt_blank(c) || c == '"' || c == '[' || c == ']' || c == '#' || c == '\0';
 }
 bool may_start_number(char c) {
   return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
@@ -70,7 +70,7 @@ void PbrtTokenizer::skip_blanks() {
     if (c == '#') {
       while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '\r') ++at_;
       if (at_ == text_.size()) return;
-    } else if (!is_blank(c)) {
+    } else if (!is_pbrt_blank(c)) {
       return;
     }
     // A lone carriage return ends a line too; "\r\n" ends one.

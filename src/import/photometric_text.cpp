@@ -12,15 +12,15 @@ namespace troffer {
 
 namespace {
 
-bool is_blank(char c) {
+bool is_photometric_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || c == '\0' || c == '\x1a';
 }
 
 }  // namespace
 
 std::string_view trimmed(std::string_view s) {
-  while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
-  while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+  while (!s.empty() && is_photometric_blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && is_photometric_blank(s.back())) s.remove_suffix(1);
   return s;
 }
 
@@ -36,7 +36,7 @@ size_t PhotometricText::after_break(size_t at) const {
 
 bool PhotometricText::is_separator(size_t at) const {
   const char c = text_[at];
-  if (c != ',') return is_blank(c) || c == '\n';
+  if (c != ',') return is_photometric_blank(c) || c == '\n';
   const bool is_before_digit =
       at + 1 < text_.size() && text_[at + 1] >= '0' && text_[at + 1] <= '9';
   return !are_commas_decimal_ || !is_before_digit;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/tessellate.h"
 
@@ -9,8 +10,6 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t max_triangles = 60'000'000;
-constexpr size_t smallest_cost = 20;  // of a shape, in triangles
 constexpr double circle_tolerance = 1e-5;
 
 }  // namespace
@@ -60,10 +59,10 @@ bool keeps_circles(const Affine& t, size_t axis_a, size_t axis_b) {
 }
 
 void GeometryPlacer::spend(size_t triangles, const SourcePlace& place) {
-  cost_ += std::max(triangles, smallest_cost);
-  if (cost_ > max_triangles)
+  cost_ += std::max(triangles, least_shape_cost);
+  if (cost_ > max_scene_triangles)
     place.fail("the scene has too much geometry (over " +
-               std::to_string(max_triangles / 1'000'000) + " million triangles)");
+               std::to_string(max_scene_triangles / 1'000'000) + " million triangles)");
 }
 
 bool GeometryPlacer::needs_coordinates(const PlacedLook& look) const {

@@ -11,19 +11,19 @@ namespace {
 
 constexpr size_t max_header_items = 10000;
 
-struct TypeRow {
+struct PlyTypeRow {
   std::string_view name;
   PlyType type;
 };
-constexpr std::array type_rows{
-    TypeRow{"char", PlyType::int8},      TypeRow{"int8", PlyType::int8},
-    TypeRow{"uchar", PlyType::uint8},    TypeRow{"uint8", PlyType::uint8},
-    TypeRow{"short", PlyType::int16},    TypeRow{"int16", PlyType::int16},
-    TypeRow{"ushort", PlyType::uint16},  TypeRow{"uint16", PlyType::uint16},
-    TypeRow{"int", PlyType::int32},      TypeRow{"int32", PlyType::int32},
-    TypeRow{"uint", PlyType::uint32},    TypeRow{"uint32", PlyType::uint32},
-    TypeRow{"float", PlyType::float32},  TypeRow{"float32", PlyType::float32},
-    TypeRow{"double", PlyType::float64}, TypeRow{"float64", PlyType::float64},
+constexpr std::array ply_type_rows{
+    PlyTypeRow{"char", PlyType::int8},      PlyTypeRow{"int8", PlyType::int8},
+    PlyTypeRow{"uchar", PlyType::uint8},    PlyTypeRow{"uint8", PlyType::uint8},
+    PlyTypeRow{"short", PlyType::int16},    PlyTypeRow{"int16", PlyType::int16},
+    PlyTypeRow{"ushort", PlyType::uint16},  PlyTypeRow{"uint16", PlyType::uint16},
+    PlyTypeRow{"int", PlyType::int32},      PlyTypeRow{"int32", PlyType::int32},
+    PlyTypeRow{"uint", PlyType::uint32},    PlyTypeRow{"uint32", PlyType::uint32},
+    PlyTypeRow{"float", PlyType::float32},  PlyTypeRow{"float32", PlyType::float32},
+    PlyTypeRow{"double", PlyType::float64}, PlyTypeRow{"float64", PlyType::float64},
 };
 
 struct Word {
@@ -75,7 +75,7 @@ bool HeaderParser::next_line() {
 }
 
 PlyType HeaderParser::type_at(size_t i) const {
-  for (const TypeRow& row : type_rows)
+  for (const PlyTypeRow& row : ply_type_rows)
     if (row.name == word(i)) return row.type;
   fail(i, "unknown PLY type '" + std::string(word(i).substr(0, 40)) + "'");
 }

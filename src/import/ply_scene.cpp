@@ -1,21 +1,18 @@
 #include "import/ply_scene.h"
 
+#include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/ply.h"
 #include "import/recentre.h"
 
 namespace troffer {
 
-namespace {
-
-constexpr size_t max_triangles = 60'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 Scene import_ply(const std::string& path) {
   return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
     scene.file = path;
-    AnchoredMesh read = read_ply(path, scene.warnings, max_triangles);
+    AnchoredMesh read = read_ply(path, scene.warnings, max_scene_triangles);
     Mesh& mesh = read.mesh;
     const Vec3d shift = read.anchor - scene.origin;
     const auto placed = [&](uint32_t v) { return Vec3d(mesh.positions[v]) + shift; };

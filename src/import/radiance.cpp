@@ -11,7 +11,8 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_file_bytes = uint64_t(1) << 30;  // of all files, as often as they are shown
+constexpr uint64_t max_radiance_bytes = uint64_t(1)
+                                        << 30;  // of all files, as often as they are shown
 constexpr size_t max_open_files = 16;
 
 class RadianceReader {
@@ -65,9 +66,10 @@ void RadianceReader::read_file(const std::string& path, const Shown& shown,
   const SourcePlace top{std::make_shared<const std::string>(path), 0, 0};
   if (open_files_ >= max_open_files) (from ? *from : top).fail("files show each other without end");
   std::shared_ptr<const std::string>& text = texts_[path];
-  if (!text) text = std::make_shared<const std::string>(read_text_file(path, max_file_bytes));
+  if (!text) text = std::make_shared<const std::string>(read_text_file(path, max_radiance_bytes));
   bytes_ += text->size();
-  if (bytes_ > max_file_bytes) (from ? *from : top).fail("the files of this scene are too large");
+  if (bytes_ > max_radiance_bytes)
+    (from ? *from : top).fail("the files of this scene are too large");
   ++open_files_;
   const std::shared_ptr<const std::string> kept = text;
   RadianceText words(top.file, *kept);

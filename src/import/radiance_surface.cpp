@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/polygon.h"
 #include "import/radiance_sky.h"
@@ -13,7 +14,6 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t max_triangles = 60'000'000;
 constexpr int round_steps = 64;
 
 // z along `axis`, at `origin`.
@@ -107,7 +107,8 @@ void RadianceSurfaces::add_polygon(const RadianceModifier& p, const std::string&
     return;
   }
   triangles_ += corners.size();
-  if (triangles_ > max_triangles) p.place.fail("the scene has more than 60 million triangles");
+  if (triangles_ > max_scene_triangles)
+    p.place.fail("the scene has more than 60 million triangles");
   if (world.swaps_handedness()) std::reverse(corners.begin(), corners.end());
   for (Vec3d& c : corners) c = world.point(c);
   std::vector<Vec3> points;

@@ -10,7 +10,7 @@ namespace {
 constexpr size_t max_arguments = 30'000'000;
 constexpr size_t max_views = 100;
 
-bool is_blank(char c) {
+bool is_radiance_blank(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
 }
 
@@ -30,14 +30,16 @@ double radiance_number(const std::string& word, const SourcePlace& place) {
 std::vector<std::string> words_of(std::string_view line) {
   std::vector<std::string> words;
   for (size_t i = 0; i < line.size();) {
-    if (is_blank(line[i])) {
+    if (is_radiance_blank(line[i])) {
       ++i;
       continue;
     }
     const char quote = line[i] == '"' || line[i] == '\'' ? line[i] : '\0';
     const size_t begin = quote != '\0' ? i + 1 : i;
     size_t end = begin;
-    while (end < line.size() && (quote != '\0' ? line[end] != quote : !is_blank(line[end]))) ++end;
+    while (end < line.size() &&
+           (quote != '\0' ? line[end] != quote : !is_radiance_blank(line[end])))
+      ++end;
     words.emplace_back(line.substr(begin, end - begin));
     i = end + (quote != '\0' ? 1 : 0);
   }
@@ -52,7 +54,7 @@ void RadianceText::skip_blanks() {
       if (views_.size() < max_views && comment.find("-vp") != std::string_view::npos)
         views_.emplace_back(comment);
       at_ = end;
-    } else if (!is_blank(text_[at_])) {
+    } else if (!is_radiance_blank(text_[at_])) {
       return;
     } else {
       if (text_[at_] == '\n') {
@@ -76,8 +78,8 @@ std::string RadianceText::word() {
   const char quote = text_[at_] == '"' ? '"' : '\0';
   const size_t begin = quote != '\0' ? at_ + 1 : at_;
   size_t end = begin;
-  while (end < text_.size() &&
-         (quote != '\0' ? text_[end] != quote && text_[end] != '\n' : !is_blank(text_[end])))
+  while (end < text_.size() && (quote != '\0' ? text_[end] != quote && text_[end] != '\n'
+                                              : !is_radiance_blank(text_[end])))
     ++end;
   at_ = end + (quote != '\0' && end < text_.size() && text_[end] == quote ? 1 : 0);
   if (end == begin) return " ";  // "": a word all the same

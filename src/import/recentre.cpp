@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-constexpr double largest_coordinate = 1e9;  // as for triangles (triangle_check.h)
+constexpr double largest_reach = 1e9;  // as for triangles (triangle_check.h)
 constexpr double usual_step = 100, far_step = 10;
 constexpr double anchor_step = 1000;
 // Short of twice the box, and beside the half of a step: boxes and places in round numbers are
@@ -19,8 +19,7 @@ constexpr double coarse_resolution = 1e-3;
 
 bool is_usable(const Vec3d& p) {
   const Vec3d reach = abs(p);  // false for NaN:
-  return reach.x <= largest_coordinate && reach.y <= largest_coordinate &&
-         reach.z <= largest_coordinate;
+  return reach.x <= largest_reach && reach.y <= largest_reach && reach.z <= largest_reach;
 }
 
 double longest_side(const Boxd& box) {

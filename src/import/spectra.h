@@ -6,6 +6,7 @@
 //   [3] pbrt-v4 Input File Format, pbrt.org/fileformat-v4 (names of spectra).
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,9 @@ struct SampledSpectrum {
   std::vector<double> wavelengths_nm;
   std::vector<double> values;
 };
+
+constexpr uint64_t max_spectrum_file_bytes = uint64_t(1) << 24;
+constexpr double sodium_nm = 587.6;  // where single indices of refraction are given
 
 double value_at(const SampledSpectrum& spectrum, double wavelength_nm);
 

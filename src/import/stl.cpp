@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "import/file.h"
+#include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/recentre.h"
 #include "import/text_lines.h"
@@ -15,7 +16,6 @@ namespace troffer {
 namespace {
 
 constexpr size_t header_size = 84, facet_size = 50;  // of binary files
-constexpr uint64_t max_triangles = 60'000'000;
 
 // The corners of all triangles, one after the other.
 std::vector<Vec3d> read_binary(const std::string& text, uint64_t count) {
@@ -40,7 +40,7 @@ std::vector<Vec3d> read_text(const std::string& path, const std::string& text) {
       const double x = lines.precise_number(), y = lines.precise_number();
       corners.emplace_back(x, y, lines.precise_number());
       if (++in_facet > 3) lines.fail("a facet has three vertices");
-      if (corners.size() > 3 * max_triangles) lines.fail("too many triangles");
+      if (corners.size() > 3 * max_scene_triangles) lines.fail("too many triangles");
     } else if (word == "endfacet") {
       if (in_facet != 3) lines.fail("a facet has three vertices");
       in_facet = 0;
@@ -70,7 +70,7 @@ std::vector<Vec3d> read_corners(const std::string& path, const std::string& text
     throw InputError(
         path, 0, 0,
         "is no STL file, or is too short for its " + std::to_string(count) + " triangles");
-  if (count > max_triangles) throw InputError(path, 0, 0, "has too many triangles");
+  if (count > max_scene_triangles) throw InputError(path, 0, 0, "has too many triangles");
   return read_binary(text, count);
 }
 

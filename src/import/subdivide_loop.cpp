@@ -15,7 +15,7 @@ struct Shape {
   std::vector<Triangle> triangles;
 };
 
-struct Edge {
+struct LoopEdge {
   uint32_t a = 0, b = 0;
   std::array<uint32_t, 2> opposite{};  // the third corners of the first two triangles
   uint32_t triangles = 0;
@@ -34,7 +34,7 @@ uint64_t key_of(uint32_t a, uint32_t b) {
 
 // Edges in the order in which triangles meet them, and how to find them.
 struct Edges {
-  std::vector<Edge> all;
+  std::vector<LoopEdge> all;
   std::unordered_map<uint64_t, uint32_t> index;
 
   explicit Edges(const Shape& shape) {
@@ -44,7 +44,7 @@ struct Edges {
         const uint32_t a = t[k], b = t[(k + 1) % 3];
         const auto [at, is_new] = index.try_emplace(key_of(a, b), uint32_t(all.size()));
         if (is_new) all.push_back({a, b, {}, 0});
-        Edge& e = all[at->second];
+        LoopEdge& e = all[at->second];
         if (e.triangles < 2) e.opposite[e.triangles] = t[(k + 2) % 3];
         ++e.triangles;
       }
@@ -61,7 +61,7 @@ std::vector<Ring> rings_of(const Shape& shape, const Edges& edges) {
     r.boundary_sum += shape.positions[from];
     ++r.boundary;
   };
-  for (const Edge& e : edges.all) {
+  for (const LoopEdge& e : edges.all) {
     add(e.a, e.b, !e.is_inside());
     add(e.b, e.a, !e.is_inside());
   }
@@ -89,7 +89,7 @@ Shape subdivided(const Shape& coarse) {
   for (uint32_t i = 0; i < n; ++i)
     fine.positions.push_back(
         moved(coarse.positions[i], rings[i], neighbour_weight(rings[i].neighbours), 1.0 / 8));
-  for (const Edge& e : edges.all) {
+  for (const LoopEdge& e : edges.all) {
     const Vec3d ends = coarse.positions[e.a] + coarse.positions[e.b];
     fine.positions.push_back(e.is_inside() ? ends * 0.375 + (coarse.positions[e.opposite[0]] +
                                                              coarse.positions[e.opposite[1]]) *

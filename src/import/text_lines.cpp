@@ -12,27 +12,8 @@ namespace troffer {
 
 namespace {
 
-bool is_blank(char c) {
+bool is_blank_in_line(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
-
-void append_utf8(std::string& out, uint32_t c) {
-  const auto put = [&](uint32_t bits) { out += char(static_cast<unsigned char>(bits)); };
-  if (c < 0x80) {
-    put(c);
-  } else if (c < 0x800) {
-    put(0xc0 | c >> 6);
-    put(0x80 | (c & 63));
-  } else if (c < 0x10000) {
-    put(0xe0 | c >> 12);
-    put(0x80 | (c >> 6 & 63));
-    put(0x80 | (c & 63));
-  } else {
-    put(0xf0 | c >> 18);
-    put(0x80 | (c >> 12 & 63));
-    put(0x80 | (c >> 6 & 63));
-    put(0x80 | (c & 63));
-  }
 }
 
 // By the number of bytes that each character has; overlong forms are let through.
@@ -50,6 +31,25 @@ bool is_utf8(std::string_view text) {
 }
 
 }  // namespace
+
+void append_utf8(std::string& out, uint32_t code_point) {
+  const auto put = [&](uint32_t bits) { out += char(static_cast<unsigned char>(bits)); };
+  if (code_point < 0x80) {
+    put(code_point);
+  } else if (code_point < 0x800) {
+    put(0xc0 | code_point >> 6);
+    put(0x80 | (code_point & 63));
+  } else if (code_point < 0x10000) {
+    put(0xe0 | code_point >> 12);
+    put(0x80 | (code_point >> 6 & 63));
+    put(0x80 | (code_point & 63));
+  } else {
+    put(0xf0 | code_point >> 18);
+    put(0x80 | (code_point >> 12 & 63));
+    put(0x80 | (code_point >> 6 & 63));
+    put(0x80 | (code_point & 63));
+  }
+}
 
 std::string as_utf8(std::string text) {
   const bool is_little = text.starts_with("\xff\xfe"), is_big = text.starts_with("\xfe\xff");
@@ -119,7 +119,7 @@ bool TextLines::next_line() {
 }
 
 void TextLines::skip_blanks() {
-  while (at_ < end_ && is_blank(*at_)) ++at_;
+  while (at_ < end_ && is_blank_in_line(*at_)) ++at_;
   word_ = at_;
 }
 
@@ -130,14 +130,14 @@ bool TextLines::has_word() {
 
 std::string_view TextLines::word() {
   if (!has_word()) return {};
-  while (at_ < end_ && !is_blank(*at_)) ++at_;
+  while (at_ < end_ && !is_blank_in_line(*at_)) ++at_;
   return {word_, size_t(at_ - word_)};
 }
 
 std::string_view TextLines::rest() {
   skip_blanks();
   const char* last = end_;
-  while (last > at_ && is_blank(last[-1])) --last;
+  while (last > at_ && is_blank_in_line(last[-1])) --last;
   at_ = end_;
   return {word_, size_t(last - word_)};
 }
@@ -149,7 +149,7 @@ Real TextLines::read_number() {
   if (begin < end_ && *begin == '+' && begin + 1 < end_ && begin[1] != '-') ++begin;
   Real value = 0;
   const auto result = std::from_chars(begin, end_, value);
-  const bool is_whole = result.ptr == end_ || is_blank(*result.ptr);
+  const bool is_whole = result.ptr == end_ || is_blank_in_line(*result.ptr);
   if (result.ec == std::errc::invalid_argument || !is_whole) {
     const std::string_view found = word();
     // What some C libraries print for NaN and infinity: 1.#IND, -1.#INF.

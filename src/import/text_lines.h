@@ -1,6 +1,7 @@
 // Text files of one statement per line, word by word: what OBJ and MTL share.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,9 @@ namespace troffer {
 
 // The text as UTF-8: from UTF-16 where it has a byte order mark; from Latin-1 where it is no UTF-8.
 std::string as_utf8(std::string text);
+
+// Appends a code point.
+void append_utf8(std::string& out, uint32_t code_point);
 
 // Takes lines apart. A backslash at the end of a line joins it with the next one; lines end with
 // "\n", "\r\n" or "\r".

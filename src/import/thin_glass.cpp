@@ -21,7 +21,7 @@ bool may_be_thin_glass(const Material& m) {
 namespace {
 
 constexpr double most_thickness = 1.0 / 30;  // of the smaller side
-constexpr double flatness = 1e-3;            // of the thickness
+constexpr double cap_flatness = 1e-3;        // of the thickness
 constexpr size_t most_triangles = 1 << 17;   // of a mesh that is looked at
 
 // The same glass as a sheet; what tints light tints it at both faces of the body.
@@ -133,8 +133,8 @@ Sheet sheet_in(const Mesh& mesh, const std::vector<uint32_t>& body) {
     int above = 0;
     for (const Vec3& p : c) {
       const double h = dot(Vec3d(p), axes[0]);
-      const bool is_high = high[0] - h < flatness * thickness;
-      if (!is_high && h - low[0] >= flatness * thickness) return {};
+      const bool is_high = high[0] - h < cap_flatness * thickness;
+      if (!is_high && h - low[0] >= cap_flatness * thickness) return {};
       above += is_high ? 1 : 0;
     }
     const double area =

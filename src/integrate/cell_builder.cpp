@@ -33,7 +33,7 @@ constexpr uint32_t most_rays_of_row = 4096;
 constexpr double most_unresolved = 1e-5;  // of the light asked for, for an error of .01 or less
 constexpr double enough_of_wanted = 1.5;  // further rays that a kept cell has: no more then
 constexpr int most_rounds = 12;
-constexpr size_t most_cells = 1 << 21;
+constexpr size_t most_cells_of_map = 1 << 21;
 constexpr size_t tasks_at_a_time = 1 << 14;
 constexpr int bounces_of_importance = 24;
 
@@ -248,7 +248,7 @@ std::vector<uint32_t> Builder::cells_to_resolve() {
   }
   statistics_.unresolved = all > 0 ? open / all : 0;
   const double most = most_unresolved * coarseness(options_.error, 0.01);
-  if (statistics_.unresolved <= most || map_->size() > most_cells) return {};
+  if (statistics_.unresolved <= most || map_->size() > most_cells_of_map) return {};
   std::sort(cells.begin(), cells.end(),
             [&](uint32_t a, uint32_t b) { return y[a] != y[b] ? y[a] > y[b] : a < b; });
   double left = open;

@@ -12,7 +12,7 @@ namespace troffer {
 namespace {
 
 constexpr size_t cells_of_group = 32;
-constexpr size_t hits_at_a_time = 64;
+constexpr size_t hits_of_group = 64;
 
 struct Worker {
   std::unique_ptr<DirectLightScratch> direct;
@@ -94,7 +94,7 @@ void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight
       w.wave.walks.push_back(walk);
       w.wave.vertices.push_back(vertex_of(hit));
       w.wave.scatterings.emplace_back(walks.white_at(hit, pi_f)).is_gentle = true;
-      if (w.wave.size() == hits_at_a_time) send();
+      if (w.wave.size() == hits_of_group) send();
     }
   send();
   direct.flush(*w.direct, w.out, w.counters);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t rays_at_a_time = 1024;
 
-struct Worker {
+struct RayWorker {
   GatherScratch gather;
   std::vector<uint32_t> tasks;  // of each ray
   Counters counters;
@@ -36,11 +36,11 @@ std::vector<Chunk> chunks_of(std::span<const CellTask> tasks) {
 }
 
 std::string name_of_ray(const void* worker, size_t i) {
-  return "ray of cell task " + std::to_string(static_cast<const Worker*>(worker)->tasks[i]);
+  return "ray of cell task " + std::to_string(static_cast<const RayWorker*>(worker)->tasks[i]);
 }
 
 void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
-                 Chunk& chunk, std::vector<Rgb>& emission, Worker& w) {
+                 Chunk& chunk, std::vector<Rgb>& emission, RayWorker& w) {
   GatherScratch& g = w.gather;
   g.walks.clear();
   w.tasks.clear();
@@ -82,7 +82,7 @@ void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<con
   out.seen.clear();
   out.emission.assign(tasks.size(), Rgb{0});
   std::vector<Chunk> chunks = chunks_of(tasks);
-  std::vector<Worker> workers(size_t(thread_count(threads)));
+  std::vector<RayWorker> workers(size_t(thread_count(threads)));
   SharedWork work;
   work.items = chunks.size();
   work.threads = threads;
@@ -102,7 +102,7 @@ void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<con
     for (Rgb& e : emission_of(chunks[c])) e = in.next<Rgb>();
   };
   share(crew, work, stop);
-  for (const Worker& w : workers) counters += w.counters;
+  for (const RayWorker& w : workers) counters += w.counters;
   for (const Chunk& c : chunks) out.seen.insert(out.seen.end(), c.seen.begin(), c.seen.end());
 }
 

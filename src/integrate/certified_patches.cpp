@@ -21,7 +21,7 @@ constexpr uint32_t purpose_patches = 0x70617463;
 
 // Patches of more pieces, each of which would be a source, stay in the general light. So do those
 // nearer than their own length: what a hit gets from them would show their elements' edges.
-constexpr uint32_t most_pieces = 4;
+constexpr uint32_t most_pieces_of_patch = 4;
 constexpr float nearest = 1;
 
 }  // namespace
@@ -30,7 +30,7 @@ SelectionOptions certified_selection(bool has_patches) {
   SelectionOptions o;
   o.is_enabled = has_patches;
   o.treats_all_lights = true;
-  o.most_patch_pieces = most_pieces;
+  o.most_patch_pieces = most_pieces_of_patch;
   o.nearest_patch = nearest;
   return o;
 }

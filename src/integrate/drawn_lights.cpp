@@ -122,8 +122,8 @@ void DrawnLightsScratch::resize(size_t n) {
 
 namespace {
 
-// Draws at a time, and rays that wait at most.
-constexpr size_t block = 1024, most_waiting = 16384;
+// Draws at a time.
+constexpr size_t block = 1024;
 
 struct Drawing {
   const DrawnLights& world;
@@ -307,7 +307,8 @@ void draw_lights(const DrawnLights& world, const WaitingHits& hits, std::span<ui
     ++counters.mixed;
     if (hits.is_first[m] != 0) out.sources[hits.indices[m]] += Rgb{1, 0, 0};
   }
-  if (s.rays.size() >= most_waiting) resolve_draws(world.scene, hits, s, out, counters);
+  if (s.rays.size() >= DrawnLightsScratch::most_rays)
+    resolve_draws(world.scene, hits, s, out, counters);
 }
 
 void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLightsScratch& s,

@@ -57,7 +57,8 @@ struct DrawnLightsScratch {
     Rgb expected;  // what has been counted of it beforehand: taken off again
   };
   std::vector<Draw> draws;
-  std::vector<size_t> runs;  // where draws of another pixel, or cluster, begin
+  std::vector<size_t> runs;                   // where draws of another pixel, or cluster, begin
+  static constexpr size_t most_rays = 16384;  // that wait
   std::vector<Ray> rays;
   std::vector<uint8_t> is_occluded;
   PaneFactors factors;

@@ -14,7 +14,6 @@ namespace {
 
 // As for other lights (drawn_lights.cpp).
 constexpr double clutter = 2;
-constexpr size_t most_waiting = 16384;
 // Less than this share of the light is not taken to arrive, when numbers of draws are chosen.
 constexpr double least_open = 0.02;
 constexpr uint64_t purpose_far = 0x6661'7200;
@@ -26,9 +25,9 @@ double area_of(const Quad& q) {
   return 0.5 * length(cross(Vec3d(q[2]) - Vec3d(q[0]), Vec3d(q[3]) - Vec3d(q[1])));
 }
 
-class Drawing {
+class FarDrawing {
  public:
-  Drawing(const FarDraws& draws, DrawnLightsScratch& s)
+  FarDrawing(const FarDraws& draws, DrawnLightsScratch& s)
       : d_(draws), left_(draws.cluster.memory.left), s_(s) {
     for (const LeftPart& part : left_) {
       points_.emplace_back(part.cell);
@@ -171,7 +170,7 @@ FarScene far_scene(const Occluders& occluders) {
 void draw_left(const FarDraws& draws, const DrawingBudget& budget, DrawnLightsScratch& s,
                RadianceBatch& out, Counters& counters) {
   if (draws.cluster.memory.left.empty()) return;
-  Drawing drawing(draws, s);
+  FarDrawing drawing(draws, s);
   const double of_pixel =
       drawing.points_of_pixel(double(budget.error), draws.cluster.memory.far_open);
   FarCounts numbers(draws.hits, draws.members, budget, out.typical > 0, of_pixel,
@@ -186,7 +185,8 @@ void draw_left(const FarDraws& draws, const DrawingBudget& budget, DrawnLightsSc
     const uint32_t n = numbers.of(i, before);
     drawing.of_member(i, n, before, out);
   }
-  if (s.rays.size() >= most_waiting) resolve_draws(draws.scene, draws.hits, s, out, counters);
+  if (s.rays.size() >= DrawnLightsScratch::most_rays)
+    resolve_draws(draws.scene, draws.hits, s, out, counters);
 }
 
 }  // namespace troffer

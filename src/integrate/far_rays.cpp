@@ -13,11 +13,11 @@ namespace troffer {
 namespace {
 
 constexpr uint64_t purpose_points = 0x6661'7270;
-constexpr size_t most_waiting = 16384;
+constexpr size_t most_waiting_rays = 16384;
 // Where no pilot arrives, so little light can that more points of a hit are not worth their time.
 constexpr double most_of_closed = 1;
 // As for other lights (far_draws.cpp).
-constexpr double clutter = 2;
+constexpr double clutter_of_rays = 2;
 // Points of a hit: what it costs is worth so many, where what arrives differs from place to place.
 constexpr double least_of_sky = 8, least_of_sun = 4;
 constexpr uint32_t most_few = 16;       // points that are not worth chances of their own
@@ -123,7 +123,7 @@ class Casting {
     for (size_t k = 0; k < n; ++k) add(s_.of_sorted[k], s_.points[k], s_.radiance[k]);
     s_.choices.clear();
     s_.of_choice.clear();
-    if (s_.rays.size() >= most_waiting) trace();
+    if (s_.rays.size() >= most_waiting_rays) trace();
   }
 
   void add(uint32_t i, const FarPoints::Point& p, const Rgb& radiance) {
@@ -229,7 +229,7 @@ FarLight mean_light(const FarPointDraws& d, std::span<const uint32_t> members,
 // N of a sequence over light of which rays from one place say so different things err by
 // spread × N^-3/4; of a pixel, or of a point's samples.
 double points_for(double spread, double allowed) {
-  return std::max(allowed > 0 ? clutter * std::pow(spread / allowed, 4.0 / 3) : 0.0, 1.0);
+  return std::max(allowed > 0 ? clutter_of_rays * std::pow(spread / allowed, 4.0 / 3) : 0.0, 1.0);
 }
 
 // How many of a pixel's points go to each sun, and to the sky by what arrives from there alone.

@@ -40,7 +40,7 @@ ViewingRays pairs_of_rays(const PictureView& view, uint64_t seed) {
   return rays;
 }
 
-std::string name_of_ray(const void*, size_t i) {
+std::string name_of_forecast_ray(const void*, size_t i) {
   return "path " + std::to_string(i) + " of a forecast";
 }
 
@@ -51,7 +51,7 @@ std::vector<double> luminances(const PreparedScene& scene, const ViewingRays& ra
   const std::unique_ptr<IntegratorScratch> scratch = paths.make_scratch();
   RadianceBatch out;
   out.reset(rays.size());
-  const CheckContext context(&rays, rays.size(), name_of_ray);
+  const CheckContext context(&rays, rays.size(), name_of_forecast_ray);
   paths.radiance(rays, *scratch, out, counters);
   std::vector<double> values;
   for (size_t i = 0; i < rays.size(); ++i) {

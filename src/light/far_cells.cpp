@@ -26,8 +26,9 @@ constexpr double table_error = 1e-3, samples_of_mask = 178;
 constexpr double near_plane = 0.125;
 
 // Where the radiance is looked at for the fit: nodes of Chebyshev's.
-constexpr double nodes[4] = {0.5 - 0.5 * 0.92387953251128674, 0.5 - 0.5 * 0.38268343236508977,
-                             0.5 + 0.5 * 0.38268343236508977, 0.5 + 0.5 * 0.92387953251128674};
+constexpr double chebyshev_nodes[4] = {
+    0.5 - 0.5 * 0.92387953251128674, 0.5 - 0.5 * 0.38268343236508977,
+    0.5 + 0.5 * 0.38268343236508977, 0.5 + 0.5 * 0.92387953251128674};
 // … and where the fit is held against it; not on the very edge, beyond which lies the ground.
 constexpr double checks[6] = {1e-4, 0.13, 0.31, 0.5, 0.77, 1 - 1e-4};
 
@@ -52,9 +53,9 @@ std::array<std::array<double, 4>, 4> coefficients_of_values() {
     size_t degree = 0;
     for (size_t k = 0; k < 4; ++k) {
       if (k == n) continue;
-      const double scale = 1 / (nodes[n] - nodes[k]);
-      for (size_t i = ++degree; i > 0; --i) c[i] = (c[i - 1] - nodes[k] * c[i]) * scale;
-      c[0] *= -nodes[k] * scale;
+      const double scale = 1 / (chebyshev_nodes[n] - chebyshev_nodes[k]);
+      for (size_t i = ++degree; i > 0; --i) c[i] = (c[i - 1] - chebyshev_nodes[k] * c[i]) * scale;
+      c[0] *= -chebyshev_nodes[k] * scale;
     }
     for (size_t i = 0; i < 4; ++i) m[i][n] = c[i];
   }
@@ -286,7 +287,8 @@ class Cutter {
   void set_fit(const Face& f, const Square& s, FarCell& cell) const {
     std::array<std::array<Rgb, 4>, 4> values;
     for (size_t m = 0; m < 4; ++m)
-      for (size_t n = 0; n < 4; ++n) values[m][n] = radiance(s.at(f, nodes[m], nodes[n]));
+      for (size_t n = 0; n < 4; ++n)
+        values[m][n] = radiance(s.at(f, chebyshev_nodes[m], chebyshev_nodes[n]));
     for (size_t c = 0; c < 3; ++c)
       for (size_t i = 0; i < 4; ++i)
         for (size_t j = 0; j < 4; ++j) {

@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-constexpr double step = 1.3;  // from one size that does not do to the next
+constexpr double size_step = 1.3;  // from one size that does not do to the next
 
 double total_area(const BaseGeometry& g, const std::vector<uint32_t>& same_as) {
   double sum = 0;
@@ -50,7 +50,7 @@ size_t count_cut(const BaseGeometry& g, const std::vector<uint32_t>& same_as,
 double within_reach(double size, double area, uint32_t most) {
   constexpr double pieces_short = 1e4;
   const double least = std::sqrt(area / (pieces_short * std::max(most, 1u)));
-  while (size < least) size *= step;
+  while (size < least) size *= size_step;
   return size;
 }
 
@@ -105,12 +105,12 @@ JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_a
       const bool elements_fit = plan.elements.count + cut_elements <= max_elements;
       if (is_last || (sheets_fit && elements_fit)) break;
       angle = std::min(75.0, angle * 1.6);
-      if (!sheets_fit) patch *= step;
-      if (!elements_fit) element *= step;
+      if (!sheets_fit) patch *= size_step;
+      if (!elements_fit) element *= size_step;
       continue;
     }
-    if (cut_sheets > max_sheets) patch *= step;
-    if (cut_elements > max_elements) element *= step;
+    if (cut_sheets > max_sheets) patch *= size_step;
+    if (cut_elements > max_elements) element *= size_step;
     if (round < strict_rounds) --round;  // sizes alone: no reason to loosen the rules
   }
   plan.set_sizes(element, patch, angle, element / wanted);

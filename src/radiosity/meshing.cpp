@@ -16,23 +16,23 @@ namespace {
 // Triangles over the same three places, of whatever mesh and whichever way round, are one surface,
 // unless one of them emits.
 std::vector<uint32_t> find_duplicates(const BaseGeometry& g) {
-  using Corners = std::array<std::array<float, 3>, 3>;
+  using CornerPositions = std::array<std::array<float, 3>, 3>;
   struct Hash {
-    size_t operator()(const Corners& corners) const {
+    size_t operator()(const CornerPositions& corners) const {
       uint64_t h = 0;
       for (const auto& c : corners)
         for (const float x : c) h = hash_combine(h, std::bit_cast<uint32_t>(x + 0.0f));  // no -0
       return size_t(h);
     }
   };
-  std::unordered_map<Corners, uint32_t, Hash> first;
+  std::unordered_map<CornerPositions, uint32_t, Hash> first;
   std::vector<uint32_t> same_as(g.triangles.size());
   for (uint32_t i = 0; i < g.triangles.size(); ++i) {
     const BaseTriangle& t = g.triangles[i];
     same_as[i] = i;
     if (t.is_degenerate || t.light != no_light) continue;
     if (g.surfaces[t.surface].bulge != Bulge::none) continue;
-    Corners corners;
+    CornerPositions corners;
     for (size_t k = 0; k < 3; ++k) {
       const Vec3& p = g.positions[t.vertices[k]];
       corners[k] = {p.x, p.y, p.z};

@@ -136,16 +136,16 @@ class Sight {
 };
 
 // Every step-th triangle of a mesh, from `first` on.
-struct Part {
+struct MeshPart {
   uint32_t geometry;
   size_t first, step;
 };
 
 // Of very many triangles, which are small, some are enough: of instances of large meshes.
-std::vector<Part> parts_of(const Scene& scene) {
+std::vector<MeshPart> parts_of(const Scene& scene) {
   constexpr size_t most_triangles = 1 << 24, few_triangles = 1 << 12;
   const size_t every = 1 + triangle_count(scene) / most_triangles;
-  std::vector<Part> parts;
+  std::vector<MeshPart> parts;
   for_each_mesh(scene, [&](uint32_t geometry, const MeshInWorld& mesh) {
     const bool is_whole = mesh.instance() == nullptr;
     const size_t step = is_whole ? 1 : std::min(every, 1 + mesh.size() / few_triangles);
@@ -161,9 +161,9 @@ Image first_sight(const Scene& scene, const ViewingCamera& camera, const PixelRe
                   int threads) {
   const Grid grid(camera, window);
   std::vector<Sight> sights(size_t(thread_count(threads)), Sight(camera, grid));
-  const std::vector<Part> parts = parts_of(scene);
+  const std::vector<MeshPart> parts = parts_of(scene);
   parallel_for_slots(parts.size(), threads, [&](size_t i, size_t slot) {
-    const Part& part = parts[i];
+    const MeshPart& part = parts[i];
     const MeshInWorld mesh = mesh_at(scene, part.geometry);
     const size_t end = std::min(mesh.size(), part.first + triangles_at_a_time * part.step);
     for (size_t t = part.first; t < end; t += part.step) sights[slot].add(mesh.corners(t));

@@ -12,7 +12,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t places = 64, rays_each = 32;
+constexpr size_t looked_from = 64, rays_each = 32;
 constexpr float room_share = 0.65f;
 
 // Spheres and disks count by their front too; what is thin counts from both sides.
@@ -43,7 +43,7 @@ bool is_room(const PreparedScene& scene) {
   if (box.is_empty()) return false;
   Random random(1);
   std::vector<Ray> rays;
-  for (size_t i = 0; i < places; ++i) {
+  for (size_t i = 0; i < looked_from; ++i) {
     const Vec3 share{random.next_float(), random.next_float(), random.next_float()};
     const Vec3 place = box.lower + box.extent() * (Vec3{0.15f} + share * 0.7f);
     for (size_t k = 0; k < rays_each; ++k) {

@@ -11,13 +11,14 @@ namespace troffer {
 
 namespace {
 
-struct Edge {
+struct OutlineEdge {
   Vec3 a, b;
 };
 
 // ---- outlines in space ----
 
-void add_circle(const Vec3& centre, const Vec3& normal, float radius, std::vector<Edge>& edges) {
+void add_circle(const Vec3& centre, const Vec3& normal, float radius,
+                std::vector<OutlineEdge>& edges) {
   constexpr int corners = 16;
   const Frame frame(normal);
   const auto corner = [&](int i) {
@@ -28,7 +29,7 @@ void add_circle(const Vec3& centre, const Vec3& normal, float radius, std::vecto
 }
 
 // The circle in which the cone from the eye touches the sphere.
-void add_sphere(const Sphere& s, const ViewingCamera& camera, std::vector<Edge>& edges) {
+void add_sphere(const Sphere& s, const ViewingCamera& camera, std::vector<OutlineEdge>& edges) {
   const Vec3 to_eye = camera.towards_eye(s.centre);
   const float d =
       camera.is_perspective() ? camera.distance(s.centre) : std::numeric_limits<float>::infinity();
@@ -40,7 +41,7 @@ void add_sphere(const Sphere& s, const ViewingCamera& camera, std::vector<Edge>&
 
 // Edges that one triangle has for itself, or two of which one faces the eye.
 void add_mesh(const Mesh& mesh, const Light& light, const ViewingCamera& camera,
-              std::vector<Edge>& edges) {
+              std::vector<OutlineEdge>& edges) {
   struct Side {
     uint32_t low, high;
     bool is_front;
@@ -68,7 +69,7 @@ void add_mesh(const Mesh& mesh, const Light& light, const ViewingCamera& camera,
 }
 
 void add_outline(const Scene& scene, const Light& light, const ViewingCamera& camera,
-                 std::vector<Edge>& edges) {
+                 std::vector<OutlineEdge>& edges) {
   switch (light.kind) {
     case LightKind::polygon:
       for (size_t i = 0; i < light.polygon.size(); ++i)
@@ -102,7 +103,7 @@ class EdgeWalk {
  public:
   EdgeWalk(const ViewingCamera& camera, const PixelRect& region)
       : camera_(camera), region_(region) {}
-  void walk(const Edge& e) { halve(at(e.a), at(e.b), 0); }
+  void walk(const OutlineEdge& e) { halve(at(e.a), at(e.b), 0); }
 
   std::vector<Pixel2> pixels;
   std::vector<Ray> rays;         // from the eye through the points, which …
@@ -161,10 +162,10 @@ class EdgeWalk {
 
 std::vector<Pixel2> pixels_on_light_outlines(const PreparedScene& scene,
                                              const ViewingCamera& camera, const PixelRect& region) {
-  std::vector<Edge> edges;
+  std::vector<OutlineEdge> edges;
   for (const Light& light : scene.scene.lights) add_outline(scene.scene, light, camera, edges);
   EdgeWalk walk(camera, region);
-  for (const Edge& e : edges) walk.walk(e);
+  for (const OutlineEdge& e : edges) walk.walk(e);
   // What stands close before the light, a fixture's rim, does not hide it here.
   constexpr float reach = 0.999f;
   for (size_t i = 0; i < walk.rays.size(); ++i) walk.rays[i].t_max = reach * walk.distances[i];

@@ -61,6 +61,10 @@ class Rendering {
   struct FurtherRays {
     std::vector<int> samples, glances;  // in all
   };
+  // Of one pixel, as checkpoints and other processes get it.
+  struct WantedPixel {
+    uint32_t samples, glances;
+  };
   // What refinement knows; empty where pixels get no further rays.
   struct Refining {
     int first_spp = 0;

@@ -13,10 +13,6 @@ struct StateHeader {
   Counters counters;
 };
 
-struct WantedPixel {
-  uint32_t samples, glances;
-};
-
 }  // namespace
 
 bool Rendering::leads() const {

@@ -16,10 +16,6 @@ struct TileHeader {
 };
 static_assert(sizeof(TileHeader) == 80 && sizeof(Counters) == 72);
 
-struct WantedPixel {
-  uint32_t samples, glances;
-};
-
 }  // namespace
 
 void Rendering::save_tile(size_t tile, std::vector<uint8_t>& out) const {

@@ -212,11 +212,8 @@ Vec3d nearest_point(const Parallelogram& p, const Vec3d& x) {
 // So far from the receivers that its term varies little.
 bool is_far(const FlatCell& cell, const ReceiverHull& hull) {
   const Parallelogram& p = cell.plane;
-  double radius = 0;
-  for (int i = 0; i < hull.count; ++i)
-    radius = std::max(radius, length(hull.corners[size_t(i)] - hull.centre));
   const double size = std::max(length(p.u + p.v), length(p.u - p.v));
-  return length(nearest_point(p, hull.centre) - hull.centre) - radius > 1.5 * size;
+  return length(nearest_point(p, hull.centre) - hull.centre) - hull.radius() > 1.5 * size;
 }
 
 }  // namespace

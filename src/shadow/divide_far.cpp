@@ -15,8 +15,9 @@ constexpr int most_halvings = 4;
 // What the cluster's rays to all lights would cost, in facets of a mask, is what a proof may cost:
 // a few times that, by the share of the light. A gather costs about so many facets, and so many for
 // each that it finds; a large facet is tried once.
-constexpr double facets_per_ray = 12;
-constexpr double cost_of_gather = 1000, cost_of_found = 10, cost_of_large = 5, cost_of_mask = 60;
+constexpr double facets_per_far_ray = 12;
+constexpr double cost_of_gather = 1000, cost_of_found = 10, cost_of_large = 5,
+                 cost_of_far_mask = 60;
 // … of which proofs may lose this share where most of the light arrives; where little does they may
 // lose all: rays err by more there than they should.
 constexpr double least_lost = 0.05, lost_by_open = 2.5;
@@ -25,7 +26,7 @@ constexpr double worth_of_mask = 2;
 constexpr size_t always_masked = 16;  // facets
 // A list costs masks, pilots and halvings of clusters: so many times its length. But blinds and
 // plants before a window are to be masked.
-constexpr double cost_of_list = 120, most_facets = 4096, fewest_facets = 64, usual_members = 32;
+constexpr double cost_of_list = 120, most_facets = 4096, fewest_far_facets = 64, usual_members = 32;
 
 class FarDivision {
  public:
@@ -51,7 +52,7 @@ class FarDivision {
     work_ -= cost_of_gather + cost_of_found * double(length_of_list());
     FlatCell first, second;
     const size_t length = length_of_list();
-    const double masks = double(members_.size()) * (cost_of_mask + double(length));
+    const double masks = double(members_.size()) * (cost_of_far_mask + double(length));
     if (!memory_.candidates.is_too_long && length > always_masked &&
         masks > worth_of_mask * share * allowed_) {
       add_hopeless(cell, is_whole);  // rays are cheaper
@@ -104,10 +105,11 @@ class FarDivision {
       all += std::max(double(p.seen[m]) + light + double(p.rest[m]), light);
     }
     const double rays = rays_for_error(p.far_open, double(p.error));
-    return double(members_.size()) * facets_per_ray * rays * (all > 0 ? own / all : 0);
+    return double(members_.size()) * facets_per_far_ray * rays * (all > 0 ? own / all : 0);
   }
   size_t longest_list() const {
-    const double fewest = fewest_facets * std::min(1.0, double(members_.size()) / usual_members);
+    const double fewest =
+        fewest_far_facets * std::min(1.0, double(members_.size()) / usual_members);
     const double wanted = std::clamp(work_ / cost_of_list, fewest, most_facets);
     return std::min(task_.options.longest_list, size_t(wanted));
   }
@@ -160,13 +162,6 @@ class FarDivision {
   size_t most_;     // facets in a list
 };
 
-double radius_of(const ReceiverHull& hull) {
-  double most = 0;
-  for (int i = 0; i < hull.count; ++i)
-    most = std::max(most, length(hull.corners[size_t(i)] - hull.centre));
-  return most;
-}
-
 }  // namespace
 
 void divide_far(const SourceTask& task, std::span<const uint32_t> members, const ReceiverHull& hull,
@@ -174,7 +169,7 @@ void divide_far(const SourceTask& task, std::span<const uint32_t> members, const
                 CertifiedCounters& counters) {
   memory.parts.clear();
   FoundFacets& found = *task.request.found;
-  const double radius = radius_of(hull);
+  const double radius = hull.radius();
   // Where a cell has been given up close by, it is not halved again; few receivers do not even ask.
   const bool is_hopeless = found.is_hopeless_at(hull.centre, radius);
   FarDivision division(task, members, hull, scene, memory, counters);

@@ -17,7 +17,7 @@ constexpr int most_samples = 256;
 constexpr size_t gentle_samples = 16;
 
 // Sets points, weights and places to the open samples of every stride-th row and column.
-void set_points(const CellTask& cell, uint32_t member, const OpenSamples& s, int stride,
+void set_points(const SourceCellTask& cell, uint32_t member, const OpenSamples& s, int stride,
                 uint64_t random, LatticeMemory& m) {
   const MaskFrame& frame = cell.frame;
   const Vec3d step_k = frame.step_k(), step_j = frame.step_j();
@@ -72,7 +72,7 @@ LatticeSum sum_of(const LatticeMemory& m) {
 
 // Points drawn in proportion to weight, one of each of n equal parts; their places in memory.drawn
 // and values. Returns the mean of the values.
-Rgb draw(const CellTask& cell, const OpenSamples& s, const LatticeSum& sum, uint32_t n,
+Rgb draw(const SourceCellTask& cell, const OpenSamples& s, const LatticeSum& sum, uint32_t n,
          uint64_t random, LatticeMemory& m) {
   const MaskFrame& frame = cell.frame;
   const Vec3d first = frame.first_sample() + frame.step_k() * double(s.shift.x) +
@@ -96,7 +96,7 @@ Rgb draw(const CellTask& cell, const OpenSamples& s, const LatticeSum& sum, uint
 
 }  // namespace
 
-void add_lattice_integral(const CellTask& cell, uint32_t member, const OpenSamples& samples,
+void add_lattice_integral(const SourceCellTask& cell, uint32_t member, const OpenSamples& samples,
                           float light, float share_variance, uint32_t rays, uint64_t random,
                           LatticeMemory& m, SourceResults& results) {
   const int stride = cell.frame.lattice().samples() > most_samples ? 2 : 1;

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "shadow/cell_task.h"
 #include "shadow/mask_points.h"
+#include "shadow/source_cell_task.h"
 
 namespace troffer {
 
@@ -24,7 +24,7 @@ struct LatticeMemory {
 
 // Adds the integrand over the open samples, which send `light`, in sr. `rays`: points that rays are
 // cast to where the list is not complete.
-void add_lattice_integral(const CellTask& cell, uint32_t member, const OpenSamples& samples,
+void add_lattice_integral(const SourceCellTask& cell, uint32_t member, const OpenSamples& samples,
                           float light, float share_variance, uint32_t rays, uint64_t random,
                           LatticeMemory& memory, SourceResults& results);
 

@@ -13,12 +13,12 @@ namespace {
 
 // Random numbers of a pair of receiver and cell, for several purposes and passes.
 constexpr uint64_t purpose_shift = 0x5851f42d4c957f2dull, purpose_points = 0x14057b7ef767814full;
-uint64_t numbers_of(const CellTask& cell, uint32_t member, uint64_t pass, uint64_t purpose) {
+uint64_t numbers_of(const SourceCellTask& cell, uint32_t member, uint64_t pass, uint64_t purpose) {
   return mix64(cell.receiver(member).stream + cell.stream + pass * 0x9e3779b97f4a7c15ull + purpose);
 }
 
-void add_answer(const CellTask& cell, uint32_t member, const MaskShare& share, ShadowAnswer kind,
-                SourceResults& results) {
+void add_answer(const SourceCellTask& cell, uint32_t member, const MaskShare& share,
+                ShadowAnswer kind, SourceResults& results) {
   results.sums[member].add(cell.unoccluded[member], share.share, share.variance, kind);
 }
 
@@ -33,7 +33,7 @@ constexpr MaskShare unknown_share{0.5f, 0.25f};
 
 }  // namespace
 
-MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& facets,
+MaskShare look_at_cell(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                        uint64_t pass, MaskMemory& memory) {
   const MaskFrame& frame = cell.frame;
   const ShadowReceiver& r = cell.receiver(member);
@@ -69,7 +69,7 @@ MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& f
 namespace {
 
 // Adds the integrand over the samples that are open, which send `light`, in sr: now, or by rays.
-void add_integral(const CellTask& cell, uint32_t member, float light, float share_variance,
+void add_integral(const SourceCellTask& cell, uint32_t member, float light, float share_variance,
                   MaskMemory& memory, SourceResults& results) {
   const SourceTask& source = cell.source;
   const float share = cell.unoccluded[member] / source.unoccluded[member];
@@ -104,21 +104,21 @@ void add_integral(const CellTask& cell, uint32_t member, float light, float shar
 }
 
 // What of the samples is open waits for rays.
-void queue_samples(const CellTask& cell, uint32_t member, float light, uint32_t pass,
+void queue_samples(const SourceCellTask& cell, uint32_t member, float light, uint32_t pass,
                    uint32_t passes, const MaskMemory& memory, SourceResults& results) {
   results.rays.add(member, cell.receiver(member).origin, memory.samples, light,
                    cell.source.unoccluded[member], numbers_of(cell, member, pass, purpose_points),
                    passes);
 }
 
-MaskShare counted_look(const CellTask& cell, uint32_t member, const FacetList& facets,
+MaskShare counted_look(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                        uint64_t pass, MaskMemory& memory, SourceResults& results) {
   ++results.counters.masks;
   results.counters.mask_facets += facets.size();
   return look_at_cell(cell, member, facets, pass, memory);
 }
 
-void mask_complete(const CellTask& cell, uint32_t member, const FacetList& facets,
+void mask_complete(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                    MaskMemory& memory, SourceResults& results) {
   const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
   add_answer(cell, member, seen.share < 0 ? unknown_share : seen, ShadowAnswer::masked, results);
@@ -130,7 +130,8 @@ void mask_complete(const CellTask& cell, uint32_t member, const FacetList& facet
 // Divides the open samples into those that nothing can hide any more, which become `free`, and
 // memory.samples, whose rays meet what only rays can tell of. Returns the share of the open weight
 // that is free.
-float divide_open(const CellTask& cell, uint32_t member, MaskMemory& memory, OpenSamples& free) {
+float divide_open(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,
+                  OpenSamples& free) {
   const MaskFrame& frame = cell.frame;
   OpenSamples& rest = memory.samples;
   const float open = rest.open;
@@ -153,7 +154,7 @@ float divide_open(const CellTask& cell, uint32_t member, MaskMemory& memory, Ope
 
 // What a mask of an incomplete list finds dark is dark, and what is clear of all that the list
 // lacks is open; for what else is open rays count.
-void mask_incomplete(const CellTask& cell, uint32_t member, const FacetList& facets,
+void mask_incomplete(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                      MaskMemory& memory, SourceResults& results) {
   const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
   float free_share = 0;
@@ -162,7 +163,7 @@ void mask_incomplete(const CellTask& cell, uint32_t member, const FacetList& fac
     free_share = seen.share * divide_open(cell, member, memory, free);
     if (free_share > 0 && cell.source.wanted_points[member] > 0) {
       std::swap(free, memory.samples);
-      CellTask complete = cell;
+      SourceCellTask complete = cell;
       complete.is_complete = true;
       add_integral(complete, member, free_share * cell.unoccluded[member], seen.variance, memory,
                    results);
@@ -183,8 +184,8 @@ void mask_incomplete(const CellTask& cell, uint32_t member, const FacetList& fac
 // Where much is left to rays, they must not go through the same few hundred points over and over:
 // masks with several shifts share them. An integrand has a number of points of its own: one mask,
 // whose answer stands even if it finds nothing open.
-void mask_often(const CellTask& cell, uint32_t member, const FacetList& facets, MaskMemory& memory,
-                SourceResults& results) {
+void mask_often(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
+                MaskMemory& memory, SourceResults& results) {
   const bool has_integrand = cell.source.wanted_points[member] > 0;
   const uint32_t passes = has_integrand ? 1 : cell.source.options.masks_with_rays;
   bool is_above = false;
@@ -204,7 +205,8 @@ void mask_often(const CellTask& cell, uint32_t member, const FacetList& facets, 
 
 }  // namespace
 
-void add_lit(const CellTask& cell, uint32_t member, MaskMemory& memory, SourceResults& results) {
+void add_lit(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,
+             SourceResults& results) {
   add_answer(cell, member, {1, 0}, ShadowAnswer::lit, results);
   if (cell.source.wanted_points[member] == 0) return;
   static const FacetList nothing;
@@ -212,8 +214,8 @@ void add_lit(const CellTask& cell, uint32_t member, MaskMemory& memory, SourceRe
     add_integral(cell, member, cell.unoccluded[member], 0, memory, results);
 }
 
-void mask_cell(const CellTask& cell, std::span<const uint32_t> members, const FacetList& facets,
-               MaskMemory& memory, SourceResults& results) {
+void mask_cell(const SourceCellTask& cell, std::span<const uint32_t> members,
+               const FacetList& facets, MaskMemory& memory, SourceResults& results) {
   const auto mask =
       cell.is_complete ? mask_complete : (cell.is_hopeless ? mask_often : mask_incomplete);
   for (const uint32_t m : members) mask(cell, m, facets, memory, results);

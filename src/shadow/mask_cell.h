@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "shadow/cell_task.h"
 #include "shadow/lattice_integral.h"
 #include "shadow/mask_points.h"
+#include "shadow/source_cell_task.h"
 
 namespace troffer {
 
@@ -25,15 +25,16 @@ struct MaskMemory {
 struct MaskShare {
   float share = 0, variance = 0;
 };
-MaskShare look_at_cell(const CellTask& cell, uint32_t member, const FacetList& facets,
+MaskShare look_at_cell(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                        uint64_t pass, MaskMemory& memory);
 
 // The answer for a receiver that sees all of the cell.
-void add_lit(const CellTask& cell, uint32_t member, MaskMemory& memory, SourceResults& results);
+void add_lit(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,
+             SourceResults& results);
 
 // Answers by masks, for all members; of an incomplete list by what is dark, and what is open waits
 // for rays.
-void mask_cell(const CellTask& cell, std::span<const uint32_t> members, const FacetList& facets,
-               MaskMemory& memory, SourceResults& results);
+void mask_cell(const SourceCellTask& cell, std::span<const uint32_t> members,
+               const FacetList& facets, MaskMemory& memory, SourceResults& results);
 
 }  // namespace troffer

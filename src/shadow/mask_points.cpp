@@ -9,19 +9,19 @@ namespace troffer {
 
 namespace {
 
-constexpr int side = 32;  // of the canvas: most_mask_rows
-static_assert(side == int(most_mask_rows));
+constexpr int canvas_side = 32;  // of the canvas: most_mask_rows
+static_assert(canvas_side == int(most_mask_rows));
 
 struct CanvasPoint {
   uint8_t k, j;
 };
 
 // Cells of the canvas along a Hilbert curve.
-constexpr std::array<CanvasPoint, size_t(side* side)> hilbert_curve() {
-  std::array<CanvasPoint, size_t(side * side)> curve{};
-  for (int d = 0; d < side * side; ++d) {
+constexpr std::array<CanvasPoint, size_t(canvas_side* canvas_side)> hilbert_curve() {
+  std::array<CanvasPoint, size_t(canvas_side * canvas_side)> curve{};
+  for (int d = 0; d < canvas_side * canvas_side; ++d) {
     int x = 0, y = 0, t = d;
-    for (int s = 1; s < side; s *= 2) {
+    for (int s = 1; s < canvas_side; s *= 2) {
       const int rx = 1 & (t / 2), ry = 1 & (t ^ rx);
       if (ry == 0) {
         if (rx == 1) {

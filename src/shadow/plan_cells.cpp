@@ -158,7 +158,7 @@ void Plan::look(size_t c, bool is_coarse) {
   list.round().bodies = part_.rounds;
   list.add_many(frame, facets_of(part_, m_, c));
   list.finish();
-  const CellTask task{task_, frame, task_.unoccluded, stream, part_.is_complete, false};
+  const SourceCellTask task{task_, frame, task_.unoccluded, stream, part_.is_complete, false};
   FacetList& left = settle_.lists[1];
   const Certificate certificate = certify(task, part_.hull, list, settle_.flags, left);
   m_.costs[c] = certificate == Certificate::none ? cost_of_mask + double(left.size()) : 0;

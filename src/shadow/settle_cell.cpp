@@ -6,7 +6,7 @@
 
 namespace troffer {
 
-Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetList& facets,
+Certificate certify(const SourceCellTask& cell, const ReceiverHull& hull, const FacetList& facets,
                     FacetFlags& flags, FacetList& left) {
   left.clear();
   const MaskFrame& frame = cell.frame;
@@ -33,7 +33,7 @@ Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetL
 
 namespace {
 
-void settle(const CellTask& cell, ReceiverTree& tree, uint32_t node, size_t depth,
+void settle(const SourceCellTask& cell, ReceiverTree& tree, uint32_t node, size_t depth,
             SettleMemory& memory, SourceResults& results) {
   FacetList& left = memory.lists[depth + 1];
   const std::span<const uint32_t> members = tree.members(node);
@@ -59,7 +59,7 @@ void settle(const CellTask& cell, ReceiverTree& tree, uint32_t node, size_t dept
 
 }  // namespace
 
-void settle_cell(const CellTask& cell, ReceiverTree& receivers, SettleMemory& memory,
+void settle_cell(const SourceCellTask& cell, ReceiverTree& receivers, SettleMemory& memory,
                  SourceResults& results) {
   settle(cell, receivers, 0, 0, memory, results);
 }

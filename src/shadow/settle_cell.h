@@ -21,11 +21,11 @@ struct SettleMemory {
 // What the facets prove for all receivers in the hull; where it is neither, `left` are the facets
 // that may hide some of the cell from some receiver.
 enum class Certificate : uint8_t { none, lit, dark };
-Certificate certify(const CellTask& cell, const ReceiverHull& hull, const FacetList& facets,
+Certificate certify(const SourceCellTask& cell, const ReceiverHull& hull, const FacetList& facets,
                     FacetFlags& flags, FacetList& left);
 
 // Answers the receivers by memory.lists[0].
-void settle_cell(const CellTask& cell, ReceiverTree& receivers, SettleMemory& memory,
+void settle_cell(const SourceCellTask& cell, ReceiverTree& receivers, SettleMemory& memory,
                  SourceResults& results);
 
 }  // namespace troffer

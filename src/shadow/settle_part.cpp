@@ -136,13 +136,13 @@ void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& me
     const MaskFrame frame(outline_of(sphere, Vec3d(task.cluster.receivers[m].position)),
                           task.options.lattice, is_mirrored(stream, task, m), part.hull.centre, {},
                           true);
-    const CellTask disk{task,
-                        frame,
-                        task.unoccluded,
-                        stream,
-                        part.is_complete,
-                        part.is_hopeless,
-                        set_masked(frame, part, memory.masked)};
+    const SourceCellTask disk{task,
+                              frame,
+                              task.unoccluded,
+                              stream,
+                              part.is_complete,
+                              part.is_hopeless,
+                              set_masked(frame, part, memory.masked)};
     const bool is_nothing = part.facets.empty() && part.rounds.empty() && entering.empty();
     if (part.is_complete && is_nothing && !task.does_horizon_hide()) {
       add_lit(disk, m, memory.settle.masks, results);

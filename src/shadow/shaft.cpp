@@ -28,6 +28,20 @@ Vec3d main_direction(std::span<const Vec3> points, const Framed& frame, const Ve
 
 }  // namespace
 
+double ReceiverHull::radius() const {
+  double most = 0;
+  for (int i = 0; i < count; ++i) most = std::max(most, length(corners[size_t(i)] - centre));
+  return most;
+}
+
+std::span<const int[2]> ReceiverHull::edges() const {
+  static constexpr int box[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
+                                     {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  static constexpr int rectangle[4][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+  if (is_flat) return rectangle;
+  return box;
+}
+
 ReceiverHull bound_receivers(std::span<const Vec3> origins, std::span<const Vec3> normals) {
   ReceiverHull hull;
   Vec3d lower(origins[0]), upper = lower;
@@ -113,10 +127,6 @@ void add_tangent(const Bodies& bodies, const Vec3d& p, const Vec3d& q, const Vec
   shaft.planes[size_t(shaft.count++)] = {Vec3(unit), float(distance + most + margin)};
 }
 
-constexpr int box_edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
-                                  {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-constexpr int rectangle_edges[4][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
-
 }  // namespace
 
 Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
@@ -145,8 +155,7 @@ Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const
     add_tangent(bodies, outline[i], outline[(i + 1) % n], outline[(i + 2) % n], corners, slack,
                 tolerance, shaft);
   // Of a box no corner tells the inside for all planes about an edge: both sides are tried.
-  const auto edges = hull.is_flat ? std::span(rectangle_edges) : std::span<const int[2]>(box_edges);
-  for (const auto& e : edges) {
+  for (const auto& e : hull.edges()) {
     const Vec3d &p = corners[size_t(e[0])], &q = corners[size_t(e[1])];
     if (hull.is_flat) {
       add_tangent(bodies, p, q, corners[size_t(e[1] + 1) % 4], outline, slack, tolerance, shaft);

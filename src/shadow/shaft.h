@@ -21,6 +21,10 @@ struct ReceiverHull {
   Vec3d normal;          // flat: the common normal
   double lowest = 0;     // flat: least normal · origin
   double magnitude = 0;  // largest coordinate
+
+  double radius() const;  // about the centre, without slack
+  // Pairs of corners.
+  std::span<const int[2]> edges() const;
 };
 
 // origins: where rays of the receivers start; normals: unit, of their horizons; at least one.

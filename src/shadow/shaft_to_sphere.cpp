@@ -64,10 +64,6 @@ void add_edge(const HullAndBall& bodies, const Vec3d& p, const Vec3d& q, double 
     add_support(bodies, side * (sign * cosine) - w * sine, slack, true, shaft);
 }
 
-constexpr int box_edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
-                                  {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-constexpr int rectangle_edges[4][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
-
 // How deep into the sphere the caps reach that receivers see: the least height over the centre,
 // along the unit vector towards the middle of the receivers' ball. From a receiver at distance d,
 // `off` off that line, the cap ends acos(radius / d) from the receiver's own direction.
@@ -82,10 +78,9 @@ double depth_of_caps(const ReceiverHull& hull, double reach, double distance, do
 Shaft make_shaft(const ReceiverHull& hull, const Vec3d& centre, double radius,
                  double scene_magnitude) {
   Shaft shaft;
-  double magnitude = std::max(scene_magnitude, hull.magnitude), reach = hull.slack;
+  double magnitude = std::max(scene_magnitude, hull.magnitude);
   for (size_t a = 0; a < 3; ++a) magnitude = std::max(magnitude, std::abs(centre[a]) + radius);
-  for (int i = 0; i < hull.count; ++i)
-    reach = std::max(reach, hull.slack + length(hull.corners[size_t(i)] - hull.centre));
+  const double reach = hull.slack + hull.radius();
   const double margin = shaft_margin * magnitude, slack = margin + hull.slack;
   const HullAndBall bodies{{hull.corners.data(), size_t(hull.count)}, centre, radius};
   const Vec3d axis = hull.centre - centre;
@@ -102,8 +97,7 @@ Shaft make_shaft(const ReceiverHull& hull, const Vec3d& centre, double radius,
     const Vec3d across = frame.tangent * std::cos(a) + frame.bitangent * std::sin(a);
     add_side(bodies, frame.normal, across, slack, shaft);
   }
-  const auto edges = hull.is_flat ? std::span(rectangle_edges) : std::span<const int[2]>(box_edges);
-  for (const auto& e : edges)
+  for (const auto& e : hull.edges())
     add_edge(bodies, hull.corners[size_t(e[0])], hull.corners[size_t(e[1])], slack, shaft);
   return shaft;
 }

@@ -38,7 +38,7 @@ std::string first_include(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("every header is compiled alone: at the head of its own .cpp, or by the test `headers`") {
+TEST_CASE("every header stands at the head of its own .cpp, or is compiled by the test `headers`") {
   size_t own = 0, alone = 0;
   for (const fs::path& header : files_below(root / "src", {".h"})) {
     const std::string name = fs::relative(header, root / "src").generic_string();

@@ -10,7 +10,7 @@
 
 namespace troffer {
 
-struct CellTask {
+struct SourceCellTask {
   const SourceTask& source;
   const MaskFrame& frame;
   std::span<const float> unoccluded;  // per receiver of the cluster, of the cell, sr
