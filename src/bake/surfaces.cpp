@@ -32,6 +32,7 @@ bool has_textures_by_second_set(const Scene& scene, const Material& m) {
   for_each_input(m, [&](const auto& input) { look(input.texture); });
   look(m.alpha.texture);
   look(m.normal_texture);
+  look(m.coat_normal_texture);
   return is_any;
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bsdf/choice.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/gains.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobes.h"
 #include "bsdf/split.h"
@@ -12,107 +14,7 @@ namespace troffer {
 
 namespace {
 
-// The g of each separable lobe at a direction on the viewer's side (far_glass: on the other).
-struct Gains {
-  float diffuse = 1, soft = 0, glass = 0;
-  float pass = 1;  // of a sheen above, for all but itself; in `diffuse` already
-};
-
-float missing(const AlbedoRow& row, const CosineCoordinate& at) {
-  return row.values == nullptr ? 0.0f : std::max(0.0f, 1 - row.at(at));
-}
-
-Gains gains_at(const Bsdf& b, const Vec3& w) {
-  Gains g;
-  const float cosine = w.z;
-  const SoftDirection direction(w);
-  const CosineCoordinate& at = direction.cosine;
-  switch (b.coat) {
-    case Bsdf::Coat::none:
-      break;
-    case Bsdf::Coat::smooth_dielectric:
-      g.diffuse = 1 - fresnel_dielectric(cosine, b.eta);
-      break;
-    case Bsdf::Coat::smooth_schlick:
-      g.diffuse = 1 - (b.coat_f0 + (b.coat_f90 - b.coat_f0) * pow5(1 - cosine));
-      break;
-    case Bsdf::Coat::dielectric:
-      g.diffuse = missing(b.coat_row, at);
-      break;
-    case Bsdf::Coat::schlick: {
-      const float one = b.one.at(at), grazing = b.grazing.at(at);
-      g.diffuse = std::max(0.0f, 1 - (b.coat_f0 * (one - grazing) + b.coat_f90 * grazing));
-      break;
-    }
-  }
-  g.soft = soft_gain(b.soft, direction);
-  g.pass = b.cover.pass(at);
-  g.diffuse *= g.pass;
-  if (b.glass_weight > 0) g.glass = missing(b.near, at);
-  return g;
-}
-
-// Energy from a direction of cosine c that leaves through the glossy lobe.
-Rgb glossy_albedo(const Bsdf& b, float c) {
-  if (b.fresnel == Bsdf::Fresnel::none) return Rgb{0};
-  if (b.is_smooth) {
-    const Split s = split_at(b, c);
-    return s.reflected + s.transmitted;
-  }
-  const CosineCoordinate at(c);
-  if (b.fresnel == Bsdf::Fresnel::coat) return Rgb{b.coat_row.at(at)};
-  const float grazing = b.grazing.at(at), steep = b.one.at(at) - grazing;
-  // A conductor is taken as Schlick's of the same reflectance at normal incidence.
-  if (b.fresnel == Bsdf::Fresnel::conductor)
-    return fresnel_conductor(1, b.f0, b.f90) * steep + Rgb{grazing};
-  const Rgb opaque = b.f0 * steep + b.f90 * grazing;
-  if (b.fresnel == Bsdf::Fresnel::schlick) return opaque;
-  // Glass loses its share as a whole; how the rest divides is taken from the mirror's.
-  const Split s = split_at(b, c);
-  return opaque + (s.reflected - fresnel_schlick(c, b.f0, b.f90) + s.transmitted) * b.near.at(at);
-}
-
-// Energies of the lobes: glossy, diffuse, and lost energy that returns on either side.
-struct Energies {
-  Rgb glossy, diffuse, again, through;
-};
-Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
-  Energies e;
-  e.glossy = glossy_albedo(b, cos_o) * g.pass;
-  if (!b.has_separable) return e;
-  e.diffuse = b.diffuse * (g.diffuse * b.diffuse_mean);
-  e.again = soft_energy(b.soft, g.soft) + b.glass_again * (g.glass * b.near_mean);
-  e.through = b.glass_through * (g.glass * b.far_mean);
-  return e;
-}
-
-// Probabilities of the ways to sample, in proportion to the energies: the glossy lobe, and
-// directions with cosine or uniform density on either side. What returns of lost energy is
-// uniform-like: the smoother the surface, the closer to grazing it keeps.
-struct Choice {
-  float glossy = 0, cosine = 0, uniform = 0, cosine_through = 0, uniform_through = 0;
-};
-Choice choice_at(const Bsdf& b, const Gains& g, float cos_o) {
-  if (b.fresnel == Bsdf::Fresnel::none) return {0, 1, 0, 0, 0};
-  if (!b.has_separable) return {1, 0, 0, 0, 0};
-  const Energies e = energies_at(b, g, cos_o);
-  const float glossy = average(e.glossy), diffuse = average(e.diffuse);
-  const float again = average(e.again), through = average(e.through);
-  const float sum = glossy + diffuse + again + through;
-  if (!(sum > 0)) return {};
-  const float s = 1 / sum, uniform = 1 - b.alpha;
-  return {glossy * s, (diffuse + again * b.alpha) * s, again * uniform * s, through * b.alpha * s,
-          through * uniform * s};
-}
-
-// Density of all ways but the glossy one.
-float separable_pdf(const Choice& c, float cos_i) {
-  constexpr float uniform = 0.5f * inv_pi_f;
-  return cos_i > 0 ? c.cosine * cos_i * inv_pi_f + c.uniform * uniform
-                   : c.cosine_through * -cos_i * inv_pi_f + c.uniform_through * uniform;
-}
-
-// u_lobe in [0,1) chooses among all ways but the glossy one.
+// u_lobe in [0,1) chooses among all ways but those of gloss.
 Vec3 sample_separable(const Choice& c, float u_lobe, const Vec2& u) {
   const float sum = c.cosine + c.uniform + c.cosine_through + c.uniform_through;
   float x = u_lobe * sum;
@@ -130,6 +32,11 @@ Vec3 sample_separable(const Choice& c, float u_lobe, const Vec2& u) {
   return w;
 }
 
+// What a clear coat lets through of gloss in direction w.
+float coat_pass(const Bsdf& b, const Vec3& w) {
+  return b.clear.gloss_pass(b.clear.has_normal ? dot(w, b.clear.normal) : w.z);
+}
+
 // Between the viewer's frame and that whose x axis is the grain.
 Vec3 to_grain(const Bsdf& b, const Vec3& w) {
   return {b.grain.x * w.x + b.grain.y * w.y, b.grain.x * w.y - b.grain.y * w.x, w.z};
@@ -143,13 +50,18 @@ float bound_of(const Bsdf& b, const Vec3& wo) {
   return b.has_transmission ? 1.0f : ggx_bound(wo, b.alpha);
 }
 
+// What a clear coat leaves of a soft lobe, where that is not in its gains.
+float soft_cover(const Bsdf& b, const Gains& at_o, const Gains& at_i) {
+  return is_lost_light(b.soft) ? 1.0f : std::min(at_o.coat, at_i.coat);
+}
+
 // The soft lobe and the cosine-shaped ones at wi; cos_i > 0 on the viewer's side.
 Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) {
   const float cos_i = wi.z;
   if (cos_i > 0) {
     const Gains at_i = gains_at(b, wi);
     return (b.diffuse * (at_o.diffuse * at_i.diffuse) +
-            soft_value(b.soft, wo, wi, at_o.soft, at_i.soft) +
+            soft_value(b.soft, wo, wi, at_o.soft, at_i.soft) * soft_cover(b, at_o, at_i) +
             b.glass_again * (at_o.glass * at_i.glass)) *
            (cos_i * inv_pi_f);
   }
@@ -160,14 +72,17 @@ Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) 
 }
 
 // Glossy reflection, or transmission through a thin sheet with wi mirrored to the viewer's side.
-BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is_transmission) {
+// pass: of a clear coat, the smaller of both directions.
+BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is_transmission,
+                          float pass = 1) {
   const Vec3 h = wo + wi;
   const float len2 = length_squared(h);
   if (!(len2 > 1e-20f)) return {};
   const Vec3 m = h * (1 / std::sqrt(len2));
   const float c = std::min(dot(wo, m), 1.0f);
   if (!(c > 0)) return {};
-  const Split s = split_at(b, c);
+  Split s = split_at(b, c);
+  if (b.clear.share > 0) s.reflected *= b.clear.kept(pass, s.reflected);
   if (b.is_grained)  // reflects alone
     return {s.reflected * (ggx_distribution(m, b.widths) * ggx_visibility(wo, wi, b.widths) * wi.z),
             ggx_pdf_reflected(wo, m, b.widths, ggx_bound(wo, b.widths))};
@@ -196,6 +111,18 @@ BsdfValue glossy_refracted(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
           (1 - s.reflection_share()) * ggx_pdf_reflected(wo, h, b.alpha, 1) * 4 * co * jacobian};
 }
 
+// Below a clear coat.
+BsdfValue glossy_below(const Bsdf& b, const Vec3& wo, const Vec3& wi, float pass) {
+  if (!(wi.z > 0)) return {};
+  if (!(b.clear.bend > 1)) return glossy_mirrored(b, wo, wi, false, pass);
+  const Vec3 in = b.clear.below(wi);
+  BsdfValue v = glossy_mirrored(b, b.clear.below(wo), in, false, pass);
+  const float squeeze = b.clear.squeeze(wi, in);
+  v.f_cos *= squeeze;
+  v.pdf *= squeeze;
+  return v;
+}
+
 BsdfValue glossy(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
   if (wi.z > 0) return glossy_mirrored(b, wo, wi, false);
   if (!b.has_transmission) return {};
@@ -203,15 +130,33 @@ BsdfValue glossy(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
                    : glossy_refracted(b, wo, wi);
 }
 
+// The rough reflection of the clear coat itself.
+BsdfValue clear_lobe(const ClearCoat& coat, const Vec3& wo, const Vec3& wi) {
+  const Vec3 o = coat.to_own(wo), i = coat.to_own(wi), h = o + i;
+  const float len2 = length_squared(h);
+  if (!(wi.z > 0 && o.z > 0 && i.z > 0 && len2 > 1e-20f)) return {};
+  const Vec3 m = h * (1 / std::sqrt(len2));
+  const float c = std::clamp(dot(o, m), 0.0f, 1.0f);
+  const float f = coat.share * fresnel_dielectric(c, coat.eta) * ggx_distribution(m, coat.alpha) *
+                  ggx_visibility(o.z, i.z, coat.alpha) * i.z;
+  return {Rgb{f}, ggx_pdf_reflected(o, m, coat.alpha, ggx_bound(o, coat.alpha))};
+}
+
 BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, const Vec3& wo,
                           const Vec3& wi) {
   BsdfValue v;
   if (b.fresnel != Bsdf::Fresnel::none && !b.is_smooth) {
-    v = glossy(b, wo, wi);
+    v = b.clear.share > 0 ? glossy_below(b, wo, wi, std::min(g.coat_gloss, coat_pass(b, wi)))
+                          : glossy(b, wo, wi);
     v.pdf *= choice.glossy;
     if (b.cover.share > 0)
       v.f_cos *= std::min(b.cover.pass(CosineCoordinate(wo.z)),
                           b.cover.pass(CosineCoordinate(std::abs(wi.z))));
+  }
+  if (b.clear.has_rough_lobe()) {
+    const BsdfValue coat = clear_lobe(b.clear, wo, wi);
+    v.f_cos += coat.f_cos;
+    v.pdf += choice.clear * coat.pdf;
   }
   if (b.has_separable) {
     v.f_cos += separable(b, g, wo, wi);
@@ -251,8 +196,45 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass,
   return out.wi.z < 0 && !out.weight.is_black();
 }
 
+// What gloss that is a mirror reflects at a cosine, below whatever covers it.
+Rgb mirror_below(const Bsdf& b, const Gains& g, float c) {
+  const float in =
+      b.clear.share > 0 ? b.clear.below({std::sqrt(std::max(0.0f, 1 - c * c)), 0, c}).z : c;
+  const Rgb r = split_at(b, in).reflected;
+  return r * b.clear.kept(g.coat_gloss, r) * g.pass;
+}
+
+// The mirror of a clear coat, or that below it; both at once where they send light the same way.
+bool sample_mirrors(const Bsdf& b, const Vec3& wo, const Gains& g, const Choice& choice,
+                    bool is_clear, BsdfSample& out) {
+  const bool are_one = b.clear.has_mirror() && b.is_smooth && !b.clear.has_normal;
+  const bool has_own_way = is_clear && b.clear.has_normal;
+  const Vec3 o = has_own_way ? b.clear.to_own(wo) : wo, i{-o.x, -o.y, o.z};
+  if (!(o.z > 0)) return false;
+  if (are_one || !is_clear) out.weight += mirror_below(b, g, std::min(wo.z, 1.0f));
+  if (are_one || is_clear) out.weight += Rgb{1 - g.coat};
+  const float probability = are_one    ? choice.clear + choice.glossy
+                            : is_clear ? choice.clear
+                                       : choice.glossy;
+  out.weight *= 1 / probability;
+  out.is_delta = true;
+  out.wi = has_own_way ? b.clear.from_own(i) : i;
+  return out.wi.z > 0 && !out.weight.is_black();
+}
+
+bool sample_clear_rough(const Bsdf& b, const Vec3& wo, const Vec2& u, Vec3& wi) {
+  const Vec3 o = b.clear.to_own(wo);
+  if (!(o.z > 0)) return false;
+  const Vec3 m = ggx_sample_visible_normal(o, u, b.clear.alpha, ggx_bound(o, b.clear.alpha));
+  const Vec3 i = normalize(m * (2 * dot(o, m)) - o);
+  wi = b.clear.from_own(i);
+  return i.z > 0 && wi.z > 0;
+}
+
 // A direction of the rough glossy lobe.
-bool sample_rough(const Bsdf& b, const Vec3& wo, float u_side, const Vec2& u, Vec3& wi) {
+bool sample_rough(const Bsdf& b, const Vec3& viewer, float u_side, const Vec2& u, Vec3& wi) {
+  const bool is_bent = b.clear.share > 0 && b.clear.bend > 1;
+  const Vec3 wo = is_bent ? b.clear.below(viewer) : viewer;
   const Vec3 m = b.is_grained ? ggx_sample_visible_normal(wo, u, b.widths, ggx_bound(wo, b.widths))
                               : ggx_sample_visible_normal(wo, u, b.alpha, bound_of(b, wo));
   const float c = std::min(dot(wo, m), 1.0f);
@@ -262,7 +244,7 @@ bool sample_rough(const Bsdf& b, const Vec3& wo, float u_side, const Vec2& u, Ve
     wi = normalize(m * (2 * c) - wo);
     if (!(wi.z > 0)) return false;
     if (!is_reflection) wi.z = -wi.z;
-    return true;
+    return !is_bent || b.clear.above(wi, wi);
   }
   return refract(wo, m, c, b.eta, wi) && wi.z < 0;
 }
@@ -272,7 +254,7 @@ bool sample_rough(const Bsdf& b, const Vec3& wo, float u_side, const Vec2& u, Ve
 namespace {
 
 BsdfValue evaluate_seen(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool with_pdf) {
-  const Gains g = b.has_separable ? gains_at(b, wo) : Gains{};
+  const Gains g = gains_of(b, wo);
   return evaluate_chosen(b, g, with_pdf ? choice_at(b, g, wo.z) : Choice{}, wo, wi);
 }
 
@@ -291,14 +273,24 @@ bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2&
   out = {};
   if (!(viewer.z > 0)) return false;
   const Vec3 wo = b.is_grained ? to_grain(b, viewer) : viewer;
-  const Gains g = b.has_separable ? gains_at(b, wo) : Gains{};
+  const Gains g = gains_of(b, wo);
   const Choice choice = choice_at(b, g, wo.z);
-  if (u_lobe < choice.glossy) {
-    const float u_side = std::min(u_lobe / choice.glossy, one_minus_epsilon);
-    if (b.is_smooth) return sample_smooth(b, wo, choice.glossy, g.pass, u_side, out);
-    if (!sample_rough(b, wo, u_side, u, out.wi)) return false;
+  const float specular = choice.clear + choice.glossy;
+  if (u_lobe < specular) {
+    const bool is_clear = u_lobe < choice.clear;
+    const float u_side = std::min((u_lobe - choice.clear) / choice.glossy, one_minus_epsilon);
+    if (is_clear ? b.clear.is_smooth : b.is_smooth) {
+      if (b.clear.share > 0) {
+        const bool is_any = sample_mirrors(b, wo, g, choice, is_clear, out);
+        if (b.is_grained) out.wi = from_grain(b, out.wi);
+        return is_any;
+      }
+      return sample_smooth(b, wo, choice.glossy, g.pass, u_side, out);
+    }
+    if (!(is_clear ? sample_clear_rough(b, wo, u, out.wi) : sample_rough(b, wo, u_side, u, out.wi)))
+      return false;
   } else {
-    const float rest = (u_lobe - choice.glossy) / (1 - choice.glossy);
+    const float rest = (u_lobe - specular) / (1 - specular);
     out.wi = sample_separable(choice, std::min(rest, one_minus_epsilon), u);
   }
   const BsdfValue v = evaluate_chosen(b, g, choice, wo, out.wi);
@@ -313,57 +305,22 @@ bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2&
 
 Rgb straight_transmittance(const Bsdf& b, float cos_o) {
   if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
-  const Split s = split_at(b, std::min(cos_o, 1.0f));
-  return b.has_transmission ? s.transmitted : s.reflected;
+  if (!b.has_transmission) return mirrored_reflectance(b, cos_o);
+  return split_at(b, std::min(cos_o, 1.0f)).transmitted;
 }
 
 Rgb mirrored_reflectance(const Bsdf& b, float cos_o) {
   if (!b.is_smooth || !(cos_o > 0)) return Rgb{0};
   const float c = std::min(cos_o, 1.0f);
-  const float pass = b.cover.pass(CosineCoordinate(c));
-  return split_at(b, c).reflected * pass;
+  const Gains g = gains_of(b, {0, 0, c});
+  const float clear = b.clear.has_mirror() && !b.clear.has_normal ? 1 - g.coat : 0.0f;
+  return mirror_below(b, g, c) + Rgb{clear};
 }
 
 LobeConstants lobe_constants(const Bsdf& b, float cos_o) {
-  const Gains g = b.has_separable ? gains_at(b, {0, 0, cos_o}) : Gains{};
+  const Gains g = gains_of(b, {0, 0, cos_o});
   const Choice c = choice_at(b, g, cos_o);
   return {c.glossy, c.cosine, c.uniform, g.diffuse, g.soft};
-}
-
-Bsdf diffuse_part(const Bsdf& b) {
-  Bsdf d = b;
-  if (b.is_lambertian) return d;
-  d.fresnel = Bsdf::Fresnel::none;
-  d.has_transmission = d.is_smooth = false;
-  d.soft = {};
-  d.glass_again = d.glass_through = Rgb{0};
-  d.glass_weight = 0;
-  d.has_separable = !d.diffuse.is_black();
-  return d;
-}
-
-Bsdf through_part(const Bsdf& b) {
-  Bsdf d = diffuse_part(b);
-  d.diffuse = b.through;
-  d.through = Rgb{0};
-  d.has_separable = !d.diffuse.is_black();
-  return d;
-}
-
-Bsdf specular_part(const Bsdf& b) {
-  Bsdf s = b;
-  s.through = Rgb{0};
-  s.is_lambertian = false;
-  s.coat = Bsdf::Coat::none;
-  s.diffuse = Rgb{0};
-  s.has_separable = s.soft.kind != SoftLobe::Kind::none || !s.glass_again.is_black() ||
-                    !s.glass_through.is_black();
-  return s;
-}
-
-float coat_share(const Bsdf& b, float cos_i) {
-  if (b.coat == Bsdf::Coat::none || !(b.diffuse_mean > 0)) return 1;
-  return gains_at(b, {0, 0, cos_i}).diffuse / b.diffuse_mean;
 }
 
 Rgb albedo(const Bsdf& b, float cos_o) {
@@ -375,7 +332,7 @@ Rgb albedo(const Bsdf& b, float cos_o) {
     return albedo(near, cos_o) + albedo(through_part(b), cos_o);
   }
   const float c = std::min(cos_o, 1.0f);
-  const Gains g = b.has_separable ? gains_at(b, {0, 0, c}) : Gains{};
+  const Gains g = gains_of(b, {0, 0, c});
   const Energies e = energies_at(b, g, c);
   return e.glossy + e.diffuse + e.again + e.through;
 }

@@ -18,6 +18,10 @@
 //   reflectance; for glass in both half spaces, split by the mean transmittance.
 // - Where gloss has a grain, GGX has two widths; what is lost between microfacets returns by a fit
 //   to its albedo over cosine and azimuth where the widths are even, else it stays lost.
+// - A thin film over glTF's gloss gives it the film's reflectance in place of Schlick's and of
+//   glass's own (bsdf/thin_film.h), for the share of the surface that wears it. What that leaves
+//   for a diffuse base is taken from a Schlick curve that nowhere lies below it.
+// - A clear coat lies over everything else, sheen too: bsdf/clear_coat.h.
 // - Sheen lies over everything else, which keeps p = 1 - its albedo × the largest of its colours:
 //   gloss the smaller p of both directions, as KHR_materials_sheen has it, the diffuse lobe their
 //   product, over its mean, so that a white one reflects what is left.
@@ -55,9 +59,11 @@
 #include "base/rgb.h"
 #include "base/vec.h"
 #include "base/warp.h"
+#include "bsdf/clear_coat.h"
 #include "bsdf/ggx_grained.h"
 #include "bsdf/soft_lobe.h"
 #include "bsdf/tables.h"
+#include "bsdf/thin_film.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -91,8 +97,11 @@ struct Bsdf {
   Rgb absorbed;               // of a sheet: Material::absorption
   bool is_absorbing = false;  // what goes through comes into a body that absorbs, or out of one
 
+  ThinFilm film;  // Fresnel::schlick and glass
+
   SoftLobe soft;
   SheenCover cover;  // over all lobes but the soft one
+  ClearCoat clear;   // over all of them, not where it transmits
 
   // Separable lobes: colour × g(wo) g(wi) / pi, each g = 1 - a directional albedo.
   Rgb diffuse;                     // g of the coat, or 1
@@ -168,7 +177,8 @@ inline bool sample(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u
 // Share of the energy from a direction of cosine cos_o that scatters on, delta lobes and
 // transmission included (without the n² of radiance). Exact up to the tables for Lambertian,
 // coated and glTF's opaque surfaces, smooth lobes and clear glass; an estimate for rough conductors
-// (some percent) and rough tinted glass (the tint may be off by the share that reflects).
+// and gloss under a clear coat (some percent) and rough tinted glass (the tint may be off by the
+// share that reflects).
 Rgb albedo(const Bsdf& bsdf, float cos_o);
 
 // The two parts of a Bsdf: together they scatter what it scatters. The diffuse lobe, attenuated by
@@ -193,7 +203,8 @@ Rgb mirrored_reflectance(const Bsdf& bsdf, float cos_o);
 
 // Nothing for next-event estimation to do.
 inline bool is_purely_delta(const Bsdf& bsdf) {
-  return !bsdf.has_separable && (bsdf.fresnel == Bsdf::Fresnel::none || bsdf.is_smooth);
+  return !bsdf.has_separable && (bsdf.fresnel == Bsdf::Fresnel::none || bsdf.is_smooth) &&
+         !bsdf.clear.has_rough_lobe();
 }
 // Purely diffuse reflection rho / pi; rho may be null.
 inline bool is_lambertian(const Bsdf& bsdf, Rgb* rho) {
@@ -201,12 +212,18 @@ inline bool is_lambertian(const Bsdf& bsdf, Rgb* rho) {
   return bsdf.is_lambertian;
 }
 inline bool has_glossy(const Bsdf& bsdf) {
-  return bsdf.fresnel != Bsdf::Fresnel::none;
+  return bsdf.fresnel != Bsdf::Fresnel::none || bsdf.clear.has_lobe();
 }
-// GGX width of the glossy lobe: 0 where it is a delta, 1 where there is none; the smaller of two.
+// GGX width of what is glossy: 0 where it is a delta, 1 where there is none; the smallest of
+// several.
 inline float glossy_alpha(const Bsdf& bsdf) {
-  if (bsdf.is_grained) return std::min(bsdf.widths.along, bsdf.widths.across);
-  return !has_glossy(bsdf) ? 1.0f : bsdf.is_smooth ? 0.0f : bsdf.alpha;
+  float alpha = 1;
+  if (bsdf.is_grained)
+    alpha = std::min(bsdf.widths.along, bsdf.widths.across);
+  else if (bsdf.fresnel != Bsdf::Fresnel::none)
+    alpha = bsdf.is_smooth ? 0.0f : bsdf.alpha;
+  if (!bsdf.clear.has_lobe()) return alpha;
+  return bsdf.clear.is_smooth ? 0.0f : std::min(alpha, bsdf.clear.alpha);
 }
 
 }  // namespace troffer

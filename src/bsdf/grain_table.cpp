@@ -34,6 +34,31 @@ float grained_albedo(const Vec3& wo, const GgxWidths& a) {
   return std::min(sum / float(n * n), 1.0f);
 }
 
+// The same through a clear coat, over what that lets in; seen from outside it.
+float grained_albedo_below(const Vec3& seen, const GgxWidths& a, const ClearCoat& over) {
+  // More than above, and no two rows alike: where light cannot get out, there is an edge.
+  constexpr int n = 80;
+  constexpr float golden = 0.618034f;
+  const Vec3 wo = over.below(seen);
+  const float at_o = ggx_stretched(wo, a), pass = over.pass(seen.z);
+  const float kept = over.gloss_pass(seen.z);
+  if (!(pass > 0)) return 1;
+  float sum = 0;
+  for (int j = 0; j < n; ++j) {
+    const float turn = golden * float(j) - std::floor(golden * float(j));
+    for (int i = 0; i < n; ++i) {
+      const Vec3 m =
+          ggx_sample_visible_normal(wo, {(float(i) + turn) / n, (float(j) + 0.5f) / n}, a, 1);
+      const Vec3 in = m * (2 * dot(wo, m)) - wo;
+      Vec3 wi;
+      if (!(in.z > 0) || !over.above(in, wi)) continue;
+      const float masked = (at_o + wo.z) * in.z / (at_o * in.z + ggx_stretched(in, a) * wo.z);
+      sum += masked * std::min(over.gloss_pass(wi.z), kept) / pass;
+    }
+  }
+  return std::min(sum / float(n * n), 1.0f);
+}
+
 // White sheen from a cosine; by symmetry half the azimuths.
 float sheen_albedo(float cosine, float alpha) {
   constexpr int heights = 32, azimuths = 24;
@@ -52,18 +77,22 @@ float sheen_albedo(float cosine, float alpha) {
 
 }  // namespace
 
-GrainTable make_grain_table(const GgxWidths& widths) {
-  constexpr int azimuths = 4;
+GrainTable make_grain_table(const GgxWidths& widths, const ClearCoat& over) {
+  // Without a grain they are all alike.
+  const int azimuths = widths.along > widths.across ? 4 : 1;
   GrainTable table;
   table.widths = widths;
+  table.over = over;
   for (size_t k = 0; k < table_cosines; ++k) {
     const float c = std::min(table_cosine(k), 1.0f), s = std::sqrt(1 - c * c);
     float even = 0, twice = 0;
     for (int i = 0; i < azimuths; ++i) {
-      const float phi = 0.5f * pi_f * (float(i) + 0.5f) / azimuths;
-      const float e = grained_albedo({s * std::cos(phi), s * std::sin(phi), c}, widths);
-      even += e / azimuths;
-      twice += e * std::cos(2 * phi) * 2 / azimuths;
+      const float phi = 0.5f * pi_f * (float(i) + 0.5f) / float(azimuths);
+      const Vec3 wo{s * std::cos(phi), s * std::sin(phi), c};
+      const float e =
+          over.share > 0 ? grained_albedo_below(wo, widths, over) : grained_albedo(wo, widths);
+      even += e / float(azimuths);
+      twice += e * std::cos(2 * phi) * 2 / float(azimuths);
     }
     table.even[k] = table.even[k + table_cosines] = even;
     table.twice[k] = table.twice[k + table_cosines] = twice;

@@ -5,21 +5,12 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/gains.h"
+#include "bsdf/material_inputs.h"
 
 namespace troffer {
 
 namespace {
-
-float safe01(float x) {
-  return x > 0 ? std::min(x, 1.0f) : 0.0f;
-}  // NaN reads as 0
-Rgb safe01(Rgb c) {
-  return {safe01(c.r), safe01(c.g), safe01(c.b)};
-}
-Rgb safe_depth(Rgb v) {
-  const auto safe = [](float x) { return x > 0 ? std::min(x, 1e6f) : 0.0f; };
-  return {safe(v.r), safe(v.g), safe(v.b)};
-}
 
 struct Inputs {
   const BsdfTables& tables;
@@ -64,26 +55,6 @@ void set_diffuse(Bsdf& b, const Inputs& in) {
   set_lambertian(b, rho);
 }
 
-float alpha_of(float roughness, RoughnessMeaning meaning) {
-  switch (meaning) {
-    case RoughnessMeaning::alpha:
-      return roughness;
-    case RoughnessMeaning::alpha_is_sqrt:
-      return std::sqrt(roughness);
-    case RoughnessMeaning::alpha_is_square:
-      return roughness * roughness;
-  }
-  return roughness;
-}
-
-bool has_sheen(const Material& m) {
-  return m.kind == MaterialKind::metallic_roughness && !m.sheen_color.value.is_black();
-}
-
-GgxWidths widths_of(float alpha, float strength) {
-  return {alpha + (1 - alpha) * sqr(strength), std::max(alpha, smooth_alpha)};
-}
-
 // Two widths, where there is a grain.
 void set_grain(Bsdf& b, const Inputs& in, float strength) {
   b.widths = widths_of(b.alpha, strength);
@@ -92,10 +63,12 @@ void set_grain(Bsdf& b, const Inputs& in, float strength) {
   b.alpha = std::sqrt(b.widths.along * b.widths.across);
   // The grain is told in the frame of the front; that of the back has the same x axis.
   b.grain = in.is_front ? in.uv.grain : Vec2{in.uv.grain.x, -in.uv.grain.y};
+  const Vec3 n = b.clear.normal;
+  b.clear.normal = {b.grain.x * n.x + b.grain.y * n.y, b.grain.x * n.y - b.grain.y * n.x, n.z};
 }
 
 void set_roughness(Bsdf& b, const Inputs& in, bool can_have_grain = false) {
-  b.alpha = alpha_of(in.value(in.material.roughness), in.material.roughness_meaning);
+  b.alpha = base_alpha(in.material, in.value(in.material.roughness), b.clear);
   if (can_have_grain && in.material.anisotropy.value > 0)
     set_grain(b, in, in.value(in.material.anisotropy));
   b.is_smooth = b.alpha < smooth_alpha;
@@ -104,33 +77,80 @@ void set_roughness(Bsdf& b, const Inputs& in, bool can_have_grain = false) {
   b.grazing = in.tables.ggx().grazing.row(b.alpha);
 }
 
+// Before all that lies under it.
+void set_clear_coat(Bsdf& b, const Inputs& in) {
+  const Material& m = in.material;
+  if (!has_clear_coat(m)) return;
+  b.clear =
+      clear_coat_of(m, in.value(m.coat), in.value(m.coat_roughness), in.prepared.clear_coat_ior);
+  in.tables.set_rows(b.clear, in.prepared);
+  if (!has_own_coat_normal(m)) return;
+  // Told in the frame of the front; that of the back has the same x axis.
+  const Vec2 n = in.is_front ? in.uv.coat_normal : Vec2{-in.uv.coat_normal.x, in.uv.coat_normal.y};
+  b.clear.has_normal = true;
+  b.clear.normal = {n.x, n.y, std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y))};
+}
+
 // A lobe's missing mean energy under which compensation is left out: rounding outweighs it.
 constexpr float negligible = 1e-5f;
+
+// 2 ∫ f c dc by Gauss's rule in the fourth root t of the cosine, where tables are smooth: 8 ∫ f t⁷
+// dt.
+template <class F>
+float hemisphere_mean(const F& f) {
+  constexpr std::array<float, 4> node{0.1834346f, 0.5255324f, 0.7966665f, 0.9602899f},
+      weight{0.3626838f, 0.3137066f, 0.2223810f, 0.1012285f};
+  float sum = 0;
+  for (size_t i = 0; i < node.size(); ++i)
+    for (const float side : {-1.0f, 1.0f}) {
+      const float t = 0.5f + 0.5f * side * node[i], t2 = t * t, c = t2 * t2;
+      sum += weight[i] * 4 * f(c) * t2 * t2 * t2 * t;
+    }
+  return sum;
+}
+
+// The mean that diffuse lobes divide by.
+float mean_coat_gain(const Bsdf& b) {
+  return hemisphere_mean([&b](float c) { return gains_at(b, {0, 0, c}).diffuse; });
+}
+
+Rgb metal_mean(Rgb eta, Rgb k) {
+  Rgb mean;
+  for (size_t i = 0; i < 3; ++i)
+    mean[i] = hemisphere_mean([&](float c) { return fresnel_conductor(c, eta[i], k[i]); });
+  return mean;
+}
 
 // Multiple scattering between conducting microfacets of mean reflectance f [1]: the geometric
 // series of reflections after the second, f² E / (1 - f (1 - E)). `weight` is the metal's share.
 void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight) {
   if (b.is_smooth || weight == 0) return;
-  const GrainTable* grain =
-      b.is_grained && in.prepared.grain >= 0 ? &in.tables.grain(in.prepared.grain) : nullptr;
-  if (b.is_grained && grain == nullptr) return;
+  const bool is_clear = b.clear.share > 0;
+  const GrainTable* grain = (b.is_grained || is_clear) && in.prepared.grain >= 0
+                                ? &in.tables.grain(in.prepared.grain)
+                                : nullptr;
+  if ((b.is_grained || (is_clear && b.clear.bend > 1)) && grain == nullptr) return;
   const float escape = grain ? grain->even_row().average : b.one.average, stay = 1 - escape;
   if (stay < negligible) return;
   const Rgb colour = f * f * (weight * escape / stay) / (Rgb{1} - f * stay);
   if (colour.is_black()) return;
-  b.soft.kind = grain ? SoftLobe::Kind::lost_grained_light : SoftLobe::Kind::lost_light;
+  b.soft.kind = b.is_grained ? SoftLobe::Kind::lost_grained_light : SoftLobe::Kind::lost_light;
   b.soft.colour = colour;
   b.soft.mean = stay;
   b.soft.glossy = grain ? grain->even_row() : b.one;
   if (grain) b.soft.twice = grain->twice_row();
   b.has_separable = true;
+  if (!is_clear) return;
+  b.soft.mean = hemisphere_mean([&b](float c) { return gains_at(b, {0, 0, c}).soft; });
+  b.soft.colour *= stay / b.soft.mean;
 }
 
 // Glass's lost energy leaves on both sides. Shares transmitted from the near and the far side must
 // satisfy t_near M_near = t_far M_far eta² for reciprocity (M: mean missing energy); mean Fresnel
 // transmittances do so where M_near = M_far, so the geometric mean corrects them.
 void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint) {
-  if (b.is_smooth) return;
+  // A film's reflectance is not that of the tables: what is lost stays lost.
+  if (b.is_smooth || (b.film.share > 0 && !b.is_thin)) return;
   b.near_mean = 1 - b.near.average;
   b.far_mean = 1 - b.far.average;
   if (b.near_mean < negligible || b.far_mean < negligible) return;
@@ -175,6 +195,7 @@ void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
 }
 
 void set_conductor(Bsdf& b, const Inputs& in) {
+  set_clear_coat(b, in);
   set_roughness(b, in, true);
   b.fresnel = Bsdf::Fresnel::conductor;
   Rgb average = in.prepared.conductor_average;
@@ -187,6 +208,11 @@ void set_conductor(Bsdf& b, const Inputs& in) {
     b.f0 = safe_index(in.material.eta);
     b.f90 = safe_index(in.material.k);
   }
+  if (b.clear.share > 0) {  // as seen from within the coat
+    b.f0 *= 1 / b.clear.bend;
+    b.f90 *= 1 / b.clear.bend;
+    average = safe01(metal_mean(b.f0, b.f90));
+  }
   add_metal_compensation(b, in, average, 1);
 }
 
@@ -198,6 +224,7 @@ void set_dielectric(Bsdf& b, const Inputs& in) {
 }
 
 void set_coated_diffuse(Bsdf& b, const Inputs& in) {
+  set_clear_coat(b, in);
   set_roughness(b, in);
   const float ior = in.prepared.ior;
   b.fresnel = Bsdf::Fresnel::coat;
@@ -213,24 +240,52 @@ void set_coated_diffuse(Bsdf& b, const Inputs& in) {
   const float from_below = 1 - b.diffuse_mean / (ior * ior);
   const Rgb rho = in.base();
   b.diffuse = rho / ((Rgb{1} - rho * from_below) * (ior * ior));
+  if (b.clear.share > 0) {
+    const float mean = mean_coat_gain(b);
+    b.diffuse *= b.diffuse_mean / mean;
+    b.diffuse_mean = mean;
+  }
   b.has_separable = !b.diffuse.is_black();
 }
 
-// The mean that diffuse lobes divide by, by Gauss's rule in the fourth root of the cosine, where
-// tables are smooth: 2 ∫ g c dc = 8 ∫ g t⁷ dt.
-float mean_coat_gain(const Bsdf& b) {
-  constexpr std::array<float, 4> node{0.1834346f, 0.5255324f, 0.7966665f, 0.9602899f},
-      weight{0.3626838f, 0.3137066f, 0.2223810f, 0.1012285f};
-  float sum = 0;
-  for (size_t i = 0; i < node.size(); ++i)
-    for (const float side : {-1.0f, 1.0f}) {
-      const float t = 0.5f + 0.5f * side * node[i], t2 = t * t, c = t2 * t2;
-      sum += weight[i] * 4 * coat_share(b, c) * t2 * t2 * t2 * t;
-    }
-  return sum * b.diffuse_mean;
+// Schlick's f0 with which a coat of that f90 reflects nowhere less than one under a film does.
+float hull_below_film(const Bsdf& b, float f0, float f90) {
+  float least = f0;
+  for (const float c : {1.0f, 0.85f, 0.7f, 0.55f, 0.4f, 0.25f, 0.1f}) {
+    const float film = max_component(film_reflectance(b.film, b.film.coat_f0, c)) * f90;
+    const float grazing = pow5(1 - c);
+    const float wanted = lerp(f0 + (f90 - f0) * grazing, film, b.film.share);
+    least = std::max(least, (wanted - f90 * grazing) / (1 - grazing));
+  }
+  return std::min(least, f90);
 }
 
-// Over what is set already but for the diffuse lobe, whose mean becomes that under both.
+// Over metal, and over a coat of that reflectance, by their shares of the surface; over glass.
+void set_film(Bsdf& b, const Inputs& in, Rgb metal_f0, float metal, Rgb coat_f0, float coat) {
+  const Material& m = in.material;
+  if (!(m.iridescence.value > 0)) return;
+  b.film.share = in.value(m.iridescence);
+  b.film.ior = std::clamp(m.film_ior, 1.0f, 10.0f);
+  b.film.thickness_nm =
+      std::max(lerp(m.film_thinnest_nm, m.film_thickest_nm, in.value(m.film_thickness)), 0.0f);
+  b.film.table = &in.tables.interference();
+  b.film.metal_f0 = metal_f0;
+  b.film.coat_f0 = coat_f0;
+  b.film.metal = metal;
+  b.film.coat = coat;
+}
+
+// Mean reflectance of the metal, film and all.
+Rgb metal_average(const Bsdf& b, Rgb f0) {
+  const Rgb plain = f0 + (Rgb{1} - f0) * (1.0f / 21);
+  if (!(b.film.share > 0)) return plain;
+  Rgb sum{0};
+  for (const float c : {0.408248f, 0.707107f, 0.912871f})  // of equal parts of the irradiance
+    sum += film_reflectance(b.film, f0, c) * (1.0f / 3);
+  return plain + (sum - plain) * b.film.share;
+}
+
+// Over what is set already but for the diffuse lobe.
 void cover_with_sheen(Bsdf& b, const Inputs& in) {
   const Rgb color = safe01(evaluate(in.textures, in.material.sheen_color, in.uv));
   const float alpha = std::max(sqr(in.value(in.material.sheen_roughness)), least_sheen_alpha);
@@ -242,7 +297,6 @@ void cover_with_sheen(Bsdf& b, const Inputs& in) {
   b.soft.glossy = in.tables.sheen().row(alpha);
   b.cover = {max_component(color), b.soft.glossy};
   b.has_separable = true;
-  b.diffuse_mean = mean_coat_gain(b);
 }
 
 void set_metallic_roughness(Bsdf& b, const Inputs& in) {
@@ -258,8 +312,9 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   const Rgb coat_f0 = safe01(tint * r0) * specular;
 
   const bool is_covered = has_sheen(m) && glass == 0;
+  if (glass == 0) set_clear_coat(b, in);
   const Passing passes = passing(in);
-  if (metallic == 0 && glass == 0 && specular == 0 && !is_covered) {
+  if (metallic == 0 && glass == 0 && specular == 0 && !is_covered && !(b.clear.share > 0)) {
     b.through = passes.through;
     return set_lambertian(b, base * (1 - passes.share));
   }
@@ -267,10 +322,12 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   b.fresnel = Bsdf::Fresnel::schlick;
   b.f0 = base * metallic + coat_f0 * opaque;
   b.f90 = Rgb{metallic + specular * opaque};
-  add_metal_compensation(b, in, base + (Rgb{1} - base) * (1.0f / 21), metallic);
+  set_film(b, in, base, metallic, safe01(tint * r0), specular * opaque);
+  add_metal_compensation(b, in, metal_average(b, base), metallic);
   if (opaque > 0) {
     b.coat_f0 = max_component(coat_f0);
     b.coat_f90 = specular;
+    if (b.film.share > 0) b.coat_f0 = hull_below_film(b, b.coat_f0, specular);
     float average = b.coat_f0 + (b.coat_f90 - b.coat_f0) / 21;
     b.coat = Bsdf::Coat::smooth_schlick;
     if (!b.is_smooth) {
@@ -279,6 +336,7 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
     }
     b.diffuse_mean = 1 - average;
     if (is_covered) cover_with_sheen(b, in);
+    if (is_covered || b.clear.share > 0) b.diffuse_mean = mean_coat_gain(b);
     if (b.diffuse_mean > negligible) {
       b.diffuse = base * ((1 - passes.share) * opaque / b.diffuse_mean);
       b.through = passes.through * (opaque / b.diffuse_mean);
@@ -288,56 +346,7 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   if (glass > 0) add_glass(b, in, glass, safe01(tint * specular), base);
 }
 
-bool can_be_rough(const Material& m) {
-  return m.roughness.texture >= 0 || m.roughness.value >= 1e-6f || m.anisotropy.value > 0;
-}
-
 }  // namespace
-
-bool is_pane(const Material& m) {
-  if (m.is_image) return true;
-  const bool is_glass =
-      m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
-                                             m.transmission.value > 0 && m.metallic.value < 1);
-  if (!is_glass || !m.is_thin || m.is_alpha_masked) return false;
-  return m.roughness.texture < 0 &&
-         alpha_of(safe01(m.roughness.value), m.roughness_meaning) < smooth_alpha;
-}
-
-TableNeeds table_needs(const Material& m) {
-  const bool is_rough = can_be_rough(m);
-  TableNeeds n;
-  n.has_ggx = is_rough && m.kind != MaterialKind::diffuse;
-  bool is_glass = false;
-  switch (m.kind) {
-    case MaterialKind::diffuse:
-      break;
-    case MaterialKind::coated_diffuse:
-      n.has_coat = is_rough;
-      n.has_dielectric_average = true;
-      break;
-    case MaterialKind::conductor:
-      n.has_conductor_average = true;
-      break;
-    case MaterialKind::dielectric:
-      is_glass = true;
-      break;
-    case MaterialKind::metallic_roughness:
-      is_glass = m.transmission.value > 0;
-      break;
-  }
-  n.has_glass = is_glass && is_rough && !m.is_thin;
-  n.has_sheen = has_sheen(m);
-  const bool is_metal = m.kind == MaterialKind::conductor ||
-                        (m.kind == MaterialKind::metallic_roughness && m.metallic.value > 0);
-  if (is_metal && m.anisotropy.value > 0 && m.anisotropy.texture < 0 && m.roughness.texture < 0) {
-    const GgxWidths a = widths_of(alpha_of(safe01(m.roughness.value), m.roughness_meaning),
-                                  safe01(m.anisotropy.value));
-    if (a.along > a.across) n.grain = a;
-  }
-  n.has_dielectric_average |= is_glass;
-  return n;
-}
 
 Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
                const std::vector<Texture>& textures, uint32_t material, const TexturePlace& uv,

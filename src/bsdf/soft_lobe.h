@@ -60,6 +60,10 @@ struct SheenCover {
   }
 };
 
+inline bool is_lost_light(const SoftLobe& l) {
+  return l.kind == SoftLobe::Kind::lost_light || l.kind == SoftLobe::Kind::lost_grained_light;
+}
+
 // What the lobe keeps of a direction on the viewer's side.
 inline float soft_gain(const SoftLobe& l, const SoftDirection& w) {
   switch (l.kind) {

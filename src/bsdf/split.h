@@ -34,6 +34,24 @@ inline Split absorbing_sheet(const Bsdf& b, float c) {
   return s;
 }
 
+// A thin film over opaque gloss, in place of a share of what it would reflect without.
+inline Rgb schlick_or_film(const Bsdf& b, float c) {
+  const Rgb plain = fresnel_schlick(c, b.f0, b.f90);
+  if (!(b.film.share > 0)) return plain;
+  Rgb filmed{0};
+  if (b.film.metal > 0) filmed += film_reflectance(b.film, b.film.metal_f0, c) * b.film.metal;
+  if (b.film.coat > 0) filmed += film_reflectance(b.film, b.film.coat_f0, c) * b.film.coat;
+  return plain + (filmed - plain) * b.film.share;
+}
+
+// A thin film over glass that reflects r without it; the same from inside at the angle over there.
+inline Rgb glass_or_film(const Bsdf& b, float c, float r) {
+  const bool is_inside = !b.is_thin && b.eta < 1;
+  const Rgb f0{normal_reflectance(b.eta)};
+  const Rgb filmed = film_reflectance(b.film, f0, is_inside ? refracted_cosine(c, b.eta) : c);
+  return Rgb{r} + (filmed - Rgb{r}) * b.film.share;
+}
+
 inline Split split_at(const Bsdf& b, float c) {
   switch (b.fresnel) {
     case Bsdf::Fresnel::none:
@@ -41,19 +59,23 @@ inline Split split_at(const Bsdf& b, float c) {
     case Bsdf::Fresnel::conductor:
       return {fresnel_conductor(c, b.f0, b.f90), Rgb{0}};
     case Bsdf::Fresnel::schlick:
-      return {fresnel_schlick(c, b.f0, b.f90), Rgb{0}};
+      return {schlick_or_film(b, c), Rgb{0}};
     case Bsdf::Fresnel::coat:
       return {Rgb{fresnel_dielectric(c, b.eta)}, Rgb{0}};
     case Bsdf::Fresnel::glass: {
-      const Rgb opaque = fresnel_schlick(c, b.f0, b.f90);
-      float r = fresnel_dielectric(c, b.eta);
-      if (r >= 1) return {opaque + Rgb{b.glass_weight}, Rgb{0}};
+      const Rgb opaque = schlick_or_film(b, c);
+      const float plain = fresnel_dielectric(c, b.eta);
+      if (plain >= 1) return {opaque + Rgb{b.glass_weight}, Rgb{0}};
       if (b.is_thin && !b.absorbed.is_black()) {
         const Split s = absorbing_sheet(b, c);
         return {opaque + s.reflected, s.transmitted};
       }
-      if (b.is_thin) r = plate_reflectance(c, b.eta);
-      return {opaque + b.glass_reflect * r, b.glass_transmit * (1 - b.glass_scale * r)};
+      Rgb r{b.is_thin ? plate_reflectance(c, b.eta) : plain};
+      if (b.film.share > 0) {
+        r = glass_or_film(b, c, plain);
+        if (b.is_thin) r = r * 2 / (r + Rgb{1});  // both sides wear it
+      }
+      return {opaque + b.glass_reflect * r, b.glass_transmit * (Rgb{1} - r * b.glass_scale)};
     }
   }
   return {};

@@ -32,27 +32,38 @@ int32_t table_for(std::vector<Table>& tables, float ior, size_t max_tables) {
   return int32_t(tables.size() - 1);
 }
 
-int32_t grain_for(std::vector<GrainTable>& tables, const GgxWidths& a, size_t max_tables) {
+bool is_same(const ClearCoat& a, const ClearCoat& b) {
+  return a.share == b.share && a.alpha == b.alpha && a.eta == b.eta && a.bend == b.bend;
+}
+
+int32_t grain_for(std::vector<GrainTable>& tables, const GgxWidths& a, const ClearCoat& over,
+                  size_t max_tables) {
   for (size_t i = 0; i < tables.size(); ++i)
-    if (tables[i].widths.along == a.along && tables[i].widths.across == a.across) return int32_t(i);
+    if (tables[i].widths.along == a.along && tables[i].widths.across == a.across &&
+        is_same(tables[i].over, over))
+      return int32_t(i);
   if (tables.size() >= max_tables) return -1;
-  tables.push_back(make_grain_table(a));
+  tables.push_back(make_grain_table(a, over));
   return int32_t(tables.size() - 1);
 }
 
 }  // namespace
 
 BsdfTables::BsdfTables(const std::vector<Material>& materials) {
-  bool needs_ggx = false, needs_sheen = false;
+  bool needs_ggx = false, needs_sheen = false, needs_film = false;
   for (const Material& m : materials) {
     PreparedMaterial p;
     p.ior = safe_ior(m.ior);
+    p.clear_coat_ior = safe_ior(m.coat_ior);
     p.is_pane = is_pane(m);
-    const TableNeeds needs = table_needs(m);
+    const TableNeeds needs = table_needs(m, p.clear_coat_ior);
     needs_ggx |= needs.has_ggx;
     needs_sheen |= needs.has_sheen;
-    if (needs.grain.along > 0) p.grain = grain_for(grains_, needs.grain, max_iors);
+    needs_film |= needs.has_film;
     if (needs.has_coat) p.coat = table_for(coats_, p.ior, max_iors);
+    if (needs.has_clear_coat) p.clear_coat = table_for(coats_, p.clear_coat_ior, max_iors);
+    if (needs.has_clear_inside)
+      p.clear_inside = table_for(coats_, 1 / p.clear_coat_ior, 2 * max_iors);
     if (needs.has_glass && std::abs(p.ior - 1) >= index_matched)
       p.glass = table_for(glasses_, p.ior, max_iors);
     if (needs.has_dielectric_average) {
@@ -68,9 +79,29 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
   }
   if (needs_ggx) build_albedo_tables(ggx_, coats_, glasses_);
   if (needs_sheen) build_sheen_table(sheen_);
+  if (needs_film) interference_ = make_interference_table();
+  build_grain_tables(materials);
   for (size_t i = 0; i < reflectances; ++i)
     reflectance_average_[i] =
         fresnel_conductor_average(1, k_from_reflectance(float(i) / float(reflectances - 1)));
+}
+
+void BsdfTables::set_rows(ClearCoat& clear, const PreparedMaterial& p) const {
+  if (!(clear.share > 0) || clear.is_smooth) return;
+  clear.row = coat(p.clear_coat).reflected.row(clear.alpha);
+  if (clear.bend > 1) clear.inner = coat(p.clear_inside).reflected.row(clear.alpha);
+}
+
+// Those under clear coats ask the tables of these.
+void BsdfTables::build_grain_tables(const std::vector<Material>& materials) {
+  for (size_t i = 0; i < materials.size(); ++i) {
+    PreparedMaterial& p = materials_[i];
+    TableNeeds needs = table_needs(materials[i], p.clear_coat_ior);
+    if (!(needs.grain.along > 0)) continue;
+    ClearCoat& over = needs.over_grain;
+    set_rows(over, p);
+    p.grain = grain_for(grains_, needs.grain, over, max_iors);
+  }
 }
 
 Rgb BsdfTables::reflectance_average(Rgb r) const {

@@ -8,7 +8,9 @@
 
 #include "base/rgb.h"
 #include "bsdf/albedo_table.h"
+#include "bsdf/clear_coat.h"
 #include "bsdf/grain_table.h"
+#include "bsdf/thin_film.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -20,9 +22,12 @@ constexpr float index_matched = 1e-3f;
 struct PreparedMaterial {
   float ior = 1.5f;               // made safe: in [1/100, 100] and finite
   int32_t coat = -1, glass = -1;  // tables for this ior, where the material can need them
-  int32_t grain = -1;             // for its two widths, where they are the same everywhere
-  float dielectric_average = 0;   // cosine-weighted mean Fresnel reflectance from outside
-  float plate_average = 0;        // … of a thin plate
+  int32_t grain = -1;  // for its two widths and its clear coat, where they are the same everywhere
+  int32_t clear_inside = -1;     // … seen from below
+  int32_t clear_coat = -1;       // for the index of its clear coat, where that can be rough
+  float clear_coat_ior = 1.5f;   // made safe
+  float dielectric_average = 0;  // cosine-weighted mean Fresnel reflectance from outside
+  float plate_average = 0;       // … of a thin plate
   bool is_pane = false;
   Rgb conductor_average;  // … of the conductor eta, k (not of is_reflectance)
 };
@@ -33,13 +38,17 @@ struct TableNeeds {
   bool has_coat = false, has_glass = false;  // tables for its index of refraction
   bool has_dielectric_average = false, has_conductor_average = false;
   bool has_sheen = false;
-  GgxWidths grain{0, 0};  // zeros: none, or not the same everywhere
+  bool has_film = false;
+  bool has_clear_coat = false;    // tables for the index of its clear coat
+  bool has_clear_inside = false;  // … seen from below
+  GgxWidths grain{0, 0};          // zeros: none, or not the same everywhere
+  ClearCoat over_grain;           // that lies over it; without its row
 };
-TableNeeds table_needs(const Material& material);  // make_bsdf.cpp
+TableNeeds table_needs(const Material& material, float clear_coat_ior);  // table_needs.cpp
 
 // Clear thin glass: light that it does not reflect goes through straight on, so that shadow rays
 // may pass it. Not where its roughness varies or it has holes.
-bool is_pane(const Material& material);  // make_bsdf.cpp
+bool is_pane(const Material& material);  // table_needs.cpp
 
 // Immutable once built; Bsdf values point into it, so it must outlive them and stay in place.
 class BsdfTables {
@@ -56,7 +65,10 @@ class BsdfTables {
   const CoatTable& coat(int32_t i) const { return coats_[size_t(i)]; }
   const GlassTables& glass(int32_t i) const { return glasses_[size_t(i)]; }
   const GrainTable& grain(int32_t i) const { return grains_[size_t(i)]; }
+  // The rows of a clear coat, by the material's tables.
+  void set_rows(ClearCoat& clear, const PreparedMaterial& material) const;
   const AlbedoTable& sheen() const { return sheen_; }
+  const InterferenceTable& interference() const { return interference_; }
   // Mean Fresnel reflectance of the conductor with eta = 1 and normal reflectance r.
   Rgb reflectance_average(Rgb r) const;
 
@@ -69,7 +81,10 @@ class BsdfTables {
   std::vector<GlassTables> glasses_;
   std::vector<GrainTable> grains_;
   AlbedoTable sheen_;
+  InterferenceTable interference_;
   std::array<float, reflectances> reflectance_average_{};
+
+  void build_grain_tables(const std::vector<Material>& materials);
 };
 
 }  // namespace troffer

@@ -54,6 +54,11 @@ void tell_what_is_left_out(const Scene& scene, const Material& m, bool is_gltf,
   if (m.back_faces == BackFaces::unseen && !is_gltf)
     warnings.add("backs that the eye does not see are written as their fronts");
   if (!is_gltf && !m.sheen_color.value.is_black()) warnings.add("sheen is not written");
+  if (!is_gltf && m.kind == MaterialKind::coated_diffuse && m.coat.value > 0)
+    warnings.add("second coats over diffuse bases are not written");
+  if (!is_gltf && m.iridescence.value > 0) warnings.add("thin films over gloss are not written");
+  if (!is_gltf && m.coat_normal_texture >= 0)
+    warnings.add("normal maps of clear coats are not written");
   if (!is_gltf && m.anisotropy.value > 0)
     warnings.add("gloss with a grain is written as wide as across it");
   for_each_input(m, [&](const auto& input) {

@@ -28,7 +28,9 @@ float power_for_gltf(RoughnessMeaning meaning) {
 }
 
 Rgb normal_reflectance(const Material& m) {
-  const Rgb one{1}, below = m.eta - one, above = m.eta + one, k2 = m.k * m.k;
+  const float over = m.coat.value > 0 ? m.coat_ior : 1;
+  const Rgb eta = m.eta / over, k = m.k / over;
+  const Rgb one{1}, below = eta - one, above = eta + one, k2 = k * k;
   return (below * below + k2) / (above * above + k2);
 }
 
@@ -114,6 +116,10 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
 void GltfMaterialWriter::add_roughness(const Material& m, Json& pbr) {
   const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
   const float power = power_for_gltf(m.roughness_meaning);
+  FloatInput rough = m.roughness;
+  // Straight on, light that leaves a coat in which it bends spreads by its index.
+  if (m.kind == MaterialKind::conductor && m.coat.value > 0)
+    rough.value *= std::pow(m.coat_ior, power > 0 ? 0.5f / power : 1.0f);
   FloatInput metal = is_mixed ? m.metallic : FloatInput{0, no_texture, 0};
   if (m.kind == MaterialKind::conductor) metal.value = 1;
   const Texture* rough_image = image_of(scene_, m.roughness.texture);
@@ -166,6 +172,60 @@ void GltfMaterialWriter::add_cloth_and_grain(const Material& m, Json& out) {
         {"anisotropyRotation", m.anisotropy_rotation_rad}};
 }
 
+// Factor and texture; an image of one number holds it in every channel.
+void GltfMaterialWriter::add_number(const FloatInput& input, float power, const std::string& name,
+                                    Json& extension) {
+  const Texture* look = image_of(scene_, input.texture);
+  if (!look) {
+    const float value = std::clamp(evaluate(scene_.textures, input, Vec2{0, 0}), 0.0f, 1.0f);
+    extension[name + "Factor"] = std::pow(value, power);
+    return;
+  }
+  const std::string key =
+      fmt::format("number {} {} {} {}", input.texture, input.channel, input.value, power);
+  extension[name + "Factor"] = 1;
+  extension[name + "Texture"] =
+      reference(texture(key, baked_number(scene_, input, power), *look), *look);
+}
+
+void GltfMaterialWriter::add_clear_coat(const Material& m, Json& out) {
+  if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse || m.kind == MaterialKind::dielectric)
+    return;
+  if (m.kind == MaterialKind::coated_diffuse || std::abs(m.coat_ior - 1.5f) > 0.01f)
+    warnings_.add("clear coats are written as glTF's, of index 1.5");
+  Json coat = Json::object();
+  add_number(m.coat, 1, "clearcoat", coat);
+  add_number(m.coat_roughness, power_for_gltf(m.roughness_meaning), "clearcoatRoughness", coat);
+  const bool leans = !m.has_coat_normal && m.normal_texture >= 0;
+  const int32_t normal = leans ? m.normal_texture : m.coat_normal_texture;
+  if (const Texture* look = image_of(scene_, normal)) {
+    const std::string key = fmt::format("raw {}", normal);
+    coat["clearcoatNormalTexture"] =
+        reference(texture(key, baked_raw(scene_, uint32_t(normal)), *look), *look);
+    const float scale = leans ? m.normal_scale : m.coat_normal_scale;
+    if (scale != 1) coat["clearcoatNormalTexture"]["scale"] = scale;
+  }
+  out["extensions"]["KHR_materials_clearcoat"] = coat;
+}
+
+void GltfMaterialWriter::add_film(const Material& m, Json& out) {
+  if (m.iridescence.value <= 0 || m.kind != MaterialKind::metallic_roughness) return;
+  Json film = Json::object();
+  add_number(m.iridescence, 1, "iridescence", film);
+  film["iridescenceIor"] = m.film_ior;
+  film["iridescenceThicknessMinimum"] = m.film_thinnest_nm;
+  film["iridescenceThicknessMaximum"] = m.film_thickest_nm;
+  Json thickness = Json::object();
+  add_number(m.film_thickness, 1, "iridescenceThickness", thickness);
+  if (thickness.contains("iridescenceThicknessTexture"))
+    film["iridescenceThicknessTexture"] = thickness["iridescenceThicknessTexture"];
+  else
+    film["iridescenceThicknessMaximum"] =
+        lerp(m.film_thinnest_nm, m.film_thickest_nm,
+             thickness["iridescenceThicknessFactor"].get<float>());
+  out["extensions"]["KHR_materials_iridescence"] = film;
+}
+
 // KHR_materials_diffuse_transmission: the base is what does not come through.
 void GltfMaterialWriter::add_diffuse_transmission(const Material& m, Json& out) {
   if (m.diffuse_transmission.value <= 0) return;
@@ -214,7 +274,11 @@ Json GltfMaterialWriter::surface(const Material& m) {
   }
   add_roughness(m, pbr);
   add_cloth_and_grain(m, out);
+  add_clear_coat(m, out);
+  add_film(m, out);
   if (m.kind == MaterialKind::conductor) {
+    if (m.coat.value > 0)
+      warnings_.add("metals under a coat are written as glTF's, into which light does not bend");
     if (!m.is_reflectance)
       warnings_.add("metals are written by their reflectance at normal incidence");
     return out;

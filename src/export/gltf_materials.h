@@ -51,6 +51,9 @@ class GltfMaterialWriter {
   void add_roughness(const Material& m, Json& pbr);
   void add_glass(const Material& m, Json& out);
   void add_cloth_and_grain(const Material& m, Json& out);
+  void add_number(const FloatInput& input, float power, const std::string& name, Json& extension);
+  void add_clear_coat(const Material& m, Json& out);
+  void add_film(const Material& m, Json& out);
   void add_diffuse_transmission(const Material& m, Json& out);
   void add_emission(const Light& light, Rgb radiance, Json& out);
   size_t texture(const std::string& key, const BakedImage& image, const Texture& look);

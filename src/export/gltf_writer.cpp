@@ -218,8 +218,9 @@ Json GltfWriter::file() {
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   Json used = Json::array();
   for (const char* name :
-       {"KHR_lights_punctual", "KHR_materials_anisotropy", "KHR_materials_emissive_strength",
-        "KHR_materials_diffuse_transmission", "KHR_materials_ior", "KHR_materials_sheen",
+       {"KHR_lights_punctual", "KHR_materials_anisotropy", "KHR_materials_clearcoat",
+        "KHR_materials_emissive_strength", "KHR_materials_diffuse_transmission",
+        "KHR_materials_ior", "KHR_materials_iridescence", "KHR_materials_sheen",
         "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_unlit",
         "KHR_materials_volume", "KHR_texture_transform", "MOZ_lightmap"})
     if (text.find(std::string("\"") + name + "\"") != std::string::npos) used.push_back(name);

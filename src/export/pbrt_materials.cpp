@@ -34,6 +34,14 @@ float power_for_pbrt(RoughnessMeaning meaning) {
                                                       : 1;
 }
 
+// Of a metal of that reflectance seen from within a coat of that index: what pbrt, which tells a
+// metal as seen from air, calls its reflectance.
+float reflectance_in_air(float r, float index) {
+  const float c = std::clamp(r, 0.0f, 0.9999f), eta = 1 / index;
+  const float k2 = std::max((c * sqr(eta + 1) - sqr(eta - 1)) / (1 - c), 0.0f) * sqr(index);
+  return k2 / (4 + k2);
+}
+
 }  // namespace
 
 std::string PbrtMaterialWriter::texture_name(const std::string& key, const BakedImage& image,
@@ -80,19 +88,41 @@ std::string PbrtMaterialWriter::color(const char* parameter, const ColorInput& i
 
 // As the width of ggx itself.
 std::string PbrtMaterialWriter::roughness(const Material& m, float power) {
-  const Texture* look = image_of(scene_, m.roughness.texture);
+  return width("roughness", m.roughness, power) + " \"bool remaproughness\" false";
+}
+
+std::string PbrtMaterialWriter::width(const char* parameter, const FloatInput& input, float power) {
+  const Texture* look = image_of(scene_, input.texture);
   if (!look) {
-    const float r =
-        std::pow(std::max(evaluate(scene_.textures, m.roughness, Vec2{0, 0}), 0.0f), power);
-    return fmt::format(" \"float roughness\" {} \"bool remaproughness\" false", r);
+    const float r = std::pow(std::max(evaluate(scene_.textures, input, Vec2{0, 0}), 0.0f), power);
+    return fmt::format(" \"float {}\" {}", parameter, r);
   }
-  const std::string key = fmt::format("number {} {} {} {}", m.roughness.texture,
-                                      m.roughness.channel, m.roughness.value, power);
-  const std::string name =
-      textures_.contains(key)
-          ? textures_[key]
-          : texture_name(key, baked_number(scene_, m.roughness, power), look, true);
-  return fmt::format(" \"texture roughness\" \"{}\" \"bool remaproughness\" false", name);
+  const std::string key =
+      fmt::format("number {} {} {} {}", input.texture, input.channel, input.value, power);
+  const std::string name = textures_.contains(key)
+                               ? textures_[key]
+                               : texture_name(key, baked_number(scene_, input, power), look, true);
+  return fmt::format(" \"texture {}\" \"{}\"", parameter, name);
+}
+
+// A conductor, or glTF's metal, into whose coat light does not bend: its gloss spreads by the index
+// where it leaves pbrt's.
+std::string PbrtMaterialWriter::coated_metal_text(const Material& m) {
+  const float power = power_for_pbrt(m.roughness_meaning);
+  const bool bends = m.kind == MaterialKind::conductor;
+  FloatInput base = m.roughness;
+  ColorChange change;
+  if (!bends) {
+    warnings_.add("clear coats over glTF's metal are written as pbrt's, into which light bends");
+    base.value *= std::pow(m.coat_ior, -1 / power);
+    change = [&m](float v) { return reflectance_in_air(v, m.coat_ior); };
+  }
+  const std::string metal = bends && !m.is_reflectance
+                                ? rgb("conductor.eta", m.eta) + rgb("conductor.k", m.k)
+                                : color("reflectance", m.base_color, change);
+  return fmt::format("\"coatedconductor\" \"float interface.eta\" {}", m.coat_ior) + metal +
+         width("conductor.roughness", base, power) +
+         width("interface.roughness", m.coat_roughness, power) + " \"bool remaproughness\" false";
 }
 
 // What comes back and what comes through; base: the former.
@@ -114,6 +144,9 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
                            "weight: pbrt has none"
                          : "metal, coat and glass of glTF's model are written as pbrt's, which "
                            "differ a little");
+  if (metallic >= 0.5f && m.coat.value >= 0.5f) return coated_metal_text(m);
+  if (m.coat.value > 0)
+    warnings_.add("clear coats over anything but metal, and thin ones, are not written");
   if (metallic >= 0.5f)
     return "\"conductor\"" + color("reflectance", m.base_color) + roughness(m, power);
   if (transmission >= 0.5f)
@@ -144,6 +177,7 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
       return fmt::format("\"coateddiffuse\" \"float eta\" {}", m.ior) +
              color("reflectance", m.base_color) + roughness(m, power);
     case MaterialKind::conductor:
+      if (m.coat.value > 0) return coated_metal_text(m);
       if (m.is_reflectance)
         return "\"conductor\"" + color("reflectance", m.base_color) + roughness(m, power);
       return "\"conductor\"" + rgb("eta", m.eta) + rgb("k", m.k) + roughness(m, power);

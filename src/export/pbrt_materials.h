@@ -38,6 +38,8 @@ class PbrtMaterialWriter {
   std::string translucent_text(const Material& m, const ColorInput& base);
   std::string color(const char* parameter, const ColorInput& input, const ColorChange& change = {});
   std::string roughness(const Material& m, float power);
+  std::string width(const char* parameter, const FloatInput& input, float power);
+  std::string coated_metal_text(const Material& m);
   std::string image_texture(const BakedImage& image, const Texture* look, bool is_number);
   std::string texture_name(const std::string& key, const BakedImage& image, const Texture* look,
                            bool is_number);

@@ -139,19 +139,26 @@ class GltfMaterials::Reader {
     return int32_t(all_.scene_.textures.size() - 1);
   }
 
-  // A second gloss on top is not modelled. On what is no metal it stands in for the material's own,
-  // which reflects as much.
+  // A number times a channel of a texture, whose own channel it keeps.
+  void read_unit(const JsonNode& object, const std::string& name, FloatInput& input) {
+    input.value = unit_number(object, (name + "Factor").c_str(), input.value);
+    input.texture = texture(object, (name + "Texture").c_str(), false);
+    if (input.texture == no_texture) input.value *= stand_in_[size_t(input.channel)];
+  }
+
+  // Without a map of its own the coat lies along the surface, whatever the base's.
   void read_clearcoat() {
     const auto coat = node_.extension("KHR_materials_clearcoat");
     if (!coat) return;
-    const float factor = unit_number(*coat, "clearcoatFactor", 0);
-    if (factor == 0) return;
-    if (material_.metallic.value >= 0.5f || factor < 0.5f) {
-      warn("the clear coat is left out");
-      return;
-    }
-    material_.roughness = {unit_number(*coat, "clearcoatRoughnessFactor", 0), no_texture, 1};
-    warn("the clear coat replaces the gloss below it");
+    read_unit(*coat, "clearcoat", material_.coat);
+    if (material_.coat.value == 0) return;
+    if (material_.transmission.value > 0) warn("a clear coat over what transmits is left out");
+    read_unit(*coat, "clearcoatRoughness", material_.coat_roughness);
+    material_.has_coat_normal = true;
+    material_.coat_normal_texture = texture(*coat, "clearcoatNormalTexture", false);
+    if (material_.coat_normal_texture != no_texture)
+      material_.coat_normal_scale =
+          float(coat->member("clearcoatNormalTexture").number_or("scale", 1));
   }
 
   void read_sheen() {
@@ -208,28 +215,18 @@ class GltfMaterials::Reader {
     material_.anisotropy.texture = texture(*anisotropy, "anisotropyTexture", false);
   }
 
-  // Interference in a thin film, of light straight on: a colour of the reflection that does not
-  // change with the angle. Of the first reflection at the film and the first within it.
   void read_iridescence() {
     const auto film = node_.extension("KHR_materials_iridescence");
     if (!film) return;
-    const float factor = unit_number(*film, "iridescenceFactor", 0);
-    if (factor == 0) return;
-    if (film->find("iridescenceTexture") || film->find("iridescenceThicknessTexture"))
-      warn("iridescence by a texture is left out");
-    const double index = film->number_or("iridescenceIor", 1.3),
-                 thickness = film->number_or("iridescenceThicknessMaximum", 400);
-    const double below = double(material_.ior > 1 ? material_.ior : 1.5f);
-    const double a = (1 - index) / (1 + index), b = (index - below) / (index + below);
-    const double plain = sqr((1 - below) / (1 + below));
-    constexpr std::array<double, 3> wavelengths{610, 550, 465};  // nm, of the channels
-    for (size_t c = 0; c < 3; ++c) {
-      const double phase = 4 * pi * index * thickness / wavelengths[c];
-      const double shown = std::clamp(a * a + b * b + 2 * a * b * std::cos(phase), 0.0, 1.0);
-      const auto ratio = float(plain > 0 ? shown / plain : 1);
-      material_.specular_color.value[c] *= 1 + factor * (ratio - 1);
-    }
-    warn("iridescence is approximated: as a colour of the reflection, the same at all angles");
+    read_unit(*film, "iridescence", material_.iridescence);
+    if (material_.iridescence.value == 0) return;
+    constexpr double most_nm = 1e6;
+    material_.film_ior = float(std::clamp(film->number_or("iridescenceIor", 1.3), 1.0, 10.0));
+    material_.film_thinnest_nm =
+        float(std::clamp(film->number_or("iridescenceThicknessMinimum", 100), 0.0, most_nm));
+    material_.film_thickest_nm =
+        float(std::clamp(film->number_or("iridescenceThicknessMaximum", 400), 0.0, most_nm));
+    material_.film_thickness.texture = texture(*film, "iridescenceThicknessTexture", false);
   }
 
   void tell_what_is_left_out() {
@@ -244,7 +241,7 @@ class GltfMaterials::Reader {
       if (node_.extension(told.extension)) warn(told.what);
     if (!node_.extension("KHR_materials_unlit")) return;
     material_.metallic = {0, no_texture, 2};
-    material_.specular.value = 0;
+    material_.specular.value = material_.coat.value = material_.iridescence.value = 0;
   }
 
   void read_normal() {
@@ -340,7 +337,7 @@ class GltfMaterials::Reader {
   void reduce_to_diffuse() {
     if (material_.metallic.value == 0 && material_.specular.value == 0 &&
         material_.transmission.value == 0 && material_.diffuse_transmission.value == 0 &&
-        material_.sheen_color.value.is_black())
+        material_.sheen_color.value.is_black() && material_.coat.value == 0)
       material_.kind = MaterialKind::diffuse;
   }
 

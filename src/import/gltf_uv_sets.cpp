@@ -15,7 +15,7 @@ struct Place {
   const char *extension, *key;  // extension null: the material itself
 };
 // The base colour's first: without alpha and emission it says which set is the mesh's first.
-constexpr std::array<Place, 11> places{
+constexpr std::array<Place, 15> places{
     {{"KHR_materials_pbrSpecularGlossiness", "diffuseTexture"},
      {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture"},
      {nullptr, "emissiveTexture"},
@@ -26,7 +26,11 @@ constexpr std::array<Place, 11> places{
      {"KHR_materials_anisotropy", "anisotropyTexture"},
      {"KHR_materials_sheen", "sheenColorTexture"},
      {"KHR_materials_sheen", "sheenRoughnessTexture"},
-     {"KHR_materials_iridescence", "iridescenceTexture"}}};
+     {"KHR_materials_clearcoat", "clearcoatTexture"},
+     {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
+     {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
+     {"KHR_materials_iridescence", "iridescenceTexture"},
+     {"KHR_materials_iridescence", "iridescenceThicknessTexture"}}};
 
 std::optional<int> set_of(const JsonNode& object, const char* key) {
   const auto info = object.find(key);

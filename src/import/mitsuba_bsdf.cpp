@@ -184,43 +184,6 @@ Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
   return m;
 }
 
-Material MitsubaBsdfs::principled(const MitsubaNode& node) {
-  Material m;
-  m.kind = MaterialKind::metallic_roughness;
-  m.base_color = textures_.color(node, {"base_color"}, Rgb{0.5f});
-  m.roughness = textures_.real(node, {"roughness"}, 0.5f);
-  m.roughness_meaning = RoughnessMeaning::alpha_is_square;
-  m.metallic = textures_.real(node, {"metallic"}, 0);
-  m.transmission = textures_.real(node, {"spec_trans"}, 0);
-  m.is_thin = node.type == "principledthin";
-  const bool is_opaque = m.transmission.texture < 0 && m.transmission.value <= 0;
-  if (is_opaque && !m.is_thin) m.back_faces = BackFaces::black;
-  if (find_parameter(node, "eta")) {
-    m.ior = float(index_of_refraction(node, "eta", "bk7"));
-  } else {
-    const double specular = std::clamp(get_number(node, "specular", 0.5), 0.0, 1.0);
-    m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
-  }
-  if (m.is_thin) {  // 2: all of what is diffuse
-    m.diffuse_transmission = textures_.real(node, {"diff_trans"}, 0);
-    m.diffuse_transmission.value *= 0.5f;
-    m.diffuse_transmission_color = m.base_color;
-  }
-  std::string left_out;
-  for (const char* name : {"anisotropic", "spec_tint", "sheen", "sheen_tint", "flatness",
-                           "clearcoat", "clearcoat_gloss"}) {
-    const MitsubaNode* p = find_parameter(node, name);
-    if (p && p->attribute("value") != "0" && p->attribute("value") != "0.0")
-      left_out += std::string(left_out.empty() ? "" : ", ") + name;
-  }
-  for (const char* name : {"main_specular_sampling_rate", "clearcoat_sampling_rate",
-                           "diffuse_reflectance_sampling_rate"})
-    find_parameter(node, name);
-  approximate(node, "as metal and coat mixed by its weights" +
-                        (left_out.empty() ? "" : ", without " + left_out));
-  return m;
-}
-
 // The exponent of a lobe as wide as ggx of width α: α² = 2 / (n + 2).
 Material MitsubaBsdfs::phong(const MitsubaNode& node) {
   Material m;
@@ -287,22 +250,6 @@ std::optional<Material> MitsubaBsdfs::blended(const MitsubaNode& node) {
   }
   approximate(node, "by the one of its bsdfs that has more weight");
   return weight > 0.5 ? parts[1] : parts[0];
-}
-
-std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
-  std::optional<Material> m = nested(node);
-  for (const char* name : {"thickness", "sigma_a", "specular_reflectance"})
-    find_parameter(node, name);
-  if (m && m->kind == MaterialKind::diffuse && !m->is_alpha_masked) {
-    m->kind = MaterialKind::coated_diffuse;
-    if (node.type == "roughcoating") read_alpha(node, *m);
-    m->ior = float(index_of_refraction(node, "int_ior", "bk7") /
-                   index_of_refraction(node, "ext_ior", "air"));
-    approximate(node, "without absorption in the coat");
-  } else {
-    approximate(node, "without the coat");
-  }
-  return m;
 }
 
 // Of bumps the texture is heights in metres, times `scale`.

@@ -168,6 +168,10 @@ bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
     m.roughness = std::clamp(finite_number(lines_), 0.0f, 1.0f);
   } else if (keyword == "Pm") {
     m.metallic = std::clamp(finite_number(lines_), 0.0f, 1.0f);
+  } else if (keyword == "Pc") {
+    m.coat = std::clamp(finite_number(lines_), 0.0f, 1.0f);
+  } else if (keyword == "Pcr") {
+    m.coat_roughness = std::clamp(finite_number(lines_), 0.0f, 1.0f);
   } else {
     return false;
   }
@@ -286,6 +290,8 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
     m.roughness.value = mtl.roughness.value_or(1);
     m.roughness_meaning = RoughnessMeaning::alpha_is_square;
     m.metallic.value = mtl.metallic.value_or(0);
+    m.coat.value = mtl.coat;
+    m.coat_roughness.value = mtl.coat_roughness;
   } else if (is_glass) {
     m.kind = MaterialKind::dielectric;
     m.base_color.value = Rgb{1};

@@ -45,6 +45,7 @@ struct MtlMaterial {
   float ior = 1.5f;                          // Ni
   int illumination = -1;                     // illum; -1 = not given
   std::optional<float> roughness, metallic;  // Pr, Pm
+  float coat = 0, coat_roughness = 0;        // Pc, Pcr
   MtlMap map_diffuse, map_emission, map_opacity, map_roughness, map_metallic, map_normal, map_bump;
 };
 

@@ -91,8 +91,8 @@ void PbrtMaterials::read_roughness(const PbrtParams& params, Material& m,
   }
 }
 
-float PbrtMaterials::read_ior(const PbrtParams& params) {
-  const PbrtParam* eta = params.find("eta");
+float PbrtMaterials::read_ior(const PbrtParams& params, const char* name) {
+  const PbrtParam* eta = params.find(name);
   return eta ? ior_value(*eta, textures.spectrum_context()) : 1.5f;
 }
 
@@ -111,14 +111,19 @@ void PbrtMaterials::read_conductor(const PbrtParams& params, Material& m,
   m.k = k ? conductor_value(*k, textures.spectrum_context()) : *named_metal("metal-Cu-k");
 }
 
-// The metal alone: a clear coat takes little from it, but adds a sharp reflection of a few per
-// cent.
+// How pbrt walks within the coat makes no difference to the whole of its walks.
 Material PbrtMaterials::make_coated_conductor(const PbrtParams& params) {
   Material m;
   read_conductor(params, m, "conductor.");
-  params.ignore({"interface.roughness", "interface.uroughness", "interface.vroughness",
-                 "interface.eta", "thickness", "albedo", "g", "maxdepth", "nsamples"});
-  scene_.warnings.add("material \"coatedconductor\": the metal is shown without its coat");
+  Material interface;
+  read_roughness(params, interface, "interface.");
+  m.coat.value = 1;
+  m.coat_roughness = interface.roughness;
+  m.coat_ior = read_ior(params, "interface.eta");
+  params.ignore({"thickness", "g", "maxdepth", "nsamples"});
+  const PbrtParam* albedo = params.find("albedo");
+  if (albedo && !factor_value(*albedo, textures.spectrum_context()).is_black())
+    scene_.warnings.add("material \"coatedconductor\": the medium in the coat is left out");
   return m;
 }
 
@@ -159,7 +164,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
     m.kind = MaterialKind::coated_diffuse;
     m.base_color = textures.color(params, "reflectance", Rgb{0.5f});
     read_roughness(params, m);
-    m.ior = read_ior(params);
+    m.ior = read_ior(params, "eta");
     // How pbrt walks within the coat, and a medium in it.
     params.ignore({"thickness", "albedo", "g", "maxdepth", "nsamples"});
   } else if (type == "conductor") {
@@ -169,7 +174,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
     m.base_color = {Rgb{1}, no_texture};
     m.is_thin = type == "thindielectric";
     if (!m.is_thin) read_roughness(params, m);
-    m.ior = read_ior(params);
+    m.ior = read_ior(params, "eta");
   } else if (type == "coatedconductor") {
     m = make_coated_conductor(params);
   } else if (type == "mix") {

@@ -54,7 +54,7 @@ class PbrtMaterials {
   void read_conductor(const PbrtParams& params, Material& m, const std::string& prefix = "");
   Material make_coated_conductor(const PbrtParams& params);
   Material make_mix(const PbrtMaterial& material);
-  float read_ior(const PbrtParams& params);
+  float read_ior(const PbrtParams& params, const char* name);
   void read_bump(const PbrtParams& params, Material& m);
 };
 

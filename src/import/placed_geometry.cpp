@@ -68,7 +68,7 @@ void GeometryPlacer::spend(size_t triangles, const SourcePlace& place) {
 bool GeometryPlacer::needs_coordinates(const PlacedLook& look) const {
   const Material& m = scene_.materials[look.material];
   return has_textured_input(m) || m.normal_texture >= 0 || m.bump.texture >= 0 ||
-         m.anisotropy.value > 0 || m.is_alpha_masked ||
+         has_own_coat_normal(m) || m.anisotropy.value > 0 || m.is_alpha_masked ||
          (look.emission && look.emission->texture >= 0);
 }
 

@@ -4,33 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "base/observer.h"
 #include "base/vec.h"
 
 namespace troffer {
 
 namespace {
-
-// One lobe of [1], Eq. 4: a Gaussian with different widths left and right of its mean.
-double lobe(double x, double mean, double left, double right) {
-  const double t = (x - mean) * (x < mean ? left : right);
-  return std::exp(-0.5 * t * t);
-}
-
-// The multi-lobe fit to the CIE 1931 2-degree observer [1, Table 1]; the factors are inverse
-// widths.
-Vec3d color_matching(double nm) {
-  return {0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
-              0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
-          0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
-          1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725)};
-}
-
-// XYZ -> linear sRGB (IEC 61966-2-1).
-Rgb rgb_from_xyz(const Vec3d& c) {
-  return {float(3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z),
-          float(-0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z),
-          float(0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z)};
-}
 
 Rgb not_negative(Rgb c) {
   return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)};
@@ -40,7 +19,8 @@ Rgb not_negative(Rgb c) {
 template <class Spectrum>
 Vec3d xyz_integral(const Spectrum& spectrum) {
   Vec3d sum;
-  for (int nm = 360; nm <= 830; ++nm) sum += color_matching(nm) * spectrum(double(nm));
+  for (int nm = least_visible_nm; nm <= most_visible_nm; ++nm)
+    sum += color_matching(nm) * spectrum(double(nm));
   return sum;
 }
 

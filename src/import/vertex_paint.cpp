@@ -60,12 +60,13 @@ void separate_triangles(Mesh& mesh) {
 }
 
 bool uses_second_uvs(const Scene& scene, const Material& m) {
-  bool is_any = m.normal_texture >= 0 &&
-                scene.textures[size_t(m.normal_texture)].mapping == TextureMapping::second_uv;
-  for_each_input(m, [&](const auto& input) {
-    is_any |= input.texture >= 0 &&
-              scene.textures[size_t(input.texture)].mapping == TextureMapping::second_uv;
-  });
+  bool is_any = false;
+  const auto look = [&](int32_t texture) {
+    is_any |= texture >= 0 && scene.textures[size_t(texture)].mapping == TextureMapping::second_uv;
+  };
+  look(m.normal_texture);
+  look(m.coat_normal_texture);
+  for_each_input(m, [&](const auto& input) { look(input.texture); });
   return is_any;
 }
 
@@ -152,8 +153,8 @@ void VertexPainter::paint(Mesh& mesh, const std::vector<TextureValue>& colors, b
     return;
   }
   const Material& m = scene_.materials[mesh.material];
-  const bool is_textured =
-      needs_uvs || has_textured_input(m) || m.normal_texture >= 0 || m.alpha.texture >= 0;
+  const bool is_textured = needs_uvs || has_textured_input(m) || m.normal_texture >= 0 ||
+                           has_own_coat_normal(m) || m.alpha.texture >= 0;
   const bool is_second_free = mesh.uvs_2.empty() && !uses_second_uvs(scene_, m);
   if ((is_textured && !is_second_free) || 4 * mesh.triangles.size() > max_texels - texels_) {
     scene_.warnings.add(is_textured && !is_second_free

@@ -31,7 +31,8 @@ struct Candidate {
 // How much of the light a material mirrors that can be asked for in images; 0: it is none.
 float mirrored_share(const PreparedScene& scene, uint32_t material) {
   const Material& m = scene.scene.materials[material];
-  if (has_textured_input(m) || m.normal_texture >= 0 || m.is_alpha_masked) return 0;
+  if (has_textured_input(m) || m.normal_texture >= 0 || has_own_coat_normal(m) || m.is_alpha_masked)
+    return 0;
   const Bsdf bsdf = make_bsdf(scene.bsdf_tables, scene.scene, material, {}, true);
   if (bsdf.fresnel == Bsdf::Fresnel::none || !bsdf.is_smooth || bsdf.has_transmission) return 0;
   return luminance(mirrored_reflectance(bsdf, 1));

@@ -62,6 +62,22 @@ struct Material {
   // metallic_roughness: cloth's fibres over it (bsdf/sheen.h). Black: none.
   ColorInput sheen_color{Rgb{0}, no_texture};
   FloatInput sheen_roughness{0, no_texture, 3};
+  // A clear coat over all else (bsdf/clear_coat.h), of an index of its own: of metallic_roughness
+  // the share of the surface that wears it, its base as without it (KHR_materials_clearcoat); of a
+  // conductor a layer over all of it in which light bends; of coated_diffuse a second coat.
+  FloatInput coat{0, no_texture, 0};
+  FloatInput coat_roughness{0, no_texture, 1};
+  float coat_ior = 1.5f;
+  // The coat leans by a map of its own, or not at all; else with the base.
+  bool has_coat_normal = false;
+  int32_t coat_normal_texture = no_texture;
+  float coat_normal_scale = 1;
+  // metallic_roughness: a thin film over its gloss (bsdf/thin_film.h): the share that wears it, its
+  // index, and its thickness, so far from `film_thinnest_nm` to `film_thickest_nm`.
+  FloatInput iridescence{0, no_texture, 0};
+  float film_ior = 1.3f;
+  FloatInput film_thickness{1, no_texture, 1};
+  float film_thinnest_nm = 100, film_thickest_nm = 400;
   float ior = 1.5f;                               // real index of refraction, inside / outside
   FloatInput specular{1, no_texture, 3};          // KHR_materials_specular: specularFactor
   ColorInput specular_color{Rgb{1}, no_texture};  // … specularColorFactor
@@ -97,7 +113,8 @@ void for_each_input(const Material& m, const Visit& visit) {
        {&m.base_color, &m.specular_color, &m.sheen_color, &m.diffuse_transmission_color})
     visit(*c);
   for (const FloatInput* f : {&m.roughness, &m.metallic, &m.specular, &m.transmission,
-                              &m.diffuse_transmission, &m.anisotropy, &m.sheen_roughness})
+                              &m.diffuse_transmission, &m.anisotropy, &m.sheen_roughness, &m.coat,
+                              &m.coat_roughness, &m.iridescence, &m.film_thickness})
     visit(*f);
 }
 
@@ -111,6 +128,10 @@ void for_each_value(const Material& m, const Visit& visit) {
   visit(m.alpha);
   visit(m.anisotropy_rotation_rad);
   visit(m.ior);
+  visit(m.coat_ior);
+  visit(m.film_ior);
+  visit(m.film_thinnest_nm);
+  visit(m.film_thickest_nm);
   visit(uint64_t(m.is_thin) | uint64_t(m.is_reflectance) << 1 | uint64_t(m.is_alpha_masked) << 2 |
         uint64_t(m.is_alpha_blended) << 3);
   visit(m.eta);
@@ -118,6 +139,12 @@ void for_each_value(const Material& m, const Visit& visit) {
   visit(m.absorption);
   visit(uint64_t(m.back_faces));
   visit(m.alpha_cutoff);
+}
+
+// Whether its coat has another normal than its base.
+inline bool has_own_coat_normal(const Material& m) {
+  return m.coat.value > 0 && m.has_coat_normal &&
+         (m.coat_normal_texture >= 0 || m.normal_texture >= 0 || m.bump.texture >= 0);
 }
 
 // Whether it scatters light differently from place to place.

@@ -49,6 +49,8 @@ struct TexturePlace {
   float width = 0;  // metres: shorter side of the footprint
   // Along it gloss is widest, where it is not the same all around: unit, in Frame(shading normal).
   Vec2 grain{1, 0};
+  // The normal of a clear coat that does not lean with the base, in that frame: its x and y.
+  Vec2 coat_normal{0, 0};
 
   TexturePlace() = default;
   // A point, for look-ups that know no more.

@@ -53,17 +53,17 @@ bool tangent_about(const Vec3& n, const std::array<Vec3, 3>& p, const CornerUvs&
 }
 
 // Normal map: tangent-space normal, x along u, y up the image (against v), z outwards (glTF).
-Vec3 mapped_normal(const Scene& scene, const Material& m, const Surface& s,
+Vec3 mapped_normal(const Scene& scene, int32_t texture, float scale, const Surface& s,
                    const std::array<Vec3, 3>& p, const CornerUvs& uv) {
   Vec3 t;
   bool is_mirrored = false;
   const Vec3 n = s.shading_normal;
   if (!tangent_about(n, p, uv, t, is_mirrored)) return n;
   // The bitangent runs up the image: against v, or with it where the lookup flips v.
-  const bool is_v_up = scene.textures[uint32_t(m.normal_texture)].uv_scale.y < 0;
+  const bool is_v_up = scene.textures[uint32_t(texture)].uv_scale.y < 0;
   const Vec3 b = is_mirrored != is_v_up ? cross(n, t) : cross(t, n);
-  const Rgb c = evaluate(scene.textures, uint32_t(m.normal_texture), s.uv).rgb;
-  const Vec3 local{(2 * c.r - 1) * m.normal_scale, (2 * c.g - 1) * m.normal_scale, 2 * c.b - 1};
+  const Rgb c = evaluate(scene.textures, uint32_t(texture), s.uv).rgb;
+  const Vec3 local{(2 * c.r - 1) * scale, (2 * c.g - 1) * scale, 2 * c.b - 1};
   const Vec3 mapped = t * local.x + b * local.y + n * local.z;
   const float ml = length(mapped);
   if (!(ml > 1e-6f) || dot(mapped, s.geometric_normal) <= 0) return n;
@@ -159,7 +159,8 @@ Vec2 grain_of(const Scene& scene, const Material& m, const Surface& s, const std
 bool is_textured_at_all(const Scene& scene, const Surface& s) {
   const Material& m = scene.materials[s.material];
   return m.normal_texture >= 0 || m.bump.texture >= 0 || m.anisotropy.value > 0 ||
-         has_textured_input(m) || (s.light >= 0 && scene.lights[size_t(s.light)].texture >= 0);
+         has_own_coat_normal(m) || has_textured_input(m) ||
+         (s.light >= 0 && scene.lights[size_t(s.light)].texture >= 0);
 }
 
 // What textures make of the surface; places for those that are looked up later.
@@ -178,10 +179,19 @@ void set_textured(const Scene& scene, const Ray& ray, const Hit& hit, const RayC
       set_footprint(second, s.geometric_normal, ray.direction, s.uv.width, s.uv.axis_2a,
                     s.uv.axis_2b);
   }
+  Vec3 coat_normal = s.shading_normal;
+  if (m.coat_normal_texture >= 0)
+    coat_normal = mapped_normal(scene, m.coat_normal_texture, m.coat_normal_scale, s, p,
+                                uv.of(scene, m.coat_normal_texture));
   if (m.normal_texture >= 0)
-    s.shading_normal = mapped_normal(scene, m, s, p, uv.of(scene, m.normal_texture));
+    s.shading_normal = mapped_normal(scene, m.normal_texture, m.normal_scale, s, p,
+                                     uv.of(scene, m.normal_texture));
   if (m.bump.texture >= 0 && uvs.is_fine) s.shading_normal = bumped_normal(scene, m, uvs, s);
   if (m.anisotropy.value > 0) s.uv.grain = grain_of(scene, m, s, p, uv);
+  if (has_own_coat_normal(m)) {
+    const Vec3 local = Frame(s.shading_normal).to_local(coat_normal);
+    s.uv.coat_normal = {local.x, local.y};
+  }
 }
 
 // Of shapes without texture coordinates: where they are, for textures in space.

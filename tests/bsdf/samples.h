@@ -95,6 +95,21 @@ inline Material cloth(float sheen_roughness, Rgb sheen, float alpha = 0.5f, Rgb 
   return m;
 }
 
+// A clear coat over it; over a conductor one into which light bends.
+inline Material clear_coated(Material m, float coat_alpha, float share = 1, float ior = 1.5f) {
+  m.coat.value = share;
+  m.coat_roughness.value = coat_alpha;
+  m.coat_ior = ior;
+  return m;
+}
+// A thin film over it.
+inline Material filmed(Material m, float thickness_nm, float ior = 1.3f, float share = 1) {
+  m.iridescence.value = share;
+  m.film_ior = ior;
+  m.film_thickest_nm = thickness_nm;
+  return m;
+}
+
 inline Vec3 direction(float cosine, float phi = 0.7f) {
   const float s = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
   return {s * std::cos(phi), s * std::sin(phi), cosine};

@@ -21,6 +21,8 @@ TEST_CASE("a Bsdf towards many directions at a stroke") {
     for (const float metallic : {0.0f, 0.4f, 1.0f})
       m.push_back(gltf(alpha, metallic, {0.8f, 0.5f, 0.9f}, 0, false));
   }
+  m.push_back(clear_coated(gltf(0.3f, 0.4f, {0.8f, 0.5f, 0.9f}), 0.1f));
+  m.push_back(filmed(gltf(0.3f, 0.4f, {0.8f, 0.5f, 0.9f}), 450));
   const Specimens s(m);
   Random random(11);
   constexpr size_t n = 150;

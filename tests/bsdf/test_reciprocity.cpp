@@ -46,6 +46,14 @@ TEST_CASE("scattering is reciprocal") {
       {"brushed glTF", brushed(gltf(0.3f, 0.5f, {0.3f, 0.7f, 0.9f}), 0.8f)},
       {"cloth", cloth(0.7f, {0.9f, 0.3f, 0.5f})},
       {"smooth cloth", cloth(0.4f, {0.9f, 0.3f, 0.5f}, 0)},
+      {"coat over copper", clear_coated(copper(0.2f), 0.1f)},
+      {"smooth coat over copper", clear_coated(copper(0.3f), 0)},
+      {"coat over brushed copper", clear_coated(brushed(copper(0.1f), 0.6f), 0.1f)},
+      {"half a coat over glTF", clear_coated(gltf(0.4f, 0.4f, {0.3f, 0.7f, 0.9f}), 0.2f, 0.5f)},
+      {"coat over cloth", clear_coated(cloth(0.7f, {0.9f, 0.3f, 0.5f}), 0.2f)},
+      {"coat over a coat", clear_coated(coated(0.3f, {0.3f, 0.7f, 0.9f}), 0.1f)},
+      {"film", filmed(gltf(0.4f, 0.4f, {0.3f, 0.7f, 0.9f}), 450)},
+      {"film over glass", filmed(gltf(0.3f, 0, Rgb{1}, 1), 450)},
   };
   Random random(1);
   int compared = 0;

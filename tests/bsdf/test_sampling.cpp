@@ -120,6 +120,13 @@ TEST_CASE("samples follow the density") {
       {"brushed glTF", brushed(gltf(0.3f, 0.5f, {0.3f, 0.7f, 0.9f}), 0.9f)},
       {"cloth", cloth(0.6f, {0.9f, 0.3f, 0.5f})},
       {"smooth cloth", cloth(0.9f, Rgb{1}, 0)},
+      {"coat .2 over copper .3", clear_coated(copper(0.3f), 0.2f)},
+      {"smooth coat over copper .4", clear_coated(copper(0.4f), 0)},
+      {"coat .3 over smooth copper", clear_coated(copper(0), 0.3f)},
+      {"coat over brushed copper", clear_coated(brushed(copper(0.15f), 0.5f), 0.2f)},
+      {"coat .15 over glTF .5", clear_coated(gltf(0.5f, 0.5f, {0.3f, 0.7f, 0.9f}), 0.15f, 0.7f)},
+      {"coat over cloth", clear_coated(cloth(0.6f, {0.9f, 0.3f, 0.5f}), 0.2f)},
+      {"film", filmed(gltf(0.3f, 0.5f, {0.3f, 0.7f, 0.9f}), 450)},
   };
   const float cosines[] = {0.05f, 0.4f, 0.95f};
   int tests = 0;
@@ -150,6 +157,12 @@ TEST_CASE("grazing and degenerate directions stay finite") {
       {"brushed", brushed(mirror_metal(0.5f), 1)},
       {"cloth", cloth(0, Rgb{1})},
       {"cloth", cloth(1, Rgb{1}, 0)},
+      {"coat", clear_coated(copper(1e-3f), 0.5f)},
+      {"coat", clear_coated(mirror_metal(1), 0)},
+      {"coat", clear_coated(mirror_metal(0), 0, 1, 50)},
+      {"coat", clear_coated(gltf(1, 0.5f), 1, 0.5f, 1.0001f)},
+      {"film", filmed(gltf(0.2f, 1), 0)},
+      {"film", filmed(gltf(0.2f, 0.5f, Rgb{1}, 0.5f, true), 1e6f, 10)},
       {"infinite index",
        [] {
          Material m = gltf(0.2f, 0);

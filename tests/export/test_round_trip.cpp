@@ -261,6 +261,68 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("clear coats and thin films survive where the format has them") {
+  const TempFolder folder;
+  Scene scene;
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = 2;
+  t.height = t.channels = 1;
+  t.texels8 = {51, 255};
+  t.is_srgb = false;
+  scene.textures = {t};
+  Material shiny;
+  shiny.kind = MaterialKind::metallic_roughness;
+  shiny.metallic.value = 1;
+  shiny.coat = {1, 0, 0};
+  shiny.coat_roughness.value = 0.25f;
+  shiny.roughness.value = 0.5f;
+  shiny.roughness_meaning = RoughnessMeaning::alpha_is_square;
+  shiny.has_coat_normal = true;
+  shiny.iridescence.value = 0.5f;
+  shiny.film_thickness = {1, 0, 0};
+  shiny.film_ior = 1.4f;
+  shiny.film_thinnest_nm = 200;
+  shiny.film_thickest_nm = 700;
+  Material varnished;
+  varnished.kind = MaterialKind::conductor;
+  varnished.roughness.value = 0.2f;
+  varnished.coat.value = 1;
+  varnished.coat_roughness.value = 0.05f;
+  varnished.coat_ior = 1.6f;
+  scene.materials = {shiny, varnished};
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  scene.meshes = {mesh, mesh};
+  scene.meshes[1].material = 1;
+  const std::vector<Warning> told = export_scene(scene, folder.path("out.glb"));
+  CHECK(has_warning(told, "light does not bend"));
+  const Scene back = import_scene(folder.path("out.glb"));
+  CHECK(back.warnings.total() == 0);
+  const Material& n = back.materials[back.meshes[0].material];
+  const Vec2 left{0.25f, 0.5f};
+  CHECK(evaluate(back.textures, n.coat, left) == doctest::Approx(0.2).epsilon(1e-3));
+  CHECK(n.coat_roughness.value == 0.25f);
+  CHECK(n.iridescence.value == 0.5f);
+  CHECK(n.film_ior == 1.4f);
+  CHECK(n.film_thinnest_nm == 200);
+  CHECK(n.film_thickest_nm == 700);
+  CHECK(evaluate(back.textures, n.film_thickness, left) == doctest::Approx(0.2).epsilon(1e-3));
+  // By pbrt the layer itself survives, and glTF's metal gets one.
+  CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "into which light bends"));
+  const Scene pbrt = import_scene(folder.path("out.pbrt"));
+  REQUIRE(pbrt.materials.size() >= 2);
+  const Material& v = pbrt.materials[pbrt.meshes[1].material];
+  CHECK(v.kind == MaterialKind::conductor);
+  CHECK(v.roughness.value == 0.2f);
+  CHECK(v.coat_roughness.value == 0.05f);
+  CHECK(v.coat_ior == 1.6f);
+  check_near(v.eta, varnished.eta, 1e-6);
+  CHECK(pbrt.materials[pbrt.meshes[0].material].coat.value == 1);
+}
+
 TEST_CASE("what glass absorbs survives, and what is lost is told") {
   const TempFolder folder;
   const Scene scene = import_scene(folder.write(

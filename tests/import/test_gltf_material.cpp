@@ -212,33 +212,11 @@ TEST_CASE("KHR_materials_pbrSpecularGlossiness: a dielectric of that reflectance
 }
 
 TEST_CASE("what materials cannot show is told, and approximated where that is nearer") {
-  const Scene coated = with_material(
-      "{'pbrMetallicRoughness':{'metallicFactor':0,'roughnessFactor':0.9},'extensions':{"
-      "'KHR_materials_clearcoat':{'clearcoatFactor':1,'clearcoatRoughnessFactor':0.1}}}");
-  CHECK(only_material(coated).roughness.value == 0.1f);
-  CHECK(has_warning(coated, "clear coat replaces"));
-  const Scene metal =
-      with_material("{'extensions':{'KHR_materials_clearcoat':{'clearcoatFactor':1}}}");
-  CHECK(only_material(metal).roughness.value == 1);
-  CHECK(has_warning(metal, "clear coat is left out"));
   const Scene unlit = with_material("{'extensions':{'KHR_materials_unlit':{}}}");
   CHECK(only_material(unlit).kind == MaterialKind::diffuse);
   CHECK(has_warning(unlit, "unlit"));
   CHECK(has_warning(with_material("{'extensions':{'KHR_materials_dispersion':{}}}"), "dispersion"));
-  const std::string dielectric =
-      "{'pbrMetallicRoughness':{'baseColorFactor':[0.5,0,1,1],'metallicFactor':0,"
-      "'roughnessFactor':0.5},'extensions':{'KHR_materials_";
-  const auto film = [&](const std::string& nanometres) {
-    return with_material(dielectric +
-                         "iridescence':{'iridescenceFactor':1,'iridescenceIor':1.3,"
-                         "'iridescenceThicknessMaximum':" +
-                         nanometres + "}}}");
-  };
-  CHECK(has_warning(film("400"), "iridescence is approximated"));
-  CHECK(only_material(film("400")).specular_color.value != Rgb{1});
-  // Of no thickness: what the bare surface reflects, but for what goes to and fro.
-  CHECK(only_material(film("0")).specular_color.value.g == doctest::Approx(1).epsilon(0.03));
-  for (const std::string name : {"sheen", "iridescence", "anisotropy"})
+  for (const std::string name : {"sheen", "iridescence", "anisotropy", "clearcoat"})
     CHECK(with_material("{'extensions':{'KHR_materials_" + name + "':{}}}").warnings.total() == 0);
 }
 
@@ -285,16 +263,46 @@ TEST_CASE("sheen and anisotropy: factors and textures") {
   CHECK(sqr(only_material(scene).roughness.value) == doctest::Approx(0.5));
 }
 
-TEST_CASE("textures of what is approximated are told to be left out") {
-  const auto with = [](const std::string& extension) {
-    return with_material("{'extensions':{'KHR_materials_" + extension + "}}");
+TEST_CASE("clear coats and thin films: factors and textures") {
+  const TempFolder folder;
+  folder.write("a.pfm", "PF\n2 1\n-1.0\n" + bytes_of<float>({1, 0.5f, 0, 0, 0, 1}));
+  const std::string image = "'images':[{'uri':'a.pfm'}],'textures':[{'source':0}],";
+  const auto with = [&](const std::string& extensions) {
+    return import_gltf(folder.write(
+        "scene.gltf",
+        square_scene("[{'mesh':0}]", image + "'materials':[{'extensions':{" + extensions + "}}]")));
   };
-  const std::string texture = "{'index':0}";
-  for (const char* name : {"iridescenceTexture", "iridescenceThicknessTexture"})
-    CHECK(has_warning(
-        with("iridescence':{'iridescenceFactor':1,'" + std::string(name) + "':" + texture + "}"),
-        "iridescence by a texture"));
-  CHECK(!has_warning(with("iridescence':{'iridescenceFactor':1}"), "by a texture"));
+  Scene scene = with(
+      "'KHR_materials_clearcoat':{'clearcoatFactor':0.5,'clearcoatRoughnessFactor':0.25,"
+      "'clearcoatTexture':{'index':0},'clearcoatRoughnessTexture':{'index':0},"
+      "'clearcoatNormalTexture':{'index':0,'scale':0.5}}");
+  CHECK(scene.warnings.total() == 0);
+  Material m = only_material(scene);
+  CHECK(m.roughness.value == 1);
+  CHECK(m.metallic.value == 1);
+  const Vec2 left{0.25f, 0.5f};
+  CHECK(evaluate(scene.textures, m.coat, left) == 0.5f);
+  CHECK(evaluate(scene.textures, m.coat_roughness, left) == doctest::Approx(0.125));
+  CHECK(has_own_coat_normal(m));
+  CHECK(m.coat_normal_texture >= 0);
+  CHECK(m.coat_normal_scale == 0.5f);
+  CHECK(m.coat_ior == 1.5f);
+  scene = with(
+      "'KHR_materials_clearcoat':{'clearcoatFactor':1},"
+      "'KHR_materials_transmission':{'transmissionFactor':1}");
+  CHECK(has_warning(scene, "clear coat over what transmits"));
+  scene = with(
+      "'KHR_materials_iridescence':{'iridescenceFactor':0.5,'iridescenceIor':1.4,"
+      "'iridescenceTexture':{'index':0},'iridescenceThicknessMinimum':200,"
+      "'iridescenceThicknessMaximum':600,'iridescenceThicknessTexture':{'index':0}}");
+  CHECK(scene.warnings.total() == 0);
+  m = only_material(scene);
+  CHECK(evaluate(scene.textures, m.iridescence, left) == 0.5f);
+  CHECK(evaluate(scene.textures, m.film_thickness, left) == 0.5f);
+  CHECK(m.film_ior == 1.4f);
+  CHECK(m.film_thinnest_nm == 200);
+  CHECK(m.film_thickest_nm == 600);
+  CHECK(m.specular_color.value == Rgb{1});
 }
 
 TEST_CASE("a data URI that is broken is told of though nothing shows its image") {

@@ -151,10 +151,22 @@ TEST_CASE("combined materials") {
   CHECK(import_bsdf("<bsdf type='null'/>").spheres.empty());
   m = material_of(
       "<bsdf type='principled'><rgb name='base_color' value='.3'/><float "
-      "name='metallic' value='.7'/><float name='specular' value='.5'/></bsdf>");
+      "name='metallic' value='.7'/><float name='specular' value='.5'/><float name='clearcoat' "
+      "value='.8'/><float name='clearcoat_gloss' value='1'/></bsdf>");
+  CHECK(m.coat.value == doctest::Approx(0.2));
+  CHECK(m.coat_roughness.value == doctest::Approx(std::sqrt(0.001)));
   CHECK(m.kind == MaterialKind::metallic_roughness);
   CHECK(m.metallic.value == 0.7f);
   CHECK(m.ior == doctest::Approx(1.5));
+  m = material_of(
+      "<bsdf type='roughcoating'><float name='alpha' value='.05'/><float name='int_ior' "
+      "value='1.7'/><string name='distribution' value='ggx'/><bsdf type='roughconductor'>"
+      "<float name='alpha' value='.2'/><string name='distribution' value='ggx'/></bsdf></bsdf>");
+  CHECK(m.kind == MaterialKind::conductor);
+  CHECK(m.roughness.value == 0.2f);
+  CHECK(m.coat.value == 1);
+  CHECK(m.coat_roughness.value == 0.05f);
+  CHECK(m.coat_ior == doctest::Approx(1.7).epsilon(1e-3));
 }
 
 TEST_CASE("a bitmap's (0,0) is its upper left corner; OBJ files count from the lower one") {

@@ -167,7 +167,9 @@ TEST_CASE("materials of an MTL library") {
   CHECK(m.transmission.value == 0);
   CHECK(m.base_color.value == Rgb(0.5f));
 
-  m = material_of("Kd 1 .5 0\nPr .4\nPm .7\n");
+  m = material_of("Kd 1 .5 0\nPr .4\nPm .7\nPc .5\nPcr .1\n");
+  CHECK(m.coat.value == 0.5f);
+  CHECK(m.coat_roughness.value == 0.1f);
   CHECK(m.kind == MaterialKind::metallic_roughness);
   CHECK(m.roughness.value == 0.4f);
   CHECK(m.roughness_meaning == RoughnessMeaning::alpha_is_square);

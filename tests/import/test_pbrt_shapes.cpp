@@ -146,13 +146,17 @@ TEST_CASE("mixed materials: two diffuse ones exactly, others by their weight") {
   CHECK(reason_of(nested).find("too deeply") != std::string::npos);
 }
 
-TEST_CASE("a coated metal is shown as the metal, translucent paper as what it reflects") {
+TEST_CASE("a coated metal has both lobes, translucent paper is what it reflects") {
   const Material metal = material_of(
       "Material \"coatedconductor\" \"spectrum conductor.eta\" \"metal-Au-eta\" "
-      "\"spectrum conductor.k\" \"metal-Au-k\" \"float conductor.roughness\" 0.3\n");
+      "\"spectrum conductor.k\" \"metal-Au-k\" \"float conductor.roughness\" 0.3 "
+      "\"float interface.roughness\" 0.1 \"float interface.eta\" 1.4\n");
   CHECK(metal.kind == MaterialKind::conductor);
   CHECK(metal.roughness.value == 0.3f);
   CHECK(metal.eta.b > metal.eta.r);  // gold
+  CHECK(metal.coat.value == 1);
+  CHECK(metal.coat_roughness.value == 0.1f);
+  CHECK(metal.coat_ior == 1.4f);
   const Material paper = material_of(
       "Material \"diffusetransmission\" \"rgb reflectance\" [0.4 0.4 0.4] \"float scale\" 0.5\n");
   CHECK(paper.base_color.value.r == doctest::Approx(0.2));

@@ -1,0 +1,65 @@
+// What the separable lobes of a Bsdf keep of a direction, and what lies over them all.
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "bsdf/fresnel.h"
+
+namespace troffer {
+
+// The g of each separable lobe at a direction on the viewer's side.
+struct Gains {
+  float diffuse = 1, soft = 0, glass = 0;
+  // What a sheen and a clear coat leave for what lies below them: in `diffuse` already, and in
+  // `soft` where it is lost light.
+  float pass = 1, coat = 1;
+  float coat_gloss = 1;  // what a clear coat leaves of gloss
+};
+
+inline float missing(const AlbedoRow& row, const CosineCoordinate& at) {
+  return row.values == nullptr ? 0.0f : std::max(0.0f, 1 - row.at(at));
+}
+
+inline Gains gains_at(const Bsdf& b, const Vec3& w) {
+  Gains g;
+  const float cosine = w.z;
+  const SoftDirection direction(w);
+  const CosineCoordinate& at = direction.cosine;
+  switch (b.coat) {
+    case Bsdf::Coat::none:
+      break;
+    case Bsdf::Coat::smooth_dielectric:
+      g.diffuse = 1 - fresnel_dielectric(cosine, b.eta);
+      break;
+    case Bsdf::Coat::smooth_schlick:
+      g.diffuse = 1 - (b.coat_f0 + (b.coat_f90 - b.coat_f0) * pow5(1 - cosine));
+      break;
+    case Bsdf::Coat::dielectric:
+      g.diffuse = missing(b.coat_row, at);
+      break;
+    case Bsdf::Coat::schlick: {
+      const float one = b.one.at(at), grazing = b.grazing.at(at);
+      g.diffuse = std::max(0.0f, 1 - (b.coat_f0 * (one - grazing) + b.coat_f90 * grazing));
+      break;
+    }
+  }
+  g.soft = soft_gain(b.soft, direction);
+  g.pass = b.cover.pass(at);
+  g.diffuse *= g.pass;
+  if (b.clear.share > 0) {
+    const float coat = b.clear.pass(cosine);
+    g.diffuse *= coat;
+    const float own = b.clear.has_normal ? dot(w, b.clear.normal) : cosine;
+    g.coat = b.clear.has_normal ? b.clear.pass(own) : coat;
+    g.coat_gloss = b.clear.gloss_pass(own);
+    if (is_lost_light(b.soft)) g.soft *= g.coat;
+  }
+  if (b.glass_weight > 0) g.glass = missing(b.near, at);
+  return g;
+}
+
+// The same, not worked out where nothing asks for it.
+inline Gains gains_of(const Bsdf& b, const Vec3& w) {
+  return b.has_separable || b.clear.share > 0 ? gains_at(b, w) : Gains{};
+}
+
+}  // namespace troffer

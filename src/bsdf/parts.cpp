@@ -1,0 +1,44 @@
+// A Bsdf taken apart: its diffuse lobe and all else, and what lies over the lobes.
+#include "bsdf/bsdf.h"
+#include "bsdf/gains.h"
+
+namespace troffer {
+
+Bsdf diffuse_part(const Bsdf& b) {
+  Bsdf d = b;
+  if (b.is_lambertian) return d;
+  d.fresnel = Bsdf::Fresnel::none;
+  d.has_transmission = d.is_smooth = false;
+  d.soft = {};
+  d.clear.is_shown = false;
+  d.glass_again = d.glass_through = Rgb{0};
+  d.glass_weight = 0;
+  d.has_separable = !d.diffuse.is_black();
+  return d;
+}
+
+Bsdf through_part(const Bsdf& b) {
+  Bsdf d = diffuse_part(b);
+  d.diffuse = b.through;
+  d.through = Rgb{0};
+  d.has_separable = !d.diffuse.is_black();
+  return d;
+}
+
+Bsdf specular_part(const Bsdf& b) {
+  Bsdf s = b;
+  s.through = Rgb{0};
+  s.is_lambertian = false;
+  s.coat = Bsdf::Coat::none;
+  s.diffuse = Rgb{0};
+  s.has_separable = s.soft.kind != SoftLobe::Kind::none || !s.glass_again.is_black() ||
+                    !s.glass_through.is_black();
+  return s;
+}
+
+float coat_share(const Bsdf& b, float cos_i) {
+  if (b.coat == Bsdf::Coat::none || !(b.diffuse_mean > 0)) return 1;
+  return gains_at(b, {0, 0, cos_i}).diffuse / b.diffuse_mean;
+}
+
+}  // namespace troffer

@@ -1,0 +1,155 @@
+// A clear coat over gloss: energy, closed forms, and against walks between both surfaces.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "bsdf/fresnel.h"
+#include "bsdf/samples.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// What comes back up of light that walks between a coat of glass and a metal in it, each as a Bsdf
+// of its own: the sum, and how it is spread about the mirror's direction.
+struct Walked {
+  double energy = 0;
+  double spread = 0;  // mean squared tilt of the half vector, of what lies within 45 degrees
+};
+
+struct Spread {
+  double energy = 0, within = 0, squares = 0;
+  void add(const Vec3& wo, const Vec3& wi, double weight) {
+    energy += weight;
+    const Vec3 h = normalize(wo + wi);
+    if (h.z < 0.70710678f) return;
+    within += weight;
+    squares += weight * double((1 - h.z * h.z) / (h.z * h.z));
+  }
+  Walked over(double n) const { return {energy / n, within > 0 ? squares / within : 0}; }
+};
+
+Walked walked(const Specimens& s, const Vec3& wo, uint32_t n) {
+  const Bsdf outside = s.at(0, true), inside = s.at(0, false), metal = s.at(1);
+  Random random(9);
+  Spread sum;
+  for (uint32_t i = 0; i < n; ++i) {
+    BsdfSample x;
+    const auto draw = [&](const Bsdf& b, const Vec3& w) {
+      const float lobe = random.next_float();
+      return sample(b, w, lobe, random.next_vec2(), x);
+    };
+    if (!draw(outside, wo)) continue;
+    double weight = double(x.weight.g) * double(x.eta) * double(x.eta);
+    Vec3 w = x.wi;
+    for (int step = 0; w.z < 0 && weight > 0 && step < 200; ++step) {
+      if (!draw(metal, -w)) {
+        weight = 0;
+        break;
+      }
+      weight *= double(x.weight.g);
+      // The frame below the coat has its z turned round.
+      if (!draw(inside, Vec3{-x.wi.x, -x.wi.y, x.wi.z})) {
+        weight = 0;
+        break;
+      }
+      weight *= double(x.weight.g) * double(x.eta) * double(x.eta);
+      w = {x.wi.x, x.wi.y, -x.wi.z};
+    }
+    if (w.z > 0 && weight > 0) sum.add(wo, w, weight);
+  }
+  return sum.over(n);
+}
+
+Walked sampled(const Bsdf& b, const Vec3& wo, uint32_t n) {
+  Random random(10);
+  Spread sum;
+  for (uint32_t i = 0; i < n; ++i) {
+    BsdfSample x;
+    const float lobe = random.next_float();
+    if (sample(b, wo, lobe, random.next_vec2(), x)) sum.add(wo, x.wi, double(x.weight.g));
+  }
+  return sum.over(n);
+}
+
+}  // namespace
+
+TEST_CASE("white gloss under a clear coat reflects everything, and never more") {
+  double least = 2, most = 0;
+  for (const float alpha : {0.0f, 0.1f, 0.3f, 1.0f})
+    for (const float coat : {0.0f, 0.1f, 1.0f}) {
+      const Specimens s{{"metal", clear_coated(mirror_metal(alpha), coat)},
+                        {"metal, dense coat", clear_coated(mirror_metal(alpha), coat, 1, 2)},
+                        {"glTF metal", clear_coated(gltf(alpha, 1), coat)},
+                        {"glTF half metal", clear_coated(gltf(alpha, 0.5f), coat, 0.6f)},
+                        {"glTF dielectric", clear_coated(gltf(alpha, 0), coat)},
+                        {"coat", clear_coated(coated(alpha), coat)}};
+      for (size_t i = 0; i < s.size(); ++i)
+        for (const float c : {0.05f, 0.3f, 1.0f}) {
+          const double e = scattered(s.at(i), direction(c), 1u << 15).total();
+          INFO(s.names[i], " alpha ", alpha, " coat ", coat, " cosine ", c, ": ", e);
+          CHECK(e < 1.003);
+          CHECK(e > 0.97);
+          least = std::min(least, e);
+          most = std::max(most, e);
+        }
+    }
+  MESSAGE("white gloss under a clear coat: ", least, " to ", most);
+}
+
+TEST_CASE("a smooth coat over a smooth metal sums what goes to and fro between them") {
+  const Specimens s{{"copper", clear_coated(copper(0), 0)}};
+  for (const float c : {0.1f, 0.4f, 0.8f, 1.0f}) {
+    const double f = double(fresnel_dielectric(c, 1.5f));
+    const float inside = refracted_cosine(c, 1.5f);
+    const double r = double(fresnel_conductor(inside, 0.92f / 1.5f, 2.45f / 1.5f));
+    const double expected = f + (1 - f) * (1 - f) * r / (1 - f * r);
+    CHECK(scattered(s.at(0), direction(c), 256).total() == doctest::Approx(expected).epsilon(1e-4));
+    CHECK(double(mirrored_reflectance(s.at(0), c).g) == doctest::Approx(expected).epsilon(1e-4));
+  }
+  CHECK(is_purely_delta(s.at(0)));
+}
+
+TEST_CASE("a coat over rough metal is near what walks between both surfaces bring") {
+  double energy_off = 0, spread_off = 0;
+  for (const float alpha : {0.1f, 0.3f})
+    for (const float coat : {0.0f, 0.1f, 0.3f})
+      for (const float c : {0.3f, 0.7f, 1.0f}) {
+        Material metal = copper(alpha);
+        metal.eta = metal.eta / 1.5f;
+        metal.k = metal.k / 1.5f;
+        const Specimens s{{"glass", glass(coat)}, {"metal", metal}};
+        const Specimens whole{{"coated", clear_coated(copper(alpha), coat)}};
+        const Walked w = walked(s, direction(c), 1u << 14);
+        const Walked one = sampled(whole.at(0), direction(c), 1u << 14);
+        INFO("alpha ", alpha, " coat ", coat, " cosine ", c, ": ", one.energy, " ", w.energy,
+             " spread ", std::sqrt(one.spread), " ", std::sqrt(w.spread));
+        energy_off = std::max(energy_off, std::abs(one.energy / w.energy - 1));
+        spread_off = std::max(spread_off, std::abs(std::sqrt(one.spread / w.spread) - 1));
+        CHECK(one.energy == doctest::Approx(w.energy).epsilon(0.05));
+        CHECK(std::sqrt(one.spread) == doctest::Approx(std::sqrt(w.spread)).epsilon(0.12));
+      }
+  MESSAGE("from walks: energy within ", energy_off, ", spread within ", spread_off);
+}
+
+TEST_CASE("a coat mirrors by its own normal, whatever the base's") {
+  Material m = clear_coated(gltf(0.4f, 1), 0);
+  m.has_coat_normal = true;
+  m.coat_normal_texture = 0;
+  const Specimens s{{"coat", m}};
+  TexturePlace place(Vec2{0, 0});
+  const Vec3 normal = normalize(Vec3{0.2f, 0.1f, 1});
+  place.coat_normal = {normal.x, normal.y};
+  const Bsdf b = make_bsdf(s.tables, s.materials, s.textures, 0, place, true);
+  const Vec3 wo = direction(0.8f);
+  int mirrored = 0;
+  for (uint32_t i = 0; i < 4096; ++i) {
+    const SobolGroup u(11, 3, i);
+    BsdfSample x;
+    if (!sample(b, wo, u.get(2), u.get2(0), x) || !x.is_delta) continue;
+    ++mirrored;
+    CHECK(length(x.wi + wo - normal * (2 * dot(wo, normal))) < 1e-4f);
+  }
+  CHECK(mirrored > 50);
+}
