@@ -86,12 +86,12 @@ Scene uplight_room_with_table() {
   return s;
 }
 
-// Indirect light that the eye sees at points, one after the other.
-std::vector<double> indirect_at(const Integrator& integrator, const Vec3& eye,
+// Indirect light that an eye sees at points, one after the other.
+std::vector<double> indirect_at(const Integrator& integrator, const Vec3& place,
                                 const std::vector<Vec3>& points, uint32_t samples, int sets = 4) {
   std::vector<double> light;
   for (const Vec3& x : points)
-    light.push_back(probe(integrator, ray_towards(eye, x), samples, sets).indirect.mean());
+    light.push_back(probe(integrator, ray_towards(place, x), samples, sets).indirect.mean());
   return light;
 }
 

@@ -73,10 +73,10 @@ Scene room_with_chandelier() {
   return s;
 }
 
-RenderOptions of_five_percent(int width, int height) {
+RenderOptions of_five_percent(int columns, int rows) {
   RenderOptions o;
-  o.width = width;
-  o.height = height;
+  o.width = columns;
+  o.height = rows;
   o.threads = 2;
   o.error = 0.05;
   return o;

@@ -241,7 +241,7 @@ TEST_CASE("certificates: lit, dark, or what is left") {
   FacetFlags flags;
   FacetList left;
   const auto answer = [&](const std::vector<Quad>& facets, bool is_complete) {
-    const CellTask cell{task, frame, one.unoccluded, 1, is_complete, false};
+    const SourceCellTask cell{task, frame, one.unoccluded, 1, is_complete, false};
     return certify(cell, one.cluster.hull, one.list_of(frame, facets), flags, left);
   };
   const Quad all = plate(-2, 2, -2, 2, 1), beside = plate(1, 2, 1, 2, 1);
@@ -260,7 +260,7 @@ TEST_CASE("certificates: a cluster is halved while its list is long, and every m
   one.options.split_above = 4;
   const MaskFrame frame = one.frame();
   const SourceTask task = one.task();
-  const CellTask cell{task, frame, one.unoccluded, 1, true, false};
+  const SourceCellTask cell{task, frame, one.unoccluded, 1, true, false};
   SettleMemory memory;
   memory.lists[0] = one.list_of(frame, crumbs(8, 0.2f));
   SourceResults results = one.results();
@@ -279,7 +279,7 @@ TEST_CASE("certificates: where only some of a cluster see a shadow's edge, only 
   OneSource one(receivers_on_floor(16, 0.1f));
   const MaskFrame frame = one.frame();
   const SourceTask task = one.task();
-  const CellTask cell{task, frame, one.unoccluded, 1, true, false};
+  const SourceCellTask cell{task, frame, one.unoccluded, 1, true, false};
   SettleMemory memory;
   memory.lists[0] = one.list_of(frame, {plate(-5, 5, 0.7f, 5, 0.02f)});
   SourceResults results = one.results();
@@ -338,14 +338,14 @@ TEST_CASE("masks: of a complete list they are the answer") {
   double share = 0;
   constexpr int passes = 200;
   for (uint64_t pass = 0; pass < passes; ++pass) {
-    const CellTask cell{task, frame, one.unoccluded, 1, true, false};
+    const SourceCellTask cell{task, frame, one.unoccluded, 1, true, false};
     const MaskShare seen = look_at_cell(cell, 0, half, pass, memory);
     CHECK(double(seen.share) == doctest::Approx(0.5).epsilon(0.02));
     CHECK(seen.variance > 0);
     share += double(seen.share) / passes;
   }
   CHECK(share == doctest::Approx(0.5).epsilon(1e-3));
-  const CellTask cell{task, frame, one.unoccluded, 1, true, false};
+  const SourceCellTask cell{task, frame, one.unoccluded, 1, true, false};
   SourceResults results = one.results();
   mask_cell(cell, one.members, half, memory, results);
   CHECK(one.queue.is_empty());
@@ -363,7 +363,7 @@ TEST_CASE("masks: of an incomplete list what is dark is answered, what is open w
   const FacetList half = one.list_of(frame, {plate(0, 3, -3, 3, 1)});
   MaskMemory memory;
   for (const bool is_hopeless : {false, true}) {
-    const CellTask cell{task, frame, one.unoccluded, 1, false, is_hopeless};
+    const SourceCellTask cell{task, frame, one.unoccluded, 1, false, is_hopeless};
     one.sums.assign(1, {});
     one.queue.clear();
     one.queue.sources.push_back(one.ray_source());
