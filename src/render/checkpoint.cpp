@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-constexpr OwnFile kind{{'t', 'r', 'o', 'f', 'f', 'C', 'h', 'k'}, 1, "checkpoint"};
+constexpr OwnFile kind{{'t', 'r', 'o', 'f', 'f', 'C', 'h', 'k'}, 2, "checkpoint"};
 
 // Then chunks: size, bytes, hash of these and of the hash before; and after the last a size of 0.
 struct Header {

@@ -70,7 +70,23 @@ double Film::told_error(size_t i) const {
   const double n = p.samples;
   double independent = independent_variance(p);
   if (p.is_told_whole) independent += variance_beyond(i, independent);
-  return std::sqrt(independent + sqr(p.shared_error) + sqr(p.drawn_error)) / n;
+  return std::sqrt((independent + sqr(p.shared_error) + sqr(p.drawn_error)) / sqr(n) +
+                   variance_of_glances(i));
+}
+
+// Of a pixel's mean, what its glances leave of the edges through it: blocks of them lie in as many
+// squares of the pixel, so that means of n err by n^-3/4.
+double Film::variance_of_glances(size_t i) const {
+  if (known_.empty()) return 0;
+  const KnownSums& g = known_[i].glances;
+  const double m = g.count, size = glances_of_block, blocks = std::floor(m / size);
+  if (blocks < 2) return 0;
+  const double mean = double(g.luminance) / blocks,
+               of_block =
+                   std::max(double(known_[i].squares_of_glance_blocks) / blocks - sqr(mean), 0.0) *
+                   blocks / (blocks - 1) / sqr(size),
+               share = m / (m + pixels_[i].samples);
+  return sqr(share) * of_block / std::pow(blocks, 1.5);
 }
 
 // Of a pixel's sum, what is told of its samples, and all that others than these vary by.
@@ -155,12 +171,19 @@ void Film::FirstHit::forget_hits() {
 
 void Film::add_glance(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
   const size_t at = index(x, y);
-  KnownSums& glances = known_[at].glances;
   if (!first_hits_.empty()) {
-    if (glances.count == 0) first_hits_[at].forget_hits();
+    if (known_[at].glances.count == 0) first_hits_[at].forget_hits();
     first_hits_[at].add(batch, i, depth);
   }
-  glances.add(batch.known[i]);
+  known_[at].add_glance(batch.known[i]);
+}
+
+void Film::Known::add_glance(const KnownRadiance& seen) {
+  glances.add(seen);
+  glance_block += luminance(seen.direct + seen.indirect);
+  if (glances.count % glances_of_block != 0) return;
+  squares_of_glance_blocks += sqr(glance_block);
+  glance_block = 0;
 }
 
 // so_far: samples, with this one.

@@ -98,7 +98,7 @@ class Film {
   }
 
  private:
-  static constexpr uint32_t first_block_size = 4;
+  static constexpr uint32_t first_block_size = 4, glances_of_block = 16;
   struct Pixel {
     Vec3d direct, indirect;
     double sum_luminance = 0, sum_luminance_squared = 0;
@@ -126,7 +126,11 @@ class Film {
     // … summed over blocks of so many samples; the sums of whole blocks, and their squares
     uint32_t block_size = first_block_size;
     float block = 0, blocks = 0, squares_of_blocks = 0;
+    // Luminance that glances have seen, over blocks of glances_of_block: the one that is not whole
+    // yet, and the squares of those that are.
+    float glance_block = 0, squares_of_glance_blocks = 0;
     void add_rest(float value, uint32_t so_far);
+    void add_glance(const KnownRadiance& seen);
   };
   size_t index(int x, int y) const {
     return size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
@@ -137,6 +141,7 @@ class Film {
   double told_error(size_t i) const;
   static double independent_variance(const Pixel& p);
   double variance_beyond(size_t i, double independent) const;
+  double variance_of_glances(size_t i) const;
   Layer make_layer(Aov aov) const;
 
   PixelRect window_;

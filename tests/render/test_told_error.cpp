@@ -82,7 +82,35 @@ RenderOptions of_five_percent(int columns, int rows) {
   return o;
 }
 
+// Lamps of a few centimetres, bright and far away, above the eye.
+Scene room_with_small_lamps() {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-2, -2.5f, 0}, {2, 2.5f, 2.8f});
+  const uint32_t black = add_diffuse(s, Rgb{0});
+  for (int k = 0; k < 3; ++k) {
+    const float x = float(k) - 1, y = 1.5f, z = 2.5f, r = 0.025f;
+    make_light(
+        s,
+        add_quad(s, black,
+                 {Vec3{x - r, y - r, z}, {x - r, y + r, z}, {x + r, y + r, z}, {x + r, y - r, z}}),
+        Rgb{300});
+  }
+  return s;
+}
+
 }  // namespace
+
+TEST_CASE("told error: of lamps that are smaller than a pixel") {
+  const PreparedScene scene(room_with_small_lamps());
+  const Camera camera = look_at({-1.5f, -2, 1.5f}, {1.2f, 1.7f, 0.9f}, {0, 0, 1}, 75);
+  RenderOptions o = of_five_percent(64, 48);
+  o.error = 0.02;
+  const Errors e = errors_of(scene, camera, o, 6);
+  CAPTURE(e.told);
+  CAPTURE(e.made);
+  CHECK(e.told > 0.6 * e.made);
+  CHECK(e.told < 1.8 * e.made);
+}
 
 TEST_CASE("told error: of what glitters within a pixel") {
   const PreparedScene scene(room_with_chandelier());
