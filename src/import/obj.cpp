@@ -282,8 +282,7 @@ void ObjReader::add_triangle(const Triangle& corners) {
   parts_.current->mesh.triangles.push_back(t);
 }
 
-// Names of libraries may contain blanks, and several may follow each other: first the whole line
-// is tried, then pieces up to each ".mtl".
+// Names may contain blanks, and several may follow: the whole line first, then up to each ".mtl".
 void ObjReader::read_libraries(std::string names) {
   std::replace(names.begin(), names.end(), '\\', '/');
   if (names.empty() || read_library(names)) return;

@@ -17,9 +17,16 @@ constexpr double most_spread = 0.5;   // of irradiance over a cell: standard dev
 constexpr size_t most_lights = 1024;  // more pieces are not looked at: smaller cells have fewer
 constexpr int per_side = 3;           // places along either side of a cell
 constexpr size_t places = size_t(per_side) * per_side;
+constexpr uint32_t far_draws = 16;  // by which light from farther away is estimated
 
 float distance_squared(const Box& b, const Vec3& x) {
   return length_squared(max(max(b.lower - x, x - b.upper), Vec3(0)));
+}
+
+// How wide it is where it is narrow, about: of a disk or sphere the radius.
+float breadth(const LightPrimitive& p) {
+  if (p.shape == PrimitiveShape::sphere) return p.radius;
+  return p.radius > 0 ? p.area / (pi_f * p.radius) : 0;
 }
 
 // Luminance of what a piece of a light sends to x, as if nothing stood between them.
@@ -30,6 +37,21 @@ double arriving(const LightPrimitive& p, const Vec3d& x, const Vec3d& n) {
   const double d2 = length_squared(d);
   return d2 > 0 ? double(p.tree_power) / (4 * pi) * std::max(dot(d, n), 0.0) / (d2 * std::sqrt(d2))
                 : 0;
+}
+
+// About what comes from other lights than these, but those at infinity: much the same all over the
+// cell.
+double arriving_from_far(const PreparedScene& scene, const std::vector<uint32_t>& near,
+                         const Vec3& x, const Vec3& n) {
+  double sum = 0;
+  for (uint32_t k = 0; k < far_draws; ++k) {
+    const LightChoice c = scene.light_tree.choose(x, n, false, (float(k) + 0.5f) / far_draws);
+    if (!(c.pmf > 0) || scene.primitives[c.primitive].is_infinite() ||
+        std::find(near.begin(), near.end(), c.primitive) != near.end())
+      continue;
+    sum += arriving(scene.primitives[c.primitive], Vec3d(x), Vec3d(n)) / double(c.pmf);
+  }
+  return sum / far_draws;
 }
 
 // Where it is nearest to x: of polygons by their bounds, and in their plane.
@@ -83,16 +105,20 @@ CellMap::IsUneven uneven_by_lights(const PreparedScene& scene) {
     thread_local std::vector<uint32_t> near;
     scene.light_tree.near(centre, distance, most_lights, near);
     if (near.size() == most_lights) return true;
-    std::erase_if(near, [&](uint32_t p) {
-      return !(distance_squared(scene.primitives[p].bounds, centre) < sqr(distance));
+    // Light from what is broad differs little over a cell that is not.
+    std::erase_if(near, [&](uint32_t i) {
+      const LightPrimitive& p = scene.primitives[i];
+      return !(distance_squared(p.bounds, centre) < sqr(distance)) || breadth(p) > distance;
     });
     if (near.empty()) return false;
     const Arriving a = arriving_at(scene, near, cell);
     std::array<uint8_t, places> is_blocked{};
     scene.tracer.occluded(a.towards, is_blocked);
+    const double far =
+        arriving_from_far(scene, near, centre + cell.normal * cell.offset, cell.normal);
     double sum = 0, squares = 0;
     for (size_t i = 0; i < places; ++i) {
-      const double e = a.all[i] - (is_blocked[i] != 0 ? a.strongest[i] : 0);
+      const double e = far + a.all[i] - (is_blocked[i] != 0 ? a.strongest[i] : 0);
       sum += e;
       squares += sqr(e);
     }
