@@ -182,12 +182,14 @@ bool read_cells(ByteReader& in, const Header& h, CellMap& map, CellStore& store)
          CellMapParts::read_slots(in, h.slots, map);
 }
 
-bool read_rows(ByteReader& in, const Header& h, CellRows& rows) {
+bool read_rows(ByteReader& in, const Header& h, const CellMap& map, CellRows& rows) {
+  // What was halved is none, and has no hits for rays to set out from.
+  const auto is_cell = [&](uint32_t c) { return c < h.cells && !map.hits(c).empty(); };
   std::vector<RowPart> parts;
   uint64_t entries = 0;
   for (size_t p = 0; p < h.parts; ++p) {
     const auto f = in.next<FilePart>();
-    if (f.cell >= h.cells || f.rays < 1 || f.rays > most_rays || f.is_second_half > 1 ||
+    if (!is_cell(f.cell) || f.rays < 1 || f.rays > most_rays || f.is_second_half > 1 ||
         !is_light(f.emission))
       return false;
     entries += f.entries;
@@ -199,7 +201,7 @@ bool read_rows(ByteReader& in, const Header& h, CellRows& rows) {
     row.clear();
     for (uint32_t e = 0; e < p.entries; ++e) {
       row.push_back(in.next<RowEntry>());
-      if (row.back().cell >= h.cells || !is_light(row.back().weight)) return false;
+      if (!is_cell(row.back().cell) || !is_light(row.back().weight)) return false;
     }
     rows.add(p, row);
   }
@@ -215,7 +217,7 @@ CellStore load_cells(std::span<const uint8_t> bytes, const std::string& file, ui
   ByteReader in(bytes.subspan(sizeof(Header)));
   CellStore store;
   auto map = std::make_shared<CellMap>(tracer, h.size);
-  if (!read_cells(in, h, *map, store) || !read_rows(in, h, store.rows))
+  if (!read_cells(in, h, *map, store) || !read_rows(in, h, *map, store.rows))
     throw InputError(file, 0, 0, "file of cells has values that none can have");
   store.map = std::move(map);
   store.direct_error = h.direct_error;

@@ -102,7 +102,7 @@ CellMap::IsUneven uneven_by_lights(const PreparedScene& scene) {
     const auto& c = cell.corners;
     const Vec3 centre = (c[0] + c[2]) * 0.5f;
     const float distance = reach * std::max(length(c[1] - c[0]), length(c[3] - c[0]));
-    thread_local std::vector<uint32_t> near;
+    std::vector<uint32_t> near;
     scene.light_tree.near(centre, distance, most_lights, near);
     if (near.size() == most_lights) return true;
     // Light from what is broad differs little over a cell that is not.

@@ -151,6 +151,18 @@ TEST_CASE("values that no cells have are refused, though the file is whole") {
   CHECK_FALSE(with([](CellStore& s) {
                 s.rows.add({0, 8, 0, false, Rgb{0}}, std::vector<RowEntry>{{0, Rgb{-1}}});
               }).empty());
+  // What was halved has no row, and is seen by none.
+  const auto halved = [](const CellStore& s) {
+    uint32_t c = 0;
+    while (!s.map->hits(c).empty()) ++c;
+    return c;
+  };
+  CHECK_FALSE(with([&](CellStore& s) {
+                s.rows.add({halved(s), 8, 0, false, Rgb{0}}, {});
+              }).empty());
+  CHECK_FALSE(with([&](CellStore& s) {
+                s.rows.add({0, 8, 0, false, Rgb{0}}, std::vector<RowEntry>{{halved(s), Rgb{1}}});
+              }).empty());
   CHECK_FALSE(with([](CellStore& s) { s.rows.add({0, 0, 0, false, Rgb{0}}, {}); }).empty());
   // Voxels of such a size have no numbers.
   CHECK_FALSE(with([&](CellStore& s) {

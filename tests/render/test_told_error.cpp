@@ -104,11 +104,11 @@ TEST_CASE("told error: of lamps that are smaller than a pixel") {
   const PreparedScene scene(room_with_small_lamps());
   const Camera camera = look_at({-1.5f, -2, 1.5f}, {1.2f, 1.7f, 0.9f}, {0, 0, 1}, 75);
   RenderOptions o = of_five_percent(64, 48);
-  o.error = 0.02;
+  o.error = 0.01;
   const Errors e = errors_of(scene, camera, o, 6);
   CAPTURE(e.told);
   CAPTURE(e.made);
-  CHECK(e.told > 0.6 * e.made);
+  CHECK(e.told > 0.75 * e.made);  // .53 without what glances leave
   CHECK(e.told < 1.8 * e.made);
 }
 

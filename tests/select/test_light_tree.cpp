@@ -288,6 +288,36 @@ TEST_CASE("ten thousand primitives: built within a second, all within reach") {
   }
 }
 
+TEST_CASE("what is near: all within reach, none whose sphere is not, and no more than asked") {
+  size_t found = 0;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    const Scene scene = random_lights(seed, 1 + int(seed * 7 % 50));
+    const LightPrimitives lights(scene);
+    const LightTree tree(lights);
+    Random r(seed + 2000);
+    std::vector<uint32_t> near;
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 x = random_receiver(lights, r).position;
+      const float reach = 5 * r.next_float();
+      tree.near(x, reach, lights.size() + 1, near);
+      for (uint32_t p = 0; p < lights.size(); ++p) {
+        if (lights[p].is_infinite()) continue;
+        const Box& b = lights[p].bounds;
+        const float away = length(max(max(b.lower - x, x - b.upper), Vec3(0)));
+        const float beyond = length(x - b.centre()) - b.diagonal() / 2;
+        const auto times = std::count(near.begin(), near.end(), p);
+        if (away < reach * 0.9999f) CHECK(times == 1);
+        if (beyond > reach * 1.0001f + 1e-4f) CHECK(times == 0);
+      }
+      found += near.size();
+      const size_t all = near.size();
+      tree.near(x, reach, 2, near);
+      CHECK(near.size() == std::min<size_t>(all, 2));
+    }
+  }
+  CHECK(found > 1000);
+}
+
 TEST_CASE("choosing for many points is choosing for each") {
   Random random(23);
   for (const size_t sources : {1u, 3u, 40u}) {
