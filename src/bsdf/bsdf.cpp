@@ -198,8 +198,7 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass,
 
 // What gloss that is a mirror reflects at a cosine, below whatever covers it.
 Rgb mirror_below(const Bsdf& b, const Gains& g, float c) {
-  const float in =
-      b.clear.share > 0 ? b.clear.below({std::sqrt(std::max(0.0f, 1 - c * c)), 0, c}).z : c;
+  const float in = b.clear.share > 0 ? b.clear.cosine_below(c) : c;
   const Rgb r = split_at(b, in).reflected;
   return r * b.clear.kept(g.coat_gloss, r) * g.pass;
 }

@@ -36,7 +36,7 @@ inline Rgb glossy_albedo(const Bsdf& b, float c) {
 // … through a clear coat.
 inline Rgb glossy_albedo_below(const Bsdf& b, float pass, float c) {
   if (!(b.clear.share > 0) || b.fresnel == Bsdf::Fresnel::none) return glossy_albedo(b, c) * pass;
-  const float inside = b.clear.below({std::sqrt(1 - c * c), 0, c}).z;
+  const float inside = b.clear.cosine_below(c);
   const Rgb all = glossy_albedo(b, inside);
   // What of it is not held back below the coat, where that is known.
   const bool is_known = is_lost_light(b.soft) && !b.is_smooth;

@@ -53,15 +53,19 @@ struct ClearCoat {
   float gloss_pass(float cosine) const {
     const float in = pass(cosine);
     if (!(bend > 1) || is_smooth) return in;
-    const float c = std::clamp(cosine, 0.0f, 1.0f);
-    const float below_it = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (bend * bend)));
-    return std::min(in, std::max(0.0f, 1 - inner.at(CosineCoordinate(below_it))));
+    const CosineCoordinate below_it(cosine_below(std::max(cosine, 0.0f)));
+    return std::min(in, std::max(0.0f, 1 - inner.at(below_it)));
   }
 
   // Between the shading frame and that whose z is the coat's normal.
   Vec3 to_own(const Vec3& w) const { return has_normal ? Frame(normal).to_local(w) : w; }
   Vec3 from_own(const Vec3& w) const { return has_normal ? Frame(normal).to_world(w) : w; }
 
+  // Below the coat, of a direction above it: its cosine, all of it.
+  float cosine_below(float cosine) const {
+    const float sine2 = std::max(0.0f, 1 - cosine * cosine);
+    return std::sqrt(std::max(0.0f, 1 - sine2 / (bend * bend)));
+  }
   Vec3 below(const Vec3& w) const {
     const Vec3 in{w.x / bend, w.y / bend, 0};
     return {in.x, in.y, std::sqrt(std::max(0.0f, 1 - in.x * in.x - in.y * in.y))};

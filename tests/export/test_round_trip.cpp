@@ -110,6 +110,16 @@ bool has_warning(const std::vector<Warning>& warnings, const std::string& part) 
   return false;
 }
 
+Texture two_texels(uint8_t first, uint8_t second) {
+  Texture t;
+  t.kind = TextureKind::image;
+  t.width = 2;
+  t.height = t.channels = 1;
+  t.texels8 = {first, second};
+  t.is_srgb = false;
+  return t;
+}
+
 }  // namespace
 
 TEST_CASE("lights, cameras and materials survive in every format") {
@@ -219,12 +229,7 @@ TEST_CASE(
     "two sets of texture coordinates, sheen and grain survive in glTF, and are told of else") {
   const TempFolder folder;
   Scene scene;
-  Texture t;
-  t.kind = TextureKind::image;
-  t.width = 2;
-  t.height = t.channels = 1;
-  t.texels8 = {0, 255};
-  t.is_srgb = false;
+  const Texture t = two_texels(0, 255);
   scene.textures = {t, t};
   scene.textures[1].mapping = TextureMapping::second_uv;
   Material m;
@@ -264,12 +269,7 @@ TEST_CASE(
 TEST_CASE("clear coats and thin films survive where the format has them") {
   const TempFolder folder;
   Scene scene;
-  Texture t;
-  t.kind = TextureKind::image;
-  t.width = 2;
-  t.height = t.channels = 1;
-  t.texels8 = {51, 255};
-  t.is_srgb = false;
+  const Texture t = two_texels(51, 255);
   scene.textures = {t};
   Material shiny;
   shiny.kind = MaterialKind::metallic_roughness;
