@@ -10,6 +10,12 @@
 
 namespace troffer {
 
+struct PlyLimits {
+  size_t max_triangles = 200'000'000;
+  // Bodies are read in pieces of about so many bytes side by side, to the same end; 0: in one.
+  size_t piece_bytes = size_t(1) << 20;
+};
+
 // The triangles of a PLY file as they stand (not cleaned: vertices may be NaN, triangles without
 // area). Elements and properties come in any order and of any scalar type: vertex x y z, nx ny nz,
 // and u v, s t, texture_u texture_v or texture_s texture_t; face vertex_indices or vertex_index of
@@ -18,7 +24,6 @@ namespace troffer {
 // InputError: malformed or truncated files (line and column of the header or of an ascii body, 0
 // in a binary body), no x y z, indices out of range, more than max_triangles triangles.
 // Memory stays in proportion to the size of the file whatever its counts say.
-AnchoredMesh read_ply(const std::string& path, WarningLog& warnings,
-                      size_t max_triangles = size_t(200'000'000));
+AnchoredMesh read_ply(const std::string& path, WarningLog& warnings, const PlyLimits& limits = {});
 
 }  // namespace troffer

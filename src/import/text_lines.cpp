@@ -1,5 +1,6 @@
 #include "import/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
@@ -77,8 +78,32 @@ std::string as_utf8(std::string text) {
   return out;
 }
 
-TextLines::TextLines(const std::string& file, std::string_view text) : file_(file), text_(text) {
-  if (text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark
+std::vector<std::string_view> cut_at_lines(std::string_view text, size_t piece_bytes,
+                                           std::string_view first) {
+  // Whether a piece may end behind that "\n".
+  const auto is_cut = [&](size_t newline) {
+    size_t last = newline;
+    if (last > 0 && text[last - 1] == '\r') --last;
+    if (last > 0 && text[last - 1] == '\\') return false;
+    size_t word = newline + 1;
+    while (!first.empty() && word < text.size() && is_blank(text[word])) ++word;
+    return text.substr(std::min(word, text.size())).starts_with(first);
+  };
+  std::vector<std::string_view> pieces;
+  for (size_t begin = 0; begin < text.size();) {
+    size_t newline = text.find('\n', begin + std::max<size_t>(piece_bytes, 1) - 1);
+    while (newline != std::string_view::npos && !is_cut(newline))
+      newline = text.find('\n', newline + 1);
+    const size_t end = newline == std::string_view::npos ? text.size() : newline + 1;
+    pieces.push_back(text.substr(begin, end - begin));
+    begin = end;
+  }
+  return pieces;
+}
+
+TextLines::TextLines(const std::string& file, std::string_view text, bool is_whole)
+    : file_(file), text_(text) {
+  if (is_whole && text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark
 }
 
 std::string_view TextLines::take_physical_line() {

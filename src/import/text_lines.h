@@ -3,18 +3,25 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace troffer {
 
 // The text as UTF-8: from UTF-16 where it has a byte order mark; from Latin-1 where it is no UTF-8.
 std::string as_utf8(std::string text);
 
+// Consecutive pieces of a text of about so many bytes, each of whole statements: cut behind a "\n"
+// that no backslash joins with the next line, and only where that begins with `first` ("": any).
+// They view the text.
+std::vector<std::string_view> cut_at_lines(std::string_view text, size_t piece_bytes,
+                                           std::string_view first = "");
+
 // Takes lines apart. A backslash at the end of a line joins it with the next one; lines end with
 // "\n", "\r\n" or "\r".
 class TextLines {
  public:
-  // Both must outlive this.
-  TextLines(const std::string& file, std::string_view text);
+  // Both must outlive this. is_whole: the text begins where its file does.
+  TextLines(const std::string& file, std::string_view text, bool is_whole = true);
 
   // Goes to the next line; false at the end.
   bool next_line();

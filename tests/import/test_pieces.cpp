@@ -1,0 +1,184 @@
+// Files read in pieces on several threads: the same meshes, warnings and errors, bit for bit, as
+// from the first byte to the last.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <random>
+#include <string>
+#include <tuple>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "import/ply.h"
+#include "import/stl.h"
+#include "import/weld.h"
+#include "mutations.h"
+#include "temp_folder.h"
+
+using namespace troffer;
+
+namespace {
+
+std::string bits_of(float x) {
+  return fmt::format(" {:x}", std::bit_cast<uint32_t>(x));
+}
+
+std::string dump(const Mesh& mesh, const WarningLog& log) {
+  std::string out;
+  for (const std::vector<Vec3>* vectors : {&mesh.positions, &mesh.normals})
+    for (const Vec3& v : *vectors) out += bits_of(v.x) + bits_of(v.y) + bits_of(v.z);
+  for (const Vec2& v : mesh.uvs) out += bits_of(v.x) + bits_of(v.y);
+  for (const Triangle& t : mesh.triangles) out += fmt::format(" {}/{}/{}", t[0], t[1], t[2]);
+  for (const Warning& w : log.entries()) out += fmt::format("\n{} {}", w.text, w.count);
+  return out;
+}
+
+std::string ply_outcome(const std::string& path, size_t piece_bytes, int threads) {
+  const ThreadLimit limit(threads);
+  WarningLog log;
+  try {
+    const AnchoredMesh read = read_ply(path, log, {.piece_bytes = piece_bytes});
+    return dump(read.mesh, log) + fmt::format(" {}", read.anchor.x);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
+std::string stl_outcome(const std::string& path, size_t piece_bytes, int threads) {
+  const ThreadLimit limit(threads);
+  try {
+    const Scene scene = import_stl(path, piece_bytes);
+    return dump(scene.meshes.empty() ? Mesh() : scene.meshes[0], scene.warnings);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
+// A strip of quads and triangles, with a face of two vertices and properties that nobody reads.
+std::string ply_text(int n, bool has_faces_first) {
+  const std::string vertex = fmt::format(
+      "element vertex {}\nproperty float x\nproperty float y\nproperty double z\n"
+      "property float u\nproperty float v\n",
+      2 * n);
+  const std::string face = fmt::format(
+      "element face {}\nproperty uchar tag\nproperty list uchar int vertex_indices\n", n);
+  std::string vertices, faces;
+  for (int i = 0; i < 2 * n; ++i)
+    vertices += fmt::format("{} {} {:.3f} {} 1e-3\n", i / 2 + 700, i % 2, .1 * i, .25 * i);
+  for (int i = 0; i + 1 < n; ++i)
+    faces += i % 3 == 0 ? fmt::format("0 4 {} {} {} {}\n", 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1)
+                        : fmt::format("7 3 {} {} {}\n", 2 * i, 2 * i + 2, 2 * i + 3);
+  faces += "1 2 0 1\n";
+  return "ply\nformat ascii 1.0\n" + (has_faces_first ? face + vertex : vertex + face) +
+         "element extra 2\nproperty int a\nend_header\n" +
+         (has_faces_first ? faces + vertices : vertices + faces) + "5\n6";
+}
+
+template <class T>
+void put(std::string& out, T value, bool is_big) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  if (is_big) bytes = std::string(bytes.rbegin(), bytes.rend());
+  out += bytes;
+}
+
+std::string ply_binary(int n, bool is_big) {
+  std::string out = fmt::format(
+      "ply\nformat binary_{}_endian 1.0\nelement vertex {}\nproperty float x\nproperty short y\n"
+      "property double z\nelement face {}\nproperty list uchar uint vertex_indices\n"
+      "property list ushort uchar more\nend_header\n",
+      is_big ? "big" : "little", n, n - 2);
+  for (int i = 0; i < n; ++i) {
+    put(out, float(i), is_big);
+    put(out, int16_t(i * i), is_big);
+    put(out, .3 * i, is_big);
+  }
+  for (int i = 0; i + 2 < n; ++i) {
+    put(out, uint8_t(3), is_big);
+    for (int k = 0; k < 3; ++k) put(out, uint32_t(i + k), is_big);
+    put(out, uint16_t(i % 4), is_big);
+    out.append(size_t(i % 4), 'x');
+  }
+  return out;
+}
+
+std::string stl_text(int n) {
+  std::string out = "solid of facets\n";
+  for (int i = 0; i < n; ++i)
+    out += fmt::format(
+        "  facet normal 0 0 1\r\n outer loop\n vertex {0} 0 0\n vertex {1} -0 0\n"
+        " vertex {1} 1 {2}\n endloop\n\nendfacet\n",
+        i, i + 1, i % 5 == 0 ? "nan" : "2");
+  return out + "endsolid\n";
+}
+
+}  // namespace
+
+TEST_CASE("PLY in pieces: what is read, warned and refused is that of one piece") {
+  const TempFolder folder;
+  std::mt19937 random(3);
+  size_t errors = 0;
+  for (const std::string& whole :
+       {ply_text(30, false), ply_text(30, true), ply_binary(40, false), ply_binary(40, true)}) {
+    const size_t body = whole.find("end_header");
+    for (int round = 0; round < 150; ++round) {
+      const std::string text =
+          round == 0 ? whole : whole.substr(0, body) + test::mutated(whole.substr(body), random);
+      const std::string path = folder.write("m.ply", text);
+      const std::string expected = ply_outcome(path, 0, 1);
+      errors += expected.find("m.ply:") != std::string::npos ? 1 : 0;
+      for (const size_t bytes : {size_t(1), size_t(53), size_t(1) << 20})
+        for (const int threads : {1, 3}) {
+          CAPTURE(text);
+          REQUIRE(ply_outcome(path, bytes, threads) == expected);
+        }
+    }
+  }
+  CHECK(errors > 100);
+  CHECK(errors < 550);
+}
+
+TEST_CASE("STL text in pieces: what is read, warned and refused is that of one piece") {
+  const TempFolder folder;
+  std::mt19937 random(4);
+  const std::string whole = stl_text(25);
+  for (int round = 0; round < 300; ++round) {
+    const std::string text = round == 0 ? whole : test::mutated(whole, random);
+    const std::string path = folder.write("m.stl", text);
+    const std::string expected = stl_outcome(path, 0, 1);
+    for (const size_t bytes : {size_t(1), size_t(90), size_t(1) << 20})
+      for (const int threads : {1, 3}) {
+        CAPTURE(text);
+        REQUIRE(stl_outcome(path, bytes, threads) == expected);
+      }
+  }
+}
+
+TEST_CASE("welded corners are numbered as they first come") {
+  std::mt19937 random(5);
+  std::vector<Vec3> corners;
+  for (size_t i = 0; i < 600'000; ++i) {  // more than one piece
+    const auto pick = [&] { return float(int(random() % 40) - 20) * 0.5f; };
+    corners.push_back({pick() * -0.0f + pick(), pick(), pick()});
+    if (random() % 1000 == 0) corners.back().y = std::numeric_limits<float>::quiet_NaN();
+  }
+  const Mesh mesh = weld(corners);
+  std::map<std::tuple<float, float, float>, uint32_t> known;
+  std::vector<Vec3> positions;
+  REQUIRE(mesh.triangles.size() == corners.size() / 3);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Vec3& p = corners[i];
+    const auto next = uint32_t(positions.size());
+    const uint32_t expected =
+        is_finite(p) ? known.try_emplace({p.x, p.y, p.z}, next).first->second : next;
+    if (expected == next) positions.push_back(p);
+    REQUIRE(mesh.triangles[i / 3][i % 3] == expected);
+  }
+  REQUIRE(mesh.positions.size() == positions.size());
+  for (size_t i = 0; i < positions.size(); ++i)
+    REQUIRE(bits_of(mesh.positions[i].y) == bits_of(positions[i].y));
+}
