@@ -30,7 +30,7 @@ int thread_count(int threads) {
 
 void parallel_for_slots(size_t n, int threads, const std::function<void(size_t, size_t)>& body) {
   const int count = thread_count(threads);
-  if (count == 1 || n <= 1) {
+  if (count == 1) {
     for (size_t i = 0; i < n; ++i) body(i, 0);
     return;
   }
@@ -54,6 +54,10 @@ void run_on_one_thread(const std::function<void()>& body) {
 }
 
 void parallel_pieces(size_t n, size_t piece, const std::function<void(size_t, size_t)>& body) {
+  if (n <= piece) {
+    if (n > 0) body(0, n);
+    return;
+  }
   parallel_for((n + piece - 1) / piece, 0,
                [&](size_t i) { body(i * piece, std::min(n, (i + 1) * piece)); });
 }

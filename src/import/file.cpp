@@ -164,7 +164,7 @@ std::string read_text_file(const std::string& path, uint64_t max_bytes) {
   return unpacked(path, read_whole<std::string>(path, max_bytes), max_bytes);
 }
 
-FileBytes::FileBytes(const std::string& path, uint64_t max_bytes) {
+FileBytes::FileBytes(const std::string& path, uint64_t max_bytes, const TellProgress& tell) {
   if (lower_case_ending(path) == "gz") {
     unpacked_ = read_text_file(path, max_bytes);
     return;
@@ -176,8 +176,10 @@ FileBytes::FileBytes(const std::string& path, uint64_t max_bytes) {
   bytes_.reset(large_pages(size));
   constexpr size_t piece = size_t(4) << 20;
   std::vector<int64_t> had(size / piece + 1, 0);
+  ReadProgress progress(tell, 0, file_progress, size);
   parallel_pieces(size, piece, [&](size_t begin, size_t end) {
     had[begin / piece] = read_part(file, bytes_.get(), begin, end);
+    progress.add(end - begin);
   });
   close(file);
   // A file that shrank since is cut short here and found out by its parser.

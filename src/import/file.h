@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "import/read_progress.h"
+
 namespace troffer {
 
 constexpr uint64_t default_max_file_bytes = uint64_t(4) << 30;
@@ -28,8 +30,9 @@ std::string read_text_file(const std::string& path, uint64_t max_bytes = default
 // are not cleared before. For files of many million numbers.
 class FileBytes {
  public:
-  // InputError: as read_file.
-  explicit FileBytes(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
+  // InputError: as read_file. Tells the first file_progress of the whole.
+  explicit FileBytes(const std::string& path, uint64_t max_bytes = default_max_file_bytes,
+                     const TellProgress& progress = {});
   std::string_view view() const {
     return bytes_ ? std::string_view(bytes_.get(), size_) : std::string_view(unpacked_);
   }

@@ -11,18 +11,18 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t piece = size_t(1) << 16;  // of what is worked on side by side
+constexpr size_t cleaned_at_once = size_t(1) << 16;  // of what is worked on side by side
 
 bool is_good(TriangleCheck& check, const Mesh& mesh, const Triangle& t) {
   return check.is_good(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
 }
 
 void drop_triangles(Mesh& mesh, WarningLog& warnings) {
-  std::vector<TriangleCheck> checks(mesh.triangles.size() / piece + 1);
-  parallel_pieces(mesh.triangles.size(), piece, [&](size_t first, size_t end) {
+  std::vector<TriangleCheck> checks(mesh.triangles.size() / cleaned_at_once + 1);
+  parallel_pieces(mesh.triangles.size(), cleaned_at_once, [&](size_t first, size_t end) {
     TriangleCheck own;
     for (size_t i = first; i < end; ++i) is_good(own, mesh, mesh.triangles[i]);
-    checks[first / piece] = own;
+    checks[first / cleaned_at_once] = own;
   });
   TriangleCheck all;
   for (const TriangleCheck& check : checks) all.add(check);
@@ -36,7 +36,7 @@ void drop_triangles(Mesh& mesh, WarningLog& warnings) {
 template <class IsSound>
 bool are_all(size_t n, const IsSound& is_sound) {
   std::atomic<bool> result{true};
-  parallel_pieces(n, piece, [&](size_t first, size_t end) {
+  parallel_pieces(n, cleaned_at_once, [&](size_t first, size_t end) {
     for (size_t i = first; i < end && result; ++i)
       if (!is_sound(i)) result = false;
   });
@@ -77,7 +77,7 @@ bool make_unit(Vec3& normal) {
 
 void repair_normals(Mesh& mesh) {
   std::vector<uint8_t> is_bad(mesh.normals.size());
-  parallel_pieces(mesh.normals.size(), piece, [&](size_t first, size_t end) {
+  parallel_pieces(mesh.normals.size(), cleaned_at_once, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) is_bad[i] = !make_unit(mesh.normals[i]);
   });
   if (std::find(is_bad.begin(), is_bad.end(), 1) == is_bad.end()) return;
@@ -99,7 +99,7 @@ void clean_mesh(Mesh& mesh, WarningLog& warnings) {
   drop_vertices(mesh);
   repair_normals(mesh);
   for (std::vector<Vec2>* const set : {&mesh.uvs, &mesh.uvs_2})
-    parallel_pieces(set->size(), piece, [&](size_t first, size_t end) {
+    parallel_pieces(set->size(), cleaned_at_once, [&](size_t first, size_t end) {
       for (size_t i = first; i < end; ++i) {
         Vec2& uv = (*set)[i];
         if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};

@@ -13,7 +13,7 @@ namespace {
 constexpr size_t max_triangles = 60'000'000;
 constexpr size_t smallest_cost = 20;  // of a shape, in triangles
 constexpr double circle_tolerance = 1e-5;
-constexpr size_t piece = size_t(1) << 16;  // of what is worked on side by side
+constexpr size_t placed_at_once = size_t(1) << 16;  // of what is worked on side by side
 
 }  // namespace
 
@@ -24,11 +24,11 @@ Vec3d covector(const Affine& t, const Vec3d& n) {
 Mesh transformed(const AnchoredMesh& local, const Affine& t, bool are_normals_turned,
                  bool is_winding_turned) {
   Mesh mesh = local.mesh;
-  parallel_pieces(mesh.positions.size(), piece, [&](size_t first, size_t end) {
+  parallel_pieces(mesh.positions.size(), placed_at_once, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i)
       mesh.positions[i] = Vec3(t.point(local.anchor + Vec3d(mesh.positions[i])));
   });
-  parallel_pieces(mesh.normals.size(), piece, [&](size_t first, size_t end) {
+  parallel_pieces(mesh.normals.size(), placed_at_once, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) {
       const Vec3d turned = covector(t, Vec3d(mesh.normals[i]));
       // Normalised here, so that small scales do not underflow in float.
@@ -63,7 +63,7 @@ void orient(const Mesh& mesh, Triangle& t, bool is_turned) {
 }  // namespace
 
 void orient(Mesh& mesh, bool is_turned) {
-  parallel_pieces(mesh.triangles.size(), piece, [&](size_t first, size_t end) {
+  parallel_pieces(mesh.triangles.size(), placed_at_once, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) orient(mesh, mesh.triangles[i], is_turned);
   });
 }

@@ -44,7 +44,8 @@ class PlyReader {
         text_(text),
         header_(parse_ply_header(text, file)),
         body_(text, header_.body, header_.body_line, header_.format, file),
-        cutter_(text, header_, file, limits.piece_bytes),
+        cutter_(text, header_, file, limits.pieces.piece_bytes),
+        progress_(limits.pieces.progress, file_progress, 1, text.size()),
         warnings_(warnings),
         max_triangles_(limits.max_triangles) {}
   AnchoredMesh read();
@@ -55,6 +56,7 @@ class PlyReader {
   PlyHeader header_;
   PlyBody body_;
   PlyCutter cutter_;
+  mutable ReadProgress progress_;
   WarningLog& warnings_;
   size_t max_triangles_;
   AnchoredMesh anchored_;
@@ -101,6 +103,7 @@ bool PlyReader::read_in_pieces(const std::vector<PlyPiece>& pieces,
     try {
       read(i, body);
       if (!body.is_done()) is_sound = false;
+      progress_.add(pieces[i].end - pieces[i].begin);
     } catch (const InputError&) {
       is_sound = false;
     }
@@ -268,7 +271,7 @@ AnchoredMesh PlyReader::read() {
 }  // namespace
 
 AnchoredMesh read_ply(const std::string& path, WarningLog& warnings, const PlyLimits& limits) {
-  const FileBytes bytes(path);
+  const FileBytes bytes(path, default_max_file_bytes, limits.pieces.progress);
   return PlyReader(path, bytes.view(), warnings, limits).read();
 }
 

@@ -6,14 +6,14 @@
 #include <string>
 
 #include "base/log.h"
+#include "import/read_progress.h"
 #include "import/recentre.h"
 
 namespace troffer {
 
 struct PlyLimits {
   size_t max_triangles = 200'000'000;
-  // Bodies are read in pieces of about so many bytes side by side, to the same end; 0: in one.
-  size_t piece_bytes = size_t(1) << 20;
+  PieceReading pieces = {};
 };
 
 // The triangles of a PLY file as they stand (not cleaned: vertices may be NaN, triangles without

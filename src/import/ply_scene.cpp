@@ -9,14 +9,16 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t max_triangles = 60'000'000;
+constexpr size_t max_ply_triangles = 60'000'000;
 
 }  // namespace
 
-Scene import_ply(const std::string& path) {
+Scene import_ply(const std::string& path, const TellProgress& progress) {
   return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
     scene.file = path;
-    AnchoredMesh read = read_ply(path, scene.warnings, {.max_triangles = max_triangles});
+    AnchoredMesh read =
+        read_ply(path, scene.warnings,
+                 {.max_triangles = max_ply_triangles, .pieces = {.progress = progress}});
     Mesh& mesh = read.mesh;
     const Vec3d shift = read.anchor - scene.origin;
     const auto placed = [&](uint32_t v) { return Vec3d(mesh.positions[v]) + shift; };

@@ -19,6 +19,7 @@ class PlacedBounds {
   void add_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
   void add_box(const Boxd& box);
   void add_ball(const Vec3d& centre, double radius);
+  void add(const PlacedBounds& other) { box_.grow(other.box_); }
   // Those of `count` triangles, on all cores: corners(i) says where their corners are.
   template <class Corners>
   void add_triangles(size_t count, const Corners& corners);
@@ -48,7 +49,7 @@ void PlacedBounds::add_triangles(size_t count, const Corners& corners) {
     }
     parts[first / piece] = own;
   });
-  for (const PlacedBounds& part : parts) box_.grow(part.box_);
+  for (const PlacedBounds& part : parts) add(part);
 }
 
 // The middle of the box, rounded along each axis to a multiple of a step that is 1, 5, 10, 50 … and

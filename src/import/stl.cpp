@@ -19,13 +19,14 @@ namespace troffer {
 namespace {
 
 constexpr size_t header_size = 84, facet_size = 50;  // of binary files
-constexpr uint64_t max_triangles = 60'000'000;
+constexpr uint64_t max_stl_triangles = 60'000'000;
+constexpr double stl_corners_progress = 0.6;  // the file's corners, of the whole
 
 // The corners of all triangles, one after the other, of either kind of file.
 class Corners {
  public:
   // InputError: what read_corners says.
-  Corners(const std::string& path, std::string_view text, size_t piece_bytes);
+  Corners(const std::string& path, std::string_view text, const PieceReading& how);
   size_t size() const { return is_binary_ ? 3 * count_ : corners_.size(); }
   Vec3d at(size_t i) const {
     if (!is_binary_) return corners_[i];
@@ -52,7 +53,7 @@ std::vector<Vec3d> read_text(const std::string& path, std::string_view text, boo
       const double x = lines.precise_number(), y = lines.precise_number();
       corners.emplace_back(x, y, lines.precise_number());
       if (++in_facet > 3) lines.fail("a facet has three vertices");
-      if (corners.size() > 3 * max_triangles) lines.fail("too many triangles");
+      if (corners.size() > 3 * max_stl_triangles) lines.fail("too many triangles");
     } else if (word == "endfacet") {
       if (in_facet != 3) lines.fail("a facet has three vertices");
       in_facet = 0;
@@ -68,21 +69,23 @@ std::vector<Vec3d> read_text(const std::string& path, std::string_view text, boo
 // Pieces that are read side by side. None where one of them does not hold whole facets, or
 // anything is wrong: what is wrong first, and where, is found out by reading from the beginning.
 std::optional<std::vector<Vec3d>> read_pieces(const std::string& path, std::string_view text,
-                                              size_t piece_bytes) {
-  const std::vector<std::string_view> pieces = cut_at_lines(text, piece_bytes, "facet");
+                                              const PieceReading& how) {
+  const std::vector<std::string_view> pieces = cut_at_lines(text, how.piece_bytes, "facet");
   std::vector<std::vector<Vec3d>> read(pieces.size());
   std::atomic<bool> is_sound{true};
+  ReadProgress progress(how.progress, file_progress, stl_corners_progress, pieces.size());
   parallel_for(pieces.size(), 0, [&](size_t i) {
     if (!is_sound) return;
     try {
       read[i] = read_text(path, pieces[i], i == 0);
+      progress.add(1);
     } catch (const InputError&) {
       is_sound = false;
     }
   });
   std::vector<size_t> firsts{0};
   for (const auto& corners : read) firsts.push_back(firsts.back() + corners.size());
-  if (!is_sound || firsts.back() > 3 * max_triangles) return std::nullopt;
+  if (!is_sound || firsts.back() > 3 * max_stl_triangles) return std::nullopt;
   std::vector<Vec3d> all(firsts.back());
   parallel_for(read.size(), 0, [&](size_t i) {
     std::copy(read[i].begin(), read[i].end(), all.begin() + std::ptrdiff_t(firsts[i]));
@@ -98,13 +101,14 @@ uint64_t count_of(std::string_view text) {
 }
 
 // Binary files may begin with "solid" too: their length tells them.
-Corners::Corners(const std::string& path, std::string_view text, size_t piece_bytes) : text_(text) {
+Corners::Corners(const std::string& path, std::string_view text, const PieceReading& how)
+    : text_(text) {
   const uint64_t count = count_of(text);
   const bool fits = text.size() >= header_size && count <= (text.size() - header_size) / facet_size;
   const bool is_exact = fits && text.size() == header_size + count * facet_size;
   if (!is_exact && text.find("solid") == text.find_first_not_of(" \t\r\n")) {
     std::optional<std::vector<Vec3d>> pieces;
-    if (piece_bytes > 0) pieces = read_pieces(path, text, piece_bytes);
+    if (how.piece_bytes > 0) pieces = read_pieces(path, text, how);
     corners_ = pieces ? std::move(*pieces) : read_text(path, text);
     return;
   }
@@ -112,12 +116,13 @@ Corners::Corners(const std::string& path, std::string_view text, size_t piece_by
     throw InputError(
         path, 0, 0,
         "is no STL file, or is too short for its " + std::to_string(count) + " triangles");
-  if (count > max_triangles) throw InputError(path, 0, 0, "has too many triangles");
+  if (count > max_stl_triangles) throw InputError(path, 0, 0, "has too many triangles");
   is_binary_ = true;
   count_ = size_t(count);
 }
 
-Mesh mesh_of(const Corners& corners, const Vec3d& origin, PlacedBounds& bounds) {
+Mesh mesh_of(const Corners& corners, const Vec3d& origin, const TellProgress& tell,
+             PlacedBounds& bounds) {
   std::vector<Vec3> placed(corners.size());
   parallel_pieces(placed.size(), size_t(1) << 16, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) placed[i] = Vec3(corners.at(i) - origin);
@@ -126,16 +131,17 @@ Mesh mesh_of(const Corners& corners, const Vec3d& origin, PlacedBounds& bounds) 
     const auto at = [&](size_t k) { return corners.at(3 * t + k) - origin; };
     return std::array<Vec3d, 3>{at(0), at(1), at(2)};
   });
-  return weld(placed);
+  return weld(placed, tell, stl_corners_progress);
 }
 
 }  // namespace
 
-Scene import_stl(const std::string& path, size_t piece_bytes) {
+Scene import_stl(const std::string& path, const PieceReading& how) {
   return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
     scene.file = path;
-    const FileBytes bytes(path);
-    show_alone(mesh_of(Corners(path, bytes.view(), piece_bytes), scene.origin, bounds), scene);
+    const FileBytes bytes(path, default_max_file_bytes, how.progress);
+    const Corners corners(path, bytes.view(), how);
+    show_alone(mesh_of(corners, scene.origin, how.progress, bounds), scene);
   });
 }
 

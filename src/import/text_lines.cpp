@@ -36,9 +36,16 @@ void append_utf8(std::string& out, uint32_t c) {
   }
 }
 
+}  // namespace
+
 // By the number of bytes that each character has; overlong forms are let through.
 bool is_utf8(std::string_view text) {
+  constexpr uint64_t high_bits = 0x8080808080808080u;
   for (size_t i = 0; i < text.size(); ++i) {
+    for (uint64_t eight = 0; text.size() - i > 8; i += 8) {
+      std::memcpy(&eight, text.data() + i, 8);
+      if ((eight & high_bits) != 0) break;
+    }
     const auto c = static_cast<unsigned char>(text[i]);
     if (c < 0x80) continue;
     const size_t more = c >= 0xf0 && c < 0xf8 ? 3 : c >= 0xe0 ? 2 : 1;
@@ -50,12 +57,10 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-}  // namespace
-
-std::string as_utf8(std::string text) {
+std::string as_utf8(std::string_view text) {
   const bool is_little = text.starts_with("\xff\xfe"), is_big = text.starts_with("\xfe\xff");
   if (!is_little && !is_big) {
-    if (is_utf8(text)) return text;
+    if (is_utf8(text)) return std::string(text);
     std::string out;
     for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
     return out;
@@ -101,8 +106,9 @@ std::vector<std::string_view> cut_at_lines(std::string_view text, size_t piece_b
   return pieces;
 }
 
-TextLines::TextLines(const std::string& file, std::string_view text, bool is_whole)
-    : file_(file), text_(text) {
+TextLines::TextLines(const std::string& file, std::string_view text, bool is_whole,
+                     int lines_before)
+    : file_(file), text_(text), lines_before_(lines_before), next_line_number_(lines_before + 1) {
   if (is_whole && text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark
 }
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -10,9 +11,11 @@
 #include <random>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "import/obj.h"
 #include "import/ply.h"
 #include "import/stl.h"
 #include "import/weld.h"
@@ -41,22 +44,62 @@ std::string ply_outcome(const std::string& path, size_t piece_bytes, int threads
   const ThreadLimit limit(threads);
   WarningLog log;
   try {
-    const AnchoredMesh read = read_ply(path, log, {.piece_bytes = piece_bytes});
+    const AnchoredMesh read = read_ply(path, log, {.pieces = {piece_bytes, {}}});
     return dump(read.mesh, log) + fmt::format(" {}", read.anchor.x);
   } catch (const InputError& e) {
     return e.what();
   }
 }
 
-std::string stl_outcome(const std::string& path, size_t piece_bytes, int threads) {
+using Import = Scene (*)(const std::string& path, const PieceReading& how);
+
+std::string scene_outcome(Import import, const std::string& path, size_t piece_bytes, int threads) {
   const ThreadLimit limit(threads);
   try {
-    const Scene scene = import_stl(path, piece_bytes);
-    return dump(scene.meshes.empty() ? Mesh() : scene.meshes[0], scene.warnings);
+    const Scene scene = import(path, {piece_bytes, {}});
+    std::string out = dump({}, scene.warnings);
+    for (const Mesh& m : scene.meshes)
+      out += "\n" + m.name + " " + scene.materials[m.material].name + dump(m, {});
+    return out + fmt::format("\n{} materials, {} lights, {} textures", scene.materials.size(),
+                             scene.lights.size(), scene.textures.size());
   } catch (const InputError& e) {
     return e.what();
   }
 }
+
+// Of reading in one piece, which pieces of any size by any number of threads have to equal.
+std::string piecewise_outcome(Import import, const std::string& path) {
+  std::string expected = scene_outcome(import, path, 0, 1);
+  for (const size_t bytes : {size_t(1), size_t(90), size_t(1) << 20})
+    for (const int threads : {1, 3})
+      REQUIRE(scene_outcome(import, path, bytes, threads) == expected);
+  return expected;
+}
+
+// Objects, groups and materials, polygons, both ways to count, colours of vertices in between,
+// indices of what is not there yet, joined lines, and what is left out.
+std::string obj_text(int n) {
+  std::string out = "# strips\nmtllib looks.mtl\ncurv2 1 2\ncurv2 3 4\n";
+  for (int i = 0; i < n; ++i) {
+    const int first = 4 * i + 1;
+    if (i % 4 == 0) out += fmt::format("o object {}\r\ng left\n", i);
+    if (i % 3 == 0) out += i % 2 == 0 ? "usemtl shining\n" : "usemtl missing\n";
+    for (int k = 0; k < 4; ++k)
+      out += fmt::format("v {} {} {:.3f}{}\n", i + k % 2, k / 2, .1 * i,
+                         i > n / 2 && k > 1 ? " .5 .25 1" : "");
+    if (i == 3) out += "f 1/1 2/1 3/1\nl 1 2\n";
+    if (i > n / 3) out += fmt::format("vt {} 1\nvn 0 {} 1\n", i, i % 2);
+    if (i % 5 == 1)
+      out += fmt::format("f {} {} \\\n {} {}\n", first, first + 1, first + 3, first + 2);
+    else if (i > n / 3)
+      out += fmt::format("f -4/-1/-1 {}/-1 -1//-1\nf {} {} {}\n", first + 1, first, first + 2, -1);
+    else
+      out += fmt::format("f {} {} {}\nf -4 -3\n", first, first + 1, first + 3);
+  }
+  return out + "s off\nf 1 2 3";
+}
+
+constexpr const char* looks_text = "newmtl shining\nKd .5 .5 .5\nKe 1 2 3\n";
 
 // A strip of quads and triangles, with a face of two vertices and properties that nobody reads.
 std::string ply_text(int n, bool has_faces_first) {
@@ -146,15 +189,89 @@ TEST_CASE("STL text in pieces: what is read, warned and refused is that of one p
   const TempFolder folder;
   std::mt19937 random(4);
   const std::string whole = stl_text(25);
+  size_t errors = 0;
   for (int round = 0; round < 300; ++round) {
     const std::string text = round == 0 ? whole : test::mutated(whole, random);
-    const std::string path = folder.write("m.stl", text);
-    const std::string expected = stl_outcome(path, 0, 1);
-    for (const size_t bytes : {size_t(1), size_t(90), size_t(1) << 20})
-      for (const int threads : {1, 3}) {
-        CAPTURE(text);
-        REQUIRE(stl_outcome(path, bytes, threads) == expected);
-      }
+    CAPTURE(text);
+    const std::string outcome = piecewise_outcome(import_stl, folder.write("m.stl", text));
+    errors += outcome.find("m.stl:") != std::string::npos ? 1 : 0;
+  }
+  CHECK(errors > 30);
+  CHECK(errors < 270);
+}
+
+TEST_CASE("OBJ in pieces: what is read, warned and refused is that of one piece") {
+  const TempFolder folder;
+  folder.write("looks.mtl", looks_text);
+  std::mt19937 random(6);
+  const std::string whole = obj_text(24);
+  size_t errors = 0;
+  for (int round = 0; round < 400; ++round) {
+    const std::string text = round == 0 ? whole : test::mutated(whole, random);
+    CAPTURE(text);
+    const std::string outcome = piecewise_outcome(import_obj, folder.write("m.obj", text));
+    errors += outcome.find("m.obj:") != std::string::npos ? 1 : 0;
+    if (round > 0) continue;
+    CHECK(outcome.find("'curv2' is not supported: left out 2") != std::string::npos);
+    CHECK(outcome.find("fewer than three vertices") != std::string::npos);
+    CHECK(outcome.find("but there are none 3") != std::string::npos);
+    CHECK(outcome.find("object 4") != std::string::npos);
+  }
+  CHECK(errors > 40);
+  CHECK(errors < 360);
+}
+
+// Errors are told of the first line that is wrong, however it is, wherever pieces begin.
+TEST_CASE("OBJ in pieces: the first error is told, with its line") {
+  const TempFolder folder;
+  folder.write("looks.mtl", looks_text);
+  folder.write("broken.mtl", "newmtl a\nKd x\n");
+  const std::string whole = obj_text(24);
+  const auto refused = [&](const std::string& more) {
+    const std::string text = whole + "\n" + more;
+    return piecewise_outcome(import_obj, folder.write("m.obj", text));
+  };
+  const auto lines = std::count(whole.begin(), whole.end(), '\n') + 1;
+  const auto at = [&](int line, int column) {
+    return fmt::format("m.obj:{}:{}: ", lines + line, column);
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    CAPTURE(text);
+    CHECK(text.find(part) != std::string::npos);
+  };
+  has(refused("v 1 2 3\nv 1 x 3\nf 1 2 999\n"), at(2, 5) + "'x' is not a number");
+  has(refused("\nf 1 2 999\nv 1 x 3\n"),
+      at(2, 7) + "index 999 of a vertex is out of range (96 so far)");
+  has(refused("v 1 2 3\nf 1 2 98\nv 1 2 3\n"),
+      at(2, 7) + "index 98 of a vertex is out of range (97");
+  has(refused("f -96 -1 -97\n"), at(1, 10) + "index -97 of a vertex");
+  has(refused("f 1/-2147483648 2 3\n"), at(1, 3) + "index -2147483648 of a texture coordinate");
+  has(refused("mtllib broken.mtl\nv 1 x 3\n"), "broken.mtl:2:");
+  has(refused("f 1 2\\\n 0\nmtllib broken.mtl\n"), at(1, 9) + "index 0 of a vertex");
+}
+
+TEST_CASE("reading tells how far it is: forwards, up to the end, one thread at a time") {
+  const TempFolder folder;
+  folder.write("looks.mtl", looks_text);
+  std::vector<double> told;
+  const PieceReading how{64, [&](double fraction) { told.push_back(fraction); }};
+  const auto check = [&] {
+    REQUIRE(told.size() > 10);
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    CHECK(told.front() >= 0);
+    CHECK(told.back() == doctest::Approx(1).epsilon(.1));
+    CHECK(told.back() <= 1);
+    told.clear();
+  };
+  for (const int threads : {1, 3}) {
+    const ThreadLimit limit(threads);
+    import_obj(folder.write("m.obj", obj_text(100)), how);
+    check();
+    import_stl(folder.write("m.stl", stl_text(100)), how);
+    check();
+    WarningLog log;
+    read_ply(folder.write("m.ply", ply_text(100, false)), log, {1000, how});
+    check();
   }
 }
 
