@@ -10,13 +10,13 @@
 namespace troffer {
 
 struct ThreadLimit::Limit {
+  // Made in its place: a control that is copied ends with the one it was copied from.
+  explicit Limit(size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(int threads) {
-  if (threads > 0)
-    limit_ = std::make_unique<Limit>(
-        Limit{tbb::global_control(tbb::global_control::max_allowed_parallelism, size_t(threads))});
+  if (threads > 0) limit_ = std::make_unique<Limit>(size_t(threads));
 }
 
 ThreadLimit::~ThreadLimit() = default;

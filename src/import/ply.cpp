@@ -112,7 +112,9 @@ bool PlyReader::read_in_pieces(const std::vector<PlyPiece>& pieces,
 }
 
 void PlyReader::go_past(const std::vector<PlyPiece>& pieces) {
-  for (const PlyPiece& p : pieces) body_.go_to(p.end, p.lines);
+  int lines = 0;
+  for (const PlyPiece& p : pieces) lines += p.lines;
+  if (!pieces.empty()) body_.go_behind_scalar(pieces.back().end, lines);
 }
 
 void PlyReader::skip_element(const PlyElement& element) {

@@ -33,6 +33,10 @@ double scalar_from(const char* bytes, bool is_big) {
   }
 }
 
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
 }  // namespace
 
 void PlyBody::fail(const std::string& what) const {
@@ -43,13 +47,21 @@ void PlyBody::fail(const std::string& what) const {
 void PlyBody::skip_blanks() {
   for (; at_ < text_.size(); ++at_) {
     const char c = text_[at_];
-    if (c == '\n') {
-      ++line_;
-      line_start_ = at_ + 1;
-    } else if (c != ' ' && c != '\t' && c != '\r') {
-      break;
-    }
+    if (!is_blank(c)) break;
+    if (c != '\n') continue;
+    ++line_;
+    line_start_ = at_ + 1;
   }
+}
+
+void PlyBody::go_behind_scalar(size_t end, int lines) {
+  while (is_ascii() && end > at_ && is_blank(text_[end - 1])) {
+    --end;
+    if (text_[end] == '\n') --lines;
+  }
+  if (lines > 0) line_start_ = text_.rfind('\n', end - 1) + 1;
+  at_ = end;
+  line_ += lines;
 }
 
 bool PlyBody::is_done() {
@@ -66,8 +78,7 @@ double PlyBody::next_ascii(PlyType type) {
   if (*begin == '+' && begin + 1 < end && begin[1] != '-') ++begin;
   double value = 0;
   const auto result = std::from_chars(begin, end, value);
-  const bool is_whole = result.ptr == end || *result.ptr == ' ' || *result.ptr == '\t' ||
-                        *result.ptr == '\r' || *result.ptr == '\n';
+  const bool is_whole = result.ptr == end || is_blank(*result.ptr);
   if (result.ec == std::errc::invalid_argument || !is_whole) fail("expected a number");
   if (result.ec == std::errc::result_out_of_range)
     value = std::strtod(std::string(begin, result.ptr).c_str(), nullptr);

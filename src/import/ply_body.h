@@ -27,6 +27,8 @@ class PlyBody {
     at_ = line_start_ = at;
     line_ += lines;
   }
+  // On to behind the last scalar before the byte `end`, past `lines` ends of lines before that.
+  void go_behind_scalar(size_t end, int lines);
   // The length of a list. InputError: negative, or the text is too short for as many.
   size_t list_length(const PlyProperty& property);
   void skip(const PlyProperty& property);
