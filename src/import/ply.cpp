@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -67,6 +68,7 @@ class PlyReader {
   void check_count(const PlyElement& element) const;
   bool read_in_pieces(const std::vector<PlyPiece>& pieces,
                       const std::function<void(size_t piece, PlyBody& body)>& read) const;
+  std::optional<std::vector<PlyPiece>> cut(const PlyElement& element);
   void go_past(const std::vector<PlyPiece>& pieces);
   void read_vertices(const PlyElement& element);
   void read_faces(const PlyElement& element);
@@ -109,6 +111,12 @@ bool PlyReader::read_in_pieces(const std::vector<PlyPiece>& pieces,
     }
   });
   return is_sound;
+}
+
+// Of text from its first scalar on, which stands on a line of its own.
+std::optional<std::vector<PlyPiece>> PlyReader::cut(const PlyElement& element) {
+  if (element.count == 0 || body_.is_done()) return std::nullopt;
+  return cutter_.cut(element, body_.at());
 }
 
 void PlyReader::go_past(const std::vector<PlyPiece>& pieces) {
@@ -155,7 +163,7 @@ void PlyReader::read_vertices(const PlyElement& element) {
       if (has_uvs) mesh_.uvs[i] = Vec2(Vec2d{row[slot_u], row[slot_v]});
     }
   };
-  const auto pieces = cutter_.cut(element, body_.at());
+  const auto pieces = cut(element);
   if (pieces && read_in_pieces(*pieces, [&](size_t i, PlyBody& body) {
         read_rows(body, size_t((*pieces)[i].first_row), size_t((*pieces)[i].rows));
       }))
@@ -201,7 +209,7 @@ void PlyReader::read_face_rows(PlyBody& body, const PlyElement& element, const P
 }
 
 bool PlyReader::read_faces_in_pieces(const PlyElement& element, const PlyProperty& indices) {
-  const auto pieces = cutter_.cut(element, body_.at());
+  const auto pieces = cut(element);
   if (!pieces) return false;
   std::vector<FaceRows> read(pieces->size());
   if (!read_in_pieces(*pieces, [&](size_t i, PlyBody& body) {

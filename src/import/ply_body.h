@@ -20,7 +20,7 @@ class PlyBody {
   size_t at() const { return at_; }
   size_t remaining() const { return text_.size() - at_; }
   bool is_ascii() const { return format_ == PlyFormat::ascii; }
-  // Whether there is nothing but blanks up to the end.
+  // Goes on to the next scalar of text; whether there is none.
   bool is_done();
   // On to the byte `at`, past `lines` ends of lines.
   void go_to(size_t at, int lines) {
