@@ -1,6 +1,7 @@
 // Feeds a reader what libFuzzer makes, as a file with nothing beside it: it may refuse by
-// InputError and nothing else.
+// InputError and nothing else. What is read in pieces has to come out as if it were read in one.
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,9 @@
 #include "import/import.h"
 #include "import/luminaire.h"
 #include "import/measured_bsdf.h"
+#include "import/obj.h"
+#include "import/ply.h"
+#include "import/stl.h"
 #include "input_folder.h"
 
 namespace {
@@ -16,6 +20,40 @@ namespace {
 using namespace troffer;
 
 constexpr std::string_view ending = FUZZ_ENDING;
+
+template <class T>
+void append_bytes(std::string& out, const std::vector<T>& values) {
+  out.append(std::to_string(values.size()) + ":");
+  if (!values.empty())
+    out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+void append_mesh(std::string& out, const Mesh& mesh) {
+  append_bytes(out, mesh.positions);
+  append_bytes(out, mesh.normals);
+  append_bytes(out, mesh.uvs);
+  append_bytes(out, mesh.triangles);
+}
+
+// All that comes of a file: what it is refused with, or its meshes and warnings.
+std::string outcome(const std::string& path, size_t piece_bytes) {
+  const PieceReading how{piece_bytes, {}};
+  std::string out;
+  WarningLog warnings;
+  try {
+    if (ending == "ply") {
+      append_mesh(out, read_ply(path, warnings, {60'000'000, how}).mesh);
+    } else {
+      const Scene scene = ending == "obj" ? import_obj(path, how) : import_stl(path, how);
+      for (const Mesh& mesh : scene.meshes) append_mesh(out, mesh);
+      warnings = scene.warnings;
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  for (const Warning& w : warnings.entries()) out += w.text + std::to_string(w.count);
+  return out;
+}
 
 void read(const InputFolder& folder, const std::string& path) {
   if constexpr (ending == "ies" || ending == "ldt") {
@@ -36,6 +74,9 @@ void read(const InputFolder& folder, const std::string& path) {
   } else if constexpr (ending == "png" || ending == "jpg" || ending == "hdr" || ending == "pfm" ||
                        ending == "exr" || ending == "webp" || ending == "tga") {
     read_image(path, size_t(1) << 22);
+  } else if constexpr (ending == "obj" || ending == "ply" || ending == "stl") {
+    import_scene(path);
+    if (outcome(path, 0) != outcome(path, 61)) std::abort();
   } else {
     ImportOptions options;
     if (ending == "gltf" || ending == "glb") options.time = 0.5;

@@ -15,6 +15,7 @@
 #include "app/solution_file.h"
 #include "bake/bake.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "export/export_scene.h"
 #include "export/output_folder.h"
 #include "image/encode.h"
@@ -102,6 +103,7 @@ void tell(const BakeResult& result, const std::vector<Warning>& lost) {
 int run_bake(const BakeCommand& c, BakeOptions options) {
   std::vector<OutputReservation> reserved = reserve_outputs({c.output}, "");
   reserve_cells(c.solution, options.light.method, options.light.indirect, reserved);
+  const ThreadLimit limit(c.threads);
   const PreparedScene scene(as_meshes(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet)));
   const StopFlag& stop = install_stop_handlers();
   const std::unique_ptr<Preparation> preparation =

@@ -8,6 +8,7 @@
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "base/parallel.h"
 #include "image/atomic_file.h"
 #include "render/measurements_csv.h"
 
@@ -28,6 +29,7 @@ int run_measure(const MeasureCommand& c) {
   std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
   reserve_cells(c.solution, options.method, options.indirect, reserved);
   const std::vector<MeasuringPoint> points = read_points(c.points);
+  const ThreadLimit limit(c.threads);
   const PreparedScene scene(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet));
 
   const StopFlag& stop = install_stop_handlers();

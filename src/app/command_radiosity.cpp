@@ -12,6 +12,7 @@
 #include "app/signals.h"
 #include "app/solution_file.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/atomic_file.h"
 #include "import/file.h"
 #include "render/radiosity.h"
@@ -178,6 +179,7 @@ int run_radiosity(const RadiosityCommand& c) {
   check_command(c);
   const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   RadiositySeconds seconds;
+  const ThreadLimit limit(c.threads);
   Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();

@@ -15,6 +15,7 @@
 #include "app/solution_file.h"
 #include "base/crew.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/atomic_file.h"
 #include "render/camera.h"
 #include "render/framing.h"
@@ -255,6 +256,7 @@ int run_render(RenderCommand c) {
 
   Seconds seconds;
   c.daylight.up = c.up;
+  const ThreadLimit limit(c.options.threads);
   Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
   const std::optional<Camera> chosen = choose_camera(imported, c);
   seconds.import = seconds_since(start);

@@ -11,6 +11,7 @@
 #include "app/progress.h"
 #include "app/signals.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/atomic_file.h"
 #include "image/read_image.h"
 #include "import/file.h"
@@ -184,6 +185,7 @@ int run_report(const ReportCommand& c) {
   Report report;
   check_method(parse_method(c.method), Indirect::automatic, "");
   assessment_options(c, {0, 0, 1});  // mistakes are told before any work
+  const ThreadLimit limit(c.threads);
   const Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
   const Vec3 up =
       c.daylight.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.daylight.up, "--up"));

@@ -9,6 +9,7 @@
 #include "app/daylight_flags.h"
 #include "app/signals.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "daylight/sun_position.h"
 #include "scene/orientation.h"
 #include "view/view.h"
@@ -90,6 +91,7 @@ int run_view(const ViewCommand& c) {
   settings.options.seed = c.seed;
   settings.file = c.scene.file;
   read_size(c.size, settings);
+  const ThreadLimit limit(c.threads);
   Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
   settings.camera = camera_named(scene, c.camera);
   settings.up = up_of(scene, settings.camera, c.daylight.up);

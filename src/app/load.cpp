@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include "app/commands.h"
 #include "app/printable.h"
+#include "app/progress.h"
 #include "base/error.h"
 #include "import/import.h"
 #include "scene/joined_lights.h"
@@ -14,7 +16,8 @@
 namespace troffer {
 
 void add_scene_choice(CLI::App& app, SceneChoice& choice) {
-  app.add_option("scene", choice.file, "Scene: .gltf .glb .pbrt .obj .stl .xml .rad")->required();
+  app.add_option("scene", choice.file, "Scene: .gltf .glb .pbrt .obj .ply .stl .xml .rad")
+      ->required();
   app.add_option("--variant", choice.options.variant,
                  "glTF: materials of the variant of this name");
   app.add_option("--time", choice.options.time, "glTF: seconds into the animation [at rest]")
@@ -22,9 +25,21 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
   app.add_option("--animation", choice.options.animation, "glTF: animation by name [the first]");
 }
 
+namespace {
+
+Scene import_shown(const SceneChoice& choice, bool is_quiet) {
+  const std::string name = std::filesystem::path(choice.file).filename().string();
+  ProgressBar bar("reading " + printable(name), is_quiet);
+  ImportOptions options = choice.options;
+  options.progress = [&](double fraction) { bar.update(fraction); };
+  return import_scene(choice.file, options);
+}
+
+}  // namespace
+
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
                  const DaylightOptions* daylight, bool is_quiet) {
-  Scene scene = import_scene(choice.file, choice.options);
+  Scene scene = import_shown(choice, is_quiet);
   if (daylight != nullptr) add_daylight(scene, *daylight);
   if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);

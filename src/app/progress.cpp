@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/process.h"
+
 namespace troffer {
 
 namespace {
@@ -39,8 +41,9 @@ void ProgressBar::update(double fraction) {
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const std::string left =
       fraction > 0.005 ? duration_text(elapsed * (1 - fraction) / fraction) + " left" : "";
-  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %  {}", label_, std::string(size_t(filled), '#'),
-             std::string(size_t(cells - filled), '.'), 100 * fraction, left);
+  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %  {:.0f} MB  {}", label_,
+             std::string(size_t(filled), '#'), std::string(size_t(cells - filled), '.'),
+             100 * fraction, peak_memory_mb(), left);
   std::fflush(stderr);
 }
 

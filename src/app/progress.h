@@ -1,4 +1,4 @@
-// A progress bar with the time left, on a terminal; nothing elsewhere.
+// A progress bar with the most memory so far and the time left, on a terminal; nothing elsewhere.
 #pragma once
 
 #include <chrono>

@@ -5,10 +5,27 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace troffer {
 
+struct ThreadLimit::Limit {
+  // Made in its place: a control that is copied ends with the one it was copied from.
+  explicit Limit(size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads) {
+  if (threads > 0) limit_ = std::make_unique<Limit>(size_t(threads));
+}
+
+ThreadLimit::~ThreadLimit() = default;
+
 int thread_count(int threads) {
-  return threads > 0 ? threads : tbb::info::default_concurrency();
+  if (threads > 0) return threads;
+  const size_t allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(tbb::info::default_concurrency(), int(std::min(allowed, size_t(1) << 20)));
 }
 
 void parallel_for_slots(size_t n, int threads, const std::function<void(size_t, size_t)>& body) {
@@ -34,6 +51,15 @@ void parallel_for_slots(size_t n, int threads, const std::function<void(size_t, 
 void run_on_one_thread(const std::function<void()>& body) {
   tbb::task_arena arena(1);
   arena.execute(body);
+}
+
+void parallel_pieces(size_t n, size_t piece, const std::function<void(size_t, size_t)>& body) {
+  if (n <= piece) {
+    if (n > 0) body(0, n);
+    return;
+  }
+  parallel_for((n + piece - 1) / piece, 0,
+               [&](size_t i) { body(i * piece, std::min(n, (i + 1) * piece)); });
 }
 
 void parallel_for(size_t n, int threads, const std::function<void(size_t)>& body) {

@@ -1,5 +1,8 @@
 #include "import/file.h"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -8,10 +11,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
+#include <new>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace troffer {
 
@@ -46,13 +52,18 @@ void FilesRead::note(const std::string& path) {
 
 namespace {
 
-template <class Bytes>
-Bytes read_whole(const std::string& path, uint64_t max_bytes) {
+uint64_t allowed_size(const std::string& path, uint64_t max_bytes) {
   const uint64_t size = size_of_file(path);
   if (size > max_bytes)
     throw InputError(path, 0, 0,
                      "has " + std::to_string(size) + " bytes; at most " +
                          std::to_string(max_bytes) + " are read");
+  return size;
+}
+
+template <class Bytes>
+Bytes read_whole(const std::string& path, uint64_t max_bytes) {
+  const uint64_t size = allowed_size(path, max_bytes);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path, 0, 0, std::string("cannot be opened: ") + std::strerror(errno));
@@ -63,6 +74,30 @@ Bytes read_whole(const std::string& path, uint64_t max_bytes) {
   if (in.bad()) throw InputError(path, 0, 0, "cannot be read");
   bytes.resize(size_t(in.gcount()));
   return bytes;
+}
+
+// Memory in pages of 2 MiB where the machine has them: 4 KiB each would take longer than to read.
+char* large_pages(size_t size) {
+  constexpr size_t page = size_t(2) << 20;
+  if (size > std::numeric_limits<size_t>::max() - page) throw std::bad_alloc();
+  const size_t whole = (size / page + 1) * page;
+  void* const bytes = std::aligned_alloc(page, whole);
+  if (bytes == nullptr) throw std::bad_alloc();
+  madvise(bytes, whole, MADV_HUGEPAGE);  // whether it is heard does not matter
+  return static_cast<char*>(bytes);
+}
+
+// Bytes [begin, end) of an open file; returns how many there are, or -1.
+int64_t read_part(int file, char* bytes, size_t begin, size_t end) {
+  size_t at = begin;
+  while (at < end) {
+    const ssize_t n = pread(file, bytes + at, end - at, off_t(at));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return -1;
+    if (n == 0) break;
+    at += size_t(n);
+  }
+  return int64_t(at - begin);
 }
 
 // Scenes are text and numbers, which shrink to a tenth; a bomb by a thousand.
@@ -127,6 +162,32 @@ std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes) {
 
 std::string read_text_file(const std::string& path, uint64_t max_bytes) {
   return unpacked(path, read_whole<std::string>(path, max_bytes), max_bytes);
+}
+
+FileBytes::FileBytes(const std::string& path, uint64_t max_bytes, const TellProgress& tell) {
+  if (lower_case_ending(path) == "gz") {
+    unpacked_ = read_text_file(path, max_bytes);
+    return;
+  }
+  const auto size = size_t(allowed_size(path, max_bytes));
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) throw InputError(path, 0, 0, std::string("cannot be opened: ") + strerror(errno));
+  FilesRead::note(path);
+  bytes_.reset(large_pages(size));
+  constexpr size_t piece = size_t(4) << 20;
+  std::vector<int64_t> had(size / piece + 1, 0);
+  ReadProgress progress(tell, 0, file_progress, size);
+  parallel_pieces(size, piece, [&](size_t begin, size_t end) {
+    had[begin / piece] = read_part(file, bytes_.get(), begin, end);
+    progress.add(end - begin);
+  });
+  close(file);
+  // A file that shrank since is cut short here and found out by its parser.
+  for (size_t i = 0; i < had.size(); ++i) {
+    if (had[i] < 0) throw InputError(path, 0, 0, "cannot be read");
+    size_ += size_t(had[i]);
+    if (had[i] < int64_t(piece)) break;
+  }
 }
 
 std::string without_gz(const std::string& path) {

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "import/read_progress.h"
 
 namespace troffer {
 
@@ -21,6 +25,26 @@ uint64_t size_of_file(const std::string& path);
 std::vector<uint8_t> read_file(const std::string& path,
                                uint64_t max_bytes = default_max_file_bytes);
 std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
+
+// The contents of a file, as they are: what read_text_file reads, on all cores and into pages that
+// are not cleared before. For files of many million numbers.
+class FileBytes {
+ public:
+  // InputError: as read_file. Tells the first file_progress of the whole.
+  explicit FileBytes(const std::string& path, uint64_t max_bytes = default_max_file_bytes,
+                     const TellProgress& progress = {});
+  std::string_view view() const {
+    return bytes_ ? std::string_view(bytes_.get(), size_) : std::string_view(unpacked_);
+  }
+
+ private:
+  struct Free {
+    void operator()(char* bytes) const { std::free(bytes); }
+  };
+  std::unique_ptr<char[], Free> bytes_;
+  size_t size_ = 0;
+  std::string unpacked_;  // of compressed files
+};
 
 // Names every file that read_file and read_text_file open while it lives, on whatever thread: what
 // a scene was made of. One at a time.

@@ -33,11 +33,11 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path);
-  if (ending == "stl") return import_stl(path);
-  if (ending == "ply") return import_ply(path);
+  if (ending == "stl") return import_stl(path, {.progress = options.progress});
+  if (ending == "ply") return import_ply(path, options.progress);
   return is_gltf            ? import_gltf(path, options)
          : ending == "pbrt" ? import_pbrt(path)
-                            : import_obj(path);
+                            : import_obj(path, {.progress = options.progress});
 }
 
 }  // namespace

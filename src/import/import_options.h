@@ -4,12 +4,15 @@
 #include <optional>
 #include <string>
 
+#include "import/read_progress.h"
+
 namespace troffer {
 
 struct ImportOptions {
   std::optional<std::string> variant;    // of the materials: KHR_materials_variants
   std::optional<double> time;            // seconds into an animation; none: at rest
   std::optional<std::string> animation;  // by name; none: the first
+  TellProgress progress;                 // of the file; for .obj .ply .stl
 
   bool is_any() const { return variant || time || animation; }
 };

@@ -1,20 +1,51 @@
 #include "import/mesh_clean.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
 #include "import/triangle_check.h"
 
 namespace troffer {
 
 namespace {
 
+constexpr size_t cleaned_at_once = size_t(1) << 16;  // of what is worked on side by side
+
+bool is_good(TriangleCheck& check, const Mesh& mesh, const Triangle& t) {
+  return check.is_good(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
+}
+
 void drop_triangles(Mesh& mesh, WarningLog& warnings) {
-  TriangleCheck check;
-  std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return !check.is_good(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
+  std::vector<TriangleCheck> checks(mesh.triangles.size() / cleaned_at_once + 1);
+  parallel_pieces(mesh.triangles.size(), cleaned_at_once, [&](size_t first, size_t end) {
+    TriangleCheck own;
+    for (size_t i = first; i < end; ++i) is_good(own, mesh, mesh.triangles[i]);
+    checks[first / cleaned_at_once] = own;
   });
-  check.report(warnings);
+  TriangleCheck all;
+  for (const TriangleCheck& check : checks) all.add(check);
+  all.report(warnings);
+  TriangleCheck again;
+  if (all.bad() > 0)
+    std::erase_if(mesh.triangles, [&](const Triangle& t) { return !is_good(again, mesh, t); });
+}
+
+// Whether is_sound(i) for all i in [0, n).
+template <class IsSound>
+bool are_all(size_t n, const IsSound& is_sound) {
+  std::atomic<bool> result{true};
+  parallel_pieces(n, cleaned_at_once, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end && result; ++i)
+      if (!is_sound(i)) result = false;
+  });
+  return result;
 }
 
 void drop_vertices(Mesh& mesh) {
+  if (are_all(mesh.positions.size(), [&](size_t i) { return is_finite(mesh.positions[i]); }))
+    return;
   std::vector<uint32_t> renumbered(mesh.positions.size());
   size_t kept = 0;
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -35,20 +66,22 @@ void drop_vertices(Mesh& mesh) {
     for (uint32_t& v : t) v = renumbered[v];
 }
 
+// Whether there was one.
+bool make_unit(Vec3& normal) {
+  const Vec3d n(normal);
+  const double size = length(n);
+  if (!(size > 0 && std::isfinite(size))) return false;
+  normal = Vec3(n / size);
+  return true;
+}
+
 void repair_normals(Mesh& mesh) {
+  std::vector<uint8_t> is_bad(mesh.normals.size());
+  parallel_pieces(mesh.normals.size(), cleaned_at_once, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) is_bad[i] = !make_unit(mesh.normals[i]);
+  });
+  if (std::find(is_bad.begin(), is_bad.end(), 1) == is_bad.end()) return;
   std::vector<Vec3d> replacements;
-  std::vector<bool> is_bad;
-  for (size_t i = 0; i < mesh.normals.size(); ++i) {
-    const Vec3d n(mesh.normals[i]);
-    const double size = length(n);
-    if (size > 0 && std::isfinite(size)) {
-      mesh.normals[i] = Vec3(n / size);
-      continue;
-    }
-    if (is_bad.empty()) is_bad.resize(mesh.normals.size());
-    is_bad[i] = true;
-  }
-  if (is_bad.empty()) return;
   replacements.resize(mesh.normals.size());
   for (const Triangle& t : mesh.triangles)
     for (const uint32_t v : t) replacements[v] += area_vector(mesh, t);
@@ -66,8 +99,12 @@ void clean_mesh(Mesh& mesh, WarningLog& warnings) {
   drop_vertices(mesh);
   repair_normals(mesh);
   for (std::vector<Vec2>* const set : {&mesh.uvs, &mesh.uvs_2})
-    for (Vec2& uv : *set)
-      if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
+    parallel_pieces(set->size(), cleaned_at_once, [&](size_t first, size_t end) {
+      for (size_t i = first; i < end; ++i) {
+        Vec2& uv = (*set)[i];
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
+      }
+    });
 }
 
 void show_alone(Mesh mesh, Scene& scene) {

@@ -1,17 +1,18 @@
 #include "import/obj.h"
 
 #include <algorithm>
-#include <array>
-#include <memory>
+#include <optional>
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "import/emissive.h"
 #include "import/file.h"
-#include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/mtl.h"
-#include "import/polygon.h"
+#include "import/obj_lines.h"
+#include "import/obj_parts.h"
+#include "import/obj_piece.h"
 #include "import/recentre.h"
 #include "import/text_lines.h"
 #include "import/vertex_paint.h"
@@ -20,266 +21,200 @@ namespace troffer {
 
 namespace {
 
-constexpr uint32_t nothing = 0xffffffffu;
+constexpr size_t obj_pieces_per_thread = 8, obj_vertices_at_once = size_t(1) << 16;
 
-// Indices of one corner of a face, from 0; `nothing` where not given.
-struct Corner {
-  uint32_t position = nothing, uv = nothing, normal = nothing;
-};
-
-// A mesh being built, of one object, group and material.
-struct Part {
-  std::string material;
-  Mesh mesh;
-  std::vector<TextureValue> colors;  // empty, or per vertex
-  bool has_uvs = false, has_normals = false;
-  // Per vertex: the other two indices it was made of, and the next vertex at the same position.
-  struct Made {
-    uint32_t uv, normal, next;
-  };
-  std::vector<Made> made;
+// Pieces that are read side by side. Their triangles join the parts, in order, while those of the
+// next wave are read.
+struct ObjWave {
+  size_t first = 0, count = 0;
+  std::vector<ObjPiece> pieces;
+  std::vector<uint8_t> is_sound;
+  std::vector<ObjCounts> before;
 };
 
 class ObjReader {
  public:
-  ObjReader(const std::string& path, Scene& scene, PlacedBounds& bounds)
+  ObjReader(const std::string& path, const PieceReading& how, Scene& scene, PlacedBounds& bounds)
       : path_(path),
         folder_(folder_of(path)),
+        how_(how),
         scene_(scene),
-        text_(as_utf8(read_text_file(path))),
-        lines_(path_, text_),
-        loader_(scene),
-        materials_(scene) {
-    vertices_.bounds = &bounds;
-  }
+        bounds_(bounds),
+        materials_(scene) {}
   void read();
 
  private:
   std::string path_, folder_;
+  const PieceReading& how_;
   Scene& scene_;
-  std::string text_;
-  TextLines lines_;
-  TextureLoader loader_;
+  PlacedBounds& bounds_;                 // of those in triangles
+  std::vector<std::string_view> texts_;  // of the pieces
 
   struct Vertices {
-    PlacedBounds* bounds = nullptr;  // of those in triangles
-    std::vector<Vec3d> positions;    // from the scene's origin
+    std::vector<Vec3d> positions;  // from the scene's origin
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;
     std::vector<Rgb> colors;  // of the first positions; white of further ones
   } vertices_;
-  struct Names {
-    std::string object, group, material;
-  } names_;
-  // First vertex of the current part at each position, valid where the stamp is the part's.
-  struct First {
-    uint32_t stamp = 0, vertex = nothing;
-  };
-  struct Parts {
-    std::vector<std::unique_ptr<Part>> all;
-    std::unordered_map<std::string, Part*> by_key;
-    Part* current = nullptr;  // where faces go; null after a change of names
-    std::vector<First> firsts;
-    uint32_t stamp = 0;
-  } parts_;
-  struct Counts {
-    size_t triangles = 0, lights = 0, points_and_lines = 0, short_faces = 0, dangling = 0;
-  } counts_;
-  struct Face {
-    std::vector<Corner> corners;
-    std::vector<Vec3> points;
-    std::vector<Triangle> triangles;
-  } face_;
+  ObjParts parts_;
+  ObjCounts counts_;
+  size_t lights_ = 0;
+  struct LeftOut {
+    size_t points_and_lines = 0, short_faces = 0, dangling = 0;
+  } left_out_;
   struct Materials {
-    explicit Materials(Scene& scene) : painter(scene) {}
+    explicit Materials(Scene& scene) : loader(scene), painter(scene) {}
+    TextureLoader loader;
     VertexPainter painter;
     MtlLibrary library;
     std::unordered_map<std::string, MtlConverted> converted;
     std::unordered_map<std::string, uint32_t> index;
   } materials_;
 
-  void read_statement(std::string_view keyword);
-  void read_vertex();
-  void read_face();
-  void add_triangle(const Triangle& corners);
-  uint32_t read_index(size_t count, const char* what, bool is_needed);
-  bool read_corner();
-  void select_part();
-  uint32_t vertex_of(const Corner& corner);
+  void read_pieces();
+  void add_vertices(ObjWave& wave);
+  void place_faces(ObjWave& wave);
+  void add_triangles(const ObjWave& wave);
+  void add_triangles(const ObjPiece& piece);
+  [[noreturn]] void fail_in(const ObjWave& wave, size_t piece);
+  void apply(const ObjEvent& event);
   void read_libraries(std::string names);
   bool read_library(const std::string& name);
   bool read_beside(const std::string& name);
   const MtlConverted& material_named(const std::string& name);
   void finish();
-  void finish_part(Part& part);
-  void paint(Part& part, bool needs_uvs);
+  Mesh mesh_of(const ObjPart& part) const;
+  void finish_part(ObjPart& part);
+  void paint(const ObjPart& part, Mesh& mesh, bool needs_uvs);
 };
 
 void ObjReader::read() {
-  while (lines_.next_line()) {
-    const std::string_view keyword = lines_.word();
-    if (!keyword.empty()) read_statement(keyword);
+  {
+    const FileBytes file(path_, default_max_file_bytes, how_.progress);
+    std::string converted;
+    std::string_view text = file.view();
+    if (!is_utf8(text)) text = converted = as_utf8(text);
+    texts_ = cut_at_lines(text, how_.piece_bytes == 0 ? text.size() : how_.piece_bytes);
+    read_pieces();
   }
   finish();
 }
 
-void ObjReader::read_statement(std::string_view keyword) {
-  if (keyword == "v") {
-    read_vertex();
-  } else if (keyword == "f" || keyword == "fo") {
-    read_face();
-  } else if (keyword == "vn") {
-    const float x = lines_.number(), y = lines_.number();
-    vertices_.normals.emplace_back(x, y, lines_.number());
-    if (lines_.has_word()) lines_.fail("a normal has three numbers");
-  } else if (keyword == "vt") {
-    const float u = lines_.number();
-    vertices_.uvs.emplace_back(u, lines_.has_word() ? lines_.number() : 0.0f);
-    if (lines_.has_word()) lines_.number();
-    if (lines_.has_word()) lines_.fail("texture coordinates have at most three numbers");
-  } else if (keyword == "o") {
-    names_.object = lines_.rest();
-    names_.group.clear();
-    parts_.current = nullptr;
-  } else if (keyword == "g") {
-    names_.group = lines_.rest();
-    parts_.current = nullptr;
-  } else if (keyword == "usemtl") {
-    names_.material = lines_.rest();
-    parts_.current = nullptr;
-  } else if (keyword == "mtllib") {
-    read_libraries(std::string(lines_.rest()));
-  } else if (keyword == "p" || keyword == "l") {
-    ++counts_.points_and_lines;
-  } else if (keyword != "s") {
-    for (const char c : keyword)
-      if (static_cast<unsigned char>(c) < 32) lines_.fail("this is not a text file");
-    scene_.warnings.add("OBJ: '" + std::string(keyword.substr(0, 40)) +
-                        "' is not supported: left out");
+void ObjReader::read_pieces() {
+  const size_t at_once = obj_pieces_per_thread * size_t(thread_count(0));
+  ReadProgress progress(how_.progress, file_progress, 1, texts_.size());
+  ObjWave now, next;
+  for (size_t first = 0; first < texts_.size() || now.count > 0; first += now.count) {
+    next.first = first;
+    next.count = std::min(at_once, texts_.size() - first);
+    next.pieces.resize(std::max(next.count, next.pieces.size()));
+    next.is_sound.assign(next.count, 0);
+    parallel_for(next.count + 1, 0, [&](size_t i) {
+      if (i == 0) {
+        add_triangles(now);
+        return;
+      }
+      const size_t k = i - 1, piece = first + k;
+      next.is_sound[k] = read_obj_lines(path_, texts_[piece], piece == 0, next.pieces[k]) ? 1 : 0;
+    });
+    add_vertices(next);
+    place_faces(next);
+    progress.add(next.count);
+    std::swap(now, next);
   }
 }
 
-// x y z, then nothing, a weight (left out), a colour (sRGB, as programs mean it) or both.
-void ObjReader::read_vertex() {
-  const double x = lines_.precise_number(), y = lines_.precise_number();
-  vertices_.positions.push_back(Vec3d{x, y, lines_.precise_number()} - scene_.origin);
-  std::array<float, 4> v{};
-  size_t more = 0;
-  for (; lines_.has_word() && more < 4; ++more) v[more] = lines_.number();
-  if (more == 2 || lines_.has_word()) lines_.fail("a vertex has 3, 4, 6 or 7 numbers");
-  if (more < 3) return;
-  vertices_.colors.resize(vertices_.positions.size(), Rgb{1});
-  for (size_t k = 0; k < 3; ++k)
-    vertices_.colors.back()[k] = linear_from_srgb(std::clamp(v[more - 3 + k], 0.0f, 1.0f));
+// Of the pieces before the first that is not sound, of which it is known what comes before it.
+void ObjReader::add_vertices(ObjWave& wave) {
+  wave.before.clear();
+  for (size_t i = 0; i < wave.count; ++i) {
+    wave.before.push_back(counts_);
+    if (wave.is_sound[i] == 0) break;
+    counts_.add(wave.pieces[i].counts);
+  }
+  vertices_.positions.resize(counts_.positions);
+  vertices_.normals.resize(counts_.normals);
+  vertices_.uvs.resize(counts_.uvs);
+  parallel_for(wave.before.size(), 0, [&](size_t i) {
+    const ObjPiece& piece = wave.pieces[i];
+    const ObjCounts& before = wave.before[i];
+    if (wave.is_sound[i] == 0) return;
+    Vec3d* position = vertices_.positions.data() + before.positions;
+    for (const Vec3d& p : piece.positions) *position++ = p - scene_.origin;
+    std::copy(piece.normals.begin(), piece.normals.end(),
+              vertices_.normals.begin() + std::ptrdiff_t(before.normals));
+    std::copy(piece.uvs.begin(), piece.uvs.end(),
+              vertices_.uvs.begin() + std::ptrdiff_t(before.uvs));
+  });
+  for (size_t i = 0; i < wave.before.size(); ++i) {
+    const std::vector<Rgb>& colors = wave.pieces[i].colors;
+    if (wave.is_sound[i] == 0 || colors.empty()) continue;
+    vertices_.colors.resize(wave.before[i].positions, Rgb{1});
+    vertices_.colors.insert(vertices_.colors.end(), colors.begin(), colors.end());
+  }
 }
 
-// An index counts from 1, or backwards from -1; the result from 0.
-uint32_t ObjReader::read_index(size_t count, const char* what, bool is_needed) {
-  int index = 0;
-  if (!lines_.integer(index)) lines_.fail(std::string("expected the index of a ") + what);
-  // Some files name normals or texture coordinates of which they hold none.
-  if (count == 0 && !is_needed) {
-    ++counts_.dangling;
-    return nothing;
-  }
-  const int64_t i = index < 0 ? int64_t(count) + index : int64_t(index) - 1;
-  if (index == 0 || i < 0 || i >= int64_t(count))
-    lines_.fail(std::string("index ") + std::to_string(index) + " of a " + what +
-                " is out of range (" + std::to_string(count) + " so far)");
-  return uint32_t(i);
+void ObjReader::place_faces(ObjWave& wave) {
+  parallel_for(wave.before.size(), 0, [&](size_t i) {
+    if (wave.is_sound[i] != 0 &&
+        !place_obj_faces(wave.before[i], vertices_.positions, wave.pieces[i]))
+      wave.is_sound[i] = 0;
+  });
 }
 
-// v, v/vt, v//vn or v/vt/vn; false at the end of the line.
-bool ObjReader::read_corner() {
-  if (!lines_.has_word()) return false;
-  Corner corner;
-  corner.position = read_index(vertices_.positions.size(), "vertex", true);
-  if (lines_.peek() == '/') {
-    lines_.take();
-    if (lines_.peek() != '/')
-      corner.uv = read_index(vertices_.uvs.size(), "texture coordinate", false);
-    if (lines_.peek() == '/') {
-      lines_.take();
-      corner.normal = read_index(vertices_.normals.size(), "normal", false);
-    }
+void ObjReader::add_triangles(const ObjWave& wave) {
+  for (size_t i = 0; i < wave.count; ++i) {
+    if (wave.is_sound[i] == 0) fail_in(wave, i);
+    add_triangles(wave.pieces[i]);
   }
-  const char c = lines_.peek();
-  if (c != '\0' && c != ' ' && c != '\t') lines_.fail("malformed corner of a face");
-  face_.corners.push_back(corner);
-  return true;
 }
 
-void ObjReader::select_part() {
-  std::string key = names_.object;
-  key.append(1, '\0').append(names_.group).append(1, '\0').append(names_.material);
-  Part*& part = parts_.by_key[key];
-  if (!part) {
-    parts_.all.push_back(std::make_unique<Part>());
-    part = parts_.all.back().get();
-    part->material = names_.material;
-    part->mesh.name = names_.group.empty() ? names_.object : names_.group;
-  }
-  parts_.current = part;
-  ++parts_.stamp;
-}
-
-uint32_t ObjReader::vertex_of(const Corner& corner) {
-  Part& part = *parts_.current;
-  First& first = parts_.firsts[corner.position];
-  if (first.stamp != parts_.stamp) first = {parts_.stamp, nothing};
-  for (uint32_t v = first.vertex; v != nothing; v = part.made[v].next)
-    if (part.made[v].uv == corner.uv && part.made[v].normal == corner.normal) return v;
-  const auto vertex = uint32_t(part.made.size());
-  part.made.push_back({corner.uv, corner.normal, first.vertex});
-  first.vertex = vertex;
-  part.mesh.positions.emplace_back(vertices_.positions[corner.position]);
-  part.mesh.uvs.push_back(corner.uv != nothing ? vertices_.uvs[corner.uv] : Vec2{});
-  part.mesh.normals.push_back(corner.normal != nothing ? vertices_.normals[corner.normal] : Vec3{});
-  if (!vertices_.colors.empty()) {
-    part.colors.resize(size_t(vertex) + 1);  // white where there is none
-    if (corner.position < vertices_.colors.size())
-      part.colors.back().rgb = vertices_.colors[corner.position];
-  }
-  part.has_uvs = part.has_uvs || corner.uv != nothing;
-  part.has_normals = part.has_normals || corner.normal != nothing;
-  return vertex;
-}
-
-void ObjReader::read_face() {
-  face_.corners.clear();
-  while (read_corner()) {
-  }
-  if (face_.corners.size() < 3) {
-    if (face_.corners.empty()) lines_.fail("a face without vertices");
-    ++counts_.short_faces;
-    return;
-  }
-  counts_.triangles += face_.corners.size() - 2;
-  if (counts_.triangles > max_scene_triangles)
-    lines_.fail("more than " + std::to_string(max_scene_triangles / 1'000'000) +
-                " million triangles");
-  if (!parts_.current) select_part();
-  parts_.firsts.resize(vertices_.positions.size());
-  if (face_.corners.size() == 3) {
-    add_triangle({0, 1, 2});
-    return;
-  }
-  face_.points.clear();
-  face_.triangles.clear();
-  for (const Corner& c : face_.corners) face_.points.emplace_back(vertices_.positions[c.position]);
-  triangulate(face_.points, face_.triangles);
-  for (const Triangle& t : face_.triangles) add_triangle(t);
-}
-
-// Of three corners of the face.
-void ObjReader::add_triangle(const Triangle& corners) {
-  const auto position = [&](size_t k) {
-    return vertices_.positions[face_.corners[corners[k]].position];
+void ObjReader::add_triangles(const ObjPiece& piece) {
+  size_t done = 0;
+  const auto add_up_to = [&](size_t triangle) {
+    parts_.add(piece.corners.data() + 3 * done, triangle - done, vertices_.positions.size());
+    done = triangle;
   };
-  vertices_.bounds->add_triangle(position(0), position(1), position(2));
-  Triangle t;
-  for (size_t k = 0; k < 3; ++k) t[k] = vertex_of(face_.corners[corners[k]]);
-  parts_.current->mesh.triangles.push_back(t);
+  for (const ObjEvent& event : piece.events) {
+    add_up_to(event.triangle);
+    apply(event);
+  }
+  add_up_to(piece.corners.size() / 3);
+  bounds_.add(piece.bounds);
+  left_out_.points_and_lines += piece.points_and_lines;
+  left_out_.short_faces += piece.short_faces;
+  left_out_.dangling += piece.dangling;
+}
+
+// Something is wrong with the piece, unless with what statements before it bring in.
+void ObjReader::fail_in(const ObjWave& wave, size_t i) {
+  ObjPiece piece;
+  try {
+    read_obj_lines_after(wave.before[i], path_, texts_[wave.first + i], piece);
+  } catch (const InputError&) {
+    for (const ObjEvent& event : piece.events) apply(event);
+    throw;
+  }
+  TROFFER_CHECK(false);
+}
+
+void ObjReader::apply(const ObjEvent& event) {
+  using Kind = ObjEvent::Kind;
+  switch (event.kind) {
+    case Kind::object:
+      return parts_.set_object(event.text);
+    case Kind::group:
+      return parts_.set_group(event.text);
+    case Kind::material:
+      return parts_.set_material(event.text);
+    case Kind::library:
+      return read_libraries(event.text);
+    case Kind::unsupported:
+      return scene_.warnings.add("OBJ: '" + event.text + "' is not supported: left out",
+                                 event.count);
+    case Kind::colors_begin:
+      return parts_.begin_colors();
+  }
 }
 
 // Names may contain blanks, and several may follow: the whole line first, then up to each ".mtl".
@@ -330,7 +265,7 @@ const MtlConverted& ObjReader::material_named(const std::string& name) {
   MtlConverted made;
   const auto found = materials_.library.find(name);
   if (found != materials_.library.end()) {
-    made = convert_mtl(found->second, folder_, loader_, scene_.textures, scene_.warnings);
+    made = convert_mtl(found->second, folder_, materials_.loader, scene_.textures, scene_.warnings);
   } else {
     made.material.name = name.empty() ? "default" : name;
     if (!name.empty())
@@ -341,21 +276,38 @@ const MtlConverted& ObjReader::material_named(const std::string& name) {
   return materials_.converted[name] = std::move(made);
 }
 
-void ObjReader::finish_part(Part& part) {
-  Mesh& mesh = part.mesh;
-  if (!part.has_uvs) mesh.uvs.clear();
-  if (!part.has_normals) mesh.normals.clear();
-  part.made = {};
+Mesh ObjReader::mesh_of(const ObjPart& part) const {
+  Mesh mesh;
+  mesh.name = part.name;
+  const size_t n = part.vertices.size();
+  mesh.positions.resize(n);
+  if (part.has_uvs) mesh.uvs.resize(n);
+  if (part.has_normals) mesh.normals.resize(n);
+  parallel_pieces(n, obj_vertices_at_once, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) {
+      const ObjCorner& c = part.vertices[i].corner;
+      mesh.positions[i] = Vec3(vertices_.positions[c.position]);
+      if (c.uv != obj_nothing) mesh.uvs[i] = vertices_.uvs[c.uv];
+      if (c.normal != obj_nothing) mesh.normals[i] = vertices_.normals[c.normal];
+    }
+  });
+  return mesh;
+}
+
+void ObjReader::finish_part(ObjPart& part) {
+  Mesh mesh = mesh_of(part);
+  mesh.triangles = std::move(part.triangles);
   const MtlConverted& material = material_named(part.material);
   mesh.material = materials_.index[part.material];
-  paint(part, material.emission_texture >= 0);
+  if (part.is_painted) paint(part, mesh, material.emission_texture >= 0);
+  part.vertices = {};
   clean_mesh(mesh, scene_.warnings);
   const auto index = uint32_t(scene_.meshes.size());
   const bool is_empty = mesh.triangles.empty();
   if (!is_empty) scene_.meshes.push_back(std::move(mesh));
   if (material.emission.is_black()) return;
   // A source without area keeps its number, so that names do not depend on what else is wrong.
-  const std::string name = "emitter" + std::to_string(counts_.lights++);
+  const std::string name = "emitter" + std::to_string(lights_++);
   if (is_empty)
     scene_.warnings.add("area light without area is left out");
   else
@@ -363,37 +315,38 @@ void ObjReader::finish_part(Part& part) {
 }
 
 // Colours of vertices are factors on a material's colour, or the colour where there is none.
-void ObjReader::paint(Part& part, bool needs_uvs) {
-  if (part.colors.empty()) return;
-  if (!materials_.library.contains(part.material)) {
-    scene_.materials.push_back(Material(scene_.materials[part.mesh.material]));
-    scene_.materials.back().base_color.value = Rgb{1};
-    part.mesh.material = uint32_t(scene_.materials.size() - 1);
+void ObjReader::paint(const ObjPart& part, Mesh& mesh, bool needs_uvs) {
+  std::vector<TextureValue> colors(part.vertices.size());  // white where there is none
+  for (size_t i = 0; i < colors.size(); ++i) {
+    const uint32_t position = part.vertices[i].corner.position;
+    if (position < vertices_.colors.size()) colors[i].rgb = vertices_.colors[position];
   }
-  materials_.painter.paint(part.mesh, part.colors, needs_uvs);
-  part.colors = {};
+  if (!materials_.library.contains(part.material)) {
+    scene_.materials.push_back(Material(scene_.materials[mesh.material]));
+    scene_.materials.back().base_color.value = Rgb{1};
+    mesh.material = uint32_t(scene_.materials.size() - 1);
+  }
+  materials_.painter.paint(mesh, colors, needs_uvs);
 }
 
 void ObjReader::finish() {
-  if (counts_.points_and_lines > 0)
-    scene_.warnings.add("OBJ: points and lines are left out", counts_.points_and_lines);
-  if (counts_.short_faces > 0)
+  if (left_out_.points_and_lines > 0)
+    scene_.warnings.add("OBJ: points and lines are left out", left_out_.points_and_lines);
+  if (left_out_.short_faces > 0)
     scene_.warnings.add("OBJ: faces of fewer than three vertices are left out",
-                        counts_.short_faces);
-  if (counts_.dangling > 0)
+                        left_out_.short_faces);
+  if (left_out_.dangling > 0)
     scene_.warnings.add("OBJ: faces name normals or texture coordinates, but there are none",
-                        counts_.dangling);
-  vertices_ = {};
-  text_ = {};
-  for (const auto& part : parts_.all) finish_part(*part);
+                        left_out_.dangling);
+  for (const auto& part : parts_.all()) finish_part(*part);
 }
 
 }  // namespace
 
-Scene import_obj(const std::string& path) {
+Scene import_obj(const std::string& path, const PieceReading& how) {
   return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
     scene.file = path;
-    ObjReader(path, scene, bounds).read();
+    ObjReader(path, how, scene, bounds).read();
   });
 }
 

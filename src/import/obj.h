@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "import/read_progress.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -13,10 +14,10 @@ namespace troffer {
 // The scene an .obj file describes: one mesh per object, group and material; the front of a face
 // is the side from which its vertices run counterclockwise. A material with Ke emits from the
 // front, in W/(m² sr); its meshes are called emitter0, emitter1 … in order of appearance. No
-// cameras. Free-form curves, points, lines, smoothing groups and vertex colours are left out.
+// cameras. Free-form curves, points, lines and smoothing groups are left out.
 // Material libraries and images are looked up beside the file that names them and never outside
 // the scene's folder; a missing one is a warning. mtl.h says how materials are read.
 // InputError: with line and column, for malformed numbers and indices out of range.
-Scene import_obj(const std::string& path);
+Scene import_obj(const std::string& path, const PieceReading& how = {});
 
 }  // namespace troffer

@@ -158,7 +158,7 @@ AnchoredMesh read_ply_mesh(const PbrtParams& params, const std::string& folder,
   params.ignore({"edgelength"});
   const ConfinedPath path = confined_path(folder, name);
   if (!path.is_fine()) fail_at(file->place, "cannot use '" + name + "': " + path.problem);
-  return read_ply(path.path, warnings, max_scene_triangles);
+  return read_ply(path.path, warnings, {.max_triangles = max_scene_triangles});
 }
 
 bool read_sphere(const PbrtParams& params, PbrtShape& shape) {

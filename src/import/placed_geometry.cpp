@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/parallel.h"
 #include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/tessellate.h"
@@ -11,6 +12,7 @@ namespace troffer {
 namespace {
 
 constexpr double circle_tolerance = 1e-5;
+constexpr size_t placed_at_once = size_t(1) << 16;  // of what is worked on side by side
 
 }  // namespace
 
@@ -21,14 +23,20 @@ Vec3d covector(const Affine& t, const Vec3d& n) {
 Mesh transformed(const AnchoredMesh& local, const Affine& t, bool are_normals_turned,
                  bool is_winding_turned) {
   Mesh mesh = local.mesh;
-  for (Vec3& p : mesh.positions) p = Vec3(t.point(local.anchor + Vec3d(p)));
-  for (Vec3& n : mesh.normals) {
-    const Vec3d turned = covector(t, Vec3d(n));
-    // Normalised here, so that small scales do not underflow in float.
-    const double size = length(turned);
-    n = size > 0 && std::isfinite(size) ? Vec3(turned * ((are_normals_turned ? -1 : 1) / size))
-                                        : Vec3{};
-  }
+  parallel_pieces(mesh.positions.size(), placed_at_once, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i)
+      mesh.positions[i] = Vec3(t.point(local.anchor + Vec3d(mesh.positions[i])));
+  });
+  parallel_pieces(mesh.normals.size(), placed_at_once, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) {
+      const Vec3d turned = covector(t, Vec3d(mesh.normals[i]));
+      // Normalised here, so that small scales do not underflow in float.
+      const double size = length(turned);
+      mesh.normals[i] = size > 0 && std::isfinite(size)
+                            ? Vec3(turned * ((are_normals_turned ? -1 : 1) / size))
+                            : Vec3{};
+    }
+  });
   orient(mesh, is_winding_turned);
   return mesh;
 }
@@ -36,19 +44,27 @@ Mesh transformed(const AnchoredMesh& local, const Affine& t, bool are_normals_tu
 void add_bounds(const AnchoredMesh& local, const Affine& target_from_local, PlacedBounds& bounds) {
   const std::vector<Vec3>& p = local.mesh.positions;
   const auto at = [&](uint32_t v) { return target_from_local.point(local.anchor + Vec3d(p[v])); };
-  for (const Triangle& t : local.mesh.triangles) bounds.add_triangle(at(t[0]), at(t[1]), at(t[2]));
+  bounds.add_triangles(local.mesh.triangles, at);
 }
 
-void orient(Mesh& mesh, bool is_turned) {
-  for (Triangle& t : mesh.triangles) {
-    double side = 0;
-    if (!mesh.normals.empty()) {
-      const Vec3d n =
-          Vec3d(mesh.normals[t[0]]) + Vec3d(mesh.normals[t[1]]) + Vec3d(mesh.normals[t[2]]);
-      side = dot(area_vector(mesh, t), n);
-    }
-    if (side < 0 || (!(side > 0) && is_turned)) std::swap(t[1], t[2]);
+namespace {
+
+void orient(const Mesh& mesh, Triangle& t, bool is_turned) {
+  double side = 0;
+  if (!mesh.normals.empty()) {
+    const Vec3d n =
+        Vec3d(mesh.normals[t[0]]) + Vec3d(mesh.normals[t[1]]) + Vec3d(mesh.normals[t[2]]);
+    side = dot(area_vector(mesh, t), n);
   }
+  if (side < 0 || (!(side > 0) && is_turned)) std::swap(t[1], t[2]);
+}
+
+}  // namespace
+
+void orient(Mesh& mesh, bool is_turned) {
+  parallel_pieces(mesh.triangles.size(), placed_at_once, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) orient(mesh, mesh.triangles[i], is_turned);
+  });
 }
 
 bool keeps_circles(const Affine& t, size_t axis_a, size_t axis_b) {

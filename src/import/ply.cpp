@@ -1,14 +1,17 @@
 #include "import/ply.h"
 
-#include <bit>
-#include <charconv>
-#include <cmath>
-#include <cstring>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <functional>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "import/file.h"
-#include "import/ply_header.h"
+#include "import/ply_body.h"
+#include "import/ply_pieces.h"
 
 namespace troffer {
 
@@ -28,121 +31,33 @@ int slot_of(const PlyProperty& property) {
   return slot_none;
 }
 
-// Scalars of the body, one after the other, in any of the three encodings.
-class BodyReader {
- public:
-  BodyReader(std::string_view text, const PlyHeader& header, const std::string& file)
-      : text_(text),
-        at_(header.body),
-        line_start_(header.body),
-        line_(header.body_line),
-        format_(header.format),
-        file_(file) {}
-
-  double next(PlyType type) {
-    return format_ == PlyFormat::ascii ? next_ascii(type) : next_binary(type);
-  }
-  size_t remaining() const { return text_.size() - at_; }
-  bool is_ascii() const { return format_ == PlyFormat::ascii; }
-  // At the scalar read last.
-  [[noreturn]] void fail(const std::string& what) const {
-    if (!is_ascii()) throw InputError(file_, 0, 0, what);
-    throw InputError(file_, line_, int(last_ - line_start_) + 1, what);
-  }
-
- private:
-  std::string_view text_;
-  size_t at_, last_ = 0, line_start_;
-  int line_;
-  PlyFormat format_;
-  const std::string& file_;
-
-  double next_ascii(PlyType type);
-  double next_binary(PlyType type);
+// Faces of consecutive rows.
+struct FaceRows {
+  std::vector<Triangle> triangles;
+  size_t short_faces = 0;
 };
-
-double BodyReader::next_ascii(PlyType type) {
-  for (; at_ < text_.size(); ++at_) {
-    const char c = text_[at_];
-    if (c == '\n') {
-      ++line_;
-      line_start_ = at_ + 1;
-    } else if (c != ' ' && c != '\t' && c != '\r') {
-      break;
-    }
-  }
-  last_ = at_;
-  if (at_ == text_.size()) fail("the file ends early");
-  const char* begin = text_.data() + at_;
-  const char* const end = text_.data() + text_.size();
-  if (*begin == '+' && begin + 1 < end && begin[1] != '-') ++begin;
-  double value = 0;
-  const auto result = std::from_chars(begin, end, value);
-  const bool is_whole = result.ptr == end || *result.ptr == ' ' || *result.ptr == '\t' ||
-                        *result.ptr == '\r' || *result.ptr == '\n';
-  if (result.ec == std::errc::invalid_argument || !is_whole) fail("expected a number");
-  if (result.ec == std::errc::result_out_of_range)
-    value = std::strtod(std::string(begin, result.ptr).c_str(), nullptr);
-  at_ = size_t(result.ptr - text_.data());
-  if (is_integer(type) && std::floor(value) != value) fail("expected an integer");
-  return value;
-}
-
-template <class T>
-double scalar_from(uint64_t bits) {
-  if constexpr (sizeof(T) == 8)
-    return double(std::bit_cast<T>(bits));
-  else if constexpr (std::is_same_v<T, float>)
-    return double(std::bit_cast<float>(uint32_t(bits)));
-  else
-    return double(T(bits));
-}
-
-double BodyReader::next_binary(PlyType type) {
-  const size_t size = size_of(type);
-  if (remaining() < size) fail("the file ends early");
-  uint64_t bits = 0;
-  for (size_t i = 0; i < size; ++i) {
-    const size_t k = format_ == PlyFormat::little_endian ? i : size - 1 - i;
-    bits |= uint64_t(static_cast<unsigned char>(text_[at_ + i])) << (8 * k);
-  }
-  at_ += size;
-  switch (type) {
-    case PlyType::int8:
-      return scalar_from<int8_t>(bits);
-    case PlyType::uint8:
-      return scalar_from<uint8_t>(bits);
-    case PlyType::int16:
-      return scalar_from<int16_t>(bits);
-    case PlyType::uint16:
-      return scalar_from<uint16_t>(bits);
-    case PlyType::int32:
-      return scalar_from<int32_t>(bits);
-    case PlyType::uint32:
-      return scalar_from<uint32_t>(bits);
-    case PlyType::float32:
-      return scalar_from<float>(bits);
-    case PlyType::float64:
-      return scalar_from<double>(bits);
-  }
-  return 0;
-}
 
 class PlyReader {
  public:
   PlyReader(const std::string& file, std::string_view text, WarningLog& warnings,
-            size_t max_triangles)
+            const PlyLimits& limits)
       : file_(file),
+        text_(text),
         header_(parse_ply_header(text, file)),
-        body_(text, header_, file),
+        body_(text, header_.body, header_.body_line, header_.format, file),
+        cutter_(text, header_, file, limits.pieces.piece_bytes),
+        progress_(limits.pieces.progress, file_progress, 1, text.size()),
         warnings_(warnings),
-        max_triangles_(max_triangles) {}
+        max_triangles_(limits.max_triangles) {}
   AnchoredMesh read();
 
  private:
   const std::string& file_;
+  std::string_view text_;
   PlyHeader header_;
-  BodyReader body_;
+  PlyBody body_;
+  PlyCutter cutter_;
+  mutable ReadProgress progress_;
   WarningLog& warnings_;
   size_t max_triangles_;
   AnchoredMesh anchored_;
@@ -151,11 +66,17 @@ class PlyReader {
   size_t short_faces_ = 0;
 
   void check_count(const PlyElement& element) const;
-  size_t list_length(const PlyProperty& property);
-  void skip(const PlyProperty& property);
+  bool read_in_pieces(const std::vector<PlyPiece>& pieces,
+                      const std::function<void(size_t piece, PlyBody& body)>& read) const;
+  std::optional<std::vector<PlyPiece>> cut(const PlyElement& element);
+  void go_past(const std::vector<PlyPiece>& pieces);
   void read_vertices(const PlyElement& element);
   void read_faces(const PlyElement& element);
-  void read_face(const PlyProperty& property, std::vector<uint32_t>& polygon);
+  bool read_faces_in_pieces(const PlyElement& element, const PlyProperty& indices);
+  void read_face_rows(PlyBody& body, const PlyElement& element, const PlyProperty& indices,
+                      uint64_t rows, FaceRows& out) const;
+  void read_face(PlyBody& body, const PlyProperty& property, std::vector<uint32_t>& polygon,
+                 FaceRows& out) const;
   void skip_element(const PlyElement& element);
   void check_indices() const;
 };
@@ -173,25 +94,42 @@ void PlyReader::check_count(const PlyElement& element) const {
                          element.name + "'");
 }
 
-size_t PlyReader::list_length(const PlyProperty& property) {
-  const double length = body_.next(property.count_type);
-  const double smallest = body_.is_ascii() ? 2 : double(size_of(property.type));
-  if (!(length >= 0)) body_.fail("a list of negative length");
-  if (length * smallest > double(body_.remaining()) + 1)
-    body_.fail("the file is too short for a list of this length");
-  return size_t(length);
+// Side by side. False where a piece does not hold its rows and nothing else, or anything is wrong
+// with it: what is wrong first, and where, is found out by reading row by row.
+bool PlyReader::read_in_pieces(const std::vector<PlyPiece>& pieces,
+                               const std::function<void(size_t, PlyBody&)>& read) const {
+  std::atomic<bool> is_sound{true};
+  parallel_for(pieces.size(), 0, [&](size_t i) {
+    if (!is_sound) return;
+    PlyBody body(text_.substr(0, pieces[i].end), pieces[i].begin, 0, header_.format, file_);
+    try {
+      read(i, body);
+      if (!body.is_done()) is_sound = false;
+      progress_.add(pieces[i].end - pieces[i].begin);
+    } catch (const InputError&) {
+      is_sound = false;
+    }
+  });
+  return is_sound;
 }
 
-void PlyReader::skip(const PlyProperty& property) {
-  const size_t n = property.is_list ? list_length(property) : 1;
-  for (size_t i = 0; i < n; ++i) body_.next(property.type);
+// Of text from its first scalar on, which stands on a line of its own.
+std::optional<std::vector<PlyPiece>> PlyReader::cut(const PlyElement& element) {
+  if (element.count == 0 || body_.is_done()) return std::nullopt;
+  return cutter_.cut(element, body_.at());
+}
+
+void PlyReader::go_past(const std::vector<PlyPiece>& pieces) {
+  int lines = 0;
+  for (const PlyPiece& p : pieces) lines += p.lines;
+  if (!pieces.empty()) body_.go_behind_scalar(pieces.back().end, lines);
 }
 
 void PlyReader::skip_element(const PlyElement& element) {
   warnings_.add(file_ + ": PLY element '" + element.name + "' is skipped");
   if (element.properties.empty()) return;
   for (uint64_t i = 0; i < element.count; ++i)
-    for (const PlyProperty& p : element.properties) skip(p);
+    for (const PlyProperty& p : element.properties) body_.skip(p);
 }
 
 void PlyReader::read_vertices(const PlyElement& element) {
@@ -211,40 +149,85 @@ void PlyReader::read_vertices(const PlyElement& element) {
   std::vector<Vec3d> positions(n);
   if (has_normals) mesh_.normals.resize(n);
   if (has_uvs) mesh_.uvs.resize(n);
-  std::array<double, slot_count + 1> row{};
-  for (size_t i = 0; i < n; ++i) {
-    for (size_t k = 0; k < slots.size(); ++k) {
-      if (element.properties[k].is_list)
-        skip(element.properties[k]);
-      else
-        row[size_t(slots[k])] = body_.next(element.properties[k].type);
+  const auto read_rows = [&](PlyBody& body, size_t first, size_t rows) {
+    std::array<double, slot_count + 1> row{};
+    for (size_t i = first; i < first + rows; ++i) {
+      for (size_t k = 0; k < slots.size(); ++k) {
+        if (element.properties[k].is_list)
+          body.skip(element.properties[k]);
+        else
+          row[size_t(slots[k])] = body.next(element.properties[k].type);
+      }
+      positions[i] = {row[0], row[1], row[2]};
+      if (has_normals) mesh_.normals[i] = Vec3(Vec3d{row[3], row[4], row[5]});
+      if (has_uvs) mesh_.uvs[i] = Vec2(Vec2d{row[slot_u], row[slot_v]});
     }
-    positions[i] = {row[0], row[1], row[2]};
-    if (has_normals) mesh_.normals[i] = Vec3(Vec3d{row[3], row[4], row[5]});
-    if (has_uvs) mesh_.uvs[i] = Vec2(Vec2d{row[slot_u], row[slot_v]});
-  }
+  };
+  const auto pieces = cut(element);
+  if (pieces && read_in_pieces(*pieces, [&](size_t i, PlyBody& body) {
+        read_rows(body, size_t((*pieces)[i].first_row), size_t((*pieces)[i].rows));
+      }))
+    go_past(*pieces);
+  else
+    read_rows(body_, 0, n);
   set_positions(anchored_, positions);
 }
 
-void PlyReader::read_face(const PlyProperty& property, std::vector<uint32_t>& polygon) {
-  const size_t n = list_length(property);
+void PlyReader::read_face(PlyBody& body, const PlyProperty& property,
+                          std::vector<uint32_t>& polygon, FaceRows& out) const {
+  const size_t n = body.list_length(property);
   polygon.clear();
   for (size_t i = 0; i < n; ++i) {
-    const double index = body_.next(property.type);
+    const double index = body.next(property.type);
     if (!(index >= 0 && index <= double(std::numeric_limits<uint32_t>::max())))
-      body_.fail("vertex index out of range");
+      body.fail("vertex index out of range");
     // Where the vertices are known already, the message can point at the index.
     if (has_vertices_ && index >= double(mesh_.positions.size()))
-      body_.fail("vertex index out of range");
+      body.fail("vertex index out of range");
     polygon.push_back(uint32_t(index));
   }
   if (n < 3) {
-    ++short_faces_;
+    ++out.short_faces;
     return;
   }
-  if (n - 2 > max_triangles_ - mesh_.triangles.size()) body_.fail("too many triangles");
-  for (size_t i = 2; i < n; ++i)
-    mesh_.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+  if (n - 2 > max_triangles_ - out.triangles.size()) body.fail("too many triangles");
+  for (size_t i = 2; i < n; ++i) out.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+}
+
+void PlyReader::read_face_rows(PlyBody& body, const PlyElement& element, const PlyProperty& indices,
+                               uint64_t rows, FaceRows& out) const {
+  out.triangles.reserve(std::min(size_t(rows), max_triangles_));
+  std::vector<uint32_t> polygon;
+  for (uint64_t i = 0; i < rows; ++i) {
+    for (const PlyProperty& p : element.properties) {
+      if (&p == &indices)
+        read_face(body, p, polygon, out);
+      else
+        body.skip(p);
+    }
+  }
+}
+
+bool PlyReader::read_faces_in_pieces(const PlyElement& element, const PlyProperty& indices) {
+  const auto pieces = cut(element);
+  if (!pieces) return false;
+  std::vector<FaceRows> read(pieces->size());
+  if (!read_in_pieces(*pieces, [&](size_t i, PlyBody& body) {
+        read_face_rows(body, element, indices, (*pieces)[i].rows, read[i]);
+      }))
+    return false;
+  std::vector<size_t> firsts{0};
+  for (const FaceRows& rows : read) firsts.push_back(firsts.back() + rows.triangles.size());
+  if (firsts.back() > max_triangles_) return false;
+  mesh_.triangles.resize(firsts.back());
+  parallel_for(read.size(), 0, [&](size_t i) {
+    std::copy(read[i].triangles.begin(), read[i].triangles.end(),
+              mesh_.triangles.begin() + std::ptrdiff_t(firsts[i]));
+    read[i].triangles = {};
+  });
+  for (const FaceRows& rows : read) short_faces_ += rows.short_faces;
+  go_past(*pieces);
+  return true;
 }
 
 void PlyReader::read_faces(const PlyElement& element) {
@@ -259,16 +242,11 @@ void PlyReader::read_faces(const PlyElement& element) {
     if (element.count > 0) throw InputError(file_, 0, 0, "faces without a list of vertex_indices");
     return;
   }
-  mesh_.triangles.reserve(std::min(size_t(element.count), max_triangles_));
-  std::vector<uint32_t> polygon;
-  for (uint64_t i = 0; i < element.count; ++i) {
-    for (const PlyProperty& p : element.properties) {
-      if (&p == indices)
-        read_face(p, polygon);
-      else
-        skip(p);
-    }
-  }
+  if (read_faces_in_pieces(element, *indices)) return;
+  FaceRows all;
+  read_face_rows(body_, element, *indices, element.count, all);
+  mesh_.triangles = std::move(all.triangles);
+  short_faces_ = all.short_faces;
 }
 
 void PlyReader::check_indices() const {
@@ -279,12 +257,13 @@ void PlyReader::check_indices() const {
 }
 
 AnchoredMesh PlyReader::read() {
-  bool has_faces = false;
+  bool has_faces = false, is_checked = true;
   for (const PlyElement& element : header_.elements) {
     check_count(element);
     if (element.name == "vertex" && !has_vertices_) {
       read_vertices(element);
     } else if (element.name == "face" && !has_faces) {
+      is_checked = has_vertices_;
       read_faces(element);
       has_faces = true;
     } else {
@@ -292,7 +271,7 @@ AnchoredMesh PlyReader::read() {
     }
   }
   if (!has_vertices_) throw InputError(file_, 0, 0, "no vertices in this file");
-  check_indices();
+  if (!is_checked) check_indices();
   if (short_faces_ > 0)
     warnings_.add(file_ + ": face with fewer than three vertices, left out", short_faces_);
   if (mesh_.triangles.empty()) warnings_.add(file_ + ": no triangles in this file");
@@ -301,9 +280,9 @@ AnchoredMesh PlyReader::read() {
 
 }  // namespace
 
-AnchoredMesh read_ply(const std::string& path, WarningLog& warnings, size_t max_triangles) {
-  const std::string text = read_text_file(path);
-  return PlyReader(path, text, warnings, max_triangles).read();
+AnchoredMesh read_ply(const std::string& path, WarningLog& warnings, const PlyLimits& limits) {
+  const FileBytes bytes(path, default_max_file_bytes, limits.pieces.progress);
+  return PlyReader(path, bytes.view(), warnings, limits).read();
 }
 
 }  // namespace troffer

@@ -1,5 +1,6 @@
 #include "import/ply_scene.h"
 
+#include "base/parallel.h"
 #include "import/limits.h"
 #include "import/mesh_clean.h"
 #include "import/ply.h"
@@ -7,18 +8,19 @@
 
 namespace troffer {
 
-namespace {}  // namespace
-
-Scene import_ply(const std::string& path) {
+Scene import_ply(const std::string& path, const TellProgress& progress) {
   return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
     scene.file = path;
-    AnchoredMesh read = read_ply(path, scene.warnings, max_scene_triangles);
+    AnchoredMesh read =
+        read_ply(path, scene.warnings,
+                 {.max_triangles = max_scene_triangles, .pieces = {.progress = progress}});
     Mesh& mesh = read.mesh;
     const Vec3d shift = read.anchor - scene.origin;
     const auto placed = [&](uint32_t v) { return Vec3d(mesh.positions[v]) + shift; };
-    for (const Triangle& t : mesh.triangles)
-      bounds.add_triangle(placed(t[0]), placed(t[1]), placed(t[2]));
-    for (Vec3& p : mesh.positions) p = Vec3(Vec3d(p) + shift);
+    bounds.add_triangles(mesh.triangles, placed);
+    parallel_pieces(mesh.positions.size(), size_t(1) << 16, [&](size_t first, size_t end) {
+      for (size_t i = first; i < end; ++i) mesh.positions[i] = Vec3(placed(uint32_t(i)));
+    });
     show_alone(std::move(mesh), scene);
   });
 }

@@ -95,13 +95,22 @@ Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& boun
 }
 
 void set_positions(AnchoredMesh& mesh, const std::vector<Vec3d>& positions) {
+  constexpr size_t piece = size_t(1) << 16;
+  std::vector<Boxd> boxes(positions.size() / piece + 1);
+  parallel_pieces(positions.size(), piece, [&](size_t first, size_t end) {
+    Boxd box;
+    for (size_t i = first; i < end; ++i)
+      if (is_usable(positions[i])) box.grow(positions[i]);
+    boxes[first / piece] = box;
+  });
   Boxd box;
-  for (const Vec3d& p : positions)
-    if (is_usable(p)) box.grow(p);
-  mesh.anchor = rounded_middle(box, anchor_step);
-  mesh.mesh.positions.clear();
-  mesh.mesh.positions.reserve(positions.size());
-  for (const Vec3d& p : positions) mesh.mesh.positions.emplace_back(p - mesh.anchor);
+  for (const Boxd& part : boxes) box.grow(part);
+  const Vec3d anchor = mesh.anchor = rounded_middle(box, anchor_step);
+  std::vector<Vec3>& out = mesh.mesh.positions;
+  out.resize(positions.size());
+  parallel_pieces(positions.size(), piece, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) out[i] = Vec3(positions[i] - anchor);
+  });
 }
 
 }  // namespace troffer

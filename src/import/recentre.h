@@ -2,10 +2,12 @@
 // anything is rounded to floats.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
 #include "base/box.h"
+#include "base/parallel.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -17,11 +19,38 @@ class PlacedBounds {
   void add_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
   void add_box(const Boxd& box);
   void add_ball(const Vec3d& centre, double radius);
+  void add(const PlacedBounds& other) { box_.grow(other.box_); }
+  // Those of `count` triangles, on all cores: corners(i) says where their corners are.
+  template <class Corners>
+  void add_triangles(size_t count, const Corners& corners);
+  // at(vertex) says where a vertex is.
+  template <class At>
+  void add_triangles(const std::vector<Triangle>& triangles, const At& at) {
+    add_triangles(triangles.size(), [&](size_t i) {
+      const Triangle& t = triangles[i];
+      return std::array<Vec3d, 3>{at(t[0]), at(t[1]), at(t[2])};
+    });
+  }
   const Boxd& box() const { return box_; }
 
  private:
   Boxd box_;
 };
+
+template <class Corners>
+void PlacedBounds::add_triangles(size_t count, const Corners& corners) {
+  constexpr size_t piece = size_t(1) << 16;
+  std::vector<PlacedBounds> parts(count / piece + 1);
+  parallel_pieces(count, piece, [&](size_t first, size_t end) {
+    PlacedBounds own;
+    for (size_t i = first; i < end; ++i) {
+      const std::array<Vec3d, 3> c = corners(i);
+      own.add_triangle(c[0], c[1], c[2]);
+    }
+    parts[first / piece] = own;
+  });
+  for (const PlacedBounds& part : parts) add(part);
+}
 
 // The middle of the box, rounded along each axis to a multiple of a step that is 1, 5, 10, 50 … and
 // at least `least_step` and about twice as long as the box: so it is zero unless the box lies far

@@ -1,5 +1,6 @@
 #include "import/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
@@ -16,9 +17,16 @@ bool is_blank_in_line(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
+}  // namespace
+
 // By the number of bytes that each character has; overlong forms are let through.
 bool is_utf8(std::string_view text) {
+  constexpr uint64_t high_bits = 0x8080808080808080u;
   for (size_t i = 0; i < text.size(); ++i) {
+    for (uint64_t eight = 0; text.size() - i > 8; i += 8) {
+      std::memcpy(&eight, text.data() + i, 8);
+      if ((eight & high_bits) != 0) break;
+    }
     const auto c = static_cast<unsigned char>(text[i]);
     if (c < 0x80) continue;
     const size_t more = c >= 0xf0 && c < 0xf8 ? 3 : c >= 0xe0 ? 2 : 1;
@@ -29,8 +37,6 @@ bool is_utf8(std::string_view text) {
   }
   return true;
 }
-
-}  // namespace
 
 void append_utf8(std::string& out, uint32_t code_point) {
   const auto put = [&](uint32_t bits) { out += char(static_cast<unsigned char>(bits)); };
@@ -51,10 +57,10 @@ void append_utf8(std::string& out, uint32_t code_point) {
   }
 }
 
-std::string as_utf8(std::string text) {
+std::string as_utf8(std::string_view text) {
   const bool is_little = text.starts_with("\xff\xfe"), is_big = text.starts_with("\xfe\xff");
   if (!is_little && !is_big) {
-    if (is_utf8(text)) return text;
+    if (is_utf8(text)) return std::string(text);
     std::string out;
     for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
     return out;
@@ -77,8 +83,33 @@ std::string as_utf8(std::string text) {
   return out;
 }
 
-TextLines::TextLines(const std::string& file, std::string_view text) : file_(file), text_(text) {
-  if (text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark
+std::vector<std::string_view> cut_at_lines(std::string_view text, size_t piece_bytes,
+                                           std::string_view first) {
+  // Whether a piece may end behind that "\n".
+  const auto is_cut = [&](size_t newline) {
+    size_t last = newline;
+    if (last > 0 && text[last - 1] == '\r') --last;
+    if (last > 0 && text[last - 1] == '\\') return false;
+    size_t word = newline + 1;
+    while (!first.empty() && word < text.size() && is_blank_in_line(text[word])) ++word;
+    return text.substr(std::min(word, text.size())).starts_with(first);
+  };
+  std::vector<std::string_view> pieces;
+  for (size_t begin = 0; begin < text.size();) {
+    size_t newline = text.find('\n', begin + std::max<size_t>(piece_bytes, 1) - 1);
+    while (newline != std::string_view::npos && !is_cut(newline))
+      newline = text.find('\n', newline + 1);
+    const size_t end = newline == std::string_view::npos ? text.size() : newline + 1;
+    pieces.push_back(text.substr(begin, end - begin));
+    begin = end;
+  }
+  return pieces;
+}
+
+TextLines::TextLines(const std::string& file, std::string_view text, bool is_whole,
+                     int lines_before)
+    : file_(file), text_(text), lines_before_(lines_before), next_line_number_(lines_before + 1) {
+  if (is_whole && text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark
 }
 
 std::string_view TextLines::take_physical_line() {

@@ -4,11 +4,20 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace troffer {
 
 // The text as UTF-8: from UTF-16 where it has a byte order mark; from Latin-1 where it is no UTF-8.
-std::string as_utf8(std::string text);
+std::string as_utf8(std::string_view text);
+// Whether it is that already.
+bool is_utf8(std::string_view text);
+
+// Consecutive pieces of a text of about so many bytes, each of whole statements: cut behind a "\n"
+// that no backslash joins with the next line, and only where that begins with `first` ("": any).
+// They view the text.
+std::vector<std::string_view> cut_at_lines(std::string_view text, size_t piece_bytes,
+                                           std::string_view first = "");
 
 // Appends a code point.
 void append_utf8(std::string& out, uint32_t code_point);
@@ -17,8 +26,10 @@ void append_utf8(std::string& out, uint32_t code_point);
 // "\n", "\r\n" or "\r".
 class TextLines {
  public:
-  // Both must outlive this.
-  TextLines(const std::string& file, std::string_view text);
+  // Both must outlive this. is_whole: the text begins where its file does; else it is told as if it
+  // came after lines_before lines.
+  TextLines(const std::string& file, std::string_view text, bool is_whole = true,
+            int lines_before = 0);
 
   // Goes to the next line; false at the end.
   bool next_line();
@@ -44,12 +55,14 @@ class TextLines {
   int line() const { return line_; }
   int column() const { return int(word_ - begin_) + 1; }
   [[noreturn]] void fail(const std::string& what) const;
+  // How many lines have been gone to, those that others are joined with included.
+  int lines_taken() const { return next_line_number_ - 1 - lines_before_; }
 
  private:
   const std::string& file_;
   std::string_view text_;
   size_t next_ = 0;  // offset of the next line
-  int line_ = 0, next_line_number_ = 1;
+  int lines_before_, line_ = 0, next_line_number_;
   std::string joined_;
   const char *begin_ = nullptr, *at_ = nullptr, *end_ = nullptr, *word_ = nullptr;
 

@@ -36,6 +36,11 @@ bool TriangleCheck::is_good(const Vec3& a, const Vec3& b, const Vec3& c) {
   return true;
 }
 
+void TriangleCheck::add(const TriangleCheck& other) {
+  not_finite_ += other.not_finite_;
+  without_area_ += other.without_area_;
+}
+
 void TriangleCheck::report(WarningLog& warnings) const {
   if (not_finite_ > 0)
     warnings.add("triangles with vertices that are not finite are left out", not_finite_);

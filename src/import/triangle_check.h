@@ -14,6 +14,8 @@ class TriangleCheck {
   // Whether the triangle may stay. Its corners must lie within 1e9 m of the origin, where the
   // square of an area is still a float, and its area must not be lost in the rounding of floats.
   bool is_good(const Vec3& a, const Vec3& b, const Vec3& c);
+  void add(const TriangleCheck& other);  // its counts
+  size_t bad() const { return not_finite_ + without_area_; }
   // One warning per kind that occurred.
   void report(WarningLog& warnings) const;
 

@@ -260,7 +260,9 @@ void bind_scene(py::module_& m) {
       [](const std::string& file, const std::optional<std::string>& variant,
          const std::optional<double>& time, const std::optional<std::string>& animation) {
         const py::gil_scoped_release unlocked;
-        return std::make_shared<ScriptScene>(file, ImportOptions{variant, time, animation});
+        return std::make_shared<ScriptScene>(
+            file, ImportOptions{
+                      .variant = variant, .time = time, .animation = animation, .progress = {}});
       },
       py::arg("file"), py::kw_only(), py::arg("variant") = py::none(), py::arg("time") = py::none(),
       py::arg("animation") = py::none(),
