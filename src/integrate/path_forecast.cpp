@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/error.h"
@@ -20,15 +21,19 @@ constexpr uint32_t pixels_looked_at = 2048;
 constexpr double rays_of_pixel = 80, rays_of_search = 1.5e5;
 // First rays of a pixel tell of its noise, and more than these few are needed for that.
 constexpr int least_first = 8, most_first = 64;
+constexpr int tiles_across = 8;  // of the picture, and as many upwards
+
+// A pixel that is looked at, within the unit square that the picture stands for.
+Vec2 place_looked_at(uint64_t stream, uint32_t i) {
+  return SobolGroup(stream, purpose_camera, i).get2(0);
+}
 
 // Two paths through each of some pixels.
-ViewingRays pairs_of_rays(const PictureView& view, uint64_t seed) {
+ViewingRays pairs_of_rays(const PictureView& view, uint64_t stream) {
   ViewingRays rays;
-  const uint64_t stream = hash_of(seed, uint64_t{0x7061'7468});
   const auto width = float(view.image.width()), height = float(view.image.height());
   for (uint32_t i = 0; i < pixels_looked_at; ++i) {
-    const SobolGroup where(stream, purpose_camera, i);
-    const Vec2 pixel = where.get2(0);
+    const Vec2 pixel = place_looked_at(stream, i);
     for (uint64_t k = 0; k < 2; ++k) {
       rays.streams.push_back(hash_of(stream, uint64_t{i}, k));
       rays.samples.push_back(0);
@@ -61,23 +66,58 @@ std::vector<double> luminances(const PreparedScene& scene, const ViewingRays& ra
   return values;
 }
 
+// Means over the pixels that are looked at in one part of the picture.
+struct Tile {
+  double luminance = 0, variance = 0, pixels = 0;
+};
+
+// Pixels' own pairs do not tell their noise: where light comes by few of the paths, most pairs see
+// nothing at all, and would want no more.
+std::vector<Tile> tiles_of(uint64_t stream, const std::vector<double>& values) {
+  std::vector<Tile> tiles(size_t(tiles_across * tiles_across));
+  for (uint32_t i = 0; i < pixels_looked_at; ++i) {
+    const Vec2 at = place_looked_at(stream, i) * float(tiles_across);
+    Tile& tile = tiles[size_t(at.y) * tiles_across + size_t(at.x)];
+    const double a = values[2 * size_t{i}], b = values[2 * size_t{i} + 1];
+    tile.luminance += (a + b) / 2;
+    tile.variance += sqr(a - b) / 2;
+    ++tile.pixels;
+  }
+  std::erase_if(tiles, [](const Tile& t) { return t.pixels == 0; });
+  for (Tile& t : tiles) {
+    t.luminance /= t.pixels;
+    t.variance /= t.pixels;
+  }
+  return tiles;
+}
+
+// Viewing rays that a pixel wants on average; infinite where most of the picture shows nothing to
+// so few paths.
+double rays_wanted(const std::vector<Tile>& tiles, double error, int most) {
+  std::vector<double> luminances;
+  for (const Tile& t : tiles) luminances.push_back(t.luminance);
+  const double typical = usual_luminance(luminances);
+  if (typical <= 0) return std::numeric_limits<double>::infinity();
+  double wanted = 0, pixels = 0;
+  for (const Tile& t : tiles) {
+    const double allowed = allowed_error(error, t.luminance, typical);
+    wanted += t.pixels * std::min(t.variance / sqr(allowed), double(most));
+    pixels += t.pixels;
+  }
+  return wanted / pixels;
+}
+
 }  // namespace
 
 PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view, double error,
                             int most, uint64_t seed, Counters& counters) {
   Counters own;
-  const ViewingRays rays = pairs_of_rays(view, seed);
-  const std::vector<double> values = luminances(scene, rays, own);
+  const uint64_t stream = hash_of(seed, uint64_t{0x7061'7468});
+  const ViewingRays rays = pairs_of_rays(view, stream);
+  const std::vector<Tile> tiles = tiles_of(stream, luminances(scene, rays, own));
   counters += own;
-  const double typical = usual_luminance(values);
-  double wanted = 0;
-  for (size_t i = 0; i + 1 < values.size(); i += 2) {
-    const double variance = sqr(values[i] - values[i + 1]) / 2;
-    const double allowed = allowed_error(error, 0.5 * (values[i] + values[i + 1]), typical);
-    if (variance > 0) wanted += std::min(variance / sqr(allowed), double(most));
-  }
   PathForecast f;
-  f.viewing_rays = std::max(wanted / pixels_looked_at, double(least_first));
+  f.viewing_rays = std::max(rays_wanted(tiles, error, most), double(least_first));
   const double pixels = double(view.image.width()) * double(view.image.height());
   const auto traced = double(own.viewing_rays + own.extension_rays + own.shadow_rays);
   f.rays = traced / double(rays.size()) * f.viewing_rays * pixels;

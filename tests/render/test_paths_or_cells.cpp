@@ -129,6 +129,19 @@ TEST_CASE(
   CHECK_FALSE(render_now(heap, above, o).statistics.is_by_paths);
 }
 
+TEST_CASE("--indirect auto: cells where light comes by few paths, so that most see none") {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.6f}), {-1, -1, 0}, {1, 1, 2});
+  // Behind the camera, upon the floor.
+  add_spot(s, {-0.8f, -0.8f, 1}, {0, 0, -1}, std::cos(0.02f), std::cos(0.04f), Rgb{5});
+  const PreparedScene room(std::move(s));
+  const Camera inside = look_at({-0.5f, -0.5f, 1.2f}, {1, 1, 1.2f}, {0, 0, 1}, 50);
+  RenderOptions o = small_picture();
+  o.width = 64;
+  o.height = 48;
+  CHECK_FALSE(render_now(room, inside, o).statistics.is_by_paths);
+}
+
 TEST_CASE("--indirect auto: cells are given up once they are more than paths are worth") {
   const PreparedScene scene(heap_of_plates(3000));
   const ViewingCamera camera(above, 160, 120);
