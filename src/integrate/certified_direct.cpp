@@ -25,7 +25,13 @@ CertifiedSettings certified_settings(double error, size_t lights, int viewing_ra
     const double n = std::clamp(std::pow(0.25 / (e * e), 2.0 / 3), 16.0, 256.0);
     return int(std::bit_floor(unsigned(n)));
   };
+  // What so many points of a source leave of gloss is less than that, and less than what pixels of
+  // few viewing rays leave of edges.
+  const auto points_for = [](double e) {
+    return int(std::bit_floor(unsigned(std::clamp(3.2 / e, 8.0, 32.0))));
+  };
   CertifiedSettings s;
+  s.gloss_samples = points_for(error);
   s.shadow_rays = rays_for(error * std::sqrt(double(std::max<size_t>(lights, 1))));
   s.estimator.lattice = error >= coarse_from ? coarse_lattice : fine_lattice;
   // The errors of a pixel's viewing rays are independent.
