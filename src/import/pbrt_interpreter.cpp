@@ -2,6 +2,8 @@
 #include "import/pbrt_interpreter.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "base/error.h"
 #include "import/file.h"
@@ -98,6 +100,8 @@ PbrtParams PbrtInterpreter::parse_typed(const PbrtToken& word, PbrtTokenizer& to
                                         const std::string& type, const std::string& target) {
   PbrtParams params = parse_params(tokens, std::string(word.text) + " \"" + type + "\"",
                                    tokens.place(word), scene_.warnings);
+  const bool shines = word.text == "LightSource" || word.text == "AreaLightSource";
+  params.change_all([&](PbrtParam& param) { to_srgb(param, state_.color_space, shines); });
   const auto defaults = state_.defaults->find(target);
   if (defaults != state_.defaults->end())
     for (const PbrtParam& param : defaults->second) params.add(param);
@@ -167,6 +171,7 @@ void PbrtInterpreter::on_attribute(const PbrtToken& word, PbrtTokenizer& tokens)
   std::vector<PbrtParam> list;
   for (PbrtParam param : params.all()) {
     param.is_default = true;
+    to_srgb(param, state_.color_space, target == "light");
     list.push_back(std::move(param));
   }
   for (PbrtParam& old : defaults[target]) {
@@ -235,16 +240,35 @@ void PbrtInterpreter::on_sampling(const PbrtToken& word, PbrtTokenizer& tokens) 
   parse_typed(word, tokens, type, "");
 }
 
+// What concerns how pbrt itself goes about it needs no mention; what changes its pictures does.
 void PbrtInterpreter::on_option(const PbrtToken& word, PbrtTokenizer& tokens) {
+  constexpr std::array<std::string_view, 8> of_no_consequence{"disablepixeljitter",
+                                                              "disablewavelengthjitter",
+                                                              "msereferenceimage",
+                                                              "msereferenceout",
+                                                              "pixelstats",
+                                                              "rendercoordsys",
+                                                              "seed",
+                                                              "wavefront"};
+  constexpr std::array<std::string_view, 3> left_out{"disabletexturefiltering",
+                                                     "displacementedgescale", "forcediffuse"};
+  const auto is_in = [](const auto& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   const PbrtParams params = parse_params(tokens, "Option", tokens.place(word), scene_.warnings);
-  for (const PbrtParam& param : params.all())
-    scene_.warnings.add("Option \"" + param.name + "\" is ignored");
+  for (const PbrtParam& param : params.all()) {
+    if (is_in(of_no_consequence, param.name)) continue;
+    const bool is_off = param.booleans.size() == 1 && !param.booleans[0];
+    if (!is_in(left_out, param.name))
+      scene_.warnings.add("Option \"" + param.name + "\" is unknown: ignored");
+    else if (!is_off)
+      scene_.warnings.add("Option \"" + param.name + "\" is not supported: left out");
+  }
 }
 
 void PbrtInterpreter::on_color_space(const PbrtToken& word, PbrtTokenizer& tokens) {
   const std::string name = parse_string(word, tokens);
-  if (name != "srgb")
-    scene_.warnings.add("ColorSpace \"" + name + "\" is not supported: rgb values read as srgb");
+  read_pbrt_color_space(name, tokens.place(word), state_.color_space, scene_.warnings);
 }
 
 void PbrtInterpreter::on_world_begin(const PbrtToken& word, PbrtTokenizer& tokens) {

@@ -10,6 +10,7 @@
 
 #include "base/transform.h"
 #include "import/pbrt_camera.h"
+#include "import/pbrt_color_space.h"
 #include "import/pbrt_material.h"
 #include "import/pbrt_place.h"
 #include "import/pbrt_shape.h"
@@ -32,6 +33,7 @@ class PbrtInterpreter {
     std::shared_ptr<const Defaults> defaults;
     bool is_start_active = true, is_end_active = true;
     Rgb absorption{0};  // of the medium inside shapes
+    PbrtColorSpace color_space = PbrtColorSpace::srgb;
   };
   enum class Block { attribute, object };
   struct Saved {

@@ -51,6 +51,10 @@ class PbrtParams {
 
   void add(PbrtParam param) { params_.push_back(std::move(param)); }
   const std::vector<PbrtParam>& all() const { return params_; }
+  template <class Change>
+  void change_all(const Change& change) {
+    for (PbrtParam& param : params_) change(param);
+  }
 
   // The first parameter of that name, or none.
   const PbrtParam* find(std::string_view name) const;

@@ -155,20 +155,23 @@ TEST_CASE("errors of pbrt files name the line and column of what is wrong") {
 
 TEST_CASE("unknown parameters and unsupported directives are warnings that name them") {
   const Scene scene = import_text(
-      "Option \"bool disablepixeljitter\" true\nColorSpace \"rec2020\"\n"
+      "Option \"bool forcediffuse\" true\nOption \"bool jiggle\" true\nColorSpace \"rec2021\"\n"
+      "Option \"integer seed\" 4\nOption \"bool disabletexturefiltering\" false\n"
       "Sampler \"halton\" \"integer pixelsamples\" 4\n"
       "Camera \"perspective\" \"float fof\" 3\nMakeNamedMedium \"fog\" \"float scale\" "
       "1\nWorldBegin\n"
       "LightSource \"glow\" \"rgb I\" [1 1 1]\nLightSource \"glow\"\n"
       "Shape \"paraboloid\"\nShape \"sphere\" \"float raduis\" 2\n"
       "MediumInterface \"\" \"fog\"\nWorldEnd\n");
-  for (const char* part :
-       {"disablepixeljitter", "rec2020", "Camera \"perspective\": parameter \"fof\"",
-        "LightSource \"glow\"", "shape \"paraboloid\"", "Shape \"sphere\": parameter \"raduis\"",
-        "MediumInterface", "MakeNamedMedium", "WorldEnd"}) {
+  for (const char* part : {"\"forcediffuse\" is not supported", "\"jiggle\" is unknown", "rec2021",
+                           "Camera \"perspective\": parameter \"fof\"", "LightSource \"glow\"",
+                           "shape \"paraboloid\"", "Shape \"sphere\": parameter \"raduis\"",
+                           "MediumInterface", "MakeNamedMedium", "WorldEnd"}) {
     CAPTURE(part);
     CHECK(has_warning(scene, part));
   }
+  CHECK_FALSE(has_warning(scene, "seed"));
+  CHECK_FALSE(has_warning(scene, "disabletexturefiltering"));
   for (const Warning& w : scene.warnings.entries())
     if (w.text.find("glow") != std::string::npos) CHECK(w.count == 2);
   CHECK(scene.spheres.size() == 1);

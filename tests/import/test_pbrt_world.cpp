@@ -367,3 +367,46 @@ TEST_CASE("modern-hall has thirteen sources that face into the hall") {
     CHECK(t.uv_scale.y == -1);
   }
 }
+
+TEST_CASE("rgb of other colour spaces becomes linear sRGB by their primaries") {
+  const auto scene_of = [](const std::string& space, const std::string& rgb) {
+    return import_world("AttributeBegin ColorSpace \"" + space +
+                        "\" Material \"diffuse\" \"rgb reflectance\" [" + rgb + "]\n" +
+                        "AreaLightSource \"diffuse\" \"rgb L\" [" + rgb + "]\n" + triangle +
+                        " AttributeEnd LightSource \"point\" \"rgb I\" [2 3 4]");
+  };
+  const auto near = [](const Rgb& a, const Rgb& b) {
+    return is_near({a.r, a.g, a.b}, {b.r, b.g, b.b}, 1e-3f);
+  };
+  struct Row {
+    const char* name;
+    Rgb reflectance;
+  };
+  // By published matrices: ITU-R BT.2407, Display P3's of the same primaries, the Academy's.
+  for (const Row& row :
+       {Row{"srgb", {0.3f, 0.5f, 0.2f}}, Row{"rec2020", {0.190f, 0.527f, 0.168f}},
+        Row{"DCI-P3", {0.255f, 0.508f, 0.174f}}, Row{"aces2065-1", {0.112f, 0.584f, 0.153f}}}) {
+    CAPTURE(row.name);
+    const Scene scene = scene_of(row.name, ".3 .5 .2");
+    CHECK(scene.warnings.entries().empty());
+    REQUIRE(scene.lights.size() == 2);
+    const Rgb color = scene.materials.at(scene.meshes.at(0).material).base_color.value;
+    CHECK(near(color, row.reflectance));
+    for (const Light& l : scene.lights)  // the space ends with its block
+      if (l.kind == LightKind::point) CHECK(near(l.radiance, {2, 3, 4}));
+    // A perfect white is one in every space; shining, it has the space's white point.
+    const Scene white = scene_of(row.name, "1 1 1");
+    CHECK(white.warnings.entries().empty());
+    CHECK(white.materials.at(white.meshes.at(0).material).base_color.value == Rgb(1));
+    const Rgb shining = white.lights.at(0).radiance;
+    CHECK(luminance(shining) == doctest::Approx(1).epsilon(1e-3));
+    CHECK((shining.r > 1.05f * shining.b) == (std::string(row.name) == "aces2065-1"));
+  }
+  const Scene by_attribute = import_world(
+      "ColorSpace \"rec2020\" Attribute \"material\" "
+      "\"rgb reflectance\" [.3 .5 .2]\nColorSpace \"srgb\" "
+      "Material \"diffuse\" " +
+      triangle);
+  CHECK(near(by_attribute.materials.at(by_attribute.meshes.at(0).material).base_color.value,
+             {0.3f, 0.5f, 0.2f}) == false);
+}
