@@ -6,9 +6,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
+#include "base/units.h"
 #include "import/file.h"
 #include "import/text_lines.h"
+#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -140,6 +143,7 @@ class MtlReader {
   WarningLog& warnings_;
 
   bool read_value(std::string_view keyword, MtlMaterial& m);
+  bool read_share(std::string_view keyword, MtlMaterial& m);
   bool read_image(std::string_view keyword, MtlMaterial& m);
 };
 
@@ -164,22 +168,34 @@ bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
     m.opacity = 1 - std::clamp(finite_number(lines_), 0.0f, 1.0f);
   } else if (keyword == "illum") {
     m.illumination = int(std::clamp(finite_number(lines_), 0.0f, 10.0f));
-  } else if (keyword == "Pr") {
-    m.roughness = std::clamp(finite_number(lines_), 0.0f, 1.0f);
-  } else if (keyword == "Pm") {
-    m.metallic = std::clamp(finite_number(lines_), 0.0f, 1.0f);
-  } else if (keyword == "Pc") {
-    m.coat = std::clamp(finite_number(lines_), 0.0f, 1.0f);
-  } else if (keyword == "Pcr") {
-    m.coat_roughness = std::clamp(finite_number(lines_), 0.0f, 1.0f);
   } else {
-    return false;
+    return read_share(keyword, m);
   }
+  return true;
+}
+
+// From 0 to 1.
+bool MtlReader::read_share(std::string_view keyword, MtlMaterial& m) {
+  using Share = std::pair<std::string_view, float MtlMaterial::*>;
+  constexpr std::array<Share, 5> shares{{{"Pc", &MtlMaterial::coat},
+                                         {"Pcr", &MtlMaterial::coat_roughness},
+                                         {"Ps", &MtlMaterial::sheen},
+                                         {"aniso", &MtlMaterial::anisotropy},
+                                         {"anisor", &MtlMaterial::turn}}};
+  const auto share = std::find_if(shares.begin(), shares.end(),
+                                  [&](const Share& s) { return s.first == keyword; });
+  if (share == shares.end() && keyword != "Pr" && keyword != "Pm") return false;
+  const float value = std::clamp(finite_number(lines_), 0.0f, 1.0f);
+  if (share != shares.end())
+    m.*(share->second) = value;
+  else
+    (keyword == "Pr" ? m.roughness : m.metallic) = value;
   return true;
 }
 
 bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
   MtlMap* map = keyword == "map_Kd"                        ? &m.map_diffuse
+                : keyword == "map_Ks"                      ? &m.map_specular
                 : keyword == "map_Ke"                      ? &m.map_emission
                 : keyword == "map_d" || keyword == "map_D" ? &m.map_opacity
                 : keyword == "map_Pr"                      ? &m.map_roughness
@@ -277,6 +293,14 @@ float alpha_from_exponent(float exponent) {
   return std::sqrt(2 / (exponent + 2));
 }
 
+void set_anisotropy(const MtlMaterial& mtl, Material& m) {
+  if (!(mtl.anisotropy > 0)) return;
+  // The square root of Burley's ratio: roughness is squared to a width.
+  const float aspect = std::pow(1 - 0.9f * mtl.anisotropy, 0.25f);
+  set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
+  m.anisotropy_rotation_rad += 2 * pi_f * mtl.turn;
+}
+
 void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnings) {
   const float ks = max_component(mtl.specular);
   const int illum = mtl.illumination;
@@ -292,6 +316,9 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
     m.metallic.value = mtl.metallic.value_or(0);
     m.coat.value = mtl.coat;
     m.coat_roughness.value = mtl.coat_roughness;
+    m.sheen_color.value = Rgb{mtl.sheen};
+    m.sheen_roughness.value = m.roughness.value;
+    set_anisotropy(mtl, m);
   } else if (is_glass) {
     m.kind = MaterialKind::dielectric;
     m.base_color.value = Rgb{1};
@@ -307,6 +334,7 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
   } else if (ks > 0 && (illum == 2 || illum < 0 || illum > 3)) {
     m.kind = MaterialKind::metallic_roughness;
     m.specular.value = std::min(ks, 1.0f);
+    m.specular_color.value = mtl.specular * (1 / ks);
   }
   if (mtl.opacity < 1) {
     m.kind = MaterialKind::metallic_roughness;
@@ -337,6 +365,8 @@ MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, Text
   if (has_image && kd.is_black()) kd = Rgb{1};
   set_surface(mtl, clamped_reflectance(kd, warnings), m, warnings);
   m.base_color.texture = load(mtl.map_diffuse, true, folder, loader, warnings);
+  if (m.kind == MaterialKind::metallic_roughness && !mtl.roughness && !mtl.metallic)
+    m.specular_color.texture = load(mtl.map_specular, true, folder, loader, warnings);
   m.roughness.texture = load(mtl.map_roughness, false, folder, loader, warnings);
   m.metallic.texture = load(mtl.map_metallic, false, folder, loader, warnings);
   m.normal_texture = load(mtl.map_normal, false, folder, loader, warnings);
@@ -347,11 +377,12 @@ MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, Text
     const bool is_color_image = mtl.map_opacity.file == mtl.map_diffuse.file;
     m.alpha = {1, load(mtl.map_opacity, false, folder, loader, warnings), is_color_image ? 3 : 0};
   }
-  out.emission = mtl.emission;
-  if (!mtl.emission.is_black())
+  const bool is_imaged = !mtl.map_emission.file.empty();
+  out.emission = mtl.emission.value_or(is_imaged ? Rgb{1} : Rgb{0});
+  if (!out.emission.is_black())
     out.emission_texture = load(mtl.map_emission, true, folder, loader, warnings);
-  else if (!mtl.map_emission.file.empty())
-    warnings.add("MTL: map_Ke without Ke is ignored");
+  else if (is_imaged)
+    warnings.add("MTL: map_Ke with a Ke of 0 is ignored");
   return out;
 }
 

@@ -7,12 +7,14 @@
 // - d < 1 (or Tr > 0): with illum 6, 7, solid glass of index Ni; else a thin sheet that lets the
 //   share 1 - d through. map_d is the share of rays that meet the surface.
 // - illum 2, or none given, with Ks: coated diffuse of base colour Kd, whose 4 % reflection is
-//   scaled by max(Ks) (1 = all of it), alpha = sqrt(2 / (Ns + 2)).
+//   scaled by Ks (1 = all of it) and map_Ks, alpha = sqrt(2 / (Ns + 2)).
+// - aniso and anisor, with Pr or Pm: widths alpha / a and alpha a with a = sqrt(1 - .9 aniso) [2];
+//   Ps: white fibres of that share.
 // - else diffuse Kd.
-// Where map_Kd is given and Kd is black or absent, the image alone counts.
+// Where map_Kd is given and Kd is black or absent, the image alone counts; so map_Ke without Ke.
 //
 // References: [1] Wavefront Technologies, "MTL material format", 1995, and the physically based
-//   extension by Exocortex.
+//   extension by Exocortex. [2] Burley, "Physically Based Shading at Disney", 2012.
 #pragma once
 
 #include <map>
@@ -38,7 +40,7 @@ struct MtlMaterial {
   std::string name;
   std::optional<Rgb> diffuse;                // Kd
   Rgb specular{0};                           // Ks
-  Rgb emission{0};                           // Ke
+  std::optional<Rgb> emission;               // Ke
   float exponent = 0;                        // Ns
   float opacity = 1;                         // d, 1 - Tr
   std::optional<Rgb> filter;                 // Tf: colour of what goes through
@@ -46,7 +48,10 @@ struct MtlMaterial {
   int illumination = -1;                     // illum; -1 = not given
   std::optional<float> roughness, metallic;  // Pr, Pm
   float coat = 0, coat_roughness = 0;        // Pc, Pcr
-  MtlMap map_diffuse, map_emission, map_opacity, map_roughness, map_metallic, map_normal, map_bump;
+  float sheen = 0;                           // Ps
+  float anisotropy = 0, turn = 0;            // aniso, anisor: of a whole turn
+  MtlMap map_diffuse, map_specular, map_emission, map_opacity, map_roughness, map_metallic,
+      map_normal, map_bump;
 };
 
 using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;

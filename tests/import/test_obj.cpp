@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/units.h"
 #include "image/write_image.h"
 #include "import/mesh_clean.h"
 #include "import/obj.h"
@@ -177,6 +178,34 @@ TEST_CASE("materials of an MTL library") {
 
   m = material_of("  Kd .25\n");  // one number stands for three
   CHECK(m.base_color.value == Rgb(0.25f));
+}
+
+TEST_CASE("MTL: gloss of two widths and its direction, sheen, colours and images of gloss") {
+  const Material grain = material_of("Kd .5 .5 .5\nPr .4\nPm 1\naniso .8\nanisor .25\nPs .5\n");
+  // Burley: widths .16 / a and .16 a, a = sqrt(1 - .9 × .8).
+  const double a = std::sqrt(1 - 0.9 * 0.8), narrow = 0.16 * a, wide = 0.16 / a;
+  CHECK(sqr(double(grain.roughness.value)) == doctest::Approx(narrow));
+  CHECK(narrow + (1 - narrow) * sqr(double(grain.anisotropy.value)) == doctest::Approx(wide));
+  CHECK(grain.anisotropy_rotation_rad == doctest::Approx(0.5 * pi));
+  CHECK(grain.sheen_color.value == Rgb{0.5f});
+  CHECK(material_of("Kd .5 .5 .5\nPr .4\n").anisotropy.value == 0);
+
+  const Material gloss = material_of("Kd .1 .1 .1\nKs .2 .4 .8\nNs 100\nillum 2\n");
+  CHECK(gloss.specular.value == 0.8f);
+  CHECK(gloss.specular_color.value.r == doctest::Approx(0.25));
+
+  const TempFolder folder;
+  write_image(folder.path("k.pfm"), Image(2, 2, Rgb{0.5f}));
+  folder.write("m.mtl", "newmtl a\nKd .1 .1 .1\nKs 1 1 1\nmap_Ks -s 2 2 1 k.pfm\nmap_Ke k.pfm\n");
+  const std::string faces = "mtllib m.mtl\n" + square + "usemtl a\nf 1 2 3\n";
+  const Scene lamp = import_obj(folder.write("s.obj", faces));
+  CHECK(lamp.materials.at(lamp.meshes.at(0).material).specular_color.texture >= 0);
+  REQUIRE(lamp.lights.size() == 1);  // by the image, where no Ke is given
+  CHECK(lamp.lights[0].radiance == Rgb{1});
+  folder.write("m.mtl", "newmtl a\nKe 0 0 0\nmap_Ke k.pfm\n");
+  const Scene dark = import_obj(folder.write("s.obj", faces));
+  CHECK(dark.lights.empty());
+  CHECK(has_warning(dark, "map_Ke with a Ke of 0"));
 }
 
 TEST_CASE("images of materials: options, blanks, backslashes, and never outside the folder") {
