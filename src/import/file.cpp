@@ -170,10 +170,10 @@ FileBytes::FileBytes(const std::string& path, uint64_t max_bytes, const TellProg
     return;
   }
   const auto size = size_t(allowed_size(path, max_bytes));
+  bytes_.reset(large_pages(size));
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) throw InputError(path, 0, 0, std::string("cannot be opened: ") + strerror(errno));
   FilesRead::note(path);
-  bytes_.reset(large_pages(size));
   constexpr size_t piece = size_t(4) << 20;
   std::vector<int64_t> had(size / piece + 1, 0);
   ReadProgress progress(tell, 0, file_progress, size);

@@ -1,20 +1,7 @@
-// MTL material libraries, and what their Phong-era terms become here.
+// MTL material libraries, as they are written; what becomes of them: mtl_convert.h.
 //
-// The format names colours, not how they combine, so this is a choice [1]:
-// - Pr or Pm (the physically based extension): metallic_roughness with base colour Kd.
-// - illum 3, 5, 8 (mirror): metallic_roughness with base colour Kd + Ks, metallic by the share of
-// Ks.
-// - d < 1 (or Tr > 0): with illum 6, 7, solid glass of index Ni; else a thin sheet that lets the
-//   share 1 - d through. map_d is the share of rays that meet the surface.
-// - illum 2, or none given, with Ks: coated diffuse of base colour Kd, whose 4 % reflection is
-//   scaled by Ks (1 = all of it) and map_Ks, alpha = sqrt(2 / (Ns + 2)).
-// - aniso and anisor, with Pr or Pm: widths alpha / a and alpha a with a = sqrt(1 - .9 aniso) [2];
-//   Ps: white fibres of that share.
-// - else diffuse Kd.
-// Where map_Kd is given and Kd is black or absent, the image alone counts; so map_Ke without Ke.
-//
-// References: [1] Wavefront Technologies, "MTL material format", 1995, and the physically based
-//   extension by Exocortex. [2] Burley, "Physically Based Shading at Disney", 2012.
+// References: Wavefront Technologies, "MTL material format", 1995, and the physically based
+//   extension by Exocortex.
 #pragma once
 
 #include <map>
@@ -23,8 +10,8 @@
 #include <string_view>
 
 #include "base/log.h"
-#include "import/texture_loader.h"
-#include "scene/scene.h"
+#include "base/rgb.h"
+#include "base/vec.h"
 
 namespace troffer {
 
@@ -61,14 +48,5 @@ using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;
 // InputError: malformed numbers.
 void read_mtl(const std::string& path, const std::string& subfolder, MtlLibrary& library,
               WarningLog& warnings);
-
-// A material of the scene, and what it emits.
-struct MtlConverted {
-  Material material;
-  Rgb emission;
-  int32_t emission_texture = no_texture;
-};
-MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
-                         const std::vector<Texture>& textures, WarningLog& warnings);
 
 }  // namespace troffer

@@ -9,7 +9,7 @@
 #include "import/emissive.h"
 #include "import/file.h"
 #include "import/mesh_clean.h"
-#include "import/mtl.h"
+#include "import/mtl_convert.h"
 #include "import/obj_lines.h"
 #include "import/obj_parts.h"
 #include "import/obj_piece.h"

@@ -16,7 +16,7 @@ namespace troffer {
 // front, in W/(m² sr); its meshes are called emitter0, emitter1 … in order of appearance. No
 // cameras. Free-form curves, points, lines and smoothing groups are left out.
 // Material libraries and images are looked up beside the file that names them and never outside
-// the scene's folder; a missing one is a warning. mtl.h says how materials are read.
+// the scene's folder; a missing one is a warning. mtl_convert.h says how materials are read.
 // InputError: with line and column, for malformed numbers and indices out of range.
 Scene import_obj(const std::string& path, const PieceReading& how = {});
 

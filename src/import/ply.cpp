@@ -57,7 +57,7 @@ class PlyReader {
   PlyHeader header_;
   PlyBody body_;
   PlyCutter cutter_;
-  mutable ReadProgress progress_;
+  ReadProgress progress_;
   WarningLog& warnings_;
   size_t max_triangles_;
   AnchoredMesh anchored_;
@@ -67,7 +67,7 @@ class PlyReader {
 
   void check_count(const PlyElement& element) const;
   bool read_in_pieces(const std::vector<PlyPiece>& pieces,
-                      const std::function<void(size_t piece, PlyBody& body)>& read) const;
+                      const std::function<void(size_t piece, PlyBody& body)>& read);
   std::optional<std::vector<PlyPiece>> cut(const PlyElement& element);
   void go_past(const std::vector<PlyPiece>& pieces);
   void read_vertices(const PlyElement& element);
@@ -97,7 +97,7 @@ void PlyReader::check_count(const PlyElement& element) const {
 // Side by side. False where a piece does not hold its rows and nothing else, or anything is wrong
 // with it: what is wrong first, and where, is found out by reading row by row.
 bool PlyReader::read_in_pieces(const std::vector<PlyPiece>& pieces,
-                               const std::function<void(size_t, PlyBody&)>& read) const {
+                               const std::function<void(size_t, PlyBody&)>& read) {
   std::atomic<bool> is_sound{true};
   parallel_for(pieces.size(), 0, [&](size_t i) {
     if (!is_sound) return;

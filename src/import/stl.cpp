@@ -25,7 +25,7 @@ constexpr double stl_corners_progress = 0.6;                 // the file's corne
 // The corners of all triangles, one after the other, of either kind of file.
 class StlCorners {
  public:
-  // InputError: what read_corners says.
+  // InputError: no STL file, cut short, or of too many triangles.
   StlCorners(const std::string& path, std::string_view text, const PieceReading& how);
   size_t size() const { return is_binary_ ? 3 * count_ : corners_.size(); }
   Vec3d at(size_t i) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/parallel.h"
+#include "base/random.h"
 
 namespace troffer {
 
@@ -13,16 +14,13 @@ namespace {
 constexpr size_t weld_piece = size_t(3) << 15, weld_buckets = 256;
 constexpr uint32_t no_corner = 0xffffffffu;
 
-uint64_t hash_of(const Vec3& p) {
+uint64_t hash_of_place(const Vec3& p) {
   const auto bits = [](float x) { return uint64_t(std::bit_cast<uint32_t>(x + 0.0f)); };  // -0 is 0
-  uint64_t h = (bits(p.x) | bits(p.y) << 32) * 0x9e3779b97f4a7c15u;
-  h = (h ^ (h >> 32) ^ bits(p.z)) * 0xd6e8feb86659fd93u;
-  h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93u;
-  return h ^ (h >> 32);
+  return mix64((bits(p.x) | bits(p.y) << 32) ^ mix64(bits(p.z)));
 }
 
 size_t bucket_of(const Vec3& p) {
-  return size_t(hash_of(p) >> 56);
+  return size_t(hash_of_place(p) >> 56);
 }
 
 // The corners by buckets of their places, in each as they come.
@@ -66,7 +64,7 @@ void find_firsts(const std::vector<Vec3>& corners, const uint32_t* begin, const 
     const Vec3& p = corners[*i];
     firsts[*i] = *i;
     if (!is_finite(p)) continue;
-    size_t slot = hash_of(p) & mask;
+    size_t slot = hash_of_place(p) & mask;
     while (table[slot] != no_corner && !(corners[table[slot]] == p)) slot = (slot + 1) & mask;
     if (table[slot] == no_corner)
       table[slot] = *i;

@@ -194,6 +194,14 @@ TEST_CASE("MTL: gloss of two widths and its direction, sheen, colours and images
   CHECK(gloss.specular.value == 0.8f);
   CHECK(gloss.specular_color.value.r == doctest::Approx(0.25));
 
+  const auto told = [](const std::string& mtl, const char* words) {
+    return has_warning(import_text(square + "usemtl a\nf 1 2 3\n", "newmtl a\n" + mtl), words);
+  };
+  CHECK(told("Kd .5 .5 .5\naniso .8\n", "aniso and Ps without Pr or Pm"));
+  CHECK(!told("Kd .5 .5 .5\nPr .4\naniso .8\n", "aniso"));
+  for (const char* other : {"Pr .4\n", "illum 3\nKs 1 1 1\n", "illum 1\n"})
+    CHECK(told(other + std::string("map_Ks gone.png\n"), "map_Ks is for gloss"));
+
   const TempFolder folder;
   write_image(folder.path("k.pfm"), Image(2, 2, Rgb{0.5f}));
   folder.write("m.mtl", "newmtl a\nKd .1 .1 .1\nKs 1 1 1\nmap_Ks -s 2 2 1 k.pfm\nmap_Ke k.pfm\n");
