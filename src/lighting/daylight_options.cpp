@@ -185,11 +185,13 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
   if (has_sky && needs_sun(request) && !request.sun)
     throw UsageError("--sky " + o.sky + " depends on where the sun stands: give --sun or --at");
   if (request.sun && !(request.sun->altitude_deg > 0)) {
-    scene.warnings.add(
-        fmt::format("the sun is {:.2f} degrees below the horizon: neither it nor a "
-                    "sky gives light",
-                    -request.sun->altitude_deg));
-    return;
+    // At dusk a sky that looks the same wherever the sun stands is as bright as it was asked to be.
+    const bool is_left = has_sky && request.diffuse_lx && !needs_sun(request);
+    scene.warnings.add(fmt::format(
+        "the sun is {:.2f} degrees below the horizon: {}", std::abs(request.sun->altitude_deg),
+        is_left ? "it gives no light" : "neither it nor a sky gives light"));
+    if (!is_left) return;
+    request.sun.reset();
   }
   const size_t before = scene.lights.size();
   add_sky(scene, request, compass);
