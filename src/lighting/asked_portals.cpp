@@ -1,5 +1,7 @@
 #include "lighting/asked_portals.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,13 +19,15 @@ using Corners = std::vector<Vec3>;
 // Rectangles that differ by less than this of their size count as in one plane, or side by side.
 constexpr double portal_tolerance = 1e-3;
 
+bool is_glass(const Scene& scene, const Mesh& mesh) {
+  const Material& m = scene.materials[mesh.material];
+  return m.kind == MaterialKind::dielectric || m.transmission.value > 0;
+}
+
 // A part of the scene that only says where a portal is hides nothing; a pane stays, and a source.
 void take_out_opaque(Scene& scene, const std::string& name) {
-  for (Mesh& mesh : scene.meshes) {
-    const Material& m = scene.materials[mesh.material];
-    const bool is_pane = m.kind == MaterialKind::dielectric || m.transmission.value > 0;
-    if (mesh.name == name && !is_pane && mesh.lights.empty()) mesh.triangles.clear();
-  }
+  for (Mesh& mesh : scene.meshes)
+    if (mesh.name == name && !is_glass(scene, mesh) && mesh.lights.empty()) mesh.triangles.clear();
 }
 
 // "1,2,3"; not all is read where something is no number.
@@ -108,6 +112,29 @@ void check_pair(Scene& scene, const Corners& a, const Corners& b) {
   }
 }
 
+// Blinds, reveals and ground that lie beyond all portals are dark, and reflect nothing into the
+// room: half of the light behind blinds.
+void warn_of_what_is_beyond(Scene& scene, const std::vector<Corners>& portals) {
+  const auto is_beyond = [&](const Vec3& p) {
+    return std::all_of(portals.begin(), portals.end(), [&](const Corners& c) {
+      return dot(Vec3d(p) - Vec3d(c[0]), outward(c)) > portal_tolerance * size_of(c);
+    });
+  };
+  size_t n = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    if (is_glass(scene, mesh)) continue;
+    n += size_t(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+      return std::all_of(t.begin(), t.end(),
+                         [&](uint32_t v) { return is_beyond(mesh.positions[v]); });
+    }));
+  }
+  if (n > 0)
+    scene.warnings.add(fmt::format(
+        "--portal: {} triangles lie beyond it, where none of its light reaches, and reflect none "
+        "into the room: it belongs outside of blinds, reveals and ground",
+        n));
+}
+
 }  // namespace
 
 void add_portals(Scene& scene, const std::vector<std::string>& texts) {
@@ -135,6 +162,7 @@ void add_portals(Scene& scene, const std::vector<std::string>& texts) {
     }
     is_used = true;
   }
+  if (is_used) warn_of_what_is_beyond(scene, portals);
   if (!is_used) scene.warnings.add("--portal does nothing without light from beyond the scene");
 }
 

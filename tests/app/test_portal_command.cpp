@@ -151,4 +151,17 @@ TEST_CASE("several portals: each lets in its own light, none twice") {
   CHECK(beyond.err.find("counts twice") != std::string::npos);
   CHECK(beside.err.find("counts twice") == std::string::npos);
   CHECK(run(whole, "1,2,3").status == 2);
+  // Blinds outside of a portal reflect none of its light.
+  const auto is_told = [&](double height) {
+    const std::string scene = folder.write(
+        "slats.pbrt", std::string(plain) +
+                          "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [" +
+                          fmt::format("-.5 0 {0}  .5 0 {0}  .5 .1 {0}]\n", height) +
+                          "LightSource \"infinite\" \"rgb L\" [3 3 3]\n");
+    return run_program(folder, {"measure", scene, "--points", at, "--portal", whole, "--indirect",
+                                "none", "--spp", "16"})
+               .err.find("1 triangles lie beyond") != std::string::npos;
+  };
+  CHECK(is_told(2.1));
+  CHECK(!is_told(1.9));
 }
