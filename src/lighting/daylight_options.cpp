@@ -231,9 +231,13 @@ Vec3d parse_vector(const std::string& text, const char* option) {
 }
 
 void add_daylight(Scene& scene, const DaylightOptions& o) {
-  if (!std::isfinite(o.north_deg) || !std::isfinite(o.ground) ||
-      !std::isfinite(o.environment_rotation_deg))
-    throw UsageError("--north, --ground and --environment-rotation: not a number");
+  // The command line's ranges let what is no number pass.
+  for (const double v :
+       {o.north_deg, o.ground, o.environment_rotation_deg, o.light_radius, o.turbidity})
+    if (!std::isfinite(v))
+      throw UsageError(
+          "--north, --ground, --environment-rotation, --light-radius and --turbidity: not a "
+          "number");
   const Vec3 up = o.up.empty() ? guess_up(scene) : Vec3(parse_vector(o.up, "--up"));
   if (!(length(up) > 0)) throw UsageError("--up has no length");
   const Compass compass = make_compass(up, o.north_deg, is_mirrored(scene));

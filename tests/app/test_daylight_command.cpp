@@ -158,6 +158,8 @@ TEST_CASE("options of daylight that make no sense are told") {
       {"--turbidity", "3", "--sky", "overcast", "--sun", "10,20"},
       {"--ground", "2"},
       {"--north", "nan"},
+      {"--light-radius", "nan"},
+      {"--sun", "0,30", "--turbidity", "nan"},
       {"--environment", "a,-2"},
       {"--up", "0,0,0"},
       {"--up", "x"},
