@@ -40,11 +40,12 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
                   "Turns it clockwise, seen from above, in degrees")
       ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str();
-  command.add_option(
-      "--portal", o.portal,
-      "The rectangle that light of the sky, the sun and images comes through alone: "
-      "four corners x,y,z, … counterclockwise seen from where it arrives, or the name "
-      "of a part of the scene whose front faces there");
+  command
+      .add_option("--portal", o.portals,
+                  "The rectangle that light of the sky, the sun and images comes through alone: "
+                  "four corners x,y,z, … counterclockwise seen from where it arrives, or the name "
+                  "of a part of the scene whose front faces there; may be repeated")
+      ->allow_extra_args(false);
   command
       .add_option(
           "--luminaire", o.luminaires,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 #include "base/error.h"
 #include "import/attach_luminaire.h"
@@ -89,8 +90,11 @@ Rgb luminaire_scale(const Scene& scene, const Luminaire& luminaire, const std::s
 }
 
 void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down) {
+  std::set<std::string> nodes;
   for (const std::string& text : luminaires) {
     const LuminaireOption o = parse_luminaire(text);
+    if (!nodes.insert(o.node).second)
+      scene.warnings.add("--luminaire: '" + o.node + "' is given twice; the last file counts");
     const Luminaire luminaire = read_and_check_luminaire(o.file, scene.warnings);
     attach_luminaire(scene, o.node, luminaire,
                      luminaire_scale(scene, luminaire, o.file, o.lumens, o.kelvin), down);

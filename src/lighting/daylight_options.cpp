@@ -13,11 +13,11 @@
 #include "daylight/sun_position.h"
 #include "import/environment_file.h"
 #include "import/light_radius.h"
+#include "lighting/asked_portals.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/luminaire_list.h"
 #include "lighting/weather.h"
 #include "scene/orientation.h"
-#include "scene/portal_corners.h"
 
 namespace troffer {
 
@@ -185,11 +185,13 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
   if (has_sky && needs_sun(request) && !request.sun)
     throw UsageError("--sky " + o.sky + " depends on where the sun stands: give --sun or --at");
   if (request.sun && !(request.sun->altitude_deg > 0)) {
-    scene.warnings.add(
-        fmt::format("the sun is {:.2f} degrees below the horizon: neither it nor a "
-                    "sky gives light",
-                    -request.sun->altitude_deg));
-    return;
+    // At dusk a sky that looks the same wherever the sun stands is as bright as it was asked to be.
+    const bool is_left = has_sky && request.diffuse_lx && !needs_sun(request);
+    scene.warnings.add(fmt::format(
+        "the sun is {:.2f} degrees below the horizon: {}", std::abs(request.sun->altitude_deg),
+        is_left ? "it gives no light" : "neither it nor a sky gives light"));
+    if (!is_left) return;
+    request.sun.reset();
   }
   const size_t before = scene.lights.size();
   add_sky(scene, request, compass);
@@ -212,49 +214,6 @@ void warn_of_unused(Scene& scene, const DaylightOptions& o) {
     scene.warnings.add("--ground does nothing without a sky");
 }
 
-// A part of the scene that only says where a portal is hides nothing; a pane stays, and a source.
-void take_out_opaque(Scene& scene, const std::string& name) {
-  for (Mesh& mesh : scene.meshes) {
-    const Material& m = scene.materials[mesh.material];
-    const bool is_pane = m.kind == MaterialKind::dielectric || m.transmission.value > 0;
-    if (mesh.name == name && !is_pane && mesh.lights.empty()) mesh.triangles.clear();
-  }
-}
-
-// Twelve numbers, or the name of a part of the scene.
-std::vector<Vec3> parse_portal(Scene& scene, const std::string& text) {
-  const std::vector<std::string> parts = split(text, ',');
-  const bool are_numbers = std::all_of(parts.begin(), parts.end(), parse_number);
-  if (!are_numbers) {
-    const auto corners = rectangle_of_meshes(scene, text);
-    if (!corners)
-      throw UsageError("--portal: '" + text +
-                       "' is neither twelve numbers nor the name of a flat rectangle");
-    take_out_opaque(scene, text);
-    return *corners;
-  }
-  std::vector<Vec3d> p;
-  for (size_t i = 0; i + 2 < parts.size(); i += 3)
-    p.push_back(
-        Vec3d{*parse_number(parts[i]), *parse_number(parts[i + 1]), *parse_number(parts[i + 2])} -
-        scene.origin);
-  if (parts.size() != 12 || !is_rectangle(p))
-    throw UsageError("--portal: '" + text + "' is no rectangle x,y,z, … of four corners");
-  return {Vec3(p[0]), Vec3(p[1]), Vec3(p[2]), Vec3(p[3])};
-}
-
-// All light from beyond the scene comes through it that has no portal of its own.
-void add_portal(Scene& scene, const std::string& text) {
-  const std::vector<Vec3> corners = parse_portal(scene, text);
-  bool is_used = false;
-  for (Light& e : scene.lights) {
-    if (has_surface(e.kind) || is_delta(e.kind) || !e.portal.empty()) continue;
-    e.portal = corners;
-    is_used = true;
-  }
-  if (!is_used) scene.warnings.add("--portal does nothing without light from beyond the scene");
-}
-
 }  // namespace
 
 Vec3d parse_vector(const std::string& text, const char* option) {
@@ -272,9 +231,13 @@ Vec3d parse_vector(const std::string& text, const char* option) {
 }
 
 void add_daylight(Scene& scene, const DaylightOptions& o) {
-  if (!std::isfinite(o.north_deg) || !std::isfinite(o.ground) ||
-      !std::isfinite(o.environment_rotation_deg))
-    throw UsageError("--north, --ground and --environment-rotation: not a number");
+  // The command line's ranges let what is no number pass.
+  for (const double v :
+       {o.north_deg, o.ground, o.environment_rotation_deg, o.light_radius, o.turbidity})
+    if (!std::isfinite(v))
+      throw UsageError(
+          "--north, --ground, --environment-rotation, --light-radius and --turbidity: not a "
+          "number");
   const Vec3 up = o.up.empty() ? guess_up(scene) : Vec3(parse_vector(o.up, "--up"));
   if (!(length(up) > 0)) throw UsageError("--up has no length");
   const Compass compass = make_compass(up, o.north_deg, is_mirrored(scene));
@@ -309,7 +272,7 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
         "the scene has no light: an even sky of 10000 lx lights it (--sky chooses another, --sky "
         "none keeps it dark)");
   }
-  if (!o.portal.empty()) add_portal(scene, o.portal);
+  add_portals(scene, o.portals);
   warn_of_unused(scene, o);
 }
 

@@ -17,8 +17,9 @@ struct DaylightOptions {
   std::string sky, sun, at;
   std::string weather, date;  // lighting/weather.h
   double light_radius = 0;    // m; 0: points stay points
-  std::string environment, portal;
-  std::string up;  // x,y,z; empty: guessed
+  std::string environment;
+  std::vector<std::string> portals;  // lighting/asked_portals.h
+  std::string up;                    // x,y,z; empty: guessed
   double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;
   double turbidity = 0;  // Linke's; 0: what is typical
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -19,14 +20,16 @@ namespace {
 
 constexpr uint64_t max_file_bytes = uint64_t(64) << 20;
 // Columns of a row [1].
-constexpr size_t month = 1, day = 2, hour = 3, direct = 14, diffuse = 15;
+constexpr size_t month = 1, day = 2, hour = 3, minute = 4, direct = 14, diffuse = 15;
 constexpr double missing = 9999;
+// Instruments' own error at night, in W/m²; what is less stands for nothing measured, as -999 does.
+constexpr double least_measured = -50;
 
 double number(const std::vector<std::string>& fields, size_t i, double least, double most,
               const std::string& path, int line) {
   char* end = nullptr;
   const double v = i < fields.size() ? std::strtod(fields[i].c_str(), &end) : double(NAN);
-  if (end == nullptr || end == fields[i].c_str() || !(v >= least && v <= most))
+  if (end == nullptr || end == fields[i].c_str() || *end != '\0' || !(v >= least && v <= most))
     throw InputError(path, line, 1,
                      "field " + std::to_string(i + 1) + ": a number between " +
                          std::to_string(int(least)) + " and " + std::to_string(int(most)) +
@@ -34,12 +37,13 @@ double number(const std::vector<std::string>& fields, size_t i, double least, do
   return v;
 }
 
-// Nothing, and numbers from `missing` on, stand for what nobody measured.
+// Nothing, and numbers from `missing` on or far below 0, stand for what nobody measured.
 double irradiance(const std::vector<std::string>& fields, size_t i, const std::string& path,
                   int line) {
-  const double v = fields[i].empty() ? missing : number(fields, i, 0, 1e9, path, line);
-  if (v >= missing) throw InputError(path, line, 1, "the irradiances of this hour are missing");
-  return v;
+  const double v = fields[i].empty() ? missing : number(fields, i, -1e9, 1e9, path, line);
+  if (v >= missing || v < least_measured)
+    throw InputError(path, line, 1, "the irradiances of this hour are missing");
+  return std::max(v, 0.0);
 }
 
 struct Date {
@@ -84,15 +88,14 @@ Weather read_hour(const std::string& path, const Wanted& wanted_in) {
   Date wanted;
   const std::string text = read_text_file(path, max_file_bytes);
   std::string_view rest = text;
+  if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // byte order mark
   Weather weather;
-  double zone_hours = 0;
+  double zone_hours = 0, rows_an_hour = 1;
   bool has_data = false;
   for (int line = 1; !rest.empty(); ++line) {
-    const size_t end = rest.find('\n');
-    std::string_view row = rest.substr(0, end);
-    if (row.ends_with('\r')) row.remove_suffix(1);
-    const auto fields = fields_of_row(row, ',');
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    const size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+    const auto fields = fields_of_row(rest.substr(0, end), ',');
+    rest.remove_prefix(std::min(rest.size(), end + (rest.substr(end, 2) == "\r\n" ? 2 : 1)));
     if (line == 1) {
       if (fields[0] != "LOCATION") throw InputError(path, 1, 1, "does not begin with LOCATION");
       weather.latitude_deg = number(fields, 6, -90, 90, path, line);
@@ -102,6 +105,7 @@ Weather read_hour(const std::string& path, const Wanted& wanted_in) {
     }
     if (!has_data) {
       has_data = fields[0].starts_with("DATA PERIODS");
+      if (has_data && fields.size() > 2) rows_an_hour = number(fields, 2, 1, 60, path, line);
       continue;
     }
     if (fields.size() <= diffuse) continue;
@@ -110,6 +114,11 @@ Weather read_hour(const std::string& path, const Wanted& wanted_in) {
         int(number(fields, day, 1, 31, path, line)) != wanted.day ||
         int(number(fields, hour, 1, 24, path, line)) != wanted.hour + 1)
       continue;
+    // Of several rows an hour each ends at its minute, the last at 60 or 0.
+    if (rows_an_hour > 1) {
+      const double ends_at = number(fields, minute, 0, 60, path, line);
+      if (ends_at > 0 && ends_at <= wanted.minute) continue;
+    }
     weather.direct_normal = irradiance(fields, direct, path, line);
     weather.diffuse_horizontal = irradiance(fields, diffuse, path, line);
     const auto year = int(number(fields, 0, 1900, 2200, path, line));

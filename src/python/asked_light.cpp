@@ -84,12 +84,26 @@ std::string date(const py::handle& value) {
 }
 
 std::string portal(const py::handle& value) {
-  static constexpr const char* expected = "portal: a name, or four corners (x, y, z)";
+  static constexpr const char* expected = "portal: a name, or four corners (x, y, z), or several";
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   std::vector<std::string> corners;
   for (const py::object& corner : items(value, expected))
     corners.push_back(numbers(corner, expected));
   return joined(corners);
+}
+
+// One or several: of several, what the first one holds is no number.
+std::vector<std::string> portals(const py::handle& value) {
+  if (py::isinstance<py::str>(value)) return {portal(value)};
+  const std::vector<py::object> all = items(value, "portal: a name, or four corners (x, y, z)");
+  const bool is_named = !all.empty() && py::isinstance<py::str>(all[0]);
+  if (!all.empty() && !is_named) {
+    const std::vector<py::object> first = items(all[0], "portal: a corner is (x, y, z)");
+    if (first.empty() || !py::hasattr(first[0], "__iter__")) return {portal(value)};
+  }
+  std::vector<std::string> texts;
+  for (const py::object& item : all) texts.push_back(portal(item));
+  return texts;
 }
 
 std::string environment(const py::handle& value) {
@@ -140,7 +154,7 @@ const std::map<std::string, Taker>& takers() {
        [](O& o, V v) {
          o.environment_rotation_deg = in_range(v, -360, 360, "environment_rotation");
        }},
-      {"portal", [](O& o, V v) { o.portal = portal(v); }},
+      {"portal", [](O& o, V v) { o.portals = portals(v); }},
       {"luminaires", [](O& o, V v) { o.luminaires = luminaires(v); }},
       {"luminaire_list", [](O& o, V v) { o.luminaire_list = path(v); }},
       {"light_radius", [](O& o, V v) { o.light_radius = in_range(v, 1e-6, 1e6, "light_radius"); }},
@@ -196,7 +210,7 @@ const char* const add_light_help =
     "or with at instead of date\n"
     "north: degrees by which it lies clockwise from the file's; ground: reflectance\n"
     "environment: path of an image, or (path, scale); environment_rotation: degrees\n"
-    "portal: name of a part of the scene, or four corners (x, y, z)\n"
+    "portal: name of a part of the scene, or four corners (x, y, z), or a list of such\n"
     "luminaires: {name: path of .ies or .ldt}, or {name: (path, lumens[, kelvin])}; lumens may be "
     "None\n"
     "luminaire_list: path of a .csv of luminaires to add\n"

@@ -1,6 +1,8 @@
 // Light from beyond a scene, by options; scenes without light or camera.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <sstream>
 
@@ -156,6 +158,8 @@ TEST_CASE("options of daylight that make no sense are told") {
       {"--turbidity", "3", "--sky", "overcast", "--sun", "10,20"},
       {"--ground", "2"},
       {"--north", "nan"},
+      {"--light-radius", "nan"},
+      {"--sun", "0,30", "--turbidity", "nan"},
       {"--environment", "a,-2"},
       {"--up", "0,0,0"},
       {"--up", "x"},
@@ -259,6 +263,57 @@ TEST_CASE("turbid air takes of the sun and adds to the sky") {
   CHECK(turbid < clear);
   CHECK(clear > 50'000);
   CHECK(clear < 90'000);
+}
+
+TEST_CASE("weather files: line ends, byte order marks, rows of a quarter, instruments' errors") {
+  const Folder folder;
+  const auto file = [&](const std::string& end, const std::string& mark, const char* night) {
+    std::string epw = mark + "LOCATION,Wien,-,AUT,none,110350,48.2,16.4,1.0,203.0" + end +
+                      "DATA PERIODS,1,4,Data,Sunday,1/1,12/31" + end;
+    for (int quarter = 0; quarter < 96; ++quarter)
+      epw += "2005,6,21," + std::to_string(quarter / 4 + 1) + "," +
+             std::to_string(quarter % 4 * 15 + 15) + ",?9,20,10,50,99000,900,1300,350,500," +
+             std::to_string(quarter * 5) + "," + (quarter < 16 ? night : "150") + ",0,0" + end;
+    return folder.write("q.epw", epw);
+  };
+  const auto by_hand = [&](const char* dni, const std::string& time) {
+    return measure(folder, {"--sky", fmt::format("perez:{},150", dni), "--at",
+                            "48.2,16.4,2005-06-21T" + time + "+01:00"})
+        .lx;
+  };
+  const char* const bom = "\xef\xbb\xbf";
+  for (const auto& [end, mark] :
+       std::vector<std::pair<std::string, std::string>>{{"\n", ""}, {"\r\n", bom}, {"\r", ""}}) {
+    const std::string path = file(end, mark, "-2");
+    const auto lx = [&](const std::string& time) {
+      return measure(folder, {"--weather", path, "--date", "06-21T" + time}).lx;
+    };
+    CHECK(lx("11:14") == doctest::Approx(by_hand("220", "11:14")).epsilon(1e-6));
+    CHECK(lx("11:15") == doctest::Approx(by_hand("225", "11:15")).epsilon(1e-6));
+    CHECK(lx("11:59") == doctest::Approx(by_hand("235", "11:59")).epsilon(1e-6));
+    CHECK(lx("02:00") == 0);
+  }
+  const auto status = [&](const char* night) {
+    return run_program(folder,
+                       {"measure", folder.path("plain.obj"), "--points", folder.path("p.csv"),
+                        "--weather", file("\n", "", night), "--date", "06-21T02:00"})
+        .status;
+  };
+  CHECK(status("-2") == 0);
+  CHECK(status("-999") == 1);
+  CHECK(status("12x") == 1);
+}
+
+TEST_CASE("at dusk a sky shines that is as bright as was asked, wherever the sun stands") {
+  const Folder folder;
+  CHECK(measure(folder, {"--sky", "overcast,80", "--sun", "270,-3"}).lx ==
+        doctest::Approx(measure(folder, {"--sky", "overcast,80"}).lx));
+  CHECK(measure(folder, {"--sky", "overcast,80"}).lx > 60);
+  CHECK(measure(folder, {"--sky", "overcast", "--sun", "270,-3"}).lx == 0);
+  CHECK(measure(folder, {"--sky", "clear,80", "--sun", "270,-3"}).lx == 0);
+  const Finished f = run_program(folder, {"measure", folder.path("plain.obj"), "--points",
+                                          folder.path("p.csv"), "--sun", "270,0"});
+  CHECK(contains(f.err, "the sun is 0.00 degrees"));
 }
 
 TEST_CASE("an hour of a weather file is Perez' sky with the sun of that place and time") {

@@ -176,6 +176,23 @@ TEST_CASE("a colour temperature colours a luminaire and leaves its lumens") {
               .status == 2);
 }
 
+TEST_CASE("a part of the scene that is given two files is told to shine by the last") {
+  const Folder folder;
+  folder.write("panel.obj", geometry);
+  folder.write("m.mtl", panel_obj(1));
+  const std::string even = folder.write("even.ies", ies(1)),
+                    narrow = folder.write("narrow.ies", ies(5));
+  const auto last = measure(folder, {"--luminaire", "emitter0=" + narrow});
+  const auto both =
+      measure(folder, {"--luminaire", "emitter0=" + even, "--luminaire", "emitter0=" + narrow});
+  CHECK(both[0].lx == last[0].lx);
+  const Finished f =
+      run_program(folder, {"measure", folder.path("panel.obj"), "--points",
+                           folder.write("p.csv", points), "--luminaire", "emitter0=" + even,
+                           "--luminaire", "emitter0=" + narrow, "--spp", "16"});
+  CHECK(f.err.find("'emitter0' is given twice") != std::string::npos);
+}
+
 TEST_CASE("control characters of a file's names do not reach the terminal") {
   const Folder folder;
   std::string text = ies(1);

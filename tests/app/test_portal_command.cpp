@@ -115,3 +115,53 @@ TEST_CASE("--portal: the name of a rectangle, what is none, and lights that have
       folder, {"measure", scene, "--points", below, "--portal", "opening", "--sky", "none"});
   CHECK(f.err.find("--portal does nothing") != std::string::npos);
 }
+
+TEST_CASE("several portals: each lets in its own light, none twice") {
+  const Folder folder;
+  const std::string at = folder.write("p.csv", points);
+  const std::string open = folder.write(
+      "open.pbrt", std::string(plain) + "LightSource \"infinite\" \"rgb L\" [3 3 3]\n");
+  const std::string left = "-.5,-.8,2,-.5,.8,2,0,.8,2,0,-.8,2",
+                    right = "0,-.8,2,0,.8,2,.5,.8,2,.5,-.8,2",
+                    whole = "-.5,-.8,2,-.5,.8,2,.5,.8,2,.5,-.8,2",
+                    above = "-.5,-.8,3,-.5,.8,3,.5,.8,3,.5,-.8,3";
+  for (const char* method : {"certified", "path", "fixed"}) {
+    const auto lit = [&](const std::vector<std::string>& portals) {
+      std::vector<std::string> options{"--method", method};
+      for (const std::string& p : portals) options.insert(options.end(), {"--portal", p});
+      return measure_direct(folder, open, at, options);
+    };
+    const auto both = lit({left, right}), one = lit({whole});
+    for (size_t i = 0; i < one.size(); ++i) {
+      CAPTURE(method);
+      CAPTURE(i);
+      CHECK(one[i].lx > 0);
+      CHECK(std::abs(both[i].lx - one[i].lx) <
+            5 * (both[i].error + one[i].error) + 2e-3 * one[i].lx);
+    }
+  }
+  const auto run = [&](const std::string& a, const std::string& b) {
+    return run_program(folder, {"measure", open, "--points", at, "--portal", a, "--portal", b,
+                                "--indirect", "none", "--spp", "16"});
+  };
+  const Finished overlapping = run(whole, left), beyond = run(whole, above),
+                 beside = run(left, right);
+  CHECK(overlapping.status == 2);
+  CHECK(overlapping.err.find("overlap") != std::string::npos);
+  CHECK(beyond.err.find("counts twice") != std::string::npos);
+  CHECK(beside.err.find("counts twice") == std::string::npos);
+  CHECK(run(whole, "1,2,3").status == 2);
+  // Blinds outside of a portal reflect none of its light.
+  const auto is_told = [&](double height) {
+    const std::string scene = folder.write(
+        "slats.pbrt", std::string(plain) +
+                          "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [" +
+                          fmt::format("-.5 0 {0}  .5 0 {0}  .5 .1 {0}]\n", height) +
+                          "LightSource \"infinite\" \"rgb L\" [3 3 3]\n");
+    return run_program(folder, {"measure", scene, "--points", at, "--portal", whole, "--indirect",
+                                "none", "--spp", "16"})
+               .err.find("1 triangles lie beyond") != std::string::npos;
+  };
+  CHECK(is_told(2.1));
+  CHECK(!is_told(1.9));
+}

@@ -110,6 +110,10 @@ class AddedLight(unittest.TestCase):
         text = ','.join(str(v) for corner in corners for v in corner)
         obj = self.folder / 'floor.obj'
         self.check(obj, ['--sky', 'even', '--portal', text], sky='even', portal=corners)
+        other = [(x + 9, y, z) for x, y, z in corners]
+        more = ','.join(str(v) for corner in other for v in corner)
+        self.check(obj, ['--sky', 'even', '--portal', text, '--portal', more], sky='even',
+                   portal=[corners, other])
 
     def test_luminaires(self):
         file, obj = self.write('even.ies', even_ies(1000)), self.folder / 'floor.obj'
