@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <optional>
 
 #include "base/error.h"
+#include "lighting/option_text.h"
 #include "scene/portal_corners.h"
 
 namespace troffer {
@@ -30,22 +31,14 @@ void take_out_opaque(Scene& scene, const std::string& name) {
     if (mesh.name == name && !is_glass(scene, mesh) && mesh.lights.empty()) mesh.triangles.clear();
 }
 
-// "1,2,3"; not all is read where something is no number.
-bool read_numbers(const std::string& text, std::vector<double>& numbers) {
-  const char* p = text.c_str();
-  while (true) {
-    char* end = nullptr;
-    numbers.push_back(std::strtod(p, &end));
-    if (end == p || !std::isfinite(numbers.back())) return false;
-    if (*end == '\0') return true;
-    if (*end != ',') return false;
-    p = end + 1;
-  }
-}
-
 Corners parse_portal(const Scene& scene, const std::string& text, bool& is_name) {
+  is_name = false;
   std::vector<double> v;
-  is_name = !read_numbers(text, v);
+  for (const std::string& part : split_text(text, ',')) {
+    const std::optional<double> number = parse_number(part);
+    if (!number) is_name = true;
+    v.push_back(number.value_or(0));
+  }
   if (is_name) {
     const auto corners = rectangle_of_meshes(scene, text);
     if (!corners)

@@ -16,6 +16,7 @@
 #include "lighting/asked_portals.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/luminaire_list.h"
+#include "lighting/option_text.h"
 #include "lighting/weather.h"
 #include "scene/orientation.h"
 
@@ -24,23 +25,6 @@ namespace troffer {
 namespace {
 
 constexpr double most_lx = 1e9;
-
-std::optional<double> parse_number(const std::string& text) {
-  char* end = nullptr;
-  const double v = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(v)) return std::nullopt;
-  return v;
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts{""};
-  for (const char c : text)
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
 
 [[noreturn]] void fail(const char* option, const std::string& text, const char* expected) {
   throw UsageError(fmt::format("{}: cannot read '{}' as {}", option, text, expected));
@@ -67,11 +51,11 @@ bool is_light(double lx) {
 SkyRequest parse_sky(const std::string& text) {
   static constexpr const char* expected =
       "even, overcast, clear or cie:1 … cie:15, each with ,LUX or without, perez:DNI,DHI, or none";
-  const std::vector<std::string> parts = split(text, ',');
-  const std::vector<std::string> name = split(parts[0], ':');
+  const std::vector<std::string> parts = split_text(text, ',');
+  const std::vector<std::string> name = split_text(parts[0], ':');
   SkyRequest r;
   if (name[0] == "perez" && name.size() == 2) {
-    const auto v = numbers(split(text.substr(6), ','), 0, 2, 2, "--sky", text, expected);
+    const auto v = numbers(split_text(text.substr(6), ','), 0, 2, 2, "--sky", text, expected);
     if (!(v[0] >= 0 && v[0] <= 2000 && v[1] > 0 && v[1] <= 2000)) fail("--sky", text, expected);
     r.kind = SkyKind::perez;
     r.direct_normal = v[0];
@@ -101,7 +85,7 @@ struct PlaceAndTime {
 
 PlaceAndTime parse_at(const std::string& text) {
   static constexpr const char* expected = "LATITUDE,LONGITUDE,TIME";
-  const std::vector<std::string> parts = split(text, ',');
+  const std::vector<std::string> parts = split_text(text, ',');
   if (parts.size() != 3) fail("--at", text, expected);
   const auto v = numbers({parts[0], parts[1]}, 0, 2, 2, "--at", text, expected);
   if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360) fail("--at", text, expected);
@@ -113,7 +97,7 @@ std::optional<SunRequest> parse_sun(const DaylightOptions& o) {
   SunRequest sun;
   if (!o.sun.empty()) {
     static constexpr const char* expected = "AZIMUTH,ALTITUDE[,LUX], in degrees and lx";
-    const auto v = numbers(split(o.sun, ','), 0, 2, 3, "--sun", o.sun, expected);
+    const auto v = numbers(split_text(o.sun, ','), 0, 2, 3, "--sun", o.sun, expected);
     if (std::abs(v[0]) > 360 || std::abs(v[1]) > 90) fail("--sun", o.sun, expected);
     sun.azimuth_deg = v[0];
     sun.altitude_deg = v[1];
