@@ -165,6 +165,7 @@ void Builder::ask(const CellPilot& pilot) {
     tasks.emplace_back().weight = p.weight;
   }
   start_map(seen);
+  asked_.light.resize(map_->size(), 0);  // of a map that is kept too, where nothing is seen
   for (const CellSeen& c : seen.seen) {
     const uint32_t cell = map_->add(c.hit, c.distance, true);
     asked_.light.resize(map_->size(), 0);

@@ -100,6 +100,22 @@ TEST_CASE("--solution: measure takes and keeps cells too") {
   }
 }
 
+TEST_CASE("--solution: cells that are kept, and views and points that see nothing") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
+  const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n500,500,500,0,0,1\n");
+  REQUIRE(run_program(folder, render_of(folder, scene, {"--quiet"})).status == 0);
+  const Finished view = run_program(
+      folder,
+      render_of(folder, scene, {"--quiet", "--eye", "500,500,500", "--target", "900,900,900"}));
+  CHECK(view.status == 0);
+  CHECK(mean(folder.path("o.exr")) == 0);
+  const std::vector<Measured> m = measured(run_program(
+      folder, {"measure", scene, "--points", points, "--solution", folder.path("a.cells")}));
+  REQUIRE(m.size() == 1);
+  CHECK(m[0].lx == 0);
+}
+
 TEST_CASE("--solution: cells of another scene, damaged ones and other files are refused") {
   const Folder folder;
   std::string text = lit_floor_pbrt;
