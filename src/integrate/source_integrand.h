@@ -118,8 +118,9 @@ class SourceIntegrand final : public ShadowIntegrand {
   }
   void evaluate_many(uint32_t request, uint32_t member, PointArrays& points) override;
   bool is_gentle(uint32_t request, uint32_t member) const override {
-    return sources_[request]->is_by_web && hits_[member].glossy == nullptr &&
-           !is_behind_panes(request);  // portals have no webs
+    const GlossyHit* g = hits_[member].glossy;
+    return sources_[request]->far == nullptr && !is_taken_on_the_way(request) &&
+           (g == nullptr || !g->has_rough);
   }
 
  private:

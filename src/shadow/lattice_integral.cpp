@@ -13,8 +13,9 @@ namespace {
 // Lattices of more samples are looked at in every other row and column: which, is random, so that
 // each sample is as probable as any other.
 constexpr int most_samples = 256;
-// … or in every fourth, where what is integrated is gentle and so many are open then.
-constexpr size_t gentle_samples = 16;
+// … or in every fourth, where what is integrated is gentle and so many are open then: of the fine
+// lattice, and of the coarse one, which is for errors of 2 % and more.
+constexpr size_t gentle_samples = 16, coarse_gentle_samples = 8;
 
 // Sets points, weights and places to the open samples of every stride-th row and column.
 void set_points(const SourceCellTask& cell, uint32_t member, const OpenSamples& s, int stride,
@@ -102,7 +103,7 @@ void add_lattice_integral(const SourceCellTask& cell, uint32_t member, const Ope
   const int stride = cell.frame.lattice().samples() > most_samples ? 2 : 1;
   const bool is_gentle = cell.source.integrand->is_gentle(cell.source.number, member);
   if (is_gentle) set_points(cell, member, samples, 4, random, m);
-  if (!is_gentle || m.weights.size() < gentle_samples)
+  if (!is_gentle || m.weights.size() < (stride == 1 ? coarse_gentle_samples : gentle_samples))
     set_points(cell, member, samples, stride, random, m);
   if (m.weights.empty()) set_points(cell, member, samples, 1, random, m);
   if (m.weights.empty()) return;

@@ -43,7 +43,7 @@ class ShadowIntegrand {
   // Whether the receiver's points of this source are better looked at all at a stroke: then as many
   // as the mask has.
   virtual bool is_smooth(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
-  // … and so slowly that a few points are enough.
+  // … and varies over the source so slowly that a few of them are enough.
   virtual bool is_gentle(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
   virtual void evaluate_many(uint32_t /*request*/, uint32_t /*member*/, PointArrays& /*points*/) {}
 };
