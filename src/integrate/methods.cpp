@@ -36,6 +36,18 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
   return s;
 }
 
+// … at the first viewing rays of a pixel: where a hit takes more rays than so many draws, which err by
+// less than such a picture may, they take its place.
+CertifiedSettings settings_of_first(const MethodInput& in) {
+  constexpr double coarse = 0.2;
+  constexpr int draws = 32;
+  CertifiedSettings s =
+      certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
+  if (in.cells != nullptr && in.cells->view != nullptr && in.settings.error >= coarse)
+    s.draws = draws;
+  return s;
+}
+
 // … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
 // shows of all of them: by draws where certificates take more, in pictures that may be coarse. In
 // others one rare draw among a few would be seen: a bright dot that no error told of.
@@ -167,8 +179,7 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   std::optional<PathForecast> paths;
   if (needs_cells(Method::certified, in.settings.indirect)) paths = forecast(in);
   if (paths && paths->rays_for_cells < 0) return make_paths(in, *paths);
-  const CertifiedSettings settings =
-      certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
+  const CertifiedSettings settings = settings_of_first(in);
   const std::shared_ptr<const Occluders> occluders = occluders_for(in);
   std::unique_ptr<DirectLight> direct =
       std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
