@@ -4,6 +4,7 @@
 #include <pugixml.hpp>
 
 #include "import/file.h"
+#include "import/mitsuba_legacy.h"
 
 namespace troffer {
 
@@ -58,7 +59,8 @@ const std::string& MitsubaNode::attribute(const std::string& key) const {
 
 class MitsubaTreeReader {
  public:
-  MitsubaTreeReader(MitsubaTree& tree, WarningLog& warnings) : tree_(tree), warnings_(warnings) {}
+  MitsubaTreeReader(MitsubaTree& tree, WarningLog& warnings)
+      : tree_(tree), warnings_(warnings), upgrade_(tree.nodes_) {}
 
   void read_root(const std::string& path);
 
@@ -71,12 +73,14 @@ class MitsubaTreeReader {
 
   MitsubaTree& tree_;
   WarningLog& warnings_;
+  MitsubaUpgrade upgrade_;
   std::map<std::string, std::string> parameters_;
   uint64_t bytes_ = 0;
   size_t files_ = 0, open_files_ = 0, expanded_bytes_ = 0;
 
   void read_file_into(const std::string& path, const SourcePlace* from, MitsubaNode& parent,
                       size_t depth);
+  void set_version(const pugi::xml_node& root);
   void add_children(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
   void add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
   void include(const MitsubaNode& node, MitsubaNode& parent, size_t depth);
@@ -112,8 +116,7 @@ void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlac
     if (!from) {
       parent.tag = tag;
       parent.place = lines.place(name, root.offset_debug());
-      const std::string version = root.attribute("version").as_string("3.0.0");
-      tree_.is_legacy_ = version.starts_with("0.");
+      set_version(root);
     }
     add_children(open, root, parent, depth);
   } else if (from) {
@@ -123,6 +126,15 @@ void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlac
         .fail("is no Mitsuba scene: its first element is <" + shortened(tag) + ">, not <scene>");
   }
   --open_files_;
+}
+
+// Files without a version are of the first ones where they have what only those have.
+void MitsubaTreeReader::set_version(const pugi::xml_node& root) {
+  const bool is_first = root.child("camera") || root.child("luminaire");
+  const MitsubaVersion version =
+      mitsuba_version(root.attribute("version").as_string(is_first ? "0.2" : "3.0"));
+  tree_.is_legacy_ = version.major == 0;
+  upgrade_.set_version(version);
 }
 
 void MitsubaTreeReader::add_children(const Open& open, const pugi::xml_node& from, MitsubaNode& to,
@@ -155,6 +167,7 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
   node.tag = from.name();
   node.place = place;
   fill(from, node);
+  upgrade_.begin(node, to);
   if (node.tag == "default") {
     parameters_.emplace(node.name, node.attribute("value"));  // the first one counts
   } else if (node.tag == "include") {
@@ -173,6 +186,7 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
     }
     to.children.push_back(&node);
     add_children(open, from, node, depth + 1);
+    upgrade_.end(node);
   }
 }
 
