@@ -55,7 +55,7 @@ class MitsubaReader {
   void add_shape(const MitsubaNode& node, const Affine& parent, bool is_instance);
   void add_plain_shape(const MitsubaNode& node, const Affine& world, bool is_instance);
   void add_part(const MitsubaNode& node, const Affine& world, bool is_instance,
-                const Attached& with, const ObjPart* part);
+                const Attached& with, const MitsubaObjPart* part);
   std::optional<uint32_t> material_of(const Attached& with, bool is_emitting);
   void add_instance(const MitsubaNode& node, const Affine& parent);
   void add_children(const MitsubaNode& group, const Affine& parent, bool is_instance);
@@ -198,12 +198,12 @@ void MitsubaReader::add_plain_shape(const MitsubaNode& node, const Affine& world
     add_part(node, world, is_instance, with, nullptr);
     return;
   }
-  ObjPart rest;
+  MitsubaObjPart rest;
   for (const auto& [name, bsdf] : with.by_material) rest.others.push_back(name);
   for (const auto& [name, bsdf] : with.by_material) {
     if (name.empty()) continue;
     with.bsdf = bsdf;
-    const ObjPart part{name, {}};
+    const MitsubaObjPart part{name, {}};
     add_part(node, world, is_instance, with, &part);
   }
   const auto unnamed = std::find_if(with.by_material.begin(), with.by_material.end(),
@@ -231,7 +231,7 @@ std::optional<uint32_t> MitsubaReader::material_of(const Attached& with, bool is
 }
 
 void MitsubaReader::add_part(const MitsubaNode& node, const Affine& world, bool is_instance,
-                             const Attached& with, const ObjPart* part) {
+                             const Attached& with, const MitsubaObjPart* part) {
   const std::pair key{&node, part ? part->name : ""};
   std::shared_ptr<const std::optional<MitsubaShape>> shape;
   if (is_instance && in_groups_.contains(key)) shape = in_groups_[key];

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/blend_materials.h"
 #include "import/mitsuba_bsdf.h"
 #include "import/mitsuba_values.h"
 
@@ -11,26 +12,6 @@ namespace {
 
 constexpr double negligible = 1e-6;
 
-// Colours may stand for it: what it sends back and what it lets through.
-bool is_plain_diffuse(const Material& m) {
-  return m.kind == MaterialKind::diffuse && !m.is_alpha_masked && m.normal_texture < 0 &&
-         m.bump.texture < 0;
-}
-
-ColorInput transmitted(const Material& m) {
-  ColorInput c = m.diffuse_transmission_color;
-  c.value *= m.diffuse_transmission.value;
-  if (c.value.is_black()) c.texture = no_texture;
-  return c;
-}
-
-// Both colours at once, as they are.
-void set_colors(Material& m, const ColorInput& reflected, const ColorInput& through) {
-  m.base_color = reflected;
-  m.diffuse_transmission_color = through;
-  m.diffuse_transmission.value = through.texture < 0 && through.value.is_black() ? 0.0f : 1.0f;
-}
-
 // Darker by a factor, where one colour says how bright it is.
 bool scale_by(Material& m, double share) {
   const bool is_scaled =
@@ -39,15 +20,6 @@ bool scale_by(Material& m, double share) {
   m.base_color.value *= float(share);
   m.diffuse_transmission_color.value *= float(share);
   return true;
-}
-
-float mean_of(const std::vector<Texture>& textures, const FloatInput& input) {
-  constexpr int steps = 16;
-  float sum = 0;
-  for (int y = 0; y < steps; ++y)
-    for (int x = 0; x < steps; ++x)
-      sum += evaluate(textures, input, Vec2{(float(x) + 0.5f) / steps, (float(y) + 0.5f) / steps});
-  return sum / (steps * steps);
 }
 
 }  // namespace
@@ -98,7 +70,7 @@ std::optional<Material> MitsubaBsdfs::sum_of(const MitsubaNode& node, std::vecto
       reflected += p.material->base_color.value * float(p.share * scale);
       through += transmitted(*p.material).value * float(p.share * scale);
     }
-    set_colors(m, {reflected, no_texture}, {through, no_texture});
+    set_diffuse(m, {reflected, no_texture}, {through, no_texture});
   } else {
     const auto heavy = std::max_element(
         parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.share < b.share; });
@@ -120,16 +92,10 @@ std::optional<Material> MitsubaBsdfs::blended_by(const MitsubaNode& node, const 
   if (!first && !second) return std::nullopt;
   if (!first) return with_mask(node, *second, weight);
   if (!second) {
-    const ColorInput rest = textures_.between({Rgb{1}, no_texture}, {Rgb{0}, no_texture}, weight);
+    const ColorInput rest = blend(scene_, {Rgb{1}, no_texture}, {Rgb{0}, no_texture}, weight);
     return with_mask(node, *first, {1, rest.texture, 0});
   }
-  if (is_plain_diffuse(*first) && is_plain_diffuse(*second)) {
-    const ColorInput a = transmitted(*first), b = transmitted(*second);
-    const bool is_opaque = a.value.is_black() && b.value.is_black();
-    set_colors(*first, textures_.between(first->base_color, second->base_color, weight),
-               is_opaque ? ColorInput{Rgb{0}, no_texture} : textures_.between(a, b, weight));
-    return first;
-  }
+  if (blend_diffuse(scene_, *first, *second, weight)) return first;
   approximate(node, "by the one of its bsdfs that has more weight");
   return mean_of(scene_.textures, weight) > 0.5f ? second : first;
 }

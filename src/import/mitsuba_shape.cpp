@@ -101,7 +101,7 @@ void add_smooth_normals(Mesh& mesh) {
     mesh.normals.push_back(length(n) > 0 ? Vec3(normalize(n)) : Vec3{});  // mended when placed
 }
 
-bool belongs_to(const std::string& material, const ObjPart& part) {
+bool belongs_to(const std::string& material, const MitsubaObjPart& part) {
   if (!part.name.empty()) return material == part.name;
   return std::find(part.others.begin(), part.others.end(), material) == part.others.end();
 }
@@ -116,7 +116,7 @@ std::string MitsubaShapes::file_path(const MitsubaNode& node) {
 }
 
 // The file, or what is of one material in it, as one mesh. How materials look Mitsuba says itself.
-AnchoredMesh MitsubaShapes::read_obj(const std::string& path, const ObjPart* part) {
+AnchoredMesh MitsubaShapes::read_obj(const std::string& path, const MitsubaObjPart* part) {
   if (last_obj_.path != path) last_obj_ = {path, import_obj(path)};
   const Scene& scene = last_obj_.scene;
   AnchoredMesh out;
@@ -141,7 +141,7 @@ AnchoredMesh MitsubaShapes::read_obj(const std::string& path, const ObjPart* par
   return out;
 }
 
-AnchoredMesh MitsubaShapes::read_mesh_file(const MitsubaNode& node, const ObjPart* part) {
+AnchoredMesh MitsubaShapes::read_mesh_file(const MitsubaNode& node, const MitsubaObjPart* part) {
   const std::string path = file_path(node);
   AnchoredMesh out;
   bool has_face_normals = get_flag(node, "face_normals", false);
@@ -166,7 +166,8 @@ AnchoredMesh MitsubaShapes::read_mesh_file(const MitsubaNode& node, const ObjPar
   return out;
 }
 
-std::optional<MitsubaShape> MitsubaShapes::read(const MitsubaNode& node, const ObjPart* part) {
+std::optional<MitsubaShape> MitsubaShapes::read(const MitsubaNode& node,
+                                                const MitsubaObjPart* part) {
   MitsubaShape shape;
   shape.is_turned = get_flag(node, "flip_normals", false);
   const std::string& type = node.type;

@@ -28,7 +28,7 @@ struct MitsubaShape {
 
 // Of an OBJ file what is of one material, told by its name as MitsubaNode::name has it; of no name
 // what is of none of `others`.
-struct ObjPart {
+struct MitsubaObjPart {
   std::string name;
   std::vector<std::string> others;
 };
@@ -41,7 +41,7 @@ class MitsubaShapes {
   // The geometry of a <shape>, without its to_world; nothing, with a warning that names it, where
   // it is not supported. InputError: parameters or files that cannot be used.
   // Of an OBJ file all of it, or that part.
-  std::optional<MitsubaShape> read(const MitsubaNode& node, const ObjPart* part = nullptr);
+  std::optional<MitsubaShape> read(const MitsubaNode& node, const MitsubaObjPart* part = nullptr);
 
  private:
   const MitsubaTree& tree_;
@@ -59,8 +59,8 @@ class MitsubaShapes {
     Scene scene;
   } last_obj_;
 
-  AnchoredMesh read_mesh_file(const MitsubaNode& node, const ObjPart* part);
-  AnchoredMesh read_obj(const std::string& path, const ObjPart* part);
+  AnchoredMesh read_mesh_file(const MitsubaNode& node, const MitsubaObjPart* part);
+  AnchoredMesh read_obj(const std::string& path, const MitsubaObjPart* part);
 };
 
 }  // namespace troffer

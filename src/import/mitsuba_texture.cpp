@@ -176,18 +176,6 @@ ColorInput MitsubaTextures::raw(const MitsubaNode& given) {
   return node.tag == "texture" ? texture(node, true) : ColorInput{Rgb{1}, no_texture};
 }
 
-ColorInput MitsubaTextures::between(const ColorInput& first, const ColorInput& second,
-                                    const FloatInput& share) {
-  if (first.texture < 0 && second.texture < 0 && share.texture < 0)
-    return {first.value * (1 - share.value) + second.value * share.value, no_texture};
-  Texture t;
-  t.kind = TextureKind::mix;
-  t.first = {first.value, first.texture};
-  t.second = {second.value, second.texture};
-  t.amount = {Rgb{share.value}, share.texture};
-  return {Rgb{1}, append(std::move(t))};
-}
-
 int32_t MitsubaTextures::with_brightened_texels(int32_t index, float f) {
   if (scene_.textures[size_t(index)].kind != TextureKind::image) return index;
   Texture t = scene_.textures[size_t(index)];

@@ -32,9 +32,6 @@ class MitsubaTextures {
   // A texture of numbers, not colours (normal maps, heights): no_texture where it is not there.
   ColorInput raw(const MitsubaNode& texture);
 
-  // From one colour to the other by a share.
-  ColorInput between(const ColorInput& first, const ColorInput& second, const FloatInput& share);
-
   // A texture of which every value v of every channel is v / (1 - f + f v): Lambertian reflection
   // under a coat that is darker than Mitsuba's, made equal to it (mitsuba_bsdf.cpp).
   int32_t with_brightened_texels(int32_t texture, float f);

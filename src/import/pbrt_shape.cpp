@@ -112,6 +112,7 @@ AnchoredMesh read_subdivision(const PbrtParams& params, WarningLog& warnings) {
 // curved, every patch is cut into cells, so that neighbours meet.
 AnchoredMesh read_bilinear_mesh(const PbrtParams& params, WarningLog& warnings) {
   VertexData data = read_vertices(params, 4, warnings);
+  params.ignore({"emissionfilename"});  // where pbrt samples the light more often
   Mesh& vertices = data.vertices.mesh;
   std::vector<BilinearPatch> patches;
   bool is_flat = true;
