@@ -79,9 +79,22 @@ Vec2 read_vector(TextLines& lines, Vec2 value) {
   return value;
 }
 
-float strength_of(std::string_view word) {
-  const float v = std::strtof(std::string(word).c_str(), nullptr);
-  return std::isfinite(v) ? v : 1.0f;
+float number_or(std::string_view word, float fallback) {
+  const std::string text(word);
+  char* end = nullptr;
+  const float v = std::strtof(text.c_str(), &end);
+  return std::isfinite(v) && end != text.c_str() ? v : fallback;
+}
+
+// The i-th word behind an option.
+void set_option(std::string_view name, int i, std::string_view word, MtlMap& map) {
+  constexpr std::string_view channels = "rgbml";
+  if (name == "-clamp") map.is_clamped = word == "on";
+  if (name == "-bm") map.strength = number_or(word, 1);
+  if (name == "-mm") (i == 0 ? map.base : map.gain) = number_or(word, float(i));
+  if (name == "-imfchan" && word.size() == 1 && channels.find(word[0]) != std::string_view::npos)
+    map.channel = word[0];
+  if (name == "-colorspace") map.is_linear = word == "linear";
 }
 
 void read_option(TextLines& lines, const MapOption& option, MtlMap& map) {
@@ -89,14 +102,11 @@ void read_option(TextLines& lines, const MapOption& option, MtlMap& map) {
     map.offset = read_vector(lines, map.offset);
   } else if (option.name == "-s") {
     map.scale = read_vector(lines, map.scale);
-  } else if (option.words < 0) {
-    read_vector(lines, {});
+  } else if (option.name == "-t") {
+    const Vec2 t = read_vector(lines, {});
+    map.is_turbulent = t.x != 0 || t.y != 0;
   } else {
-    for (int i = 0; i < option.words; ++i) {
-      const std::string_view word = lines.word();
-      if (option.name == "-clamp") map.is_clamped = word == "on";
-      if (option.name == "-bm") map.strength = strength_of(word);
-    }
+    for (int i = 0; i < option.words; ++i) set_option(option.name, i, lines.word(), map);
   }
 }
 
@@ -196,6 +206,7 @@ bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
                 : keyword == "map_d" || keyword == "map_D" ? &m.map_opacity
                 : keyword == "map_Pr"                      ? &m.map_roughness
                 : keyword == "map_Pm"                      ? &m.map_metallic
+                : keyword == "map_Ns"                      ? &m.map_exponent
                 : keyword == "norm" || keyword == "map_Kn" ? &m.map_normal
                 : keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump" ? &m.map_bump
                                                                                       : nullptr;

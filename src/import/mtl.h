@@ -20,7 +20,11 @@ struct MtlMap {
   std::string file;  // relative to the scene's folder; "" = none
   Vec2 scale{1, 1}, offset{0, 0};
   bool is_clamped = false;
-  float strength = 1;  // -bm
+  float strength = 1;         // -bm
+  float base = 0, gain = 1;   // -mm
+  char channel = 0;           // -imfchan: r g b m l, 0: not given
+  bool is_turbulent = false;  // -t
+  bool is_linear = false;     // -colorspace
 };
 
 struct MtlMaterial {
@@ -38,7 +42,7 @@ struct MtlMaterial {
   float sheen = 0;                           // Ps
   float anisotropy = 0, turn = 0;            // aniso, anisor: of a whole turn
   MtlMap map_diffuse, map_specular, map_emission, map_opacity, map_roughness, map_metallic,
-      map_normal, map_bump;
+      map_exponent, map_normal, map_bump;
 };
 
 using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;
