@@ -4,6 +4,7 @@
 
 #include "import/mitsuba_bsdf.h"
 #include "import/mitsuba_values.h"
+#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -24,6 +25,13 @@ void read_principled_coat(const MitsubaNode& node, MitsubaTextures& textures, Ma
   m.coat.value = 0.25f * std::clamp(m.coat.value, 0.0f, 1.0f);
   const double gloss = std::clamp(get_number(node, "clearcoat_gloss", 0), 0.0, 1.0);
   m.coat_roughness.value = float(std::sqrt(lerp(0.1, 0.001, gloss)));
+}
+
+// A number or colour of zeros.
+bool is_nothing(const MitsubaNode& parameter) {
+  if (!is_color(parameter) || !parameter.has("value")) return false;
+  const std::string& text = parameter.attribute("value");
+  return text.find_first_not_of("0.,; ") == std::string::npos;
 }
 
 // What light keeps on its way into the coat and out again, from all directions evenly.
@@ -77,10 +85,22 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
   }
   read_principled_coat(node, textures_, m);
   std::string left_out = !is_opaque && m.coat.value > 0 ? "clearcoat" : "";
-  for (const char* name : {"anisotropic", "spec_tint", "sheen", "sheen_tint", "flatness"}) {
+  const auto leave_out = [&](const char* name) {
     const MitsubaNode* p = find_parameter(node, name);
-    if (p && p->attribute("value") != "0" && p->attribute("value") != "0.0")
-      left_out += std::string(left_out.empty() ? "" : ", ") + name;
+    if (!p || is_nothing(*p)) return false;
+    left_out += std::string(left_out.empty() ? "" : ", ") + name;
+    return true;
+  };
+  if (leave_out("sheen")) leave_out("sheen_tint");
+  for (const char* name : {"spec_tint", "flatness"}) leave_out(name);
+  find_parameter(node, "sheen_tint");
+  const FloatInput grain = textures_.real(node, {"anisotropic"}, 0);
+  if (grain.texture < 0 && m.roughness.texture < 0 && is_opaque && !m.is_thin && grain.value > 0) {
+    // Roughness is squared to a width: the square root of the model's aspect.
+    const float aspect = std::pow(1 - 0.9f * std::min(grain.value, 1.0f), 0.25f);
+    set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
+  } else if (grain.texture >= 0 || grain.value > 0) {
+    leave_out("anisotropic");
   }
   for (const char* name : {"main_specular_sampling_rate", "clearcoat_sampling_rate",
                            "diffuse_reflectance_sampling_rate"})

@@ -77,6 +77,8 @@ class MitsubaTreeReader {
   std::map<std::string, std::string> parameters_;
   uint64_t bytes_ = 0;
   size_t files_ = 0, open_files_ = 0, expanded_bytes_ = 0;
+  // A parameter without <default> that the element asks for which is being read; "": none.
+  std::string unknown_;
 
   void read_file_into(const std::string& path, const SourcePlace* from, MitsubaNode& parent,
                       size_t depth);
@@ -86,6 +88,7 @@ class MitsubaTreeReader {
   void include(const MitsubaNode& node, MitsubaNode& parent, size_t depth);
   void fill(const pugi::xml_node& from, MitsubaNode& node);
   std::string expanded(std::string_view text, const SourcePlace& place);
+  void leave_out(const MitsubaNode& node, const MitsubaNode& parent);
 };
 
 void MitsubaTreeReader::read_root(const std::string& path) {
@@ -158,6 +161,18 @@ void MitsubaTreeReader::fill(const pugi::xml_node& from, MitsubaNode& node) {
   }
 }
 
+// Mitsuba is given such parameters by its command line; how a picture is made is ours anyway.
+void MitsubaTreeReader::leave_out(const MitsubaNode& node, const MitsubaNode& parent) {
+  if (node.tag == "include" || node.tag == "default")
+    node.place.fail("the parameter $" + unknown_ + " has no <default>");
+  const auto is_made_so = [](const std::string& tag) {
+    return tag == "integrator" || tag == "sampler";
+  };
+  if (!is_made_so(node.tag) && !is_made_so(parent.tag))
+    warnings_.add("the parameter $" + unknown_ + " has no <default>: <" + shortened(node.tag) +
+                  (node.name.empty() ? "" : " " + shortened(node.name)) + "> is left out");
+}
+
 void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to,
                                   size_t depth) {
   const SourcePlace place = open.lines.place(open.path, from.offset_debug());
@@ -166,7 +181,9 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
   MitsubaNode& node = tree_.nodes_.emplace_back();
   node.tag = from.name();
   node.place = place;
+  unknown_.clear();
   fill(from, node);
+  if (!unknown_.empty()) return leave_out(node, to);
   upgrade_.begin(node, to);
   if (node.tag == "default") {
     parameters_.emplace(node.name, node.attribute("value"));  // the first one counts
@@ -212,8 +229,10 @@ std::string MitsubaTreeReader::expanded(std::string_view text, const SourcePlace
     while (end < text.size() && is_name_character(text[end])) ++end;
     const std::string name(text.substr(begin, end - begin));
     const auto found = parameters_.find(name);
-    if (found == parameters_.end())
-      place.fail("the parameter $" + shortened(name) + " has no <default>");
+    if (found == parameters_.end()) {
+      if (unknown_.empty()) unknown_ = shortened(name);
+      return "";
+    }
     out += found->second;
     expanded_bytes_ += found->second.size() + 1;
     if (out.size() > max_value || expanded_bytes_ > max_expanded_bytes)

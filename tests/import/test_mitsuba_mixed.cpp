@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/units.h"
 #include "import/mitsuba.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
@@ -154,4 +155,25 @@ TEST_CASE("a texture's to_uv may turn") {
       CAPTURE(v);
       CHECK(evaluate(scene.textures, c, Vec2{u, v}).r == (is_first ? 1 : 0));
     }
+}
+
+// As Blender's exporter writes them.
+TEST_CASE("principled: zeros are not told of, anisotropy is a grain") {
+  const auto principled = [](const char* anisotropic, const char* sheen) {
+    return import_bsdf(std::string("<bsdf type='principled'><float name='roughness' value='.6'/>"
+                                   "<rgb value='0.000000 0.000000 0.000000' name='spec_tint'/>"
+                                   "<float name='anisotropic' value='") +
+                       anisotropic + "'/><float name='sheen' value='" + sheen +
+                       "'/><rgb value='1.000000 1.000000 1.000000' name='sheen_tint'/></bsdf>");
+  };
+  const Scene plain = principled("0.000000", "0.000000");
+  CHECK_FALSE(has_warning(plain, "without"));
+  CHECK_FALSE(has_warning(plain, "not used"));
+  CHECK(plain.materials.at(0).anisotropy.value == 0);
+  CHECK(has_warning(principled("0", ".5"), "without sheen, sheen_tint"));
+  // Widths of r² / a and r² a, a = sqrt(1 - .9 anisotropic).
+  const Material m = principled(".5", "0").materials.at(0);
+  const double aspect = std::sqrt(1 - 0.45), across = 0.36 * aspect, along = 0.36 / aspect;
+  CHECK(double(sqr(m.roughness.value)) == doctest::Approx(across));
+  CHECK(across + (1 - across) * double(sqr(m.anisotropy.value)) == doctest::Approx(along));
 }

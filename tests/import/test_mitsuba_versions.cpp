@@ -156,3 +156,17 @@ TEST_CASE("bsdfs of an OBJ file's materials") {
       "name='wall' type='diffuse'/></shape></scene>"));
   CHECK(one.meshes.size() == 1);
 }
+
+// Mitsuba takes them from its command line.
+TEST_CASE("what asks for a parameter without a default is left out") {
+  const Scene scene = import_world(
+      "<integrator type='$kind'><integer name='x' value='$depth'/></integrator><sensor "
+      "type='perspective'><sampler type='independent'><integer name='sampleCount' "
+      "value='$spp'/></sampler><film type='hdrfilm'><integer name='width' value='$width'/><integer "
+      "name='height' value='100'/></film></sensor><shape type='sphere'/>",
+      "version='0.6.0'");
+  CHECK(scene.warnings.total() == 1);
+  CHECK(has_warning(scene, "the parameter $width has no <default>: <integer width> is left out"));
+  CHECK(scene.cameras.at(0).width == 768);
+  CHECK(scene.cameras.at(0).height == 100);
+}
