@@ -274,6 +274,18 @@ TEST_CASE("alpha textures cut holes, constant zero leaves the shape out") {
   CHECK_FALSE(scene.materials.at(scene.meshes[1].material).is_alpha_masked);
 }
 
+TEST_CASE("a light of alpha 0 shines") {
+  const Scene scene = import_world(
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 2 3]\nShape \"sphere\" \"float "
+      "alpha\" "
+      "0\nAttributeEnd\nShape \"sphere\" \"float alpha\" 0\n");
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.spheres.size() == 1);
+  CHECK(scene.lights[0].radiance == Rgb(1, 2, 3));
+  CHECK(has_warning(scene, "light of constant alpha 0"));
+  CHECK(has_warning(scene, "left out"));
+}
+
 TEST_CASE("one material under alpha textures of different factors") {
   const std::string shape = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] ";
   const Scene scene = import_world(
