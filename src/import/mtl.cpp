@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <utility>
+#include <vector>
 
 #include "import/file.h"
 #include "import/text_lines.h"
@@ -139,11 +140,16 @@ class MtlReader {
  public:
   MtlReader(const std::string& path, std::string_view text, const std::string& subfolder,
             MtlLibrary& library, WarningLog& warnings)
-      : lines_(path, text), subfolder_(subfolder), library_(library), warnings_(warnings) {}
+      : lines_(path, text),
+        is_of_blender_(text.substr(0, text.find('\n')).find("# Blender") != std::string_view::npos),
+        subfolder_(subfolder),
+        library_(library),
+        warnings_(warnings) {}
   void read();
 
  private:
   TextLines lines_;
+  bool is_of_blender_;
   const std::string& subfolder_;
   MtlLibrary& library_;
   WarningLog& warnings_;
@@ -151,6 +157,7 @@ class MtlReader {
   bool read_value(std::string_view keyword, MtlMaterial& m);
   bool read_share(std::string_view keyword, MtlMaterial& m);
   bool read_image(std::string_view keyword, MtlMaterial& m);
+  void mend_opacity(const std::vector<std::string>& names);
 };
 
 bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
@@ -170,8 +177,10 @@ bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
   } else if (keyword == "d") {
     if (lines_.has_word() && lines_.peek() == '-') lines_.word();  // -halo
     m.opacity = std::clamp(finite_number(lines_), 0.0f, 1.0f);
-  } else if (keyword == "Tr") {
-    m.opacity = 1 - std::clamp(finite_number(lines_), 0.0f, 1.0f);
+    m.has_dissolve = true;
+  } else if (keyword == "Tr") {  // which some write as 1 for what is opaque
+    const float through = std::clamp(finite_number(lines_), 0.0f, 1.0f);
+    if (!m.has_dissolve) m.opacity = 1 - through;
   } else if (keyword == "illum") {
     m.illumination = int(std::clamp(finite_number(lines_), 0.0f, 10.0f));
   } else {
@@ -214,8 +223,22 @@ bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
   return map != nullptr;
 }
 
+// Programs that take d for its opposite make everything invisible.
+void MtlReader::mend_opacity(const std::vector<std::string>& names) {
+  const auto is_unseen = [&](const std::string& name) { return library_[name].opacity == 0; };
+  const auto unseen = std::count_if(names.begin(), names.end(), is_unseen);
+  const bool are_most = 2 * unseen > std::ptrdiff_t(names.size()) && names.size() > 1;
+  for (const std::string& name : names) {
+    const bool is_pictured = !library_[name].map_diffuse.file.empty();
+    if (!is_unseen(name) || !(are_most || is_pictured)) continue;
+    library_[name].opacity = 1;
+    warnings_.add("MTL: d 0 of materials with images, and of most, is read as opaque");
+  }
+}
+
 void MtlReader::read() {
   MtlMaterial* current = nullptr;
+  std::vector<std::string> names;
   while (lines_.next_line()) {
     const std::string_view keyword = lines_.word();
     if (keyword.empty()) continue;
@@ -224,6 +247,8 @@ void MtlReader::read() {
       current = &library_[name];
       *current = MtlMaterial();
       current->name = name;
+      current->is_of_blender = is_of_blender_;
+      names.push_back(name);
       continue;
     }
     // What concerns ambient light and old renderers needs no mention.
@@ -235,6 +260,7 @@ void MtlReader::read() {
     else if (!read_value(keyword, *current) && !read_image(keyword, *current))
       warnings_.add("MTL: '" + std::string(keyword.substr(0, 40)) + "' is not supported: ignored");
   }
+  mend_opacity(names);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ struct MtlMaterial {
   Rgb specular{0};                           // Ks
   std::optional<Rgb> emission;               // Ke
   float exponent = 0;                        // Ns
-  float opacity = 1;                         // d, 1 - Tr
+  float opacity = 1;                         // d, else 1 - Tr
+  bool has_dissolve = false;                 // d is given
   std::optional<Rgb> filter;                 // Tf: colour of what goes through
   float ior = 1.5f;                          // Ni
   int illumination = -1;                     // illum; -1 = not given
@@ -41,6 +42,8 @@ struct MtlMaterial {
   float coat = 0, coat_roughness = 0;        // Pc, Pcr
   float sheen = 0;                           // Ps
   float anisotropy = 0, turn = 0;            // aniso, anisor: of a whole turn
+  // Blender writes maps of roughness as map_Ns.
+  bool is_of_blender = false;
   MtlMap map_diffuse, map_specular, map_emission, map_opacity, map_roughness, map_metallic,
       map_exponent, map_normal, map_bump;
 };

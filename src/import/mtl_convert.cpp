@@ -139,6 +139,11 @@ void set_data_images(const MtlMaterial& mtl, const std::string& folder, TextureL
   }
   FloatInput factor;
   set(mtl.map_exponent, factor, 0);
+  if (mtl.is_of_blender && factor.texture >= 0) {
+    m.roughness = {1, factor.texture, factor.channel};
+    m.roughness_meaning = RoughnessMeaning::alpha_is_square;
+    return;
+  }
   const int32_t widths = widths_from_exponents(factor.texture, factor.channel, mtl.exponent, scene);
   if (widths >= 0) m.roughness = {1, widths, 0};
 }

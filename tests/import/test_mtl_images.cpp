@@ -16,10 +16,10 @@ namespace {
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n";
 
 // Of one material; the image is (.25, .5, 1) all over.
-Scene import_material(const std::string& statements) {
+Scene import_material(const std::string& statements, const std::string& header = "") {
   const TempFolder folder;
   write_image(folder.path("i.pfm"), Image(1, 1, Rgb{0.25f, 0.5f, 1}));
-  folder.write("m.mtl", "newmtl a\n" + statements + "\n");
+  folder.write("m.mtl", header + "newmtl a\n" + statements + "\n");
   return import_obj(folder.write("m.obj", "mtllib m.mtl\n" + square + "usemtl a\nf 1/1 2/2 3/3\n"));
 }
 const Material& only(const Scene& scene) {
@@ -58,6 +58,11 @@ TEST_CASE("MTL: map_Ns is a factor on the exponent") {
   CHECK(scene.warnings.total() == 0);
   CHECK(double(value_of(scene, only(scene).roughness)) == doctest::Approx(std::sqrt(2.0 / 27)));
   CHECK(has_warning(import_material("Kd 1 1 1\nNs 100\nmap_Ns i.pfm"), "map_Ns"));
+  // Blender's exporter puts its image of roughness there.
+  const Scene blender = import_material("illum 2\nKs .5 .5 .5\nNs 225\nmap_Ns i.pfm",
+                                        "# Blender 3.6.0 MTL File: 'None'\n");
+  CHECK(value_of(blender, only(blender).roughness) == 0.25f);
+  CHECK(only(blender).roughness_meaning == RoughnessMeaning::alpha_is_square);
   CHECK(has_warning(import_material("Pr .5\nNs 100\nmap_Ns i.pfm"), "map_Ns"));
 }
 
@@ -70,4 +75,19 @@ TEST_CASE("MTL: -bm of maps of normals, -t, and maps without their numbers") {
   const Scene metal = import_material("Kd 1 1 1\nmap_Pm -imfchan b i.pfm");
   CHECK(only(metal).kind == MaterialKind::metallic_roughness);
   CHECK(value_of(metal, only(metal).metallic) == 1);
+}
+
+// As a Sponza that many programs come with has it.
+TEST_CASE("MTL: most of a library, and what has an image, is not invisible") {
+  Scene scene = import_material("Kd 1 1 1\nd 0\nmap_Kd i.pfm");
+  CHECK(has_warning(scene, "read as opaque"));
+  CHECK(only(scene).kind == MaterialKind::diffuse);
+  scene = import_material("Kd 1 1 1\nd 0\nnewmtl b\nd 0\nnewmtl c\nd 1");
+  CHECK(has_warning(scene, "read as opaque"));
+  CHECK(only(scene).transmission.value == 0);
+  scene = import_material("Kd 1 1 1\nd 0\nnewmtl b\nnewmtl c\nd 1");  // a pane
+  CHECK(scene.warnings.total() == 0);
+  CHECK(only(scene).transmission.value == 1);
+  scene = import_material("Kd 1 1 1\nd 1\nTr 1");
+  CHECK(only(scene).transmission.value == 0);
 }
