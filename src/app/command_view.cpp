@@ -10,7 +10,7 @@
 #include "app/signals.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "daylight/sun_position.h"
+#include "base/sun_position.h"
 #include "scene/orientation.h"
 #include "view/view.h"
 

@@ -5,6 +5,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 
 #include <array>
 #include <cstring>
@@ -96,6 +97,18 @@ void read_channels(Imf::InputFile& file, const Selection& selection, const Encod
   file.readPixels(window.min.y, window.max.y);
 }
 
+// Where the header has primaries other than Rec. 709 that span colours.
+std::optional<Primaries> primaries_of(const Imf::Header& header) {
+  if (!Imf::hasChromaticities(header)) return std::nullopt;
+  const Imf::Chromaticities& c = Imf::chromaticities(header);
+  const auto at = [](const Imath::V2f& v) { return Chromaticity{double(v.x), double(v.y)}; };
+  const Primaries primaries{{at(c.red), at(c.green), at(c.blue)}, at(c.white)};
+  const Affine matrix = srgb_from(primaries, true);
+  for (const Vec3d& column : matrix.columns)
+    if (!(length(column) < 1e3)) return std::nullopt;
+  return are_srgb(primaries) ? std::nullopt : std::optional(primaries);
+}
+
 }  // namespace
 
 bool is_exr(std::span<const uint8_t> bytes) {
@@ -118,6 +131,7 @@ Raster decode_exr(const EncodedImage& encoded) {
       read_luminance_chroma(encoded, raster);
     else
       read_channels(file, selection, encoded, raster);
+    if (raster.channels >= 3) raster.primaries = primaries_of(file.header());
     return raster;
   } catch (const InputError&) {
     throw;

@@ -57,4 +57,17 @@ Raster linear_raster(Raster raster) {
   return raster;
 }
 
+Raster rec709_raster(Raster raster, bool keeps_white) {
+  if (!raster.primaries || raster.channels < 3) return raster;
+  const Affine matrix = srgb_from(*raster.primaries, keeps_white);
+  const auto channels = size_t(raster.channels);
+  for (size_t i = 0; i + 2 < raster.texels_float.size(); i += channels) {
+    float* const texel = &raster.texels_float[i];
+    const Vec3d c = matrix.vector({texel[0], texel[1], texel[2]});
+    for (size_t k = 0; k < 3; ++k) texel[k] = float(c[k]);
+  }
+  raster.primaries.reset();
+  return raster;
+}
+
 }  // namespace troffer

@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "base/primaries.h"
 
 namespace troffer {
 
@@ -17,6 +20,8 @@ struct Raster {
   std::vector<uint8_t> texels8;     // 8-bit files
   std::vector<float> texels_float;  // 16-bit PNG scaled to [0,1]; HDR, PFM and EXR as they are
   bool is_srgb = false;             // colour channels are sRGB encoded (PNG, JPEG, WebP, TGA)
+  // Of EXR files that say so and have others than Rec. 709: what their colours are made of.
+  std::optional<Primaries> primaries = std::nullopt;
 };
 
 // The most pixels that readers decode unless told otherwise.
@@ -43,5 +48,9 @@ Raster decode_raster(std::span<const uint8_t> bytes, const std::string& name_for
 
 // The same picture with float texels and, where is_srgb, linear colour channels.
 Raster linear_raster(Raster raster);
+
+// The same picture in Rec. 709, and without primaries of its own: its white stays white, or colours
+// stay the lights that they are. Negative values are left as they are.
+Raster rec709_raster(Raster raster, bool keeps_white);
 
 }  // namespace troffer

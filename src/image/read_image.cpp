@@ -32,7 +32,8 @@ std::vector<uint8_t> read_file_bytes(const std::string& path, size_t max_bytes) 
 }
 
 Image read_image(const std::string& path, size_t max_pixels) {
-  const Raster raster = linear_raster(decode_raster(read_file_bytes(path), path, max_pixels));
+  const Raster raster =
+      rec709_raster(linear_raster(decode_raster(read_file_bytes(path), path, max_pixels)), false);
   Image image(raster.width, raster.height);
   const auto channels = size_t(raster.channels);
   const float* texel = raster.texels_float.data();

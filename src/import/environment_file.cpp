@@ -72,7 +72,8 @@ EnvironmentMap reduced(const EnvironmentMap& from, int by) {
 }  // namespace
 
 EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
-  const Raster raster = linear_raster(decode_raster(read_file(path, max_environment_bytes), path));
+  const Raster raster = rec709_raster(
+      linear_raster(decode_raster(read_file(path, max_environment_bytes), path)), false);
   EnvironmentMap map;
   map.name = path;
   map.width = raster.width;

@@ -227,6 +227,10 @@ class GltfMaterials::Reader {
     material_.film_thickest_nm =
         float(std::clamp(film->number_or("iridescenceThicknessMaximum", 400), 0.0, most_nm));
     material_.film_thickness.texture = texture(*film, "iridescenceThicknessTexture", false);
+    const bool is_rough_glass = material_.transmission.value > 0 && !material_.is_thin &&
+                                material_.roughness.value > 0.032f;
+    if (is_rough_glass)
+      warn("a film over rough glass: light lost between its microfacets is left out");
   }
 
   void tell_what_is_left_out() {

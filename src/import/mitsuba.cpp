@@ -1,5 +1,7 @@
 #include "import/mitsuba.h"
 
+#include <algorithm>
+
 #include "import/absorption.h"
 #include "import/mitsuba_bsdf.h"
 #include "import/mitsuba_light.h"
@@ -28,9 +30,12 @@ class MitsubaReader {
  private:
   // What a shape has beside its geometry.
   struct Attached {
+    // The last bsdf is the shape's; of an OBJ file those of several names are for its materials.
     const MitsubaNode* bsdf = nullptr;
+    std::vector<std::pair<std::string, const MitsubaNode*>> by_material;
     const MitsubaNode* emitter = nullptr;
-    Rgb absorption{0};  // of the medium inside
+    bool has_medium = false;  // on either side
+    Rgb absorption{0};        // of the one inside
   };
 
   Scene& scene_;
@@ -40,12 +45,18 @@ class MitsubaReader {
   MitsubaShapes shapes_;
   GeometryPlacer placer_;
   // Shapes of groups, which many instances place.
-  std::map<const MitsubaNode*, std::shared_ptr<const std::optional<MitsubaShape>>> in_groups_;
+  std::map<std::pair<const MitsubaNode*, std::string>,
+           std::shared_ptr<const std::optional<MitsubaShape>>>
+      in_groups_;
   size_t lights_ = 0;
   int depth_ = 0;
 
   void read_element(const MitsubaNode& node);
   void add_shape(const MitsubaNode& node, const Affine& parent, bool is_instance);
+  void add_plain_shape(const MitsubaNode& node, const Affine& world, bool is_instance);
+  void add_part(const MitsubaNode& node, const Affine& world, bool is_instance,
+                const Attached& with, const MitsubaObjPart* part);
+  std::optional<uint32_t> material_of(const Attached& with, bool is_emitting);
   void add_instance(const MitsubaNode& node, const Affine& parent);
   void add_children(const MitsubaNode& group, const Affine& parent, bool is_instance);
   Attached attached_to(const MitsubaNode& node);
@@ -104,14 +115,17 @@ MitsubaReader::Attached MitsubaReader::attached_to(const MitsubaNode& node) {
     if (inner.tag == "bsdf") {
       child->is_used = true;
       out.bsdf = &inner;
+      out.by_material.emplace_back(child->name, &inner);
     } else if (inner.tag == "emitter") {
       child->is_used = true;
       out.emitter = &inner;
     } else if (inner.tag == "medium" && child->name == "interior") {
       child->is_used = true;
+      out.has_medium = true;
       out.absorption = absorption_of(inner);
     } else if (inner.tag == "medium" || inner.tag == "subsurface") {
       child->is_used = true;
+      out.has_medium = out.has_medium || inner.tag == "medium";
       scene_.warnings.add("participating media around things are not supported: left out");
     }
   }
@@ -171,39 +185,70 @@ void MitsubaReader::add_shape(const MitsubaNode& node, const Affine& parent, boo
   } else if (node.type == "merge") {
     add_children(node, parent, is_instance);
   } else {
-    const Affine world = parent * get_transform(node, "to_world");
-    std::shared_ptr<const std::optional<MitsubaShape>> shape;
-    if (is_instance && in_groups_.contains(&node)) shape = in_groups_[&node];
-    if (!shape) shape = std::make_shared<const std::optional<MitsubaShape>>(shapes_.read(node));
-    if (is_instance) in_groups_[&node] = shape;
-    const Attached with = attached_to(node);
-    PlacedLook look;
-    look.place = node.place;
-    if (with.emitter && is_instance) scene_.warnings.add("emitters of instances do not emit");
-    if (with.emitter && !is_instance) look.emission = emission_of(node, *with.emitter);
-    std::optional<uint32_t> material;
-    if (with.bsdf)
-      material = bsdfs_.index_of(*with.bsdf);
-    else
-      material = bsdfs_.default_index(look.emission.has_value());
-    if (!material && look.emission) {
-      scene_.warnings.add("a shape of bsdf \"null\" that emits is shown black");
-      material = bsdfs_.default_index(true);
-    }
-    if (material && !with.absorption.is_black()) {
-      if (scene_.materials[*material].kind == MaterialKind::dielectric)
-        material = bsdfs_.with_medium(*material, with.absorption);
-      else
-        scene_.warnings.add("media inside anything but \"dielectric\" are left out");
-    }
-    warn_of_unused(node, scene_.warnings);
-    if (material && *shape) {
-      look.material = *material;
-      if (is_instance) look.shape = &**shape;
-      place(**shape, world, look);
-    }
+    add_plain_shape(node, parent * get_transform(node, "to_world"), is_instance);
   }
   --depth_;
+}
+
+void MitsubaReader::add_plain_shape(const MitsubaNode& node, const Affine& world,
+                                    bool is_instance) {
+  Attached with = attached_to(node);
+  const bool is_split = node.type == "obj" && with.by_material.size() > 1 && !with.emitter;
+  if (!is_split) {
+    add_part(node, world, is_instance, with, nullptr);
+    return;
+  }
+  MitsubaObjPart rest;
+  for (const auto& [name, bsdf] : with.by_material) rest.others.push_back(name);
+  for (const auto& [name, bsdf] : with.by_material) {
+    if (name.empty()) continue;
+    with.bsdf = bsdf;
+    const MitsubaObjPart part{name, {}};
+    add_part(node, world, is_instance, with, &part);
+  }
+  const auto unnamed = std::find_if(with.by_material.begin(), with.by_material.end(),
+                                    [](const auto& entry) { return entry.first.empty(); });
+  with.bsdf = unnamed == with.by_material.end() ? nullptr : unnamed->second;
+  add_part(node, world, is_instance, with, &rest);
+}
+
+// Nothing: light goes on. Up to version 0.6 so do surfaces that only part two media.
+std::optional<uint32_t> MitsubaReader::material_of(const Attached& with, bool is_emitting) {
+  std::optional<uint32_t> material;
+  if (with.bsdf)
+    material = bsdfs_.index_of(*with.bsdf);
+  else if (is_emitting || !with.has_medium || !tree_.is_legacy())
+    material = bsdfs_.default_index(is_emitting);
+  if (!material && is_emitting) {
+    scene_.warnings.add("a shape of bsdf \"null\" that emits is shown black");
+    material = bsdfs_.default_index(true);
+  }
+  if (!material || with.absorption.is_black()) return material;
+  if (scene_.materials[*material].kind == MaterialKind::dielectric)
+    return bsdfs_.with_medium(*material, with.absorption);
+  scene_.warnings.add("media inside anything but \"dielectric\" are left out");
+  return material;
+}
+
+void MitsubaReader::add_part(const MitsubaNode& node, const Affine& world, bool is_instance,
+                             const Attached& with, const MitsubaObjPart* part) {
+  const std::pair key{&node, part ? part->name : ""};
+  std::shared_ptr<const std::optional<MitsubaShape>> shape;
+  if (is_instance && in_groups_.contains(key)) shape = in_groups_[key];
+  if (!shape) shape = std::make_shared<const std::optional<MitsubaShape>>(shapes_.read(node, part));
+  if (is_instance) in_groups_[key] = shape;
+  PlacedLook look;
+  look.place = node.place;
+  if (with.emitter && is_instance) scene_.warnings.add("emitters of instances do not emit");
+  if (with.emitter && !is_instance) look.emission = emission_of(node, *with.emitter);
+  const std::optional<uint32_t> material = material_of(with, look.emission.has_value());
+  warn_of_unused(node, scene_.warnings);
+  if (!material || !*shape) return;
+  if (part && part->name.empty() && !with.bsdf)
+    scene_.warnings.add("materials of an OBJ file that no bsdf is named after: grey");
+  look.material = *material;
+  if (is_instance) look.shape = &**shape;
+  place(**shape, world, look);
 }
 
 void MitsubaReader::place(const MitsubaShape& shape, const Affine& world, const PlacedLook& look) {

@@ -211,45 +211,7 @@ Material MitsubaBsdfs::phong(const MitsubaNode& node) {
 std::optional<Material> MitsubaBsdfs::masked(const MitsubaNode& node) {
   const FloatInput opacity = textures_.real(node, {"opacity"}, 0.5f);
   std::optional<Material> m = nested(node);
-  if (!m || (opacity.texture < 0 && opacity.value >= 1)) return m;
-  if (opacity.texture < 0 && opacity.value <= 0) return std::nullopt;
-  if (m->is_alpha_masked) approximate(node, "without the mask within it");
-  m->is_alpha_masked = m->is_alpha_blended = true;
-  m->alpha = opacity;
-  return m;
-}
-
-// One of two by its weight; colours of two diffuse ones are mixed.
-std::optional<Material> MitsubaBsdfs::blended(const MitsubaNode& node) {
-  double weight = 0.5;
-  if (const MitsubaNode* weights = find_parameter(node, "weights")) {
-    const std::vector<double> w = numbers_of(*weights, weights->attribute("value"));
-    if (w.size() >= 2 && w[0] + w[1] > 0) weight = w[1] / (w[0] + w[1]);
-  } else {
-    const FloatInput input = textures_.real(node, {"weight"}, 0.5f);
-    if (input.texture < 0) weight = double(input.value);
-    if (input.texture >= 0) approximate(node, "its weight's texture as 0.5");
-  }
-  std::vector<std::optional<Material>> parts;
-  for (const MitsubaNode* child : node.children) {
-    const MitsubaNode& inner = tree_.resolved(*child);
-    if (inner.tag != "bsdf") continue;
-    child->is_used = true;
-    if (parts.size() < 2) parts.push_back(convert(inner));
-  }
-  if (parts.size() != 2) node.place.fail("bsdf \"" + shortened(node.type) + "\" needs two bsdfs");
-  if (weight <= 0) return parts[0];
-  if (weight >= 1) return parts[1];
-  const bool are_plain = parts[0] && parts[1] && parts[0]->kind == MaterialKind::diffuse &&
-                         parts[1]->kind == MaterialKind::diffuse &&
-                         !is_texture(parts[0]->base_color) && !is_texture(parts[1]->base_color);
-  if (are_plain) {
-    parts[0]->base_color.value =
-        parts[0]->base_color.value * float(1 - weight) + parts[1]->base_color.value * float(weight);
-    return parts[0];
-  }
-  approximate(node, "by the one of its bsdfs that has more weight");
-  return weight > 0.5 ? parts[1] : parts[0];
+  return m ? with_mask(node, std::move(*m), opacity) : m;
 }
 
 // Of bumps the texture is heights in metres, times `scale`.
@@ -260,10 +222,11 @@ std::optional<Material> MitsubaBsdfs::bumped(const MitsubaNode& node) {
   for (const MitsubaNode* child : node.children) {
     if (tree_.resolved(*child).tag != "texture") continue;
     child->is_used = true;
+    const ColorInput image = textures_.raw(*child);
     if (node.type == "normalmap")
-      m->normal_texture = textures_.raw_image(*child);
-    else
-      m->bump = {float(scale), textures_.raw_image(*child), 0};
+      m->normal_texture = image.texture;
+    else if (image.texture >= 0)
+      m->bump = {float(scale) * image.value.r, image.texture, 0};
   }
   return m;
 }
@@ -311,7 +274,8 @@ std::optional<Material> MitsubaBsdfs::convert_simple(const MitsubaNode& node) {
     return m;
   }
   if (is_any({"mask"})) return masked(node);
-  if (is_any({"blendbsdf", "mixturebsdf"})) return blended(node);
+  if (is_any({"blendbsdf"})) return blended(node);
+  if (is_any({"mixturebsdf", "mixture"})) return mixed(node);
   if (is_any({"coating", "roughcoating"})) return coated(node);
   if (is_any({"bumpmap", "bump", "normalmap"})) return bumped(node);
   if (is_any({"twosided"})) return two_sided(node);

@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "import/mitsuba_texture.h"
 
@@ -45,7 +46,18 @@ class MitsubaBsdfs {
   Material principled(const MitsubaNode& node);
   Material phong(const MitsubaNode& node);
   std::optional<Material> masked(const MitsubaNode& node);
+  // A bsdf within `blendbsdf` and `mixturebsdf`, and its share.
+  struct Part {
+    double share = 0;
+    std::optional<Material> material;  // none: light goes on
+  };
+  std::vector<Part> parts_of(const MitsubaNode& node);
   std::optional<Material> blended(const MitsubaNode& node);
+  std::optional<Material> mixed(const MitsubaNode& node);
+  std::optional<Material> blended_by(const MitsubaNode& node, const FloatInput& weight,
+                                     std::vector<Part>& parts);
+  std::optional<Material> sum_of(const MitsubaNode& node, std::vector<Part> parts);
+  std::optional<Material> with_mask(const MitsubaNode& node, Material m, const FloatInput& share);
   std::optional<Material> coated(const MitsubaNode& node);
   std::optional<Material> bumped(const MitsubaNode& node);
   std::optional<Material> two_sided(const MitsubaNode& node);

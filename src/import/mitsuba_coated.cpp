@@ -4,6 +4,7 @@
 
 #include "import/mitsuba_bsdf.h"
 #include "import/mitsuba_values.h"
+#include "import/two_widths.h"
 
 namespace troffer {
 
@@ -24,6 +25,38 @@ void read_principled_coat(const MitsubaNode& node, MitsubaTextures& textures, Ma
   m.coat.value = 0.25f * std::clamp(m.coat.value, 0.0f, 1.0f);
   const double gloss = std::clamp(get_number(node, "clearcoat_gloss", 0), 0.0, 1.0);
   m.coat_roughness.value = float(std::sqrt(lerp(0.1, 0.001, gloss)));
+}
+
+// A number or colour of zeros.
+bool is_nothing(const MitsubaNode& parameter) {
+  if (!is_color(parameter) || !parameter.has("value")) return false;
+  const std::string& text = parameter.attribute("value");
+  return text.find_first_not_of("0.,; ") == std::string::npos;
+}
+
+// What light keeps on its way into the coat and out again, from all directions evenly.
+float kept_evenly(float exponent, float index) {
+  constexpr int steps = 64;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double sine2 = (i + 0.5) / steps / sqr(double(index));  // Lambert's law, bent
+    sum += std::exp(-double(exponent) / std::sqrt(1 - sine2));
+  }
+  return float(sqr(sum / steps));
+}
+
+// The base darker by what the coat absorbs.
+void absorb(Material& m, Rgb exponent, float index) {
+  if (m.kind == MaterialKind::conductor) {  // straight on
+    if (!m.is_reflectance) {
+      const Rgb e1 = m.eta - Rgb{1}, e2 = m.eta + Rgb{1}, k2 = m.k * m.k;
+      m.is_reflectance = true;
+      m.base_color = {(e1 * e1 + k2) / (e2 * e2 + k2), no_texture};
+    }
+    for (size_t c = 0; c < 3; ++c) m.base_color.value[c] *= std::exp(-2 * exponent[c]);
+    return;
+  }
+  for (size_t c = 0; c < 3; ++c) m.base_color.value[c] *= kept_evenly(exponent[c], index);
 }
 
 }  // namespace
@@ -52,10 +85,22 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
   }
   read_principled_coat(node, textures_, m);
   std::string left_out = !is_opaque && m.coat.value > 0 ? "clearcoat" : "";
-  for (const char* name : {"anisotropic", "spec_tint", "sheen", "sheen_tint", "flatness"}) {
+  const auto leave_out = [&](const char* name) {
     const MitsubaNode* p = find_parameter(node, name);
-    if (p && p->attribute("value") != "0" && p->attribute("value") != "0.0")
-      left_out += std::string(left_out.empty() ? "" : ", ") + name;
+    if (!p || is_nothing(*p)) return false;
+    left_out += std::string(left_out.empty() ? "" : ", ") + name;
+    return true;
+  };
+  if (leave_out("sheen")) leave_out("sheen_tint");
+  for (const char* name : {"spec_tint", "flatness"}) leave_out(name);
+  find_parameter(node, "sheen_tint");
+  const FloatInput grain = textures_.real(node, {"anisotropic"}, 0);
+  if (grain.texture < 0 && m.roughness.texture < 0 && is_opaque && !m.is_thin && grain.value > 0) {
+    // Roughness is squared to a width: the square root of the model's aspect.
+    const float aspect = std::pow(1 - 0.9f * std::min(grain.value, 1.0f), 0.25f);
+    set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
+  } else if (grain.texture >= 0 || grain.value > 0) {
+    leave_out("anisotropic");
   }
   for (const char* name : {"main_specular_sampling_rate", "clearcoat_sampling_rate",
                            "diffuse_reflectance_sampling_rate"})
@@ -67,30 +112,39 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
 
 std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
   std::optional<Material> m = nested(node);
-  for (const char* name : {"thickness", "sigma_a", "specular_reflectance"})
-    find_parameter(node, name);
-  if (m && m->kind == MaterialKind::diffuse && !m->is_alpha_masked) {
+  const ColorInput absorbed = textures_.real_color(node, "sigma_a");
+  const Rgb exponent = absorbed.value * float(std::max(get_number(node, "thickness", 1), 0.0));
+  find_parameter(node, "specular_reflectance");
+  const bool is_diffuse = m && m->kind == MaterialKind::diffuse && !m->is_alpha_masked &&
+                          m->diffuse_transmission.value <= 0;
+  if (!m || (!is_diffuse && !can_be_coated(*m))) {
+    for (const char* name : {"alpha", "int_ior", "ext_ior", "distribution"})
+      find_parameter(node, name);
+    if (m) approximate(node, "without the coat");
+    return m;
+  }
+  const auto index = float(index_of_refraction(node, "int_ior", "bk7") /
+                           index_of_refraction(node, "ext_ior", "air"));
+  if (!exponent.is_black()) {
+    absorb(*m, exponent, index);
+    approximate(node, "what its coat absorbs as a colour of what lies below");
+  }
+  if (is_diffuse) {
     m->kind = MaterialKind::coated_diffuse;
     if (node.type == "roughcoating") read_alpha(node, *m);
-    m->ior = float(index_of_refraction(node, "int_ior", "bk7") /
-                   index_of_refraction(node, "ext_ior", "air"));
-    approximate(node, "without absorption in the coat");
-  } else if (m && can_be_coated(*m)) {
-    m->coat.value = 1;
-    if (node.type == "roughcoating") {
-      Material coat;
-      read_alpha(node, coat);
-      m->coat_roughness = coat.roughness;
-    }
-    // Both are told as the base tells its own.
-    if (m->roughness_meaning == RoughnessMeaning::alpha_is_square)
-      m->coat_roughness.value = std::sqrt(m->coat_roughness.value);
-    m->coat_ior = float(index_of_refraction(node, "int_ior", "bk7") /
-                        index_of_refraction(node, "ext_ior", "air"));
-    approximate(node, "without absorption in the coat");
-  } else {
-    approximate(node, "without the coat");
+    m->ior = index;
+    return m;
   }
+  m->coat.value = 1;
+  if (node.type == "roughcoating") {
+    Material coat;
+    read_alpha(node, coat);
+    m->coat_roughness = coat.roughness;
+  }
+  // Both are told as the base tells its own.
+  if (m->roughness_meaning == RoughnessMeaning::alpha_is_square)
+    m->coat_roughness.value = std::sqrt(m->coat_roughness.value);
+  m->coat_ior = index;
   return m;
 }
 

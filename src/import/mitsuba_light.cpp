@@ -5,15 +5,12 @@
 #include "base/units.h"
 #include "import/environment_file.h"
 #include "import/file.h"
+#include "import/mitsuba_daylight.h"
 #include "import/mitsuba_values.h"
 
 namespace troffer {
 
 namespace {
-
-// cd/m² per radiance in Mitsuba's unit of spectra, W/(m² sr nm): 683 lm/W times the integral of the
-// observer's luminance curve.
-constexpr double luminance_per_radiance = 683 * 106.857;
 
 class MitsubaLightReader {
  public:
@@ -43,9 +40,6 @@ class MitsubaLightReader {
   void spot();
   void directional();
   void envmap();
-  void daylight(bool has_sky, bool has_sun);
-  void add_sky(double turbidity, double height, double scale, const Vec3d& to_sun, const Vec3d& up);
-  Vec3d sun_direction();
 };
 
 void MitsubaLightReader::add(Light e) {
@@ -141,68 +135,6 @@ void MitsubaLightReader::envmap() {
                       "; the light is left out");
 }
 
-// Where none is given: 45° high, over +x and +z.
-Vec3d MitsubaLightReader::sun_direction() {
-  const auto given = get_vector(node_, "sun_direction");
-  for (const char* name :
-       {"latitude", "longitude", "timezone", "year", "month", "day", "hour", "minute", "second"})
-    find_parameter(node_, name);
-  if (!given)
-    scene_.warnings.add(label() +
-                        "place and time are not read: give sun_direction; the sun stands "
-                        "45 degrees high");
-  const Vec3d d = world_.vector(given.value_or(Vec3d{0.5, std::sqrt(0.5), 0.5}));
-  return length(d) > 0 ? normalize(d) : Vec3d{0, 1, 0};
-}
-
-// Luminances of clear skies by turbidity [3]; both white.
-void MitsubaLightReader::daylight(bool has_sky, bool has_sun) {
-  const double turbidity = std::clamp(get_number(node_, "turbidity", 3), 1.7, 10.0);
-  const double both = get_number(node_, "scale", 1);
-  const double sky_scale = get_number(node_, "sky_scale", both);
-  const double sun_scale = get_number(node_, "sun_scale", both);
-  for (const char* name : {"albedo", "resolution", "stretch", "extend", "complex_sun"})
-    find_parameter(node_, name);
-  const Vec3d to_sun = sun_direction();
-  const Vec3d up = normalize(world_.columns[1]);
-  const double height = std::asin(std::clamp(dot(to_sun, up), -1.0, 1.0));
-  scene_.warnings.add(label() +
-                      "is approximated: white, with the luminance of a clear sky of its turbidity");
-  if (!(height > 0)) return;
-  if (has_sky) add_sky(turbidity, height, sky_scale, to_sun, up);
-  if (!has_sun) return;
-  Light e;
-  e.kind = LightKind::sun;
-  e.angular_radius = float(rad_from_deg(0.2666 * get_number(node_, "sun_radius_scale", 1)));
-  if (!(e.angular_radius > 1e-6f && e.angular_radius < 1)) return;
-  // Illuminance of a plane that faces the sun: what air of that turbidity lets through.
-  const double lux = 133'800 * std::exp(-0.07 * turbidity / std::sin(height));
-  e.radiance = Rgb{float(sun_scale * lux / luminance_per_radiance /
-                         (pi * sqr(std::sin(double(e.angular_radius)))))};
-  if (turn(e, -to_sun)) add(std::move(e));
-}
-
-void MitsubaLightReader::add_sky(double turbidity, double height, double scale, const Vec3d& to_sun,
-                                 const Vec3d& up) {
-  const double t = turbidity, theta = pi / 2 - height;
-  Light e;
-  e.kind = LightKind::sky;
-  e.sky.a = float(0.1787 * t - 1.4630);
-  e.sky.b = float(-0.3554 * t + 0.4275);
-  e.sky.c = float(-0.0227 * t + 5.3251);
-  e.sky.d = float(0.1206 * t - 2.5771);
-  e.sky.e = float(-0.0670 * t + 0.3703);
-  const double chi = (4.0 / 9 - t / 120) * (pi - 2 * theta);
-  const double zenith = 1000 * ((4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192);
-  const double of_shape = (1 + double(e.sky.a) * std::exp(double(e.sky.b))) *
-                          (1 + double(e.sky.c) * std::exp(double(e.sky.d) * theta) +
-                           double(e.sky.e) * sqr(std::cos(theta)));
-  e.radiance = Rgb{float(scale * std::max(zenith, 0.0) / of_shape / luminance_per_radiance)};
-  const Vec3d x = normalize(cross(std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1}, up));
-  e.axes = {Vec3(x), Vec3(cross(up, x)), Vec3(up)};
-  if (turn(e, -to_sun)) add(std::move(e));
-}
-
 void MitsubaLightReader::read() {
   find_parameter(node_, "sampling_weight");
   const std::string& type = node_.type;
@@ -220,7 +152,7 @@ void MitsubaLightReader::read() {
   } else if (type == "envmap") {
     envmap();
   } else if (type == "sky" || type == "sun" || type == "sunsky") {
-    daylight(type != "sun", type != "sky");
+    add_mitsuba_daylight(node_, tree_, scene_.warnings, [&](Light e) { add(std::move(e)); });
   } else {
     for (const MitsubaNode* child : node_.children) child->is_used = true;
     scene_.warnings.add("emitter \"" + shortened(type) + "\" is not supported: left out");

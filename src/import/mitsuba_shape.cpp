@@ -1,5 +1,6 @@
 #include "import/mitsuba_shape.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
@@ -100,6 +101,11 @@ void add_smooth_normals(Mesh& mesh) {
     mesh.normals.push_back(length(n) > 0 ? Vec3(normalize(n)) : Vec3{});  // mended when placed
 }
 
+bool belongs_to(const std::string& material, const MitsubaObjPart& part) {
+  if (!part.name.empty()) return material == part.name;
+  return std::find(part.others.begin(), part.others.end(), material) == part.others.end();
+}
+
 }  // namespace
 
 std::string MitsubaShapes::file_path(const MitsubaNode& node) {
@@ -109,9 +115,10 @@ std::string MitsubaShapes::file_path(const MitsubaNode& node) {
   return path.path;
 }
 
-// All of the file as one mesh; its materials are not Mitsuba's matter.
-AnchoredMesh MitsubaShapes::read_obj(const std::string& path) {
-  const Scene scene = import_obj(path);
+// The file, or what is of one material in it, as one mesh. How materials look Mitsuba says itself.
+AnchoredMesh MitsubaShapes::read_obj(const std::string& path, const MitsubaObjPart* part) {
+  if (last_obj_.path != path) last_obj_ = {path, import_obj(path)};
+  const Scene& scene = last_obj_.scene;
   AnchoredMesh out;
   out.anchor = scene.origin;
   bool has_uvs = false, has_normals = false;
@@ -121,6 +128,7 @@ AnchoredMesh MitsubaShapes::read_obj(const std::string& path) {
   }
   Mesh& all = out.mesh;
   for (const Mesh& m : scene.meshes) {
+    if (part && !belongs_to(snake_case(scene.materials[m.material].name), *part)) continue;
     const auto first = uint32_t(all.positions.size());
     all.positions.insert(all.positions.end(), m.positions.begin(), m.positions.end());
     all.uvs.insert(all.uvs.end(), m.uvs.begin(), m.uvs.end());
@@ -133,12 +141,12 @@ AnchoredMesh MitsubaShapes::read_obj(const std::string& path) {
   return out;
 }
 
-AnchoredMesh MitsubaShapes::read_mesh_file(const MitsubaNode& node) {
+AnchoredMesh MitsubaShapes::read_mesh_file(const MitsubaNode& node, const MitsubaObjPart* part) {
   const std::string path = file_path(node);
   AnchoredMesh out;
   bool has_face_normals = get_flag(node, "face_normals", false);
   if (node.type == "obj") {
-    out = read_obj(path);
+    out = read_obj(path, part);
   } else if (node.type == "ply") {
     out = read_ply(path, warnings_);
   } else {
@@ -158,12 +166,14 @@ AnchoredMesh MitsubaShapes::read_mesh_file(const MitsubaNode& node) {
   return out;
 }
 
-std::optional<MitsubaShape> MitsubaShapes::read(const MitsubaNode& node) {
+std::optional<MitsubaShape> MitsubaShapes::read(const MitsubaNode& node,
+                                                const MitsubaObjPart* part) {
   MitsubaShape shape;
   shape.is_turned = get_flag(node, "flip_normals", false);
   const std::string& type = node.type;
   if (type == "obj" || type == "ply" || type == "serialized") {
-    shape.mesh = read_mesh_file(node);
+    shape.mesh = read_mesh_file(node, part);
+    if (shape.mesh.mesh.triangles.empty()) return std::nullopt;
   } else if (type == "rectangle" || type == "cube") {
     shape.mesh.mesh = type == "cube" ? cube() : rectangle();
     shape.keeps_side = true;

@@ -9,6 +9,7 @@
 
 #include "import/mitsuba_tree.h"
 #include "import/recentre.h"
+#include "scene/scene.h"
 
 namespace troffer {
 
@@ -25,6 +26,13 @@ struct MitsubaShape {
   bool keeps_side = false;
 };
 
+// Of an OBJ file what is of one material, told by its name as MitsubaNode::name has it; of no name
+// what is of none of `others`.
+struct MitsubaObjPart {
+  std::string name;
+  std::vector<std::string> others;
+};
+
 class MitsubaShapes {
  public:
   // Both must outlive this.
@@ -32,7 +40,8 @@ class MitsubaShapes {
 
   // The geometry of a <shape>, without its to_world; nothing, with a warning that names it, where
   // it is not supported. InputError: parameters or files that cannot be used.
-  std::optional<MitsubaShape> read(const MitsubaNode& node);
+  // Of an OBJ file all of it, or that part.
+  std::optional<MitsubaShape> read(const MitsubaNode& node, const MitsubaObjPart* part = nullptr);
 
  private:
   const MitsubaTree& tree_;
@@ -44,8 +53,14 @@ class MitsubaShapes {
   } last_file_;
 
   std::string file_path(const MitsubaNode& node);
-  AnchoredMesh read_mesh_file(const MitsubaNode& node);
-  AnchoredMesh read_obj(const std::string& path);
+  // The OBJ file that was read last: its parts may be of many bsdfs.
+  struct LastObj {
+    std::string path;
+    Scene scene;
+  } last_obj_;
+
+  AnchoredMesh read_mesh_file(const MitsubaNode& node, const MitsubaObjPart* part);
+  AnchoredMesh read_obj(const std::string& path, const MitsubaObjPart* part);
 };
 
 }  // namespace troffer

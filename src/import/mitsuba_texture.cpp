@@ -38,18 +38,19 @@ void MitsubaTextures::set_coordinates(const MitsubaNode& node, Texture& look) {
   if (!find_parameter(node, "to_uv")) return;
   const Affine t = get_transform(node, "to_uv");
   const auto &x = t.columns[0], &y = t.columns[1];
-  // Rotation before scale, as glTF has it: rows are scale_u (cos, sin) and scale_v (-sin, cos).
-  const double su = std::hypot(x.x, y.x), sv_size = std::hypot(x.y, y.y);
+  // Texture has a rotation after the scale: columns scale_u (cos, -sin) and scale_v (sin, cos).
   const double determinant = x.x * y.y - x.y * y.x;
-  const double sv = determinant < 0 ? -sv_size : sv_size;
-  look.uv_scale = {float(su), float(sv)};
+  const double su = std::hypot(x.x, x.y), sv = std::copysign(std::hypot(y.x, y.y), determinant);
   look.uv_offset = {float(t.translation.x), float(t.translation.y)};
   if (x.y == 0 && y.x == 0) {
     look.uv_scale = {float(x.x), float(y.y)};
-  } else {
-    scene_.warnings.add("texture \"" + shortened(node.type) +
-                        "\": the rotation of its to_uv is left out");
+    return;
   }
+  look.uv_scale = {float(su), float(sv)};
+  look.uv_rotation_rad = float(std::atan2(-x.y, x.x));
+  if (std::abs(x.x * y.x + x.y * y.y) > 1e-5 * su * std::abs(sv))
+    scene_.warnings.add("texture \"" + shortened(node.type) +
+                        "\": its to_uv shears: shown turned and scaled alone");
 }
 
 int32_t MitsubaTextures::bitmap(const MitsubaNode& node, bool is_raw) {
@@ -98,7 +99,7 @@ ColorInput MitsubaTextures::checkerboard(const MitsubaNode& node) {
 }
 
 ColorInput MitsubaTextures::scaled(const MitsubaNode& node, bool is_raw) {
-  const Rgb factor = plain(node, "scale", plain(node, "value", Rgb{1}));
+  const Rgb factor = plain(node, "scale", Rgb{1});
   for (const MitsubaNode* child : node.children) {
     const MitsubaNode& inner = tree_.resolved(*child);
     if (inner.tag != "texture") continue;
@@ -107,7 +108,7 @@ ColorInput MitsubaTextures::scaled(const MitsubaNode& node, bool is_raw) {
     c.value *= factor;
     return c;
   }
-  return {factor, no_texture};
+  return {factor * plain(node, "value", Rgb{1}), no_texture};
 }
 
 ColorInput MitsubaTextures::texture(const MitsubaNode& node, bool is_raw) {
@@ -161,13 +162,18 @@ FloatInput MitsubaTextures::real(const MitsubaNode& plugin,
   return {c.value.g, c.texture, 0};
 }
 
+ColorInput MitsubaTextures::real_color(const MitsubaNode& plugin, std::string_view name) {
+  const MitsubaNode* p = find_parameter(plugin, name);
+  return p ? value(*p, false, true) : ColorInput{Rgb{0}, no_texture};
+}
+
 ColorInput MitsubaTextures::emission(const MitsubaNode& parameter) {
   return value(parameter, true, false);
 }
 
-int32_t MitsubaTextures::raw_image(const MitsubaNode& given) {
+ColorInput MitsubaTextures::raw(const MitsubaNode& given) {
   const MitsubaNode& node = tree_.resolved(given);
-  return node.tag == "texture" ? texture(node, true).texture : no_texture;
+  return node.tag == "texture" ? texture(node, true) : ColorInput{Rgb{1}, no_texture};
 }
 
 int32_t MitsubaTextures::with_brightened_texels(int32_t index, float f) {

@@ -25,10 +25,12 @@ class MitsubaTextures {
                    Rgb fallback);
   FloatInput real(const MitsubaNode& plugin, std::initializer_list<std::string_view> names,
                   float fallback);
+  // A colour of any size, 0 where there is none.
+  ColorInput real_color(const MitsubaNode& plugin, std::string_view name);
   // Of an area light.
   ColorInput emission(const MitsubaNode& parameter);
-  // An image's texels as numbers, not colours (normal maps): no_texture where it is not there.
-  int32_t raw_image(const MitsubaNode& texture);
+  // A texture of numbers, not colours (normal maps, heights): no_texture where it is not there.
+  ColorInput raw(const MitsubaNode& texture);
 
   // A texture of which every value v of every channel is v / (1 - f + f v): Lambertian reflection
   // under a coat that is darker than Mitsuba's, made equal to it (mitsuba_bsdf.cpp).

@@ -4,6 +4,7 @@
 #include <pugixml.hpp>
 
 #include "import/file.h"
+#include "import/mitsuba_legacy.h"
 
 namespace troffer {
 
@@ -58,7 +59,8 @@ const std::string& MitsubaNode::attribute(const std::string& key) const {
 
 class MitsubaTreeReader {
  public:
-  MitsubaTreeReader(MitsubaTree& tree, WarningLog& warnings) : tree_(tree), warnings_(warnings) {}
+  MitsubaTreeReader(MitsubaTree& tree, WarningLog& warnings)
+      : tree_(tree), warnings_(warnings), upgrade_(tree.nodes_) {}
 
   void read_root(const std::string& path);
 
@@ -71,17 +73,22 @@ class MitsubaTreeReader {
 
   MitsubaTree& tree_;
   WarningLog& warnings_;
+  MitsubaUpgrade upgrade_;
   std::map<std::string, std::string> parameters_;
   uint64_t bytes_ = 0;
   size_t files_ = 0, open_files_ = 0, expanded_bytes_ = 0;
+  // A parameter without <default> that the element asks for which is being read; "": none.
+  std::string unknown_;
 
   void read_file_into(const std::string& path, const SourcePlace* from, MitsubaNode& parent,
                       size_t depth);
+  void set_version(const pugi::xml_node& root);
   void add_children(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
   void add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
   void include(const MitsubaNode& node, MitsubaNode& parent, size_t depth);
   void fill(const pugi::xml_node& from, MitsubaNode& node);
   std::string expanded(std::string_view text, const SourcePlace& place);
+  void leave_out(const MitsubaNode& node, const MitsubaNode& parent);
 };
 
 void MitsubaTreeReader::read_root(const std::string& path) {
@@ -112,8 +119,7 @@ void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlac
     if (!from) {
       parent.tag = tag;
       parent.place = lines.place(name, root.offset_debug());
-      const std::string version = root.attribute("version").as_string("3.0.0");
-      tree_.is_legacy_ = version.starts_with("0.");
+      set_version(root);
     }
     add_children(open, root, parent, depth);
   } else if (from) {
@@ -123,6 +129,15 @@ void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlac
         .fail("is no Mitsuba scene: its first element is <" + shortened(tag) + ">, not <scene>");
   }
   --open_files_;
+}
+
+// Files without a version are of the first ones where they have what only those have.
+void MitsubaTreeReader::set_version(const pugi::xml_node& root) {
+  const bool is_first = root.child("camera") || root.child("luminaire");
+  const MitsubaVersion version =
+      mitsuba_version(root.attribute("version").as_string(is_first ? "0.2" : "3.0"));
+  tree_.is_legacy_ = version.major == 0;
+  upgrade_.set_version(version);
 }
 
 void MitsubaTreeReader::add_children(const Open& open, const pugi::xml_node& from, MitsubaNode& to,
@@ -146,6 +161,18 @@ void MitsubaTreeReader::fill(const pugi::xml_node& from, MitsubaNode& node) {
   }
 }
 
+// Mitsuba is given such parameters by its command line; how a picture is made is ours anyway.
+void MitsubaTreeReader::leave_out(const MitsubaNode& node, const MitsubaNode& parent) {
+  if (node.tag == "include" || node.tag == "default")
+    node.place.fail("the parameter $" + unknown_ + " has no <default>");
+  const auto is_made_so = [](const std::string& tag) {
+    return tag == "integrator" || tag == "sampler";
+  };
+  if (!is_made_so(node.tag) && !is_made_so(parent.tag))
+    warnings_.add("the parameter $" + unknown_ + " has no <default>: <" + shortened(node.tag) +
+                  (node.name.empty() ? "" : " " + shortened(node.name)) + "> is left out");
+}
+
 void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to,
                                   size_t depth) {
   const SourcePlace place = open.lines.place(open.path, from.offset_debug());
@@ -154,7 +181,10 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
   MitsubaNode& node = tree_.nodes_.emplace_back();
   node.tag = from.name();
   node.place = place;
+  unknown_.clear();
   fill(from, node);
+  if (!unknown_.empty()) return leave_out(node, to);
+  upgrade_.begin(node, to);
   if (node.tag == "default") {
     parameters_.emplace(node.name, node.attribute("value"));  // the first one counts
   } else if (node.tag == "include") {
@@ -173,6 +203,7 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
     }
     to.children.push_back(&node);
     add_children(open, from, node, depth + 1);
+    upgrade_.end(node);
   }
 }
 
@@ -198,8 +229,10 @@ std::string MitsubaTreeReader::expanded(std::string_view text, const SourcePlace
     while (end < text.size() && is_name_character(text[end])) ++end;
     const std::string name(text.substr(begin, end - begin));
     const auto found = parameters_.find(name);
-    if (found == parameters_.end())
-      place.fail("the parameter $" + shortened(name) + " has no <default>");
+    if (found == parameters_.end()) {
+      if (unknown_.empty()) unknown_ = shortened(name);
+      return "";
+    }
     out += found->second;
     expanded_bytes_ += found->second.size() + 1;
     if (out.size() > max_value || expanded_bytes_ > max_expanded_bytes)

@@ -41,7 +41,7 @@ class MitsubaTree {
   const MitsubaNode& root() const { return nodes_.front(); }
   // Folder that files are looked up in.
   const std::string& folder() const { return folder_; }
-  // Whether the file speaks Mitsuba 0.4 to 0.6, whose defaults differ here and there.
+  // Whether the file speaks Mitsuba 0.2 to 0.6, whose defaults differ here and there.
   bool is_legacy() const { return is_legacy_; }
   // The element that `node` refers to where it is a ref (InputError: an unknown id), else itself.
   const MitsubaNode& resolved(const MitsubaNode& node) const;

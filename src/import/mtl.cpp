@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <utility>
+#include <vector>
 
 #include "import/file.h"
 #include "import/text_lines.h"
@@ -79,9 +80,22 @@ Vec2 read_vector(TextLines& lines, Vec2 value) {
   return value;
 }
 
-float strength_of(std::string_view word) {
-  const float v = std::strtof(std::string(word).c_str(), nullptr);
-  return std::isfinite(v) ? v : 1.0f;
+float number_or(std::string_view word, float fallback) {
+  const std::string text(word);
+  char* end = nullptr;
+  const float v = std::strtof(text.c_str(), &end);
+  return std::isfinite(v) && end != text.c_str() ? v : fallback;
+}
+
+// The i-th word behind an option.
+void set_option(std::string_view name, int i, std::string_view word, MtlMap& map) {
+  constexpr std::string_view channels = "rgbml";
+  if (name == "-clamp") map.is_clamped = word == "on";
+  if (name == "-bm") map.strength = number_or(word, 1);
+  if (name == "-mm") (i == 0 ? map.base : map.gain) = number_or(word, float(i));
+  if (name == "-imfchan" && word.size() == 1 && channels.find(word[0]) != std::string_view::npos)
+    map.channel = word[0];
+  if (name == "-colorspace") map.is_linear = word == "linear";
 }
 
 void read_option(TextLines& lines, const MapOption& option, MtlMap& map) {
@@ -89,14 +103,11 @@ void read_option(TextLines& lines, const MapOption& option, MtlMap& map) {
     map.offset = read_vector(lines, map.offset);
   } else if (option.name == "-s") {
     map.scale = read_vector(lines, map.scale);
-  } else if (option.words < 0) {
-    read_vector(lines, {});
+  } else if (option.name == "-t") {
+    const Vec2 t = read_vector(lines, {});
+    map.is_turbulent = t.x != 0 || t.y != 0;
   } else {
-    for (int i = 0; i < option.words; ++i) {
-      const std::string_view word = lines.word();
-      if (option.name == "-clamp") map.is_clamped = word == "on";
-      if (option.name == "-bm") map.strength = strength_of(word);
-    }
+    for (int i = 0; i < option.words; ++i) set_option(option.name, i, lines.word(), map);
   }
 }
 
@@ -129,11 +140,16 @@ class MtlReader {
  public:
   MtlReader(const std::string& path, std::string_view text, const std::string& subfolder,
             MtlLibrary& library, WarningLog& warnings)
-      : lines_(path, text), subfolder_(subfolder), library_(library), warnings_(warnings) {}
+      : lines_(path, text),
+        is_of_blender_(text.substr(0, text.find('\n')).find("# Blender") != std::string_view::npos),
+        subfolder_(subfolder),
+        library_(library),
+        warnings_(warnings) {}
   void read();
 
  private:
   TextLines lines_;
+  bool is_of_blender_;
   const std::string& subfolder_;
   MtlLibrary& library_;
   WarningLog& warnings_;
@@ -141,6 +157,7 @@ class MtlReader {
   bool read_value(std::string_view keyword, MtlMaterial& m);
   bool read_share(std::string_view keyword, MtlMaterial& m);
   bool read_image(std::string_view keyword, MtlMaterial& m);
+  void mend_opacity(const std::vector<std::string>& names);
 };
 
 bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
@@ -160,8 +177,10 @@ bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
   } else if (keyword == "d") {
     if (lines_.has_word() && lines_.peek() == '-') lines_.word();  // -halo
     m.opacity = std::clamp(finite_number(lines_), 0.0f, 1.0f);
-  } else if (keyword == "Tr") {
-    m.opacity = 1 - std::clamp(finite_number(lines_), 0.0f, 1.0f);
+    m.has_dissolve = true;
+  } else if (keyword == "Tr") {  // which some write as 1 for what is opaque
+    const float through = std::clamp(finite_number(lines_), 0.0f, 1.0f);
+    if (!m.has_dissolve) m.opacity = 1 - through;
   } else if (keyword == "illum") {
     m.illumination = int(std::clamp(finite_number(lines_), 0.0f, 10.0f));
   } else {
@@ -196,6 +215,7 @@ bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
                 : keyword == "map_d" || keyword == "map_D" ? &m.map_opacity
                 : keyword == "map_Pr"                      ? &m.map_roughness
                 : keyword == "map_Pm"                      ? &m.map_metallic
+                : keyword == "map_Ns"                      ? &m.map_exponent
                 : keyword == "norm" || keyword == "map_Kn" ? &m.map_normal
                 : keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump" ? &m.map_bump
                                                                                       : nullptr;
@@ -203,8 +223,22 @@ bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
   return map != nullptr;
 }
 
+// Programs that take d for its opposite make everything invisible.
+void MtlReader::mend_opacity(const std::vector<std::string>& names) {
+  const auto is_unseen = [&](const std::string& name) { return library_[name].opacity == 0; };
+  const auto unseen = std::count_if(names.begin(), names.end(), is_unseen);
+  const bool are_most = 2 * unseen > std::ptrdiff_t(names.size()) && names.size() > 1;
+  for (const std::string& name : names) {
+    const bool is_pictured = !library_[name].map_diffuse.file.empty();
+    if (!is_unseen(name) || !(are_most || is_pictured)) continue;
+    library_[name].opacity = 1;
+    warnings_.add("MTL: d 0 of materials with images, and of most, is read as opaque");
+  }
+}
+
 void MtlReader::read() {
   MtlMaterial* current = nullptr;
+  std::vector<std::string> names;
   while (lines_.next_line()) {
     const std::string_view keyword = lines_.word();
     if (keyword.empty()) continue;
@@ -213,6 +247,8 @@ void MtlReader::read() {
       current = &library_[name];
       *current = MtlMaterial();
       current->name = name;
+      current->is_of_blender = is_of_blender_;
+      names.push_back(name);
       continue;
     }
     // What concerns ambient light and old renderers needs no mention.
@@ -224,6 +260,7 @@ void MtlReader::read() {
     else if (!read_value(keyword, *current) && !read_image(keyword, *current))
       warnings_.add("MTL: '" + std::string(keyword.substr(0, 40)) + "' is not supported: ignored");
   }
+  mend_opacity(names);
 }
 
 }  // namespace

@@ -20,7 +20,11 @@ struct MtlMap {
   std::string file;  // relative to the scene's folder; "" = none
   Vec2 scale{1, 1}, offset{0, 0};
   bool is_clamped = false;
-  float strength = 1;  // -bm
+  float strength = 1;         // -bm
+  float base = 0, gain = 1;   // -mm
+  char channel = 0;           // -imfchan: r g b m l, 0: not given
+  bool is_turbulent = false;  // -t
+  bool is_linear = false;     // -colorspace
 };
 
 struct MtlMaterial {
@@ -29,7 +33,8 @@ struct MtlMaterial {
   Rgb specular{0};                           // Ks
   std::optional<Rgb> emission;               // Ke
   float exponent = 0;                        // Ns
-  float opacity = 1;                         // d, 1 - Tr
+  float opacity = 1;                         // d, else 1 - Tr
+  bool has_dissolve = false;                 // d is given
   std::optional<Rgb> filter;                 // Tf: colour of what goes through
   float ior = 1.5f;                          // Ni
   int illumination = -1;                     // illum; -1 = not given
@@ -37,8 +42,10 @@ struct MtlMaterial {
   float coat = 0, coat_roughness = 0;        // Pc, Pcr
   float sheen = 0;                           // Ps
   float anisotropy = 0, turn = 0;            // aniso, anisor: of a whole turn
+  // Blender writes maps of roughness as map_Ns.
+  bool is_of_blender = false;
   MtlMap map_diffuse, map_specular, map_emission, map_opacity, map_roughness, map_metallic,
-      map_normal, map_bump;
+      map_exponent, map_normal, map_bump;
 };
 
 using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;

@@ -2,38 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <system_error>
 
 #include "base/units.h"
-#include "import/file.h"
+#include "import/mtl_image.h"
 #include "import/two_widths.h"
 
 namespace troffer {
 
 namespace {
-
-// An image, or no texture. OBJ's v points up.
-int32_t load(const MtlMap& map, bool is_srgb, const std::string& folder, TextureLoader& loader,
-             WarningLog& warnings) {
-  if (map.file.empty()) return no_texture;
-  Texture look;
-  look.is_srgb = is_srgb;
-  look.uv_scale = {map.scale.x, -map.scale.y};
-  look.uv_offset = {map.offset.x, 1 - map.offset.y};
-  if (map.is_clamped) look.wrap_u = look.wrap_v = WrapMode::clamp;
-  const ConfinedPath path = confined_path(folder, map.file);
-  std::error_code error;
-  if (!path.is_fine() || !std::filesystem::exists(path.path, error)) {
-    const std::string beside = path_beside(folder, map.file);
-    if (!beside.empty()) {
-      warnings.add("MTL: images that are not where they should be are taken from beside the scene");
-      return loader.from_file(beside, look);
-    }
-  }
-  return path.is_fine() ? loader.from_file(path.path, look)
-                        : loader.missing(map.file, path.problem, look);
-}
 
 // Exporters write maps of normals as bumps: bluish where a map of heights is grey.
 bool looks_like_normals(const std::vector<Texture>& textures, int32_t image) {
@@ -50,18 +26,20 @@ bool looks_like_normals(const std::vector<Texture>& textures, int32_t image) {
 }
 
 // The format does not say how high a height of 1 is: a centimetre, times -bm.
-void set_bump(const MtlMap& map, const std::string& folder, TextureLoader& loader,
-              const std::vector<Texture>& textures, Material& m, WarningLog& warnings) {
+void set_bump(const MtlMap& map, const std::string& folder, TextureLoader& loader, Scene& scene,
+              Material& m) {
   constexpr float height = 0.01f;
-  const int32_t image = load(map, false, folder, loader, warnings);
+  WarningLog& warnings = scene.warnings;
+  int32_t image = load_mtl_image(map, false, folder, loader, scene);
   if (image == no_texture) return;
-  if (looks_like_normals(textures, image)) {
+  if (looks_like_normals(scene.textures, image)) {
     if (m.normal_texture >= 0) return;
     m.normal_texture = image;
     m.normal_scale = map.strength;
     warnings.add("MTL: a bluish bump map is read as one of normals");
-  } else if (textures[size_t(image)].kind == TextureKind::image) {
-    m.bump = {map.strength * height, image, 0};
+  } else if (scene.textures[size_t(image)].kind == TextureKind::image) {
+    const int32_t channel = channel_of(map, 0, image, scene);
+    m.bump = {map.strength * height, image, channel};
     warnings.add("MTL: bump maps are approximated: a height of 1 is 1 cm times -bm");
   }
 }
@@ -71,14 +49,10 @@ Rgb clamped_reflectance(Rgb c, WarningLog& warnings) {
   return clamp01(c);
 }
 
-// Beckmann width of a Phong lobe of that exponent (Walter et al. 2007, Eq. for alpha_p).
-float alpha_from_exponent(float exponent) {
-  return std::sqrt(2 / (exponent + 2));
-}
-
 // By the physically based extension.
 bool is_by_roughness(const MtlMaterial& mtl) {
-  return mtl.roughness || mtl.metallic;
+  return mtl.roughness || mtl.metallic || !mtl.map_roughness.file.empty() ||
+         !mtl.map_metallic.file.empty();
 }
 
 // Of what set_surface() made: gloss over a diffuse base, as bright as Ks.
@@ -107,7 +81,7 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
     m.kind = MaterialKind::metallic_roughness;
     m.roughness.value = mtl.roughness.value_or(1);
     m.roughness_meaning = RoughnessMeaning::alpha_is_square;
-    m.metallic.value = mtl.metallic.value_or(0);
+    m.metallic.value = mtl.metallic.value_or(mtl.map_metallic.file.empty() ? 0.0f : 1.0f);
     m.coat.value = mtl.coat;
     m.coat_roughness.value = mtl.coat_roughness;
     m.sheen_color.value = Rgb{mtl.sheen};
@@ -141,10 +115,44 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
   }
 }
 
+// Numbers from images.
+void set_data_images(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
+                     Scene& scene, Material& m) {
+  const auto set = [&](const MtlMap& map, FloatInput& input, int32_t fallback) {
+    input.texture = load_mtl_image(map, false, folder, loader, scene);
+    if (input.texture >= 0) input.channel = channel_of(map, fallback, input.texture, scene);
+  };
+  set(mtl.map_roughness, m.roughness, m.roughness.channel);
+  set(mtl.map_metallic, m.metallic, m.metallic.channel);
+  if (!mtl.map_opacity.file.empty()) {
+    m.is_alpha_masked = m.is_alpha_blended = true;
+    // The image of the colour itself holds opacity in its alpha channel.
+    const bool is_color_image = mtl.map_opacity.file == mtl.map_diffuse.file;
+    m.alpha.value = 1;
+    set(mtl.map_opacity, m.alpha, is_color_image ? 3 : 0);
+  }
+  if (mtl.map_exponent.file.empty()) return;
+  if (is_by_roughness(mtl) || m.kind != MaterialKind::metallic_roughness ||
+      !(m.roughness.value > 0)) {
+    scene.warnings.add("MTL: map_Ns is for gloss by Ns: ignored");
+    return;
+  }
+  FloatInput factor;
+  set(mtl.map_exponent, factor, 0);
+  if (mtl.is_of_blender && factor.texture >= 0) {
+    m.roughness = {1, factor.texture, factor.channel};
+    m.roughness_meaning = RoughnessMeaning::alpha_is_square;
+    return;
+  }
+  const int32_t widths = widths_from_exponents(factor.texture, factor.channel, mtl.exponent, scene);
+  if (widths >= 0) m.roughness = {1, widths, 0};
+}
+
 }  // namespace
 
 MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
-                         const std::vector<Texture>& textures, WarningLog& warnings) {
+                         Scene& scene) {
+  WarningLog& warnings = scene.warnings;
   MtlConverted out;
   Material& m = out.material;
   m.name = mtl.name;
@@ -152,27 +160,21 @@ MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, Text
   Rgb kd = mtl.diffuse.value_or(has_image ? Rgb{1} : Rgb{0.5f});
   if (has_image && kd.is_black()) kd = Rgb{1};
   set_surface(mtl, clamped_reflectance(kd, warnings), m, warnings);
-  m.base_color.texture = load(mtl.map_diffuse, true, folder, loader, warnings);
+  m.base_color.texture = load_mtl_image(mtl.map_diffuse, true, folder, loader, scene);
   if (is_gloss_by_color(mtl, m))
-    m.specular_color.texture = load(mtl.map_specular, true, folder, loader, warnings);
+    m.specular_color.texture = load_mtl_image(mtl.map_specular, true, folder, loader, scene);
   else if (!mtl.map_specular.file.empty())
     warnings.add("MTL: map_Ks is for gloss of a colour Ks alone: ignored");
   if (!is_by_roughness(mtl) && (mtl.anisotropy > 0 || mtl.sheen > 0))
     warnings.add("MTL: aniso and Ps without Pr or Pm are ignored");
-  m.roughness.texture = load(mtl.map_roughness, false, folder, loader, warnings);
-  m.metallic.texture = load(mtl.map_metallic, false, folder, loader, warnings);
-  m.normal_texture = load(mtl.map_normal, false, folder, loader, warnings);
-  set_bump(mtl.map_bump, folder, loader, textures, m, warnings);
-  if (!mtl.map_opacity.file.empty()) {
-    m.is_alpha_masked = m.is_alpha_blended = true;
-    // The image of the colour itself holds opacity in its alpha channel.
-    const bool is_color_image = mtl.map_opacity.file == mtl.map_diffuse.file;
-    m.alpha = {1, load(mtl.map_opacity, false, folder, loader, warnings), is_color_image ? 3 : 0};
-  }
+  set_data_images(mtl, folder, loader, scene, m);
+  m.normal_texture = load_mtl_image(mtl.map_normal, false, folder, loader, scene);
+  m.normal_scale = mtl.map_normal.strength;
+  set_bump(mtl.map_bump, folder, loader, scene, m);
   const bool is_imaged = !mtl.map_emission.file.empty();
   out.emission = mtl.emission.value_or(is_imaged ? Rgb{1} : Rgb{0});
   if (!out.emission.is_black())
-    out.emission_texture = load(mtl.map_emission, true, folder, loader, warnings);
+    out.emission_texture = load_mtl_image(mtl.map_emission, true, folder, loader, scene);
   else if (is_imaged)
     warnings.add("MTL: map_Ke with a Ke of 0 is ignored");
   return out;

@@ -7,7 +7,7 @@
 // - d < 1 (or Tr > 0): with illum 6, 7, solid glass of index Ni; else a thin sheet that lets the
 //   share 1 - d through. map_d is the share of rays that meet the surface.
 // - illum 2, or none given, with Ks: coated diffuse of base colour Kd, whose 4 % reflection is
-//   scaled by Ks (1 = all of it) and map_Ks, alpha = sqrt(2 / (Ns + 2)).
+//   scaled by Ks (1 = all of it) and map_Ks, alpha = sqrt(2 / (Ns map_Ns + 2)).
 // - else diffuse Kd.
 // With Pr or Pm, aniso and anisor: widths alpha / a and alpha a with a = sqrt(1 - .9 aniso) [2];
 // Ps: white fibres of that share.
@@ -18,9 +18,7 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "base/log.h"
 #include "import/mtl.h"
 #include "import/texture_loader.h"
 #include "scene/scene.h"
@@ -34,6 +32,6 @@ struct MtlConverted {
   int32_t emission_texture = no_texture;
 };
 MtlConverted convert_mtl(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
-                         const std::vector<Texture>& textures, WarningLog& warnings);
+                         Scene& scene);
 
 }  // namespace troffer

@@ -265,7 +265,7 @@ const MtlConverted& ObjReader::material_named(const std::string& name) {
   MtlConverted made;
   const auto found = materials_.library.find(name);
   if (found != materials_.library.end()) {
-    made = convert_mtl(found->second, folder_, materials_.loader, scene_.textures, scene_.warnings);
+    made = convert_mtl(found->second, folder_, materials_.loader, scene_);
   } else {
     made.material.name = name.empty() ? "default" : name;
     if (!name.empty())

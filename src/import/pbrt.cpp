@@ -106,8 +106,9 @@ void PbrtInterpreter::on_shape(const PbrtToken& word, PbrtTokenizer& tokens) {
   const std::string type = parse_string(word, tokens);
   const PbrtParams params = parse_typed(word, tokens, type, "shape");
   PbrtShape shape;
-  if (!read_pbrt_shape(type, params, materials_.textures, scene_.warnings, shape)) {
-    if (state_.light && !open_object_) placer_.skip_light();
+  const bool shines = state_.light && !open_object_;
+  if (!read_pbrt_shape(type, params, shines, materials_.textures, scene_.warnings, shape)) {
+    if (shines) placer_.skip_light();
     return;
   }
   shape.world_from_object = state_.transform;

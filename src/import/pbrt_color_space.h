@@ -2,7 +2,6 @@
 //
 // References: [1] pbrt-v4 Input File Format, "Color spaces", pbrt.org/fileformat-v4.
 //   [2] ITU-R BT.2020 and BT.709; SMPTE RP 431-2 (DCI-P3, with pbrt's white D65); SMPTE ST 2065-1.
-//   [3] Lam, "Metamerism and Colour Constancy", 1985 (the Bradford transform).
 #pragma once
 
 #include <string>

@@ -280,7 +280,7 @@ void PbrtInterpreter::on_world_begin(const PbrtToken& word, PbrtTokenizer& token
   if (!camera_) return;
   scene_.cameras.push_back(read_pbrt_camera(camera_->type, camera_->params,
                                             camera_->camera_from_world, scene_.origin, film_,
-                                            scene_.warnings));
+                                            materials_.textures.folder(), scene_.warnings));
   camera_.reset();
 }
 

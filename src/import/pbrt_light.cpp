@@ -246,7 +246,10 @@ std::optional<Light> read_pbrt_light(const std::string& type, const PbrtParams& 
     params.ignore_all();
     context.warnings.add("LightSource \"" + type + "\" is not supported: left out");
   }
-  params.warn_unread(context.warnings);
+  if (light)
+    params.warn_unread(context.warnings);
+  else
+    params.ignore_all();  // why it is left out has been told
   if (light && !is_finite(light->radiance)) {
     context.warnings.add("LightSource too bright for a number: left out");
     light.reset();

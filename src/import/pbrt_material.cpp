@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "import/absorption.h"
+#include "import/blend_materials.h"
 #include "import/measured_bsdf.h"
 #include "import/spectra.h"
 #include "import/two_widths.h"
@@ -111,7 +112,16 @@ void PbrtMaterials::read_conductor(const PbrtParams& params, Material& m,
   m.k = k ? conductor_value(*k, textures.spectrum_context()) : *named_metal("metal-Cu-k");
 }
 
-// How pbrt walks within the coat makes no difference to the whole of its walks.
+// How pbrt walks within the coat makes no difference to the whole of its walks; what scatters in it
+// does.
+void PbrtMaterials::warn_of_coat_medium(const PbrtParams& params) {
+  params.ignore({"thickness", "g", "maxdepth", "nsamples"});
+  const PbrtParam* albedo = params.find("albedo");
+  const bool is_clear = !albedo || (albedo->type != PbrtType::texture &&
+                                    factor_value(*albedo, textures.spectrum_context()).is_black());
+  if (!is_clear) scene_.warnings.add(params.owner + ": the medium in the coat is left out");
+}
+
 Material PbrtMaterials::make_coated_conductor(const PbrtParams& params) {
   Material m;
   read_conductor(params, m, "conductor.");
@@ -120,30 +130,37 @@ Material PbrtMaterials::make_coated_conductor(const PbrtParams& params) {
   m.coat.value = 1;
   m.coat_roughness = interface.roughness;
   m.coat_ior = read_ior(params, "interface.eta");
-  params.ignore({"thickness", "g", "maxdepth", "nsamples"});
-  const PbrtParam* albedo = params.find("albedo");
-  if (albedo && !factor_value(*albedo, textures.spectrum_context()).is_black())
-    scene_.warnings.add("material \"coatedconductor\": the medium in the coat is left out");
+  warn_of_coat_medium(params);
   return m;
 }
 
-// Two diffuse ones are exactly one of the mixed colour.
+// Two diffuse ones are exactly one of the mixed colours.
 Material PbrtMaterials::make_mix(const PbrtMaterial& material) {
-  const FloatInput amount = textures.real(material.params, "amount", 0.5f);
+  FloatInput amount = textures.real(material.params, "amount", 0.5f);
   material.params.ignore({"materials"});
-  Material first = make(*material.mixed[0]), second = make(*material.mixed[1]);
-  const float share = std::clamp(amount.value, 0.0f, 1.0f);
-  const auto is_plain = [](const Material& m) {
-    return m.kind == MaterialKind::diffuse && !is_textured(m);
-  };
-  if (amount.texture < 0 && is_plain(first) && is_plain(second)) {
-    first.base_color.value = first.base_color.value * (1 - share) + second.base_color.value * share;
-    return first;
-  }
-  const bool is_first = amount.texture < 0 && share < 0.5f;
+  Material first = make(*material.mixed[0]);
+  const Material second = make(*material.mixed[1]);
+  if (amount.texture < 0) amount.value = std::clamp(amount.value, 0.0f, 1.0f);
+  if (blend_diffuse(scene_, first, second, amount)) return first;
+  const float share = mean_of(scene_.textures, amount);
   if (amount.texture >= 0 || (share > 0 && share < 1))
     scene_.warnings.add("material \"mix\": the one of more weight is shown alone");
-  return is_first ? first : second;
+  return share < 0.5f ? first : second;
+}
+
+// The albedo of what scatters below the surface, under its boundary.
+Material PbrtMaterials::make_subsurface(const PbrtParams& params) {
+  Material m;
+  m.kind = MaterialKind::coated_diffuse;
+  m.base_color = textures.color(params, "reflectance", Rgb{0.5f});
+  read_roughness(params, m);
+  const PbrtParam* eta = params.find("eta");
+  m.ior = eta ? ior_value(*eta, textures.spectrum_context()) : 1.33f;
+  params.ignore({"mfp", "sigma_a", "sigma_s", "scale", "g", "name"});
+  scene_.warnings.add(
+      "material \"subsurface\": light leaves where it enters: shown as \"coateddiffuse\"" +
+      std::string(params.has("reflectance") ? "" : ", grey"));
+  return m;
 }
 
 // Heights in metres, shown by the shading normal, as pbrt does. Even ones change nothing.
@@ -165,8 +182,7 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
     m.base_color = textures.color(params, "reflectance", Rgb{0.5f});
     read_roughness(params, m);
     m.ior = read_ior(params, "eta");
-    // How pbrt walks within the coat, and a medium in it.
-    params.ignore({"thickness", "albedo", "g", "maxdepth", "nsamples"});
+    warn_of_coat_medium(params);
   } else if (type == "conductor") {
     read_conductor(params, m);
   } else if (type == "dielectric" || type == "thindielectric") {
@@ -179,6 +195,8 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
     m = make_coated_conductor(params);
   } else if (type == "mix") {
     m = make_mix(material);
+  } else if (type == "subsurface") {
+    m = make_subsurface(params);
   } else if (type == "measured") {
     m = measured_material(textures.folder(), params.get_string("filename", ""), scene_.warnings);
   } else if (type == "diffusetransmission") {

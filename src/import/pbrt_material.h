@@ -53,6 +53,8 @@ class PbrtMaterials {
   void read_roughness(const PbrtParams& params, Material& m, const std::string& prefix = "");
   void read_conductor(const PbrtParams& params, Material& m, const std::string& prefix = "");
   Material make_coated_conductor(const PbrtParams& params);
+  Material make_subsurface(const PbrtParams& params);
+  void warn_of_coat_medium(const PbrtParams& params);
   Material make_mix(const PbrtMaterial& material);
   float read_ior(const PbrtParams& params, const char* name);
   void read_bump(const PbrtParams& params, Material& m);

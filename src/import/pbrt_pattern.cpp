@@ -75,6 +75,12 @@ bool PbrtTextures::make_pattern(Named& texture, const std::string& name) {
     set_operands(texture, "tex1", "tex2", t);
     const ColorInput amount = argument(params, "amount", true, Rgb{0.5f}, texture.images);
     t.amount = {amount.value, amount.texture};
+  } else if (kind == "directionmix") {
+    t.kind = TextureKind::mix;
+    set_operands(texture, "tex1", "tex2", t);
+    t.amount = {Rgb{0.5f}, no_texture};
+    params.ignore({"dir"});
+    scene_.warnings.add("texture \"directionmix\": half of each, whatever the direction");
   } else if (kind == "fbm" || kind == "wrinkled" || kind == "windy" || kind == "marble") {
     t.kind = kind == "fbm"        ? TextureKind::fbm
              : kind == "wrinkled" ? TextureKind::wrinkled

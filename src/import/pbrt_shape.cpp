@@ -112,6 +112,7 @@ AnchoredMesh read_subdivision(const PbrtParams& params, WarningLog& warnings) {
 // curved, every patch is cut into cells, so that neighbours meet.
 AnchoredMesh read_bilinear_mesh(const PbrtParams& params, WarningLog& warnings) {
   VertexData data = read_vertices(params, 4, warnings);
+  params.ignore({"emissionfilename"});  // where pbrt samples the light more often
   Mesh& vertices = data.vertices.mesh;
   std::vector<BilinearPatch> patches;
   bool is_flat = true;
@@ -210,11 +211,15 @@ bool read_disk(const PbrtParams& params, PbrtShape& shape) {
   return true;
 }
 
-// False: the shape is cut away everywhere.
-bool read_alpha(const PbrtParams& params, PbrtTextures& textures, WarningLog& warnings,
+// False: the shape is cut away everywhere. pbrt's lights of alpha 0 shine all the same.
+bool read_alpha(const PbrtParams& params, bool shines, PbrtTextures& textures, WarningLog& warnings,
                 PbrtShape& shape) {
   if (!params.has("alpha")) return true;
   const FloatInput alpha = textures.real(params, "alpha", 1);
+  if (shines && alpha.texture < 0 && alpha.value <= 0) {
+    warnings.add("a light of constant alpha 0 is shown: it is seen, and hides what lies behind");
+    return true;
+  }
   if (alpha.texture >= 0 || alpha.value < 1) shape.alpha = alpha;
   if (alpha.texture >= 0 || alpha.value > 0) return true;
   warnings.add("shape with constant alpha 0 is left out");
@@ -223,8 +228,8 @@ bool read_alpha(const PbrtParams& params, PbrtTextures& textures, WarningLog& wa
 
 }  // namespace
 
-bool read_pbrt_shape(const std::string& type, const PbrtParams& params, PbrtTextures& textures,
-                     WarningLog& warnings, PbrtShape& shape) {
+bool read_pbrt_shape(const std::string& type, const PbrtParams& params, bool shines,
+                     PbrtTextures& textures, WarningLog& warnings, PbrtShape& shape) {
   shape.type = type;
   bool has_area = true;
   if (type == "trianglemesh") {
@@ -250,7 +255,7 @@ bool read_pbrt_shape(const std::string& type, const PbrtParams& params, PbrtText
     return false;
   }
   if (!has_area) warnings.add(params.owner + " without area is left out");
-  const bool is_visible = read_alpha(params, textures, warnings, shape);
+  const bool is_visible = read_alpha(params, shines, textures, warnings, shape);
   params.warn_unread(warnings);
   return has_area && is_visible;
 }

@@ -256,17 +256,9 @@ bool PbrtTextures::make_mix(Named& texture) {
 }
 
 void PbrtTextures::make_mean(Named& texture) {
-  const PbrtParams& params = texture.params;
-  Rgb mean{0.5f};
-  if (texture.kind == "directionmix") {
-    size_t images = 0;
-    const ColorInput a = argument(params, "tex1", texture.is_float, Rgb{0}, images);
-    const ColorInput b = argument(params, "tex2", texture.is_float, Rgb{1}, images);
-    mean = (a.value + b.value) * 0.5f;
-  }
   scene_.warnings.add("texture \"" + texture.kind + "\" is not supported: shown as one colour");
-  params.ignore_all();
-  texture.value = {mean, no_texture};
+  texture.params.ignore_all();
+  texture.value = {Rgb{0.5f}, no_texture};
 }
 
 ColorInput PbrtTextures::color(const PbrtParams& params, std::string_view name, Rgb fallback) {

@@ -85,13 +85,17 @@ bool RadianceMaterials::is_modifier(const std::string& type) {
 void RadianceMaterials::define(const std::string& name, RadianceModifier modifier) {
   const bool is_new = modifiers_.insert_or_assign(name, std::move(modifier)).second;
   if (!is_new) looks_.clear();  // what others are made of may have changed
+  looks_.erase(name);           // grey until now
 }
 
 // The material behind aliases and mixtures.
 const RadianceModifier& RadianceMaterials::material_of(std::string name, const SourcePlace& place) {
   for (int i = 0; i < max_chain; ++i) {
     const auto found = modifiers_.find(name);
-    if (found == modifiers_.end()) place.fail("no modifier '" + shortened(name) + "' is defined");
+    if (found == modifiers_.end()) {
+      scene_.warnings.add("no modifier '" + shortened(name) + "' is defined: shown diffuse grey");
+      return grey_;
+    }
     const RadianceModifier& m = found->second;
     if (m.type == "alias") {
       name = m.arguments.strings.at(0);

@@ -41,13 +41,15 @@ class RadianceMaterials {
   void define(const std::string& name, RadianceModifier modifier);
   static bool is_modifier(const std::string& type);
 
-  // The look of surfaces whose modifier is `name`. InputError at `place`: no such modifier, or
-  // arguments that are missing.
+  // The look of surfaces whose modifier is `name`; grey, with a warning, where there is none.
+  // InputError at `place`: arguments that are missing, modifiers that refer to each other.
   const RadianceLook& look_of(const std::string& name, const SourcePlace& place);
 
  private:
   Scene& scene_;
   std::map<std::string, RadianceModifier> modifiers_;
+  // For what another file defines.
+  RadianceModifier grey_{"void", "plastic", {{}, {0.5, 0.5, 0.5, 0, 0}}, {}};
   std::map<std::string, RadianceLook> looks_;
 
   const RadianceModifier& material_of(std::string name, const SourcePlace& place);

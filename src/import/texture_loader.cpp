@@ -40,6 +40,15 @@ void linearize(Texture& t) {
     if (!has_alpha || i % n != n - 1) t.texels_float[i] = linear_from_srgb(t.texels_float[i]);
 }
 
+// Of colours in sRGB's primaries; what lies outside of them is cut off.
+Raster color_raster(Raster raster) {
+  if (!raster.primaries) return raster;
+  raster = rec709_raster(std::move(raster), true);
+  for (float& v : raster.texels_float)
+    if (v < 0) v = 0;
+  return raster;
+}
+
 uint64_t texel_bytes(const Texture& t) {
   return t.texels8.size() + t.texels_float.size() * sizeof(float);
 }
@@ -109,6 +118,7 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
       texture.texels_float = other->texels_float;
     } else {
       Raster raster = decode_raster(bytes(), key);
+      if (look.is_srgb) raster = color_raster(std::move(raster));
       texture.width = raster.width;
       texture.height = raster.height;
       texture.channels = raster.channels;

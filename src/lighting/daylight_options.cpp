@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/sun_position.h"
 #include "daylight/sky_lights.h"
-#include "daylight/sun_position.h"
 #include "import/environment_file.h"
 #include "import/light_radius.h"
 #include "lighting/asked_portals.h"

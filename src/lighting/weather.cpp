@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "daylight/sun_position.h"
+#include "base/sun_position.h"
 #include "import/file.h"
 #include "lighting/csv_table.h"
 

@@ -24,7 +24,9 @@ struct ExrFixture {
   int tile_width = 0, tile_height = 0;  // 0: scan lines
   bool is_decreasing = false;
   std::vector<float> constants;
-  std::vector<int> sampling;  // per channel, 1 if empty
+  std::vector<int> sampling = {};  // per channel, 1 if empty
+  // x and y of red, green, blue and white; none: no attribute
+  std::vector<float> chromaticities = {};
 };
 
 inline float exr_value(size_t channel, int x, int y) {
@@ -94,6 +96,8 @@ class ExrWriter {
       i32(sampling(c));
     }
     out_.push_back(0);
+    if (!f_.chromaticities.empty()) attribute("chromaticities", "chromaticities", 32);
+    for (const float v : f_.chromaticities) i32(std::bit_cast<int32_t>(v));
     attribute("compression", "compression", 1);
     out_.push_back(0);
     attribute("dataWindow", "box2i", 16);

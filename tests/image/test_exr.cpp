@@ -1,9 +1,11 @@
 // EXR files of shapes that others write, and the layers of our own.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/rgb.h"
 #include "image/exr_fixture.h"
 #include "image/fixtures.h"
 #include "image/read_image.h"
@@ -156,4 +158,37 @@ TEST_CASE("layers become named channels in their window") {
   CHECK(read_image(path).pixels == albedo.pixels);
   write_image(path, std::span(layers).subspan(3));
   CHECK(read_image(path).at(5, 2) == Rgb{21});
+}
+
+TEST_CASE("colours of an EXR file's own primaries become Rec. 709") {
+  const std::vector<float> acescg{0.713f, 0.293f, 0.165f,   0.830f,
+                                  0.128f, 0.044f, 0.32168f, 0.33767f};
+  test::ExrFixture fixture{.width = 1, .height = 1, .constants = {3, 2, 1}};  // B, G, R
+  fixture.chromaticities = acescg;
+  const std::vector<uint8_t> bytes = test::make_exr(fixture);
+  const Raster own = decode_raster(bytes, "a.exr");
+  REQUIRE(own.primaries.has_value());
+  CHECK(own.texels_float == std::vector<float>{1, 2, 3});
+  // As published for ACEScg with the white adapted.
+  const Raster seen = rec709_raster(own, true);
+  CHECK_FALSE(seen.primaries.has_value());
+  const std::array<double, 3> wanted{1.70505 - 2 * 0.62179 - 3 * 0.08326,
+                                     -0.13026 + 2 * 1.14080 - 3 * 0.01055,
+                                     -0.02400 - 2 * 0.12897 + 3 * 1.15297};
+  for (size_t c = 0; c < 3; ++c)
+    CHECK(double(seen.texels_float[c]) == doctest::Approx(wanted[c]).epsilon(5e-4));
+  // Without, luminance is what the primaries give: white is D60.
+  fixture.constants = {1, 1, 1};
+  const Raster white = rec709_raster(decode_raster(test::make_exr(fixture), "a.exr"), false);
+  const std::vector<float>& w = white.texels_float;
+  CHECK(double(luminance(Rgb{w[0], w[1], w[2]})) == doctest::Approx(1).epsilon(1e-3));
+  CHECK(w[0] > 1.02f);
+  CHECK(w[2] < 0.95f);
+  // Rec. 709, and what spans no colours, are as nothing.
+  fixture.chromaticities = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+  CHECK_FALSE(decode_raster(test::make_exr(fixture), "a.exr").primaries.has_value());
+  fixture.chromaticities.assign(8, 0.5f);
+  CHECK_FALSE(decode_raster(test::make_exr(fixture), "a.exr").primaries.has_value());
+  fixture.chromaticities.assign(8, NAN);
+  CHECK_FALSE(decode_raster(test::make_exr(fixture), "a.exr").primaries.has_value());
 }

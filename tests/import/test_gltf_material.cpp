@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "import/gltf_builder.h"
+#include "import/thin_glass.h"
 
 using namespace troffer;
 
@@ -302,6 +303,12 @@ TEST_CASE("clear coats and thin films: factors and textures") {
   CHECK(m.film_ior == 1.4f);
   CHECK(m.film_thinnest_nm == 200);
   CHECK(m.film_thickest_nm == 600);
+  const std::string filmed_glass =
+      "'KHR_materials_iridescence':{'iridescenceFactor':1},"
+      "'KHR_materials_transmission':{'transmissionFactor':1}";
+  CHECK_FALSE(has_warning(with(filmed_glass), "rough glass"));  // a sheet
+  CHECK(has_warning(with(filmed_glass + ",'KHR_materials_volume':{'thicknessFactor':1}"),
+                    "a film over rough glass"));
   CHECK(m.specular_color.value == Rgb{1});
 }
 
@@ -311,4 +318,28 @@ TEST_CASE("a data URI that is broken is told of though nothing shows its image")
                                     "{'uri':'data:image/png;base64,AAAA'}]");
   CHECK(has_warning(scene, "/images/0/uri: is a malformed data URI"));
   CHECK(scene.warnings.total() == 1);
+}
+
+TEST_CASE("a thin body that absorbs loses its film, told") {
+  for (const float absorption : {0.0f, 1.0f}) {
+    Scene scene;
+    Material& glass = scene.materials.emplace_back();
+    glass.kind = MaterialKind::metallic_roughness;
+    glass.transmission.value = glass.iridescence.value = 1;
+    glass.metallic.value = 0;
+    glass.absorption = Rgb{absorption};
+    Mesh& box = scene.meshes.emplace_back();
+    for (const float z : {0.0f, 0.01f})
+      for (const Vec2 p : {Vec2{0, 0}, Vec2{1, 0}, Vec2{1, 1}, Vec2{0, 1}})
+        box.positions.push_back({p.x, p.y, z});
+    box.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
+    for (uint32_t i = 0; i < 4; ++i) {
+      const uint32_t j = (i + 1) % 4;
+      box.triangles.push_back({i, j, j + 4});
+      box.triangles.push_back({i, j + 4, i + 4});
+    }
+    replace_thin_glass(scene);
+    CHECK(scene.meshes.at(0).triangles.size() == 2);  // a sheet
+    CHECK(has_warning(scene, "without their film") == (absorption > 0));
+  }
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "image/exr_fixture.h"
 #include "import/file.h"
 #include "import/halve_texture.h"
 #include "import/import.h"
@@ -164,6 +165,25 @@ TEST_CASE("textures are shared by equal requests and decoded once") {
   loader.from_file(path, look);
   CHECK(scene.textures[2].kind == TextureKind::image);
   CHECK(scene.warnings.entries().empty());
+}
+
+TEST_CASE("colours of EXR images are brought to sRGB, data are not") {
+  test::ExrFixture fixture{.width = 1, .height = 1, .constants = {0.5f, 0.5f, 0.5f}};
+  fixture.chromaticities = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+  const auto value = [&](bool is_color) {
+    Scene scene;
+    TextureLoader loader(scene);
+    Texture look;
+    look.is_srgb = is_color;
+    const std::vector<uint8_t> bytes = test::make_exr(fixture);
+    const int32_t index = loader.from_memory(bytes, "a.exr", look);
+    return evaluate(scene.textures, uint32_t(index), Vec2{0.5f, 0.5f}).rgb;
+  };
+  for (size_t c = 0; c < 3; ++c) CHECK(value(true)[c] == doctest::Approx(0.5).epsilon(1e-4));
+  fixture.constants = {0, 1, 0};  // a green that no sRGB reaches
+  CHECK(value(true).r == 0);
+  CHECK(value(true).g > 1.1f);
+  CHECK(value(false) == Rgb{0, 1, 0});
 }
 
 TEST_CASE("images that cannot be had become constant textures and warnings: grey for colours") {

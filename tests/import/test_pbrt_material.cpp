@@ -113,7 +113,51 @@ TEST_CASE("unsupported materials are shown diffuse, and say so") {
   CHECK(has_warning(scene, "interface"));
   CHECK(scene.warnings.entries().size() == 3);
   REQUIRE(scene.meshes.size() == 2);
-  CHECK(scene.materials[scene.meshes[1].material].base_color.value == Rgb(1, 0, 0));
+  const Material& skin = scene.materials[scene.meshes[1].material];
+  CHECK(skin.kind == MaterialKind::coated_diffuse);
+  CHECK(skin.base_color.value == Rgb(1, 0, 0));
+  CHECK(skin.ior == 1.33f);
+}
+
+TEST_CASE("what scatters in a coat is told of") {
+  for (const std::string name : {"coateddiffuse", "coatedconductor"}) {
+    const std::string material = "Material \"" + name + "\" ";
+    CHECK(has_warning(import_world(material + "\"rgb albedo\" [.5 .5 .5]\n" + triangle),
+                      name + "\": the medium in the coat"));
+    CHECK(import_world(material + "\"float thickness\" .2\n" + triangle).warnings.total() == 0);
+  }
+}
+
+TEST_CASE("mixes by textures, and of textures") {
+  const std::string image =
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"four.pfm\" \"string filter\" "
+      "\"point\"\nTexture \"f\" \"float\" \"imagemap\" \"string filename\" \"four.pfm\" \"string "
+      "filter\" \"point\"\n";
+  const std::string named =
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"texture reflectance\" \"t\"\n"
+      "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 .5]\n"
+      "MakeNamedMaterial \"m\" \"string type\" \"conductor\"\n";
+  const auto mix = [&](const std::string& names, const std::string& amount) {
+    return import_world(image + named + "Material \"mix\" \"string materials\" [" + names + "] " +
+                        amount + "\n" + triangle);
+  };
+  Scene scene = mix("\"a\" \"b\"", "\"float amount\" .25");
+  CHECK(scene.warnings.total() == 0);
+  check_near(color_at(scene, {0.25f, 0.75f}), {0.75f, 0, 0.125f});  // red above
+  scene = mix("\"a\" \"b\"", "\"texture amount\" \"f\"");
+  CHECK(scene.warnings.total() == 0);
+  check_near(color_at(scene, {0.75f, 0.25f}), {0, 0, 0.5f});  // where the share is 1
+  // Of unlike ones the one of more weight: the texture's mean is a half.
+  scene = mix("\"a\" \"m\"", "\"texture amount\" \"f\"");
+  CHECK(has_warning(scene, "more weight"));
+  CHECK(scene.materials.at(scene.meshes.at(0).material).kind == MaterialKind::conductor);
+  scene = import_world(image +
+                       "Texture \"d\" \"spectrum\" \"directionmix\" \"texture tex1\" \"t\" \"rgb "
+                       "tex2\" [0 0 1] \"vector3 dir\" [0 1 0]\nMaterial \"diffuse\" \"texture "
+                       "reflectance\" \"d\"\n" +
+                       triangle);
+  CHECK(has_warning(scene, "half of each"));
+  check_near(color_at(scene, {0.25f, 0.75f}), {0.5f, 0, 0.5f});
 }
 
 TEST_CASE("values a material cannot have") {
@@ -228,6 +272,18 @@ TEST_CASE("alpha textures cut holes, constant zero leaves the shape out") {
   CHECK(masked.is_alpha_masked);
   CHECK(masked.alpha.texture >= 0);
   CHECK_FALSE(scene.materials.at(scene.meshes[1].material).is_alpha_masked);
+}
+
+TEST_CASE("a light of alpha 0 shines") {
+  const Scene scene = import_world(
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 2 3]\nShape \"sphere\" \"float "
+      "alpha\" "
+      "0\nAttributeEnd\nShape \"sphere\" \"float alpha\" 0\n");
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.spheres.size() == 1);
+  CHECK(scene.lights[0].radiance == Rgb(1, 2, 3));
+  CHECK(has_warning(scene, "light of constant alpha 0"));
+  CHECK(has_warning(scene, "left out"));
 }
 
 TEST_CASE("one material under alpha textures of different factors") {

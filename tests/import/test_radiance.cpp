@@ -205,9 +205,18 @@ TEST_CASE("views of comments and of the file beside") {
   CHECK(beside.cameras[0].half_extent == 1);
 }
 
+// Programs write materials and surfaces into files of their own.
+TEST_CASE("a modifier that no file here defines is grey, and told of") {
+  const Scene scene = import_text("paint polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n" + grey +
+                                  "grey polygon q 0 0 9 0 0 1 1 0 1 0 1 1\nvoid plastic paint 0 0 "
+                                  "5 .1 .1 .1 0 0\npaint polygon r 0 0 9 0 0 2 1 0 2 0 1 2");
+  CHECK(has_warning(scene, "no modifier 'paint' is defined"));
+  REQUIRE(scene.meshes.size() == 3);
+  CHECK(scene.materials.at(scene.meshes[0].material).base_color.value == Rgb{0.5f});
+  CHECK(scene.materials.at(scene.meshes[2].material).base_color.value == Rgb{0.1f});
+}
+
 TEST_CASE("what cannot be read is an error with its place") {
-  CHECK(error_of("grey polygon p 0 0 9 0 0 0 1 0 0 0 1 0") ==
-        "scene.rad:1:1: no modifier 'grey' is defined");
   CHECK(error_of(grey + "grey sphere s 0 0 4 1 x") == "scene.rad:2:23: 'x' is no number");
   CHECK(error_of(grey + "grey sphere s 0 0 4 1").find("the file ends within") != std::string::npos);
   CHECK(error_of("void wood w 0 0 0").find("'wood' is no type") != std::string::npos);

@@ -1,4 +1,4 @@
-#include "daylight/sun_position.h"
+#include "base/sun_position.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // The sun against published positions.
-#include "daylight/sun_position.h"
+#include "base/sun_position.h"
 
 #include <doctest/doctest.h>
 

@@ -19,7 +19,7 @@ struct SunPosition {
 double julian_day(int year, int month, int day, double hour);
 
 // Latitude north and longitude east of Greenwich, in degrees; within .01 degrees of the published
-// examples that tests/daylight/test_sun_position.cpp has.
+// examples that tests/base/test_sun_position.cpp has.
 SunPosition sun_position(double latitude_deg, double longitude_deg, double julian_day_ut);
 
 // "2026-06-21T12:00+02:00", "…T12:00:30Z" -> Julian day. UsageError, which begins with `option`,

@@ -1,0 +1,93 @@
+// Options of MTL's maps, and what is made of their images.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "image/write_image.h"
+#include "import/obj.h"
+#include "scene_checks.h"
+#include "temp_folder.h"
+
+using namespace troffer;
+
+namespace {
+
+const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n";
+
+// Of one material; the image is (.25, .5, 1) all over.
+Scene import_material(const std::string& statements, const std::string& header = "") {
+  const TempFolder folder;
+  write_image(folder.path("i.pfm"), Image(1, 1, Rgb{0.25f, 0.5f, 1}));
+  folder.write("m.mtl", header + "newmtl a\n" + statements + "\n");
+  return import_obj(folder.write("m.obj", "mtllib m.mtl\n" + square + "usemtl a\nf 1/1 2/2 3/3\n"));
+}
+const Material& only(const Scene& scene) {
+  return scene.materials.at(scene.meshes.at(0).material);
+}
+float value_of(const Scene& scene, const FloatInput& input) {
+  return evaluate(scene.textures, input, Vec2{0.5f, 0.5f});
+}
+
+}  // namespace
+
+TEST_CASE("MTL: -mm moves what an image says") {
+  const Scene scene = import_material("Kd 1 1 1\nmap_Kd -mm .1 .8 i.pfm");
+  CHECK(scene.warnings.total() == 0);
+  const Rgb c = evaluate(scene.textures, only(scene).base_color, Vec2{0.5f, 0.5f});
+  CHECK(c.r == doctest::Approx(0.3));
+  CHECK(c.g == doctest::Approx(0.5));
+  CHECK(c.b == doctest::Approx(0.9));
+}
+
+TEST_CASE("MTL: -imfchan says which channel a number is") {
+  for (const auto& [option, value] :
+       {std::pair{"", 0.25}, std::pair{"-imfchan g", 0.5}, std::pair{"-imfchan b", 1.0},
+        std::pair{"-imfchan l", 0.2126 * 0.25 + 0.7152 * 0.5 + 0.0722}}) {
+    const Scene scene = import_material(std::string("Pr 1\nmap_Pr ") + option + " i.pfm");
+    CAPTURE(option);
+    CHECK(scene.warnings.total() == 0);
+    CHECK(double(value_of(scene, only(scene).roughness)) == doctest::Approx(value).epsilon(1e-3));
+  }
+  const Scene holes = import_material("Kd 1 1 1\nmap_d -imfchan g i.pfm");
+  CHECK(value_of(holes, only(holes).alpha) == 0.5f);
+}
+
+TEST_CASE("MTL: map_Ns is a factor on the exponent") {
+  const Scene scene = import_material("illum 2\nKd 1 1 1\nKs 1 1 1\nNs 100\nmap_Ns i.pfm");
+  CHECK(scene.warnings.total() == 0);
+  CHECK(double(value_of(scene, only(scene).roughness)) == doctest::Approx(std::sqrt(2.0 / 27)));
+  CHECK(has_warning(import_material("Kd 1 1 1\nNs 100\nmap_Ns i.pfm"), "map_Ns"));
+  // Blender's exporter puts its image of roughness there.
+  const Scene blender = import_material("illum 2\nKs .5 .5 .5\nNs 225\nmap_Ns i.pfm",
+                                        "# Blender 3.6.0 MTL File: 'None'\n");
+  CHECK(value_of(blender, only(blender).roughness) == 0.25f);
+  CHECK(only(blender).roughness_meaning == RoughnessMeaning::alpha_is_square);
+  CHECK(has_warning(import_material("Pr .5\nNs 100\nmap_Ns i.pfm"), "map_Ns"));
+}
+
+TEST_CASE("MTL: -bm of maps of normals, -t, and maps without their numbers") {
+  const Scene scene = import_material("Kd 1 1 1\nnorm -bm .5 i.pfm");
+  CHECK(only(scene).normal_texture >= 0);
+  CHECK(only(scene).normal_scale == 0.5f);
+  CHECK(has_warning(import_material("map_Kd -t 1 1 1 i.pfm"), "-t"));
+  CHECK(import_material("map_Kd -t 0 0 0 i.pfm").warnings.total() == 0);
+  const Scene metal = import_material("Kd 1 1 1\nmap_Pm -imfchan b i.pfm");
+  CHECK(only(metal).kind == MaterialKind::metallic_roughness);
+  CHECK(value_of(metal, only(metal).metallic) == 1);
+}
+
+// As a Sponza that many programs come with has it.
+TEST_CASE("MTL: most of a library, and what has an image, is not invisible") {
+  Scene scene = import_material("Kd 1 1 1\nd 0\nmap_Kd i.pfm");
+  CHECK(has_warning(scene, "read as opaque"));
+  CHECK(only(scene).kind == MaterialKind::diffuse);
+  scene = import_material("Kd 1 1 1\nd 0\nnewmtl b\nd 0\nnewmtl c\nd 1");
+  CHECK(has_warning(scene, "read as opaque"));
+  CHECK(only(scene).transmission.value == 0);
+  scene = import_material("Kd 1 1 1\nd 0\nnewmtl b\nnewmtl c\nd 1");  // a pane
+  CHECK(scene.warnings.total() == 0);
+  CHECK(only(scene).transmission.value == 1);
+  scene = import_material("Kd 1 1 1\nd 1\nTr 1");
+  CHECK(only(scene).transmission.value == 0);
+}
