@@ -2,6 +2,7 @@
 #include "integrate/gather_pass.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace troffer {
@@ -22,6 +23,12 @@ constexpr float reach_of_error = 2, most_reach = 0.2f;
 constexpr float full_width = 2;
 // Neighbours on either side that a fit looks at, of those within its radius.
 constexpr int few_along = 4, many_along = 8;
+
+// Which half of the pixels this one is of (the sequence of Thue and Morse, along either axis): of
+// any 3 × 3, and of those at any stride, there are about as many of either.
+int half_of(int x, int y) {
+  return (std::popcount(unsigned(x)) + std::popcount(unsigned(y))) & 1;
+}
 
 }  // namespace
 
@@ -64,26 +71,29 @@ bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
 // Rays count for as much as there are, so that records whose first rays chanced to meet something,
 // which get more, do not weigh too much of it in. But where light itself calls for more rays (the
 // dark beside a caustic, which it hardly reaches), places would count for more than others: so over
-// what is usual around them.
+// what is usual around them, in their half of the pixels. What the other half has has been decided
+// by what this one has met: it would count for less where that is bright.
 float GatherPass::usual_rays(int x, int y, uint32_t r) const {
   float rays = 0, records = 0;
   for (int j = y - usual_pixels; j <= y + usual_pixels; ++j)
     for (int i = x - usual_pixels; i <= x + usual_pixels; ++i)
       out_.of_pixel(i, j, [&](uint32_t o) {
-        if (!is_neighbour(r, o, &GatherRecord::matte)) return;
+        if (half_of(i, j) != half_of(x, y) || !is_neighbour(r, o, &GatherRecord::matte)) return;
         rays += out_.records_[o].rays;
         records += 1;
       });
   return rays / std::max(records, 1.0f);
 }
 
-GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part) const {
+GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part,
+                                            Asked asked) const {
   const GatherRecord& at = out_.records_[r];
   float nearness = 0, bright_nearness = 0, light = 0, rays = 0, variance = 0, records = 0;
   for (int j = y - 2; j <= y + 2; ++j)
     for (int i = x - 2; i <= x + 2; ++i)
       out_.of_pixel(i, j, [&](uint32_t o) {
         const GatherRecord& n = out_.records_[o];
+        if (asked == Asked::other_half && half_of(i, j) == half_of(x, y)) return;
         if (!is_neighbour(r, o, part)) return;
         const GatherSums& sums = n.*part;
         nearness += n.nearness;
@@ -100,10 +110,11 @@ GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part)
   const float width = part == &GatherRecord::gloss ? std::min(full_width * at.width, 1.0f) : 1.0f;
   return {
       std::max(nearness / std::max(rays, 1.0f), bright_nearness / std::max(light, 1e-30f)) / width,
-      variance / std::max(records, 1.0f)};
+      variance / std::max(records, 1.0f), records};
 }
 
-LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int along) const {
+LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int along,
+                          Asked asked) const {
   const GatherRecord& at = out_.records_[r];
   const int pixels = std::clamp(int(std::ceil(radius / at.spacing)), 1, most_pixels);
   const int step = std::max(1, pixels / along);
@@ -111,7 +122,9 @@ LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int
   const float scale = 1 / radius;
   LinearFit sums;
   for (int j = -pixels / step; j <= pixels / step; ++j)
-    for (int i = -pixels / step; i <= pixels / step; ++i)
+    for (int i = -pixels / step; i <= pixels / step; ++i) {
+      if (asked == Asked::other_half && half_of(x + i * step, y + j * step) == half_of(x, y))
+        continue;
       out_.of_pixel(x + i * step, y + j * step, [&](uint32_t o) {
         const GatherRecord& n = out_.records_[o];
         const Vec3 d = (n.hit.position - at.hit.position) * scale;
@@ -120,6 +133,7 @@ LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int
         sums.add(dot(d, frame.tangent), dot(d, frame.bitangent), 1 - d2,
                  n.rays / usual_rays_[o] * usual_rays_[r] / unit, (n.*part).sum / n.rays);
       });
+    }
   return sums;
 }
 
@@ -143,15 +157,23 @@ float GatherPass::allowed_error(const GatherRecord& r, Part part, float around) 
   return float(options_.error) * 0.5f * (own + float(options_.typical)) / weight + 1e-20f;
 }
 
+// By what the other half of the pixels has met. Were it by its own rays too, or by theirs and its
+// own together, those would get no more that have chanced to miss what is small and bright, and
+// what is looked at again would be what was found too bright: all in all too dark.
 uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
   const GatherRecord& at = out_.records_[r];
-  const Surroundings s = around(x, y, r, part);
+  Surroundings s = around(x, y, r, part, Asked::other_half);
+  const bool are_others = s.records > 0;
+  if (!are_others) s = around(x, y, r, part);
   const float radius =
       std::max(near_radius / std::max(s.nearness, 1e-20f), least_pixels * at.spacing);
-  const FittedLight light =
-      solved(fit(x, y, r, part, std::min(radius, most_pixels * at.spacing), few_along), s);
+  const FittedLight light = solved(fit(x, y, r, part, std::min(radius, most_pixels * at.spacing),
+                                       few_along, are_others ? Asked::other_half : Asked::all),
+                                   s);
+  // Both halves share what they have in the end.
+  const double sharers = are_others ? 2 : 1;
   const double wanted =
-      light.spread / std::max(light.neighbours, 1.0) /
+      light.spread / std::max(sharers * light.neighbours, 1.0) /
       sqr(gain_of_order * double(allowed_error(at, part, luminance(light.value))));
   if (!(wanted > 1)) return 0;
   const double rays = std::min(first_rays * (wanted - 1), double(most_rays - first_rays));

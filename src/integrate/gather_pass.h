@@ -39,7 +39,10 @@ class GatherPass {
   struct Surroundings {
     float nearness = 0;  // mean of 1 / distance
     float variance = 0;  // of one gather of 16 rays, by the spread of its rays
+    float records = 0;   // of which this is the mean
   };
+  // Of the records around one: which are looked at.
+  enum class Asked : uint8_t { all, other_half };
 
   void see(Tile& tile, Worker& w) const;
   Ray ray_of(int x, int y, float& spread) const;
@@ -50,8 +53,9 @@ class GatherPass {
   bool is_beside(int x, int y, uint32_t r) const;
   float usual_rays(int x, int y, uint32_t r) const;
   bool is_neighbour(uint32_t at, uint32_t other, Part part) const;
-  Surroundings around(int x, int y, uint32_t r, Part part) const;
-  LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along) const;
+  Surroundings around(int x, int y, uint32_t r, Part part, Asked asked = Asked::all) const;
+  LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along,
+                Asked asked = Asked::all) const;
   static FittedLight solved(const LinearFit& fit, const Surroundings& s);
   float allowed_error(const GatherRecord& r, Part part, float around) const;
   uint32_t further_rays(int x, int y, uint32_t r, Part part) const;
