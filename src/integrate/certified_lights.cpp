@@ -177,6 +177,10 @@ void CertifiedLights::add_far_lights(const PreparedScene& scene) {
     source.primitive = cell.primitive;
     source.stream = hash_of(sources_.size(), 3u);
     source.far = &cell;
+    const Vec3d middle = cell.plane.origin + (cell.plane.u + cell.plane.v) * 0.5;
+    const Vec3d from(everywhere.centre());
+    source.towards = normalize(Vec3(middle - from));
+    source.solid_angle = float(source.unoccluded(from, Vec3d(source.towards)));
     sources_.push_back(source);
     before_.push_back(-1);
   }

@@ -42,9 +42,15 @@ constexpr float shared_points = 8;
 
 float LobeCompetition::density_of(const CertifiedSource& source, const Vec3& x,
                                   const Vec3& n) const {
+  if (source.far != nullptr) {
+    // Where its middle is about at the horizon, about half of it is above.
+    const float half_width = std::sqrt(source.solid_angle * inv_pi_f) * 0.5f;
+    const float cosine = std::max(dot(n, source.towards), half_width);
+    return cosine > 0 ? float(points_) / (source.solid_angle * cosine) : 0;
+  }
   const auto unoccluded = float(source.unoccluded(Vec3d(x), Vec3d(n)));
   if (!(unoccluded > 0)) return 0;
-  const float points = are_many_ && source.far == nullptr
+  const float points = are_many_
                            ? shared_points * scene_->light_tree.pmf(x, n, false, source.primitive)
                            : float(points_);
   return points / unoccluded;

@@ -29,6 +29,8 @@ struct CertifiedSource {
   uint32_t primitive = 0;  // (one) of LightPrimitives
   uint64_t stream = 0;
   const FarCell* far = nullptr;  // of a light at infinity; it has `radiance`, or varies
+  Vec3 towards;                  // … its middle, and how large it is, sr
+  float solid_angle = 0;
 
   Box bounds() const;
   // Projected solid angle from x with unit normal n, nothing hidden, sr.
@@ -54,6 +56,7 @@ class LobeCompetition {
   LobeCompetition(const PreparedScene& scene, uint32_t points, bool are_many)
       : scene_(&scene), points_(points), are_many_(are_many) {}
   // For a surface at x of unit geometric normal n, in the unit direction wi: density_of() × n · wi.
+  // What a cell at infinity sends is taken to come from its middle.
   float density_of(const CertifiedSource& source, const Vec3& x, const Vec3& n) const;
   float density(const CertifiedSource& source, const Vec3& x, const Vec3& n, const Vec3& wi) const;
   // Of points of a primitive of no source, chosen with this density per sr once it is given.
