@@ -40,6 +40,7 @@ struct PbrtShape {
 };
 
 // Reads the geometry of a Shape directive into `shape` (the fields above world_from_object).
+// shines: it is an area light.
 // False: there is nothing to show, and a warning says why. InputError: parameters that cannot be
 // used, indices out of range, unreadable PLY files.
 bool read_pbrt_shape(const std::string& type, const PbrtParams& params, bool shines,

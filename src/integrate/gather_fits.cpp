@@ -2,7 +2,6 @@
 #include "integrate/gather_pass.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace troffer {
@@ -27,7 +26,9 @@ constexpr int few_along = 4, many_along = 8;
 // Which half of the pixels this one is of (the sequence of Thue and Morse, along either axis): of
 // any 3 × 3, and of those at any stride, there are about as many of either.
 int half_of(int x, int y) {
-  return (std::popcount(unsigned(x)) + std::popcount(unsigned(y))) & 1;
+  uint32_t v = uint32_t(x) ^ uint32_t(y);  // whether the bits of both that are set are odd in number
+  for (const int shift : {16, 8, 4, 2, 1}) v ^= v >> shift;
+  return int(v & 1);
 }
 
 }  // namespace
@@ -75,13 +76,16 @@ bool GatherPass::is_neighbour(uint32_t r, uint32_t o, Part part) const {
 // by what this one has met: it would count for less where that is bright.
 float GatherPass::usual_rays(int x, int y, uint32_t r) const {
   float rays = 0, records = 0;
+  const int half = half_of(x, y);
   for (int j = y - usual_pixels; j <= y + usual_pixels; ++j)
-    for (int i = x - usual_pixels; i <= x + usual_pixels; ++i)
+    for (int i = x - usual_pixels; i <= x + usual_pixels; ++i) {
+      if (half_of(i, j) != half) continue;
       out_.of_pixel(i, j, [&](uint32_t o) {
-        if (half_of(i, j) != half_of(x, y) || !is_neighbour(r, o, &GatherRecord::matte)) return;
+        if (!is_neighbour(r, o, &GatherRecord::matte)) return;
         rays += out_.records_[o].rays;
         records += 1;
       });
+    }
   return rays / std::max(records, 1.0f);
 }
 

@@ -46,7 +46,8 @@ float LobeCompetition::density_of(const CertifiedSource& source, const Vec3& x,
     // Where its middle is about at the horizon, about half of it is above.
     const float half_width = std::sqrt(source.solid_angle * inv_pi_f) * 0.5f;
     const float cosine = std::max(dot(n, source.towards), half_width);
-    return cosine > 0 ? float(points_) / (source.solid_angle * cosine) : 0;
+    const float projected = source.solid_angle * cosine;
+    return projected > 0 ? float(points_) / projected : 0;
   }
   const auto unoccluded = float(source.unoccluded(Vec3d(x), Vec3d(n)));
   if (!(unoccluded > 0)) return 0;
