@@ -26,7 +26,7 @@ constexpr int few_along = 4, many_along = 8;
 // Which half of the pixels this one is of (the sequence of Thue and Morse, along either axis): of
 // any 3 × 3, and of those at any stride, there are about as many of either.
 int half_of(int x, int y) {
-  uint32_t v = uint32_t(x) ^ uint32_t(y);  // whether the bits of both that are set are odd in number
+  uint32_t v = uint32_t(x) ^ uint32_t(y);  // of the parity of all their bits together
   for (const int shift : {16, 8, 4, 2, 1}) v ^= v >> shift;
   return int(v & 1);
 }

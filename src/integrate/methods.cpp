@@ -36,8 +36,8 @@ CertifiedSettings settings_beyond(const MethodInput& in) {
   return s;
 }
 
-// … at the first viewing rays of a pixel: where a hit takes more rays than so many draws, which err by
-// less than such a picture may, they take its place.
+// … at the first viewing rays of a pixel: where a hit takes more rays than so many draws, which err
+// by less than such a picture may, they take its place.
 CertifiedSettings settings_of_first(const MethodInput& in) {
   constexpr double coarse = 0.2;
   constexpr int draws = 32;
