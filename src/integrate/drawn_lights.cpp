@@ -134,31 +134,31 @@ struct Drawing {
 
   void of_members(std::span<uint32_t> members, const std::vector<float>& estimates,
                   const std::vector<float>& near);
-  bool set_sums(const std::vector<float>& estimates, const std::vector<float>& near);
-  void choose(std::span<const uint32_t> members);
+  bool set_groups(const std::vector<float>& estimates, const std::vector<float>& near);
+  void choose(std::span<const uint32_t> members, size_t first);
   void connect(size_t n);
   Rgb value(uint32_t draw) const;
 };
 
-// The distribution over the groups that are drawn. False where near ones matter so much that the
-// cluster is better halved.
-bool Drawing::set_sums(const std::vector<float>& estimates, const std::vector<float>& near) {
-  s.sums.clear();
+// The groups that are drawn. False where near ones matter so much that the cluster is better
+// halved.
+bool Drawing::set_groups(const std::vector<float>& estimates, const std::vector<float>& near) {
+  s.of_groups.clear();
   s.groups.clear();
   float sum = 0, of_near = 0;
   for (uint32_t g = 0; g < groups.size(); ++g) {
     if (lights.is_certified[g] != 0 || !(estimates[g] > 0)) continue;
     sum += estimates[g];
     of_near += near[g];
-    s.sums.push_back(sum);
+    s.of_groups.push_back(estimates[g]);
     s.groups.push_back(g);
   }
   return of_near <= 0.1f * sum;
 }
 
 // Sets streams, samples, hits, receivers, primitives, pmfs, places, u and v of draws from these
-// hits.
-void Drawing::choose(std::span<const uint32_t> members) {
+// hits, the first of which is so far on in s.shares.
+void Drawing::choose(std::span<const uint32_t> members, size_t first) {
   const size_t n = members.size() * lights.draws;
   s.resize(n);
   size_t i = 0;
@@ -170,12 +170,12 @@ void Drawing::choose(std::span<const uint32_t> members) {
       s.receivers[i] = hits.receivers[m].position;
     }
   sobol_groups(s.streams.data(), s.samples.data(), n, 0, 3, s.numbers.data());
-  const float all = s.sums.back();
   for (i = 0; i < n; ++i) {
-    const float place = s.numbers[2 * n + i], target = place * all;
-    size_t k = size_t(std::upper_bound(s.sums.begin(), s.sums.end(), target) - s.sums.begin());
-    k = std::min(k, s.sums.size() - 1);
-    const float before = k == 0 ? 0.0f : s.sums[k - 1], own = s.sums[k] - before;
+    const std::span<const float> sums = s.shares.sums(first + i / lights.draws);
+    const float place = s.numbers[2 * n + i], all = sums.back(), target = place * all;
+    size_t k = size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin());
+    k = std::min(k, sums.size() - 1);
+    const float before = k == 0 ? 0.0f : sums[k - 1], own = sums[k] - before;
     float left = std::clamp((target - before) / own, 0.0f, one_minus_epsilon), pmf = 1;
     s.places[i] = place;
     s.chosen[i] = s.groups[k];
@@ -243,8 +243,8 @@ void Drawing::connect(size_t n) {
 void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& estimates,
                          const std::vector<float>& near) {
   constexpr size_t fewest = 16;
-  const bool is_narrow = set_sums(estimates, near);
-  if (s.sums.empty()) return;
+  const bool is_narrow = set_groups(estimates, near);
+  if (s.groups.empty()) return;
   if (!is_narrow && members.size() >= 2 * fewest) {
     Box box;
     for (const uint32_t m : members) box.grow(hits.positions[m]);
@@ -263,13 +263,14 @@ void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& 
     }
     return;
   }
+  s.shares.set(groups, world.sources, hits, members, s.groups, s.of_groups, groups.are_many());
   const size_t at_a_time = std::max<size_t>(block / lights.draws, 1);
   for (size_t first = 0; first < members.size(); first += at_a_time) {
     const auto some = members.subspan(first, std::min(at_a_time, members.size() - first));
     for (size_t i = 0; i < some.size(); ++i)
       if ((first == 0 && i == 0) || hits.pixels[some[i]] != hits.pixels[members[first + i - 1]])
         s.runs.push_back(s.draws.size() + i * lights.draws);
-    choose(some);
+    choose(some, first);
     connect(some.size() * lights.draws);
   }
 }

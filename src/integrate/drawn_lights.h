@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "integrate/light_groups.h"
+#include "integrate/light_shares.h"
 #include "integrate/waiting_hits.h"
 
 namespace troffer {
@@ -63,8 +64,10 @@ struct DrawnLightsScratch {
   std::vector<uint8_t> is_occluded;
   PaneFactors factors;
   // of a cluster
-  std::vector<float> estimates, near, sums;
+  std::vector<float> estimates, near;
+  std::vector<float> of_groups;  // estimates of those that are drawn
   std::vector<uint32_t> groups;
+  LightShares shares;
   // of a block of draws
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples, primitives, hits, chosen;  // `chosen`: groups

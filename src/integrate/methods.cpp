@@ -49,13 +49,12 @@ CertifiedSettings settings_of_first(const MethodInput& in) {
 }
 
 // … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
-// shows of all of them: by draws where certificates take more, in pictures that may be coarse. In
-// others one rare draw among a few would be seen: a bright dot that no error told of.
+// shows of all of them: by draws where certificates take more.
 CertifiedSettings settings_of_further(const MethodInput& in) {
   constexpr double coarse = 0.1;
-  constexpr int few_draws = 8;  // a power of two: stratified best
+  constexpr int draws = 16, few_draws = 8;  // powers of two: stratified best
   CertifiedSettings s = settings_beyond(in);
-  if (in.cells->view != nullptr && in.settings.error >= coarse) s.draws = few_draws;
+  if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
   return s;
 }
 
