@@ -67,8 +67,9 @@ struct RadianceBatch {
   // … and one draw, of either sign, of what it is off by besides: that of samples is that of their
   // sum. Empty likewise.
   std::vector<float> drawn_error;
-  // Luminance of that part of `indirect` whose error is told by either of these; how far the rest
-  // is off, samples tell by how far they differ. Empty where nothing is told.
+  // Luminance of that part of `indirect` whose error is told by either of these, less that of the
+  // part of `direct` whose is not (what a lobe's own ray has met): how far the rest is off, samples
+  // tell by how far they differ. Empty where nothing is told.
   std::vector<float> told_indirect;
   // The first surface hit; zero where nothing is.
   std::vector<Rgb> albedo;
@@ -117,6 +118,14 @@ struct RadianceBatch {
   void add(size_t i, bool is_direct, Rgb light, float variance) {
     (is_direct ? direct : indirect)[i] += light;
     if (is_direct && !direct_variance.empty()) direct_variance[i] += variance;
+  }
+  // Of light that was added as direct. Where samples are not asked, the variance of one of them is
+  // no more than the mean of its square.
+  void leave_untold(size_t i, float luminance) {
+    if (!told_indirect.empty())
+      told_indirect[i] -= luminance;
+    else if (!direct_variance.empty())
+      direct_variance[i] += luminance * luminance;
   }
 };
 

@@ -198,9 +198,9 @@ void WaveIntegrator::add_emission(Scratch& s, RadianceBatch& out) const {
       const bool is_direct = is_direct_at(walk) || (walk.scatterings == 1 && walk.pdf > 0);
       if (!is_direct && !indirect_) continue;
       const Rgb light = walk.throughput * seen->radiance[i] * seen->weights[i];
-      // The variance of one sample is no more than the mean of its square.
       if (!out.known.empty() && walk.vertex == 0) out.known[walk.index].direct += light;
-      out.add(walk.index, is_direct, light, walk.pdf > 0 ? sqr(luminance(light)) : 0.0f);
+      out.add(walk.index, is_direct, light, 0);
+      if (is_direct && walk.pdf > 0) out.leave_untold(walk.index, luminance(light));
     }
 }
 
