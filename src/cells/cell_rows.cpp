@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "base/vec.h"
 #include "cells/balance_solver.h"
 
@@ -53,7 +54,7 @@ CellRows::RowSum CellRows::sum_of(size_t cell, const std::vector<Rgb>& e, Half h
   RowSum sum;
   for (size_t o = begin_[cell]; o < begin_[cell + 1]; ++o) {
     const RowPart& p = parts_[order_[o]];
-    if (half != Half::both && p.is_second_half != (half == Half::second)) continue;
+    if (p.is_second_half != (half == Half::second)) continue;
     sum.emitted += p.emission;
     sum.rays += p.rays;
     const RowEntry* k = &entries_[first_entry_[order_[o]]];
@@ -62,15 +63,15 @@ CellRows::RowSum CellRows::sum_of(size_t cell, const std::vector<Rgb>& e, Half h
   return sum;
 }
 
-// out = D + emission + W e
-void CellRows::apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half,
-                     int threads, std::vector<Rgb>& out) const {
-  out.resize(direct.size());
+// Of each cell, D and the sources that its rays ran into.
+std::vector<Rgb> CellRows::light_of_sources(const std::vector<Rgb>& direct, int threads) const {
+  std::vector<Rgb> out = direct;
   by_cells(direct.size(), threads, [&](size_t i) {
-    const RowSum sum = sum_of(i, e, half);
-    out[i] = direct[i];
-    if (sum.rays > 0) out[i] += (sum.emitted + sum.reflected) / float(sum.rays);
+    Rgb emitted;
+    for (size_t o = begin_[i]; o < begin_[i + 1]; ++o) emitted += parts_[order_[o]].emission;
+    if (rays_[i] > 0) out[i] += emitted / float(rays_[i]);
   });
+  return out;
 }
 
 CellRows::Packed CellRows::packed() const {
@@ -86,6 +87,22 @@ CellRows::Packed CellRows::packed() const {
     rows.begin.push_back(rows.entries.size());
   }
   return rows;
+}
+
+// Half the difference of what either half of a cell's rays brings, as one draw of what their mean
+// is off by. A single ray does not tell how far others would be from it: taken to be half of what
+// it brings, up or down, for all of one sign would add up.
+float CellRows::difference_of_halves(size_t cell, const std::vector<Rgb>& e) const {
+  float mean[2];
+  int halves = 0;
+  for (const Half half : {Half::first, Half::second}) {
+    const RowSum sum = sum_of(cell, e, half);
+    if (sum.rays > 0)
+      mean[halves++] = luminance(sum.emitted + sum.reflected) / float(sum.rays);
+  }
+  if (halves == 2) return 0.5f * (mean[0] - mean[1]);
+  if (halves == 0) return 0;
+  return (mix64(cell) & 1) != 0 ? 0.5f * mean[0] : -0.5f * mean[0];
 }
 
 // What is off in one cell is off in those that see it: d = s + W d, to the first few bounces.
@@ -105,8 +122,7 @@ CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<floa
                           std::vector<float> importance, int threads) const {
   importance.resize(direct.size(), 0);
   CellLight light;
-  std::vector<Rgb> given, next;
-  apply(direct, std::vector<Rgb>(direct.size()), Half::both, threads, given);
+  const std::vector<Rgb> given = light_of_sources(direct, threads);
   const Packed rows = packed();
   const LightOperator reflected = [&](const std::vector<Rgb>& v, std::vector<Rgb>& out) {
     out.resize(v.size());
@@ -122,11 +138,8 @@ CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<floa
   std::vector<Rgb> e = std::move(balance.light);
   for (Rgb& x : e) x = {std::max(x.r, 0.0f), std::max(x.g, 0.0f), std::max(x.b, 0.0f)};
   light.half_difference = of_direct;
-  for (const Half half : {Half::first, Half::second}) {
-    apply(direct, e, half, threads, next);
-    const float sign = half == Half::first ? 0.5f : -0.5f;
-    for (size_t i = 0; i < e.size(); ++i) light.half_difference[i] += sign * luminance(next[i]);
-  }
+  by_cells(e.size(), threads,
+           [&](size_t i) { light.half_difference[i] += difference_of_halves(i, e); });
   spread(rows, light.half_difference, threads);
   light.irradiance = std::move(e);
   return light;

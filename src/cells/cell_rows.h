@@ -63,14 +63,13 @@ class CellRows {
                                 int iterations) const;
 
  private:
-  enum class Half { both, first, second };
-  // Over a cell's rays: what the cells that they see reflect, and sources that they ran into.
+  enum class Half { first, second };
+  // Over half of a cell's rays: what the cells that they see reflect, and sources that they ran into.
   struct RowSum {
     Rgb reflected, emitted;
     uint32_t rays = 0;
   };
-  void apply(const std::vector<Rgb>& direct, const std::vector<Rgb>& e, Half half, int threads,
-             std::vector<Rgb>& out) const;
+  std::vector<Rgb> light_of_sources(const std::vector<Rgb>& direct, int threads) const;
   // Of each cell Σ w_k / M, one after the other: a solve goes over them again and again.
   struct Packed {
     std::vector<size_t> begin;  // of each cell, and the end
@@ -81,6 +80,7 @@ class CellRows {
   };
   Packed packed() const;
   RowSum sum_of(size_t cell, const std::vector<Rgb>& e, Half half) const;
+  float difference_of_halves(size_t cell, const std::vector<Rgb>& e) const;
   static void spread(const Packed& rows, std::vector<float>& differences, int threads);
 
   std::vector<RowPart> parts_;

@@ -103,8 +103,12 @@ double Film::variance_beyond(size_t i, double independent) const {
   constexpr double gain_of_edges = 0.5;
   const double n = pixels_[i].samples;
   const double size = known_.empty() ? 1 : known_[i].block_size, blocks = std::floor(n / size);
-  if (known_.empty() || blocks < 2)
-    return gain_of_edges * std::max(sqr(estimate_of(i).standard_error * n) - independent, 0.0);
+  if (known_.empty() || blocks < 2) {
+    const PixelEstimate e = estimate_of(i);
+    const bool has_glances = !known_.empty() && known_[i].glances.count > 0;
+    const double error = has_glances ? e.error_of_rest : e.standard_error;
+    return gain_of_edges * std::max(sqr(error * n) - independent, 0.0);
+  }
   const Known& k = known_[i];
   const double spread = sqr(error_of_mean(k.blocks, k.squares_of_blocks, blocks) * blocks);
   return std::max(spread * n / (blocks * size) - independent, 0.0);
