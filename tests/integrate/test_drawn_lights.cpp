@@ -319,3 +319,51 @@ TEST_CASE("few lights: certified in the open, drawn behind a net, the same in th
     CHECK(std::abs(a.mean() - b.mean()) < 5 * sigma + 0.003 * b.mean());
   }
 }
+
+// Drawn by what a light sends to a cluster as a whole, rays that chance upon a strip close by bring
+// many times what arrives: bright dots.
+TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
+  Scene s = room_of_lights(4);
+  constexpr float low = 0.03f;  // metres over the floor: a strip of 2 m × 2 cm
+  make_light(s,
+             add_quad(s, 0, {Vec3{-1, -2, low}, {-1, -1.98f, low}, {1, -1.98f, low}, {1, -2, low}}),
+             Rgb{20});
+  const PreparedScene scene(std::move(s));
+  CertifiedSettings settings = certified_settings(0.1, scene.scene.lights.size());
+  settings.draws = 8;
+  const WaveIntegrator integrator(
+      scene,
+      std::make_unique<CertifiedDirect>(scene, std::make_shared<const Occluders>(scene.scene),
+                                        settings),
+      nullptr);
+  ViewingRays rays;
+  std::vector<Vec3> points;
+  for (uint32_t i = 0; i < 4; ++i)
+    for (uint32_t k = 0; k < 4; ++k) {  // few, for which certificates would take more
+      points.push_back({0.85f + 0.06f * float(i), -2.15f + 0.05f * float(k), 0});
+      const ViewingRays one = repeated(ray_to(points.back()), hash_of(i, k), 1);
+      rays.rays.push_back(one.rays[0]);
+      rays.streams.push_back(one.streams[0]);
+      rays.samples.push_back(0);
+    }
+  const auto scratch = integrator.make_scratch();
+  double most = 0, sum = 0, all = 0;
+  for (uint64_t set = 0; set < 64; ++set) {
+    for (size_t i = 0; i < rays.streams.size(); ++i) rays.streams[i] = hash_of(set, uint64_t(i));
+    RadianceBatch batch;
+    Counters counters;
+    batch.reset(rays.size());
+    integrator.radiance(rays, *scratch, batch, counters);
+    CHECK(counters.shadow_rays > 2 * rays.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+      const double open = unoccluded(scene, points[i]);
+      most = std::max(most, double(batch.direct[i].g) / open);
+      sum += double(batch.direct[i].g);
+      all += open;
+    }
+  }
+  CAPTURE(most);
+  CHECK(most < 1.7);
+  CHECK(sum < all);
+  CHECK(sum > 0.8 * all);
+}

@@ -98,6 +98,34 @@ Scene room_with_small_lamps() {
   return s;
 }
 
+// A bright panel on a wall, and a floor of narrow gloss that shows it.
+Scene room_with_shining_floor() {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-2, -2, 0}, {2, 2, 2.5f});
+  add_quad(s, add_material(s, metal(0.05f)),
+           {Vec3{-2, -2, 0.01f}, {2, -2, 0.01f}, {2, 2, 0.01f}, {-2, 2, 0.01f}});
+  make_light(
+      s,
+      add_quad(s, add_diffuse(s, Rgb{0}),
+               {Vec3{-1, 1.99f, 0.5f}, {1, 1.99f, 0.5f}, {1, 1.99f, 1.5f}, {-1, 1.99f, 1.5f}}),
+      Rgb{20});
+  return s;
+}
+
+// A lit room behind a wall with a gap of 4 cm, and a dark one.
+Scene rooms_with_gap() {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f});
+  add_box_inside(s, grey, {-2, -2, 0}, {4, 2, 2.5f});
+  add_quad(s, grey, {Vec3{1, -2, 0}, {1, 0, 0}, {1, 0, 2.5f}, {1, -2, 2.5f}});
+  add_quad(s, grey, {Vec3{1, 0.04f, 0}, {1, 2, 0}, {1, 2, 2.5f}, {1, 0.04f, 2.5f}});
+  make_light(s,
+             add_quad(s, add_diffuse(s, Rgb{0}),
+                      {Vec3{2, -1, 2.49f}, {2, 1, 2.49f}, {3, 1, 2.49f}, {3, -1, 2.49f}}),
+             Rgb{20});
+  return s;
+}
+
 }  // namespace
 
 TEST_CASE("told error: of lamps that are smaller than a pixel") {
@@ -126,4 +154,24 @@ TEST_CASE("told error: of what glitters within a pixel") {
   const Errors of_even = errors_of(scene, camera, o, 2);
   CAPTURE(of_even.made);
   CHECK(e.made < 0.7 * of_even.made);
+}
+
+TEST_CASE("told error: of a lamp that all rays of a pixel see in gloss") {
+  const PreparedScene scene(room_with_shining_floor());
+  const Camera camera = look_at({0, -1.8f, 1.3f}, {0, 1, 0}, {0, 0, 1}, 40);
+  const Errors e = errors_of(scene, camera, of_five_percent(32, 24), 4);
+  CAPTURE(e.told);
+  CAPTURE(e.made);
+  CHECK(e.told > 0.8 * e.made);
+  CHECK(e.told < 2.8 * e.made);  // 3.3 where each meeting is told as a rare one
+}
+
+TEST_CASE("told error: of a lit room that is seen through a gap") {
+  const PreparedScene scene(rooms_with_gap());
+  const Camera camera = look_at({-1.8f, -0.3f, 1.3f}, {1, 0.1f, 1.2f}, {0, 0, 1}, 60);
+  const Errors e = errors_of(scene, camera, of_five_percent(48, 36), 4);
+  CAPTURE(e.told);
+  CAPTURE(e.made);
+  CHECK(e.told > 0.8 * e.made);
+  CHECK(e.told < 3 * e.made);  // 5.8 where cells of one ray all err upwards
 }
