@@ -19,6 +19,9 @@ struct PixelSampling {
   int first = 0;     // viewing rays of a pixel by which its noise is judged
   int most = 0;      // … in all, wherever that is noisier than
   double error = 0;  // … this (allowed_error())
+  // Means of n viewing rays of a pixel, which are spread evenly, have about the variance of
+  // n^(1 + evenness) independent ones.
+  double evenness = 0;
   bool is_by_noise() const { return most > 0; }
 };
 

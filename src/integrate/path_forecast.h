@@ -16,6 +16,7 @@ namespace troffer {
 struct PathForecast {
   double viewing_rays = 0;  // of a pixel, on average, as many as the error asked for wants
   double rays = 0;          // of all kinds, for the whole picture
+  double evenness = 0;      // PixelSampling
   // What else the picture would take that much for: cells' making, in rays. Negative: paths take
   // less than a picture by cells does even if cells cost nothing.
   double rays_for_cells = 0;

@@ -66,7 +66,8 @@ double Film::standard_error(const Pixel& p) {
 // Of whole pictures also what samples differ by beyond that: what edges within the pixel leave.
 double Film::told_error(size_t i) const {
   const Pixel& p = pixels_[i];
-  if (!p.has_source_variance) return standard_error(p);
+  if (!p.has_source_variance)
+    return standard_error(p) * std::pow(std::max(p.samples, 1u), -0.5 * evenness_);
   const double n = p.samples;
   double independent = independent_variance(p);
   if (p.is_told_whole) independent += variance_beyond(i, independent);

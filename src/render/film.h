@@ -65,6 +65,8 @@ class Film {
   // not finite count as black; returns whether it was finite.
   bool add(int x, int y, const RadianceBatch& batch, size_t i, float depth);
 
+  // Of samples whose method does not tell what they err by (PixelSampling): for told_error().
+  void set_evenness(double evenness) { evenness_ = evenness; }
   // From now on, what batches know of samples is kept. Before the first sample.
   void expect_glances() { known_.resize(pixels_.size()); }
   // Layers of first hits are those of glances where there are any, as light is.
@@ -147,6 +149,7 @@ class Film {
   PixelRect window_;
   std::vector<Aov> aovs_;
   Vec3d origin_;
+  double evenness_ = 0;
   std::vector<Pixel> pixels_;
   std::vector<FirstHit> first_hits_;  // empty if no AOV needs it
   std::vector<Known> known_;          // empty where nothing is known before light is sampled

@@ -300,7 +300,7 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   // allowed, none varies.)
   const double independent =
       options.is_noise || s.has_thin_things ? variance : std::min(variance, neighbour.independent);
-  double wanted = variance > 0 ? independent / sqr(allowed) +
+  double wanted = variance > 0 ? std::pow(independent / sqr(allowed), 1 / (1 + options.evenness)) +
                                      std::pow((variance - independent) / sqr(allowed), 2.0 / 3)
                                : 0;
   if (!options.is_noise) {

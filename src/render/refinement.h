@@ -33,6 +33,7 @@ struct RefinementOptions {
   bool is_everywhere = false;
   // What neighbours vary by is noise, much the same in all of them: its mean counts.
   bool is_noise = false;
+  double evenness = 0;  // of it: PixelSampling
   // More rays than this squared are in proportion to the pixel's standard deviation, not to its
   // variance: so many rays leave the picture the least error. 0: all by the variance.
   float most_even = 0;

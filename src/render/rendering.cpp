@@ -39,6 +39,7 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
   refining_.most = most;
   if (sampling.is_by_noise())
     refining_.most.in_pixel = refining_.most.in_mean = std::max(most.in_pixel, sampling.most);
+  film_.set_evenness(sampling.evenness);
   steps_.first = uint32_t(passes_of(refining_.first_spp));
   // By as many rays as a pixel may come to: what a footprint takes from beside a narrow surface no
   // further ray mends.
@@ -47,6 +48,7 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
     refining_.records.emplace(plan_.region);
     if (sampling.is_by_noise()) {
       refining_.options.error = float(sampling.error);
+      refining_.options.evenness = sampling.evenness;
       refining_.options.is_everywhere = refining_.options.is_noise = true;
     }
     refining_.can_glance = integrator.can_glance();
