@@ -101,16 +101,14 @@ CellMap::IsUneven uneven_by_lights(const PreparedScene& scene) {
   return [&scene](const CellOutline& cell) {
     const auto& c = cell.corners;
     const Vec3 centre = (c[0] + c[2]) * 0.5f;
-    const float width = std::max(length(c[1] - c[0]), length(c[3] - c[0]));
-    const float distance = reach * width;
+    const float distance = reach * std::max(length(c[1] - c[0]), length(c[3] - c[0]));
     std::vector<uint32_t> near;
     scene.light_tree.near(centre, distance, most_lights, near);
     if (near.size() == most_lights) return true;
-    // Light from what is broad differs little over a cell that is not, but beside its edge close by.
+    // Light from what is broad differs little over a cell that is not.
     std::erase_if(near, [&](uint32_t i) {
       const LightPrimitive& p = scene.primitives[i];
-      const float apart2 = distance_squared(p.bounds, centre);
-      return !(apart2 < sqr(distance)) || (breadth(p) > distance && apart2 > sqr(width));
+      return !(distance_squared(p.bounds, centre) < sqr(distance)) || breadth(p) > distance;
     });
     if (near.empty()) return false;
     const Arriving a = arriving_at(scene, near, cell);

@@ -152,7 +152,7 @@ TEST_CASE("--indirect auto: cells are given up once they are more than paths are
   RenderOptions o = small_picture();
   o.width = 160;
   o.height = 120;
-  o.error = 0.025;
+  o.error = 0.02;
   // Cells are begun …
   REQUIRE(forecast_paths(scene, view, 0.75 * o.error, 1 << 14, o.seed, counters).rays_for_cells >
           0);
