@@ -97,8 +97,7 @@ float CellRows::difference_of_halves(size_t cell, const std::vector<Rgb>& e) con
   int halves = 0;
   for (const Half half : {Half::first, Half::second}) {
     const RowSum sum = sum_of(cell, e, half);
-    if (sum.rays > 0)
-      mean[halves++] = luminance(sum.emitted + sum.reflected) / float(sum.rays);
+    if (sum.rays > 0) mean[halves++] = luminance(sum.emitted + sum.reflected) / float(sum.rays);
   }
   if (halves == 2) return 0.5f * (mean[0] - mean[1]);
   if (halves == 0) return 0;

@@ -64,7 +64,8 @@ class CellRows {
 
  private:
   enum class Half { first, second };
-  // Over half of a cell's rays: what the cells that they see reflect, and sources that they ran into.
+  // Over half of a cell's rays: what the cells that they see reflect, and sources that they ran
+  // into.
   struct RowSum {
     Rgb reflected, emitted;
     uint32_t rays = 0;

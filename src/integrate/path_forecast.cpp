@@ -135,8 +135,8 @@ double rays_wanted(const std::vector<Tile>& tiles, double error, double typical,
   double wanted = 0, pixels = 0;
   for (const Tile& t : tiles) {
     const double allowed = allowed_error(error, t.luminance, typical);
-    wanted += t.pixels *
-              std::min(std::pow(t.variance / sqr(allowed), 1 / (1 + evenness)), double(most));
+    wanted +=
+        t.pixels * std::min(std::pow(t.variance / sqr(allowed), 1 / (1 + evenness)), double(most));
     pixels += t.pixels;
   }
   return wanted / pixels;
@@ -157,8 +157,8 @@ PathForecast forecast_paths(const PreparedScene& scene, const PictureView& view,
   f.viewing_rays = std::numeric_limits<double>::infinity();
   if (typical > 0) {
     f.evenness = evenness_of(tiles, error, typical);
-    f.viewing_rays = std::max(rays_wanted(tiles, error, typical, f.evenness, most),
-                              double(least_first));
+    f.viewing_rays =
+        std::max(rays_wanted(tiles, error, typical, f.evenness, most), double(least_first));
   }
   const double pixels = double(view.image.width()) * double(view.image.height());
   const auto traced = double(own.viewing_rays + own.extension_rays + own.shadow_rays);
