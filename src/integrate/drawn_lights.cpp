@@ -172,9 +172,10 @@ void Drawing::choose(std::span<const uint32_t> members, size_t first) {
   sobol_groups(s.streams.data(), s.samples.data(), n, 0, 3, s.numbers.data());
   for (i = 0; i < n; ++i) {
     const std::span<const float> sums = s.shares.sums(first + i / lights.draws);
-    const float place = s.numbers[2 * n + i], all = sums.back(), target = place * all;
-    size_t k = size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin());
-    k = std::min(k, sums.size() - 1);
+    const float place = s.numbers[2 * n + i], all = sums.back();
+    // Below the last sum, so that the group found has a share, however rounding goes.
+    const float target = std::min(place * all, std::nextafter(all, 0.0f));
+    const auto k = size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin());
     const float before = k == 0 ? 0.0f : sums[k - 1], own = sums[k] - before;
     float left = std::clamp((target - before) / own, 0.0f, one_minus_epsilon), pmf = 1;
     s.places[i] = place;
@@ -263,7 +264,7 @@ void Drawing::of_members(std::span<uint32_t> members, const std::vector<float>& 
     }
     return;
   }
-  s.shares.set(groups, world.sources, hits, members, s.groups, s.of_groups, groups.are_many());
+  s.shares.set(groups, world.sources, hits, members, s.groups, s.of_groups);
   const size_t at_a_time = std::max<size_t>(block / lights.draws, 1);
   for (size_t first = 0; first < members.size(); first += at_a_time) {
     const auto some = members.subspan(first, std::min(at_a_time, members.size() - first));

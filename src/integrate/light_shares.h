@@ -15,11 +15,11 @@ namespace troffer {
 
 class LightShares {
  public:
-  // Of groups[k] at each of `members`. estimates[k] > 0: what LightGroups::estimate has for the
-  // cluster; is_shared: no more than that is looked at, where lights are many.
+  // Of groups[chosen[k]] at each of `members`. estimates[k] > 0: what LightGroups::estimate has for
+  // the cluster; where lights or their pieces are many no more than that is looked at.
   void set(const LightGroups& groups, std::span<const CertifiedSource> sources,
            const WaitingHits& hits, std::span<const uint32_t> members,
-           std::span<const uint32_t> chosen, std::span<const float> estimates, bool is_shared);
+           std::span<const uint32_t> chosen, std::span<const float> estimates);
   // Sums of the shares of the groups up to and with the k-th, for the i-th member; not zero.
   std::span<const float> sums(size_t i) const {
     return {sums_.data() + (is_shared_ ? 0 : i * n_), n_};

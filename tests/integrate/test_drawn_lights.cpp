@@ -341,11 +341,10 @@ TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
   for (uint32_t i = 0; i < 4; ++i)
     for (uint32_t k = 0; k < 4; ++k) {  // few, for which certificates would take more
       points.push_back({0.85f + 0.06f * float(i), -2.15f + 0.05f * float(k), 0});
-      const ViewingRays one = repeated(ray_to(points.back()), hash_of(i, k), 1);
-      rays.rays.push_back(one.rays[0]);
-      rays.streams.push_back(one.streams[0]);
-      rays.samples.push_back(0);
+      rays.rays.push_back(ray_to(points.back()));
     }
+  rays.streams.resize(points.size());
+  rays.samples.assign(points.size(), 0);
   const auto scratch = integrator.make_scratch();
   double most = 0, sum = 0, all = 0;
   for (uint64_t set = 0; set < 64; ++set) {
