@@ -13,6 +13,10 @@ namespace {
 // Directions that the next one is made orthogonal to.
 constexpr size_t kept_directions = 8;
 constexpr size_t cells_at_a_time = 8192;
+// Where so many steps do not leave less than this share of what did not balance before, as many
+// bounces are taken one after the other instead.
+constexpr int steps_of_look = 16;
+constexpr double least_progress = 0.5;
 
 using Field = std::vector<Rgb>;
 using Channels = std::array<double, 3>;
@@ -34,14 +38,34 @@ class Solver {
   }
 
   Balance solve(double most_left, int most_iterations) {
+    double before = sum(residual_);
     while (result_.iterations < most_iterations) {
       step();
-      if (sum(residual_) <= most_left * sum(result_.light)) break;
+      const double left = sum(residual_);
+      if (left <= most_left * sum(result_.light)) break;
+      if (result_.iterations % steps_of_look != 0) continue;
+      if (left > least_progress * before)
+        for (int k = 0; k < steps_of_look && result_.iterations < most_iterations; ++k) bounce();
+      before = sum(residual_);
     }
     return std::move(result_);
   }
 
  private:
+  // What does not balance goes on once more: slow, but whatever W is like, as long as every row of
+  // it sums to less than one, its largest entry never grows.
+  void bounce() {
+    Field next;
+    w_(residual_, next);
+    ++result_.iterations;
+    each([&](size_t i) {
+      result_.light[i] += residual_[i];
+      residual_[i] = next[i];
+    });
+    directions_.clear();
+    oldest_ = 0;
+  }
+
   void step() {
     Direction next{residual_, {}, {}};
     w_(next.p, next.image);
@@ -78,12 +102,13 @@ class Solver {
     return q;
   }
 
-  // Sums in the same order whatever the number of threads.
+  // By the entries' weights. Sums in the same order whatever the number of threads.
   Channels dot(const Field& a, const Field& b) {
     chunks([&](size_t chunk, size_t first, size_t end) {
       Channels sum{};
       for (size_t i = first; i < end; ++i)
-        for (size_t c = 0; c < 3; ++c) sum[c] += double(a[i][c]) * double(b[i][c]);
+        for (size_t c = 0; c < 3; ++c)
+          sum[c] += double(weights_[i]) * double(a[i][c]) * double(b[i][c]);
       partial_[chunk] = sum;
     });
     Channels all{};

@@ -80,6 +80,7 @@ class CellRows {
     }
   };
   Packed packed() const;
+  float bounded_share(size_t cell) const;
   RowSum sum_of(size_t cell, const std::vector<Rgb>& e, Half half) const;
   float difference_of_halves(size_t cell, const std::vector<Rgb>& e) const;
   static void spread(const Packed& rows, std::vector<float>& differences, int threads);
@@ -87,7 +88,10 @@ class CellRows {
   std::vector<RowPart> parts_;
   std::vector<size_t> first_entry_;  // of each part
   std::vector<RowEntry> entries_;
-  std::vector<uint32_t> rays_;   // per cell
+  std::vector<uint32_t> rays_;  // per cell
+  // … what a unit of all that they bring is worth: one over their number, or less where they would
+  // bring more than there is (few rays, of which one that gloss sent on counts for many)
+  std::vector<float> share_;
   std::vector<uint32_t> order_;  // parts by cell
   std::vector<size_t> begin_;    // of each cell in order_, and the end
   uint64_t rays_in_all_ = 0;

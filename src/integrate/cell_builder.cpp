@@ -88,6 +88,7 @@ class Builder {
   std::vector<uint32_t> cells_to_resolve();
   uint32_t first_rays(uint32_t cell) const;
   void add_first_tasks(uint32_t cell, uint32_t had, uint32_t count, std::vector<CellTask>& tasks);
+  std::vector<CellTask> first_tasks();
   std::vector<CellTask> further_tasks();
 
   const PreparedScene& scene_;
@@ -178,12 +179,7 @@ void Builder::ask(const CellPilot& pilot) {
 }
 
 CellTask Builder::task_of(uint32_t cell, uint32_t first, uint32_t count) const {
-  CellTask t;
-  t.cell = cell;
-  t.first = first;
-  t.count = count;
-  t.stream = hash_of(options_.seed, cell, uint64_t{0x726f'7773});
-  return t;
+  return {cell, first, count, hash_of(options_.seed, cell, uint64_t{0x726f'7773}), 1, {}};
 }
 
 // Every other step of a cell's rays; either half goes from its own half of the hits, so that what
@@ -280,6 +276,17 @@ void Builder::add_first_tasks(uint32_t cell, uint32_t had, uint32_t count,
   add(had / 2, count / 2, rays_of_step);
 }
 
+// Of cells without a row, and of those that have turned out to matter more than they have rays for:
+// one whose few rays met itself, say, and would keep its light for ever.
+std::vector<CellTask> Builder::first_tasks() {
+  std::vector<CellTask> tasks;
+  for (const uint32_t c : cells_to_resolve()) add_first_tasks(c, 0, first_rays(c), tasks);
+  for (uint32_t c = 0; !tasks.empty() && c < asked_.importance.size(); ++c)
+    if (rows_.has_row(c) && first_rays(c) >= 2 * rows_.rays(c))
+      add_first_tasks(c, rows_.rays(c), first_rays(c), tasks);
+  return tasks;
+}
+
 // As many rays again as the first ones of the cells that matter, in proportion to what is asked of
 // them; less what they have had already, for other views.
 std::vector<CellTask> Builder::further_tasks() {
@@ -313,11 +320,8 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
   if (double(map_->size()) > options_.most_cells) return false;
   for (bool is_further : {false, true}) {
     for (int round = 0; round < most_rounds; ++round) {
-      std::vector<CellTask> tasks;
-      if (is_further && round == 0)
-        tasks = further_tasks();
-      else
-        for (const uint32_t c : cells_to_resolve()) add_first_tasks(c, 0, first_rays(c), tasks);
+      const std::vector<CellTask> tasks =
+          is_further && round == 0 ? further_tasks() : first_tasks();
       if (tasks.empty()) break;
       if (!run(tasks) || double(map_->size()) > options_.most_cells) return false;
       ++statistics_.rounds;

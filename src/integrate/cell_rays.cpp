@@ -13,6 +13,7 @@ constexpr size_t rays_at_a_time = 1024;
 struct RayWorker {
   GatherScratch gather;
   std::vector<uint32_t> tasks;  // of each ray
+  std::vector<float> scales;    // of each task of a chunk: rays over what their light counts
   Counters counters;
 };
 
@@ -39,22 +40,29 @@ std::string name_of_ray(const void* worker, size_t i) {
   return "ray of cell task " + std::to_string(static_cast<const RayWorker*>(worker)->tasks[i]);
 }
 
+// What light counts below a coat is over what it counts on average, which a task's few rays miss:
+// were their light not taken over theirs, cells whose rays see each other head on would send back
+// more than they get, bounce after bounce.
 void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
                  Chunk& chunk, std::vector<Rgb>& emission, RayWorker& w) {
   GatherScratch& g = w.gather;
   g.walks.clear();
   w.tasks.clear();
+  w.scales.assign(chunk.last - chunk.first, 1);
   for (size_t t = chunk.first; t < chunk.last; ++t) {
     if (tasks[t].from.empty()) continue;  // of a file of cells that lies
+    float shares = 0;
     for (uint32_t k = 0; k < tasks[t].count; ++k) {
       Walk walk;
       walk.index = uint32_t(w.tasks.size());
       walk.stream = tasks[t].stream;
       walk.sample = tasks[t].first + k;
       w.tasks.push_back(uint32_t(t));
-      walks.leave(tasks[t].from[walk.sample % tasks[t].from.size()], direction_number(walk), walk);
+      const CellHit& from = tasks[t].from[walk.sample % tasks[t].from.size()];
+      shares += walks.leave(from, direction_number(walk), walk);
       if (!walk.throughput.is_black()) g.walks.push_back(walk);
     }
+    if (shares > 0) w.scales[t - chunk.first] = float(tasks[t].count) / shares;
   }
   const CheckContext context(&w, w.tasks.size(), name_of_ray);
   walks.follow(w.tasks.size(), Coherence::none, g, w.counters);
@@ -62,7 +70,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
   for (const GatherArrival& a : g.arrivals) {
     CellSeen& seen = chunk.seen.emplace_back();
     seen.task = w.tasks[a.walk.index];
-    seen.weight = a.walk.throughput;
+    seen.weight = a.walk.throughput * w.scales[seen.task - chunk.first];
     seen.distance = a.distance;
     seen.hit = a.hit;
     if (map != nullptr) seen.cell = map->find(a.hit, a.distance);
@@ -71,7 +79,8 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
   std::stable_sort(chunk.seen.begin(), chunk.seen.end(),
                    [](const CellSeen& a, const CellSeen& b) { return a.task < b.task; });
   for (size_t i = 0; i < w.tasks.size(); ++i)
-    emission[w.tasks[i]] += (g.light.direct[i] + g.light.indirect[i]) * pi_f;
+    emission[w.tasks[i]] +=
+        (g.light.direct[i] + g.light.indirect[i]) * (pi_f * w.scales[w.tasks[i] - chunk.first]);
 }
 
 }  // namespace

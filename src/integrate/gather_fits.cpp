@@ -12,9 +12,8 @@ constexpr float unit = 16;  // rays of a neighbour of weight 1 in fits
 // Gathers that follow a curve on one sequence of numbers err by less, together, than as many
 // independent ones, as which their spread counts them (measured: docs/cells.md).
 constexpr double gain_of_order = 2;
-// Radii in harmonic mean distances: within the first, light is nearly linear; beyond the second the
-// fit's own error is more than it saves.
-constexpr float near_radius = 0.06f, far_radius = 0.12f;
+// Beyond this radius the fit's own error is more than it saves.
+constexpr float far_radius = 0.12f;
 constexpr float least_pixels = 1.5f;
 // Fits hold within this share of the distance, times the root of the asked error; at most so far.
 constexpr float reach_of_error = 2, most_reach = 0.2f;
@@ -98,7 +97,7 @@ GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part,
       out_.of_pixel(i, j, [&](uint32_t o) {
         const GatherRecord& n = out_.records_[o];
         if (asked == Asked::other_half && half_of(i, j) == half_of(x, y)) return;
-        if (!is_neighbour(r, o, part)) return;
+        if (n.rays == 0 || !is_neighbour(r, o, part)) return;
         const GatherSums& sums = n.*part;
         nearness += n.nearness;
         bright_nearness += sums.bright_nearness;
@@ -117,11 +116,19 @@ GatherPass::Surroundings GatherPass::around(int x, int y, uint32_t r, Part part,
       variance / std::max(records, 1.0f), records};
 }
 
+// Every how many pixels a fit looks at: from the lattice that all records are on where pixels are
+// thinned at that lattice, from elsewhere at all four in turn.
+int GatherPass::step_of(int x, int y, int step) const {
+  if (step <= 1) return 1;
+  if (!is_thinned_) return step;
+  return is_on_lattice(x, y) ? (step + 1) / 2 * 2 : step | 1;
+}
+
 LinearFit GatherPass::fit(int x, int y, uint32_t r, Part part, float radius, int along,
                           Asked asked) const {
   const GatherRecord& at = out_.records_[r];
   const int pixels = std::clamp(int(std::ceil(radius / at.spacing)), 1, most_pixels);
-  const int step = std::max(1, pixels / along);
+  const int step = step_of(x, y, pixels / along);
   const Frame frame(at.hit.horizon);
   const float scale = 1 / radius;
   LinearFit sums;

@@ -9,12 +9,16 @@ namespace troffer {
 
 namespace {
 
-// The place of a pixel on a Z curve through its tile.
+// A pixel's place on a Z curve through its tile. Its last two bits: of four lattices, which one.
 uint32_t on_curve(uint32_t x, uint32_t y) {
   const auto spread = [](uint32_t v) {
     return (v & 1) | (v & 2) << 1 | (v & 4) << 2 | (v & 8) << 3;
   };
   return spread(x) | spread(y) << 1;
+}
+
+uint32_t class_of(uint32_t place) {
+  return place & 3;
 }
 
 // What a record's gloss makes of light from one direction.
@@ -118,10 +122,10 @@ bool GatherPass::see_all(std::vector<Tile>& tiles, Counters& counters) {
   return over_tiles(tiles, std::move(work), counters);
 }
 
-bool GatherPass::gather_further(std::vector<Tile>& tiles, Counters& counters) {
+bool GatherPass::gather_wanted(std::vector<Tile>& tiles, Rays which, Counters& counters) {
   SharedWork work;
   work.act = [&](size_t t, size_t slot) {
-    gather_further(tiles[t], workers_[slot]);
+    gather_wanted(tiles[t], which, workers_[slot]);
     return true;
   };
   const auto wanting = [&](size_t t, const auto& visit) {
@@ -162,15 +166,17 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
   const auto tell = [&](double share) {
     if (progress) progress(share);
   };
+  is_thinned_ = has_close_pixels(workers_[0]);
   if (!see_all(tiles, counters)) return false;
   tell(0.3);
   join(tiles);
-  wanted_.assign(out_.records_.size(), 0);
-  usual_rays_.assign(out_.records_.size(), float(first_rays));
   beside_.resize(out_.records_.size());
   if (!for_records(tiles, counters, beside_,
                    [&](int x, int y, uint32_t r) { return uint8_t(is_beside(x, y, r)); }))
     return false;
+  if (is_thinned_ && !thin(tiles, counters)) return false;
+  wanted_.assign(out_.records_.size(), 0);
+  usual_rays_.assign(out_.records_.size(), float(first_rays));
   if (!for_records(tiles, counters, wanted_, [&](int x, int y, uint32_t r) {
         const uint32_t matte = further_rays(x, y, r, &GatherRecord::matte);
         if (!out_.records_[r].place.is_there()) return matte;
@@ -178,7 +184,7 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
       }))
     return false;
   tell(0.4);
-  if (!gather_further(tiles, counters)) return false;
+  if (!gather_wanted(tiles, Rays::further, counters)) return false;
   if (!for_records(tiles, counters, usual_rays_,
                    [&](int x, int y, uint32_t r) { return usual_rays(x, y, r); }))
     return false;
@@ -197,7 +203,7 @@ Ray GatherPass::ray_of(int x, int y, float& spread) const {
   return ray;
 }
 
-// The matte surfaces that the tile's pixels see, with a gather at each.
+// The matte surfaces that the tile's pixels see, with a gather at each, or at those on the lattice.
 void GatherPass::see(Tile& tile, Worker& w) const {
   GatherScratch& g = w.viewing;
   g.walks.clear();
@@ -231,13 +237,16 @@ void GatherPass::see(Tile& tile, Worker& w) const {
     places.push_back(on_curve(uint32_t(x - tile.x), uint32_t(y - tile.y)) |
                      uint32_t(tile.counts[a.walk.index]++) << 8);
   }
-  gather(tile.records, std::vector<uint32_t>(tile.records.size(), first_rays), tile, places, false,
-         w);
+  std::vector<uint32_t> counts(tile.records.size(), first_rays);
+  if (is_thinned_)
+    for (size_t r = 0; r < counts.size(); ++r)
+      if (class_of(places[r]) != 0) counts[r] = 0;
+  gather(tile.records, counts, tile, places, Rays::first, w);
 }
 
 // places: of each record on the tile's curve, and above that which of its pixel's it is.
 void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
-                        const Tile& tile, const std::vector<uint32_t>& places, bool is_further,
+                        const Tile& tile, const std::vector<uint32_t>& places, Rays which,
                         Worker& w) const {
   std::vector<Walk>& walks = w.cells.gather.walks;
   walks.clear();
@@ -245,14 +254,18 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   std::vector<Vec3> directions;
   std::vector<float> shares;  // what their light counts below the coat
   std::vector<Lobe> lobes;
+  const bool is_further = which == Rays::further;
   for (uint32_t r = 0; r < records.size(); ++r) {
     lobes.emplace_back(cells_.walks(), records[r]);
+    // Each lattice has a sequence of its own, that is even where only the first is used.
+    const uint32_t lattice = is_thinned_ ? class_of(places[r]) : 0,
+                   place = (places[r] & 255) >> (is_thinned_ ? 2 : 0);
     for (uint32_t k = 0; k < counts[r]; ++k) {
       Walk walk;
       walk.index = uint32_t(owners.size());
-      walk.stream =
-          hash_of(options_.seed, uint64_t(tile.x), uint64_t(tile.y), places[r] >> 8, is_further);
-      walk.sample = (places[r] & 255) * (is_further ? most_rays : first_rays) + k;
+      walk.stream = hash_of(options_.seed, uint64_t(tile.x), uint64_t(tile.y), places[r] >> 8,
+                            uint32_t(is_further) | lattice << 1);
+      walk.sample = place * (is_further ? most_rays : first_rays) + k;
       owners.push_back(r);
       set_out(records[r].hit, direction_number(walk), walk);
       directions.push_back(walk.ray.direction);
@@ -304,7 +317,7 @@ void GatherPass::join(std::vector<Tile>& tiles) {
   }
 }
 
-void GatherPass::gather_further(const Tile& tile, Worker& w) {
+void GatherPass::gather_wanted(const Tile& tile, Rays which, Worker& w) {
   std::vector<GatherRecord> records;
   std::vector<uint32_t> counts, places, numbers;
   for (int y = tile.pixels.y0; y < tile.pixels.y1; ++y)
@@ -319,7 +332,7 @@ void GatherPass::gather_further(const Tile& tile, Worker& w) {
         numbers.push_back(r);
       });
     }
-  gather(records, counts, tile, places, true, w);
+  gather(records, counts, tile, places, which, w);
   for (size_t i = 0; i < numbers.size(); ++i) out_.records_[numbers[i]] = records[i];
 }
 

@@ -1,5 +1,6 @@
 // How records are made (gather_records.h): gathers, further rays, fits; each over all the picture
-// before the next.
+// before the next. Where pixels lie close together for how light changes, every second one of every
+// second row has a record, and those between have none (gather_thinning.cpp).
 #pragma once
 
 #include <vector>
@@ -15,6 +16,8 @@ class GatherPass {
   static constexpr int most_pixels = 16;                      // radius of a fit
   static constexpr int usual_pixels = 5;                      // … of what is usual around it
   static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record
+  // Radii of fits in harmonic mean distances: within it light is nearly linear.
+  static constexpr float near_radius = 0.06f;
 
   GatherPass(const Cells& cells, const PictureView& view, const GatherOptions& options,
              const StopFlag& stop, GatherRecords& out);
@@ -43,17 +46,24 @@ class GatherPass {
   };
   // Of the records around one: which are looked at.
   enum class Asked : uint8_t { all, other_half };
+  // Of a record's rays.
+  enum class Rays : uint8_t { first, further };
 
+  bool has_close_pixels(Worker& w) const;
+  bool thin(std::vector<Tile>& tiles, Counters& counters);
+  bool is_spared(int x, int y, uint32_t r) const;
+  void leave_out(const std::vector<uint8_t>& is_left_out);
   void see(Tile& tile, Worker& w) const;
   Ray ray_of(int x, int y, float& spread) const;
   void gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
-              const Tile& tile, const std::vector<uint32_t>& places, bool is_further,
-              Worker& w) const;
+              const Tile& tile, const std::vector<uint32_t>& places, Rays which, Worker& w) const;
   void join(std::vector<Tile>& tiles);
   bool is_beside(int x, int y, uint32_t r) const;
   float usual_rays(int x, int y, uint32_t r) const;
   bool is_neighbour(uint32_t at, uint32_t other, Part part) const;
   Surroundings around(int x, int y, uint32_t r, Part part, Asked asked = Asked::all) const;
+  static bool is_on_lattice(int x, int y) { return ((x | y) & 1) == 0; }
+  int step_of(int x, int y, int step) const;
   LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along,
                 Asked asked = Asked::all) const;
   static FittedLight solved(const LinearFit& fit, const Surroundings& s);
@@ -62,11 +72,11 @@ class GatherPass {
   float fit_part(int x, int y, uint32_t r, Part part, Rgb& value, float& error) const;
   float own_rays(int x, int y, uint32_t r, Part part) const;
   FittedRecord fitted(int x, int y, uint32_t r) const;
-  void gather_further(const Tile& tile, Worker& w);
+  void gather_wanted(const Tile& tile, Rays which, Worker& w);
   // work: all but how many tiles and threads there are.
   bool over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters& counters);
   bool see_all(std::vector<Tile>& tiles, Counters& counters);
-  bool gather_further(std::vector<Tile>& tiles, Counters& counters);
+  bool gather_wanted(std::vector<Tile>& tiles, Rays which, Counters& counters);
   template <class Visit>
   void records_of(const Tile& tile, const Visit& visit) const;
   template <class T, class Of>
@@ -79,8 +89,9 @@ class GatherPass {
   const StopFlag& stop_;
   GatherRecords& out_;
   std::vector<Worker> workers_;
+  bool is_thinned_ = false;       // pixels between others may have no record
   std::vector<uint8_t> beside_;   // of each record: whether something else stands close by
-  std::vector<uint32_t> wanted_;  // further rays of each record
+  std::vector<uint32_t> wanted_;  // rays of each record, from now on
   // Of the places around each record, on average.
   std::vector<float> usual_rays_;
 };

@@ -22,8 +22,8 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
                                                    const std::function<void(double)>& progress,
                                                    const StopFlag& stop, Counters& counters) {
   // A pixel looks at its neighbours' fits, these at gathers and at how many rays are usual around
-  // them, which others asked for.
-  constexpr int border = 2 * GatherPass::most_pixels + GatherPass::usual_pixels + 4;
+  // them, which others asked for; and who gathers at all is decided by those around.
+  constexpr int border = 2 * GatherPass::most_pixels + GatherPass::usual_pixels + 7;
   // In whole tiles of the picture: what a tile's rays meet is the same for every window.
   constexpr int side = GatherPass::tile_side;
   const auto first = [&](int v) { return std::max(v - border, 0) / side * side; };

@@ -207,9 +207,12 @@ Bsdf GatherWalks::white_at(const CellHit& hit, float reflectance) const {
   return white;
 }
 
-void GatherWalks::leave(const CellHit& from, const Vec2& number, Walk& walk) const {
+float GatherWalks::leave(const CellHit& from, const Vec2& number, Walk& walk) const {
   set_out(from, number, walk);
-  if (from.coated != CellHit::uncoated) walk.throughput *= coat_share(from, walk.pdf * pi_f);
+  if (from.coated == CellHit::uncoated) return 1;
+  const float share = coat_share(from, walk.pdf * pi_f);
+  walk.throughput *= share;
+  return share;
 }
 
 void GatherWalks::bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const {

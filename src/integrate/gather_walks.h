@@ -58,8 +58,9 @@ class GatherWalks {
 
   // Follows s.walks, whose indices are below `rays`, to the end.
   void follow(size_t rays, Coherence coherence, GatherScratch& s, Counters& counters) const;
-  // Sends a walk on from a place, by cosine; its throughput is what light from there counts.
-  void leave(const CellHit& from, const Vec2& number, Walk& walk) const;
+  // Sends a walk on from a place, by cosine. Returns what light from there counts; so does its
+  // throughput, but for light from below the surface.
+  float leave(const CellHit& from, const Vec2& number, Walk& walk) const;
   // One such ray of each arrival, in s.walks; the walks have left the arrivals' surfaces.
   void bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const;
   SurfaceScattering scattering_at(const GlossPlace& place) const;

@@ -14,4 +14,9 @@ constexpr uint32_t purpose_light(uint32_t vertex) {
   return 2 + 2 * vertex;
 }
 
+// Whether a spawned walk goes on.
+constexpr uint32_t purpose_roulette(uint32_t vertex) {
+  return 0x8000'0000u + vertex;
+}
+
 }  // namespace troffer

@@ -81,8 +81,7 @@ float side_number(const Walk& walk) {
 }
 
 float roulette_number(const Walk& walk) {
-  return unit_float(
-      uint32_t(hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample) >> 32));
+  return SobolGroup(walk.stream, purpose_roulette(walk.vertex), walk.sample).get(0);
 }
 
 bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2& direction) {

@@ -64,7 +64,8 @@ Vec2 direction_number(const Walk& walk);
 float lobe_number(const Walk& walk);
 float left_vertex_number(const Walk& walk);
 float side_number(const Walk& walk);
-// For Russian roulette of spawned walks: of no dimension.
+// For Russian roulette of spawned walks: even over the samples, so that of a few rays about as many
+// as should go on do.
 float roulette_number(const Walk& walk);
 
 // How often it has been sent on by a surface: panes that it went straight through do not count.

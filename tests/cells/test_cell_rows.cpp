@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.h"
@@ -156,4 +157,79 @@ TEST_CASE("importance stays a number where rows of somebody's file make light gr
   const std::vector<float> first = rows.importance(asked, {}, 24);
   for (const std::vector<float>& y : {first, rows.importance(asked, first, 24)})
     for (const float v : y) CHECK(std::isfinite(v));
+}
+
+namespace {
+
+// Cells in a crease that see one another by one ray each, which gloss made count for more than
+// there is, among cells that see many.
+CellRows rows_with_creases(size_t cells) {
+  CellRows rows;
+  Random random(3);
+  for (uint32_t i = 0; i < cells; ++i) {
+    if (i % 10 == 0) {
+      rows.add({i, 1, 0, false, Rgb{0}}, std::vector<RowEntry>{{i, Rgb{1.2f}}});
+      continue;
+    }
+    std::vector<RowEntry> entries(16);
+    for (RowEntry& e : entries) e = {uint32_t(random.next_float() * float(cells)), Rgb{0.8f}};
+    rows.add({i, 16, 0, false, Rgb{0}}, entries);
+  }
+  rows.finish(cells);
+  return rows;
+}
+
+// A row of white rooms, in each of which one cell is all that the others see, and sees those of the
+// next room: what the many send back is far more, summed over the cells, than the one gets.
+CellRows rows_that_see_few(uint32_t rooms, uint32_t cells_of_room) {
+  CellRows rows;
+  Random random(7);
+  for (uint32_t i = 0; i < rooms * cells_of_room; ++i) {
+    const uint32_t room = i / cells_of_room, next = (room + 1) % rooms;
+    std::vector<RowEntry> entries(16);
+    for (RowEntry& e : entries) {
+      const auto any = uint32_t(random.next_float() * float(cells_of_room));
+      e = {i % cells_of_room == 0 ? next * cells_of_room + any : room * cells_of_room, Rgb{0.93f}};
+    }
+    rows.add({i, 16, 0, false, Rgb{0}}, entries);
+  }
+  rows.finish(rooms * cells_of_room);
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("rays by whose chance cells would amplify their own light do not") {
+  const size_t n = 1000;
+  const CellRows rows = rows_with_creases(n);
+  const std::vector<float> y = rows.importance(std::vector<float>(n, 1), {}, 100000);
+  const double most = double(*std::max_element(y.begin(), y.end()));
+  CHECK(most < 1e5);
+  const CellLight light = rows.solve(std::vector<Rgb>(n, Rgb{1}), std::vector<float>(n, 0), y, 1);
+  CHECK(light.iterations < 200);
+  for (const Rgb& e : light.irradiance) {
+    CHECK(e.g > 0.99f);
+    CHECK(e.g < 101);  // 1 / (1 - .99)
+  }
+}
+
+TEST_CASE("rows of which a few cells are seen by nearly all have a balance all the same") {
+  const uint32_t rooms = 40, cells_of_room = 100;
+  const size_t n = size_t(rooms) * cells_of_room;
+  const CellRows rows = rows_that_see_few(rooms, cells_of_room);
+  const std::vector<float> asked(n, 1);
+  std::vector<Rgb> direct(n, Rgb{0});
+  for (size_t i = 0; i < cells_of_room; ++i) direct[i] = Rgb{1};
+  const CellLight light =
+      rows.solve(direct, std::vector<float>(n, 0), rows.importance(asked, {}, 2000), 2);
+  CHECK(light.iterations < 250);
+  double worst = 0, all = 0;
+  for (uint32_t i = 0; i < n; ++i) {
+    double sum = double(direct[i].g);
+    for (const RowEntry& e : rows.entries(i))
+      sum += double(e.weight.g) / 16 * double(light.irradiance[e.cell].g);
+    worst += std::abs(sum - double(light.irradiance[i].g));
+    all += double(light.irradiance[i].g);
+  }
+  CHECK(worst < 1e-4 * all);
 }

@@ -128,6 +128,25 @@ TEST_CASE("cells: byte-identical for any number of threads, and crops are parts 
   CHECK(pixels_off_crop(one, render_now(scene, mixed_room_camera(), o), o.crop) == 0);
 }
 
+// Large enough that pixels between others have no records of their own.
+TEST_CASE("cells: crops of a picture whose pixels lie close together are parts of it") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions o = picture_by_cells();
+  o.width = 240;
+  o.height = 180;
+  o.error = 0.1;
+  o.spp = 1;
+  o.max_spp = 1;
+  o.threads = 2;
+  const RenderResult all = render_now(scene, mixed_room_camera(), o);
+  o.threads = 1;
+  o.has_crop = true;
+  for (const auto& crop : {std::array{60, 50, 101, 91}, std::array{200, 150, 240, 180}}) {
+    o.crop = crop;
+    CHECK(pixels_off_crop(all, render_now(scene, mixed_room_camera(), o), o.crop) == 0);
+  }
+}
+
 // A room without light of its own beyond a pane; behind the viewer of the first a mirror.
 Scene room_behind_glass() {
   Scene s;

@@ -73,6 +73,6 @@ TEST_CASE("reflected light has no stains, and the same mean, from seed to seed")
   }
   CAPTURE(std::sqrt(stains));
   CAPTURE(std::sqrt(shift));
-  CHECK(std::sqrt(stains) < 0.052);
+  CHECK(std::sqrt(stains) < 0.056);  // .051 by 24 seeds
   CHECK(std::sqrt(shift) < 0.06);
 }
