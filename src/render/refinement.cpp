@@ -76,6 +76,15 @@ NeighbourRecords PixelRecords::around(int x, int y) const {
   return r;
 }
 
+PixelLooks::PixelLooks(const Film& film, bool has_known, const PixelRect& window, int y0, int y1)
+    : rect_{window.x0, std::max(window.y0, y0 - reach), window.x1,
+            std::min(window.y1, y1 + reach)} {
+  looks_.reserve(size_t(rect_.width()) * size_t(rect_.height()));
+  for (int y = rect_.y0; y < rect_.y1; ++y)
+    for (int x = rect_.x0; x < rect_.x1; ++x)
+      looks_.push_back({film.estimate(x, y), has_known ? film.known(x, y) : KnownSums{}});
+}
+
 namespace {
 
 // What varies from sample to sample of a pixel.
@@ -101,7 +110,7 @@ struct Surroundings {
 
 bool differ(const RefinementView& v, int ax, int ay, int bx, int by,
             const RefinementOptions& options) {
-  const double a = v.film.estimate(ax, ay).luminance, b = v.film.estimate(bx, by).luminance;
+  const double a = v.looks.at(ax, ay).estimate.luminance, b = v.looks.at(bx, by).estimate.luminance;
   if (std::abs(a - b) > double(options.contrast) * std::max(a + b, v.typical)) return true;
   const ShadowRecord &p = v.records.records[v.records.index(ax, ay)],
                      &q = v.records.records[v.records.index(bx, by)];
@@ -177,7 +186,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
       s.high = count > 0 ? std::max(s.high, e.mean) : e.mean;
       s.mean_variance += e.variance;
       slope.add(dx, dy, e.mean);
-      s.mean += v.film.estimate(x + dx, y + dy).luminance;
+      s.mean += v.looks.at(x + dx, y + dy).estimate.luminance;
       varying.add(e);
       s.has_thin_things |= v.records.has_edge[v.records.index(x + dx, y + dy)] != 0 &&
                            !v.edges.has_surface_edge(x + dx, y + dy);
@@ -206,6 +215,7 @@ template <class Of>
 double variance_amid_clutter(const RefinementView& v, int x, int y, double of_slope, double noticed,
                              const Of& of) {
   constexpr int reach = 2;
+  static_assert(reach <= PixelLooks::reach);
   constexpr double rays = 32;  // of eight neighbours
   // Of a share p of a pixel that differs by c the variance is p (1 - p) c²; its mean over p, c²
   // / 6.
@@ -231,7 +241,7 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
 // few rays may all have missed. The mean variance in pixels with an edge around.
 template <class Of>
 double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) {
-  constexpr int reach = 3;
+  constexpr int reach = PixelLooks::reach;
   int count = 0;
   double sum = 0;
   for (int py = y - reach; py <= y + reach; ++py)
@@ -257,7 +267,7 @@ double allowed_error(double mean, double typical, const RefinementOptions& optio
 int glances_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
   // Rays that cost so little may go for all that a picture's mean asks of what is bright.
   constexpr double most_times_less = 100;
-  const auto of = [&](int px, int py) { return known_of(v.film.known(px, py)); };
+  const auto of = [&](int px, int py) { return known_of(v.looks.at(px, py).known); };
   const Surroundings s = look_around(v, x, y, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
   const double allowed = allowed_error(s.mean, v.typical, options, most_times_less);
@@ -280,7 +290,7 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
                    const RefinementOptions& options) {
   if (v.edges.has_light_edge(x, y) && !has_glances && !options.is_noise) return most;
   const auto of = [&](int px, int py) -> Varying {
-    const PixelEstimate e = v.film.estimate(px, py);
+    const PixelEstimate& e = v.looks.at(px, py).estimate;
     if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples, e.independent_variance};
     return {e.luminance, sqr(e.standard_error) * e.samples, e.independent_variance};
   };

@@ -63,9 +63,31 @@ struct PixelRecords {
   NeighbourRecords around(int x, int y) const;
 };
 
+// What samples have said of the pixels of some rows, worked out once: decisions look at each pixel
+// some fifty times.
+class PixelLooks {
+ public:
+  struct Look {
+    PixelEstimate estimate;
+    KnownSums known;  // Film::known(); nothing where the film keeps none
+  };
+  // How far from a pixel decisions look.
+  static constexpr int reach = 3;
+
+  // Of pixels of the film's window `window`, rows from y0 to before y1 and those in reach of them.
+  PixelLooks(const Film& film, bool has_known, const PixelRect& window, int y0, int y1);
+  const Look& at(int x, int y) const {
+    return looks_[size_t(y - rect_.y0) * size_t(rect_.width()) + size_t(x - rect_.x0)];
+  }
+
+ private:
+  PixelRect rect_;
+  std::vector<Look> looks_;
+};
+
 // What the decision about a pixel looks at.
 struct RefinementView {
-  const Film& film;
+  const PixelLooks& looks;  // of the pixel's row
   const PixelRecords& records;
   const EdgeMap& edges;
   double typical = 0;  // luminance of the image

@@ -144,19 +144,24 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
 Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const PixelRecords& records = *refining_.records;
   const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
-  const RefinementView view{film_, records, edges, typical};
   FurtherRays wanted;
   wanted.samples.assign(records.records.size(), refining_.first_spp);
   wanted.glances.assign(records.records.size(), 0);
   const PixelRect& r = plan_.inner;
-  parallel_for(size_t(r.height()), options_.threads, [&](size_t row) {
-    const int y = r.y0 + int(row);
+  const auto row = [&](const RefinementView& view, int y) {
     for (int x = r.x0; x < r.x1; ++x) {
       const size_t i = records.index(x, y);
       if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
       wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, refining_.first_spp,
                                          refining_.most.in_pixel, refining_.options);
     }
+  };
+  constexpr int rows_at_a_time = 8;
+  const int bands = (r.height() + rows_at_a_time - 1) / rows_at_a_time;
+  parallel_for(size_t(bands), options_.threads, [&](size_t band) {
+    const int y0 = r.y0 + int(band) * rows_at_a_time, y1 = std::min(y0 + rows_at_a_time, r.y1);
+    const PixelLooks looks(film_, refining_.can_glance, records.window, y0, y1);
+    for (int y = y0; y < y1; ++y) row({looks, records, edges, typical}, y);
   });
   constexpr int glances_in_mean = 4096;
   for (const PixelRect& tile : plan_.tiles) {
