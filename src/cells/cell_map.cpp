@@ -152,20 +152,20 @@ void CellMap::keep(const CellHit& hit, bool is_asked, Hits& h) {
 
 uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
   uint32_t level = distance < near() ? 1 : 0;
-  uint32_t cell = add_at(hit, level);
-  while (anchors_[cell].is_halved && level < most_halvings) cell = add_at(hit, ++level);
+  uint32_t cell = add_at(hit, level, is_asked);
+  while (anchors_[cell].is_halved && level < most_halvings) cell = add_at(hit, ++level, is_asked);
   if (cell >= frozen_) keep(hit, is_asked, hits_[cell]);
   return cell;
 }
 
 // The cell of one level there, or what was halved.
-uint32_t CellMap::add_at(const CellHit& hit, uint32_t level) {
+uint32_t CellMap::add_at(const CellHit& hit, uint32_t level, bool is_asked) {
   const uint64_t key = key_of(hit, size_at(level), level);
   Slot& slot = slots_[slot_of(key)];
   Found found;
   if (slot.first != no_cell) found = search(slot.first, hit);
   if (found.cell != no_cell) return found.cell;
-  const uint32_t cell = make(hit, level);
+  const uint32_t cell = make(hit, level, is_asked);
   if (found.last != no_cell) {
     anchors_[found.last].next = cell;
     return cell;
@@ -175,7 +175,7 @@ uint32_t CellMap::add_at(const CellHit& hit, uint32_t level) {
   return cell;
 }
 
-uint32_t CellMap::make(const CellHit& hit, uint32_t level) {
+uint32_t CellMap::make(const CellHit& hit, uint32_t level, bool is_asked) {
   Anchor a;
   a.position = hit.position;
   a.normal = hit.horizon;
@@ -186,7 +186,7 @@ uint32_t CellMap::make(const CellHit& hit, uint32_t level) {
   if (!a.is_divided) {
     const CellOutline outline = outline_of(hit, a.size);
     a.is_divided = is_divided(hit, outline, a.size);
-    a.is_halved = level < most_halvings && is_uneven_ && is_uneven_(outline);
+    a.is_halved = level < most_halvings && is_uneven_ && is_uneven_(outline, is_asked);
   }
   anchors_.push_back(a);
   hits_.emplace_back();

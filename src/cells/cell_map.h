@@ -44,15 +44,16 @@ struct CellOutline {
 
 class CellMap {
  public:
-  // Whether one value of irradiance is too little for a piece of surface.
-  using IsUneven = std::function<bool(const CellOutline&)>;
+  // Whether one value of irradiance is too little for a piece of surface; is_asked: that the
+  // picture looks at.
+  using IsUneven = std::function<bool(const CellOutline&, bool is_asked)>;
 
   // size: of voxels, metres. The tracer must outlive it.
   CellMap(const Tracer& tracer, float size);
 
   float size_of_cells() const { return size_; }
   // Light from nearer than this comes from half cells.
-  float near() const { return 2 * size_; }
+  float near() const { return 3 * size_; }
   size_t size() const { return anchors_.size(); }
   size_t bytes() const;
 
@@ -109,8 +110,8 @@ class CellMap {
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
   float size_at(uint32_t level) const { return std::ldexp(size_, -int(level)); }
-  uint32_t make(const CellHit& hit, uint32_t level);
-  uint32_t add_at(const CellHit& hit, uint32_t level);
+  uint32_t make(const CellHit& hit, uint32_t level, bool is_asked);
+  uint32_t add_at(const CellHit& hit, uint32_t level, bool is_asked);
   void keep(const CellHit& hit, bool is_asked, Hits& hits);
   void grow();
 

@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "integrate/cell_direct.h"
 #include "integrate/cell_rays.h"
-#include "integrate/uneven_light.h"
+#include "integrate/uneven_cells.h"
 
 namespace troffer {
 
@@ -124,7 +124,7 @@ void Builder::start_map(const CellsSeen& seen) {
   if (store_ != nullptr && store_->map) {
     map_ = std::make_shared<CellMap>(*store_->map);
     map_->freeze();
-    map_->halve_where(uneven_by_lights(scene_));
+    map_->halve_where(uneven_cells(scene_));
     rows_ = std::move(store_->rows);
     entries_kept_ = rows_.entry_count();
     return;
@@ -140,7 +140,7 @@ void Builder::start_map(const CellsSeen& seen) {
   const Box box = bounds(scene_.scene);
   const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), least_cell);
   map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size * median, least));
-  map_->halve_where(uneven_by_lights(scene_));
+  map_->halve_where(uneven_cells(scene_));
 }
 
 void Builder::ask(const CellPilot& pilot) {

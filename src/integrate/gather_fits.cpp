@@ -19,6 +19,9 @@ constexpr float least_pixels = 1.5f;
 constexpr float reach_of_error = 2, most_reach = 0.2f;
 // A lobe of this width or more shows what changes no faster than irradiance does: one over it.
 constexpr float full_width = 2;
+// A fit that errs by more than so many times what is allowed serves nobody: no ray of its own helps
+// where neighbours are too few for a plane, or light is bent within a pixel.
+constexpr double most_error = 5;
 // Neighbours on either side that a fit looks at, of those within its radius.
 constexpr int few_along = 4, many_along = 8;
 
@@ -193,7 +196,7 @@ uint32_t GatherPass::further_rays(int x, int y, uint32_t r, Part part) const {
 
 // One of the sums, as far as the noise asks for, and no farther. Returns how far from there
 // irradiance would be about linear.
-float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Rgb& value, float& error) const {
+float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) const {
   const GatherRecord& at = out_.records_[r];
   const Surroundings s = around(x, y, r, part);
   const float distance = 1 / std::max(s.nearness, 1e-20f);
@@ -212,8 +215,9 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Rgb& value, floa
   const double chance = 2 * narrow.spread / std::max(narrow.neighbours, 1.0);
   const double bend2 = std::max(apart * apart - chance, 0.0) * 16 / 9;
   const double half = double((at.*part).half) / double(at.rays);
-  value = fine.value;
-  error = float(std::sqrt(noise + bend2 + half * half));
+  fitted.value = fine.value;
+  fitted.error = float(std::sqrt(noise + bend2 + half * half));
+  fitted.is_poor = noise + bend2 > sqr(most_error * allowed);
   return distance;
 }
 
@@ -227,14 +231,19 @@ float GatherPass::own_rays(int x, int y, uint32_t r, Part part) const {
 FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
   const GatherRecord& at = out_.records_[r];
   FittedRecord f;
-  float distance = fit_part(x, y, r, &GatherRecord::matte, f.irradiance, f.error);
+  Fitted matte, gloss;
+  float distance = fit_part(x, y, r, &GatherRecord::matte, matte);
   if (at.place.is_there())
-    distance = std::min(distance, fit_part(x, y, r, &GatherRecord::gloss, f.gloss, f.gloss_error));
+    distance = std::min(distance, fit_part(x, y, r, &GatherRecord::gloss, gloss));
+  f.irradiance = matte.value;
+  f.error = matte.error;
+  f.gloss = gloss.value;
+  f.gloss_error = gloss.error;
   // What it errs by elsewhere goes with the square of how far.
   const float reach =
       std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
-  f.is_beside = beside_[r] != 0;
-  f.reach = at.spacing > reach || f.is_beside ? 0 : reach;
+  f.is_alone = beside_[r] != 0 || matte.is_poor || gloss.is_poor;
+  f.reach = at.spacing > reach || f.is_alone ? 0 : reach;
   f.rays = std::min(std::max(own_rays(x, y, r, &GatherRecord::matte),
                              at.place.is_there() ? own_rays(x, y, r, &GatherRecord::gloss) : 0.0f),
                     float(most_rays));

@@ -44,6 +44,12 @@ class GatherPass {
     float variance = 0;  // of one gather of 16 rays, by the spread of its rays
     float records = 0;   // of which this is the mean
   };
+  // Of one of a record's sums.
+  struct Fitted {
+    Rgb value;
+    float error = 0;
+    bool is_poor = false;  // errs by much more than what is allowed
+  };
   // Of the records around one: which are looked at.
   enum class Asked : uint8_t { all, other_half };
   // Of a record's rays.
@@ -69,7 +75,7 @@ class GatherPass {
   static FittedLight solved(const LinearFit& fit, const Surroundings& s);
   float allowed_error(const GatherRecord& r, Part part, float around) const;
   uint32_t further_rays(int x, int y, uint32_t r, Part part) const;
-  float fit_part(int x, int y, uint32_t r, Part part, Rgb& value, float& error) const;
+  float fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) const;
   float own_rays(int x, int y, uint32_t r, Part part) const;
   FittedRecord fitted(int x, int y, uint32_t r) const;
   void gather_wanted(const Tile& tile, Rays which, Worker& w);

@@ -55,7 +55,7 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t glo
         const float w = 1 / sqr(d2 / sqr(record.spacing) + 0.03f);
         if (w > nearest) {
           nearest = w;
-          is_held = is_rough || !fitted_[r].is_beside;
+          is_held = is_rough || !fitted_[r].is_alone;
         }
         if (!is_rough && d2 > sqr(fitted_[r].reach)) return;
         out.irradiance += fitted_[r].irradiance * w;

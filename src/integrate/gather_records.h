@@ -69,8 +69,9 @@ struct FittedRecord {
   Rgb gloss;        // mean radiance that wide gloss shows, and its error
   float gloss_error = 0;
   float rays = 0;  // wanted of a pixel that gathers for itself
-  // Something stands so close by that nobody's fit holds where this record is the nearest.
-  bool is_beside = false;
+  // Something stands so close by, or light is so bent, that no fit holds where this record is the
+  // nearest.
+  bool is_alone = false;
 };
 
 class GatherRecords {

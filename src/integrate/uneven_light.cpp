@@ -97,33 +97,31 @@ Arriving arriving_at(const PreparedScene& scene, const std::vector<uint32_t>& li
 
 }  // namespace
 
-CellMap::IsUneven uneven_by_lights(const PreparedScene& scene) {
-  return [&scene](const CellOutline& cell) {
-    const auto& c = cell.corners;
-    const Vec3 centre = (c[0] + c[2]) * 0.5f;
-    const float distance = reach * std::max(length(c[1] - c[0]), length(c[3] - c[0]));
-    std::vector<uint32_t> near;
-    scene.light_tree.near(centre, distance, most_lights, near);
-    if (near.size() == most_lights) return true;
-    // Light from what is broad differs little over a cell that is not.
-    std::erase_if(near, [&](uint32_t i) {
-      const LightPrimitive& p = scene.primitives[i];
-      return !(distance_squared(p.bounds, centre) < sqr(distance)) || breadth(p) > distance;
-    });
-    if (near.empty()) return false;
-    const Arriving a = arriving_at(scene, near, cell);
-    std::array<uint8_t, places> is_blocked{};
-    scene.tracer.occluded(a.towards, is_blocked);
-    const double far =
-        arriving_from_far(scene, near, centre + cell.normal * cell.offset, cell.normal);
-    double sum = 0, squares = 0;
-    for (size_t i = 0; i < places; ++i) {
-      const double e = far + a.all[i] - (is_blocked[i] != 0 ? a.strongest[i] : 0);
-      sum += e;
-      squares += sqr(e);
-    }
-    return squares * double(places) > sqr(sum) * (1 + sqr(most_spread));
-  };
+bool is_unevenly_lit(const PreparedScene& scene, const CellOutline& cell) {
+  const auto& c = cell.corners;
+  const Vec3 centre = (c[0] + c[2]) * 0.5f;
+  const float distance = reach * std::max(length(c[1] - c[0]), length(c[3] - c[0]));
+  std::vector<uint32_t> near;
+  scene.light_tree.near(centre, distance, most_lights, near);
+  if (near.size() == most_lights) return true;
+  // Light from what is broad differs little over a cell that is not.
+  std::erase_if(near, [&](uint32_t i) {
+    const LightPrimitive& p = scene.primitives[i];
+    return !(distance_squared(p.bounds, centre) < sqr(distance)) || breadth(p) > distance;
+  });
+  if (near.empty()) return false;
+  const Arriving a = arriving_at(scene, near, cell);
+  std::array<uint8_t, places> is_blocked{};
+  scene.tracer.occluded(a.towards, is_blocked);
+  const double far =
+      arriving_from_far(scene, near, centre + cell.normal * cell.offset, cell.normal);
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < places; ++i) {
+    const double e = far + a.all[i] - (is_blocked[i] != 0 ? a.strongest[i] : 0);
+    sum += e;
+    squares += sqr(e);
+  }
+  return squares * double(places) > sqr(sum) * (1 + sqr(most_spread));
 }
 
 }  // namespace troffer

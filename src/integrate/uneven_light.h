@@ -10,8 +10,7 @@ namespace troffer {
 // width, but for broad ones, and at its middle from all others, as if nothing hid them: uneven
 // where its standard deviation is more than half its mean. The strongest light of a place counts
 // only where it is seen from there, for in a cove or behind a valance a cell has parts in light and
-// parts in shadow that other surfaces see from different sides. The scene must outlive what is
-// returned; any number of threads may call it.
-CellMap::IsUneven uneven_by_lights(const PreparedScene& scene);
+// parts in shadow that other surfaces see from different sides.
+bool is_unevenly_lit(const PreparedScene& scene, const CellOutline& cell);
 
 }  // namespace troffer

@@ -55,7 +55,7 @@ TEST_CASE("where light is uneven there are halves of cells, and halves of them, 
   const Tracer tracer(s);
   CellMap map(tracer, 1);
   // As by a lamp at the origin: nothing wider than its distance from there.
-  map.halve_where([](const CellOutline& cell) {
+  map.halve_where([](const CellOutline& cell, bool) {
     const Vec3 d = (cell.corners[0] + cell.corners[2]) * 0.5f;
     CHECK(cell.normal == Vec3{0, 0, 1});
     CHECK(cell.offset == 1e-5f);

@@ -30,7 +30,7 @@ Scene floor_scene() {
 CellStore random_store(const Tracer& tracer, int hits) {
   CellStore store;
   auto map = std::make_shared<CellMap>(tracer, 0.5f);
-  map->halve_where([](const CellOutline& cell) { return cell.corners[0].x < -3.5f; });
+  map->halve_where([](const CellOutline& cell, bool) { return cell.corners[0].x < -3.5f; });
   Random random(3);
   for (int i = 0; i < hits; ++i)
     map->add(on_floor(8 * random.next_float() - 4, 8 * random.next_float() - 4),

@@ -51,7 +51,7 @@ std::vector<double> blocks(const Image& image) {
 TEST_CASE("reflected light has no stains, and the same mean, from seed to seed") {
   const PreparedScene scene(room_with_patch());
   std::vector<std::vector<double>> pictures;
-  for (const uint64_t seed : {1, 2, 3, 4, 5, 6})
+  for (uint64_t seed = 1; seed <= 12; ++seed)
     pictures.push_back(
         blocks(render_now(scene, mixed_room_camera(), picture(0.05, seed)).layers[1].image));
   const size_t n = pictures[0].size();
@@ -73,6 +73,7 @@ TEST_CASE("reflected light has no stains, and the same mean, from seed to seed")
   }
   CAPTURE(std::sqrt(stains));
   CAPTURE(std::sqrt(shift));
-  CHECK(std::sqrt(stains) < 0.056);  // .051 by 24 seeds
+  // By 24 seeds .030 and .05; where fits serve whatever they err by, .051 and .05.
+  CHECK(std::sqrt(stains) < 0.04);
   CHECK(std::sqrt(shift) < 0.06);
 }

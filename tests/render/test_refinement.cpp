@@ -178,7 +178,8 @@ int wanted_amid(const Value& value, bool tells = false) {
   RefinementOptions options;
   options.error = 0.02f;
   options.is_everywhere = true;
-  return samples_wanted({film, records, edges, 1}, middle, middle, false, 4, 1024, options);
+  const PixelLooks looks(film, false, window, middle, middle + 1);
+  return samples_wanted({looks, records, edges, 1}, middle, middle, false, 4, 1024, options);
 }
 
 }  // namespace
