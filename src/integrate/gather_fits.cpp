@@ -19,8 +19,9 @@ constexpr float least_pixels = 1.5f;
 constexpr float reach_of_error = 2, most_reach = 0.2f;
 // A lobe of this width or more shows what changes no faster than irradiance does: one over it.
 constexpr float full_width = 2;
-// A fit that errs by more than so many times what is allowed serves nobody: no ray of its own helps
-// where neighbours are too few for a plane, or light is bent within a pixel.
+// A fit that errs by more than so many times what is allowed, beyond what its rays' own spread
+// explains, serves nobody: no further ray helps where neighbours are too few for a plane, or light
+// is bent within a pixel.
 constexpr double most_error = 5;
 // Neighbours on either side that a fit looks at, of those within its radius.
 constexpr int few_along = 4, many_along = 8;
@@ -217,7 +218,8 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const double half = double((at.*part).half) / double(at.rays);
   fitted.value = fine.value;
   fitted.error = float(std::sqrt(noise + bend2 + half * half));
-  fitted.is_poor = noise + bend2 > sqr(most_error * allowed);
+  const double by_chance = double(s.variance) / std::max(fine.neighbours, 1.0);
+  fitted.is_poor = std::max(noise - by_chance, 0.0) + bend2 > sqr(most_error * allowed);
   return distance;
 }
 

@@ -14,7 +14,7 @@ constexpr size_t tries = 9;  // along either middle line of a cell: a lamp may b
 constexpr size_t all_tries = 2 * tries;
 // How high something stands that counts, in widths of the cell: what is closer to the surface lets
 // hardly any light in below it, and hardly any ray looks there.
-constexpr float least_height = 0.125f, most_height = 1;
+constexpr float least_height = 0.125f, most_height = 0.5f;
 constexpr float lift = 0.1f;  // how high above the surface sight is tried, in widths
 
 Ray segment(const Vec3& from, const Vec3& to) {

@@ -38,11 +38,11 @@ TEST_CASE("cells with a close cover above a part of them are uneven where somebo
     const PreparedScene scene(std::move(s));
     return uneven_cells(scene)(piece(x), is_asked);
   };
-  CHECK(is_uneven(0.1f, 0.4f, 0.5f, 1));          // half of it
-  CHECK(is_uneven(0.1f, 0.4f, 0.48f, 0.53f));     // a strip
-  CHECK(!is_uneven(0.1f, 0.4f, 0.5f, 1, false));  // that nobody looks at
-  CHECK(!is_uneven(0.1f, 0.7f, 0.5f, 1));         // all of it
-  CHECK(!is_uneven(0.1f, 0.1f, 0.5f, 1));         // none
+  CHECK(is_uneven(0.08f, 0.4f, 0.5f, 1));          // half of it
+  CHECK(is_uneven(0.08f, 0.4f, 0.48f, 0.53f));     // a strip
+  CHECK(!is_uneven(0.08f, 0.4f, 0.5f, 1, false));  // that nobody looks at
+  CHECK(!is_uneven(0.08f, 0.7f, 0.5f, 1));         // all of it
+  CHECK(!is_uneven(0.08f, 0.1f, 0.5f, 1));         // none
   CHECK(!is_uneven(0.3f, 0.4f, 0.5f, 1));         // too high to matter
   CHECK(!is_uneven(0.01f, 0.4f, 0.5f, 1));        // too low for any light below it
 }
