@@ -57,9 +57,9 @@ def scene(balls, size, fov, columns, far):
 
 
 def plain(names):
-    """Balls that `with_materials` dresses."""
-    return [(name, f'MakeNamedMaterial "{name}" "string type" "diffuse"\nNamedMaterial "{name}"')
-            for name in names]
+    """Balls that `with_materials` dresses; with a texture, so that they have texture coordinates."""
+    return [(name, f'MakeNamedMaterial "{name}" "string type" "diffuse" "texture reflectance" "checks"\n'
+             f'NamedMaterial "{name}"') for name in names]
 
 
 def _with_textures(part, number_of):
@@ -73,7 +73,8 @@ def with_materials(program, file, materials, images=None):
     """The pbrt file as glTF, its named materials replaced: {name: what glTF has for it}. images: {name:
     data URI}; textures' `index` may be such a name."""
     gltf = os.path.splitext(file)[0] + ".gltf"
-    subprocess.run([program, "convert", file, gltf], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([program, "convert", file, gltf], check=True, stdout=subprocess.DEVNULL,
+                   stderr=subprocess.DEVNULL)  # spheres become triangles
     with open(gltf) as f:
         data = json.load(f)
     used = set(data.get("extensionsUsed", []))
