@@ -62,14 +62,6 @@ CellOutline outline_of(const CellHit& hit, float size) {
   return outline;
 }
 
-Ray segment(const Vec3& from, const Vec3& to) {
-  Ray r;
-  r.origin = from;
-  r.direction = to - from;
-  r.t_max = 1;
-  return r;
-}
-
 bool is_blocked(const Tracer& tracer, const Ray& ray) {
   if (length_squared(ray.direction) == 0) return false;
   uint8_t is_occluded = 0;

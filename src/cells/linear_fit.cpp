@@ -1,12 +1,12 @@
 #include "cells/linear_fit.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace troffer {
 
 namespace {
 
-constexpr int least_neighbours = 6;
 // Pulls slopes that the neighbours hardly tell towards zero.
 constexpr double ridge = 1e-3;
 
@@ -32,10 +32,14 @@ void LinearFit::add(float u, float v, float kernel, float rays, Rgb value) {
   ++count_;
 }
 
+double LinearFit::offset() const {
+  return weights_.one > 0 ? std::hypot(weights_.u, weights_.v) / weights_.one : 0;
+}
+
 bool LinearFit::solve(FittedLight& out) const {
   const Moments& m = weights_;
   if (!(m.one > 0)) return false;
-  const bool is_plane = count_ >= least_neighbours;
+  const bool is_plane = this->is_plane();
   const double more = is_plane ? ridge * m.one : 1e12 * m.one;
   const double uu = m.uu + more, vv = m.vv + more;
   // first row of the inverse of the normal equations' matrix: the value at the origin

@@ -20,6 +20,10 @@ class LinearFit {
   // At (u, v), in units of the radius. kernel: how near it is; rays: the inverse of its variance.
   void add(float u, float v, float kernel, float rays, Rgb value);
   int count() const { return count_; }
+  // Whether they are enough for a plane; else their mean is all they tell …
+  bool is_plane() const { return count_ >= least_neighbours; }
+  // … of this far from the origin, in radii.
+  double offset() const;
   // False where there are too few neighbours for a plane: then it is their mean.
   bool solve(FittedLight& out) const;
 
@@ -40,6 +44,7 @@ class LinearFit {
   Vec3d sum_, sum_u_, sum_v_;
   double luminance_squared_ = 0, kernels_ = 0;
   int count_ = 0;
+  static constexpr int least_neighbours = 6;
 };
 
 }  // namespace troffer

@@ -19,10 +19,9 @@ constexpr float least_pixels = 1.5f;
 constexpr float reach_of_error = 2, most_reach = 0.2f;
 // A lobe of this width or more shows what changes no faster than irradiance does: one over it.
 constexpr float full_width = 2;
-// A fit that errs by more than so many times what is allowed, beyond what its rays' own spread
-// explains, serves nobody: no further ray helps where neighbours are too few for a plane, or light
-// is bent within a pixel.
-constexpr double most_error = 5;
+// Where neighbours are too few for a plane, their mean holds in their midst alone: no farther from
+// it than this, in radii.
+constexpr double most_offset = 0.1;
 // Neighbours on either side that a fit looks at, of those within its radius.
 constexpr int few_along = 4, many_along = 8;
 
@@ -208,7 +207,8 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const double excess = light.spread / std::max(light.neighbours, 1.0) / (allowed * allowed);
   radius *= float(std::clamp(std::sqrt(excess), 0.5, 2.0));
   radius = std::clamp(radius, least, std::clamp(far_radius * distance, least, most));
-  const FittedLight fine = solved(fit(x, y, r, part, radius, many_along), s);
+  const LinearFit all = fit(x, y, r, part, radius, many_along);
+  const FittedLight fine = solved(all, s);
   const double noise = fine.spread / std::max(fine.neighbours, 1.0);
   // What is bent shows in a narrower fit, if its noise lets it: the error goes with the radius²
   const FittedLight narrow = solved(fit(x, y, r, part, 0.5f * radius, few_along), s);
@@ -218,8 +218,9 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   const double half = double((at.*part).half) / double(at.rays);
   fitted.value = fine.value;
   fitted.error = float(std::sqrt(noise + bend2 + half * half));
-  const double by_chance = double(s.variance) / std::max(fine.neighbours, 1.0);
-  fitted.is_poor = std::max(noise - by_chance, 0.0) + bend2 > sqr(most_error * allowed);
+  // Told by where they lie, not by what they have met: were fits left out by their noise, those
+  // would go that have met what is small and bright, and those that missed it would stay.
+  fitted.is_one_sided = !all.is_plane() && all.offset() > most_offset;
   return distance;
 }
 
@@ -244,7 +245,7 @@ FittedRecord GatherPass::fitted(int x, int y, uint32_t r) const {
   // What it errs by elsewhere goes with the square of how far.
   const float reach =
       std::min(reach_of_error * std::sqrt(float(options_.error)), most_reach) * distance;
-  f.is_alone = beside_[r] != 0 || matte.is_poor || gloss.is_poor;
+  f.is_alone = beside_[r] != 0 || matte.is_one_sided || gloss.is_one_sided;
   f.reach = at.spacing > reach || f.is_alone ? 0 : reach;
   f.rays = std::min(std::max(own_rays(x, y, r, &GatherRecord::matte),
                              at.place.is_there() ? own_rays(x, y, r, &GatherRecord::gloss) : 0.0f),

@@ -48,7 +48,7 @@ class GatherPass {
   struct Fitted {
     Rgb value;
     float error = 0;
-    bool is_poor = false;  // errs by much more than what is allowed
+    bool is_one_sided = false;  // a mean of neighbours that lie to one side
   };
   // Of the records around one: which are looked at.
   enum class Asked : uint8_t { all, other_half };

@@ -69,8 +69,8 @@ struct FittedRecord {
   Rgb gloss;        // mean radiance that wide gloss shows, and its error
   float gloss_error = 0;
   float rays = 0;  // wanted of a pixel that gathers for itself
-  // Something stands so close by, or light is so bent, that no fit holds where this record is the
-  // nearest.
+  // Something stands so close by, or neighbours are so few and to one side, that no fit holds where
+  // this record is the nearest.
   bool is_alone = false;
 };
 

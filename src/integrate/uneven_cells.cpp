@@ -17,14 +17,6 @@ constexpr size_t all_tries = 2 * tries;
 constexpr float least_height = 0.125f, most_height = 0.5f;
 constexpr float lift = 0.1f;  // how high above the surface sight is tried, in widths
 
-Ray segment(const Vec3& from, const Vec3& to) {
-  Ray r;
-  r.origin = from;
-  r.direction = to - from;
-  r.t_max = 1;
-  return r;
-}
-
 bool is_partly_covered(const Tracer& tracer, const CellOutline& cell) {
   const Vec3 &corner = cell.corners[0], u = cell.corners[1] - corner, v = cell.corners[3] - corner;
   const float width = std::max(length(u), length(v));

@@ -19,6 +19,15 @@ struct Ray {
   float t_max = std::numeric_limits<float>::infinity();
 };
 
+// What lies between two points: t from 0 to 1.
+inline Ray segment(const Vec3& from, const Vec3& to) {
+  Ray r;
+  r.origin = from;
+  r.direction = to - from;
+  r.t_max = 1;
+  return r;
+}
+
 // What a ray stands for: a cone around it, as wide as this where the ray begins, wider by `spread`
 // with every metre.
 struct RayCone {

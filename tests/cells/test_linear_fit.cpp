@@ -58,4 +58,7 @@ TEST_CASE("of few neighbours the mean is taken") {
   CHECK(!fit.solve(light));
   CHECK(double(light.value.r) == doctest::Approx(4));
   CHECK(light.neighbours == doctest::Approx(4));
+  CHECK(!fit.is_plane());
+  CHECK(fit.offset() == doctest::Approx(0.075));
+  CHECK(LinearFit().offset() == 0);
 }

@@ -49,7 +49,7 @@ TEST_CASE("cells with a close cover above a part of them are uneven where somebo
 
 TEST_CASE("what stands on a surface does not cover it") {
   Scene s = floor_of_a_metre();
-  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0.5f, 0, 0}, {1, 1, 0.1f});
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0.5f, 0, 0}, {1, 1, 0.08f});
   const PreparedScene scene(std::move(s));
   CHECK(!uneven_cells(scene)(piece(0.4f), true));
 }
