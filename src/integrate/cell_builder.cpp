@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "integrate/cell_direct.h"
 #include "integrate/cell_rays.h"
+#include "integrate/pilot_places.h"
 #include "integrate/uneven_cells.h"
 
 namespace troffer {
@@ -44,18 +45,11 @@ double coarseness(double error, double fine) {
   return std::clamp(error / fine, 1.0, most_coarseness);
 }
 
-// Some of the viewing rays' walks ended here.
-struct Place {
-  CellHit hit;
-  float weight = 0;
-  float distance = 0;     // of the last stretch
-  bool is_gloss = false;  // seen by way of gloss: its cell itself is asked
-};
-
 // What is asked for, by all that look at cells first.
 struct Asked {
   size_t askers = 0;              // viewing rays, and points
   double of_ray = 0;              // importance that a cell's ray is worth
+  std::vector<PilotHit> seen;     // by gather rays
   std::vector<float> light;       // per cell
   std::vector<float> importance;  // per cell, all bounces counted, as last looked at
 };
@@ -77,7 +71,6 @@ class Builder {
   std::unique_ptr<Cells> finish(const DirectLight& direct, Clock::time_point start);
 
  private:
-  std::vector<Place> places_of(const CellPilot& pilot);
   void start_map(const CellsSeen& seen);
   bool add_direct(const DirectLight& direct, CellDirectLight& lit);
   void keep(const CellDirectLight& lit);
@@ -104,27 +97,11 @@ class Builder {
   CellStatistics statistics_;
 };
 
-// The matte surfaces that the pilot sees.
-std::vector<Place> Builder::places_of(const CellPilot& pilot) {
-  std::vector<Place> places;
-  for (const CellHit& p : pilot.places) places.push_back({p, 1, 0, false});
-  GatherScratch s;
-  start_walks(pilot.viewing, s.walks);
-  const CheckContext context(&s, pilot.viewing.size(), [](const void*, size_t i) {
-    return "pilot ray " + std::to_string(i);
-  });
-  walks_.follow(pilot.viewing.size(), Coherence::none, s, counters_);
-  for (const GatherArrival& a : s.arrivals)
-    places.push_back({a.hit, luminance(a.walk.throughput), a.distance, a.walk.scatterings > 0});
-  return places;
-}
-
 // What is kept, or an empty map of cells as large as suits what was seen.
 void Builder::start_map(const CellsSeen& seen) {
   if (store_ != nullptr && store_->map) {
     map_ = std::make_shared<CellMap>(*store_->map);
     map_->freeze();
-    map_->halve_where(uneven_cells(scene_));
     rows_ = std::move(store_->rows);
     entries_kept_ = rows_.entry_count();
     return;
@@ -140,11 +117,10 @@ void Builder::start_map(const CellsSeen& seen) {
   const Box box = bounds(scene_.scene);
   const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), least_cell);
   map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size * median, least));
-  map_->halve_where(uneven_cells(scene_));
 }
 
 void Builder::ask(const CellPilot& pilot) {
-  const std::vector<Place> places = places_of(pilot);
+  const std::vector<PilotPlace> places = places_of(pilot, walks_, counters_);
   asked_.askers = pilot.viewing.size() + pilot.places.size();
   std::vector<CellTask> tasks;
   const auto rays = uint32_t(
@@ -160,17 +136,20 @@ void Builder::ask(const CellPilot& pilot) {
   CellsSeen seen;
   trace_cell_rays(walks_, nullptr, tasks, options_.threads, options_.crew, stop_, seen, counters_);
   if (stop_.load()) seen.seen.clear();  // not all of them
-  for (const Place& p : places) {
+  for (const PilotPlace& p : places) {
     if (!p.is_gloss) continue;
     seen.seen.push_back({uint32_t(tasks.size()), no_cell, p.distance, Rgb{1}, p.hit});
     tasks.emplace_back().weight = p.weight;
   }
   start_map(seen);
+  map_->halve_where(uneven_cells(scene_));
   asked_.light.resize(map_->size(), 0);  // of a map that is kept too, where nothing is seen
   for (const CellSeen& c : seen.seen) {
     const uint32_t cell = map_->add(c.hit, c.distance, true);
     asked_.light.resize(map_->size(), 0);
-    asked_.light[cell] += tasks[c.task].weight * luminance(c.weight);
+    const float share = tasks[c.task].weight, weight = luminance(c.weight);
+    asked_.light[cell] += share * weight;
+    if (tasks[c.task].count > 0) asked_.seen.push_back({c.hit, cell, share, weight});
   }
   const double all = std::accumulate(asked_.light.begin(), asked_.light.end(), 0.0);
   const double error = std::clamp(options_.error, 1e-3, 0.2) / fine_error;
@@ -375,11 +354,13 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, Clock::time_po
   statistics_.iterations = light.iterations;
   statistics_.size = double(map_->size_of_cells());
   statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry);
+  BrightPlaces bright(scene_.tracer, std::move(asked_.seen), light.irradiance,
+                      map_->size_of_cells());
   keep(lit);
   statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit.irradiance),
                                  std::move(light.irradiance), std::move(light.half_difference),
-                                 statistics_, direct.images());
+                                 statistics_, direct.images(), std::move(bright));
 }
 
 }  // namespace

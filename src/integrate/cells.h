@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cells/cell_map.h"
+#include "integrate/bright_places.h"
 #include "integrate/gather_walks.h"
 
 namespace troffer {
@@ -44,16 +45,20 @@ class Cells {
  public:
   Cells(const PreparedScene& scene, std::shared_ptr<const CellMap> map, std::vector<Rgb> direct,
         std::vector<Rgb> irradiance, std::vector<float> half_difference,
-        const CellStatistics& statistics, std::shared_ptr<const MirrorImages> images)
+        const CellStatistics& statistics, std::shared_ptr<const MirrorImages> images,
+        BrightPlaces bright)
       : map_(std::move(map)),
         direct_(std::move(direct)),
         irradiance_(std::move(irradiance)),
         half_difference_(std::move(half_difference)),
         statistics_(statistics),
+        bright_(std::move(bright)),
         walks_(scene, std::move(images)) {}
 
   const CellStatistics& statistics() const { return statistics_; }
   const GatherWalks& walks() const { return walks_; }
+  // For what the pilot asks for.
+  const BrightPlaces& bright_places() const { return bright_; }
 
   // Follows s.gather.walks, of indices below `rays`, and gathers what they see: s.light.
   void gather(size_t rays, CellsScratch& s, Counters& counters) const;
@@ -71,6 +76,7 @@ class Cells {
   std::vector<Rgb> direct_, irradiance_;
   std::vector<float> half_difference_;
   CellStatistics statistics_;
+  BrightPlaces bright_;
   GatherWalks walks_;
 };
 

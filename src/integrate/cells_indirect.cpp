@@ -36,7 +36,17 @@ struct CellsIndirect::Scratch final : IndirectLightScratch {
   std::vector<uint32_t> indices, ends;
   // Per ray: what the hit makes of irradiance by it, times what the walk carries.
   std::vector<Rgb> weights;
+  // Of sensors: many follow each other at one place.
+  GatherAim aim;
+  CellHit last;
+  bool has_last = false;
 
+  void aim_at(const Cells& by, const CellHit& at) {
+    if (has_last && at.position == last.position && at.normal == last.normal) return;
+    last = at;
+    has_last = true;
+    aim = GatherAim(by.bright_places(), by.bright_places().sight_from({&at, 1}), at);
+  }
   void clear() {
     cells.gather.walks.clear();
     indices.clear();
@@ -93,6 +103,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       continue;
     }
     FittedRecord fitted;
+    GatherAim aim;
     if (at.scatterings == 0 && records_ && !wave.viewing->pixels.empty()) {
       const PixelAt& pixel = wave.viewing->pixels[at.index];
       if (records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), false, fitted)) {
@@ -104,6 +115,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
         continue;
       }
       records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
+      aim = records_->aim_at(pixel.x, pixel.y, hit, cells_->bright_places());
     }
     const uint32_t rays = rays_of_hit(fitted.rays, at.sample);
     // Numbers of a pixel's first samples follow each other.
@@ -113,7 +125,9 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       walk.throughput = Rgb{1};
       walk.index = uint32_t(s.weights.size());
       walk.sample = first + k;
-      set_out(hit, direction_number(walk), walk);
+      float counts = 1;
+      set_out(hit, aim.direction(hit, direction_number(walk), counts), walk);
+      walk.throughput *= counts;
       const Vec3 wi = v.frame.to_local(walk.ray.direction);
       s.weights.push_back(
           wi.z > 0 ? at.throughput * evaluate(scattering.diffuse, v.wo, wi) * (1 / wi.z) : Rgb{0});
@@ -179,9 +193,12 @@ void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scr
   s.clear();
   for (uint32_t i = 0; i < sensors.size(); ++i) {
     Walk walk = sensor_walk(sensors, i);
-    set_out({sensors.positions[i], sensors.normals[i], sensors.normals[i], sensors.offset},
-            direction_number(walk), walk);
-    s.cells.gather.walks.push_back(walk);
+    const CellHit at{sensors.positions[i], sensors.normals[i], sensors.normals[i], sensors.offset};
+    s.aim_at(*cells_, at);
+    float counts = 1;
+    set_out(at, s.aim.direction(at, direction_number(walk), counts), walk);
+    walk.throughput *= counts;
+    if (!walk.throughput.is_black()) s.cells.gather.walks.push_back(walk);
   }
   cells_->gather(sensors.size(), s.cells, counters);
   out.tell_shared_error();

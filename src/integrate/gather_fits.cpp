@@ -20,8 +20,8 @@ constexpr float reach_of_error = 2, most_reach = 0.2f;
 // A lobe of this width or more shows what changes no faster than irradiance does: one over it.
 constexpr float full_width = 2;
 // Where neighbours are too few for a plane, their mean holds in their midst alone: no farther from
-// it than this, in radii.
-constexpr double most_offset = 0.1;
+// it than this share of the distance, times the asked error.
+constexpr double most_offset = 0.5;
 // Neighbours on either side that a fit looks at, of those within its radius.
 constexpr int few_along = 4, many_along = 8;
 
@@ -220,7 +220,8 @@ float GatherPass::fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) 
   fitted.error = float(std::sqrt(noise + bend2 + half * half));
   // Told by where they lie, not by what they have met: were fits left out by their noise, those
   // would go that have met what is small and bright, and those that missed it would stay.
-  fitted.is_one_sided = !all.is_plane() && all.offset() > most_offset;
+  fitted.is_one_sided = !all.is_plane() && all.offset() * double(radius) >
+                                               most_offset * options_.error * double(distance);
   return distance;
 }
 

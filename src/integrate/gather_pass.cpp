@@ -114,10 +114,14 @@ bool GatherPass::see_all(std::vector<Tile>& tiles, Counters& counters) {
   work.save = [&](size_t t, SharedWork::Bytes& out) {
     append_all(out, std::span<const GatherRecord>(tiles[t].records));
     append_all(out, std::span<const uint16_t>(tiles[t].counts));
+    append_all(out, std::span<const float>(tiles[t].sight.visible));
+    append(out, tiles[t].sight.rest);
   };
   work.load = [&](size_t t, ByteReader in) {
     tiles[t].records = next_all<GatherRecord>(in);
     tiles[t].counts = next_all<uint16_t>(in);
+    tiles[t].sight.visible = next_all<float>(in);
+    tiles[t].sight.rest = in.next<float>();
   };
   return over_tiles(tiles, std::move(work), counters);
 }
@@ -153,6 +157,7 @@ bool GatherPass::gather_wanted(std::vector<Tile>& tiles, Rays which, Counters& c
 }
 
 bool GatherPass::run(const std::function<void(double)>& progress, Counters& counters) {
+  constexpr int tile_side = GatherRecords::tile_side;
   const PixelWindow& w = out_.window_;
   std::vector<Tile> tiles;
   for (int y = w.y0 / tile_side * tile_side; y < w.y1; y += tile_side)
@@ -189,6 +194,10 @@ bool GatherPass::run(const std::function<void(double)>& progress, Counters& coun
                    [&](int x, int y, uint32_t r) { return usual_rays(x, y, r); }))
     return false;
   tell(0.8);
+  for (const Tile& t : tiles) {
+    out_.visible_.insert(out_.visible_.end(), t.sight.visible.begin(), t.sight.visible.end());
+    out_.rest_.push_back(t.sight.rest);
+  }
   out_.fitted_.resize(out_.records_.size());
   return for_records(tiles, counters, out_.fitted_,
                      [&](int x, int y, uint32_t r) { return fitted(x, y, r); });
@@ -241,25 +250,33 @@ void GatherPass::see(Tile& tile, Worker& w) const {
   if (is_thinned_)
     for (size_t r = 0; r < counts.size(); ++r)
       if (class_of(places[r]) != 0) counts[r] = 0;
-  gather(tile.records, counts, tile, places, Rays::first, w);
+  std::vector<CellHit> from;
+  for (const GatherRecord& r : tile.records) from.push_back(r.hit);
+  tile.sight = cells_.bright_places().sight_from(from);
+  BrightTally tally;
+  gather(tile.records, counts, tile, places, Rays::first, w, &tally);
+  tally.tell(tile.sight);
 }
 
 // places: of each record on the tile's curve, and above that which of its pixel's it is.
 void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
                         const Tile& tile, const std::vector<uint32_t>& places, Rays which,
-                        Worker& w) const {
+                        Worker& w, BrightTally* tally) const {
   std::vector<Walk>& walks = w.cells.gather.walks;
   walks.clear();
   std::vector<uint32_t> owners;
   std::vector<Vec3> directions;
-  std::vector<float> shares;  // what their light counts below the coat
+  std::vector<float> shares;   // what their light counts below the coat
+  std::vector<float> weights;  // … and over drawn by its cosine
   std::vector<Lobe> lobes;
+  std::vector<GatherAim> aims;
   const bool is_further = which == Rays::further;
   for (uint32_t r = 0; r < records.size(); ++r) {
     lobes.emplace_back(cells_.walks(), records[r]);
     // Each lattice has a sequence of its own, that is even where only the first is used.
     const uint32_t lattice = is_thinned_ ? class_of(places[r]) : 0,
                    place = (places[r] & 255) >> (is_thinned_ ? 2 : 0);
+    const GatherAim& aim = aims.emplace_back(cells_.bright_places(), tile.sight, records[r].hit);
     for (uint32_t k = 0; k < counts[r]; ++k) {
       Walk walk;
       walk.index = uint32_t(owners.size());
@@ -267,7 +284,10 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
                             uint32_t(is_further) | lattice << 1);
       walk.sample = place * (is_further ? most_rays : first_rays) + k;
       owners.push_back(r);
-      set_out(records[r].hit, direction_number(walk), walk);
+      float weight = 1;
+      set_out(records[r].hit, aim.direction(records[r].hit, direction_number(walk), weight), walk);
+      walk.throughput *= weight;
+      weights.push_back(weight);
       directions.push_back(walk.ray.direction);
       shares.push_back(cells_.walks().coat_share(records[r].hit, walk.pdf * pi_f));
       if (!walk.throughput.is_black()) walks.push_back(walk);
@@ -281,7 +301,9 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
     r.rays += 1;
     if (!is_finite(light.irradiance[i])) continue;
     const float nearness = light.distance[i] > 0 ? 1 / light.distance[i] : 0;
-    r.nearness += nearness;
+    r.nearness += nearness * weights[i];
+    if (tally != nullptr)
+      tally->add(aims[owners[i]], directions[i], weights[i], luminance(light.irradiance[i]));
     add(r.matte, light.irradiance[i] * shares[i], light.half_difference[i] * shares[i], nearness);
     if (!r.place.is_there()) continue;
     const Rgb share = lobes[owners[i]].share_of(directions[i]);

@@ -12,7 +12,6 @@ namespace troffer {
 
 class GatherPass {
  public:
-  static constexpr int tile_side = 16;                        // pixels
   static constexpr int most_pixels = 16;                      // radius of a fit
   static constexpr int usual_pixels = 5;                      // … of what is usual around it
   static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record
@@ -29,6 +28,7 @@ class GatherPass {
     int x = 0, y = 0;                   // its first pixel in the picture's own tiling
     std::vector<GatherRecord> records;  // by pixels, row by row; until they are joined
     std::vector<uint16_t> counts;       // of each pixel
+    BrightSight sight;                  // from its surfaces
   };
   struct Worker {
     Worker() { viewing.is_view = true; }
@@ -62,7 +62,8 @@ class GatherPass {
   void see(Tile& tile, Worker& w) const;
   Ray ray_of(int x, int y, float& spread) const;
   void gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
-              const Tile& tile, const std::vector<uint32_t>& places, Rays which, Worker& w) const;
+              const Tile& tile, const std::vector<uint32_t>& places, Rays which, Worker& w,
+              BrightTally* tally = nullptr) const;
   void join(std::vector<Tile>& tiles);
   bool is_beside(int x, int y, uint32_t r) const;
   float usual_rays(int x, int y, uint32_t r) const;

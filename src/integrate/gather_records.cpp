@@ -25,7 +25,7 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   // them, which others asked for; and who gathers at all is decided by those around.
   constexpr int border = 2 * GatherPass::most_pixels + GatherPass::usual_pixels + 7;
   // In whole tiles of the picture: what a tile's rays meet is the same for every window.
-  constexpr int side = GatherPass::tile_side;
+  constexpr int side = tile_side;
   const auto first = [&](int v) { return std::max(v - border, 0) / side * side; };
   const auto last = [&](int v) { return (v + border + side - 1) / side * side; };
   PixelWindow w = view.window;
@@ -35,6 +35,15 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   GatherPass pass(cells, view, options, stop, *records);
   if (!pass.run(progress, counters)) return nullptr;
   return records;
+}
+
+GatherAim GatherRecords::aim_at(int x, int y, const CellHit& hit,
+                                const BrightPlaces& places) const {
+  const int x0 = window_.x0 / tile_side, y0 = window_.y0 / tile_side;
+  const int across = (window_.x1 + tile_side - 1) / tile_side - x0;
+  const auto tile = size_t(y / tile_side - y0) * size_t(across) + size_t(x / tile_side - x0);
+  const size_t n = places.all().size();
+  return GatherAim(places, std::span(visible_).subspan(tile * n, n), rest_[tile], hit);
 }
 
 bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/crew.h"
@@ -76,6 +77,8 @@ struct FittedRecord {
 
 class GatherRecords {
  public:
+  static constexpr int tile_side = 16;  // pixels
+
   // Null once `stop` is set.
   static std::unique_ptr<GatherRecords> make(const Cells& cells, const PictureView& view,
                                              const GatherOptions& options,
@@ -87,9 +90,12 @@ class GatherRecords {
   // far away to hold there is better than nothing.
   bool irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                      FittedRecord& out) const;
+  // How gather rays are drawn at a place that pixel (x, y) sees.
+  GatherAim aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places) const;
   size_t bytes() const {
     return records_.capacity() * sizeof(GatherRecord) + fitted_.capacity() * sizeof(FittedRecord) +
-           first_.capacity() * sizeof(uint32_t);
+           first_.capacity() * sizeof(uint32_t) +
+           (visible_.capacity() + rest_.capacity()) * sizeof(float);
   }
 
  private:
@@ -107,6 +113,8 @@ class GatherRecords {
   std::vector<uint32_t> first_;  // record of each pixel; and the end
   std::vector<GatherRecord> records_;
   std::vector<FittedRecord> fitted_;
+  // What each tile sees of bright places, tiles row by row.
+  std::vector<float> visible_, rest_;
 };
 
 // Whether two places lie on one surface, so that irradiance goes from one to the other without a

@@ -1,5 +1,6 @@
 #include "integrate/gather_walks.h"
 
+#include <algorithm>
 #include <span>
 
 #include "base/error.h"
@@ -34,14 +35,18 @@ Vertex vertex_of(const CellHit& hit) {
 
 void set_out(const CellHit& from, const Vec2& number, Walk& walk) {
   const Vec3 local = cosine_hemisphere_from_square(number);
-  Vec3 wi = Frame(from.normal).to_world(local);
+  set_out(from, Frame(from.normal).to_world(local), walk);
+  walk.pdf = local.z * inv_pi_f;
+}
+
+void set_out(const CellHit& from, const Vec3& wi, Walk& walk) {
   // Below the surface, where the shading normal leans: no light comes from there.
   const bool is_above = dot(wi, from.horizon) > 0;
   if (!is_above) walk.throughput = Rgb{0};
   walk.ray = {};
   walk.ray.origin = from.position + from.horizon * (is_above ? from.offset : -from.offset);
   walk.ray.direction = wi;
-  walk.pdf = local.z * inv_pi_f;
+  walk.pdf = std::max(dot(wi, from.normal), 0.0f) * inv_pi_f;
   walk.last_position = from.position;
   walk.last_normal = from.horizon;
   walk.last_both_sides = false;

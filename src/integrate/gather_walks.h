@@ -99,7 +99,9 @@ CellHit cell_hit_of(const Vertex& v, const Bsdf& bsdf);
 // … and back, as a surface seen from straight above.
 Vertex vertex_of(const CellHit& hit);
 
-// Sends a walk on from a place, by cosine.
+// Sends a walk on from a place, by cosine …
 void set_out(const CellHit& from, const Vec2& number, Walk& walk);
+// … or in a given direction; its density is that by cosine all the same.
+void set_out(const CellHit& from, const Vec3& direction, Walk& walk);
 
 }  // namespace troffer
