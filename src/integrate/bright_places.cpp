@@ -11,16 +11,18 @@ namespace troffer {
 
 namespace {
 
-constexpr double least_brightness = 2;    // of a bright cell, over the mean
-constexpr double least_of_squares = 0.2;  // that bright cells bring: else it is evenly bright
-constexpr float first_radius = 2;         // of a place, in cells
+constexpr double least_brightness = 2;  // of a bright cell, over the mean
+// Of the mean square, were as many rays as is best sent to bright cells: above this it is not worth
+// while.
+constexpr double most_left = 0.6;
+constexpr float first_radius = 2;  // of a place, in cells
 // Cones are at least so wide (sine), and none is made from nearer than this many radii.
 constexpr float least_sine = 0.02f, least_distance = 1.2f;
 constexpr float unknown_fill = 0.5f, least_flat = 0.8f;
 constexpr float least_visible = 0.02f, least_share = 0.003f;
 constexpr double most_amiss = 16;  // what is expected, and what is found
 constexpr float below_one = 0.99999994f;
-constexpr size_t tried = 8;  // places from which sight is tried
+constexpr size_t least_tries = 2;  // of sight of each place
 
 struct BrightCell {
   Vec3 position, normal;
@@ -121,10 +123,15 @@ BrightPlaces::BrightPlaces(const Tracer& tracer, std::vector<PilotHit> seen,
   const double mean = sum / shares;
   std::erase_if(cells,
                 [&](const BrightCell& c) { return !(c.irradiance > least_brightness * mean); });
-  double bright = 0;
-  for (const BrightCell& c : cells) bright += c.share * sqr(c.irradiance);
-  if (!(bright > least_of_squares * squares)) return;
-  rest_ = float(std::max(squares - bright, 0.0) / shares);
+  double bright = 0, bright_shares = 0;
+  for (const BrightCell& c : cells) {
+    bright += c.share * sqr(c.irradiance);
+    bright_shares += c.share;
+  }
+  const double left = std::max(squares - bright, 0.0), left_shares = shares - bright_shares;
+  const double best = sqr(std::sqrt(bright * bright_shares) + std::sqrt(left * left_shares));
+  if (!(best < most_left * squares * shares)) return;
+  rest_ = float(left / shares);
   const float margin = 0.5f * cell_size;
   std::vector<std::span<BrightCell>> parts;
   for (float radius = first_radius * cell_size; parts.empty() || parts.size() > most_places;
@@ -135,17 +142,20 @@ BrightPlaces::BrightPlaces(const Tracer& tracer, std::vector<PilotHit> seen,
   for (const std::span<BrightCell> part : parts) places_.push_back(place_of(part, margin));
 }
 
-BrightSight BrightPlaces::sight_from(std::span<const CellHit> from) const {
+BrightSight BrightPlaces::sight_from(std::span<const CellHit> from, size_t rays) const {
   BrightSight sight{std::vector<float>(places_.size(), 1), rest_};
   if (places_.empty() || from.empty()) return sight;
-  std::vector<Ray> rays;
+  const size_t tried =
+      std::clamp(rays / places_.size(), least_tries, size_t{BrightPlace::most_hits});
+  std::vector<Ray> towards;
   for (const BrightPlace& p : places_)
     for (size_t i = 0; i < tried; ++i) {
       const CellHit &a = from[i * from.size() / tried], &b = p.hits[i % p.hit_count];
-      rays.push_back(segment(a.position + a.horizon * a.offset, b.position + b.horizon * b.offset));
+      towards.push_back(
+          segment(a.position + a.horizon * a.offset, b.position + b.horizon * b.offset));
     }
-  std::vector<uint8_t> is_occluded(rays.size());
-  tracer_->occluded(rays, is_occluded);
+  std::vector<uint8_t> is_occluded(towards.size());
+  tracer_->occluded(towards, is_occluded);
   for (size_t k = 0; k < places_.size(); ++k) {
     const auto first = is_occluded.begin() + std::ptrdiff_t(k * tried);
     const auto seen = std::count(first, first + std::ptrdiff_t(tried), 0);

@@ -50,6 +50,7 @@ struct BrightSight {
 class BrightPlaces {
  public:
   static constexpr size_t most_places = 128;
+  static constexpr size_t most_tries = most_places * BrightPlace::most_hits;
 
   BrightPlaces() = default;
   // None where it is evenly bright. irradiance: of cells, of this size. The tracer must outlive it.
@@ -58,8 +59,8 @@ class BrightPlaces {
 
   std::span<const BrightPlace> all() const { return places_; }
   // As known before any ray is sent. Of each place, how much of it is seen from some places on
-  // average, of which a few are tried.
-  BrightSight sight_from(std::span<const CellHit> from) const;
+  // average, of which a few are tried, by about so many rays in all.
+  BrightSight sight_from(std::span<const CellHit> from, size_t rays = most_tries) const;
 
  private:
   const Tracer* tracer_ = nullptr;

@@ -250,9 +250,14 @@ void GatherPass::see(Tile& tile, Worker& w) const {
   if (is_thinned_)
     for (size_t r = 0; r < counts.size(); ++r)
       if (class_of(places[r]) != 0) counts[r] = 0;
+  constexpr size_t rays_for_sight = 4;  // of as many as this, one
   std::vector<CellHit> from;
-  for (const GatherRecord& r : tile.records) from.push_back(r.hit);
-  tile.sight = cells_.bright_places().sight_from(from);
+  size_t rays = 0;
+  for (size_t r = 0; r < counts.size(); ++r) {
+    if (counts[r] > 0) from.push_back(tile.records[r].hit);
+    rays += counts[r];
+  }
+  tile.sight = cells_.bright_places().sight_from(from, rays / rays_for_sight);
   BrightTally tally;
   gather(tile.records, counts, tile, places, Rays::first, w, &tally);
   tally.tell(tile.sight);
