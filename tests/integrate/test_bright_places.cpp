@@ -57,6 +57,12 @@ struct Floor {
   }
 };
 
+Scene nothing_in_the_way() {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{0, 0, -9}, {1, 0, -9}, {1, 1, -9}, {0, 1, -9}});
+  return s;
+}
+
 struct RayMoments {
   double n = 0, sum = 0, squares = 0, largest = 0;
   void add(double x) {
@@ -78,11 +84,7 @@ Vec2 number(Random& random) {
 }  // namespace
 
 TEST_CASE("no bright places where it is evenly bright") {
-  const Scene scene = [] {
-    Scene s;
-    add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{0, 0, -9}, {1, 0, -9}, {1, 1, -9}, {0, 1, -9}});
-    return s;
-  }();
+  const Scene scene = nothing_in_the_way();
   const Tracer tracer(scene);
   const Floor even(1.5f), nothing(0);
   CHECK(BrightPlaces(tracer, even.seen, even.irradiance, cell_size).all().empty());
@@ -100,11 +102,7 @@ TEST_CASE("no bright places where it is evenly bright") {
 }
 
 TEST_CASE("rays aimed at bright places have the mean of rays by cosine, and less noise") {
-  const Scene scene = [] {
-    Scene s;
-    add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{0, 0, -9}, {1, 0, -9}, {1, 1, -9}, {0, 1, -9}});
-    return s;
-  }();
+  const Scene scene = nothing_in_the_way();
   const Tracer tracer(scene);
   constexpr float brightness = 500;
   const Floor floor(brightness);
