@@ -29,7 +29,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points, false),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      far_{FarCells(scene.scene, scene.primitives), 0, nullptr, {}, {}, {}, false, {}, 0},
+      far_{&scene.far_cells(), 0, nullptr, {}, {}, {}, false, {}, 0},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
@@ -149,7 +149,7 @@ bool CertifiedLights::add_flat_light(const PreparedScene& scene, uint32_t light,
 }
 
 void CertifiedLights::set_occluders(const Occluders& occluders) {
-  if (far_.cells.all().empty()) return;
+  if (far_.cells->all().empty()) return;
   far_.occluders = &occluders;
   far_.scene = far_scene(occluders);
   far_.shells = ClosedShells(scene_.scene, scene_.panes.is_empty() ? nullptr : &scene_.glass);
@@ -165,7 +165,7 @@ void CertifiedLights::add_far_lights(const PreparedScene& scene) {
     if (const Portal* portal = scene.primitives[p].portal)
       for (const Quad& q : portal->frame(far_.frame_reach))
         far_.frames[p].push_back({q, no_facet, false});
-  for (const FarCell& cell : far_.cells.all()) {
+  for (const FarCell& cell : far_.cells->all()) {
     has_light_[scene.primitives[cell.primitive].light] = true;
     const Portal* portal = scene.primitives[cell.primitive].portal;
     if (portal != nullptr && portal->view(everywhere, cell.plane) == Portal::View::none) continue;
@@ -247,7 +247,7 @@ bool CertifiedLights::find_closed_off(CertifiedLightsScratch& s) const {
 void CertifiedLights::count_closed_off(std::span<const uint32_t> members,
                                        const CertifiedLightsScratch& s, RadianceBatch& out,
                                        Counters& counters) const {
-  const size_t far = far_.cells.all().size();
+  const size_t far = far_.cells->all().size();
   counters.dark_certified += members.size() * far;
   for (const uint32_t m : members)
     if (s.hits.is_first[m] != 0) out.sources[s.hits.indices[m]] += Rgb{0, 0, float(far)};

@@ -55,7 +55,7 @@ class CertifiedLights {
   // meshes of too many pieces that lie in no common plane, or have no certificate shape (light.h).
   bool has(uint32_t light) const { return has_light_[light] || is_drawn_[light]; }
   bool is_drawn(uint32_t light) const { return is_drawn_[light]; }
-  bool is_empty() const { return groups_.size() == 0 && far_.cells.all().empty(); }
+  bool is_empty() const { return groups_.size() == 0 && far_.cells->all().empty(); }
   const LobeCompetition& competition() const { return competition_; }
   // The source that a point on a piece of a light belongs to, seen from its front or its back;
   // null if none.
@@ -111,8 +111,8 @@ class CertifiedLights {
   // of the same primitive; -1: none.
   std::vector<int32_t> source_of_front_, source_of_back_, before_;
   struct Far {
-    FarCells cells;
-    uint32_t first_source = 0;  // those of the cells are the last ones
+    const FarCells* cells = nullptr;  // of the scene
+    uint32_t first_source = 0;        // those of the cells are the last ones
     const Occluders* occluders = nullptr;
     FarScene scene;            // what hides much of them
     FarPoints points;          // … where proofs are not worth while

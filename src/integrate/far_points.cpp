@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "base/random.h"
 #include "base/simd.h"
@@ -12,27 +13,12 @@ namespace troffer {
 
 namespace {
 
-// A part gives so much of all light at most, or lies within a sine of its middle; and a cell is
-// halved so often at most.
-constexpr double most_share = 1.0 / 48, most_sine = 0.15;
-constexpr int most_halvings = 8;
 constexpr float tiny = 1e-30f;
 // Normals that chances are made for beforehand: along an edge of a face of a cube; and of all of
 // them times the parts.
 constexpr size_t most_normals = 8, most_about = size_t(1) << 20;
 
-Vec3d middle_of(const Parallelogram& p) {
-  return p.origin + (p.u + p.v) * 0.5;
-}
-
 }  // namespace
-
-Rgb far_radiance_of(const CertifiedSource& source, const Vec3& way) {
-  if (!source.is_textured) return source.radiance;
-  Rgb l;
-  far_radiance(*source.far, 1, &way.x, &way.y, &way.z, &l.r, &l.g, &l.b);
-  return l;
-}
 
 bool is_through_portal(const LightPrimitives& primitives, const CertifiedSource& source,
                        const Vec3& x, const Vec3& wi) {
@@ -40,40 +26,9 @@ bool is_through_portal(const LightPrimitives& primitives, const CertifiedSource&
   return portal == nullptr || portal->shows(x, wi);
 }
 
-namespace {
-
-// Root of the mean square of the luminance over a part of an image's cell, by all values that it
-// shows: from (s0, t0) to (s1, t1) of the cell.
-float usual_luminance(const FarCell& cell, double s0, double s1, double t0, double t1) {
-  const int last = cell.table_size - 1;
-  const auto first_of = [&](double x) {
-    return std::clamp(int(std::floor(x * cell.table_size + 1e-6)), 0, last);
-  };
-  const auto last_of = [&](double x) {
-    return std::clamp(int(std::ceil(x * cell.table_size - 1e-6)) - 1, 0, last);
-  };
-  const int columns = last_of(s1) - first_of(s0) + 1, rows = last_of(t1) - first_of(t0) + 1;
-  double squares = 0;
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const size_t row = size_t(cell.table_y + first_of(t0) + j),
-                   column = size_t(cell.table_x + first_of(s0) + i);
-      squares +=
-          sqr(double(luminance(cell.table->values[row * size_t(cell.table->size) + column])));
-    }
-  return float(std::sqrt(squares / (double(columns) * rows)));
-}
-
-}  // namespace
-
 FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
-  double all = 0;
-  for (const CertifiedSource& s : sources)
-    all += double(luminance(s.radiance)) * length(cross(s.flat.plane.u, s.flat.plane.v)) /
-           sqr(s.far->height);
-  for (const CertifiedSource& s : sources) add(s, s.flat.plane, all, most_halvings);
-  std::vector<Part> parts;
-  parts.swap(parts_);
+  auto [parts, suns] = cut_far_parts(sources);
+  suns_ = std::move(suns);
   if (parts.empty()) {
     if (!suns_.empty()) make_chances_about();
     return;
@@ -81,7 +36,7 @@ FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
   const size_t leaves = std::bit_ceil(std::max(parts.size(), size_t(2)));
   parts_.resize(leaves);
   plant(parts, 0, leaves);
-  for (const Part& p : parts_)
+  for (const FarPart& p : parts_)
     for (size_t k = 0; k < 4; ++k) {
       const Vec3 corner = p.corner(k);
       x_[k].push_back(corner.x);
@@ -92,74 +47,22 @@ FarPoints::FarPoints(std::span<const CertifiedSource> sources) {
   make_chances_about();
 }
 
-void FarPoints::plant(std::span<Part> parts, size_t leaf, size_t leaves) {
+void FarPoints::plant(std::span<FarPart> parts, size_t leaf, size_t leaves) {
   if (parts.empty()) return;
   if (leaves == 1) {
     parts_[leaf] = parts[0];
     return;
   }
   Box box;
-  for (const Part& p : parts) box.grow(p.middle());
+  for (const FarPart& p : parts) box.grow(p.middle());
   const Vec3 e = box.extent();
   const size_t axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
-  std::stable_sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) {
+  std::stable_sort(parts.begin(), parts.end(), [&](const FarPart& a, const FarPart& b) {
     return a.middle()[axis] < b.middle()[axis];
   });
   const size_t half = (parts.size() + 1) / 2;
   plant(parts.first(half), leaf, leaves / 2);
   plant(parts.subspan(half), leaf + leaves / 2, leaves / 2);
-}
-
-void FarPoints::add(const CertifiedSource& source, const Parallelogram& plane, double all,
-                    int halvings) {
-  const double area = length(cross(plane.u, plane.v)), height = source.far->height;
-  // from the scene's middle
-  const Parallelogram& whole = source.flat.plane;
-  const Vec3d u = whole.u, v = whole.v;
-  const Vec3d at = middle_of(plane) - whole.origin;
-  const double s = dot(at, u) / length_squared(u), t = dot(at, v) / length_squared(v);
-  const Vec3d way = u * (s + double(source.far->from_u)) + v * (t + double(source.far->from_v)) -
-                    whole.normal * height;
-  const double distance = length(way);
-  const double steradians = area * height / (distance * sqr(distance));
-  const double sine = 0.5 * length(plane.u + plane.v) / distance;
-  const Rgb l = far_radiance_of(source, Vec3(way));
-  const bool is_image = source.far->table != nullptr;
-  const double half_s = 0.5 * length(plane.u) / length(u),
-               half_t = 0.5 * length(plane.v) / length(v);
-  const float usual =
-      is_image ? usual_luminance(*source.far, s - half_s, s + half_s, t - half_t, t + half_t)
-               : luminance(l);
-  const float of_cell = is_image ? usual : luminance(source.radiance);
-  const double strength = steradians * double(0.9f * usual + 0.1f * of_cell);
-  if (!source.flat.is_disk && halvings > 0 && (strength > most_share * all || sine > most_sine)) {
-    const bool is_u = length_squared(plane.u) >= length_squared(plane.v);
-    Parallelogram half = plane;
-    (is_u ? half.u : half.v) *= 0.5;
-    add(source, half, all, halvings - 1);
-    half.origin += is_u ? half.u : half.v;
-    add(source, half, all, halvings - 1);
-    return;
-  }
-  Part part;
-  part.source = &source;
-  part.origin = Vec3((way + plane.origin - middle_of(plane)) * (1 / height));
-  part.u = Vec3(plane.u * (1 / height));
-  part.v = Vec3(plane.v * (1 / height));
-  part.area = float(area / sqr(height) * (source.flat.is_disk ? 0.25 * pi : 1));
-  if (source.flat.is_disk) {
-    part.strength[0] = luminance(l) * float(steradians * 0.25 * pi);
-    suns_.push_back(part);
-    return;
-  }
-  for (size_t k = 0; k < 4; ++k) {
-    const Vec3 corner = part.corner(k);
-    const float shine = is_image || !source.is_textured
-                            ? usual
-                            : luminance(far_radiance_of(source, corner * float(height)));
-    part.strength[k] = part.area * (0.9f * shine + 0.1f * of_cell) / sqr(length_squared(corner));
-  }
-  parts_.push_back(part);
 }
 
 namespace {
@@ -223,7 +126,7 @@ void FarPoints::Chances::set_tree() {
 void FarPoints::set_suns(const Vec3& normal, float reach_of_normals, Chances& c) const {
   c.suns_ = 0;
   c.of_sun_.clear();
-  for (const Part& p : suns_) {
+  for (const FarPart& p : suns_) {
     const Vec3 middle = p.middle();
     const float cosine = dot(normal, normalize(middle));
     // 1.01: no sun of which some is above the horizon is left out
@@ -327,7 +230,7 @@ FarPoints::Choice FarPoints::choose_any_sun(const Chances& c, float u, float v, 
 FarPoints::Point FarPoints::point(const Choice& c, const Vec3& normal) const {
   Point out;
   if (!(c.chance > 0)) return out;
-  const Part& p = part(c.part);
+  const FarPart& p = part(c.part);
   float a = c.u, b = c.v, density = 1;
   if (p.source->flat.is_disk) {
     const float radius = 0.5f * std::sqrt(a), angle = 2 * pi_f * b;

@@ -1,6 +1,6 @@
 // Points of all lights at infinity: small parts of their cells, chosen by the light that they would
-// send, places in them by what their corners would, and those of suns. No shafts, no lists, no
-// exact light: for hits that proofs are not worth (far_rays.h).
+// send (far_parts.h), places in them by what their corners would, and those of suns. No shafts, no
+// lists, no exact light: for hits that proofs are not worth (far_rays.h).
 //
 // Seen from anywhere in the scene a point lies in the same direction (light/far_cells.h), so
 // receivers matter by their normals alone.
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "integrate/drawn_lights.h"
+#include "integrate/far_parts.h"
 #include "integrate/source_integrand.h"
 
 namespace troffer {
@@ -83,39 +84,22 @@ class FarPoints {
   void radiance(std::span<const Point> points, std::vector<Rgb>& out) const;
 
  private:
-  // Directions are in units of the distance of its face of the cube.
-  struct Part {
-    const CertifiedSource* source = nullptr;
-    Vec3 origin, u, v;
-    float area = 0;
-    Vec3 corner(size_t k) const {
-      return origin + (k % 2 != 0 ? u : Vec3{}) + (k / 2 != 0 ? v : Vec3{});
-    }
-    Vec3 middle() const { return origin + (u + v) * 0.5f; }
-    // Luminance × sr of all of the part if it were as at its corners, (0,0) (1,0) (0,1) (1,1), over
-    // their distance: times the height over a horizon it is what a receiver gets. Suns: the first.
-    std::array<float, 4> strength{};
-  };
-  void add(const CertifiedSource& source, const Parallelogram& plane, double all, int halvings);
   void make_chances_about();
   Chances chances_within(const Vec3& normal, float reach) const;
   // reach: of the normals, about this one.
   void set_suns(const Vec3& normal, float reach, Chances& chances) const;
   // Puts parts into leaves from `leaf` on, neighbours together.
-  void plant(std::span<Part> parts, size_t leaf, size_t leaves);
-  const Part& part(uint32_t i) const {
+  void plant(std::span<FarPart> parts, size_t leaf, size_t leaves);
+  const FarPart& part(uint32_t i) const {
     return i < parts_.size() ? parts_[i] : suns_[i - parts_.size()];
   }
-  std::vector<Part> parts_;  // by leaf of the tree, some of them empty
-  std::vector<Part> suns_;
+  std::vector<FarPart> parts_;  // by leaf of the tree, some of them empty
+  std::vector<FarPart> suns_;
   // Per leaf: its corners and their strengths.
   std::array<std::vector<float>, 4> x_, y_, z_, strength_;
   size_t normals_ = 0;          // of those below, along an edge of a face of a cube
   std::vector<Chances> about_;  // face by face, row by row
 };
-
-// The radiance that a point of a source at infinity sends.
-Rgb far_radiance_of(const CertifiedSource& source, const Vec3& way);
 
 // Whether a source at infinity shows at x in the direction wi what nothing hides there: where it
 // has a portal, through that alone.

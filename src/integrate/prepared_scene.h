@@ -1,9 +1,13 @@
 // A scene with all that is built from it before the first ray.
 #pragma once
 
+#include <mutex>
+#include <optional>
+
 #include "base/parallel.h"
 #include "bsdf/bsdf.h"
 #include "integrate/scene_glass.h"
+#include "light/far_cells.h"
 #include "light/light_primitive.h"
 #include "light/web.h"
 #include "scene/scene.h"
@@ -18,7 +22,7 @@ inline Scene with_levels(Scene scene) {
   return scene;
 }
 
-// Immutable; members refer to each other, so it stays where it was made.
+// Immutable, as far as can be seen; members refer to each other, so it stays where it was made.
 struct PreparedScene {
   explicit PreparedScene(Scene s)
       : scene(with_room_for_tracer(with_levels(std::move(s)))),
@@ -40,6 +44,17 @@ struct PreparedScene {
   const LightPrimitives primitives;
   const std::vector<WebLookup> webs;  // of those of the scene
   const LightTree light_tree;
+
+  // Of its lights at infinity; made when first asked for, by any thread: an image takes a while,
+  // and only certified light has a use for them.
+  const FarCells& far_cells() const {
+    std::call_once(are_far_cells_made_, [&] { far_cells_.emplace(scene, primitives); });
+    return *far_cells_;
+  }
+
+ private:
+  mutable std::once_flag are_far_cells_made_;
+  mutable std::optional<const FarCells> far_cells_;
 };
 
 }  // namespace troffer

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/frame.h"
+#include "base/parallel.h"
 #include "base/simd.h"
 #include "light/light.h"
 #include "light/portal.h"
@@ -188,14 +189,16 @@ class Cutter {
     table->values.resize(size_t(n) * size_t(n));
     const Square all{-1, -1, 2};
     const double step = 1.0 / (double(n) * each);
-    for (int y = 0; y < n; ++y)
+    parallel_for(size_t(n), 0, [&](size_t row) {
+      const int y = int(row);
       for (int x = 0; x < n; ++x) {
         Rgb sum;
         for (int i = 0; i < each * each; ++i)
           sum += radiance(
               all.at(f, (x * each + i % each + 0.5) * step, (y * each + i / each + 0.5) * step));
-        table->values[size_t(y) * size_t(n) + size_t(x)] = sum * (1 / float(each * each));
+        table->values[row * size_t(n) + size_t(x)] = sum * (1 / float(each * each));
       }
+    });
     return table;
   }
 

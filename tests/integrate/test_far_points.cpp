@@ -134,8 +134,7 @@ TEST_CASE("sixty-four points of a sky say what arrives where nothing hides it") 
       CAPTURE(int(kind));
       CAPTURE(normal.z);
       CHECK(std::abs(e.mean - 1) < 0.002 + 4 * e.error / std::sqrt(double(runs)));
-      // Tables are as even as parts are small.
-      CHECK(e.error < (kind == Kind::image ? 0.04 : 0.015));
+      CHECK(e.error < 0.015);
     }
   }
 }
@@ -171,7 +170,8 @@ TEST_CASE("chances for normals about a receiver's leave none of its light out") 
   }
 }
 
-// A part that is dim but for a few texels must not be drawn by what it is elsewhere.
+// A part that is dim but for a few texels must not be drawn by what it is elsewhere: parts are cut
+// until they are even. In the open a few points then err by little, sun or not.
 TEST_CASE("no point of an image with a small sun counts for much more than all light") {
   const Points p(Kind::sunny);
   Random random(11);
@@ -195,7 +195,11 @@ TEST_CASE("no point of an image with a small sun counts for much more than all l
       }
       CAPTURE(normal.z);
       CHECK(mean == doctest::Approx(expected(p, Frame(normal))).epsilon(0.02));
-      CHECK(most < 15 * mean);
+      CHECK(most < 3 * mean);
+      constexpr int runs = 128;
+      const Estimates e = estimates_of(p, *chances, normal, 64, runs);
+      CAPTURE(e.error);
+      CHECK(e.error < 0.02);
     }
   }
 }
