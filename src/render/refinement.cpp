@@ -254,6 +254,13 @@ double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) 
   return count > 0 ? sum / count : 0;
 }
 
+// Of a pixel in which something is seen that covers who knows how much of it, and differs by who
+// knows what: a share p and a contrast c leave p (1 - p) c²; its mean over all p and all c up to
+// the luminance around.
+double variance_of_thin_thing(double mean) {
+  return sqr(mean) / 18;
+}
+
 // Of the luminance of a pixel amid such a mean.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
                      double most_times_less = usual_times_less) {
@@ -275,7 +282,8 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0) return 0;
   const bool is_divided = has_edge || has_light;
   const double variance =
-      std::max({s.largest.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0, clutter});
+      std::max({s.largest.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0, clutter,
+                v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
   // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
   // seen what shines.)
   const double least = has_light ? 256 : 0;
@@ -303,7 +311,8 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   if (options.is_noise) variance = s.mean_variance;
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
   if (has_edge && !options.is_noise)
-    variance = std::max({variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of)});
+    variance = std::max({variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of),
+                         v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
   const double allowed = allowed_error(s.mean, v.typical, options);
   // Samples that are spread over a pixel err by n^-3/4 by what an edge divides (of thin things they
   // know too little), and by n^-1/2 by chance of their own. (Nothing to see by: no light is
