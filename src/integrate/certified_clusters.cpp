@@ -16,9 +16,10 @@ float least_light(float weight, float typical) {
 }
 
 // What certificates take, in rays: once for a cluster and a source, for a pair of a hit and a
-// source, for a mask and for each facet in it.
+// source, for a mask, for each facet in it, and for each point of a source at which gloss or a
+// texture is looked at.
 constexpr double rays_of_gather = 12, rays_of_pair = 0.15, rays_of_mask = 0.3,
-                 rays_of_facet = 1.0 / 12;
+                 rays_of_facet = 1.0 / 12, rays_of_point = 0.3;
 struct Counted {
   CertifiedCounters counters;
   uint64_t rays = 0;
@@ -26,7 +27,8 @@ struct Counted {
 // Masks and rays between two looks at what is counted: the same whatever was counted before.
 double rays_between(const Counted& a, const Counted& b) {
   return double(b.rays - a.rays) + rays_of_mask * double(b.counters.masks - a.counters.masks) +
-         rays_of_facet * double(b.counters.mask_facets - a.counters.mask_facets);
+         rays_of_facet * double(b.counters.mask_facets - a.counters.mask_facets) +
+         rays_of_point * double(b.counters.points - a.counters.points);
 }
 
 }  // namespace

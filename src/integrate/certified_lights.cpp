@@ -269,6 +269,7 @@ bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
                                             const CertifiedLightsScratch& s,
                                             bool is_picture) const {
   constexpr double cost_of_look = 4000;      // in rays
+  constexpr double cost_of_gloss = 4;        // … of a cell that a glossy hit may see, more
   constexpr double share_of_further = 0.25;  // a further viewing ray of a pixel gets fewer
   // … and of a cell before a hit, in rays as they are estimated; of what is that open.
   constexpr double cost_of_mask = 40, open_enough = 0.25;
@@ -278,10 +279,12 @@ bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
   const double rays = rays_of_hit(s.far, far_.points.suns() > 0, double(s.options.mask_error));
   const size_t cells = sources_.size() - far_.first_source;
   if (s.far.open > open_enough && rays < cost_of_mask * double(cells)) return false;
-  double all = 0;
-  for (const uint32_t m : members)
+  double all = 0, proofs = cost_of_look;
+  for (const uint32_t m : members) {
     all += s.hits.samples[m] < uint32_t(budget_.viewing_rays) ? rays : rays * share_of_further;
-  return all > cost_of_look;
+    if (s.hits.glossy[m] >= 0) proofs += cost_of_gloss * double(cells);
+  }
+  return all > proofs;
 }
 
 void CertifiedLights::set_requests(CertifiedLightsScratch& s, bool has_far) const {

@@ -44,6 +44,7 @@ struct CertifiedCounters {
   uint64_t clusters = 0;                                 // pairs of cluster and source
   uint64_t gathers = 0, candidates = 0, incomplete = 0;  // lists, facets in them, not complete ones
   uint64_t cells = 0, masks = 0, mask_facets = 0;
+  uint64_t points = 0;  // of masks and lattices, at which an integrand was looked at
 };
 
 }  // namespace troffer

@@ -131,6 +131,7 @@ void add_lattice_integral(const SourceCellTask& cell, uint32_t member, const Ope
   if (m.weights.empty()) set_points(cell, member, samples, stride = 1, random, m);
   if (m.weights.empty()) return;
   cell.source.integrand->evaluate_many(cell.source.number, member, m.points);
+  results.counters.points += m.weights.size();
   const LatticeSum sum = sum_of(m, stride);
   const Rgb mean = sum.mean();
   CellSum& o = results.sums[member];
