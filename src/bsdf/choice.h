@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bsdf/bsdf.h"
+#include "bsdf/coated_glass.h"
 #include "bsdf/gains.h"
 #include "bsdf/split.h"
 
@@ -14,7 +15,7 @@ namespace troffer {
 inline Rgb glossy_albedo(const Bsdf& b, float c) {
   if (b.fresnel == Bsdf::Fresnel::none) return Rgb{0};
   if (b.is_smooth) {
-    const Split s = split_at(b, c);
+    const Split s = facet_split(b, c);
     return s.reflected + s.transmitted;
   }
   const CosineCoordinate at(c);
@@ -36,6 +37,8 @@ inline Rgb glossy_albedo(const Bsdf& b, float c) {
 // … through a clear coat.
 inline Rgb glossy_albedo_below(const Bsdf& b, float pass, float c) {
   if (!(b.clear.share > 0) || b.fresnel == Bsdf::Fresnel::none) return glossy_albedo(b, c) * pass;
+  // Of smooth glass it is all in there.
+  if (b.has_transmission) return b.is_smooth ? glossy_albedo(b, c) : glossy_albedo(b, c) * pass;
   const float inside = b.clear.cosine_below(c);
   const Rgb all = glossy_albedo(b, inside);
   // What of it is not held back below the coat, where that is known.

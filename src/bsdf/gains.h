@@ -45,16 +45,23 @@ inline Gains gains_at(const Bsdf& b, const Vec3& w) {
   g.soft = soft_gain(b.soft, direction);
   g.pass = b.cover.pass(at);
   g.diffuse *= g.pass;
-  if (b.clear.share > 0) {
+  if (b.glass_weight > 0) g.glass = missing(b.near, at);
+  if (b.clear.share > 0 && !b.is_within) {
     const float coat = b.clear.pass(cosine);
     g.diffuse *= coat;
+    g.glass *= coat;
     const float own = b.clear.has_normal ? dot(w, b.clear.normal) : cosine;
     g.coat = b.clear.has_normal ? b.clear.pass(own) : coat;
     g.coat_gloss = b.clear.gloss_pass(own);
     if (is_lost_light(b.soft)) g.soft *= g.coat;
   }
-  if (b.glass_weight > 0) g.glass = missing(b.near, at);
   return g;
+}
+
+// The g of glass for a direction on the far side whose cosine there is so much.
+inline float far_glass_gain(const Bsdf& b, float cosine) {
+  const float lost = missing(b.far, CosineCoordinate(cosine));
+  return b.is_thin || b.is_within ? lost * b.clear.pass(cosine) : lost;
 }
 
 // The same, not worked out where nothing asks for it.

@@ -40,11 +40,8 @@ inline GgxWidths widths_of(float alpha, float strength) {
   return {alpha + (1 - alpha) * sqr(strength), std::max(alpha, smooth_alpha)};
 }
 
-// Over what does not transmit.
 inline bool has_clear_coat(const Material& m) {
-  return m.coat.value > 0 &&
-         (m.kind == MaterialKind::metallic_roughness || m.kind == MaterialKind::conductor ||
-          m.kind == MaterialKind::coated_diffuse);
+  return m.coat.value > 0 && m.kind != MaterialKind::diffuse;
 }
 
 // The clear coat of given share and roughness, but for its table and normal. That over a conductor

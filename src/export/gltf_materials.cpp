@@ -189,8 +189,7 @@ void GltfMaterialWriter::add_number(const FloatInput& input, float power, const 
 }
 
 void GltfMaterialWriter::add_clear_coat(const Material& m, Json& out) {
-  if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse || m.kind == MaterialKind::dielectric)
-    return;
+  if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse) return;
   if (m.kind == MaterialKind::coated_diffuse || std::abs(m.coat_ior - 1.5f) > 0.01f)
     warnings_.add("clear coats are written as glTF's, of index 1.5");
   Json coat = Json::object();

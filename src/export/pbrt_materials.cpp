@@ -10,6 +10,9 @@ namespace troffer {
 
 namespace {
 
+constexpr const char* coats_left_out =
+    "clear coats over anything but metal, and thin ones, are not written";
+
 std::string rgb(const char* name, Rgb c) {
   return fmt::format(" \"rgb {}\" [ {} {} {} ]", name, c.r, c.g, c.b);
 }
@@ -145,8 +148,7 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
                          : "metal, coat and glass of glTF's model are written as pbrt's, which "
                            "differ a little");
   if (metallic >= 0.5f && m.coat.value >= 0.5f) return coated_metal_text(m);
-  if (m.coat.value > 0)
-    warnings_.add("clear coats over anything but metal, and thin ones, are not written");
+  if (m.coat.value > 0) warnings_.add(coats_left_out);
   if (metallic >= 0.5f)
     return "\"conductor\"" + color("reflectance", m.base_color) + roughness(m, power);
   if (transmission >= 0.5f)
@@ -182,6 +184,7 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
         return "\"conductor\"" + color("reflectance", m.base_color) + roughness(m, power);
       return "\"conductor\"" + rgb("eta", m.eta) + rgb("k", m.k) + roughness(m, power);
     case MaterialKind::dielectric:
+      if (m.coat.value > 0) warnings_.add(coats_left_out);
       if (m.base_color.texture >= 0 || m.base_color.value != Rgb{1})
         warnings_.add("pbrt's glass has no tint: it is written clear");
       if (m.is_thin) return fmt::format("\"thindielectric\" \"float eta\" {}", m.ior);

@@ -152,7 +152,6 @@ class GltfMaterials::Reader {
     if (!coat) return;
     read_unit(*coat, "clearcoat", material_.coat);
     if (material_.coat.value == 0) return;
-    if (material_.transmission.value > 0) warn("a clear coat over what transmits is left out");
     read_unit(*coat, "clearcoatRoughness", material_.coat_roughness);
     material_.has_coat_normal = true;
     material_.coat_normal_texture = texture(*coat, "clearcoatNormalTexture", false);

@@ -14,8 +14,7 @@ namespace {
 bool can_be_coated(const Material& m) {
   return m.coat.value <= 0 &&
          (m.kind == MaterialKind::conductor || m.kind == MaterialKind::coated_diffuse ||
-          (m.kind == MaterialKind::metallic_roughness && m.transmission.texture < 0 &&
-           m.transmission.value <= 0));
+          m.kind == MaterialKind::dielectric || m.kind == MaterialKind::metallic_roughness);
 }
 
 // The second lobe of the plugin: a quarter of `clearcoat`, of an index of 1.5, between .1 and .001
@@ -47,6 +46,11 @@ float kept_evenly(float exponent, float index) {
 
 // The base darker by what the coat absorbs.
 void absorb(Material& m, Rgb exponent, float index) {
+  if (m.kind == MaterialKind::dielectric) {  // straight through, on one side or both of a sheet
+    for (size_t c = 0; c < 3; ++c)
+      m.base_color.value[c] *= std::exp(-exponent[c] * (m.is_thin ? 2.0f : 1.0f));
+    return;
+  }
   if (m.kind == MaterialKind::conductor) {  // straight on
     if (!m.is_reflectance) {
       const Rgb e1 = m.eta - Rgb{1}, e2 = m.eta + Rgb{1}, k2 = m.k * m.k;
@@ -84,7 +88,7 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
     m.diffuse_transmission_color = m.base_color;
   }
   read_principled_coat(node, textures_, m);
-  std::string left_out = !is_opaque && m.coat.value > 0 ? "clearcoat" : "";
+  std::string left_out;
   const auto leave_out = [&](const char* name) {
     const MitsubaNode* p = find_parameter(node, name);
     if (!p || is_nothing(*p)) return false;
@@ -136,6 +140,8 @@ std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
     return m;
   }
   m->coat.value = 1;
+  if (m->kind == MaterialKind::dielectric)
+    approximate(node, "over glass as a coat into which light goes straight on");
   if (node.type == "roughcoating") {
     Material coat;
     read_alpha(node, coat);

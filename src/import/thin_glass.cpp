@@ -15,7 +15,7 @@ bool may_be_thin_glass(const Material& m) {
       m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
                                              m.transmission.value >= 1 && m.metallic.value <= 0);
   return is_glass && !m.is_thin && !m.is_alpha_masked && m.roughness.value <= 0 &&
-         m.normal_texture < 0 && !has_textured_input(m);
+         m.normal_texture < 0 && m.coat_normal_texture < 0 && !has_textured_input(m);
 }
 
 namespace {

@@ -63,8 +63,9 @@ struct Material {
   ColorInput sheen_color{Rgb{0}, no_texture};
   FloatInput sheen_roughness{0, no_texture, 3};
   // A clear coat over all else (bsdf/clear_coat.h), of an index of its own: of metallic_roughness
-  // the share of the surface that wears it, its base as without it (KHR_materials_clearcoat); of a
-  // conductor a layer over all of it in which light bends; of coated_diffuse a second coat.
+  // and of dielectrics the share of the surface that wears it, its base as without it
+  // (KHR_materials_clearcoat); of a conductor a layer over all of it in which light bends; of
+  // coated_diffuse a second coat. Solid glass wears it outside, thin sheets on both sides.
   FloatInput coat{0, no_texture, 0};
   FloatInput coat_roughness{0, no_texture, 1};
   float coat_ior = 1.5f;

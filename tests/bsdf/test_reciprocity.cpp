@@ -52,6 +52,11 @@ TEST_CASE("scattering is reciprocal") {
       {"half a coat over glTF", clear_coated(gltf(0.4f, 0.4f, {0.3f, 0.7f, 0.9f}), 0.2f, 0.5f)},
       {"coat over cloth", clear_coated(cloth(0.7f, {0.9f, 0.3f, 0.5f}), 0.2f)},
       {"coat over a coat", clear_coated(coated(0.3f, {0.3f, 0.7f, 0.9f}), 0.1f)},
+      {"coat over glass", clear_coated(glass(0.3f), 0.1f)},
+      {"smooth coat over rough glass", clear_coated(glass(0.9f, 2.0f), 0)},
+      {"coat over thin glass", clear_coated(glass(0.3f, 1.5f, true), 0.1f)},
+      {"half a coat over glTF mixed", clear_coated(mixed, 0.2f, 0.5f)},
+      {"coat over glTF thin", clear_coated(thin, 0.2f)},
       {"film", filmed(gltf(0.4f, 0.4f, {0.3f, 0.7f, 0.9f}), 450)},
       {"film over glass", filmed(gltf(0.3f, 0, Rgb{1}, 1), 450)},
   };

@@ -126,6 +126,13 @@ TEST_CASE("samples follow the density") {
       {"coat over brushed copper", clear_coated(brushed(copper(0.15f), 0.5f), 0.2f)},
       {"coat .15 over glTF .5", clear_coated(gltf(0.5f, 0.5f, {0.3f, 0.7f, 0.9f}), 0.15f, 0.7f)},
       {"coat over cloth", clear_coated(cloth(0.6f, {0.9f, 0.3f, 0.5f}), 0.2f)},
+      {"coat .1 over glass .3", clear_coated(glass(0.3f), 0.1f)},
+      {"smooth coat over glass .4", clear_coated(glass(0.4f), 0)},
+      {"coat .2 over smooth glass", clear_coated(glass(0), 0.2f)},
+      {"smooth coat over smooth glass", clear_coated(glass(0), 0)},
+      {"coat over thin glass", clear_coated(glass(0.3f, 1.5f, true), 0.2f)},
+      {"coat over glTF mixed", clear_coated(mixed, 0.2f, 0.7f)},
+      {"coat over glTF mixed thin", clear_coated(mixed_thin, 0.2f)},
       {"film", filmed(gltf(0.3f, 0.5f, {0.3f, 0.7f, 0.9f}), 450)},
   };
   const float cosines[] = {0.05f, 0.4f, 0.95f};
@@ -161,6 +168,9 @@ TEST_CASE("grazing and degenerate directions stay finite") {
       {"coat", clear_coated(mirror_metal(1), 0)},
       {"coat", clear_coated(mirror_metal(0), 0, 1, 50)},
       {"coat", clear_coated(gltf(1, 0.5f), 1, 0.5f, 1.0001f)},
+      {"coat", clear_coated(glass(0.3f, 1.0005f), 0.2f, 0.5f)},
+      {"coat", clear_coated(glass(1, 0.3f), 1, 1, 50)},
+      {"coat", clear_coated(glass(0), 1e-3f)},
       {"film", filmed(gltf(0.2f, 1), 0)},
       {"film", filmed(gltf(0.2f, 0.5f, Rgb{1}, 0.5f, true), 1e6f, 10)},
       {"infinite index",

@@ -155,6 +155,11 @@ TEST_CASE("combined materials") {
       "value='.8'/><float name='clearcoat_gloss' value='1'/></bsdf>");
   CHECK(m.coat.value == doctest::Approx(0.2));
   CHECK(m.coat_roughness.value == doctest::Approx(std::sqrt(0.001)));
+  const Scene varnished = import_bsdf(
+      "<bsdf type='principled'><float name='spec_trans' value='1'/><float name='clearcoat' "
+      "value='1'/></bsdf>");
+  CHECK(varnished.materials.at(0).coat.value == 0.25f);
+  CHECK_FALSE(has_warning(varnished, "without clearcoat"));
   CHECK(m.kind == MaterialKind::metallic_roughness);
   CHECK(m.metallic.value == 0.7f);
   CHECK(m.ior == doctest::Approx(1.5));
