@@ -51,20 +51,20 @@ float bound_of(const Bsdf& b, const Vec3& wo) {
   return b.has_transmission ? 1.0f : ggx_bound(wo, b.alpha);
 }
 
-// What a clear coat leaves of a soft lobe, where that is not in its gains.
-float soft_cover(const Bsdf& b, const Gains& at_o, const Gains& at_i) {
-  return is_lost_light(b.soft) ? 1.0f : std::min(at_o.coat, at_i.coat);
+// pi f of a sheen, below a clear coat.
+Rgb sheen(const Bsdf& b, const Vec3& wo, const Vec3& wi, const Gains& at_o, const Gains& at_i) {
+  return b.cover.colour * (pi_f * sheen_value(wo, wi, b.cover.alpha)) *
+         std::min(at_o.coat, at_i.coat);
 }
 
-// The soft lobe and the cosine-shaped ones at wi; cos_i > 0 on the viewer's side.
+// Sheen, the soft lobe and the cosine-shaped ones at wi; cos_i > 0 on the viewer's side.
 Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) {
   const float cos_i = wi.z;
   if (cos_i > 0) {
     const Gains at_i = gains_at(b, wi);
-    return (b.diffuse * (at_o.diffuse * at_i.diffuse) +
-            soft_value(b.soft, wo, wi, at_o.soft, at_i.soft) * soft_cover(b, at_o, at_i) +
-            b.glass_again * (at_o.glass * at_i.glass)) *
-           (cos_i * inv_pi_f);
+    Rgb sum = b.diffuse * (at_o.diffuse * at_i.diffuse) + soft_value(b.soft, at_o.soft, at_i.soft);
+    if (b.cover.has_lobe()) sum += sheen(b, wo, wi, at_o, at_i);
+    return (sum + b.glass_again * (at_o.glass * at_i.glass)) * (cos_i * inv_pi_f);
   }
   if (b.glass_through.is_black()) return Rgb{0};
   const float far = far_glass_gain(b, -cos_i);
@@ -157,9 +157,7 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
     v = b.clear.share > 0 ? glossy_below(b, wo, wi, std::min(g.coat_gloss, coat_pass(b, wi)))
                           : glossy(b, wo, wi);
     v.pdf *= choice.glossy;
-    if (b.cover.share > 0)
-      v.f_cos *= std::min(b.cover.pass(CosineCoordinate(wo.z)),
-                          b.cover.pass(CosineCoordinate(std::abs(wi.z))));
+    if (b.cover.share > 0) v.f_cos *= sheen_pass(b, wo.z, wi.z);
   }
   if (b.clear.has_rough_lobe()) {
     const BsdfValue coat = clear_lobe(b.clear, wo, wi);
@@ -173,7 +171,7 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
   return v;
 }
 
-// pass: what a sheen above leaves; above: what the mirror of a clear coat adds.
+// pass: what a sheen leaves of a mirror; above: what the mirror of a clear coat adds.
 bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass, float above,
                    float u_side, BsdfSample& out) {
   Split s = facet_split(b, std::min(wo.z, 1.0f));
@@ -186,7 +184,7 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass,
     return !out.weight.is_black();
   }
   out.is_transmission = true;
-  out.weight = s.transmitted * (pass / (probability * (1 - share)));
+  out.weight = s.transmitted * (1 / (probability * (1 - share)));
   if (b.is_thin) {
     out.wi = -wo;
   } else {
@@ -194,6 +192,7 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass,
     out.eta = b.eta;
     out.weight *= 1 / (b.eta * b.eta);
   }
+  if (b.cover.share > 0) out.weight *= sheen_pass(b, wo.z, out.wi.z);
   return out.wi.z < 0 && !out.weight.is_black();
 }
 
@@ -314,7 +313,8 @@ bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2&
 Rgb straight_transmittance(const Bsdf& b, float cos_o) {
   if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
   if (!b.has_transmission) return mirrored_reflectance(b, cos_o);
-  return facet_split(b, std::min(cos_o, 1.0f)).transmitted;
+  const Rgb below = facet_split(b, std::min(cos_o, 1.0f)).transmitted;
+  return b.cover.share > 0 ? below * sheen_pass(b, cos_o, -cos_o) : below;
 }
 
 Rgb mirrored_reflectance(const Bsdf& b, float cos_o) {

@@ -25,8 +25,10 @@
 // outside
 //   or both sides of a sheet: bsdf/coated_glass.h.
 // - Sheen lies over everything else, which keeps p = 1 - its albedo × the largest of its colours:
-//   gloss the smaller p of both directions, as KHR_materials_sheen has it, the diffuse lobe their
-//   product, over its mean, so that a white one reflects what is left.
+//   gloss the smaller p of both directions, as KHR_materials_sheen has it, the diffuse lobe and
+//   what is lost between microfacets their product, over its mean, so that white ones reflect what
+//   is left. Solid glass has it outside, sheets on both sides; what it takes of light that leaves
+//   glass is lost.
 // - coated_diffuse: dielectric coat over a Lambertian base with all inter-reflections below the
 //   coat: f = T(wo) T(wi) rho / (pi eta² (1 - rho F)), T = 1 - E, E the coat's directional albedo,
 //   F = 1 - (1 - E_avg) / eta² its mean reflectance from below [2]. A white base reflects all.
@@ -63,6 +65,7 @@
 #include "base/warp.h"
 #include "bsdf/clear_coat.h"
 #include "bsdf/ggx_grained.h"
+#include "bsdf/sheen.h"
 #include "bsdf/soft_lobe.h"
 #include "bsdf/tables.h"
 #include "bsdf/thin_film.h"
@@ -98,12 +101,13 @@ struct Bsdf {
   float glass_weight = 0;  // share of the surface that is glass
   float glass_scale = 1;
   Rgb absorbed;               // of a sheet: Material::absorption
+  Rgb reflected_share{1};     // factor on all that conductor, coat or glass reflects
   bool is_absorbing = false;  // what goes through comes into a body that absorbs, or out of one
 
   ThinFilm film;  // Fresnel::schlick and glass
 
   SoftLobe soft;
-  SheenCover cover;  // over all lobes but the soft one
+  SheenCover cover;  // over all of these
   ClearCoat clear;   // over all of them
 
   // Separable lobes: colour × g(wo) g(wi) / pi, each g = 1 - a directional albedo.

@@ -26,6 +26,12 @@ inline bool is_sheet(const Inputs& in) {
   return in.material.is_thin || std::abs(in.prepared.ior - 1) < index_matched;
 }
 
+// The table of rough solid glass under a film, where it has both and there is one.
+inline const FilmGlassTable* film_glass_of(const Bsdf& b, const Inputs& in) {
+  const bool has_one = b.film.share > 0 && !b.is_thin && in.prepared.film_glass >= 0;
+  return has_one ? &in.tables.film_glass(in.prepared.film_glass) : nullptr;
+}
+
 // A lobe's missing mean energy under which compensation is left out: rounding outweighs it.
 constexpr float negligible = 1e-5f;
 

@@ -113,8 +113,16 @@ void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
     const GlassTables& glass = in.tables.glass(in.prepared.glass);
     b.near = (in.is_front ? glass.outside : glass.inside).row(b.alpha);
     b.far = (in.is_front ? glass.inside : glass.outside).row(b.alpha);
+    if (const FilmGlassTable* film = film_glass_of(b, in)) {
+      b.near = (in.is_front ? film->outside : film->inside).row();
+      b.far = (in.is_front ? film->inside : film->outside).row();
+    }
   }
   add_glass_compensation(b, in, tint);
+}
+
+void set_reflected_share(Bsdf& b, const Inputs& in) {
+  b.reflected_share = safe01(evaluate(in.textures, in.material.specular_color, in.uv));
 }
 
 void set_conductor(Bsdf& b, const Inputs& in) {
@@ -130,11 +138,13 @@ void set_conductor(Bsdf& b, const Inputs& in) {
   } else {
     b.f0 = safe_index(in.material.eta);
     b.f90 = safe_index(in.material.k);
+    set_reflected_share(b, in);
+    average *= b.reflected_share;
   }
   if (b.clear.share > 0) {  // as seen from within the coat
     b.f0 *= 1 / b.clear.bend;
     b.f90 *= 1 / b.clear.bend;
-    average = safe01(metal_mean(b.f0, b.f90));
+    average = safe01(metal_mean(b.f0, b.f90)) * b.reflected_share;
   }
   add_metal_compensation(b, in, average, 1);
 }
@@ -145,13 +155,16 @@ void set_dielectric(Bsdf& b, const Inputs& in) {
   set_roughness(b, in);
   // Nothing bends or scatters at an interface between equal indices.
   b.is_smooth |= std::abs(in.prepared.ior - 1) < index_matched;
+  set_reflected_share(b, in);
   add_glass(b, in, 1, Rgb{1}, in.base());
+  b.glass_reflect = b.reflected_share;  // the rest is lost, not let through
 }
 
 void set_coated_diffuse(Bsdf& b, const Inputs& in) {
   set_clear_coat(b, in);
   set_roughness(b, in);
   const float ior = in.prepared.ior;
+  set_reflected_share(b, in);
   b.fresnel = Bsdf::Fresnel::coat;
   b.eta = ior;
   float average = in.prepared.dielectric_average;
@@ -189,11 +202,8 @@ float hull_below_film(const Bsdf& b, float f0, float f90) {
 void set_film(Bsdf& b, const Inputs& in, Rgb metal_f0, float metal, Rgb coat_f0, float coat) {
   const Material& m = in.material;
   if (!(m.iridescence.value > 0)) return;
-  b.film.share = in.value(m.iridescence);
-  b.film.ior = std::clamp(m.film_ior, 1.0f, 10.0f);
-  b.film.thickness_nm =
-      std::max(lerp(m.film_thinnest_nm, m.film_thickest_nm, in.value(m.film_thickness)), 0.0f);
-  b.film.table = &in.tables.interference();
+  b.film =
+      film_of(m, in.value(m.iridescence), in.value(m.film_thickness), in.tables.interference());
   b.film.metal_f0 = metal_f0;
   b.film.coat_f0 = coat_f0;
   b.film.metal = metal;
@@ -210,18 +220,13 @@ Rgb metal_average(const Bsdf& b, Rgb f0) {
   return plain + (sum - plain) * b.film.share;
 }
 
-// Over what is set already but for the diffuse lobe.
+// Before all that lies under it.
 void cover_with_sheen(Bsdf& b, const Inputs& in) {
   const Rgb color = safe01(evaluate(in.textures, in.material.sheen_color, in.uv));
   const float alpha = std::max(sqr(in.value(in.material.sheen_roughness)), least_sheen_alpha);
   if (color.is_black()) return;
-  b.soft = {};
-  b.soft.kind = SoftLobe::Kind::sheen;
-  b.soft.colour = color;
-  b.soft.alpha = alpha;
-  b.soft.glossy = in.tables.sheen().row(alpha);
-  b.cover = {max_component(color), b.soft.glossy};
-  b.has_separable = true;
+  b.cover = {max_component(color), !b.is_within, in.tables.sheen().row(alpha), color, alpha};
+  b.has_separable |= b.cover.is_shown;
 }
 
 void set_metallic_roughness(Bsdf& b, const Inputs& in) {
@@ -236,9 +241,10 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   const float r0 = m.ior == 0 ? 1.0f : normal_reflectance(in.prepared.ior);
   const Rgb coat_f0 = safe01(tint * r0) * specular;
 
-  const bool is_covered = has_sheen(m) && glass == 0;
+  const bool is_covered = has_sheen(m);
   b.is_within = glass > 0 && !in.is_front && !is_sheet(in);
   set_clear_coat(b, in);
+  if (is_covered) cover_with_sheen(b, in);
   const Passing passes = passing(in);
   if (metallic == 0 && glass == 0 && specular == 0 && !is_covered && !(b.clear.share > 0)) {
     b.through = passes.through;
@@ -261,7 +267,6 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
       average = b.coat_f0 * (b.one.average - b.grazing.average) + b.coat_f90 * b.grazing.average;
     }
     b.diffuse_mean = 1 - average;
-    if (is_covered) cover_with_sheen(b, in);
     if (is_covered || b.clear.share > 0) b.diffuse_mean = mean_coat_gain(b);
     if (b.diffuse_mean > negligible) {
       b.diffuse = base * ((1 - passes.share) * opaque / b.diffuse_mean);

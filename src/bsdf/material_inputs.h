@@ -44,6 +44,17 @@ inline bool has_clear_coat(const Material& m) {
   return m.coat.value > 0 && m.kind != MaterialKind::diffuse;
 }
 
+// The film of given share, so far from the thinnest to the thickest; but for what lies below.
+inline ThinFilm film_of(const Material& m, float share, float thickness,
+                        const InterferenceTable& table) {
+  ThinFilm film;
+  film.share = share;
+  film.ior = std::clamp(m.film_ior, 1.0f, 10.0f);
+  film.thickness_nm = std::max(lerp(m.film_thinnest_nm, m.film_thickest_nm, thickness), 0.0f);
+  film.table = &table;
+  return film;
+}
+
 // The clear coat of given share and roughness, but for its table and normal. That over a conductor
 // is a layer over all of it.
 inline ClearCoat clear_coat_of(const Material& m, float share, float roughness, float ior) {

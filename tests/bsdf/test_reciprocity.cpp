@@ -57,8 +57,20 @@ TEST_CASE("scattering is reciprocal") {
       {"coat over thin glass", clear_coated(glass(0.3f, 1.5f, true), 0.1f)},
       {"half a coat over glTF mixed", clear_coated(mixed, 0.2f, 0.5f)},
       {"coat over glTF thin", clear_coated(thin, 0.2f)},
+      {"sheen over metal", sheened(gltf(0.5f, 1, {0.3f, 0.7f, 0.9f}), 0.6f)},
+      {"sheen over half metal", sheened(gltf(0.5f, 0.5f), 0.6f, {0.9f, 0.3f, 0.5f})},
+      {"sheen over brushed metal", sheened(brushed(gltf(0.3f, 1), 0.8f), 0.6f)},
+      {"sheen over glass", sheened(gltf(0.4f, 0, Rgb{1}, 1), 0.6f, {0.9f, 0.3f, 0.5f})},
+      {"sheen over glTF thin", sheened(thin, 0.6f)},
+      {"coat over sheen over glass", clear_coated(sheened(mixed, 0.6f), 0.2f)},
+      {"tinted copper", tinted(0.3f)},
+      {"glass that reflects less", reflecting(glass(0.5f), {0.9f, 0.5f, 0})},
+      {"coat that reflects less", reflecting(coated(0.3f, Rgb{0.8f}), {0.9f, 0.5f, 0})},
+      {"coat over tinted copper", clear_coated(tinted(0.3f), 0.2f)},
       {"film", filmed(gltf(0.4f, 0.4f, {0.3f, 0.7f, 0.9f}), 450)},
       {"film over glass", filmed(gltf(0.3f, 0, Rgb{1}, 1), 450)},
+      {"film over very rough glass", filmed(gltf(0.9f, 0, {0.9f, 0.6f, 0.8f}, 1), 400, 1.8f)},
+      {"coat over film over glass", clear_coated(filmed(gltf(0.7f, 0, Rgb{1}, 1), 450), 0.2f)},
   };
   Random random(1);
   int compared = 0;

@@ -133,6 +133,17 @@ TEST_CASE("samples follow the density") {
       {"coat over thin glass", clear_coated(glass(0.3f, 1.5f, true), 0.2f)},
       {"coat over glTF mixed", clear_coated(mixed, 0.2f, 0.7f)},
       {"coat over glTF mixed thin", clear_coated(mixed_thin, 0.2f)},
+      {"film over glass", filmed(gltf(0.5f, 0, Rgb{1}, 1), 450)},
+      {"coat over film over glass", clear_coated(filmed(gltf(0.5f, 0, Rgb{1}, 1), 450), 0.2f)},
+      {"sheen over metal", sheened(gltf(0.5f, 1, {0.3f, 0.7f, 0.9f}), 0.6f)},
+      {"sheen over smooth metal", sheened(gltf(0, 1), 0.6f)},
+      {"sheen over glass", sheened(gltf(0.4f, 0, Rgb{1}, 1), 0.6f, {0.9f, 0.3f, 0.5f})},
+      {"sheen over smooth glass", sheened(gltf(0, 0, Rgb{1}, 1), 0.6f)},
+      {"sheen over glTF mixed thin", sheened(mixed_thin, 0.6f)},
+      {"coat over sheen over glass", clear_coated(sheened(mixed, 0.6f), 0.2f)},
+      {"glass that reflects less", reflecting(glass(0.5f), {0.9f, 0.5f, 0})},
+      {"coat that reflects less", reflecting(coated(0.3f, Rgb{0.8f}), {0.9f, 0.5f, 0})},
+      {"tinted copper", tinted(0.3f)},
       {"film", filmed(gltf(0.3f, 0.5f, {0.3f, 0.7f, 0.9f}), 450)},
   };
   const float cosines[] = {0.05f, 0.4f, 0.95f};
