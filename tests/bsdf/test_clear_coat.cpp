@@ -129,6 +129,28 @@ TEST_CASE("lossless glass under a clear coat sends everything on, from both side
   MESSAGE("lossless glass under a clear coat: ", least, " to ", most);
 }
 
+TEST_CASE("light that comes through evenly meets the coat on both sides") {
+  for (const float coat : {0.0f, 0.3f}) {
+    Material paper = clear_coated(gltf(0.4f, 0), coat, 0.8f);
+    paper.diffuse_transmission.value = 0.6f;
+    const Specimens s{{"paper", paper}};
+    for (const float c : {0.1f, 0.5f, 1.0f}) {
+      const Bsdf b = s.at(0);
+      const double e =
+          scattered(b, direction(c)).total() + scattered(through_part(b), direction(c)).total();
+      CHECK(e == doctest::Approx(1).epsilon(0.01));
+      for (const float other : {0.2f, 0.8f}) {
+        const float there =
+            evaluate(through_part(s.at(0, true)), direction(c), direction(other)).g / other;
+        const float back =
+            evaluate(through_part(s.at(0, false)), direction(other), direction(c)).g / c;
+        CHECK(double(there) == doctest::Approx(double(back)).epsilon(1e-4));
+        CHECK(there > 0.05f);
+      }
+    }
+  }
+}
+
 // What a face sends on of light that comes straight on, from outside and from within.
 TEST_CASE("a sheet under coats is two faces under coats") {
   const Specimens s{{"face", clear_coated(glass(0), 0)},

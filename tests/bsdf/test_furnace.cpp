@@ -238,6 +238,53 @@ TEST_CASE("no surface makes energy, and the estimated albedo is close") {
   }
 }
 
+TEST_CASE("no surface makes energy under any layers, from either side") {
+  Random random(6);
+  const auto u = [&] { return random.next_float(); };
+  const auto share = [&] { return u() < 0.3f ? 0.0f : u() < 0.5f ? 1.0f : u(); };
+  std::vector<Material> materials(600);
+  for (Material& m : materials) {
+    m.kind = u() < 0.7f ? MaterialKind::metallic_roughness : MaterialKind(random.next_u32() % 5);
+    m.roughness.value = u() < 0.2f ? 0.0f : u() * u();
+    m.base_color.value = u() < 0.5f ? Rgb{1} : Rgb{u(), u(), u()};
+    m.metallic.value = u() < 0.5f ? 0.0f : u();
+    m.specular_color.value = u() < 0.5f ? Rgb{1} : Rgb{2 * u(), 2 * u(), 2 * u()};
+    m.transmission.value = share();
+    m.ior = 1.0f + 0.3f * float(random.next_u32() % 6);
+    m.is_thin = u() < 0.4f;
+    if (u() < 0.3f) m.absorption = {u(), 3 * u(), 0};
+    if (u() < 0.3f) m.diffuse_transmission.value = share();
+    m.coat.value = share();
+    m.coat_roughness.value = u() < 0.3f ? 0.0f : u();
+    m.coat_ior = 1.1f + 0.3f * float(random.next_u32() % 4);
+    if (u() < 0.4f) m.sheen_color.value = {u(), u(), 1};
+    m.sheen_roughness.value = u();
+    if (u() < 0.3f) m.iridescence.value = share();
+    m.film_ior = 1 + 0.4f * u();
+    m.film_thickest_nm = 900 * u();
+    if (u() < 0.2f) m.anisotropy.value = 0.5f * u();
+  }
+  const Specimens s(materials);
+  double most = 0;
+  for (size_t i = 0; i < s.size(); ++i)
+    for (const bool is_front : {true, false}) {
+      const Material& m = materials[i];
+      const float c = 0.02f + 0.98f * u();
+      const Bsdf b = s.at(i, is_front);
+      const double through =
+          b.through.is_black() ? 0 : scattered(through_part(b), direction(c), 1u << 11).total();
+      const double e = scattered(b, direction(c), 1u << 12).total() + through;
+      INFO("kind ", int(m.kind), " roughness ", m.roughness.value, " cosine ", c, " ior ", m.ior,
+           " transmission ", m.transmission.value, " thin ", m.is_thin, " front ", is_front,
+           " coat ", m.coat.value, " ", m.coat_roughness.value, " film ", m.iridescence.value,
+           " sheen ", m.sheen_color.value.g, " metallic ", m.metallic.value, " grain ",
+           m.anisotropy.value);
+      CHECK(e <= (m.iridescence.value > 0 || m.anisotropy.value > 0 ? 1.03 : 1.007));
+      most = std::max(most, e);
+    }
+  MESSAGE("under any layers at most ", most);
+}
+
 TEST_CASE("without specular a glTF dielectric is Lambertian") {
   Material m = gltf(0.3f, 0, {0.2f, 0.5f, 0.8f});
   m.specular.value = 0;
