@@ -60,8 +60,8 @@ PageTexel SentLight::base(const BakedSurfaces& surfaces, const Atlas& atlas,
     set(mesh.uvs_2, place.uv_2, place.axis_2a, place.axis_2b);
     place.position = (in_world.position(a) + in_world.position(b) + in_world.position(c)) / 3.0f;
     const bool is_metal = m.kind == MaterialKind::conductor && !m.is_reflectance;
-    const Rgb base =
-        is_metal ? reflectance_of_metal(m) : evaluate(scene_.textures, m.base_color, place);
+    const Rgb base = evaluate(scene_.textures, is_metal ? m.specular_color : m.base_color, place) *
+                     (is_metal ? reflectance_of_metal(m) : Rgb{1});
     const float there = m.is_alpha_masked ? coverage(scene_.textures, m, place) : 1.0f;
     color += clamp01(base) * float(weight);
     alpha += double(there) * weight;

@@ -147,6 +147,31 @@ void build_albedo_tables(GgxTables& ggx, std::vector<CoatTable>& coats,
   }
 }
 
+std::array<Rgb, table_cosines> glass_albedos(float alpha, float eta, bool is_inside,
+                                             const ReflectanceCurve& curve) {
+  std::array<Rgb, table_cosines> out;
+  Facets f;
+  for (size_t k = 0; k < table_cosines; ++k) {
+    const float t = float(k) / float(table_cosines - 1);
+    set_visible_facets(f, std::max(sqr(sqr(t)), 1e-6f), alpha);
+    Rgb sum{0};
+    for (size_t i = 0; i < facet_count; ++i) {
+      const float c = f.cos_o[i], cos_t = refracted_cosine(c, eta);
+      if (cos_t < 0) {
+        sum += Rgb{f.reflect[i]};
+        continue;
+      }
+      const float x = std::sqrt(is_inside ? cos_t : c) * float(curve.size() - 1);
+      const size_t at = std::min(size_t(x), curve.size() - 2);
+      const Rgb r = curve[at] + (curve[at + 1] - curve[at]) * (x - float(at));
+      const float z = (cos_t - c / eta) * f.normal_z[i] + f.view_z / eta;  // below the surface
+      sum += r * f.reflect[i] + (Rgb{1} - r) * (f.weight[i] * f.masking(z));
+    }
+    out[k] = sum;
+  }
+  return out;
+}
+
 float fresnel_dielectric_average(float eta) {
   return hemisphere_average([eta](float c) { return fresnel_dielectric(c, eta); });
 }

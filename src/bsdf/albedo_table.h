@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/rgb.h"
 #include "base/vec.h"
 
 namespace troffer {
@@ -91,6 +92,15 @@ struct CoatTable {
 // `ior` set. All single scattering: what a table lacks to 1 is lost behind other microfacets.
 void build_albedo_tables(GgxTables& ggx, std::vector<CoatTable>& coats,
                          std::vector<GlassTables>& glasses);
+
+// A reflectance at even steps of the square root of the cosine, from 0 to 1.
+using ReflectanceCurve = std::array<Rgb, 512>;
+
+// Per cosine of the tables what glass of relative index eta reflects and refracts together at one
+// alpha where its facets reflect by a curve in place of Fresnel's formula: by the cosine outside,
+// be the light there or (is_inside) within, beside total reflection.
+std::array<Rgb, table_cosines> glass_albedos(float alpha, float eta, bool is_inside,
+                                             const ReflectanceCurve& curve);
 
 // Cosine-weighted mean of fresnel_dielectric over the hemisphere, and of plate_reflectance.
 float fresnel_dielectric_average(float eta);

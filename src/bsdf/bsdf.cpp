@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bsdf/choice.h"
+#include "bsdf/coated_glass.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/gains.h"
 #include "bsdf/ggx.h"
@@ -50,29 +51,29 @@ float bound_of(const Bsdf& b, const Vec3& wo) {
   return b.has_transmission ? 1.0f : ggx_bound(wo, b.alpha);
 }
 
-// What a clear coat leaves of a soft lobe, where that is not in its gains.
-float soft_cover(const Bsdf& b, const Gains& at_o, const Gains& at_i) {
-  return is_lost_light(b.soft) ? 1.0f : std::min(at_o.coat, at_i.coat);
+// pi f of a sheen, below a clear coat.
+Rgb sheen(const Bsdf& b, const Vec3& wo, const Vec3& wi, const Gains& at_o, const Gains& at_i) {
+  return b.cover.colour * (pi_f * sheen_value(wo, wi, b.cover.alpha)) *
+         std::min(at_o.coat, at_i.coat);
 }
 
-// The soft lobe and the cosine-shaped ones at wi; cos_i > 0 on the viewer's side.
+// Sheen, the soft lobe and the cosine-shaped ones at wi; cos_i > 0 on the viewer's side.
 Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) {
   const float cos_i = wi.z;
   if (cos_i > 0) {
     const Gains at_i = gains_at(b, wi);
-    return (b.diffuse * (at_o.diffuse * at_i.diffuse) +
-            soft_value(b.soft, wo, wi, at_o.soft, at_i.soft) * soft_cover(b, at_o, at_i) +
-            b.glass_again * (at_o.glass * at_i.glass)) *
-           (cos_i * inv_pi_f);
+    Rgb sum = b.diffuse * (at_o.diffuse * at_i.diffuse) + soft_value(b.soft, at_o.soft, at_i.soft);
+    if (b.cover.has_lobe()) sum += sheen(b, wo, wi, at_o, at_i);
+    return (sum + b.glass_again * (at_o.glass * at_i.glass)) * (cos_i * inv_pi_f);
   }
   if (b.glass_through.is_black()) return Rgb{0};
-  const float far = missing(b.far, CosineCoordinate(-cos_i));
+  const float far = far_glass_gain(b, -cos_i);
   const float radiance_scale = b.is_thin ? 1.0f : 1 / (b.eta * b.eta);
   return b.glass_through * (at_o.glass * far * -cos_i * inv_pi_f * radiance_scale);
 }
 
 // Glossy reflection, or transmission through a thin sheet with wi mirrored to the viewer's side.
-// pass: of a clear coat, the smaller of both directions.
+// pass: what a clear coat lets through of gloss; glass has its own.
 BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is_transmission,
                           float pass = 1) {
   const Vec3 h = wo + wi;
@@ -81,12 +82,16 @@ BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is
   const Vec3 m = h * (1 / std::sqrt(len2));
   const float c = std::min(dot(wo, m), 1.0f);
   if (!(c > 0)) return {};
-  Split s = split_at(b, c);
-  if (b.clear.share > 0) s.reflected *= b.clear.kept(pass, s.reflected);
+  Split s = facet_split(b, c);
+  const float reflected = s.reflection_share();
+  if (is_coated_glass(b))
+    s = coated_split(b, c, is_transmission ? pass : reflected_pass(b, wo, wi, m, c));
+  else if (b.clear.share > 0)
+    s.reflected *= b.clear.kept(pass, s.reflected);
   if (b.is_grained)  // reflects alone
     return {s.reflected * (ggx_distribution(m, b.widths) * ggx_visibility(wo, wi, b.widths) * wi.z),
             ggx_pdf_reflected(wo, m, b.widths, ggx_bound(wo, b.widths))};
-  const float share = is_transmission ? 1 - s.reflection_share() : s.reflection_share();
+  const float share = is_transmission ? 1 - reflected : reflected;
   const float f = ggx_distribution(m, b.alpha) * ggx_visibility(wo.z, wi.z, b.alpha) * wi.z;
   return {(is_transmission ? s.transmitted : s.reflected) * f,
           share * ggx_pdf_reflected(wo, m, b.alpha, bound_of(b, wo))};
@@ -100,19 +105,29 @@ BsdfValue glossy_refracted(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
   h *= std::copysign(1 / std::sqrt(len2), h.z);
   const float co = std::min(dot(wo, h), 1.0f), ci = dot(wi, h);
   if (!(co > 0 && ci < 0)) return {};
-  const Split s = split_at(b, co);
+  Split s = facet_split(b, co);
+  const float share = 1 - s.reflection_share();
+  if (is_coated_glass(b)) s = coated_split(b, co, crossing_pass(b, wo, wi));
   const float denominator = sqr(ci + co / b.eta);
   if (!(denominator > 0)) return {};
   const float jacobian = -ci / denominator;  // normals per solid angle of wi
   // D G2 co |ci| / (wo.z |wi.z| denominator eta²) |wi.z|, with G2 = 4 wo.z |wi.z| visibility
   const float f = ggx_distribution(h, b.alpha) * 4 * ggx_visibility(wo.z, -wi.z, b.alpha) * -wi.z *
                   co * jacobian / (b.eta * b.eta);
-  return {s.transmitted * f,
-          (1 - s.reflection_share()) * ggx_pdf_reflected(wo, h, b.alpha, 1) * 4 * co * jacobian};
+  return {s.transmitted * f, share * ggx_pdf_reflected(wo, h, b.alpha, 1) * 4 * co * jacobian};
+}
+
+BsdfValue glossy(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
+  if (wi.z > 0) return glossy_mirrored(b, wo, wi, false);
+  if (!b.has_transmission) return {};
+  const float pass = is_coated_glass(b) ? crossing_pass(b, wo, wi) : 1.0f;
+  return b.is_thin ? glossy_mirrored(b, wo, {wi.x, wi.y, -wi.z}, true, pass)
+                   : glossy_refracted(b, wo, wi);
 }
 
 // Below a clear coat.
 BsdfValue glossy_below(const Bsdf& b, const Vec3& wo, const Vec3& wi, float pass) {
+  if (b.has_transmission) return glossy(b, wo, wi);
   if (!(wi.z > 0)) return {};
   if (!(b.clear.bend > 1)) return glossy_mirrored(b, wo, wi, false, pass);
   const Vec3 in = b.clear.below(wi);
@@ -121,13 +136,6 @@ BsdfValue glossy_below(const Bsdf& b, const Vec3& wo, const Vec3& wi, float pass
   v.f_cos *= squeeze;
   v.pdf *= squeeze;
   return v;
-}
-
-BsdfValue glossy(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
-  if (wi.z > 0) return glossy_mirrored(b, wo, wi, false);
-  if (!b.has_transmission) return {};
-  return b.is_thin ? glossy_mirrored(b, wo, {wi.x, wi.y, -wi.z}, true)
-                   : glossy_refracted(b, wo, wi);
 }
 
 // The rough reflection of the clear coat itself.
@@ -149,9 +157,7 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
     v = b.clear.share > 0 ? glossy_below(b, wo, wi, std::min(g.coat_gloss, coat_pass(b, wi)))
                           : glossy(b, wo, wi);
     v.pdf *= choice.glossy;
-    if (b.cover.share > 0)
-      v.f_cos *= std::min(b.cover.pass(CosineCoordinate(wo.z)),
-                          b.cover.pass(CosineCoordinate(std::abs(wi.z))));
+    if (b.cover.share > 0) v.f_cos *= sheen_pass(b, wo.z, wi.z);
   }
   if (b.clear.has_rough_lobe()) {
     const BsdfValue coat = clear_lobe(b.clear, wo, wi);
@@ -165,18 +171,11 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
   return v;
 }
 
-// Direction of refraction at a normal m that wo sees at cosine c; false on total reflection.
-bool refract(const Vec3& wo, const Vec3& m, float c, float eta, Vec3& wi) {
-  const float cos_t = refracted_cosine(c, eta);
-  if (cos_t < 0) return false;
-  wi = normalize(m * (c / eta - cos_t) - wo * (1 / eta));
-  return true;
-}
-
-// pass: what a sheen above leaves.
-bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass, float u_side,
-                   BsdfSample& out) {
-  const Split s = split_at(b, std::min(wo.z, 1.0f));
+// pass: what a sheen leaves of a mirror; above: what the mirror of a clear coat adds.
+bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass, float above,
+                   float u_side, BsdfSample& out) {
+  Split s = facet_split(b, std::min(wo.z, 1.0f));
+  if (above > 0) s.reflected += Rgb{above / std::max(pass, 1e-6f)};
   const float share = s.reflection_share();
   out.is_delta = true;
   if (u_side < share) {
@@ -185,7 +184,7 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass,
     return !out.weight.is_black();
   }
   out.is_transmission = true;
-  out.weight = s.transmitted * (pass / (probability * (1 - share)));
+  out.weight = s.transmitted * (1 / (probability * (1 - share)));
   if (b.is_thin) {
     out.wi = -wo;
   } else {
@@ -193,20 +192,27 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass,
     out.eta = b.eta;
     out.weight *= 1 / (b.eta * b.eta);
   }
+  if (b.cover.share > 0) out.weight *= sheen_pass(b, wo.z, out.wi.z);
   return out.wi.z < 0 && !out.weight.is_black();
 }
 
 // What gloss that is a mirror reflects at a cosine, below whatever covers it.
 Rgb mirror_below(const Bsdf& b, const Gains& g, float c) {
+  if (is_coated_glass(b)) return facet_split(b, c).reflected * g.pass;
   const float in = b.clear.share > 0 ? b.clear.cosine_below(c) : c;
   const Rgb r = split_at(b, in).reflected;
   return r * b.clear.kept(g.coat_gloss, r) * g.pass;
 }
 
-// The mirror of a clear coat, or that below it; both at once where they send light the same way.
+// Whether the mirror of a clear coat and that below it send light the same way.
+bool are_one_mirror(const Bsdf& b) {
+  return b.clear.has_mirror() && b.is_smooth && !b.clear.has_normal;
+}
+
+// The mirror of a clear coat, or that below it; both at once where they are one. Not below glass's.
 bool sample_mirrors(const Bsdf& b, const Vec3& wo, const Gains& g, const Choice& choice,
                     bool is_clear, BsdfSample& out) {
-  const bool are_one = b.clear.has_mirror() && b.is_smooth && !b.clear.has_normal;
+  const bool are_one = are_one_mirror(b);
   const bool has_own_way = is_clear && b.clear.has_normal;
   const Vec3 o = has_own_way ? b.clear.to_own(wo) : wo, i{-o.x, -o.y, o.z};
   if (!(o.z > 0)) return false;
@@ -238,7 +244,7 @@ bool sample_rough(const Bsdf& b, const Vec3& viewer, float u_side, const Vec2& u
                               : ggx_sample_visible_normal(wo, u, b.alpha, bound_of(b, wo));
   const float c = std::min(dot(wo, m), 1.0f);
   if (!(c > 0)) return false;
-  const bool is_reflection = !b.has_transmission || u_side < split_at(b, c).reflection_share();
+  const bool is_reflection = !b.has_transmission || u_side < facet_split(b, c).reflection_share();
   if (is_reflection || b.is_thin) {
     wi = normalize(m * (2 * c) - wo);
     if (!(wi.z > 0)) return false;
@@ -279,12 +285,14 @@ bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2&
     const bool is_clear = u_lobe < choice.clear;
     const float u_side = std::min((u_lobe - choice.clear) / choice.glossy, one_minus_epsilon);
     if (is_clear ? b.clear.is_smooth : b.is_smooth) {
-      if (b.clear.share > 0) {
+      if (b.has_transmission && are_one_mirror(b))
+        return sample_smooth(b, wo, specular, g.pass, 1 - g.coat, u_lobe / specular, out);
+      if (b.clear.share > 0 && (is_clear || !b.has_transmission)) {
         const bool is_any = sample_mirrors(b, wo, g, choice, is_clear, out);
         if (b.is_grained) out.wi = from_grain(b, out.wi);
         return is_any;
       }
-      return sample_smooth(b, wo, choice.glossy, g.pass, u_side, out);
+      return sample_smooth(b, wo, choice.glossy, g.pass, 0, u_side, out);
     }
     if (!(is_clear ? sample_clear_rough(b, wo, u, out.wi) : sample_rough(b, wo, u_side, u, out.wi)))
       return false;
@@ -305,7 +313,8 @@ bool sample_general(const Bsdf& b, const Vec3& viewer, float u_lobe, const Vec2&
 Rgb straight_transmittance(const Bsdf& b, float cos_o) {
   if (!b.is_pane || !(cos_o > 0)) return Rgb{0};
   if (!b.has_transmission) return mirrored_reflectance(b, cos_o);
-  return split_at(b, std::min(cos_o, 1.0f)).transmitted;
+  const Rgb below = facet_split(b, std::min(cos_o, 1.0f)).transmitted;
+  return b.cover.share > 0 ? below * sheen_pass(b, cos_o, -cos_o) : below;
 }
 
 Rgb mirrored_reflectance(const Bsdf& b, float cos_o) {

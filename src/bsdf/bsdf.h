@@ -21,10 +21,14 @@
 // - A thin film over glTF's gloss gives it the film's reflectance in place of Schlick's and of
 //   glass's own (bsdf/thin_film.h), for the share of the surface that wears it. What that leaves
 //   for a diffuse base is taken from a Schlick curve that nowhere lies below it.
-// - A clear coat lies over everything else, sheen too: bsdf/clear_coat.h.
+// - A clear coat lies over everything else, sheen too: bsdf/clear_coat.h; of glass, over its
+// outside
+//   or both sides of a sheet: bsdf/coated_glass.h.
 // - Sheen lies over everything else, which keeps p = 1 - its albedo × the largest of its colours:
-//   gloss the smaller p of both directions, as KHR_materials_sheen has it, the diffuse lobe their
-//   product, over its mean, so that a white one reflects what is left.
+//   gloss the smaller p of both directions, as KHR_materials_sheen has it, the diffuse lobe and
+//   what is lost between microfacets their product, over its mean, so that white ones reflect what
+//   is left. Solid glass has it outside, sheets on both sides; what it takes of light that leaves
+//   glass is lost.
 // - coated_diffuse: dielectric coat over a Lambertian base with all inter-reflections below the
 //   coat: f = T(wo) T(wi) rho / (pi eta² (1 - rho F)), T = 1 - E, E the coat's directional albedo,
 //   F = 1 - (1 - E_avg) / eta² its mean reflectance from below [2]. A white base reflects all.
@@ -61,6 +65,7 @@
 #include "base/warp.h"
 #include "bsdf/clear_coat.h"
 #include "bsdf/ggx_grained.h"
+#include "bsdf/sheen.h"
 #include "bsdf/soft_lobe.h"
 #include "bsdf/tables.h"
 #include "bsdf/thin_film.h"
@@ -80,6 +85,7 @@ struct Bsdf {
   bool is_thin = false;        // transmission goes straight on
   bool is_pane = false;        // is_pane(material)
   bool has_transmission = false;
+  bool is_within = false;      // solid glass seen from inside: what covers it lies on the far side
   bool has_separable = false;  // the soft lobe, or any of the cosine-shaped ones below
 
   bool is_grained = false;  // the glossy lobe has `widths`, else alpha all around
@@ -95,13 +101,14 @@ struct Bsdf {
   float glass_weight = 0;  // share of the surface that is glass
   float glass_scale = 1;
   Rgb absorbed;               // of a sheet: Material::absorption
+  Rgb reflected_share{1};     // factor on all that conductor, coat or glass reflects
   bool is_absorbing = false;  // what goes through comes into a body that absorbs, or out of one
 
   ThinFilm film;  // Fresnel::schlick and glass
 
   SoftLobe soft;
-  SheenCover cover;  // over all lobes but the soft one
-  ClearCoat clear;   // over all of them, not where it transmits
+  SheenCover cover;  // over all of these
+  ClearCoat clear;   // over all of them
 
   // Separable lobes: colour × g(wo) g(wi) / pi, each g = 1 - a directional albedo.
   Rgb diffuse;                     // g of the coat, or 1
@@ -198,13 +205,17 @@ float coat_share(const Bsdf& bsdf, float cos_i);
 
 // What a pane lets through straight on, seen at a cosine > 0; 0 of all else.
 Rgb straight_transmittance(const Bsdf& bsdf, float cos_o);
-// What a smooth surface, such as a pane, reflects as a mirror; 0 of all else.
+// What a smooth surface, such as a pane, reflects as a mirror, by its own normal; 0 of all else.
 Rgb mirrored_reflectance(const Bsdf& bsdf, float cos_o);
 
 // Nothing for next-event estimation to do.
 inline bool is_purely_delta(const Bsdf& bsdf) {
   return !bsdf.has_separable && (bsdf.fresnel == Bsdf::Fresnel::none || bsdf.is_smooth) &&
          !bsdf.clear.has_rough_lobe();
+}
+// A delta on either side at most: all that it mirrors goes one way.
+inline bool has_one_mirror(const Bsdf& bsdf) {
+  return is_purely_delta(bsdf) && !(bsdf.clear.has_mirror() && bsdf.clear.has_normal);
 }
 // Purely diffuse reflection rho / pi; rho may be null.
 inline bool is_lambertian(const Bsdf& bsdf, Rgb* rho) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bsdf/bsdf.h"
+#include "bsdf/coated_glass.h"
 #include "bsdf/gains.h"
 #include "bsdf/split.h"
 
@@ -14,18 +15,18 @@ namespace troffer {
 inline Rgb glossy_albedo(const Bsdf& b, float c) {
   if (b.fresnel == Bsdf::Fresnel::none) return Rgb{0};
   if (b.is_smooth) {
-    const Split s = split_at(b, c);
+    const Split s = facet_split(b, c);
     return s.reflected + s.transmitted;
   }
   const CosineCoordinate at(c);
-  if (b.fresnel == Bsdf::Fresnel::coat) return Rgb{b.coat_row.at(at)};
+  if (b.fresnel == Bsdf::Fresnel::coat) return b.coat_row.at(at) * b.reflected_share;
   // A film's colours at the angle of the mirror's direction stand for those of all facets.
   if (b.film.share > 0 && b.fresnel == Bsdf::Fresnel::schlick)
     return split_at(b, c).reflected * b.one.at(at);
   const float grazing = b.grazing.at(at), steep = b.one.at(at) - grazing;
   // A conductor is taken as Schlick's of the same reflectance at normal incidence.
   if (b.fresnel == Bsdf::Fresnel::conductor)
-    return fresnel_conductor(1, b.f0, b.f90) * steep + Rgb{grazing};
+    return (fresnel_conductor(1, b.f0, b.f90) * steep + Rgb{grazing}) * b.reflected_share;
   const Rgb opaque = b.f0 * steep + b.f90 * grazing;
   if (b.fresnel == Bsdf::Fresnel::schlick) return opaque;
   // Glass loses its share as a whole; how the rest divides is taken from the mirror's.
@@ -36,10 +37,12 @@ inline Rgb glossy_albedo(const Bsdf& b, float c) {
 // … through a clear coat.
 inline Rgb glossy_albedo_below(const Bsdf& b, float pass, float c) {
   if (!(b.clear.share > 0) || b.fresnel == Bsdf::Fresnel::none) return glossy_albedo(b, c) * pass;
+  // Of smooth glass it is all in there.
+  if (b.has_transmission) return b.is_smooth ? glossy_albedo(b, c) : glossy_albedo(b, c) * pass;
   const float inside = b.clear.cosine_below(c);
   const Rgb all = glossy_albedo(b, inside);
   // What of it is not held back below the coat, where that is known.
-  const bool is_known = is_lost_light(b.soft) && !b.is_smooth;
+  const bool is_known = b.soft.kind != SoftLobe::Kind::none && !b.is_smooth;
   const float out = is_known ? b.soft.glossy.at(CosineCoordinate(c)) /
                                    std::max(b.one.at(CosineCoordinate(inside)), 1e-3f)
                              : 1.0f;
@@ -57,7 +60,7 @@ inline Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
   e.glossy = glossy_albedo_below(b, g.coat, cos_o) * g.pass;
   if (!b.has_separable) return e;
   e.diffuse = b.diffuse * (g.diffuse * b.diffuse_mean);
-  e.again = soft_energy(b.soft, g.soft) * (is_lost_light(b.soft) ? 1.0f : g.coat) +
+  e.again = soft_energy(b.soft, g.soft) + b.cover.colour * g.sheen * g.coat +
             b.glass_again * (g.glass * b.near_mean);
   e.through = b.glass_through * (g.glass * b.far_mean);
   return e;

@@ -45,6 +45,11 @@ inline float plate_reflectance(float cos_i, float eta) {
 struct PlateShares {
   float reflected, transmitted;
 };
+// … of which each face reflects r of either polarisation.
+inline PlateShares absorbing_plate_of(float r, float a) {
+  const float through = (1 - r) * (1 - r) * a / std::max(1 - r * r * a * a, 1e-6f);
+  return {r + r * a * through, through};
+}
 inline PlateShares absorbing_plate(float cos_i, float eta, float a) {
   const float c = std::max(cos_i, 1e-9f);
   const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (eta * eta)));

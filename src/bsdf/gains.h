@@ -9,9 +9,9 @@ namespace troffer {
 // The g of each separable lobe at a direction on the viewer's side.
 struct Gains {
   float diffuse = 1, soft = 0, glass = 0;
-  // What a sheen and a clear coat leave for what lies below them: in `diffuse` already, and in
-  // `soft` where it is lost light.
+  // What a sheen and a clear coat leave for what lies below them, in the three above already.
   float pass = 1, coat = 1;
+  float sheen = 0;       // albedo of a white sheen
   float coat_gloss = 1;  // what a clear coat leaves of gloss
 };
 
@@ -43,23 +43,49 @@ inline Gains gains_at(const Bsdf& b, const Vec3& w) {
     }
   }
   g.soft = soft_gain(b.soft, direction);
-  g.pass = b.cover.pass(at);
-  g.diffuse *= g.pass;
-  if (b.clear.share > 0) {
+  if (b.glass_weight > 0) g.glass = missing(b.near, at);
+  if (b.cover.share > 0 && !b.is_within) {
+    g.pass = b.cover.pass(at);
+    g.diffuse *= g.pass;
+    g.soft *= g.pass;
+    g.glass *= g.pass;
+    if (b.cover.is_shown) g.sheen = b.cover.white.at(at);
+  }
+  if (b.clear.share > 0 && !b.is_within) {
     const float coat = b.clear.pass(cosine);
     g.diffuse *= coat;
+    g.glass *= coat;
     const float own = b.clear.has_normal ? dot(w, b.clear.normal) : cosine;
     g.coat = b.clear.has_normal ? b.clear.pass(own) : coat;
     g.coat_gloss = b.clear.gloss_pass(own);
-    if (is_lost_light(b.soft)) g.soft *= g.coat;
+    g.soft *= g.coat;
   }
-  if (b.glass_weight > 0) g.glass = missing(b.near, at);
   return g;
+}
+
+// Whether what covers glass lies on its far side (too).
+inline bool is_worn_beyond(const Bsdf& b) {
+  return b.is_thin || b.is_within;
+}
+
+// The g of glass for a direction on the far side whose cosine there is so much.
+inline float far_glass_gain(const Bsdf& b, float cosine) {
+  const CosineCoordinate at(cosine);
+  const float lost = missing(b.far, at);
+  return is_worn_beyond(b) ? lost * b.cover.pass(at) * b.clear.pass(cosine) : lost;
+}
+
+// What a sheen leaves of gloss between two directions: the smaller pass of both, where it is worn.
+inline float sheen_pass(const Bsdf& b, float cos_o, float cos_i) {
+  const auto pass = [&b](float c) { return b.cover.pass(CosineCoordinate(std::abs(c))); };
+  const float near = b.is_within ? 1.0f : pass(cos_o);
+  if (cos_i > 0) return b.is_within ? 1.0f : std::min(near, pass(cos_i));
+  return is_worn_beyond(b) ? std::min(near, pass(cos_i)) : near;
 }
 
 // The same, not worked out where nothing asks for it.
 inline Gains gains_of(const Bsdf& b, const Vec3& w) {
-  return b.has_separable || b.clear.share > 0 ? gains_at(b, w) : Gains{};
+  return b.has_separable || b.clear.share > 0 || b.cover.share > 0 ? gains_at(b, w) : Gains{};
 }
 
 }  // namespace troffer

@@ -1,28 +1,15 @@
 // From material data to a Bsdf.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "bsdf/bsdf.h"
+#include "bsdf/bsdf_inputs.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/gains.h"
-#include "bsdf/material_inputs.h"
 
 namespace troffer {
 
 namespace {
-
-struct Inputs {
-  const BsdfTables& tables;
-  const std::vector<Texture>& textures;
-  const Material& material;
-  const PreparedMaterial& prepared;
-  const TexturePlace& uv;
-  bool is_front;
-
-  float value(const FloatInput& in) const { return safe01(evaluate(textures, in, uv)); }
-  Rgb base() const { return safe01(evaluate(textures, material.base_color, uv)); }
-};
 
 void set_lambertian(Bsdf& b, Rgb rho) {
   b.is_lambertian = b.has_separable = true;
@@ -84,29 +71,12 @@ void set_clear_coat(Bsdf& b, const Inputs& in) {
   b.clear =
       clear_coat_of(m, in.value(m.coat), in.value(m.coat_roughness), in.prepared.clear_coat_ior);
   in.tables.set_rows(b.clear, in.prepared);
+  b.clear.is_shown = !b.is_within;
   if (!has_own_coat_normal(m)) return;
   // Told in the frame of the front; that of the back has the same x axis.
   const Vec2 n = in.is_front ? in.uv.coat_normal : Vec2{-in.uv.coat_normal.x, in.uv.coat_normal.y};
   b.clear.has_normal = true;
   b.clear.normal = {n.x, n.y, std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y))};
-}
-
-// A lobe's missing mean energy under which compensation is left out: rounding outweighs it.
-constexpr float negligible = 1e-5f;
-
-// 2 ∫ f c dc by Gauss's rule in the fourth root t of the cosine, where tables are smooth: 8 ∫ f t⁷
-// dt.
-template <class F>
-float hemisphere_mean(const F& f) {
-  constexpr std::array<float, 4> node{0.1834346f, 0.5255324f, 0.7966665f, 0.9602899f},
-      weight{0.3626838f, 0.3137066f, 0.2223810f, 0.1012285f};
-  float sum = 0;
-  for (size_t i = 0; i < node.size(); ++i)
-    for (const float side : {-1.0f, 1.0f}) {
-      const float t = 0.5f + 0.5f * side * node[i], t2 = t * t, c = t2 * t2;
-      sum += weight[i] * 4 * f(c) * t2 * t2 * t2 * t;
-    }
-  return sum;
 }
 
 // The mean that diffuse lobes divide by.
@@ -121,53 +91,6 @@ Rgb metal_mean(Rgb eta, Rgb k) {
   return mean;
 }
 
-// Multiple scattering between conducting microfacets of mean reflectance f [1]: the geometric
-// series of reflections after the second, f² E / (1 - f (1 - E)). `weight` is the metal's share.
-void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight) {
-  if (b.is_smooth || weight == 0) return;
-  const bool is_clear = b.clear.share > 0;
-  const GrainTable* grain = (b.is_grained || is_clear) && in.prepared.grain >= 0
-                                ? &in.tables.grain(in.prepared.grain)
-                                : nullptr;
-  if ((b.is_grained || (is_clear && b.clear.bend > 1)) && grain == nullptr) return;
-  const float escape = grain ? grain->even_row().average : b.one.average, stay = 1 - escape;
-  if (stay < negligible) return;
-  const Rgb colour = f * f * (weight * escape / stay) / (Rgb{1} - f * stay);
-  if (colour.is_black()) return;
-  b.soft.kind = b.is_grained ? SoftLobe::Kind::lost_grained_light : SoftLobe::Kind::lost_light;
-  b.soft.colour = colour;
-  b.soft.mean = stay;
-  b.soft.glossy = grain ? grain->even_row() : b.one;
-  if (grain) b.soft.twice = grain->twice_row();
-  b.has_separable = true;
-  if (!is_clear) return;
-  b.soft.mean = hemisphere_mean([&b](float c) { return gains_at(b, {0, 0, c}).soft; });
-  b.soft.colour *= stay / b.soft.mean;
-}
-
-// Glass's lost energy leaves on both sides. Shares transmitted from the near and the far side must
-// satisfy t_near M_near = t_far M_far eta² for reciprocity (M: mean missing energy); mean Fresnel
-// transmittances do so where M_near = M_far, so the geometric mean corrects them.
-void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint) {
-  // A film's reflectance is not that of the tables: what is lost stays lost.
-  if (b.is_smooth || (b.film.share > 0 && !b.is_thin)) return;
-  b.near_mean = 1 - b.near.average;
-  b.far_mean = 1 - b.far.average;
-  if (b.near_mean < negligible || b.far_mean < negligible) return;
-  float through = 1 - in.prepared.plate_average;
-  if (!b.is_thin) {
-    const float ior = in.prepared.ior, from_outside = 1 - in.prepared.dielectric_average;
-    const float from_inside = from_outside / (ior * ior);
-    const float ratio = std::sqrt(b.far_mean / b.near_mean);
-    const float near = (in.is_front ? from_outside : from_inside) * ratio;
-    const float far = (in.is_front ? from_inside : from_outside) / ratio;
-    through = near / std::max(1.0f, std::max(near, far));
-  }
-  b.glass_again = Rgb{b.glass_weight * (1 - through) / b.near_mean};
-  b.glass_through = tint * (b.glass_weight * through / b.far_mean);
-  b.has_separable = true;
-}
-
 // A share `weight` of the surface becomes glass that reflects F × scale and transmits tint × the
 // rest.
 void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
@@ -178,7 +101,7 @@ void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
   b.glass_scale = max_component(scale);
   b.glass_transmit = tint * weight;
   const float ior = in.prepared.ior;
-  b.is_thin = in.material.is_thin || std::abs(ior - 1) < index_matched;
+  b.is_thin = is_sheet(in);
   if (in.material.is_thin)
     b.absorbed = safe_depth(in.material.absorption);
   else
@@ -190,8 +113,16 @@ void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
     const GlassTables& glass = in.tables.glass(in.prepared.glass);
     b.near = (in.is_front ? glass.outside : glass.inside).row(b.alpha);
     b.far = (in.is_front ? glass.inside : glass.outside).row(b.alpha);
+    if (const FilmGlassTable* film = film_glass_of(b, in)) {
+      b.near = (in.is_front ? film->outside : film->inside).row();
+      b.far = (in.is_front ? film->inside : film->outside).row();
+    }
   }
   add_glass_compensation(b, in, tint);
+}
+
+void set_reflected_share(Bsdf& b, const Inputs& in) {
+  b.reflected_share = safe01(evaluate(in.textures, in.material.specular_color, in.uv));
 }
 
 void set_conductor(Bsdf& b, const Inputs& in) {
@@ -207,26 +138,33 @@ void set_conductor(Bsdf& b, const Inputs& in) {
   } else {
     b.f0 = safe_index(in.material.eta);
     b.f90 = safe_index(in.material.k);
+    set_reflected_share(b, in);
+    average *= b.reflected_share;
   }
   if (b.clear.share > 0) {  // as seen from within the coat
     b.f0 *= 1 / b.clear.bend;
     b.f90 *= 1 / b.clear.bend;
-    average = safe01(metal_mean(b.f0, b.f90));
+    average = safe01(metal_mean(b.f0, b.f90)) * b.reflected_share;
   }
   add_metal_compensation(b, in, average, 1);
 }
 
 void set_dielectric(Bsdf& b, const Inputs& in) {
+  b.is_within = !in.is_front && !is_sheet(in);
+  set_clear_coat(b, in);
   set_roughness(b, in);
   // Nothing bends or scatters at an interface between equal indices.
   b.is_smooth |= std::abs(in.prepared.ior - 1) < index_matched;
+  set_reflected_share(b, in);
   add_glass(b, in, 1, Rgb{1}, in.base());
+  b.glass_reflect = b.reflected_share;  // the rest is lost, not let through
 }
 
 void set_coated_diffuse(Bsdf& b, const Inputs& in) {
   set_clear_coat(b, in);
   set_roughness(b, in);
   const float ior = in.prepared.ior;
+  set_reflected_share(b, in);
   b.fresnel = Bsdf::Fresnel::coat;
   b.eta = ior;
   float average = in.prepared.dielectric_average;
@@ -264,11 +202,8 @@ float hull_below_film(const Bsdf& b, float f0, float f90) {
 void set_film(Bsdf& b, const Inputs& in, Rgb metal_f0, float metal, Rgb coat_f0, float coat) {
   const Material& m = in.material;
   if (!(m.iridescence.value > 0)) return;
-  b.film.share = in.value(m.iridescence);
-  b.film.ior = std::clamp(m.film_ior, 1.0f, 10.0f);
-  b.film.thickness_nm =
-      std::max(lerp(m.film_thinnest_nm, m.film_thickest_nm, in.value(m.film_thickness)), 0.0f);
-  b.film.table = &in.tables.interference();
+  b.film =
+      film_of(m, in.value(m.iridescence), in.value(m.film_thickness), in.tables.interference());
   b.film.metal_f0 = metal_f0;
   b.film.coat_f0 = coat_f0;
   b.film.metal = metal;
@@ -285,18 +220,13 @@ Rgb metal_average(const Bsdf& b, Rgb f0) {
   return plain + (sum - plain) * b.film.share;
 }
 
-// Over what is set already but for the diffuse lobe.
+// Before all that lies under it.
 void cover_with_sheen(Bsdf& b, const Inputs& in) {
   const Rgb color = safe01(evaluate(in.textures, in.material.sheen_color, in.uv));
   const float alpha = std::max(sqr(in.value(in.material.sheen_roughness)), least_sheen_alpha);
   if (color.is_black()) return;
-  b.soft = {};
-  b.soft.kind = SoftLobe::Kind::sheen;
-  b.soft.colour = color;
-  b.soft.alpha = alpha;
-  b.soft.glossy = in.tables.sheen().row(alpha);
-  b.cover = {max_component(color), b.soft.glossy};
-  b.has_separable = true;
+  b.cover = {max_component(color), !b.is_within, in.tables.sheen().row(alpha), color, alpha};
+  b.has_separable |= b.cover.is_shown;
 }
 
 void set_metallic_roughness(Bsdf& b, const Inputs& in) {
@@ -311,8 +241,10 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
   const float r0 = m.ior == 0 ? 1.0f : normal_reflectance(in.prepared.ior);
   const Rgb coat_f0 = safe01(tint * r0) * specular;
 
-  const bool is_covered = has_sheen(m) && glass == 0;
-  if (glass == 0) set_clear_coat(b, in);
+  const bool is_covered = has_sheen(m);
+  b.is_within = glass > 0 && !in.is_front && !is_sheet(in);
+  set_clear_coat(b, in);
+  if (is_covered) cover_with_sheen(b, in);
   const Passing passes = passing(in);
   if (metallic == 0 && glass == 0 && specular == 0 && !is_covered && !(b.clear.share > 0)) {
     b.through = passes.through;
@@ -335,7 +267,6 @@ void set_metallic_roughness(Bsdf& b, const Inputs& in) {
       average = b.coat_f0 * (b.one.average - b.grazing.average) + b.coat_f90 * b.grazing.average;
     }
     b.diffuse_mean = 1 - average;
-    if (is_covered) cover_with_sheen(b, in);
     if (is_covered || b.clear.share > 0) b.diffuse_mean = mean_coat_gain(b);
     if (b.diffuse_mean > negligible) {
       b.diffuse = base * ((1 - passes.share) * opaque / b.diffuse_mean);

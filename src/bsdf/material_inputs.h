@@ -40,11 +40,19 @@ inline GgxWidths widths_of(float alpha, float strength) {
   return {alpha + (1 - alpha) * sqr(strength), std::max(alpha, smooth_alpha)};
 }
 
-// Over what does not transmit.
 inline bool has_clear_coat(const Material& m) {
-  return m.coat.value > 0 &&
-         (m.kind == MaterialKind::metallic_roughness || m.kind == MaterialKind::conductor ||
-          m.kind == MaterialKind::coated_diffuse);
+  return m.coat.value > 0 && m.kind != MaterialKind::diffuse;
+}
+
+// The film of given share, so far from the thinnest to the thickest; but for what lies below.
+inline ThinFilm film_of(const Material& m, float share, float thickness,
+                        const InterferenceTable& table) {
+  ThinFilm film;
+  film.share = share;
+  film.ior = std::clamp(m.film_ior, 1.0f, 10.0f);
+  film.thickness_nm = std::max(lerp(m.film_thinnest_nm, m.film_thickest_nm, thickness), 0.0f);
+  film.table = &table;
+  return film;
 }
 
 // The clear coat of given share and roughness, but for its table and normal. That over a conductor

@@ -10,7 +10,7 @@ Bsdf diffuse_part(const Bsdf& b) {
   d.fresnel = Bsdf::Fresnel::none;
   d.has_transmission = d.is_smooth = false;
   d.soft = {};
-  d.clear.is_shown = false;
+  d.clear.is_shown = d.cover.is_shown = false;
   d.glass_again = d.glass_through = Rgb{0};
   d.glass_weight = 0;
   d.has_separable = !d.diffuse.is_black();
@@ -31,8 +31,8 @@ Bsdf specular_part(const Bsdf& b) {
   s.is_lambertian = false;
   s.coat = Bsdf::Coat::none;
   s.diffuse = Rgb{0};
-  s.has_separable = s.soft.kind != SoftLobe::Kind::none || !s.glass_again.is_black() ||
-                    !s.glass_through.is_black();
+  s.has_separable = s.soft.kind != SoftLobe::Kind::none || s.cover.has_lobe() ||
+                    !s.glass_again.is_black() || !s.glass_through.is_black();
   return s;
 }
 

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rgb.h"
 #include "base/units.h"
 #include "base/vec.h"
+#include "bsdf/albedo_table.h"
 
 namespace troffer {
 
@@ -44,5 +46,20 @@ inline float sheen_value(const Vec3& o, const Vec3& i, float alpha) {
   const float shadowing = 1 + sheen_lambda(o.z, alpha) + sheen_lambda(i.z, alpha);
   return sheen_distribution(s, alpha) * std::min(1 / (shadowing * 4 * o.z * i.z), 1.0f);
 }
+
+// A sheen over all that a Bsdf does, of which it leaves 1 - its albedo: that of its strongest
+// colour, as the extension has it. Solid glass wears it outside, a sheet of glass on both sides.
+struct SheenCover {
+  float share = 0;       // the strongest of its colours; 0: there is none
+  bool is_shown = true;  // its own lobe counts, beside what it takes
+  AlbedoRow white;       // its albedo where it is white
+  Rgb colour;
+  float alpha = 1;
+
+  bool has_lobe() const { return share > 0 && is_shown; }
+  float pass(const CosineCoordinate& cosine) const {
+    return share > 0 ? std::max(0.0f, 1 - share * white.at(cosine)) : 1.0f;
+  }
+};
 
 }  // namespace troffer

@@ -19,14 +19,24 @@ struct Split {
   }
 };
 
+// A thin film over glass that reflects r without it; the same from inside at the angle over there.
+inline Rgb glass_or_film(const Bsdf& b, float c, float r) {
+  const bool is_inside = !b.is_thin && b.eta < 1;
+  const Rgb f0{normal_reflectance(b.eta)};
+  const Rgb filmed = film_reflectance(b.film, f0, is_inside ? refracted_cosine(c, b.eta) : c);
+  return Rgb{r} + (filmed - Rgb{r}) * b.film.share;
+}
+
 // Through an absorbing sheet the way is longer the more it leans. Where reflection is scaled, what
 // is not reflected goes through.
 inline Split absorbing_sheet(const Bsdf& b, float c) {
   const float way = 1 / std::max(refracted_cosine(c, b.eta), 1e-4f);
+  const Rgb face = b.film.share > 0 ? glass_or_film(b, c, fresnel_dielectric(c, b.eta)) : Rgb{0};
   Split s;
   for (size_t i = 0; i < 3; ++i) {
     const float a = std::exp(-b.absorbed[i] * way);
-    const PlateShares p = absorbing_plate(c, b.eta, a);
+    const PlateShares p =
+        b.film.share > 0 ? absorbing_plate_of(face[i], a) : absorbing_plate(c, b.eta, a);
     s.reflected[i] = b.glass_reflect[i] * p.reflected;
     s.transmitted[i] =
         b.glass_transmit[i] * (p.transmitted + (1 - b.glass_scale) * a * p.reflected);
@@ -44,28 +54,20 @@ inline Rgb schlick_or_film(const Bsdf& b, float c) {
   return plain + (filmed - plain) * b.film.share;
 }
 
-// A thin film over glass that reflects r without it; the same from inside at the angle over there.
-inline Rgb glass_or_film(const Bsdf& b, float c, float r) {
-  const bool is_inside = !b.is_thin && b.eta < 1;
-  const Rgb f0{normal_reflectance(b.eta)};
-  const Rgb filmed = film_reflectance(b.film, f0, is_inside ? refracted_cosine(c, b.eta) : c);
-  return Rgb{r} + (filmed - Rgb{r}) * b.film.share;
-}
-
 inline Split split_at(const Bsdf& b, float c) {
   switch (b.fresnel) {
     case Bsdf::Fresnel::none:
       break;
     case Bsdf::Fresnel::conductor:
-      return {fresnel_conductor(c, b.f0, b.f90), Rgb{0}};
+      return {fresnel_conductor(c, b.f0, b.f90) * b.reflected_share, Rgb{0}};
     case Bsdf::Fresnel::schlick:
       return {schlick_or_film(b, c), Rgb{0}};
     case Bsdf::Fresnel::coat:
-      return {Rgb{fresnel_dielectric(c, b.eta)}, Rgb{0}};
+      return {fresnel_dielectric(c, b.eta) * b.reflected_share, Rgb{0}};
     case Bsdf::Fresnel::glass: {
       const Rgb opaque = schlick_or_film(b, c);
       const float plain = fresnel_dielectric(c, b.eta);
-      if (plain >= 1) return {opaque + Rgb{b.glass_weight}, Rgb{0}};
+      if (plain >= 1) return {opaque + b.glass_weight * b.reflected_share, Rgb{0}};
       if (b.is_thin && !b.absorbed.is_black()) {
         const Split s = absorbing_sheet(b, c);
         return {opaque + s.reflected, s.transmitted};

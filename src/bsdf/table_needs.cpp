@@ -53,6 +53,12 @@ TableNeeds table_needs(const Material& m, float clear_ior) {
   n.has_glass = is_glass && is_rough && !m.is_thin;
   n.has_sheen = has_sheen(m);
   n.has_film = m.kind == MaterialKind::metallic_roughness && m.iridescence.value > 0;
+  const bool is_film_even =
+      m.iridescence.texture < 0 && m.film_thickness.texture < 0 && m.roughness.texture < 0;
+  if (n.has_film && n.has_glass && is_film_even) {
+    const float alpha = alpha_of(safe01(m.roughness.value), m.roughness_meaning);
+    if (alpha >= smooth_alpha) n.filmed_alpha = alpha;
+  }
   const bool is_metal = m.kind == MaterialKind::conductor ||
                         (m.kind == MaterialKind::metallic_roughness && m.metallic.value > 0);
   const bool is_even = m.anisotropy.texture < 0 && m.roughness.texture < 0;

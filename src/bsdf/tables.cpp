@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bsdf/fresnel.h"
+#include "bsdf/material_inputs.h"
 
 namespace troffer {
 
@@ -81,6 +82,7 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
   if (needs_sheen) build_sheen_table(sheen_);
   if (needs_film) interference_ = make_interference_table();
   build_grain_tables(materials);
+  build_film_glass_tables(materials);
   for (size_t i = 0; i < reflectances; ++i)
     reflectance_average_[i] =
         fresnel_conductor_average(1, k_from_reflectance(float(i) / float(reflectances - 1)));
@@ -101,6 +103,26 @@ void BsdfTables::build_grain_tables(const std::vector<Material>& materials) {
     ClearCoat& over = needs.over_grain;
     set_rows(over, p);
     p.grain = grain_for(grains_, needs.grain, over, max_iors);
+  }
+}
+
+void BsdfTables::build_film_glass_tables(const std::vector<Material>& materials) {
+  for (size_t i = 0; i < materials.size(); ++i) {
+    const Material& m = materials[i];
+    PreparedMaterial& p = materials_[i];
+    const float alpha = table_needs(m, p.clear_coat_ior).filmed_alpha;
+    if (!(alpha > 0) || p.glass < 0) continue;
+    const ThinFilm film =
+        film_of(m, safe01(m.iridescence.value), safe01(m.film_thickness.value), interference_);
+    const auto found =
+        std::find_if(film_glasses_.begin(), film_glasses_.end(), [&](const FilmGlassTable& t) {
+          return t.alpha == alpha && t.ior == p.ior && t.film.share == film.share &&
+                 t.film.ior == film.ior && t.film.thickness_nm == film.thickness_nm;
+        });
+    if (found == film_glasses_.end() && film_glasses_.size() >= max_iors) continue;
+    p.film_glass = int32_t(found - film_glasses_.begin());
+    if (found == film_glasses_.end())
+      film_glasses_.push_back(make_film_glass_table(alpha, p.ior, film));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "base/rgb.h"
 #include "bsdf/albedo_table.h"
 #include "bsdf/clear_coat.h"
+#include "bsdf/film_glass_table.h"
 #include "bsdf/grain_table.h"
 #include "bsdf/thin_film.h"
 #include "scene/scene.h"
@@ -23,8 +24,9 @@ struct PreparedMaterial {
   float ior = 1.5f;               // made safe: in [1/100, 100] and finite
   int32_t coat = -1, glass = -1;  // tables for this ior, where the material can need them
   int32_t grain = -1;  // for its two widths and its clear coat, where they are the same everywhere
-  int32_t clear_inside = -1;     // … seen from below
-  int32_t clear_coat = -1;       // for the index of its clear coat, where that can be rough
+  int32_t film_glass = -1;    // rough solid glass under a film, where both are the same everywhere
+  int32_t clear_inside = -1;  // … seen from below
+  int32_t clear_coat = -1;    // for the index of its clear coat, where that can be rough
   float clear_coat_ior = 1.5f;   // made safe
   float dielectric_average = 0;  // cosine-weighted mean Fresnel reflectance from outside
   float plate_average = 0;       // … of a thin plate
@@ -39,6 +41,7 @@ struct TableNeeds {
   bool has_dielectric_average = false, has_conductor_average = false;
   bool has_sheen = false;
   bool has_film = false;
+  float filmed_alpha = 0;         // of rough solid glass under a film; 0: none, or not even
   bool has_clear_coat = false;    // tables for the index of its clear coat
   bool has_clear_inside = false;  // … seen from below
   GgxWidths grain{0, 0};          // zeros: none, or not the same everywhere
@@ -54,9 +57,9 @@ bool is_pane(const Material& material);  // table_needs.cpp
 class BsdfTables {
  public:
   // Some ten milliseconds, plus about as much per distinct index of refraction among rough
-  // dielectrics and coats and per pair of widths among grained gloss, and a tenth of a second for
-  // sheen. Past `max_iors` distinct indices of a kind the nearest one that has a table serves; past
-  // as many pairs of widths there are none.
+  // dielectrics and coats, per pair of widths among grained gloss and per film over rough glass,
+  // and a tenth of a second for sheen. Past `max_iors` distinct indices of a kind the nearest one
+  // that has a table serves; past as many pairs of widths, and films, there are none.
   explicit BsdfTables(const std::vector<Material>& materials);
   explicit BsdfTables(const Scene& scene) : BsdfTables(scene.materials) {}
 
@@ -65,6 +68,7 @@ class BsdfTables {
   const CoatTable& coat(int32_t i) const { return coats_[size_t(i)]; }
   const GlassTables& glass(int32_t i) const { return glasses_[size_t(i)]; }
   const GrainTable& grain(int32_t i) const { return grains_[size_t(i)]; }
+  const FilmGlassTable& film_glass(int32_t i) const { return film_glasses_[size_t(i)]; }
   // The rows of a clear coat, by the material's tables.
   void set_rows(ClearCoat& clear, const PreparedMaterial& material) const;
   const AlbedoTable& sheen() const { return sheen_; }
@@ -80,11 +84,13 @@ class BsdfTables {
   std::vector<CoatTable> coats_;
   std::vector<GlassTables> glasses_;
   std::vector<GrainTable> grains_;
+  std::vector<FilmGlassTable> film_glasses_;
   AlbedoTable sheen_;
   InterferenceTable interference_;
   std::array<float, reflectances> reflectance_average_{};
 
   void build_grain_tables(const std::vector<Material>& materials);
+  void build_film_glass_tables(const std::vector<Material>& materials);
 };
 
 }  // namespace troffer

@@ -71,11 +71,11 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
     out["alphaCutoff"] = m.alpha_cutoff;
   }
   Json& pbr = out["pbrMetallicRoughness"];
-  const Texture* look = image_of(scene_, m.base_color.texture);
-  const Texture* alpha = m.is_alpha_masked ? image_of(scene_, m.alpha.texture) : nullptr;
   ColorInput base = m.base_color;
   if (m.kind == MaterialKind::conductor && !m.is_reflectance)
-    base = {normal_reflectance(m), no_texture};
+    base = {normal_reflectance(m) * m.specular_color.value, m.specular_color.texture};
+  const Texture* look = image_of(scene_, base.texture);
+  const Texture* alpha = m.is_alpha_masked ? image_of(scene_, m.alpha.texture) : nullptr;
   ColorChange change;
   if (m.kind == MaterialKind::coated_diffuse)
     change = [f = mean_reflectance_inside(double(m.ior))](float v) {
@@ -189,8 +189,7 @@ void GltfMaterialWriter::add_number(const FloatInput& input, float power, const 
 }
 
 void GltfMaterialWriter::add_clear_coat(const Material& m, Json& out) {
-  if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse || m.kind == MaterialKind::dielectric)
-    return;
+  if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse) return;
   if (m.kind == MaterialKind::coated_diffuse || std::abs(m.coat_ior - 1.5f) > 0.01f)
     warnings_.add("clear coats are written as glTF's, of index 1.5");
   Json coat = Json::object();
@@ -286,17 +285,16 @@ Json GltfMaterialWriter::surface(const Material& m) {
   if (m.kind == MaterialKind::coated_diffuse)
     warnings_.add("coats over diffuse bases are written as glTF's, which differ a little");
   out["extensions"]["KHR_materials_ior"] = {{"ior", m.ior >= 1 ? m.ior : 1.5f}};
-  if (m.kind == MaterialKind::metallic_roughness) {
-    add_diffuse_transmission(m, out);
-    const bool is_plain =
-        m.specular.value == 1 && m.specular_color.value == Rgb{1} && m.specular.texture < 0;
-    if (m.specular.texture >= 0 || m.specular_color.texture >= 0)
-      warnings_.add("textures of specular reflection are written as one value");
-    if (!is_plain)
-      out["extensions"]["KHR_materials_specular"] = {
-          {"specularFactor", m.specular.value},
-          {"specularColorFactor", list(m.specular_color.value)}};
-  }
+  const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
+  if (is_mixed) add_diffuse_transmission(m, out);
+  if (!is_mixed && (m.specular_color.texture >= 0 || m.specular_color.value != Rgb{1}))
+    warnings_.add("factors on what coats and glass reflect are written as glTF's, which differ");
+  if (m.specular.texture >= 0 || m.specular_color.texture >= 0)
+    warnings_.add("textures of specular reflection are written as one value");
+  if (m.specular.value != 1 || m.specular_color.value != Rgb{1} || m.specular.texture >= 0)
+    out["extensions"]["KHR_materials_specular"] = {
+        {"specularFactor", m.specular.value},
+        {"specularColorFactor", list(m.specular_color.value)}};
   add_glass(m, out);
   return out;
 }

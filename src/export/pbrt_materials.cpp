@@ -10,6 +10,9 @@ namespace troffer {
 
 namespace {
 
+constexpr const char* coats_left_out =
+    "clear coats over anything but metal, and thin ones, are not written";
+
 std::string rgb(const char* name, Rgb c) {
   return fmt::format(" \"rgb {}\" [ {} {} {} ]", name, c.r, c.g, c.b);
 }
@@ -105,6 +108,18 @@ std::string PbrtMaterialWriter::width(const char* parameter, const FloatInput& i
   return fmt::format(" \"texture {}\" \"{}\"", parameter, name);
 }
 
+// Of a conductor; prefix: of the names of index and extinction.
+std::string PbrtMaterialWriter::metal_text(const Material& m, const std::string& prefix) {
+  if (m.is_reflectance) return color("reflectance", m.base_color);
+  if (m.specular_color.texture < 0 && m.specular_color.value == Rgb{1})
+    return rgb((prefix + "eta").c_str(), m.eta) + rgb((prefix + "k").c_str(), m.k);
+  warnings_.add("metals of an index and a factor are written by their reflectance straight on");
+  const Rgb below = m.eta - Rgb{1}, above = m.eta + Rgb{1}, k2 = m.k * m.k;
+  ColorInput factor = m.specular_color;
+  factor.value *= (below * below + k2) / (above * above + k2);
+  return color("reflectance", factor);
+}
+
 // A conductor, or glTF's metal, into whose coat light does not bend: its gloss spreads by the index
 // where it leaves pbrt's.
 std::string PbrtMaterialWriter::coated_metal_text(const Material& m) {
@@ -117,9 +132,8 @@ std::string PbrtMaterialWriter::coated_metal_text(const Material& m) {
     base.value *= std::pow(m.coat_ior, -1 / power);
     change = [&m](float v) { return reflectance_in_air(v, m.coat_ior); };
   }
-  const std::string metal = bends && !m.is_reflectance
-                                ? rgb("conductor.eta", m.eta) + rgb("conductor.k", m.k)
-                                : color("reflectance", m.base_color, change);
+  const std::string metal =
+      bends ? metal_text(m, "conductor.") : color("reflectance", m.base_color, change);
   return fmt::format("\"coatedconductor\" \"float interface.eta\" {}", m.coat_ior) + metal +
          width("conductor.roughness", base, power) +
          width("interface.roughness", m.coat_roughness, power) + " \"bool remaproughness\" false";
@@ -145,8 +159,7 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
                          : "metal, coat and glass of glTF's model are written as pbrt's, which "
                            "differ a little");
   if (metallic >= 0.5f && m.coat.value >= 0.5f) return coated_metal_text(m);
-  if (m.coat.value > 0)
-    warnings_.add("clear coats over anything but metal, and thin ones, are not written");
+  if (m.coat.value > 0) warnings_.add(coats_left_out);
   if (metallic >= 0.5f)
     return "\"conductor\"" + color("reflectance", m.base_color) + roughness(m, power);
   if (transmission >= 0.5f)
@@ -168,6 +181,9 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
 }
 
 std::string PbrtMaterialWriter::material_text(const Material& m) {
+  const bool has_factor = m.specular_color.texture >= 0 || m.specular_color.value != Rgb{1};
+  if (has_factor && (m.kind == MaterialKind::coated_diffuse || m.kind == MaterialKind::dielectric))
+    warnings_.add("factors on what coats and glass reflect are not written");
   const float power = power_for_pbrt(m.roughness_meaning);
   switch (m.kind) {
     case MaterialKind::diffuse:
@@ -178,10 +194,9 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
              color("reflectance", m.base_color) + roughness(m, power);
     case MaterialKind::conductor:
       if (m.coat.value > 0) return coated_metal_text(m);
-      if (m.is_reflectance)
-        return "\"conductor\"" + color("reflectance", m.base_color) + roughness(m, power);
-      return "\"conductor\"" + rgb("eta", m.eta) + rgb("k", m.k) + roughness(m, power);
+      return "\"conductor\"" + metal_text(m, "") + roughness(m, power);
     case MaterialKind::dielectric:
+      if (m.coat.value > 0) warnings_.add(coats_left_out);
       if (m.base_color.texture >= 0 || m.base_color.value != Rgb{1})
         warnings_.add("pbrt's glass has no tint: it is written clear");
       if (m.is_thin) return fmt::format("\"thindielectric\" \"float eta\" {}", m.ior);

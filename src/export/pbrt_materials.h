@@ -39,6 +39,7 @@ class PbrtMaterialWriter {
   std::string color(const char* parameter, const ColorInput& input, const ColorChange& change = {});
   std::string roughness(const Material& m, float power);
   std::string width(const char* parameter, const FloatInput& input, float power);
+  std::string metal_text(const Material& m, const std::string& prefix);
   std::string coated_metal_text(const Material& m);
   std::string image_texture(const BakedImage& image, const Texture* look, bool is_number);
   std::string texture_name(const std::string& key, const BakedImage& image, const Texture* look,

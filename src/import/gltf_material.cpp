@@ -152,7 +152,6 @@ class GltfMaterials::Reader {
     if (!coat) return;
     read_unit(*coat, "clearcoat", material_.coat);
     if (material_.coat.value == 0) return;
-    if (material_.transmission.value > 0) warn("a clear coat over what transmits is left out");
     read_unit(*coat, "clearcoatRoughness", material_.coat_roughness);
     material_.has_coat_normal = true;
     material_.coat_normal_texture = texture(*coat, "clearcoatNormalTexture", false);
@@ -172,8 +171,6 @@ class GltfMaterials::Reader {
     for (size_t c = 0; c < 3; ++c)
       material_.sheen_color.value[c] = float(std::clamp(color[c], 0.0, 1.0));
     if (material_.sheen_color.value.is_black()) return;
-    if (material_.metallic.value >= 1 || material_.transmission.value > 0)
-      warn("sheen over metal, or over what transmits, is left out");
     material_.sheen_roughness.value = unit_number(*sheen, "sheenRoughnessFactor", 0);
     material_.sheen_color.texture = texture(*sheen, "sheenColorTexture", true);
     material_.sheen_color.value *= stand_in_;
@@ -229,8 +226,12 @@ class GltfMaterials::Reader {
     material_.film_thickness.texture = texture(*film, "iridescenceThicknessTexture", false);
     const bool is_rough_glass = material_.transmission.value > 0 && !material_.is_thin &&
                                 material_.roughness.value > 0.032f;
-    if (is_rough_glass)
-      warn("a film over rough glass: light lost between its microfacets is left out");
+    const bool is_even = material_.iridescence.texture < 0 &&
+                         material_.film_thickness.texture < 0 && material_.roughness.texture < 0;
+    if (is_rough_glass && !is_even)
+      warn(
+          "a film over rough glass that differs from place to place: light lost between its "
+          "microfacets is left out");
   }
 
   void tell_what_is_left_out() {

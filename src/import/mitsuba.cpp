@@ -219,10 +219,7 @@ std::optional<uint32_t> MitsubaReader::material_of(const Attached& with, bool is
     material = bsdfs_.index_of(*with.bsdf);
   else if (is_emitting || !with.has_medium || !tree_.is_legacy())
     material = bsdfs_.default_index(is_emitting);
-  if (!material && is_emitting) {
-    scene_.warnings.add("a shape of bsdf \"null\" that emits is shown black");
-    material = bsdfs_.default_index(true);
-  }
+  if (!material && is_emitting) material = bsdfs_.nothing_index();
   if (!material || with.absorption.is_black()) return material;
   if (scene_.materials[*material].kind == MaterialKind::dielectric)
     return bsdfs_.with_medium(*material, with.absorption);

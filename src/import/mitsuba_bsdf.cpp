@@ -49,6 +49,20 @@ uint32_t MitsubaBsdfs::default_index(bool is_emitting) {
   return *index;
 }
 
+uint32_t MitsubaBsdfs::nothing_index() {
+  if (!nothing_) {
+    Material m;
+    m.name = "null";
+    m.kind = MaterialKind::dielectric;
+    m.base_color.value = Rgb{1};
+    m.is_thin = true;
+    m.ior = 1;
+    nothing_ = uint32_t(scene_.materials.size());
+    scene_.materials.push_back(std::move(m));
+  }
+  return *nothing_;
+}
+
 std::optional<uint32_t> MitsubaBsdfs::index_of(const MitsubaNode& given) {
   const MitsubaNode& node = tree_.resolved(given);
   const auto found = made_.find(&node);
@@ -134,14 +148,7 @@ Material MitsubaBsdfs::conductor(const MitsubaNode& node) {
   }
   m.eta = m.eta / float(outside);
   m.k = m.k / float(outside);
-  if (is_texture(scale) || scale.value != Rgb{1}) {
-    // Reflectance at normal incidence, which is then all that is known of the metal.
-    const Rgb e1 = m.eta - Rgb{1}, e2 = m.eta + Rgb{1}, k2 = m.k * m.k;
-    m.is_reflectance = true;
-    m.base_color = scale;
-    m.base_color.value *= (e1 * e1 + k2) / (e2 * e2 + k2);
-    approximate(node, "a metal with specular_reflectance by its reflectance at normal incidence");
-  }
+  m.specular_color = scale;
   return m;
 }
 
@@ -152,10 +159,8 @@ Material MitsubaBsdfs::dielectric(const MitsubaNode& node) {
   if (node.type == "roughdielectric") read_alpha(node, m);
   m.ior = float(index_of_refraction(node, "int_ior", "bk7") /
                 index_of_refraction(node, "ext_ior", "air"));
-  const ColorInput reflected = textures_.color(node, {"specular_reflectance"}, Rgb{1});
+  m.specular_color = textures_.color(node, {"specular_reflectance"}, Rgb{1});
   m.base_color = textures_.color(node, {"specular_transmittance"}, Rgb{1});
-  if (is_texture(reflected) || reflected.value != Rgb{1})
-    approximate(node, "without its specular_reflectance");
   return m;
 }
 
@@ -170,9 +175,7 @@ Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
   m.ior = float(index_of_refraction(node, "int_ior", "polypropylene") /
                 index_of_refraction(node, "ext_ior", "air"));
   m.base_color = textures_.color(node, {"diffuse_reflectance"}, Rgb{0.5f});
-  const ColorInput specular = textures_.color(node, {"specular_reflectance"}, Rgb{1});
-  if (is_texture(specular) || specular.value != Rgb{1})
-    approximate(node, "without its specular_reflectance");
+  m.specular_color = textures_.color(node, {"specular_reflectance"}, Rgb{1});
   if (!get_flag(node, "nonlinear", false) && m.ior > 1) {
     const float f = mean_reflectance_inside(double(m.ior));
     if (is_texture(m.base_color))

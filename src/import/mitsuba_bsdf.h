@@ -26,6 +26,8 @@ class MitsubaBsdfs {
   uint32_t with_medium(uint32_t material, Rgb absorption);
   // Of shapes without bsdf: grey; black where they emit.
   uint32_t default_index(bool is_emitting);
+  // Of what emits and is otherwise not there: a pane that neither reflects nor takes anything.
+  uint32_t nothing_index();
 
  private:
   Scene& scene_;
@@ -33,7 +35,7 @@ class MitsubaBsdfs {
   MitsubaTextures& textures_;
   std::map<const MitsubaNode*, std::optional<uint32_t>> made_;
   std::map<std::array<float, 4>, uint32_t> with_medium_;
-  std::optional<uint32_t> grey_, black_;
+  std::optional<uint32_t> grey_, black_, nothing_;
   int depth_ = 0;
 
   std::optional<Material> convert(const MitsubaNode& node);

@@ -14,8 +14,7 @@ namespace {
 bool can_be_coated(const Material& m) {
   return m.coat.value <= 0 &&
          (m.kind == MaterialKind::conductor || m.kind == MaterialKind::coated_diffuse ||
-          (m.kind == MaterialKind::metallic_roughness && m.transmission.texture < 0 &&
-           m.transmission.value <= 0));
+          m.kind == MaterialKind::dielectric || m.kind == MaterialKind::metallic_roughness);
 }
 
 // The second lobe of the plugin: a quarter of `clearcoat`, of an index of 1.5, between .1 and .001
@@ -47,13 +46,14 @@ float kept_evenly(float exponent, float index) {
 
 // The base darker by what the coat absorbs.
 void absorb(Material& m, Rgb exponent, float index) {
+  if (m.kind == MaterialKind::dielectric) {  // straight through, on one side or both of a sheet
+    for (size_t c = 0; c < 3; ++c)
+      m.base_color.value[c] *= std::exp(-exponent[c] * (m.is_thin ? 2.0f : 1.0f));
+    return;
+  }
   if (m.kind == MaterialKind::conductor) {  // straight on
-    if (!m.is_reflectance) {
-      const Rgb e1 = m.eta - Rgb{1}, e2 = m.eta + Rgb{1}, k2 = m.k * m.k;
-      m.is_reflectance = true;
-      m.base_color = {(e1 * e1 + k2) / (e2 * e2 + k2), no_texture};
-    }
-    for (size_t c = 0; c < 3; ++c) m.base_color.value[c] *= std::exp(-2 * exponent[c]);
+    ColorInput& factor = m.is_reflectance ? m.base_color : m.specular_color;
+    for (size_t c = 0; c < 3; ++c) factor.value[c] *= std::exp(-2 * exponent[c]);
     return;
   }
   for (size_t c = 0; c < 3; ++c) m.base_color.value[c] *= kept_evenly(exponent[c], index);
@@ -84,7 +84,7 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
     m.diffuse_transmission_color = m.base_color;
   }
   read_principled_coat(node, textures_, m);
-  std::string left_out = !is_opaque && m.coat.value > 0 ? "clearcoat" : "";
+  std::string left_out;
   const auto leave_out = [&](const char* name) {
     const MitsubaNode* p = find_parameter(node, name);
     if (!p || is_nothing(*p)) return false;
@@ -114,7 +114,7 @@ std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
   std::optional<Material> m = nested(node);
   const ColorInput absorbed = textures_.real_color(node, "sigma_a");
   const Rgb exponent = absorbed.value * float(std::max(get_number(node, "thickness", 1), 0.0));
-  find_parameter(node, "specular_reflectance");
+  const ColorInput specular = textures_.color(node, {"specular_reflectance"}, Rgb{1});
   const bool is_diffuse = m && m->kind == MaterialKind::diffuse && !m->is_alpha_masked &&
                           m->diffuse_transmission.value <= 0;
   if (!m || (!is_diffuse && !can_be_coated(*m))) {
@@ -133,9 +133,14 @@ std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
     m->kind = MaterialKind::coated_diffuse;
     if (node.type == "roughcoating") read_alpha(node, *m);
     m->ior = index;
+    m->specular_color = specular;
     return m;
   }
+  if (specular.texture >= 0 || specular.value != Rgb{1})
+    approximate(node, "without its specular_reflectance");
   m->coat.value = 1;
+  if (m->kind == MaterialKind::dielectric)
+    approximate(node, "over glass as a coat into which light goes straight on");
   if (node.type == "roughcoating") {
     Material coat;
     read_alpha(node, coat);

@@ -14,6 +14,10 @@ constexpr double negligible = 1e-6;
 
 // Darker by a factor, where one colour says how bright it is.
 bool scale_by(Material& m, double share) {
+  if (m.kind == MaterialKind::conductor && !m.is_reflectance && m.coat.value <= 0) {
+    m.specular_color.value *= float(share);
+    return true;
+  }
   const bool is_scaled =
       m.kind == MaterialKind::diffuse || (m.kind == MaterialKind::conductor && m.is_reflectance);
   if (!is_scaled) return false;

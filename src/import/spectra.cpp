@@ -55,13 +55,23 @@ struct Metal {
   std::string_view name;
   Rgb eta, k;
 };
-// Measured indices at about 630, 532 and 465 nm, as commonly tabulated per channel.
+// Measured indices at about 630, 532 and 465 nm, as commonly tabulated per channel. Chromium,
+// mercury, iridium, molybdenum, rhodium, tantalum, titanium nitride and tungsten: [4], between its
+// rows by lines.
 constexpr std::array metals{
     Metal{"Ag", {0.155265f, 0.116723f, 0.138381f}, {4.828343f, 3.122246f, 2.147050f}},
     Metal{"Al", {1.657460f, 0.880369f, 0.521229f}, {9.223869f, 6.269523f, 4.837001f}},
     Metal{"Au", {0.143119f, 0.374957f, 1.442479f}, {3.983160f, 2.385721f, 1.603215f}},
     Metal{"Cu", {0.200438f, 0.924033f, 1.102212f}, {3.912949f, 2.452848f, 2.142188f}},
     Metal{"CuZn", {0.444f, 0.527f, 1.094f}, {3.695f, 2.765f, 1.829f}},
+    Metal{"Cr", {3.557f, 2.98f, 2.126f}, {4.362f, 4.45f, 4.302f}},
+    Metal{"Hg", {1.965f, 1.461f, 1.131f}, {5.213f, 4.52f, 3.99f}},
+    Metal{"Ir", {2.522f, 2.146f, 1.87f}, {4.604f, 4.222f, 3.773f}},
+    Metal{"Mo", {3.699f, 3.727f, 3.16f}, {3.539f, 3.663f, 3.543f}},
+    Metal{"Rh", {2.145f, 1.927f, 1.816f}, {5.587f, 4.89f, 4.51f}},
+    Metal{"Ta", {1.75f, 2.598f, 2.827f}, {2.067f, 1.879f, 2.06f}},
+    Metal{"TiN", {1.344f, 1.235f, 1.402f}, {2.745f, 1.953f, 1.422f}},
+    Metal{"W", {3.632f, 3.488f, 3.317f}, {2.909f, 2.72f, 2.577f}},
     Metal{"MgO", {1.735f, 1.740f, 1.746f}, {0, 0, 0}},
     Metal{"TiO2", {2.585f, 2.669f, 2.777f}, {0, 0, 0}},
 };

@@ -4,6 +4,7 @@
 //   Matching Functions", JCGT 2(2), 2013.
 //   [2] CIE 15:2004, "Colorimetry" (chromaticities of the standard illuminants).
 //   [3] pbrt-v4 Input File Format, pbrt.org/fileformat-v4 (names of spectra).
+//   [4] Palik (ed.), "Handbook of Optical Constants of Solids", Academic Press, 1985 and 1991.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ bool may_be_thin_glass(const Material& m) {
       m.kind == MaterialKind::dielectric || (m.kind == MaterialKind::metallic_roughness &&
                                              m.transmission.value >= 1 && m.metallic.value <= 0);
   return is_glass && !m.is_thin && !m.is_alpha_masked && m.roughness.value <= 0 &&
-         m.normal_texture < 0 && !has_textured_input(m);
+         m.normal_texture < 0 && m.coat_normal_texture < 0 && !has_textured_input(m);
 }
 
 namespace {
@@ -43,8 +43,6 @@ class SheetMaterials {
     const std::pair key{solid, is_absorbing ? steps : 0};
     const auto found = made_.find(key);
     if (found != made_.end()) return found->second;
-    if (is_absorbing && scene_.materials[solid].iridescence.value > 0)
-      scene_.warnings.add("thin bodies of glass that absorbs are shown without their film");
     const auto index = uint32_t(scene_.materials.size());
     scene_.materials.push_back(sheet_of(scene_.materials[solid], float(thickness)));
     return made_[key] = index;

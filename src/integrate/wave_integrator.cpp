@@ -265,7 +265,7 @@ void WaveIntegrator::step_on(Scratch& s) const {
     if (is_whole && walk.vertex >= longest_chain) continue;
     const Vertex& v = s.wave.vertices[i];
     const Bsdf& sent = is_whole ? s.wave.bsdfs[i] : s.wave.scatterings[i].specular;
-    if (sent.is_pane && walk.vertex < most_divisions && is_purely_delta(sent)) {
+    if (sent.is_pane && walk.vertex < most_divisions && has_one_mirror(sent)) {
       Walk mirrored = walk;
       if (pass_pane(walk, v, sent)) s.next_walks.push_back(walk);
       if (mirror_at_pane(mirrored, v, sent)) s.next_walks.push_back(mirrored);

@@ -59,12 +59,13 @@ struct Material {
   // turned further by the texture's red and green as a direction.
   FloatInput anisotropy{0, no_texture, 2};
   float anisotropy_rotation_rad = 0;
-  // metallic_roughness: cloth's fibres over it (bsdf/sheen.h). Black: none.
+  // metallic_roughness: cloth's fibres over it (bsdf/sheen.h), metal and glass too. Black: none.
   ColorInput sheen_color{Rgb{0}, no_texture};
   FloatInput sheen_roughness{0, no_texture, 3};
   // A clear coat over all else (bsdf/clear_coat.h), of an index of its own: of metallic_roughness
-  // the share of the surface that wears it, its base as without it (KHR_materials_clearcoat); of a
-  // conductor a layer over all of it in which light bends; of coated_diffuse a second coat.
+  // and of dielectrics the share of the surface that wears it, its base as without it
+  // (KHR_materials_clearcoat); of a conductor a layer over all of it in which light bends; of
+  // coated_diffuse a second coat. Solid glass wears it outside, thin sheets on both sides.
   FloatInput coat{0, no_texture, 0};
   FloatInput coat_roughness{0, no_texture, 1};
   float coat_ior = 1.5f;
@@ -78,10 +79,12 @@ struct Material {
   float film_ior = 1.3f;
   FloatInput film_thickness{1, no_texture, 1};
   float film_thinnest_nm = 100, film_thickest_nm = 400;
-  float ior = 1.5f;                               // real index of refraction, inside / outside
-  FloatInput specular{1, no_texture, 3};          // KHR_materials_specular: specularFactor
-  ColorInput specular_color{Rgb{1}, no_texture};  // … specularColorFactor
-  FloatInput transmission{0, no_texture, 0};      // KHR_materials_transmission
+  float ior = 1.5f;                       // real index of refraction, inside / outside
+  FloatInput specular{1, no_texture, 3};  // KHR_materials_specular: specularFactor
+  // … specularColorFactor; of coated_diffuse, dielectrics and conductors of eta and k a factor on
+  // what they reflect as gloss, and on that alone
+  ColorInput specular_color{Rgb{1}, no_texture};
+  FloatInput transmission{0, no_texture, 0};  // KHR_materials_transmission
   // Light that comes through and leaves the other side evenly, as through paper, curtains and opal
   // glass: of diffuse ones the share `diffuse_transmission` × its colour, beside base_color; of
   // metallic_roughness so much of what is diffuse passes, in that colour, in place of base_color

@@ -95,6 +95,23 @@ inline Material cloth(float sheen_roughness, Rgb sheen, float alpha = 0.5f, Rgb 
   return m;
 }
 
+// Copper whose reflectance has a factor.
+inline Material tinted(float alpha, Rgb factor = {0.9f, 0.5f, 0.2f}) {
+  Material m = copper(alpha);
+  m.specular_color.value = factor;
+  return m;
+}
+inline Material reflecting(Material m, Rgb factor) {
+  m.specular_color.value = factor;
+  return m;
+}
+// Sheen over glTF's metal or glass.
+inline Material sheened(Material m, float sheen_roughness, Rgb sheen = Rgb{1}) {
+  m.sheen_color.value = sheen;
+  m.sheen_roughness.value = sheen_roughness;
+  return m;
+}
+
 // A clear coat over it; over a conductor one into which light bends.
 inline Material clear_coated(Material m, float coat_alpha, float share = 1, float ior = 1.5f) {
   m.coat.value = share;

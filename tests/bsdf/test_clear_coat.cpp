@@ -98,6 +98,89 @@ TEST_CASE("white gloss under a clear coat reflects everything, and never more") 
   MESSAGE("white gloss under a clear coat: ", least, " to ", most);
 }
 
+TEST_CASE("lossless glass under a clear coat sends everything on, from both sides") {
+  double least = 2, most = 0;
+  for (const float alpha : {0.0f, 0.1f, 0.3f, 1.0f})
+    for (const float coat : {0.0f, 0.1f, 1.0f}) {
+      const Specimens s{
+          {"glass", clear_coated(glass(alpha), coat)},
+          {"dense glass", clear_coated(glass(alpha, 2.5f), coat, 1, 1.3f)},
+          {"light glass", clear_coated(glass(alpha, 0.75f), coat)},
+          {"thin glass", clear_coated(glass(alpha, 1.5f, true), coat)},
+          {"matched glass", clear_coated(glass(alpha, 1), coat)},
+          {"half a coat", clear_coated(gltf(alpha, 0, Rgb{1}, 1), coat, 0.5f)},
+          {"half glass", clear_coated(gltf(alpha, 0, Rgb{1}, 0.5f), coat)},
+          {"half metal", clear_coated(gltf(alpha, 0.5f, Rgb{1}, 1, true), coat, 0.6f)}};
+      for (size_t i = 0; i < s.size(); ++i)
+        for (const bool is_front : {true, false})
+          for (const float c : {0.05f, 0.3f, 0.7f, 1.0f}) {
+            const Bsdf b = s.at(i, is_front);
+            const double e = scattered(b, direction(c), 1u << 14).total();
+            INFO(s.names[i], " alpha ", alpha, " coat ", coat, " cosine ", c, " front ", is_front,
+                 ": ", e);
+            CHECK(e < 1.007);
+            // Where a facet would refract one of two directions at the horizon, coats take it to be
+            // let out: that of a thinner body loses most.
+            CHECK(e > (s.names[i] == "light glass" ? 0.82 : 0.95));
+            least = std::min(least, e);
+            most = std::max(most, e);
+          }
+    }
+  MESSAGE("lossless glass under a clear coat: ", least, " to ", most);
+}
+
+TEST_CASE("light that comes through evenly meets the coat on both sides") {
+  for (const float coat : {0.0f, 0.3f}) {
+    Material paper = clear_coated(gltf(0.4f, 0), coat, 0.8f);
+    paper.diffuse_transmission.value = 0.6f;
+    const Specimens s{{"paper", paper}};
+    for (const float c : {0.1f, 0.5f, 1.0f}) {
+      const Bsdf b = s.at(0);
+      const double e =
+          scattered(b, direction(c)).total() + scattered(through_part(b), direction(c)).total();
+      CHECK(e == doctest::Approx(1).epsilon(0.01));
+      for (const float other : {0.2f, 0.8f}) {
+        const float there =
+            evaluate(through_part(s.at(0, true)), direction(c), direction(other)).g / other;
+        const float back =
+            evaluate(through_part(s.at(0, false)), direction(other), direction(c)).g / c;
+        CHECK(double(there) == doctest::Approx(double(back)).epsilon(1e-4));
+        CHECK(there > 0.05f);
+      }
+    }
+  }
+}
+
+// What a face sends on of light that comes straight on, from outside and from within.
+TEST_CASE("a sheet under coats is two faces under coats") {
+  const Specimens s{{"face", clear_coated(glass(0), 0)},
+                    {"sheet", clear_coated(glass(0, 1.5f, true), 0)},
+                    {"rough coats", clear_coated(glass(0, 1.5f, true), 0.2f)}};
+  const Scattered outside = scattered(s.at(0, true), direction(1), 1u << 12);
+  const Scattered within = scattered(s.at(0, false), direction(1), 1u << 12);
+  CHECK(outside.transmitted == doctest::Approx(within.transmitted).epsilon(1e-5));
+  // 4 % each: r + (1 - r)² r / (1 - r²)
+  CHECK(outside.reflected ==
+        doctest::Approx(0.04 + 0.96 * 0.96 * 0.04 / (1 - 0.0016)).epsilon(1e-4));
+  const double t = outside.transmitted, r = within.reflected;
+  const double through = t * t / (1 - r * r), back = outside.reflected + t * t * r / (1 - r * r);
+  const Bsdf sheet = s.at(1);
+  CHECK(is_purely_delta(sheet));
+  CHECK(has_one_mirror(sheet));
+  CHECK(double(straight_transmittance(sheet, 1).g) == doctest::Approx(through).epsilon(1e-4));
+  CHECK(double(mirrored_reflectance(sheet, 1).g) == doctest::Approx(back).epsilon(1e-3));
+  for (const float c : {0.1f, 0.5f, 0.9f}) {
+    const Scattered e = scattered(sheet, direction(c), 1u << 12);
+    CHECK(double(straight_transmittance(sheet, c).g) ==
+          doctest::Approx(e.transmitted).epsilon(2e-3));
+    CHECK(double(mirrored_reflectance(sheet, c).g) == doctest::Approx(e.reflected).epsilon(2e-3));
+    // Rough ones take nearly as much of what goes through, and mirror only what lies below them.
+    CHECK(double(straight_transmittance(s.at(2), c).g) ==
+          doctest::Approx(e.transmitted).epsilon(0.25));
+    CHECK(mirrored_reflectance(s.at(2), c).g < mirrored_reflectance(sheet, c).g);
+  }
+}
+
 TEST_CASE("a smooth coat over a smooth metal sums what goes to and fro between them") {
   const Specimens s{{"copper", clear_coated(copper(0), 0)}};
   for (const float c : {0.1f, 0.4f, 0.8f, 1.0f}) {

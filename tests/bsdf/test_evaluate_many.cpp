@@ -22,6 +22,9 @@ TEST_CASE("a Bsdf towards many directions at a stroke") {
       m.push_back(gltf(alpha, metallic, {0.8f, 0.5f, 0.9f}, 0, false));
   }
   m.push_back(clear_coated(gltf(0.3f, 0.4f, {0.8f, 0.5f, 0.9f}), 0.1f));
+  m.push_back(tinted(0.3f));
+  m.push_back(reflecting(coated(0.3f, Rgb{0.8f}), {0.9f, 0.5f, 0}));
+  m.push_back(sheened(gltf(0.5f, 0.7f, {0.3f, 0.7f, 0.9f}), 0.6f));
   m.push_back(filmed(gltf(0.3f, 0.4f, {0.8f, 0.5f, 0.9f}), 450));
   const Specimens s(m);
   Random random(11);

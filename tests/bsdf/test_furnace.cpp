@@ -45,6 +45,32 @@ TEST_CASE("opaque white surfaces reflect everything") {
                   4e-3, 1.1e-3, 1u << 15);
 }
 
+TEST_CASE("a factor on what glass and coats reflect leaves all else") {
+  for (const float alpha : {0.0f, 0.3f})
+    for (const bool is_front : {true, false})
+      for (const float c : {0.2f, 0.6f, 1.0f}) {
+        const Specimens s{{"glass", glass(alpha)},
+                          {"less", reflecting(glass(alpha), Rgb{0.25f})},
+                          {"pane", glass(alpha, 1.5f, true)},
+                          {"less", reflecting(glass(alpha, 1.5f, true), Rgb{0.25f})}};
+        for (const size_t i : {0, 2}) {
+          const Scattered all = scattered(s.at(i, is_front), direction(c));
+          const Scattered less = scattered(s.at(i + 1, is_front), direction(c));
+          CHECK(less.transmitted == doctest::Approx(all.transmitted).epsilon(0.01).scale(0.1));
+          CHECK(less.reflected == doctest::Approx(0.25 * all.reflected).epsilon(0.01).scale(0.1));
+        }
+        const Specimens coats{{"coat", coated(alpha, Rgb{0.6f})},
+                              {"black", coated(alpha, Rgb{0})},
+                              {"less", reflecting(coated(alpha, Rgb{0.6f}), Rgb{0.25f})}};
+        const double gloss = scattered(coats.at(1), direction(c)).total();
+        CHECK(scattered(coats.at(2), direction(c)).total() ==
+              doctest::Approx(scattered(coats.at(0), direction(c)).total() - 0.75 * gloss)
+                  .epsilon(0.01));
+        CHECK(double(albedo(coats.at(2), c).g) ==
+              doctest::Approx(scattered(coats.at(2), direction(c)).total()).epsilon(0.01));
+      }
+}
+
 // Its albedo is fitted to the first harmonic of the azimuth: the wider one way, the worse.
 TEST_CASE("white metal with a grain reflects nearly everything, from every side") {
   const auto check = [](float alpha, float anisotropy, double loss, double gain) {
@@ -84,6 +110,78 @@ TEST_CASE("cloth neither makes energy nor loses much of it, and its sheen is wha
         CHECK(std::abs(black - double(albedo(s.at(1), c).g)) < 0.03);
       }
     }
+}
+
+TEST_CASE("rough glass under a film sends everything on") {
+  double least = 2, most = 0, greenest = 0, mean_off = 0;
+  for (const float alpha : {0.05f, 0.1f, 0.3f, 0.5f, 1.0f})
+    for (const float film : {1.2f, 1.3f, 1.8f, 2.5f})
+      for (const float thickness : {100.0f, 250.0f, 400.0f, 550.0f}) {
+        const Specimens s{{"glass", filmed(gltf(alpha, 0, Rgb{1}, 1), thickness, film)}};
+        for (const bool is_front : {true, false})
+          for (const float c : {0.05f, 0.2f, 0.5f, 0.8f, 1.0f}) {
+            const Bsdf b = s.at(0, is_front);
+            Rgb sum{0};
+            constexpr uint32_t n = 1u << 12;
+            for (uint32_t i = 0; i < n; ++i) {
+              const SobolGroup u(11, 3, i);
+              BsdfSample x;
+              if (sample(b, direction(c), u.get(2), u.get2(0), x))
+                sum += x.weight * (x.eta * x.eta / float(n));
+            }
+            INFO("film ", film, " ", thickness, " nm, alpha ", alpha, " cosine ", c, " front ",
+                 is_front, ": ", sum.r, " ", sum.g, " ", sum.b);
+            // In the mean of the channels as without a film; each is so in all directions together.
+            mean_off = std::max(mean_off, std::abs(double(average(sum)) - 1));
+            CHECK(average(sum) == doctest::Approx(1).epsilon(0.01));
+            for (size_t k = 0; k < 3; ++k) {
+              CHECK(std::abs(sum[k] - 1) < (film < 1.5f ? 0.02f : 0.07f));
+              least = std::min(least, double(sum[k]));
+              most = std::max(most, double(sum[k]));
+              if (film < 1.5f) greenest = std::max(greenest, std::abs(double(sum[k]) - 1));
+            }
+          }
+      }
+  MESSAGE("rough glass under a film: ", least, " to ", most, ", of indices to 1.3 within ",
+          greenest, ", mean of channels within ", mean_off);
+}
+
+TEST_CASE("a factor on a metal's reflectance is one") {
+  for (const float alpha : {0.0f, 0.3f}) {
+    const Specimens s{{"plain", copper(alpha)}, {"tinted", tinted(alpha, Rgb{0.5f})}};
+    for (const float c : {0.1f, 0.5f, 1.0f}) {
+      const double plain = scattered(s.at(0), direction(c)).total();
+      const double half = scattered(s.at(1), direction(c)).total();
+      // What is lost between microfacets meets the metal twice and more.
+      CHECK(half <= 0.5 * plain * 1.0001);
+      CHECK(half > (alpha > 0 ? 0.45 : 0.4999) * plain);
+    }
+  }
+}
+
+TEST_CASE("white metal and lossless sheets under a sheen keep what it leaves") {
+  double least = 2, most = 0;
+  for (const float roughness : {0.1f, 0.6f, 1.0f})
+    for (const float alpha : {0.0f, 0.3f, 1.0f}) {
+      const Specimens s{{"metal", sheened(gltf(alpha, 1), roughness)},
+                        {"half metal", sheened(gltf(alpha, 0.5f), roughness)},
+                        {"sheet", sheened(gltf(alpha, 0, Rgb{1}, 1, true), roughness)},
+                        {"glass", sheened(gltf(alpha, 0, Rgb{1}, 1), roughness)}};
+      for (const float c : cosines)
+        for (size_t i = 0; i < s.size(); ++i) {
+          const double e = scattered(s.at(i), direction(c)).total();
+          INFO(s.names[i], " sheen ", roughness, " alpha ", alpha, " cosine ", c, ": ", e);
+          CHECK(e < 1.004);
+          CHECK(e > 0.9);
+          least = std::min(least, e);
+          most = std::max(most, e);
+          // From within glass what meets the sheen is lost.
+          const double within = scattered(s.at(i, false), direction(c)).total();
+          CHECK(within < 1.004);
+          CHECK(within > (i == 3 ? 0.5 : 0.9));
+        }
+    }
+  MESSAGE("white metal and sheets under a sheen: ", least, " to ", most);
 }
 
 TEST_CASE("lossless glass sends everything on") {
@@ -138,6 +236,53 @@ TEST_CASE("no surface makes energy, and the estimated albedo is close") {
     if (b.fresnel == Bsdf::Fresnel::conductor && !b.is_smooth) tolerance = 0.1;
     CHECK(std::abs(a - e) < tolerance);
   }
+}
+
+TEST_CASE("no surface makes energy under any layers, from either side") {
+  Random random(6);
+  const auto u = [&] { return random.next_float(); };
+  const auto share = [&] { return u() < 0.3f ? 0.0f : u() < 0.5f ? 1.0f : u(); };
+  std::vector<Material> materials(600);
+  for (Material& m : materials) {
+    m.kind = u() < 0.7f ? MaterialKind::metallic_roughness : MaterialKind(random.next_u32() % 5);
+    m.roughness.value = u() < 0.2f ? 0.0f : u() * u();
+    m.base_color.value = u() < 0.5f ? Rgb{1} : Rgb{u(), u(), u()};
+    m.metallic.value = u() < 0.5f ? 0.0f : u();
+    m.specular_color.value = u() < 0.5f ? Rgb{1} : Rgb{2 * u(), 2 * u(), 2 * u()};
+    m.transmission.value = share();
+    m.ior = 1.0f + 0.3f * float(random.next_u32() % 6);
+    m.is_thin = u() < 0.4f;
+    if (u() < 0.3f) m.absorption = {u(), 3 * u(), 0};
+    if (u() < 0.3f) m.diffuse_transmission.value = share();
+    m.coat.value = share();
+    m.coat_roughness.value = u() < 0.3f ? 0.0f : u();
+    m.coat_ior = 1.1f + 0.3f * float(random.next_u32() % 4);
+    if (u() < 0.4f) m.sheen_color.value = {u(), u(), 1};
+    m.sheen_roughness.value = u();
+    if (u() < 0.3f) m.iridescence.value = share();
+    m.film_ior = 1 + 0.4f * u();
+    m.film_thickest_nm = 900 * u();
+    if (u() < 0.2f) m.anisotropy.value = 0.5f * u();
+  }
+  const Specimens s(materials);
+  double most = 0;
+  for (size_t i = 0; i < s.size(); ++i)
+    for (const bool is_front : {true, false}) {
+      const Material& m = materials[i];
+      const float c = 0.02f + 0.98f * u();
+      const Bsdf b = s.at(i, is_front);
+      const double through =
+          b.through.is_black() ? 0 : scattered(through_part(b), direction(c), 1u << 11).total();
+      const double e = scattered(b, direction(c), 1u << 12).total() + through;
+      INFO("kind ", int(m.kind), " roughness ", m.roughness.value, " cosine ", c, " ior ", m.ior,
+           " transmission ", m.transmission.value, " thin ", m.is_thin, " front ", is_front,
+           " coat ", m.coat.value, " ", m.coat_roughness.value, " film ", m.iridescence.value,
+           " sheen ", m.sheen_color.value.g, " metallic ", m.metallic.value, " grain ",
+           m.anisotropy.value);
+      CHECK(e <= (m.iridescence.value > 0 || m.anisotropy.value > 0 ? 1.03 : 1.007));
+      most = std::max(most, e);
+    }
+  MESSAGE("under any layers at most ", most);
 }
 
 TEST_CASE("without specular a glTF dielectric is Lambertian") {

@@ -35,6 +35,11 @@ Specimens all_kinds() {
   m.push_back(clear_coated(cloth(0.6f, {0.9f, 0.3f, 0.5f}), 0.1f));
   m.push_back(clear_coated(coated(0.2f, {0.8f, 0.5f, 0.9f}), 0.1f));
   m.push_back(clear_coated(copper(0.2f), 0));
+  m.push_back(clear_coated(glass(0.3f), 0.1f));
+  m.push_back(clear_coated(gltf(0.3f, 0.4f, {0.8f, 0.5f, 0.9f}, 0.6f, true), 0));
+  m.push_back(tinted(0.3f));
+  m.push_back(sheened(gltf(0.5f, 0.7f, {0.3f, 0.7f, 0.9f}), 0.6f));
+  m.push_back(sheened(gltf(0.5f, 0.2f, {0.3f, 0.7f, 0.9f}, 0.6f, true), 0.6f));
   m.push_back(filmed(gltf(0.3f, 0.4f, {0.8f, 0.5f, 0.9f}), 450));
   m.push_back(cloth(0.9f, {0.1f, 1, 0.5f}, 0, {0.8f, 0.5f, 0.9f}));
   return Specimens(m);

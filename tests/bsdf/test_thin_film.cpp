@@ -101,10 +101,27 @@ TEST_CASE("surfaces under a film keep their energy, and change colour with the a
         for (const float c : {0.1f, 0.3f, 0.6f, 1.0f}) {
           const double e = scattered(s.at(i), direction(c), 1u << 12).total();
           INFO(s.names[i], " alpha ", alpha, " ", thickness, " nm, cosine ", c, ": ", e);
-          CHECK(e < 1.003);
+          CHECK(e < (i == 4 ? 1.007 : 1.003));  // glass's lost light has each colour in the mean
           CHECK(e > 0.8);
         }
     }
+  Material tinted = filmed(gltf(0, 0, Rgb{1}, 1, true), 400, 1.5f), dark = tinted;
+  tinted.absorption = Rgb{1e-6f};
+  dark.absorption = {0.1f, 1, 20};
+  const Specimens sheets{{"clear", filmed(gltf(0, 0, Rgb{1}, 1, true), 400, 1.5f)},
+                         {"nearly", tinted},
+                         {"dark", dark}};
+  for (const float c : {0.2f, 0.7f, 1.0f}) {
+    const Rgb clear = straight_transmittance(sheets.at(0), c);
+    const Rgb nearly = straight_transmittance(sheets.at(1), c);
+    for (size_t k = 0; k < 3; ++k)
+      CHECK(clear[k] == doctest::Approx(double(nearly[k])).epsilon(1e-3));
+    // The first face still has its colours where nothing comes back from the second.
+    const Rgb mirrored = mirrored_reflectance(sheets.at(2), c);
+    CHECK(straight_transmittance(sheets.at(2), c).b < 1e-6f);
+    CHECK(mirrored.b < mirrored_reflectance(sheets.at(0), c).b);
+    CHECK(mirrored.b > 0.3f * mirrored_reflectance(sheets.at(0), c).b);
+  }
   const Specimens s{{"metal", filmed(gltf(0, 1, Rgb{0.9f}), 400, 1.4f)}};
   const auto hue = [&](float c) {
     const Rgb r = mirrored_reflectance(s.at(0), c);

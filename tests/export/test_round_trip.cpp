@@ -290,13 +290,22 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   varnished.coat.value = 1;
   varnished.coat_roughness.value = 0.05f;
   varnished.coat_ior = 1.6f;
-  scene.materials = {shiny, varnished};
+  Material glazed;
+  glazed.kind = MaterialKind::dielectric;
+  glazed.coat.value = 0.5f;
+  glazed.coat_roughness.value = 0.04f;
+  Material tinted;
+  tinted.kind = MaterialKind::conductor;
+  tinted.specular_color.value = {0.5f, 1, 1};
+  scene.materials = {shiny, varnished, glazed, tinted};
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
   mesh.triangles = {{0, 1, 2}};
-  scene.meshes = {mesh, mesh};
+  scene.meshes = {mesh, mesh, mesh, mesh};
+  scene.meshes[3].material = 3;
   scene.meshes[1].material = 1;
+  scene.meshes[2].material = 2;
   const std::vector<Warning> told = export_scene(scene, folder.path("out.glb"));
   CHECK(has_warning(told, "light does not bend"));
   const Scene back = import_scene(folder.path("out.glb"));
@@ -310,6 +319,13 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   CHECK(n.film_thinnest_nm == 200);
   CHECK(n.film_thickest_nm == 700);
   CHECK(evaluate(back.textures, n.film_thickness, left) == doctest::Approx(0.2).epsilon(1e-3));
+  const Rgb metal = back.materials[back.meshes[3].material].base_color.value;
+  CHECK(metal.r == doctest::Approx(0.5 * double(metal.g)).epsilon(1e-4));
+  const Material& g = back.materials[back.meshes[2].material];
+  CHECK(g.transmission.value == 1);
+  CHECK(g.coat.value == 0.5f);
+  CHECK(g.coat_roughness.value == doctest::Approx(0.2));
+  CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "anything but metal"));
   // By pbrt the layer itself survives, and glTF's metal gets one.
   CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "into which light bends"));
   const Scene pbrt = import_scene(folder.path("out.pbrt"));
@@ -320,6 +336,9 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   CHECK(v.coat_roughness.value == 0.05f);
   CHECK(v.coat_ior == 1.6f);
   check_near(v.eta, varnished.eta, 1e-6);
+  const Material& factored = pbrt.materials[pbrt.meshes[3].material];
+  CHECK(factored.is_reflectance);
+  check_near(factored.base_color.value, metal, 1e-4);
   CHECK(pbrt.materials[pbrt.meshes[0].material].coat.value == 1);
 }
 

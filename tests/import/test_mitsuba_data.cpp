@@ -11,6 +11,7 @@
 #include "import/mitsuba.h"
 #include "import/mitsuba_serialized.h"
 #include "mutations.h"
+#include "scene_checks.h"
 #include "temp_folder.h"
 
 using namespace troffer;
@@ -155,9 +156,40 @@ TEST_CASE("combined materials") {
       "value='.8'/><float name='clearcoat_gloss' value='1'/></bsdf>");
   CHECK(m.coat.value == doctest::Approx(0.2));
   CHECK(m.coat_roughness.value == doctest::Approx(std::sqrt(0.001)));
+  const Scene varnished = import_bsdf(
+      "<bsdf type='principled'><float name='spec_trans' value='1'/><float name='clearcoat' "
+      "value='1'/></bsdf>");
+  CHECK(varnished.materials.at(0).coat.value == 0.25f);
+  CHECK_FALSE(has_warning(varnished, "without clearcoat"));
   CHECK(m.kind == MaterialKind::metallic_roughness);
   CHECK(m.metallic.value == 0.7f);
   CHECK(m.ior == doctest::Approx(1.5));
+  // A factor on what is reflected, beside the formula; known metals; what emits and is not there.
+  const Scene factors = import_bsdf(
+      "<bsdf type='conductor'><string name='material' value='Cr'/><rgb name='specular_reflectance' "
+      "value='.9,.6,.3'/></bsdf>");
+  CHECK(factors.warnings.total() == 0);
+  CHECK_FALSE(factors.materials.at(0).is_reflectance);
+  CHECK(factors.materials.at(0).specular_color.value == Rgb{0.9f, 0.6f, 0.3f});
+  CHECK(factors.materials.at(0).eta.g == 2.98f);
+  for (const std::string type : {"dielectric", "thindielectric", "plastic"}) {
+    const Scene less = import_bsdf("<bsdf type='" + type +
+                                   "'><float name='specular_reflectance' value='.5'/></bsdf>");
+    CHECK_FALSE(has_warning(less, "specular_reflectance"));
+    CHECK(less.materials.at(0).specular_color.value == Rgb{0.5f});
+  }
+  CHECK(
+      has_warning(import_bsdf("<bsdf type='conductor'><string name='material' value='Xx'/></bsdf>"),
+                  "not known"));
+  const TempFolder folder;
+  const Scene glow = import_mitsuba(folder.write(
+      "s.xml",
+      "<scene version='3.0.0'><shape type='rectangle'><bsdf type='null'/><emitter type='area'><rgb "
+      "name='radiance' value='2'/></emitter></shape></scene>"));
+  CHECK(glow.warnings.total() == 0);
+  REQUIRE(glow.lights.size() == 1);
+  CHECK(glow.materials.at(glow.meshes.at(0).material).is_thin);
+  CHECK(glow.materials[glow.meshes[0].material].ior == 1);
   m = material_of(
       "<bsdf type='roughcoating'><float name='alpha' value='.05'/><float name='int_ior' "
       "value='1.7'/><string name='distribution' value='ggx'/><bsdf type='roughconductor'>"

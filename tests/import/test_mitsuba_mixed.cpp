@@ -118,6 +118,14 @@ TEST_CASE("masks within masks, and coats that absorb") {
   CHECK(double(kept.r) < std::exp(-0.4));
   CHECK(double(kept.r) > std::exp(-0.4 * 1.35));
   CHECK(kept.b < 1e-4f);
+  const Scene glass = import_bsdf(
+      "<bsdf type='coating'><float name='int_ior' value='1.4'/><rgb name='sigma_a' value='.1'/>"
+      "<bsdf type='thindielectric'/></bsdf>");
+  CHECK(has_warning(glass, "straight on"));
+  CHECK(glass.materials.at(0).kind == MaterialKind::dielectric);
+  CHECK(glass.materials.at(0).coat.value == 1);
+  CHECK(glass.materials.at(0).coat_ior == doctest::Approx(1.4).epsilon(1e-3));
+  CHECK(double(glass.materials.at(0).base_color.value.r) == doctest::Approx(std::exp(-0.2)));
 }
 
 TEST_CASE("bumps by a texture of heights that is scaled") {

@@ -331,6 +331,14 @@ TEST_CASE("spectra in linear sRGB") {
   check_near(*named_illuminant("stdillum-D65"), Rgb(1), 2e-3f);
   CHECK_FALSE(named_illuminant("stdillum-X").has_value());
   CHECK(named_metal("metal-CuZn-k")->r == doctest::Approx(3.695));
+  // Chromium reflects two thirds, tungsten half.
+  for (const auto& [metal, reflectance] : {std::pair{"Cr", 0.67}, {"W", 0.5}}) {
+    const std::string name = std::string("metal-") + metal;
+    const Rgb n = *named_metal(name + "-eta"), k = *named_metal(name + "-k");
+    const Rgb below = n - Rgb{1}, above = n + Rgb{1};
+    const Rgb r = (below * below + k * k) / (above * above + k * k);
+    CHECK(double(average(r)) == doctest::Approx(reflectance).epsilon(0.03));
+  }
   CHECK_FALSE(named_metal("metal-Xx-k").has_value());
   CHECK(*named_glass("glass-SF11") == doctest::Approx(1.7847));
   const SampledSpectrum ramp{{400, 700}, {0, 3}};
