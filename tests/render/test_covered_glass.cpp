@@ -31,23 +31,23 @@ Material coated(Material m, float roughness) {
   return m;
 }
 
-// Light of radiance L from a square of side 1 at a height over the origin.
-double irradiance_of(double radiance, double height, const std::function<double(double)>& through) {
+// Light of radiance L from a square of side 1 at a above over the origin.
+double irradiance_of(double radiance, double above, const std::function<double(double)>& through) {
   return radiance * integrate_2d(
                         [&](double x, double y) {
-                          const double d2 = x * x + y * y + height * height;
-                          const double c = height / std::sqrt(d2);
+                          const double d2 = x * x + y * y + above * above;
+                          const double c = above / std::sqrt(d2);
                           return c * c / d2 * through(c);
                         },
                         -0.5, 0.5, -0.5, 0.5, 20);
 }
 
-uint32_t add_square(Scene& s, uint32_t material, float half, float height) {
+uint32_t add_square(Scene& s, uint32_t material, float half, float above) {
   return add_quad(s, material,
-                  {Vec3{-half, -half, height},
-                   {-half, half, height},
-                   {half, half, height},
-                   {half, -half, height}});
+                  {Vec3{-half, -half, above},
+                   {-half, half, above},
+                   {half, half, above},
+                   {half, -half, above}});
 }
 
 void check_irradiance(const Scene& given, double expected) {
