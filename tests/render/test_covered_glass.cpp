@@ -43,11 +43,9 @@ double irradiance_of(double radiance, double above, const std::function<double(d
 }
 
 uint32_t add_square(Scene& s, uint32_t material, float half, float above) {
-  return add_quad(s, material,
-                  {Vec3{-half, -half, above},
-                   {-half, half, above},
-                   {half, half, above},
-                   {half, -half, above}});
+  return add_quad(
+      s, material,
+      {Vec3{-half, -half, above}, {-half, half, above}, {half, half, above}, {half, -half, above}});
 }
 
 void check_irradiance(const Scene& given, double expected) {
