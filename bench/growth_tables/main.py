@@ -28,15 +28,19 @@ class Case:
     width: int = 256
     height: int = 256
     threads: int = 0  # 0: all cores
+    texels: int = 0  # along an edge of each body's image; 0: no images
 
 
 def cases(is_quick):
     shrink = 10 if is_quick else 1
+    texels = [128, 512, 2048]
     pixels = [(256, 256), (512, 512), (1024, 1024), (3840, 2160)]
     for n in (10_000, 30_000, 100_000, 300_000, 1_000_000):
         yield Case("triangles", f"{n:,}", n, triangles=n // shrink)
     for n in (1, 10, 100, 1000):
         yield Case("lights", f"{n:,}", n, lights=max(1, n // shrink))
+    for n in texels[:2] if is_quick else texels:
+        yield Case("textures", f"{rooms.BODIES} × {n}²", rooms.BODIES * n * n, texels=n)
     for w, h in pixels[:2] if is_quick else pixels:
         yield Case("pixels", f"{w} × {h}", w * h, width=w, height=h)
     threads, cores = 1, os.cpu_count() or 1
@@ -46,10 +50,10 @@ def cases(is_quick):
 
 
 def scene_of(case, out):
-    path = f"{out}/scenes/room-{case.triangles}-{case.lights}.pbrt"
+    path = f"{out}/scenes/room-{case.triangles}-{case.lights}-{case.texels}.pbrt"
     if not os.path.exists(path):
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        rooms.write(path, case.triangles, case.lights)
+        rooms.write(path, case.triangles, case.lights, case.texels)
     return path
 
 
@@ -87,6 +91,10 @@ EXPLANATION = {
                  "rays take over.",
     "lights": "The lights share one area and one power. Of many weak ones some are drawn, so that "
               "time levels off; few are certified one by one.",
+    "textures": "Each body wears an image of its own, 8-bit PNG of as many texels. Reading decodes "
+                "them, structures are their levels ([textures](../materials.md#textures)); they stay as "
+                "they are, four bytes a texel and a third more. What rays look up are levels as "
+                "fine as their footprints, so that the picture takes hardly longer.",
     "pixels": "Cells are made for what is seen, and do not know of pixels; gathers and viewing rays go "
               "by pixels. More pixels on one surface share gathers over more neighbours, and clusters "
               "of viewing rays come closer together, which proofs like: time grows more slowly than "

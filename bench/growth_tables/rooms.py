@@ -1,11 +1,14 @@
-"""A room of any number of triangles and lights: rooms.write(path, triangles, lights).
+"""A room of any number of triangles and lights: rooms.write(path, triangles, lights, texels).
 
 8 x 6 x 3 m; 24 bodies with bumps stand in it, which share the triangles; the lights are squares in
-a grid under the ceiling, which share 3 m2 and so the power. All else is as it is.
+a grid under the ceiling, which share 3 m2 and so the power. With texels, each body wears an image
+of its own of so many texels squared. All else is as it is.
 """
 
 import math
 import os
+import struct
+import zlib
 
 import numpy as np
 
@@ -27,7 +30,26 @@ def body(triangles, centre, radius, rng):
     b = (np.arange(rings)[:, None] * columns + ((k + 1) % columns)[None, :]).ravel()
     faces = np.concatenate([np.stack([a, a + columns, b], 1),
                             np.stack([b, a + columns, b + columns], 1)])
-    return points.astype("<f4"), faces.astype("<i4")
+    # once around, and back: without a seam
+    uvs = np.stack([np.abs(1 - f / math.pi) + 0 * t, t / math.pi + 0 * f], axis=-1).reshape(-1, 2)
+    return np.concatenate([points, uvs], 1).astype("<f4"), faces.astype("<i4")
+
+
+def write_png(path, size, rng):
+    """Stripes and grain, 8 bits."""
+    x, y = np.meshgrid(np.arange(size) / size, np.arange(size) / size)
+    wave = 0.5 + 0.2 * np.sin(60 * x + 8 * np.sin(20 * y)) + rng.uniform(-0.1, 0.1, (size, size))
+    tint = rng.uniform(0.4, 1, 3)
+    texels = np.clip(255 * wave[..., None] * tint, 0, 255).astype(np.uint8)
+    rows = np.concatenate([np.zeros((size, 1), np.uint8), texels.reshape(size, -1)], 1)
+
+    def chunk(name, data):
+        return (struct.pack(">I", len(data)) + name + data
+                + struct.pack(">I", zlib.crc32(name + data)))
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n"
+                   + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 2, 0, 0, 0))
+                   + chunk(b"IDAT", zlib.compress(rows.tobytes(), 1)) + chunk(b"IEND", b""))
 
 
 def write_ply(path, points, faces):
@@ -36,6 +58,7 @@ def write_ply(path, points, faces):
     with open(path, "wb") as file:
         file.write((f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n"
                     "property float x\nproperty float y\nproperty float z\n"
+                    "property float u\nproperty float v\n"
                     f"element face {len(faces)}\nproperty list uchar int vertex_indices\n"
                     "end_header\n").encode())
         file.write(points.tobytes())
@@ -64,7 +87,7 @@ def lights(count):
                (x + half, y - half, 2.98))
 
 
-def write(path, triangles, light_count):
+def write(path, triangles, light_count, texels=0):
     rng = np.random.default_rng(1)
     text = ['Film "rgb" "integer xresolution" 256 "integer yresolution" 256\n'
             'Scale -1 1 1\nLookAt 0.4 0.4 1.7  5 4 0.8  0 0 1\n'
@@ -78,8 +101,15 @@ def write(path, triangles, light_count):
         mesh = f"{folder}/{k}.ply"
         write_ply(mesh, *body(triangles / BODIES, centre, 0.42, rng))
         colour = " ".join("%.3g" % c for c in rng.uniform(0.2, 0.8, 3))
-        text.append(f'Material "diffuse" "rgb reflectance" [ {colour} ]\nShape "plymesh" "string '
-                    f'filename" "{os.path.basename(folder)}/{k}.ply"\n')
+        reflectance = f'"rgb reflectance" [ {colour} ]'
+        here = os.path.basename(folder)
+        if texels > 0:
+            write_png(f"{folder}/{k}.png", texels, rng)
+            text.append(f'Texture "image {k}" "spectrum" "imagemap" "string filename" '
+                        f'"{here}/{k}.png"\n')
+            reflectance = f'"texture reflectance" "image {k}"'
+        text.append(f'Material "diffuse" {reflectance}\nShape "plymesh" "string '
+                    f'filename" "{here}/{k}.ply"\n')
     text.append('Material "diffuse" "rgb reflectance" [ 0 0 0 ]\n')
     for c in lights(light_count):
         text.append('AttributeBegin\nAreaLightSource "diffuse" "rgb L" [ 10 10 10 ]\n'
