@@ -89,11 +89,12 @@ EXPLANATION = {
                  "the bumps, the more of them, up to what voxels hold. Proofs look at "
                  "the triangles between a patch of the picture and a light; where they are too many, "
                  "rays take over.",
-    "lights": "The lights share one area and one power. Of many weak ones some are drawn, so that "
-              "time levels off; few are certified one by one.",
+    "lights": "The lights share one area and one power. Of many weak ones some are drawn; few are "
+              "certified one by one. A thousand in sight are a thousand outlines, whose pixels get more "
+              "viewing rays and glances than any others.",
     "textures": "Each body wears an image of its own, 8-bit PNG of as many texels. Reading decodes "
                 "them, structures are their levels ([textures](../materials.md#textures)); they stay as "
-                "they are, four bytes a texel and a third more. What rays look up are levels as "
+                "they are, three bytes a texel and a third more. What rays look up are levels as "
                 "fine as their footprints, so that the picture takes hardly longer.",
     "pixels": "Cells are made for what is seen, and do not know of pixels; gathers and viewing rays go "
               "by pixels. More pixels on one surface share gathers over more neighbours, and clusters "
