@@ -10,14 +10,13 @@ EdgeMap::EdgeMap(const PreparedScene& scene, const ViewingCamera& camera, const 
                  int threads)
     : region_(region), edges_(size_t(region.width()) * size_t(region.height()), 0) {
   const PixelCorners corners(scene, camera, region, threads);
-  const std::vector<uint8_t> has_thing =
-      pixels_with_thin_things(scene, camera, region, corners, threads);
   for (int y = region.y0; y < region.y1; ++y)
-    for (int x = region.x0; x < region.x1; ++x) {
-      const size_t i = index(x, y);
-      if (corners.differ(x, y)) edges_[i] |= surface_edge;
-      if (has_thing[i] != 0) edges_[i] |= thin_thing;
-    }
+    for (int x = region.x0; x < region.x1; ++x)
+      if (corners.differ(x, y)) edges_[index(x, y)] = surface_edge;
+  const std::vector<uint8_t> has_thing =
+      pixels_with_thin_things(scene, camera, region, corners, edges_, threads);
+  for (size_t i = 0; i < edges_.size(); ++i)
+    if (has_thing[i] != 0) edges_[i] |= thin_thing;
   for (const Pixel2& p : pixels_on_light_outlines(scene, camera, region))
     edges_[index(p.x, p.y)] |= light_edge;
 }

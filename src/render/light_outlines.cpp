@@ -6,6 +6,7 @@
 
 #include "base/frame.h"
 #include "base/units.h"
+#include "render/segment_walk.h"
 
 namespace troffer {
 
@@ -96,84 +97,29 @@ void add_outline(const Scene& scene, const Light& light, const ViewingCamera& ca
   }
 }
 
-// ---- … and in the picture ----
-
-// Points of an edge, no farther apart than half a pixel, that fall into the region.
-class EdgeWalk {
- public:
-  EdgeWalk(const ViewingCamera& camera, const PixelRect& region)
-      : camera_(camera), region_(region) {}
-  void walk(const OutlineEdge& e) { halve(at(e.a), at(e.b), 0); }
-
-  std::vector<Pixel2> pixels;
-  std::vector<Ray> rays;         // from the eye through the points, which …
-  std::vector<float> distances;  // … lie so far away
-
- private:
-  struct Point {
-    Vec3 position;
-    Vec2 raster;
-    bool is_before = false;  // the camera
-  };
-
-  Point at(const Vec3& p) const {
-    Point q{p, {}, false};
-    q.is_before = camera_.raster_of(p, q.raster);
-    return q;
-  }
-  bool is_beside(const Point& a, const Point& b) const {
-    const auto x0 = float(region_.x0), x1 = float(region_.x1), y0 = float(region_.y0),
-               y1 = float(region_.y1);
-    return (a.raster.x < x0 && b.raster.x < x0) || (a.raster.x >= x1 && b.raster.x >= x1) ||
-           (a.raster.y < y0 && b.raster.y < y0) || (a.raster.y >= y1 && b.raster.y >= y1);
-  }
-  void halve(const Point& a, const Point& b, int depth) {
-    constexpr int deepest = 16;
-    if (!a.is_before && !b.is_before) return;
-    if (a.is_before && b.is_before) {
-      if (is_beside(a, b)) return;
-      const Vec2 d = a.raster - b.raster;
-      if (std::abs(d.x) <= 0.5f && std::abs(d.y) <= 0.5f) {
-        add(a);
-        add(b);
-        return;
-      }
-    }
-    if (depth == deepest) return;
-    const Point middle = at((a.position + b.position) * 0.5f);
-    halve(a, middle, depth + 1);
-    halve(middle, b, depth + 1);
-  }
-  void add(const Point& p) {
-    const Vec2 r = p.raster;
-    if (!(r.x >= float(region_.x0) && r.x < float(region_.x1) && r.y >= float(region_.y0) &&
-          r.y < float(region_.y1)))
-      return;
-    pixels.push_back({int(r.x), int(r.y)});
-    rays.push_back(camera_.ray(r, {0.5f, 0.5f}));
-    distances.push_back(length(p.position - rays.back().origin));
-  }
-
-  const ViewingCamera& camera_;
-  PixelRect region_;
-};
-
 }  // namespace
 
 std::vector<Pixel2> pixels_on_light_outlines(const PreparedScene& scene,
                                              const ViewingCamera& camera, const PixelRect& region) {
   std::vector<OutlineEdge> edges;
   for (const Light& light : scene.scene.lights) add_outline(scene.scene, light, camera, edges);
-  EdgeWalk walk(camera, region);
-  for (const OutlineEdge& e : edges) walk.walk(e);
-  // What stands close before the light, a fixture's rim, does not hide it here.
+  // Where they run, and rays from the eye that end before them: what stands close before the light,
+  // a fixture's rim, does not hide it here.
   constexpr float reach = 0.999f;
-  for (size_t i = 0; i < walk.rays.size(); ++i) walk.rays[i].t_max = reach * walk.distances[i];
-  std::vector<uint8_t> is_hidden(walk.rays.size());
-  scene.tracer.occluded(walk.rays, is_hidden, Coherence::coherent);
+  std::vector<Pixel2> pixels;
+  std::vector<Ray> rays;
+  const SegmentWalk walk(camera, region);
+  for (const OutlineEdge& e : edges)
+    walk.walk(e.a, e.b, [&](const Vec3& position, const Vec2& r) {
+      pixels.push_back({int(r.x), int(r.y)});
+      rays.push_back(camera.ray(r, {0.5f, 0.5f}));
+      rays.back().t_max = reach * length(position - rays.back().origin);
+    });
+  std::vector<uint8_t> is_hidden(rays.size());
+  scene.tracer.occluded(rays, is_hidden, Coherence::coherent);
   std::vector<Pixel2> seen;
   for (size_t i = 0; i < is_hidden.size(); ++i)
-    if (is_hidden[i] == 0) seen.push_back(walk.pixels[i]);
+    if (is_hidden[i] == 0) seen.push_back(pixels[i]);
   return seen;
 }
 

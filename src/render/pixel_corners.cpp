@@ -1,5 +1,6 @@
 #include "render/pixel_corners.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -13,7 +14,9 @@ bool SeenPlace::is_of_surface_of(const SeenPlace& o) const {
   if (geometry != o.geometry) return false;
   if (geometry == no_geometry) return true;
   if (is_front != o.is_front || dot(normal, o.normal) < cos_same_way) return false;
-  const Vec3 d = o.position - position;
+  const Vec3 d = o.position - position, size = abs(position);
+  // Where they are the same but for rounding, d has no direction.
+  if (length(d) <= ray_offset(std::max({size.x, size.y, size.z}))) return true;
   return std::abs(dot(d, normal)) <= sin_step * length(d) ||
          std::abs(dot(d, o.normal)) <= sin_step * length(d);
 }

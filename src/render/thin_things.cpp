@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "render/segment_walk.h"
 #include "scene/mesh_in_world.h"
 
 namespace troffer {
@@ -23,16 +24,15 @@ constexpr float reach = 0.999f;
 class Search {
  public:
   Search(const PreparedScene& scene, const ViewingCamera& camera, const PixelRect& region,
-         const PixelCorners& corners)
+         const PixelCorners& corners, std::span<const uint8_t> has_edge)
       : scene_(scene),
         camera_(camera),
         region_(region),
         corners_(corners),
-        is_settled_(size_t(region.width()) * size_t(region.height())),
-        is_found_(is_settled_.size(), 0) {
-    for (int y = region.y0; y < region.y1; ++y)
-      for (int x = region.x0; x < region.x1; ++x)
-        if (corners.differ(x, y)) is_settled_[index(x, y)] = 1;
+        walk_(camera, region),
+        states_(has_edge.size()) {
+    for (size_t i = 0; i < has_edge.size(); ++i)
+      if (has_edge[i] != 0) states_[i] = left_out;
   }
 
   void look_at(const MeshInWorld& mesh, const Box& bounds, uint32_t geometry, int threads) {
@@ -59,7 +59,13 @@ class Search {
     look_at_place(place, at);
   }
 
-  std::vector<uint8_t> found() && { return std::move(is_found_); }
+  std::vector<uint8_t> found() const {
+    std::vector<uint8_t> out;
+    out.reserve(states_.size());
+    for (const std::atomic<uint8_t>& state : states_)
+      out.push_back(state.load(std::memory_order_relaxed) == something ? 1 : 0);
+    return out;
+  }
 
  private:
   size_t index(int x, int y) const {
@@ -111,8 +117,8 @@ class Search {
     const size_t b = (a + 1) % 3, c = (a + 2) % 3;
     const Vec2 along = r[b] - r[a], to = r[c] - r[a];
     const float twice_area = std::abs(along.x * to.y - along.y * to.x);
-    if (!(twice_area < narrow * longest) || !(longest < 1e6f)) return;
-    const float peak = longest > 0 ? (along.x * to.x + along.y * to.y) / (longest * longest) : 0.5f;
+    if (!(twice_area < narrow * longest)) return;
+    const float peak = (along.x * to.x + along.y * to.y) / (longest * longest);
 
     SeenPlace place;
     place.geometry = geometry;
@@ -121,29 +127,29 @@ class Search {
     if (!(size > 0)) return;
     place.is_front = dot(normal, camera_.towards_eye(corner[0])) >= 0;
     place.normal = normal * ((place.is_front ? 1 : -1) / size);
-    const auto look = [&](const Vec3& position) {
-      place.position = position;
-      Vec2 at;
-      if (camera_.raster_of(position, at) && is_inside(at)) look_at_place(place, at);
-    };
-    // Near its corners, and half-way across it a place for each pixel along it.
+    // Near its corners, and along the line half-way across it.
     constexpr float inwards = 0.1f;
     const Vec3 middle = (corner[0] + corner[1] + corner[2]) * (1.0f / 3);
-    for (const Vec3& p : corner) look(p + (middle - p) * inwards);
-    const auto steps = int(std::ceil(longest)) + 1;
-    for (int i = 0; i < steps; ++i) {
-      const float u = (float(i) + 0.5f) / float(steps);
-      const Vec3 low = corner[a] + (corner[b] - corner[a]) * u;
-      const bool is_before_peak = u < peak;
-      const float v = is_before_peak ? u / peak : (1 - u) / std::max(1 - peak, 1e-6f);
-      const Vec3& foot = is_before_peak ? corner[a] : corner[b];
-      look((low + foot + (corner[c] - foot) * v) * 0.5f);
+    for (const Vec3& p : corner) {
+      Vec2 at;
+      place.position = p + (middle - p) * inwards;
+      if (camera_.raster_of(place.position, at) && is_inside(at)) look_at_place(place, at);
     }
+    Vec2 last{-1, -1};  // of the pixels, whose places come in turn
+    const auto look = [&](const Vec3& position, const Vec2& at) {
+      if (int(at.x) == int(last.x) && int(at.y) == int(last.y)) return;
+      last = at;
+      place.position = position;
+      look_at_place(place, at);
+    };
+    const Vec3 across = (corner[a] + (corner[b] - corner[a]) * peak + corner[c]) * 0.5f;
+    walk_.walk(corner[a], across, look);
+    walk_.walk(across, corner[b], look);
   }
 
   void look_at_place(const SeenPlace& place, const Vec2& at) {
     const size_t i = index(int(at.x), int(at.y));
-    if (is_settled_[i].load(std::memory_order_relaxed) != 0) return;
+    if (states_[i].load(std::memory_order_relaxed) != open) return;
     const SeenPlace& seen = corners_.of(int(at.x), int(at.y));
     if (place.is_of_surface_of(seen)) return;
     Ray ray = camera_.ray(at, {0.5f, 0.5f});
@@ -155,27 +161,28 @@ class Search {
     ray.t_max = reach * distance;
     uint8_t is_hidden = 0;
     scene_.tracer.occluded({&ray, 1}, {&is_hidden, 1}, Coherence::coherent);
-    if (is_hidden != 0) return;
     // Whoever comes first finds the same.
-    is_settled_[i].store(1, std::memory_order_relaxed);
-    std::atomic_ref(is_found_[i]).store(1, std::memory_order_relaxed);
+    if (is_hidden == 0) states_[i].store(something, std::memory_order_relaxed);
   }
+
+  enum State : uint8_t { open, left_out, something };
 
   const PreparedScene& scene_;
   const ViewingCamera& camera_;
   PixelRect region_;
   const PixelCorners& corners_;
-  std::vector<std::atomic<uint8_t>> is_settled_;
-  std::vector<uint8_t> is_found_;
+  SegmentWalk walk_;
+  std::vector<std::atomic<uint8_t>> states_;
 };
 
 }  // namespace
 
 std::vector<uint8_t> pixels_with_thin_things(const PreparedScene& prepared,
                                              const ViewingCamera& camera, const PixelRect& region,
-                                             const PixelCorners& corners, int threads) {
+                                             const PixelCorners& corners,
+                                             std::span<const uint8_t> has_edge, int threads) {
   const Scene& scene = prepared.scene;
-  Search search(prepared, camera, region, corners);
+  Search search(prepared, camera, region, corners, has_edge);
   for (uint32_t m = 0; m < scene.meshes.size(); ++m) {
     Box box;
     for (const Vec3& p : scene.meshes[m].positions) box.grow(p);
@@ -195,7 +202,7 @@ std::vector<uint8_t> pixels_with_thin_things(const PreparedScene& prepared,
     const float side = dot(d.normal, camera.towards_eye(d.centre)) < 0 ? -1.0f : 1.0f;
     search.look_at_round(d.centre, d.centre, d.normal * side, d.radius, meshes + 1);
   }
-  return std::move(search).found();
+  return search.found();
 }
 
 }  // namespace troffer

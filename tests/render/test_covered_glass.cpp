@@ -31,7 +31,7 @@ Material coated(Material m, float roughness) {
   return m;
 }
 
-// Light of radiance L from a square of side 1 at a above over the origin.
+// Light of radiance L from a square of side 1, so many metres above the origin.
 double irradiance_of(double radiance, double above, const std::function<double(double)>& through) {
   return radiance * integrate_2d(
                         [&](double x, double y) {

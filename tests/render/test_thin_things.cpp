@@ -5,6 +5,7 @@
 
 #include "render/thin_things.h"
 #include "support/scenes.h"
+#include "support/stopwatch.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -58,7 +59,10 @@ std::vector<Pixel2> found(const Scene& s) {
   const PixelRect region{0, 0, pixels_along, pixels_along};
   const ViewingCamera c = view_of_wall();
   const PixelCorners corners(scene, c, region, 2);
-  const std::vector<uint8_t> has = pixels_with_thin_things(scene, c, region, corners, 2);
+  std::vector<uint8_t> has_edge;
+  for (int y = 0; y < pixels_along; ++y)
+    for (int x = 0; x < pixels_along; ++x) has_edge.push_back(corners.differ(x, y) ? 1 : 0);
+  const std::vector<uint8_t> has = pixels_with_thin_things(scene, c, region, corners, has_edge, 2);
   std::vector<Pixel2> out;
   for (int y = 0; y < pixels_along; ++y)
     for (int x = 0; x < pixels_along; ++x)
@@ -125,4 +129,23 @@ TEST_CASE("small spheres and disks are found, larger ones are left to the corner
   REQUIRE(pixels.size() == 2);
   CHECK((pixels[0].x == 8 && pixels[0].y == 8));
   CHECK((pixels[1].x == 20 && pixels[1].y == 9));
+}
+
+// Each of them runs ten thousand pixels beyond the picture on either side.
+TEST_CASE("of long wires only what lies in the picture takes time") {
+  Scene s;
+  add_wall(s);
+  Mesh wires;
+  for (uint32_t k = 0; k < 50'000; ++k) {
+    const float y = 20.4f + 0.002f * float(k % 100);
+    for (const Vec3& p : {at(-1e4f, y, 5), at(1e4f, y, 5), at(1e4f, y + 0.1f, 5)})
+      wires.positions.push_back(p);
+    wires.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  s.meshes.push_back(wires);
+  const ProcessorStopwatch watch;
+  const std::vector<Pixel2> pixels = found(s);
+  CHECK(watch.seconds() < 5);
+  CHECK(pixels.size() == 32);
+  for (const Pixel2& p : pixels) CHECK(p.y == 20);
 }

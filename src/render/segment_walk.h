@@ -1,0 +1,73 @@
+// A straight line in space, as it runs through the pixels of a picture.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/camera.h"
+#include "render/tile.h"
+
+namespace troffer {
+
+// Points of a segment that fall into the region, no farther apart than half a pixel; none of a
+// segment of more than 2^15 pixels. What lies beside the region is left out by
+// halves: long segments that miss most of it cost little more than what is in it. What lies behind
+// the camera is left out.
+class SegmentWalk {
+ public:
+  // The camera must outlive this.
+  SegmentWalk(const ViewingCamera& camera, const PixelRect& region)
+      : camera_(camera), region_(region) {}
+
+  // visit(position, raster): of both ends of every part, so that most points come twice.
+  template <class Visit>
+  void walk(const Vec3& a, const Vec3& b, const Visit& visit) const {
+    halve(at(a), at(b), 0, visit);
+  }
+
+ private:
+  struct Point {
+    Vec3 position;
+    Vec2 raster;
+    bool is_before = false;  // the camera
+  };
+
+  Point at(const Vec3& p) const {
+    Point q{p, {}, false};
+    q.is_before = camera_.raster_of(p, q.raster);
+    return q;
+  }
+  bool is_beside(const Point& a, const Point& b) const {
+    const auto x0 = float(region_.x0), x1 = float(region_.x1), y0 = float(region_.y0),
+               y1 = float(region_.y1);
+    return (a.raster.x < x0 && b.raster.x < x0) || (a.raster.x >= x1 && b.raster.x >= x1) ||
+           (a.raster.y < y0 && b.raster.y < y0) || (a.raster.y >= y1 && b.raster.y >= y1);
+  }
+  template <class Visit>
+  void halve(const Point& a, const Point& b, int depth, const Visit& visit) const {
+    constexpr int deepest = 16;
+    if (!a.is_before && !b.is_before) return;
+    if (a.is_before && b.is_before) {
+      if (is_beside(a, b)) return;
+      const Vec2 d = a.raster - b.raster;
+      if (std::abs(d.x) <= 0.5f && std::abs(d.y) <= 0.5f) {
+        for (const Point* p : {&a, &b})
+          if (is_inside(p->raster)) visit(p->position, p->raster);
+        return;
+      }
+    }
+    if (depth == deepest) return;
+    const Point middle = at((a.position + b.position) * 0.5f);
+    halve(a, middle, depth + 1, visit);
+    halve(middle, b, depth + 1, visit);
+  }
+  bool is_inside(const Vec2& r) const {
+    return r.x >= float(region_.x0) && r.x < float(region_.x1) && r.y >= float(region_.y0) &&
+           r.y < float(region_.y1);
+  }
+
+  const ViewingCamera& camera_;
+  PixelRect region_;
+};
+
+}  // namespace troffer
