@@ -82,11 +82,7 @@ TEST_CASE("glass under coats and films is not seen in a furnace") {
   const uint32_t iridescent = add_material(s, film);
   s.spheres.push_back({{-1.4f, 0, 0.3f}, 0.3f, false, iridescent, no_light});
   const PreparedScene scene(std::move(s));
-  RenderOptions o;
-  o.method = Method::path;
-  o.width = 32;
-  o.height = 24;
-  o.spp = 16;
+  RenderOptions o = furnace_options();
   const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
   // Rough coats and films keep the energy of each channel within some percent (docs/materials.md).
   CHECK(pixels_off(

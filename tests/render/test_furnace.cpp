@@ -13,11 +13,7 @@ using namespace troffer::test;
 
 TEST_CASE("in a furnace every pixel is as bright as every other") {
   const PreparedScene scene(uneven_furnace());
-  RenderOptions o;
-  o.method = Method::path;
-  o.width = 32;
-  o.height = 24;
-  o.spp = 16;
+  const RenderOptions o = furnace_options();
   const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
   CHECK(pixels_off(
             e, [](size_t) { return double(L0); }, 1e-5) == 0);
@@ -48,11 +44,7 @@ TEST_CASE("a furnace with glass, mirrors and gloss in it") {
   coated.base_color.value = Rgb{1};
   s.spheres.push_back({{-1.4f, 0, 0.3f}, 0.3f, false, add_material(s, coated), no_light});
   const PreparedScene scene(std::move(s));
-  RenderOptions o;
-  o.method = Method::path;
-  o.width = 32;
-  o.height = 24;
-  o.spp = 16;
+  const RenderOptions o = furnace_options();
   const Ensemble e = render_ensemble(scene, furnace_camera(), o, 32);
   // Rough metal keeps its energy within 0.15 % (bsdf/bsdf.h).
   CHECK(pixels_off(
