@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "image/raster.h"
 #include "image/read_image.h"
+#include "import/file.h"
 #include "import/import.h"
 #include "import/luminaire.h"
 #include "import/measured_bsdf.h"
@@ -74,6 +76,8 @@ void read(const InputFolder& folder, const std::string& path) {
   } else if constexpr (ending == "png" || ending == "jpg" || ending == "hdr" || ending == "pfm" ||
                        ending == "exr" || ending == "webp" || ending == "tga") {
     read_image(path, size_t(1) << 22);
+    Raster raster = decode_raster(read_file(path, size_t(1) << 26), path, size_t(1) << 22);
+    obey_own_colours(raster);
   } else if constexpr (ending == "obj" || ending == "ply" || ending == "stl") {
     import_scene(path);
     if (outcome(path, 0) != outcome(path, 61)) std::abort();

@@ -4,7 +4,7 @@
 
 troffer_packages="
   g++ cmake ninja-build
-  libembree-dev libtbb-dev libopenexr-dev libpng-dev libjpeg-dev libwebp-dev zlib1g-dev
+  libembree-dev libtbb-dev libopenexr-dev libpng-dev libjpeg-dev libwebp-dev liblcms2-dev zlib1g-dev
   libfmt-dev libcli11-dev nlohmann-json3-dev libpugixml-dev libmicrohttpd-dev
   libdraco-dev libmeshoptimizer-dev
   pybind11-dev python3-dev python3-numpy

@@ -11,6 +11,7 @@ import sys
 import time
 from dataclasses import dataclass
 
+import lamps
 import rooms
 
 OPTIONS = "--error .05"
@@ -91,7 +92,8 @@ EXPLANATION = {
                  "rays take over.",
     "lights": "The lights share one area and one power. Of many weak ones some are drawn; few are "
               "certified one by one. A thousand in sight are a thousand outlines, whose pixels get more "
-              "viewing rays and glances than any others.",
+              "viewing rays and glances than any others; [lamps.md](lamps.md) has them, finely divided ones and "
+              "very unequal ones at equal error.",
     "textures": "Each body wears an image of its own, 8-bit PNG of as many texels. Reading decodes "
                 "them, structures are their levels ([textures](../materials.md#textures)); they stay as "
                 "they are, three bytes a texel and a third more. What rays look up are levels as "
@@ -131,18 +133,34 @@ def page(rows, sizes, minutes):
     return "\n".join(lines) + "\n"
 
 
+def finish(options, names, minutes):
+    if options.copy:
+        os.makedirs(options.copy, exist_ok=True)
+        for name in names:
+            shutil.copyfile(f"{options.out}/{name}", f"{options.copy}/{name}")
+    print(f"{minutes:.1f} minutes; written to {options.copy or options.out}")
+
+
 def main():
     parser = argparse.ArgumentParser(prog="bench/growth")
     parser.add_argument("--out", default="build/bench/growth", metavar="FOLDER")
     parser.add_argument("--copy", metavar="FOLDER")
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--lamps", action="store_true")
     parser.add_argument("--build", default="build/release", metavar="FOLDER")
     options = parser.parse_args()
     os.makedirs(options.out, exist_ok=True)
     start = time.monotonic()
+    troffer = f"{options.build}/troffer"
+    if options.lamps:
+        rows, measured = lamps.run(troffer, options.out)
+        minutes = (time.monotonic() - start) / 60
+        lamps.write_results(rows, measured, minutes, options.out)
+        finish(options, ("lamps.csv", "lamps.md"), minutes)
+        return
     rows, sizes = [], []
     for case in cases(options.quick):
-        rows.append(run(case, f"{options.build}/troffer", options.out))
+        rows.append(run(case, troffer, options.out))
         sizes.append(float(case.size))
         print(" ".join(f"{x!s:>10}" for x in rows[-1]), flush=True)
     minutes = (time.monotonic() - start) / 60
@@ -150,11 +168,7 @@ def main():
         csv.writer(file, lineterminator="\n").writerows([HEADER, *rows])
     with open(f"{options.out}/README.md", "w") as file:
         file.write(page(rows, sizes, minutes))
-    if options.copy:
-        os.makedirs(options.copy, exist_ok=True)
-        for name in ("growth.csv", "README.md"):
-            shutil.copyfile(f"{options.out}/{name}", f"{options.copy}/{name}")
-    print(f"{minutes:.1f} minutes; written to {options.copy or options.out}")
+    finish(options, ("growth.csv", "README.md"), minutes)
 
 
 if __name__ == "__main__":

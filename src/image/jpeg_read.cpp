@@ -1,6 +1,8 @@
 #include <csetjmp>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
 
 #include <jpeglib.h>
 // After jpeglib.h, which it needs.
@@ -67,6 +69,14 @@ void rgb_from_cmyk(const uint8_t* cmyk, bool is_inverted, size_t width, uint8_t*
     }
 }
 
+void note_profile(jpeg_decompress_struct& jpeg, OwnColours& own) {
+  JOCTET* profile = nullptr;
+  unsigned length = 0;
+  if (jpeg_read_icc_profile(&jpeg, &profile, &length) == FALSE) return;
+  const std::unique_ptr<JOCTET, decltype(&std::free)> owner(profile, &std::free);
+  own.profile.assign(profile, profile + length);
+}
+
 // Everything that libjpeg may jump out of; false after an error.
 bool read(JpegReader& reader) {
   jpeg_decompress_struct& jpeg = reader.jpeg;
@@ -75,6 +85,7 @@ bool read(JpegReader& reader) {
   jpeg.client_data = &reader;
   jpeg.progress = &reader.progress;
   jpeg_mem_src(&jpeg, reader.encoded.bytes.data(), reader.encoded.bytes.size());
+  jpeg_save_markers(&jpeg, JPEG_APP0 + 2, 0xffff);  // pieces of a profile
   jpeg_read_header(&jpeg, TRUE);
   reader.encoded.check_size(jpeg.image_width, jpeg.image_height);
 
@@ -86,6 +97,7 @@ bool read(JpegReader& reader) {
   raster.height = int(jpeg.output_height);
   raster.channels = jpeg.num_components == 1 ? 1 : 3;
   raster.is_srgb = true;
+  note_profile(jpeg, raster.own);
   const size_t row_size = size_t(raster.width) * size_t(raster.channels);
   raster.texels8.resize(row_size * size_t(raster.height));
   if (is_cmyk) reader.cmyk_row.resize(size_t(raster.width) * 4);

@@ -13,6 +13,7 @@ namespace {
 // cannot claim a large picture.
 constexpr uint64_t max_deflate_ratio = 1100;
 constexpr png_alloc_size_t max_chunk_bytes = 1 << 20;  // does not concern pixel data
+constexpr png_byte colour_chunks[] = "gAMA\0iCCP\0sRGB";
 
 // State shared with libpng's callbacks; it outlives the frames that an error jumps over.
 struct PngReader {
@@ -55,6 +56,19 @@ bool set_transformations(png_structp png, png_infop info) {
   return depth == 16;
 }
 
+// sRGB goes before a profile, that before gamma.
+void note_colours(png_structp png, png_infop info, OwnColours& own) {
+  if (png_get_valid(png, info, PNG_INFO_sRGB) != 0) return;
+  png_charp name = nullptr;
+  png_bytep profile = nullptr;
+  png_uint_32 length = 0;
+  int compression = 0;
+  if (png_get_iCCP(png, info, &name, &compression, &profile, &length) != 0)
+    own.profile.assign(profile, profile + length);
+  double gamma = 0;
+  if (png_get_gAMA(png, info, &gamma) != 0) own.gamma = float(gamma);
+}
+
 // Reads the rows. 16-bit rows go into the second half of their place in texels_float, so that
 // expand16 can widen them in place.
 void prepare_rows(PngReader& reader, bool is_16, size_t row_bytes) {
@@ -92,9 +106,10 @@ bool read(PngHandles& handles, PngReader& reader) {
   png_infop info = handles.info;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader, on_read);
-  // Everything but pixels and transparency (-1: profiles, texts, calibrations) means nothing here
-  // and is a way to hide inflation bombs.
+  // Everything but pixels, transparency and what colours are (-1: texts, calibrations) means
+  // nothing here and is a way to hide inflation bombs.
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, colour_chunks, 3);
   png_set_chunk_malloc_max(png, max_chunk_bytes);
   png_read_info(png, info);
 
@@ -103,6 +118,7 @@ bool read(PngHandles& handles, PngReader& reader) {
   reader.encoded.check_size(width, height);
   if (png_get_rowbytes(png, info) * height / max_deflate_ratio > reader.encoded.bytes.size())
     png_error(png, "truncated file");
+  note_colours(png, info, reader.raster.own);
   const bool is_16 = set_transformations(png, info);
   png_read_update_info(png, info);
   reader.raster.width = int(width);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/primaries.h"
+#include "image/own_colours.h"
 
 namespace troffer {
 
@@ -22,6 +23,8 @@ struct Raster {
   bool is_srgb = false;             // colour channels are sRGB encoded (PNG, JPEG, WebP, TGA)
   // Of EXR files that say so and have others than Rec. 709: what their colours are made of.
   std::optional<Primaries> primaries = std::nullopt;
+  // What PNG and JPEG files say; the texels are as stored until obey_own_colours().
+  OwnColours own = {};
 };
 
 // The most pixels that readers decode unless told otherwise.
@@ -31,8 +34,7 @@ constexpr size_t default_max_pixels = size_t(64) << 20;
 // broken, truncated, of another format or of more than `max_pixels` pixels throws
 // InputError{name_for_errors, 0, 0, what}; the size is checked before memory is taken.
 //
-// PNG: all colour types, depths and interlacing; tRNS becomes alpha; gamma and colour profiles are
-//   ignored. JPEG: grey, YCbCr, RGB, CMYK and YCCK (Adobe's inverted form too), as rgb; damage
+// PNG: all colour types, depths and interlacing; tRNS becomes alpha. JPEG: grey, YCbCr, RGB, CMYK and YCCK (Adobe's inverted form too), as rgb; damage
 //   that costs no data (junk between markers) is forgiven, missing data is not.
 // WebP: lossy and lossless, alpha; not animated. TGA: colour, grey and mapped, run lengths, 8 to 32
 //   bits, any origin; the fourth byte is alpha where the header says so.

@@ -72,8 +72,10 @@ EnvironmentMap reduced(const EnvironmentMap& from, int by) {
 }  // namespace
 
 EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
-  const Raster raster = rec709_raster(
-      linear_raster(decode_raster(read_file(path, max_environment_bytes), path)), false);
+  Raster read = decode_raster(read_file(path, max_environment_bytes), path);
+  if (obey_own_colours(read) == ColoursFound::broken)
+    warnings.add(path + ": its colour profile cannot be used; taken for sRGB");
+  const Raster raster = rec709_raster(linear_raster(std::move(read)), false);
   EnvironmentMap map;
   map.name = path;
   map.width = raster.width;

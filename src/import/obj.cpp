@@ -63,7 +63,7 @@ class ObjReader {
     size_t points_and_lines = 0, short_faces = 0, dangling = 0;
   } left_out_;
   struct Materials {
-    explicit Materials(Scene& scene) : loader(scene), painter(scene) {}
+    explicit Materials(Scene& scene) : loader(scene), painter(scene) { loader.obey_own_colours(); }
     TextureLoader loader;
     VertexPainter painter;
     MtlLibrary library;

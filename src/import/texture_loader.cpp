@@ -40,20 +40,22 @@ void linearize(Texture& t) {
     if (!has_alpha || i % n != n - 1) t.texels_float[i] = linear_from_srgb(t.texels_float[i]);
 }
 
+uint64_t texel_bytes(const Texture& t) {
+  return t.texels8.size() + t.texels_float.size() * sizeof(float);
+}
+
+}  // namespace
+
 // Of colours in sRGB's primaries; what lies outside of them is cut off.
-Raster color_raster(Raster raster) {
+Raster TextureLoader::color_raster(const std::string& key, Raster raster) {
+  if (obeys_own_colours_ && troffer::obey_own_colours(raster) == ColoursFound::broken)
+    scene_.warnings.add(key + ": its colour profile cannot be used; taken for sRGB");
   if (!raster.primaries) return raster;
   raster = rec709_raster(std::move(raster), true);
   for (float& v : raster.texels_float)
     if (v < 0) v = 0;
   return raster;
 }
-
-uint64_t texel_bytes(const Texture& t) {
-  return t.texels8.size() + t.texels_float.size() * sizeof(float);
-}
-
-}  // namespace
 
 int32_t TextureLoader::remember(const std::string& key, const Texture& look, Texture texture) {
   const auto index = int32_t(scene_.textures.size());
@@ -79,13 +81,15 @@ int32_t TextureLoader::missing(const std::string& key, const std::string& proble
 }
 
 // Any texture already made of the image whose texels are those that `look` asks for. 8-bit texels
-// stay encoded and serve both readings; float texels were linearised or not.
+// stay encoded and serve both readings, unless colours were converted; float texels were linearised
+// or not.
 const Texture* TextureLoader::decoded(const std::string& key, const Texture& look) const {
   for (const bool is_srgb : {look.is_srgb, !look.is_srgb}) {
     const auto it = by_image_.find({key, is_srgb});
     if (it == by_image_.end()) continue;
     const Texture& texture = scene_.textures[size_t(it->second)];
-    if (is_srgb == look.is_srgb || !texture.texels8.empty()) return &texture;
+    if (is_srgb == look.is_srgb || (!texture.texels8.empty() && !obeys_own_colours_))
+      return &texture;
   }
   return nullptr;
 }
@@ -114,11 +118,12 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
       texture.width = other->width;
       texture.height = other->height;
       texture.channels = other->channels;
+      if (obeys_own_colours_ && look.is_srgb) texture.is_srgb = other->is_srgb;
       texture.texels8 = other->texels8;
       texture.texels_float = other->texels_float;
     } else {
       Raster raster = decode_raster(bytes(), key);
-      if (look.is_srgb) raster = color_raster(std::move(raster));
+      if (look.is_srgb) raster = color_raster(key, std::move(raster));
       texture.width = raster.width;
       texture.height = raster.height;
       texture.channels = raster.channels;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "image/raster.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -28,6 +29,10 @@ class TextureLoader {
   explicit TextureLoader(Scene& scene, uint64_t max_texel_bytes = uint64_t(4) << 30)
       : scene_(scene), max_texel_bytes_(max_texel_bytes) {}
 
+  // Of formats that leave it to images what their colours are: gamma and profiles are obeyed. Else
+  // 8- and 16-bit images are in sRGB, as glTF demands and pbrt and Mitsuba do.
+  void obey_own_colours() { obeys_own_colours_ = true; }
+
   // Index in Scene::textures of the image at `path`, looked up as `look` says: its name, value,
   // is_srgb (of 8-bit images), is_inverted, is_filtered, mapping, wrap and uv fields are kept;
   // kind, size and texels are filled in. An empty name becomes the path.
@@ -47,6 +52,7 @@ class TextureLoader {
   using Bytes = std::function<std::span<const uint8_t>()>;
 
   int32_t add(const std::string& key, const Texture& look, const Bytes& bytes);
+  Raster color_raster(const std::string& key, Raster raster);
   const Texture* decoded(const std::string& key, const Texture& look) const;
   Texture reduced(Texture texture);
   int32_t remember(const std::string& key, const Texture& look, Texture texture);
@@ -55,6 +61,7 @@ class TextureLoader {
   std::map<std::string, int32_t> by_request_;                 // image and look -> texture
   std::map<std::pair<std::string, bool>, int32_t> by_image_;  // image, read as sRGB -> texture
   uint64_t texel_bytes_ = 0, max_texel_bytes_;
+  bool obeys_own_colours_ = false;
 };
 
 }  // namespace troffer

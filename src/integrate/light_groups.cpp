@@ -108,8 +108,9 @@ uint32_t LightGroups::choose_primitive(uint32_t group, float& u, float& pmf) con
   pmf = 1;
   if (g.last_primitive - g.first_primitive == 1) return primitives_[g.first_primitive];
   const float all = areas_[g.last_primitive - 1], target = u * all;
-  uint32_t i = g.first_primitive;
-  while (i + 1 < g.last_primitive && areas_[i] <= target) ++i;
+  const auto begin = areas_.begin() + g.first_primitive,
+             end = areas_.begin() + g.last_primitive - 1;
+  const auto i = uint32_t(std::upper_bound(begin, end, target) - areas_.begin());
   const float before = i == g.first_primitive ? 0.0f : areas_[i - 1];
   const float own = areas_[i] - before;
   u = std::clamp((target - before) / own, 0.0f, one_minus_epsilon);

@@ -25,7 +25,7 @@ struct SurfaceScattering {
   explicit SurfaceScattering(const Bsdf& bsdf) : whole(bsdf) {
     is_lambertian = troffer::is_lambertian(bsdf, nullptr);
     diffuse = is_lambertian ? bsdf : diffuse_part(bsdf);
-    has_diffuse = is_lambertian || diffuse.has_separable;
+    has_diffuse = is_lambertian ? !diffuse.diffuse.is_black() : diffuse.has_separable;
     if (is_lambertian) return;
     specular = specular_part(bsdf);
     has_specular = has_glossy(specular) || specular.has_separable;

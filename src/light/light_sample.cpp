@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/frame.h"
+#include "base/prefetch.h"
 #include "base/simd.h"
 #include "base/units.h"
 #include "base/warp.h"
@@ -277,7 +278,10 @@ void sample_many(const LightPrimitives& all, size_t n, const uint32_t* primitive
     a->resize(n);
   s.index.resize(n);
   size_t near = 0;
+  // Of a large mesh any piece may be next.
+  constexpr size_t ahead = 8;
   for (size_t i = 0; i < n; ++i) {
+    if (i + ahead < n) prefetch_object(all[primitives[i + ahead]]);
     const LightPrimitive& p = all[primitives[i]];
     if (p.shape == PrimitiveShape::rectangle) {
       const PlanarView view(p, receivers[i]);

@@ -22,9 +22,12 @@ struct Cone {
 Cone merge(const Cone& a, const Cone& b) {
   if (a.is_empty) return b;
   if (b.is_empty) return a;
+  const float cos_between = dot(a.axis, b.axis);
+  // A direction alone that lies within: what most members of a large set are.
+  if (b.cos_spread >= 1 && cos_between >= a.cos_spread) return a;
   const float spread_a = std::acos(std::clamp(a.cos_spread, -1.0f, 1.0f));
   const float spread_b = std::acos(std::clamp(b.cos_spread, -1.0f, 1.0f));
-  const float between = std::acos(std::clamp(dot(a.axis, b.axis), -1.0f, 1.0f));
+  const float between = std::acos(std::clamp(cos_between, -1.0f, 1.0f));
   if (std::min(between + spread_b, pi_f) <= spread_a) return a;
   if (std::min(between + spread_a, pi_f) <= spread_b) return b;
   const float spread = (spread_a + between + spread_b) / 2;

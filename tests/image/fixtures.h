@@ -1,11 +1,13 @@
 // Small encoded pictures made with the formats' own libraries, and folders that vanish.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/random.h"
+#include "base/vec.h"
 #include "image/image.h"
 #include "image/raster.h"
 
@@ -17,12 +19,21 @@ struct PngFixture {
   bool is_interlaced = false;
   std::vector<std::vector<uint8_t>> rows;  // packed as in the file
   std::vector<uint8_t> palette_rgb, palette_alpha;
+  double gamma = 0;  // 0: not told
+  bool is_marked_srgb = false;
+  std::vector<uint8_t> profile = {};
 };
 std::vector<uint8_t> make_png(const PngFixture& fixture);
 
 // `components` per pixel: 1 grey, 3 rgb, 4 CMYK as stored (Adobe marker: inverted ink).
 std::vector<uint8_t> make_jpeg(int width, int height, int components,
-                               const std::vector<uint8_t>& samples, bool is_progressive = false);
+                               const std::vector<uint8_t>& samples, bool is_progressive = false,
+                               const std::vector<uint8_t>& profile = {});
+
+// ICC profile by matrix and power: columns are X, Y, Z (D50) of red, green and blue; encoded values
+// to this power are light. Greys: by the power alone.
+std::vector<uint8_t> make_rgb_profile(const std::array<Vec3d, 3>& colorants, double power);
+std::vector<uint8_t> make_grey_profile(double power);
 
 // A picture of random values in [0, 4), the same for the same seed.
 Image random_image(int width, int height, uint64_t seed);

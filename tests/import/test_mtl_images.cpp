@@ -29,7 +29,36 @@ float value_of(const Scene& scene, const FloatInput& input) {
   return evaluate(scene.textures, input, Vec2{0.5f, 0.5f});
 }
 
+// One pixel (64, 128, 255) of 255, which are light to the power of 1 / 1.8 (gAMA).
+const std::string png_of_gamma =
+    "89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000467414d"
+    "410000d904dcb2da020000000c49444154789c637068f80f0002c301c06fd260360000000049454e"
+    "44ae426082";
+
+std::string bytes_of_hex(const std::string& hex) {
+  std::string bytes;
+  for (size_t i = 0; i < hex.size(); i += 2)
+    bytes += char(std::stoi(hex.substr(i, 2), nullptr, 16));
+  return bytes;
+}
+
 }  // namespace
+
+TEST_CASE("MTL: what an image says of its colours is obeyed, and data are left alone") {
+  for (const std::string order : {"map_Kd i.png\nmap_Pr i.png", "map_Pr i.png\nmap_Kd i.png"}) {
+    const TempFolder folder;
+    folder.write("i.png", bytes_of_hex(png_of_gamma));
+    folder.write("m.mtl", "newmtl a\nKd 1 1 1\nPr 1\n" + order + "\n");
+    const Scene scene =
+        import_obj(folder.write("m.obj", "mtllib m.mtl\n" + square + "usemtl a\nf 1/1 2/2 3/3\n"));
+    CHECK(scene.warnings.total() == 0);
+    const Rgb c = evaluate(scene.textures, only(scene).base_color, Vec2{0.5f, 0.5f});
+    CHECK(double(c.r) == doctest::Approx(std::pow(64.0 / 255, 1.8)).epsilon(0.02));
+    CHECK(double(c.g) == doctest::Approx(std::pow(128.0 / 255, 1.8)).epsilon(0.02));
+    CHECK(c.b == 1);
+    CHECK(double(value_of(scene, only(scene).roughness)) == doctest::Approx(64.0 / 255));
+  }
+}
 
 TEST_CASE("MTL: -mm moves what an image says") {
   const Scene scene = import_material("Kd 1 1 1\nmap_Kd -mm .1 .8 i.pfm");
