@@ -313,7 +313,11 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   if (has_edge && !options.is_noise)
     variance = std::max({variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of),
                          v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
-  const double allowed = allowed_error(s.mean, v.typical, options);
+  // What is far brighter than usual, as the edges of what the sun lights, is little of a picture and
+  // makes most of its error.
+  constexpr double most_times_less = 16;
+  const double allowed = allowed_error(s.mean, v.typical, options,
+                                       options.is_noise ? usual_times_less : most_times_less);
   // Samples that are spread over a pixel err by n^-3/4 by what an edge divides (of thin things they
   // know too little), and by n^-1/2 by chance of their own. (Nothing to see by: no light is
   // allowed, none varies.)
