@@ -58,6 +58,16 @@ CertifiedSettings settings_of_further(const MethodInput& in) {
   return s;
 }
 
+// … at cells of a picture, which have eight hits or more each: likewise. Points that are measured
+// share cells, and would err by one and the same noise of theirs.
+CertifiedSettings settings_of_cells(const MethodInput& in) {
+  constexpr double coarse = 0.02;
+  constexpr int draws = 16, few_draws = 8;
+  CertifiedSettings s = settings_beyond(in);
+  if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
+  return s;
+}
+
 // By cells, a picture errs by half of what is asked of it, or less; so it should by paths.
 double error_by_paths(double asked) {
   return 0.75 * asked;
@@ -184,17 +194,17 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
       std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
   std::unique_ptr<IndirectLight> indirect;
   if (needs_cells(Method::certified, in.settings.indirect)) {
-    std::unique_ptr<DirectLight> beyond =
-        std::make_unique<CertifiedDirect>(in.scene, occluders, settings_beyond(in));
+    std::unique_ptr<DirectLight> of_cells =
+        std::make_unique<CertifiedDirect>(in.scene, occluders, settings_of_cells(in));
     const CertifiedSettings drawn = settings_of_further(in);
     std::unique_ptr<DirectLight> further;
     if (drawn.draws > 0) further = std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
-    add_images(in, {{direct, settings}, {beyond, settings_beyond(in)}, {further, drawn}});
+    add_images(in, {{direct, settings}, {of_cells, settings_of_cells(in)}, {further, drawn}});
     constexpr double any = std::numeric_limits<double>::infinity();
     const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : any;
-    indirect = make_cells_indirect(in, *beyond, most_cells);
+    indirect = make_cells_indirect(in, *of_cells, most_cells);
     if (!indirect) return paths && !in.cells->stop.load() ? make_paths(in, *paths) : nullptr;
-    if (!further) further = std::move(beyond);
+    if (!further) further = std::move(of_cells);
     constexpr auto all = std::numeric_limits<uint32_t>::max();
     const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
     return std::make_unique<WaveIntegrator>(
