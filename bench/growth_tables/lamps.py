@@ -78,8 +78,8 @@ def write(out):
         with open(names[name], "w") as file:
             file.write(bare + shapes)
         with open(names[name].replace(".pbrt", "-down.pbrt"), "w") as file:
-            assert AT_LAMPS.strip() in bare.replace("\n", " ")
-            file.write((bare + shapes).replace(AT_LAMPS.strip(), DOWNWARDS.strip()))
+            assert AT_LAMPS in bare
+            file.write((bare + shapes).replace(AT_LAMPS, DOWNWARDS))
     return names
 
 

@@ -38,17 +38,13 @@ struct Curve {
   Curve& operator=(const Curve&) = delete;
 };
 
-bool has_alpha(const Raster& r) {
-  return r.channels == 2 || r.channels == 4;
-}
-
 bool is_about(float a, float b) {
   return std::abs(a - b) <= 0.01f;
 }
 
 void encode(Raster& raster, float gamma) {
   const auto linear = [&](float v) { return std::pow(std::max(v, 0.0f), 1 / gamma); };
-  const auto channels = size_t(raster.channels), colours = channels - (has_alpha(raster) ? 1 : 0);
+  const size_t channels = size_t(raster.channels), colours = raster.colours();
   std::array<uint8_t, 256> bytes;
   for (size_t i = 0; i < bytes.size(); ++i)
     bytes[i] = uint8_t(std::lround(255 * srgb_from_linear(linear(float(i) / 255))));
@@ -113,7 +109,7 @@ ColoursFound obey_profile(Raster& raster, const std::vector<uint8_t>& bytes) {
   const Profile own(
       cmsOpenProfileFromMemTHR(context.get(), bytes.data(), cmsUInt32Number(bytes.size())));
   if (!own) return ColoursFound::broken;
-  const bool is_grey = raster.channels < 3;
+  const bool is_grey = raster.colours() == 1;
   if (cmsGetColorSpace(own.get()) != (is_grey ? cmsSigGrayData : cmsSigRgbData))
     return ColoursFound::broken;
   const Profile wanted = wanted_profile(context.get(), is_grey);
@@ -123,7 +119,8 @@ ColoursFound obey_profile(Raster& raster, const std::vector<uint8_t>& bytes) {
   if (!plain) return ColoursFound::broken;
   if (changes_nothing(plain.get(), is_grey)) return ColoursFound::none;
 
-  const bool is_float = raster.texels8.empty(), is_extra = has_alpha(raster);
+  const bool is_float = raster.texels8.empty(),
+             is_extra = raster.colours() < size_t(raster.channels);
   const Transform transform =
       transform_between(context.get(), own, wanted, format_of(is_grey, is_extra, is_float),
                         is_extra ? cmsUInt32Number(cmsFLAGS_COPY_ALPHA) : 0);

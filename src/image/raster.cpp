@@ -41,7 +41,7 @@ Raster linear_raster(Raster raster) {
   for (size_t i = 0; i < linear.size(); ++i)
     linear[i] = raster.is_srgb ? linear_from_srgb(float(i) / 255) : float(i) / 255;
   const auto channels = size_t(raster.channels);
-  const size_t colours = channels == 2 || channels == 4 ? channels - 1 : channels;
+  const size_t colours = raster.colours();
   if (!raster.texels8.empty()) {
     raster.texels_float.resize(raster.texels8.size());
     for (size_t i = 0; i < raster.texels8.size(); ++i) {

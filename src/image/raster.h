@@ -25,6 +25,11 @@ struct Raster {
   std::optional<Primaries> primaries = std::nullopt;
   // What PNG and JPEG files say; the texels are as stored until obey_own_colours().
   OwnColours own = {};
+
+  // Channels but alpha.
+  size_t colours() const {
+    return size_t(channels == 2 || channels == 4 ? channels - 1 : channels);
+  }
 };
 
 // The most pixels that readers decode unless told otherwise.
@@ -34,8 +39,9 @@ constexpr size_t default_max_pixels = size_t(64) << 20;
 // broken, truncated, of another format or of more than `max_pixels` pixels throws
 // InputError{name_for_errors, 0, 0, what}; the size is checked before memory is taken.
 //
-// PNG: all colour types, depths and interlacing; tRNS becomes alpha. JPEG: grey, YCbCr, RGB, CMYK and YCCK (Adobe's inverted form too), as rgb; damage
-//   that costs no data (junk between markers) is forgiven, missing data is not.
+// PNG: all colour types, depths and interlacing; tRNS becomes alpha.
+// JPEG: grey, YCbCr, RGB, CMYK and YCCK (Adobe's inverted form too), as rgb; damage that costs no
+//   data (junk between markers) is forgiven, missing data is not.
 // WebP: lossy and lossless, alpha; not animated. TGA: colour, grey and mapped, run lengths, 8 to 32
 //   bits, any origin; the fourth byte is alpha where the header says so.
 // HDR: RGBE and XYZE (converted to Rec. 709), old and new run lengths, every orientation of the

@@ -73,8 +73,7 @@ EnvironmentMap reduced(const EnvironmentMap& from, int by) {
 
 EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
   Raster read = decode_raster(read_file(path, max_environment_bytes), path);
-  if (obey_own_colours(read) == ColoursFound::broken)
-    warnings.add(path + ": its colour profile cannot be used; taken for sRGB");
+  if (obey_own_colours(read) == ColoursFound::broken) warnings.add(path + broken_colours);
   const Raster raster = rec709_raster(linear_raster(std::move(read)), false);
   EnvironmentMap map;
   map.name = path;

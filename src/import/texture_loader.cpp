@@ -49,7 +49,7 @@ uint64_t texel_bytes(const Texture& t) {
 // Of colours in sRGB's primaries; what lies outside of them is cut off.
 Raster TextureLoader::color_raster(const std::string& key, Raster raster) {
   if (obeys_own_colours_ && troffer::obey_own_colours(raster) == ColoursFound::broken)
-    scene_.warnings.add(key + ": its colour profile cannot be used; taken for sRGB");
+    scene_.warnings.add(key + broken_colours);
   if (!raster.primaries) return raster;
   raster = rec709_raster(std::move(raster), true);
   for (float& v : raster.texels_float)

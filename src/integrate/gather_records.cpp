@@ -48,14 +48,6 @@ GatherAim GatherRecords::aim_at(int x, int y, const CellHit& hit,
   return GatherAim(places, std::span(visible_).subspan(tile * n, n), rest_[tile], hit);
 }
 
-// Whether a record holds at a hit, so far from it, squared.
-bool GatherRecords::is_of(const GatherRecord& record, const CellHit& hit, uint32_t gloss,
-                          float distance2) {
-  if (gloss != GlossPlace::no_material && gloss != record.place.material) return false;
-  // As far as pixels are apart where one looks along a surface, and no farther.
-  return distance2 <= sqr(16 * record.spacing) && is_one_surface(record.hit, hit, record.spacing);
-}
-
 bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                                   FittedRecord& out) const {
   float weights = 0, nearest = 0;
@@ -65,8 +57,11 @@ bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t glo
     for (int i = x - 1; i <= x + 1; ++i)
       of_pixel(i, j, [&](uint32_t r) {
         const GatherRecord& record = records_[r];
+        if (gloss != GlossPlace::no_material && gloss != record.place.material) return;
         const float d2 = length_squared(record.hit.position - hit.position);
-        if (!is_of(record, hit, gloss, d2)) return;
+        // As far as pixels are apart where one looks along a surface, and no farther.
+        if (d2 > sqr(16 * record.spacing) || !is_one_surface(record.hit, hit, record.spacing))
+          return;
         // The own pixel's, but for where it goes over into the next one's.
         const float w = 1 / sqr(d2 / sqr(record.spacing) + 0.03f);
         if (w > nearest) {

@@ -101,8 +101,6 @@ class GatherRecords {
  private:
   friend class GatherPass;
   GatherRecords(const PixelWindow& window) : window_(window) {}
-  static bool is_of(const GatherRecord& record, const CellHit& hit, uint32_t gloss,
-                    float distance2);
   // Calls visit(record) for those of a pixel.
   template <class Visit>
   void of_pixel(int x, int y, const Visit& visit) const {

@@ -48,24 +48,22 @@ CertifiedSettings settings_of_first(const MethodInput& in) {
   return s;
 }
 
-// … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
-// shows of all of them: by draws where certificates take more.
-CertifiedSettings settings_of_further(const MethodInput& in) {
-  constexpr double coarse = 0.1;
+// In pictures by draws where certificates take more, by few for errors from `coarse` on. (Points
+// that are measured share cells, and would err by one and the same noise of theirs.)
+CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
   constexpr int draws = 16, few_draws = 8;  // powers of two: stratified best
   CertifiedSettings s = settings_beyond(in);
   if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
   return s;
 }
-
-// … at cells of a picture, which have eight hits or more each: likewise. Points that are measured
-// share cells, and would err by one and the same noise of theirs.
+// … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
+// shows of all of them.
+CertifiedSettings settings_of_further(const MethodInput& in) {
+  return drawn_beyond(in, 0.1);
+}
+// … at cells, which have eight hits or more each.
 CertifiedSettings settings_of_cells(const MethodInput& in) {
-  constexpr double coarse = 0.02;
-  constexpr int draws = 16, few_draws = 8;
-  CertifiedSettings s = settings_beyond(in);
-  if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
-  return s;
+  return drawn_beyond(in, 0.02);
 }
 
 // By cells, a picture errs by half of what is asked of it, or less; so it should by paths.
@@ -194,12 +192,13 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
       std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
   std::unique_ptr<IndirectLight> indirect;
   if (needs_cells(Method::certified, in.settings.indirect)) {
+    const CertifiedSettings at_cells = settings_of_cells(in);
     std::unique_ptr<DirectLight> of_cells =
-        std::make_unique<CertifiedDirect>(in.scene, occluders, settings_of_cells(in));
+        std::make_unique<CertifiedDirect>(in.scene, occluders, at_cells);
     const CertifiedSettings drawn = settings_of_further(in);
     std::unique_ptr<DirectLight> further;
     if (drawn.draws > 0) further = std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
-    add_images(in, {{direct, settings}, {of_cells, settings_of_cells(in)}, {further, drawn}});
+    add_images(in, {{direct, settings}, {of_cells, at_cells}, {further, drawn}});
     constexpr double any = std::numeric_limits<double>::infinity();
     const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : any;
     indirect = make_cells_indirect(in, *of_cells, most_cells);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/prefetch.h"
 #include "scene/texture_patterns.h"
 
 namespace troffer {
@@ -242,7 +243,6 @@ Vec2 texel_step(const std::vector<Texture>& textures, uint32_t texture) {
 }
 
 void prefetch(const std::vector<Texture>& textures, uint32_t texture, const Vec2& uv) {
-#if defined(__GNUC__)
   const Texture& t = textures[texture];
   if (t.kind == TextureKind::product) {
     prefetch(textures, t.factor_a, uv);
@@ -255,13 +255,10 @@ void prefetch(const std::vector<Texture>& textures, uint32_t texture, const Vec2
     if (j < 0) continue;
     const size_t at = (size_t(j) * size_t(t.width) + size_t(x.first)) * size_t(t.channels);
     if (t.texels8.empty())
-      __builtin_prefetch(t.texels_float.data() + at);
+      prefetch_line(t.texels_float.data() + at);
     else
-      __builtin_prefetch(t.texels8.data() + at);
+      prefetch_line(t.texels8.data() + at);
   }
-#else
-  (void)textures, (void)texture, (void)uv;
-#endif
 }
 
 }  // namespace troffer
