@@ -27,8 +27,12 @@ namespace troffer {
 namespace {
 
 // Nothing where the scene has no camera and none is described.
+Vec3 up_of(const Scene& scene, const RenderCommand& c) {
+  return c.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.up, "--up"));
+}
+
 std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c) {
-  const Vec3 up = c.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.up, "--up"));
+  const Vec3 up = up_of(scene, c);
   if (!c.eye.empty() || !c.target.empty()) {
     if (c.eye.empty() || c.target.empty()) throw UsageError("--eye and --target go together");
     if (!c.camera.empty()) throw UsageError("--camera and --eye exclude each other");
@@ -48,7 +52,7 @@ std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c) 
 
 // For a scene without camera.
 Camera place_camera(const PreparedScene& scene, const RenderCommand& c) {
-  const Vec3 up = c.up.empty() ? guess_up(scene.scene) : Vec3(parse_vector(c.up, "--up"));
+  const Vec3 up = up_of(scene.scene, c);
   if (!c.is_quiet)
     fmt::print(
         stderr,
@@ -257,14 +261,22 @@ int run_render(RenderCommand c) {
   Seconds seconds;
   c.daylight.up = c.up;
   const ThreadLimit limit(c.options.threads);
-  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
-  const std::optional<Camera> chosen = choose_camera(imported, c);
-  seconds.import = seconds_since(start);
-  Clock::time_point mark = Clock::now();
-  Camera camera = chosen.value_or(Camera());
+  Camera camera;
   PreviewFiles files(c, camera);
   Preview preview([&](const Image& picture) { files.write(picture); });
-  if (c.has_preview && chosen) preview.sight(imported, camera, c.options);
+  const auto show_sight = [&](const Scene& shapes, bool has_images) {
+    const std::optional<Camera> chosen = choose_camera(shapes, c);
+    camera = chosen ? *chosen : default_camera(shapes, up_of(shapes, c));
+    preview.sight(shapes, camera, c.options, has_images);
+  };
+  ShowShapes show_shapes;
+  if (c.has_preview) show_shapes = [&](const Scene& shapes) { show_sight(shapes, true); };
+  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, show_shapes);
+  seconds.import = seconds_since(start);
+  Clock::time_point mark = Clock::now();
+  if (c.has_preview) show_sight(imported, false);
+  const std::optional<Camera> chosen = choose_camera(imported, c);
+  if (chosen) camera = *chosen;
   const PreparedScene scene(std::move(imported));
   if (!chosen) camera = place_camera(scene, c);
   seconds.build = seconds_since(mark);

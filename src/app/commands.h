@@ -3,14 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "lighting/daylight_options.h"
 #include "app/lasting_options.h"
 #include "import/import_options.h"
+#include "lighting/daylight_options.h"
 #include "render/radiosity.h"
 #include "render/render.h"
 
@@ -155,10 +156,14 @@ void add_bake(CLI::App& app, BakeCommand& command);  // its options
 // UsageError where options are at odds; warns of those that the method does not use.
 int check_and_bake(const CLI::App& command_line, BakeCommand command);
 
+// Gets a scene without its images, where it has some, before it is read with them.
+using ShowShapes = std::function<void(const Scene& scene)>;
+
 // The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
 // emitting (all if empty), warnings printed to standard error unless is_quiet.
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
-                 const DaylightOptions* daylight, bool is_quiet);
+                 const DaylightOptions* daylight, bool is_quiet,
+                 const ShowShapes& show_shapes = {});
 
 // "certified", "kj92", "fixed" and "path"; UsageError for others.
 Method parse_method(const std::string& name);

@@ -27,19 +27,26 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
 
 namespace {
 
-Scene import_shown(const SceneChoice& choice, bool is_quiet) {
+Scene import_shown(const SceneChoice& choice, ImageUse images, bool is_quiet) {
   const std::string name = std::filesystem::path(choice.file).filename().string();
   ProgressBar bar("reading " + printable(name), is_quiet);
   ImportOptions options = choice.options;
   options.progress = [&](double fraction) { bar.update(fraction); };
+  options.images = images;
   return import_scene(choice.file, options);
 }
 
 }  // namespace
 
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
-                 const DaylightOptions* daylight, bool is_quiet) {
-  Scene scene = import_shown(choice, is_quiet);
+                 const DaylightOptions* daylight, bool is_quiet, const ShowShapes& show_shapes) {
+  Scene scene = import_shown(choice, show_shapes ? ImageUse::left_out : ImageUse::read, is_quiet);
+  if (scene.left_out_image_bytes.value_or(0) > 0) {
+    show_shapes(scene);
+    scene = Scene();  // not twice in memory
+    scene = import_shown(choice, ImageUse::read, is_quiet);
+  }
+  scene.left_out_image_bytes.reset();
   if (daylight != nullptr) add_daylight(scene, *daylight);
   if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);

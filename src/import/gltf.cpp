@@ -45,6 +45,7 @@ class Importer {
         instancer_(scene, bounds) {}
 
   void run() {
+    materials_.expect_images();
     read_primitives();
     read_poses();
     nodes_ = gltf_nodes(root_, poses_, scene_.warnings);
@@ -261,17 +262,19 @@ class Importer {
 }  // namespace
 
 Scene import_gltf(const std::string& path, const ImportOptions& options) {
-  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
-    GltfFile file = read_gltf_file(path);
-    const JsonDocument document(path, std::move(file.json_text));
-    scene.file = path;
-    scene.is_photometric = true;
-    if (file.is_out_of_order)
-      scene.warnings.add("the binary chunk is not the second one; it is read all the same");
-    check_gltf_document(document.root(), scene.warnings);
-    check_gltf_extensions(document.root(), scene.warnings);
-    Importer(document.root(), file, options, scene, bounds).run();
-  });
+  return import_recentred(
+      [&](Scene& scene, PlacedBounds& bounds) {
+        GltfFile file = read_gltf_file(path);
+        const JsonDocument document(path, std::move(file.json_text));
+        scene.file = path;
+        scene.is_photometric = true;
+        if (file.is_out_of_order)
+          scene.warnings.add("the binary chunk is not the second one; it is read all the same");
+        check_gltf_document(document.root(), scene.warnings);
+        check_gltf_extensions(document.root(), scene.warnings);
+        Importer(document.root(), file, options, scene, bounds).run();
+      },
+      options.images);
 }
 
 }  // namespace troffer

@@ -372,6 +372,12 @@ const GltfMaterial& GltfMaterials::get(std::optional<uint32_t> index) {
   return done_.emplace(key, made).first->second;
 }
 
+void GltfMaterials::expect_images() {
+  const auto materials = root_.find("materials");
+  for (size_t i = 0; materials && i < materials->size(); ++i)
+    expect_gltf_images(root_, materials->element(i), buffers_, loader_);
+}
+
 void GltfMaterials::check_unused_images() {
   const auto images = root_.find("images");
   for (size_t i = 0; images && i < images->size(); ++i) {

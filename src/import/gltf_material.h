@@ -36,6 +36,9 @@ class GltfMaterials {
   // The material of that index in /materials, or the default material [1] §3.9.6.
   const GltfMaterial& get(std::optional<uint32_t> index);
 
+  // Has images that materials will want decoded beforehand.
+  void expect_images();
+
   // Warns of images that nothing shows and that could not be shown. To be called last.
   void check_unused_images();
 

@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "import/mesh_clean.h"
 #include "import/triangle_check.h"
 
 namespace troffer {
 
 namespace {
+
+constexpr size_t read_at_once = size_t(1) << 16;  // of what is worked on side by side
 
 Vec3d vec3_of(const std::array<float, 4>& v) {
   return {double(v[0]), double(v[1]), double(v[2])};
@@ -109,46 +112,64 @@ class Poser {
 // The triangles worth keeping, in terms of the accessors' vertices.
 std::vector<Triangle> read_triangles(const GltfPrimitive& p, const Poser& poser,
                                      WarningLog& warnings, PlacedBounds& bounds) {
-  std::vector<Triangle> triangles;
+  struct Piece {
+    std::vector<Triangle> triangles;
+    TriangleCheck check;
+    PlacedBounds bounds;
+  };
   const uint64_t n = p.triangle_count();
+  std::vector<Piece> pieces(n / read_at_once + 1);
+  parallel_pieces(n, read_at_once, [&](size_t first, size_t end) {
+    Piece& piece = pieces[first / read_at_once];
+    piece.triangles.reserve(end - first);
+    for (size_t i = first; i < end; ++i) {
+      Triangle t = p.triangle(i);
+      if (poser.is_mirrored()) std::swap(t[1], t[2]);
+      const Vec3d a = poser.position(t[0]), b = poser.position(t[1]), c = poser.position(t[2]);
+      piece.bounds.add_triangle(a, b, c);
+      if (piece.check.is_good(Vec3(a), Vec3(b), Vec3(c))) piece.triangles.push_back(t);
+    }
+  });
+  std::vector<Triangle> triangles;
   TriangleCheck check;
-  for (uint64_t i = 0; i < n; ++i) {
-    Triangle t = p.triangle(i);
-    if (poser.is_mirrored()) std::swap(t[1], t[2]);
-    const Vec3d a = poser.position(t[0]), b = poser.position(t[1]), c = poser.position(t[2]);
-    bounds.add_triangle(a, b, c);
-    if (check.is_good(Vec3(a), Vec3(b), Vec3(c))) triangles.push_back(t);
+  for (const Piece& piece : pieces) {
+    check.add(piece.check);
+    bounds.add(piece.bounds);
   }
+  triangles.reserve(n - check.bad());
+  for (const Piece& piece : pieces)
+    triangles.insert(triangles.end(), piece.triangles.begin(), piece.triangles.end());
   check.report(warnings);
   return triangles;
+}
+
+// What `of` gives for each vertex.
+template <class T, class Of>
+std::vector<T> for_each_vertex(const std::vector<uint32_t>& used, const Of& of) {
+  std::vector<T> out(used.size());
+  parallel_pieces(used.size(), read_at_once, [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) out[i] = of(used[i]);
+  });
+  return out;
 }
 
 // Zeros where the set is not there but `is_needed`.
 std::vector<Vec2> read_uvs(const GltfPrimitive& p, int set, const std::vector<uint32_t>& used,
                            bool is_needed) {
-  std::vector<Vec2> out;
   const auto found = p.uvs.find(set);
-  if (found == p.uvs.end()) {
-    if (is_needed) out.resize(used.size());
-    return out;
-  }
-  out.reserve(used.size());
-  for (const uint32_t v : used) {
+  if (found == p.uvs.end()) return std::vector<Vec2>(is_needed ? used.size() : 0);
+  return for_each_vertex<Vec2>(used, [&](uint32_t v) {
     const auto value = found->second.read(v);
-    out.push_back({value[0], value[1]});
-  }
-  return out;
+    return Vec2{value[0], value[1]};
+  });
 }
 
 std::vector<TextureValue> read_colors(const AccessorView& colors,
                                       const std::vector<uint32_t>& used) {
-  std::vector<TextureValue> out;
-  out.reserve(used.size());
-  for (const uint32_t v : used) {
+  return for_each_vertex<TextureValue>(used, [&](uint32_t v) {
     const auto c = colors.read(v);
-    out.push_back({{c[0], c[1], c[2]}, colors.components == 4 ? c[3] : 1.0f});
-  }
-  return out;
+    return TextureValue{{c[0], c[1], c[2]}, colors.components == 4 ? c[3] : 1.0f};
+  });
 }
 
 // Exporters that mirror sometimes leave the winding behind. Where every normal of a mesh lies on
@@ -174,12 +195,9 @@ Mesh make_gltf_mesh(const GltfPrimitive& p, const GltfPose& pose, const GltfUvSe
   Mesh mesh;
   mesh.triangles = read_triangles(p, poser, warnings, bounds);
   const std::vector<uint32_t> used = compact(mesh.triangles, p.positions.count);
-  mesh.positions.reserve(used.size());
-  for (const uint32_t v : used) mesh.positions.emplace_back(poser.position(v));
-  if (p.normals) {
-    mesh.normals.reserve(used.size());
-    for (const uint32_t v : used) mesh.normals.push_back(poser.normal(v));
-  }
+  mesh.positions = for_each_vertex<Vec3>(used, [&](uint32_t v) { return Vec3(poser.position(v)); });
+  if (p.normals)
+    mesh.normals = for_each_vertex<Vec3>(used, [&](uint32_t v) { return poser.normal(v); });
   mesh.uvs_2 = read_uvs(p, sets.second, used, false);
   mesh.uvs = read_uvs(p, sets.first, used, !mesh.uvs_2.empty());
   if (colors && p.colors) *colors = read_colors(*p.colors, used);

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "base/error.h"
 #include "import/file.h"
 #include "import/gltf_uri.h"
 #include "import/uri.h"
@@ -74,6 +75,19 @@ int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers
   return loader.from_memory(data->bytes, key, look);
 }
 
+// Data URIs would have to be decoded and kept: those wait.
+void expect_image(const JsonNode& image, const GltfBuffers& buffers, TextureLoader& loader) {
+  if (const auto view = image.find("bufferView")) {
+    loader.expect_memory(buffers.buffer_view(*view), gltf_image_key(image));
+    return;
+  }
+  const auto uri = image.find("uri");
+  if (!uri || has_uri_scheme(uri->as_string())) return;
+  const std::string name = percent_decoded(uri->as_string()).value_or(uri->as_string());
+  const ConfinedPath path = confined_path(folder_of(image.file()), name);
+  if (path.is_fine()) loader.expect_file(path.path);
+}
+
 // WebP where there is one; of images that are not read (KHR_texture_basisu) the plain one that may
 // stand beside them.
 std::optional<JsonNode> source_of(const JsonNode& texture) {
@@ -86,6 +100,27 @@ std::optional<JsonNode> source_of(const JsonNode& texture) {
 
 std::string gltf_image_key(const JsonNode& image) {
   return image.file() + "#" + image.pointer();
+}
+
+void expect_gltf_images(const JsonNode& root, const JsonNode& node, const GltfBuffers& buffers,
+                        TextureLoader& loader) {
+  for (const std::string& key : node.keys()) {
+    const JsonNode below = node.member(key);
+    if (!below.is_object() || key == "occlusionTexture") continue;
+    if (!key.ends_with("Texture")) {
+      expect_gltf_images(root, below, buffers, loader);
+      continue;
+    }
+    try {
+      const JsonNode textures = root.member("textures"), images = root.member("images");
+      const JsonNode texture =
+          textures.element(below.member("index").as_index(textures.size(), "textures"));
+      if (const auto source = source_of(texture))
+        expect_image(images.element(source->as_index(images.size(), "images")), buffers, loader);
+    } catch (const InputError&) {
+      continue;  // an extension that nobody reads, or told later
+    }
+  }
 }
 
 GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_srgb,

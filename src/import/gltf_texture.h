@@ -21,6 +21,11 @@ struct GltfTextureUse {
 // What stands for an image in warnings and for the loader.
 std::string gltf_image_key(const JsonNode& image);
 
+// Tells the loader that it will be asked for the images of the textures that `node`, a material,
+// names. What is wrong with them is told when they are used.
+void expect_gltf_images(const JsonNode& root, const JsonNode& node, const GltfBuffers& buffers,
+                        TextureLoader& loader);
+
 // The texture that `info` (a textureInfo [1] §5.30) names, with its sampler and transform [2].
 // `is_srgb`: colour as against data. `sets`: what a mesh of its material has as texture
 // coordinates. A URI that leads out of the scene's folder fails.

@@ -32,12 +32,12 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
     throw UsageError("--variant, --time and --animation go with .gltf and .glb");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
   if (ending == "rad") return import_radiance(path);
-  if (ending == "xml") return import_mitsuba(path);
+  if (ending == "xml") return import_mitsuba(path, options.images);
   if (ending == "stl") return import_stl(path, {.progress = options.progress});
   if (ending == "ply") return import_ply(path, options.progress);
   return is_gltf            ? import_gltf(path, options)
-         : ending == "pbrt" ? import_pbrt(path)
-                            : import_obj(path, {.progress = options.progress});
+         : ending == "pbrt" ? import_pbrt(path, options.images)
+                            : import_obj(path, {.progress = options.progress}, options.images);
 }
 
 }  // namespace

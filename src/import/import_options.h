@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "import/image_use.h"
 #include "import/read_progress.h"
 
 namespace troffer {
@@ -13,6 +14,7 @@ struct ImportOptions {
   std::optional<double> time;            // seconds into an animation; none: at rest
   std::optional<std::string> animation;  // by name; none: the first
   TellProgress progress;                 // of the file; for .obj .ply .stl
+  ImageUse images = ImageUse::read;
 
   bool is_any() const { return variant || time || animation; }
 };

@@ -27,9 +27,18 @@ void drop_triangles(Mesh& mesh, WarningLog& warnings) {
   TriangleCheck all;
   for (const TriangleCheck& check : checks) all.add(check);
   all.report(warnings);
-  TriangleCheck again;
-  if (all.bad() > 0)
-    std::erase_if(mesh.triangles, [&](const Triangle& t) { return !is_good(again, mesh, t); });
+  if (all.bad() == 0) return;
+  size_t kept = 0;
+  for (size_t first = 0; first < mesh.triangles.size(); first += cleaned_at_once) {
+    const size_t end = std::min(first + cleaned_at_once, mesh.triangles.size());
+    const bool is_any_bad = checks[first / cleaned_at_once].bad() > 0;
+    for (size_t i = first; i < end; ++i) {
+      TriangleCheck again;
+      if (!is_any_bad || is_good(again, mesh, mesh.triangles[i]))
+        mesh.triangles[kept++] = mesh.triangles[i];
+    }
+  }
+  mesh.triangles.resize(kept);
 }
 
 // Whether is_sound(i) for all i in [0, n).

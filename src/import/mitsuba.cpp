@@ -261,11 +261,13 @@ void MitsubaReader::place(const MitsubaShape& shape, const Affine& world, const 
 
 }  // namespace
 
-Scene import_mitsuba(const std::string& path) {
-  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
-    scene.file = path;
-    MitsubaReader(path, scene, bounds).read();
-  });
+Scene import_mitsuba(const std::string& path, ImageUse images) {
+  return import_recentred(
+      [&](Scene& scene, PlacedBounds& bounds) {
+        scene.file = path;
+        MitsubaReader(path, scene, bounds).read();
+      },
+      images);
 }
 
 }  // namespace troffer

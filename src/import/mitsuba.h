@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "import/image_use.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -17,6 +18,6 @@ namespace troffer {
 // The front of a surface, which alone emits, is the side of its normals, else of its winding;
 // flip_normals turns it.
 // InputError: with line and column, for anything malformed.
-Scene import_mitsuba(const std::string& path);
+Scene import_mitsuba(const std::string& path, ImageUse images = ImageUse::read);
 
 }  // namespace troffer

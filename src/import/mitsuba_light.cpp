@@ -119,6 +119,10 @@ void MitsubaLightReader::envmap() {
   const std::string file = get_text(node_, "filename", "");
   const ConfinedPath path = confined_path(tree_.folder(), file);
   std::string problem = path.problem;
+  if (path.is_fine() && scene_.left_out_image_bytes) {
+    *scene_.left_out_image_bytes += size_of_left_out(path.path);
+    return;
+  }
   if (path.is_fine() && set_axes(e)) {
     try {
       EnvironmentMap map = read_environment(path.path, scene_.warnings);

@@ -24,6 +24,19 @@ WrapMode wrap_mode(const MitsubaNode& node, const std::string& text) {
 
 }  // namespace
 
+// Of all bitmaps: those that nobody uses cost a little time of other cores.
+MitsubaTextures::MitsubaTextures(Scene& scene, const MitsubaTree& tree)
+    : scene_(scene), tree_(tree), loader_(scene) {
+  for (const MitsubaNode& node : tree.all()) {
+    if (node.tag != "texture" || node.type != "bitmap") continue;
+    for (const MitsubaNode* child : node.children)
+      if (child->name == "filename")
+        if (const ConfinedPath path = confined_path(tree.folder(), child->attribute("value"));
+            path.is_fine())
+          loader_.expect_file(path.path);
+  }
+}
+
 int32_t MitsubaTextures::append(Texture texture) {
   scene_.textures.push_back(std::move(texture));
   return int32_t(scene_.textures.size()) - 1;

@@ -16,8 +16,7 @@ namespace troffer {
 class MitsubaTextures {
  public:
   // Both must outlive this.
-  MitsubaTextures(Scene& scene, const MitsubaTree& tree)
-      : scene_(scene), tree_(tree), loader_(scene) {}
+  MitsubaTextures(Scene& scene, const MitsubaTree& tree);
 
   // A colour, a texture or a reference to one. What has no counterpart is one colour, with a
   // warning that names it. InputError: values that cannot be used.

@@ -39,6 +39,7 @@ class MitsubaTree {
   MitsubaTree(const std::string& path, WarningLog& warnings);
 
   const MitsubaNode& root() const { return nodes_.front(); }
+  const std::deque<MitsubaNode>& all() const { return nodes_; }
   // Folder that files are looked up in.
   const std::string& folder() const { return folder_; }
   // Whether the file speaks Mitsuba 0.2 to 0.6, whose defaults differ here and there.

@@ -54,7 +54,33 @@ Texture grey(const Texture& t, const Of& of) {
   return out;
 }
 
+// Where `map` says, or beside the scene.
+struct ImagePlace {
+  std::string path;     // empty: nowhere
+  std::string problem;  // then
+  bool is_beside = false;
+};
+
+ImagePlace place_of(const MtlMap& map, const std::string& folder) {
+  const ConfinedPath path = confined_path(folder, map.file);
+  std::error_code error;
+  if (path.is_fine() && std::filesystem::exists(path.path, error)) return {path.path, "", false};
+  const std::string beside = path_beside(folder, map.file);
+  if (!beside.empty()) return {beside, "", true};
+  return {path.is_fine() ? path.path : "", path.problem, false};
+}
+
 }  // namespace
+
+void expect_mtl_images(const MtlMaterial& material, const std::string& folder,
+                       TextureLoader& loader) {
+  for (const MtlMap* map : {&material.map_diffuse, &material.map_specular, &material.map_emission,
+                            &material.map_opacity, &material.map_roughness, &material.map_metallic,
+                            &material.map_exponent, &material.map_normal, &material.map_bump})
+    if (!map->file.empty())
+      if (const ImagePlace place = place_of(*map, folder); !place.path.empty())
+        loader.expect_file(place.path);
+}
 
 float alpha_from_exponent(float exponent) {
   return std::sqrt(2 / (exponent + 2));
@@ -68,20 +94,13 @@ int32_t load_mtl_image(const MtlMap& map, bool is_color, const std::string& fold
   look.uv_scale = {map.scale.x, -map.scale.y};
   look.uv_offset = {map.offset.x, 1 - map.offset.y};
   if (map.is_clamped) look.wrap_u = look.wrap_v = WrapMode::clamp;
-  const ConfinedPath path = confined_path(folder, map.file);
-  std::error_code error;
-  std::string place = path.is_fine() ? path.path : "";
-  if (!path.is_fine() || !std::filesystem::exists(path.path, error)) {
-    const std::string beside = path_beside(folder, map.file);
-    if (!beside.empty()) {
-      scene.warnings.add(
-          "MTL: images that are not where they should be are taken from beside the scene");
-      place = beside;
-    }
-  }
+  const ImagePlace place = place_of(map, folder);
+  if (place.is_beside)
+    scene.warnings.add(
+        "MTL: images that are not where they should be are taken from beside the scene");
   if (map.is_turbulent) scene.warnings.add("MTL: -t of maps is not supported: without turbulence");
-  const int32_t image =
-      place.empty() ? loader.missing(map.file, path.problem, look) : loader.from_file(place, look);
+  const int32_t image = place.path.empty() ? loader.missing(map.file, place.problem, look)
+                                           : loader.from_file(place.path, look);
   if ((map.base == 0 && map.gain == 1) || !has_texels(scene, image)) return image;
   return append(scene, ranged(scene.textures[size_t(image)], map.base, map.gain));
 }

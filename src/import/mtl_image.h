@@ -8,6 +8,10 @@
 
 namespace troffer {
 
+// Tells the loader that it will be asked for the images of a material.
+void expect_mtl_images(const MtlMaterial& material, const std::string& folder,
+                       TextureLoader& loader);
+
 // Index in Scene::textures, no_texture where `map` names no image. `is_color`: 8-bit texels are
 // sRGB unless the options say they are linear. Looked up in `folder`, else beside the scene.
 int32_t load_mtl_image(const MtlMap& map, bool is_color, const std::string& folder,

@@ -10,6 +10,7 @@
 #include "import/file.h"
 #include "import/mesh_clean.h"
 #include "import/mtl_convert.h"
+#include "import/mtl_image.h"
 #include "import/obj_lines.h"
 #include "import/obj_parts.h"
 #include "import/obj_piece.h"
@@ -206,6 +207,8 @@ void ObjReader::apply(const ObjEvent& event) {
     case Kind::group:
       return parts_.set_group(event.text);
     case Kind::material:
+      if (const auto found = materials_.library.find(event.text); found != materials_.library.end())
+        expect_mtl_images(found->second, folder_, materials_.loader);
       return parts_.set_material(event.text);
     case Kind::library:
       return read_libraries(event.text);
@@ -343,11 +346,13 @@ void ObjReader::finish() {
 
 }  // namespace
 
-Scene import_obj(const std::string& path, const PieceReading& how) {
-  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
-    scene.file = path;
-    ObjReader(path, how, scene, bounds).read();
-  });
+Scene import_obj(const std::string& path, const PieceReading& how, ImageUse images) {
+  return import_recentred(
+      [&](Scene& scene, PlacedBounds& bounds) {
+        scene.file = path;
+        ObjReader(path, how, scene, bounds).read();
+      },
+      images);
 }
 
 }  // namespace troffer

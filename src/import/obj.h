@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "import/image_use.h"
 #include "import/read_progress.h"
 #include "scene/scene.h"
 
@@ -18,6 +19,7 @@ namespace troffer {
 // Material libraries and images are looked up beside the file that names them and never outside
 // the scene's folder; a missing one is a warning. mtl_convert.h says how materials are read.
 // InputError: with line and column, for malformed numbers and indices out of range.
-Scene import_obj(const std::string& path, const PieceReading& how = {});
+Scene import_obj(const std::string& path, const PieceReading& how = {},
+                 ImageUse images = ImageUse::read);
 
 }  // namespace troffer

@@ -226,11 +226,13 @@ const std::map<std::string_view, PbrtInterpreter::Handler>& PbrtInterpreter::han
   return table;
 }
 
-Scene import_pbrt(const std::string& path) {
-  return import_recentred([&](Scene& scene, PlacedBounds& bounds) {
-    scene.file = path;
-    PbrtInterpreter(scene, path, bounds).run();
-  });
+Scene import_pbrt(const std::string& path, ImageUse images) {
+  return import_recentred(
+      [&](Scene& scene, PlacedBounds& bounds) {
+        scene.file = path;
+        PbrtInterpreter(scene, path, bounds).run();
+      },
+      images);
 }
 
 }  // namespace troffer

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "import/image_use.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -18,6 +19,6 @@ namespace troffer {
 // quadrics, the outside (disk: +z); ReverseOrientation turns it, and so does a transform that
 // mirrors (but not where there are per-vertex normals).
 // InputError: with line and column, for anything malformed.
-Scene import_pbrt(const std::string& path);
+Scene import_pbrt(const std::string& path, ImageUse images = ImageUse::read);
 
 }  // namespace troffer

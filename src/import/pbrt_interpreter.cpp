@@ -56,6 +56,7 @@ void PbrtInterpreter::run_file(const std::string& path, const PbrtPlace* include
   }
   files_.bytes_read += text.size();
   files_.open.push_back(path);
+  materials_.textures.expect_images_of(text);
   PbrtTokenizer tokens(path, text);
   for (PbrtToken token = tokens.next(); token.kind != PbrtTokenKind::end; token = tokens.next()) {
     if (token.kind != PbrtTokenKind::word)

@@ -135,6 +135,28 @@ ColorInput PbrtTextures::argument(const PbrtParams& params, std::string_view nam
   return texture.value;
 }
 
+// Their names stand in quotes after "string filename"; what else is found so
+// is no harm. Without escapes, which nobody writes.
+void PbrtTextures::expect_images_of(std::string_view text) {
+  constexpr std::string_view parameter = "filename\"";
+  constexpr size_t most_between = 64, most_name = 4096;
+  for (size_t at = text.find(parameter); at != std::string_view::npos;
+       at = text.find(parameter, at)) {
+    at += parameter.size();
+    const size_t begin = text.find('"', at) + 1;
+    if (begin == 0 || begin > at + most_between) continue;
+    const size_t end = text.find('"', begin);
+    if (end == std::string_view::npos || end > begin + most_name) continue;
+    const std::string name(text.substr(begin, end - begin));
+    const std::string ending = lower_case_ending(name);
+    if (ending != "png" && ending != "jpg" && ending != "jpeg" && ending != "tga" &&
+        ending != "webp")
+      continue;
+    const ConfinedPath path = confined_path(folder_, name);
+    if (path.is_fine()) loader_.expect_file(path.path);
+  }
+}
+
 int32_t PbrtTextures::load(const std::string& file, const Texture& look) {
   const ConfinedPath path = confined_path(folder_, file);
   return path.is_fine() ? loader_.from_file(path.path, look)

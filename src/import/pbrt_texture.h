@@ -24,6 +24,9 @@ class PbrtTextures {
   void define(const std::string& name, bool is_float, const std::string& kind, PbrtParams params,
               const Affine& world_from_texture);
 
+  // Has images decoded beforehand that a file's text names.
+  void expect_images_of(std::string_view text);
+
   // The value of a material's parameter: a constant, a named texture, or `fallback`.
   // InputError: wrong types, unknown textures, textures that contain themselves.
   ColorInput color(const PbrtParams& params, std::string_view name, Rgb fallback);

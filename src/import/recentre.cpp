@@ -73,13 +73,16 @@ Vec3d choose_origin(const Boxd& box) {
   return rounded_middle(box, far_step * std::min(1.0, side));
 }
 
-Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import) {
-  Scene scene;
+Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import,
+                       ImageUse images) {
+  Scene empty;
+  if (images == ImageUse::left_out) empty.left_out_image_bytes = 0;
+  Scene scene = empty;
   PlacedBounds bounds;
   import(scene, bounds);
   const Vec3d origin = choose_origin(bounds.box());
   if (origin != Vec3d{}) {
-    scene = Scene();
+    scene = empty;
     scene.origin = origin;
     bounds = PlacedBounds();
     import(scene, bounds);

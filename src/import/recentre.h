@@ -8,6 +8,7 @@
 
 #include "base/box.h"
 #include "base/parallel.h"
+#include "import/image_use.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -64,7 +65,8 @@ Vec3d choose_origin(const Boxd& box);
 // Imports a scene with the origin that suits it. `import` fills a new scene, all positions counted
 // from its origin, as the bounds are; it is called again where zero, tried first, is not that
 // origin. A scene too large for floats gets a warning that says how far its ends are rounded.
-Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import);
+Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import,
+                       ImageUse images = ImageUse::read);
 
 // A mesh in a space of its own; positions count from `anchor`.
 struct AnchoredMesh {

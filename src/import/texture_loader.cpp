@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/raster.h"
 #include "import/file.h"
 #include "import/halve_texture.h"
@@ -46,6 +47,14 @@ uint64_t texel_bytes(const Texture& t) {
 
 }  // namespace
 
+uint64_t size_of_left_out(const std::string& path) {
+  try {
+    return std::max(size_of_file(path), uint64_t(1));
+  } catch (const InputError&) {
+    return 1;
+  }
+}
+
 // Of colours in sRGB's primaries; what lies outside of them is cut off.
 Raster TextureLoader::color_raster(const std::string& key, Raster raster) {
   if (obeys_own_colours_ && troffer::obey_own_colours(raster) == ColoursFound::broken)
@@ -74,10 +83,29 @@ int32_t TextureLoader::missing(const std::string& key, const std::string& proble
                                const Texture& look) {
   scene_.warnings.add(key + ": " + problem +
                       (look.is_srgb ? "; grey stands for it" : "; left out"));
+  return constant(key, look);
+}
+
+int32_t TextureLoader::constant(const std::string& key, const Texture& look) {
   Texture constant;
   constant.name = look.name.empty() ? key : look.name;
   constant.value = look.value * stand_in_for_missing(look.is_srgb);
   return remember(key, look, std::move(constant));
+}
+
+void TextureLoader::expect(const std::string& key, ImagesAhead::Decode decode) {
+  constexpr int most_threads = 8;  // each may need as much memory as an image
+  if (scene_.left_out_image_bytes) return;
+  if (!ahead_) ahead_ = std::make_unique<ImagesAhead>(std::min(thread_count(0), most_threads) - 1);
+  ahead_->expect(key, std::move(decode));
+}
+
+void TextureLoader::expect_file(const std::string& path) {
+  expect(path, [path] { return decode_raster(read_file(path, max_image_file_bytes), path); });
+}
+
+void TextureLoader::expect_memory(std::span<const uint8_t> bytes, const std::string& key) {
+  expect(key, [bytes, key] { return decode_raster(bytes, key); });
 }
 
 // Any texture already made of the image whose texels are those that `look` asks for. 8-bit texels
@@ -106,9 +134,14 @@ Texture TextureLoader::reduced(Texture texture) {
   return texture;
 }
 
-int32_t TextureLoader::add(const std::string& key, const Texture& look, const Bytes& bytes) {
+int32_t TextureLoader::add(const std::string& key, const Texture& look, const Bytes& bytes,
+                           const Size& size) {
   const auto same = by_request_.find(request_key(key, look));
   if (same != by_request_.end()) return same->second;
+  if (scene_.left_out_image_bytes) {
+    if (!was_asked_for(key)) *scene_.left_out_image_bytes += size();
+    return constant(key, look);
+  }
 
   Texture texture = look;
   if (texture.name.empty()) texture.name = key;
@@ -122,7 +155,8 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
       texture.texels8 = other->texels8;
       texture.texels_float = other->texels_float;
     } else {
-      Raster raster = decode_raster(bytes(), key);
+      std::optional<Raster> ready = ahead_ ? ahead_->take(key) : std::nullopt;
+      Raster raster = ready ? std::move(*ready) : decode_raster(bytes(), key);
       if (look.is_srgb) raster = color_raster(key, std::move(raster));
       texture.width = raster.width;
       texture.height = raster.height;
@@ -144,15 +178,19 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
 
 int32_t TextureLoader::from_file(const std::string& path, const Texture& look) {
   std::vector<uint8_t> contents;
-  return add(path, look, [&]() -> std::span<const uint8_t> {
-    contents = read_file(path, max_image_file_bytes);
-    return contents;
-  });
+  return add(
+      path, look,
+      [&]() -> std::span<const uint8_t> {
+        contents = read_file(path, max_image_file_bytes);
+        return contents;
+      },
+      [&] { return size_of_left_out(path); });
 }
 
 int32_t TextureLoader::from_memory(std::span<const uint8_t> bytes, const std::string& key,
                                    const Texture& look) {
-  return add(key, look, [&] { return bytes; });
+  return add(
+      key, look, [&] { return bytes; }, [&] { return std::max(bytes.size(), size_t(1)); });
 }
 
 }  // namespace troffer

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "image/raster.h"
+#include "import/images_ahead.h"
 #include "scene/scene.h"
 
 namespace troffer {
@@ -19,9 +21,14 @@ inline Rgb stand_in_for_missing(bool is_color) {
   return Rgb{is_color ? 0.5f : 1.0f};
 }
 
+// What an image that is left out adds to Scene::left_out_image_bytes: 1 at least, for one that is
+// not there too.
+uint64_t size_of_left_out(const std::string& path);
+
 // Appends textures to a scene. Equal requests share one texture, and an image is decoded once
 // however many textures show it. An image that is missing or cannot be decoded becomes a warning
-// in Scene::warnings and a constant texture, of stand_in_for_missing(): never an exception.
+// in Scene::warnings and a constant texture, of stand_in_for_missing(): never an exception. Where
+// Scene::left_out_image_bytes is set, all are such constants, without a warning.
 class TextureLoader {
  public:
   // The scene must outlive the loader. All texels of a scene together take `max_texel_bytes` at
@@ -32,6 +39,11 @@ class TextureLoader {
   // Of formats that leave it to images what their colours are: gamma and profiles are obeyed. Else
   // 8- and 16-bit images are in sRGB, as glTF demands and pbrt and Mitsuba do.
   void obey_own_colours() { obeys_own_colours_ = true; }
+
+  // That one of these will be asked for: it is decoded meanwhile where there are cores for it. The
+  // bytes must outlive the loader. Changes nothing else, whether it will be or not.
+  void expect_file(const std::string& path);
+  void expect_memory(std::span<const uint8_t> bytes, const std::string& key);
 
   // Index in Scene::textures of the image at `path`, looked up as `look` says: its name, value,
   // is_srgb (of 8-bit images), is_inverted, is_filtered, mapping, wrap and uv fields are kept;
@@ -50,8 +62,11 @@ class TextureLoader {
 
  private:
   using Bytes = std::function<std::span<const uint8_t>()>;
+  using Size = std::function<uint64_t()>;
 
-  int32_t add(const std::string& key, const Texture& look, const Bytes& bytes);
+  int32_t add(const std::string& key, const Texture& look, const Bytes& bytes, const Size& size);
+  int32_t constant(const std::string& key, const Texture& look);
+  void expect(const std::string& key, ImagesAhead::Decode decode);
   Raster color_raster(const std::string& key, Raster raster);
   const Texture* decoded(const std::string& key, const Texture& look) const;
   Texture reduced(Texture texture);
@@ -62,6 +77,7 @@ class TextureLoader {
   std::map<std::pair<std::string, bool>, int32_t> by_image_;  // image, read as sRGB -> texture
   uint64_t texel_bytes_ = 0, max_texel_bytes_;
   bool obeys_own_colours_ = false;
+  std::unique_ptr<ImagesAhead> ahead_;  // once an image is expected
 };
 
 }  // namespace troffer

@@ -61,14 +61,18 @@ class Sight {
     int before = 0;
     for (size_t k = 0; k < 3; ++k)
       before += camera_.raster_of(p[k], at[k]) && std::isfinite(at[k].x + at[k].y) ? 1 : 0;
-    const Vec3 area = cross(p[1] - p[0], p[2] - p[0]);
-    const float twice = length(area);
-    if (before == 0 || !(twice > 0) || !std::isfinite(twice)) return;
-    const Vec3 normal = area * (1 / twice);
+    if (before == 0) return;
     BlockRange r{0, grid_.across - 1, 0, grid_.down - 1};  // partly behind the camera: anywhere
     if (before == 3) {
       r = around(at);
       if (r.i1 < 0 || r.j1 < 0 || r.i0 >= grid_.across || r.j0 >= grid_.down) return;
+      if (r.i0 == r.i1 && r.j0 == r.j1 && is_hidden(r.i0, r.j0, p)) return;
+    }
+    const Vec3 area = cross(p[1] - p[0], p[2] - p[0]);
+    const float twice = length(area);
+    if (!(twice > 0) || !std::isfinite(twice)) return;
+    const Vec3 normal = area * (1 / twice);
+    if (before == 3) {
       if (r.i0 == r.i1 && r.j0 == r.j1) return take(r.i0, r.j0, p, normal);
       r = {std::max(r.i0, 0), std::min(r.i1, grid_.across - 1), std::max(r.j0, 0),
            std::min(r.j1, grid_.down - 1)};
@@ -110,12 +114,23 @@ class Sight {
 
   Seen& seen(int i, int j) { return seen_[size_t(j) * size_t(grid_.across) + size_t(i)]; }
 
+  // A triangle within one block, behind what is seen there.
+  bool is_hidden(int i, int j, const std::array<Vec3, 3>& p) {
+    return distance_of(p) > seen(i, j).distance;
+  }
+
+  float distance_of(const std::array<Vec3, 3>& p) const {
+    const Vec3 middle = middle_of(p);
+    return camera_.is_perspective() ? camera_.distance(middle) : camera_.depth(middle);
+  }
+
+  static Vec3 middle_of(const std::array<Vec3, 3>& p) {
+    return (p[0] + p[1] + p[2]) * (1.0f / 3.0f);
+  }
+
   // A triangle within one block: as if it filled it.
   void take(int i, int j, const std::array<Vec3, 3>& p, const Vec3& normal) {
-    const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f);
-    const float distance =
-        camera_.is_perspective() ? camera_.distance(middle) : camera_.depth(middle);
-    seen(i, j).take(distance, std::abs(dot(normal, camera_.towards_eye(middle))));
+    seen(i, j).take(distance_of(p), std::abs(dot(normal, camera_.towards_eye(middle_of(p)))));
   }
 
   // Where the block's ray meets the triangle, if it does.

@@ -158,9 +158,10 @@ Image spread(const Image& values, const Blocks& blocks) {
 
 }  // namespace
 
-void Preview::sight(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+void Preview::sight(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                    bool waits_for_images) {
   constexpr size_t few_triangles = 200'000;
-  if (triangle_count(scene) <= few_triangles) return;
+  if (triangle_count(scene) <= few_triangles && !waits_for_images) return;
   const ImageSize size = image_size(camera, options.width, options.height);
   const PixelRect window = wanted_window(options, size.width, size.height);
   constexpr double most_pixels = 1 << 26;  // more may be refused soon (check_options)

@@ -28,8 +28,10 @@ class Preview {
   using Show = std::function<void(const Image&)>;
   explicit Preview(Show show, const PreviewPace& pace = {}) : show_(std::move(show)), pace_(pace) {}
 
-  // Of a scene for which a tracer takes a while to build, at once: a grey picture (first_sight.h).
-  void sight(const Scene& scene, const Camera& camera, const RenderOptions& options);
+  // Of a scene for which a tracer takes a while to build, or for which images are yet to be read,
+  // at once: a grey picture (first_sight.h).
+  void sight(const Scene& scene, const Camera& camera, const RenderOptions& options,
+             bool waits_for_images);
 
   // A coarse picture by few paths: shown as soon as there is one, and again when it has become as
   // fine as about a second allows. The options must be fine (check_options).

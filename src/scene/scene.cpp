@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace troffer {
 
@@ -20,11 +21,24 @@ size_t stored_triangle_count(const Scene& scene) {
   return n;
 }
 
+// Of the vertices that triangles use, on all cores.
+static Box bounds_of_triangles(const Mesh& mesh) {
+  constexpr size_t at_once = size_t(1) << 16;
+  std::vector<Box> parts(mesh.triangles.size() / at_once + 1);
+  parallel_pieces(mesh.triangles.size(), at_once, [&](size_t first, size_t end) {
+    Box own;
+    for (size_t i = first; i < end; ++i)
+      for (const uint32_t v : mesh.triangles[i]) own.grow(mesh.positions[v]);
+    parts[first / at_once] = own;
+  });
+  Box box;
+  for (const Box& part : parts) box.grow(part);
+  return box;
+}
+
 Box bounds(const Scene& scene) {
   Box box;
-  for (const Mesh& m : scene.meshes)
-    for (const Triangle& t : m.triangles)
-      for (const uint32_t v : t) box.grow(m.positions[v]);
+  for (const Mesh& m : scene.meshes) box.grow(bounds_of_triangles(m));
   for (const Instance& i : scene.instances) box.grow(i.bounds);
   for (const Sphere& s : scene.spheres) {
     box.grow(s.centre - Vec3{s.radius});

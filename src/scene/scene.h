@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,8 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   bool is_photometric = false;  // emission in cd/m² (glTF); else W/(m² sr)
+  // Where importers were to leave images out: bytes of those that there would have been, encoded.
+  std::optional<uint64_t> left_out_image_bytes;
   WarningLog warnings;
 };
 

@@ -50,6 +50,16 @@ FloatImage halved(int width, int height, size_t channels, const Read& read) {
   float* out = small.texels.data();
   for (const Span& row : rows)
     for (const Span& column : columns) {
+      if (row.count == 2 && column.count == 2) {  // everywhere where sides are even
+        const float weight = row.weights[0] * column.weights[0];
+        const size_t above = size_t(row.first) * size_t(width) + size_t(column.first);
+        const size_t below = above + size_t(width);
+        for (size_t c = 0; c < channels; ++c)
+          out[c] =
+              weight * (read(above, c) + read(above + 1, c) + read(below, c) + read(below + 1, c));
+        out += channels;
+        continue;
+      }
       for (int j = 0; j < row.count; ++j)
         for (int i = 0; i < column.count; ++i) {
           const float weight = row.weights[size_t(j)] * column.weights[size_t(i)];
@@ -65,15 +75,24 @@ FloatImage halved(int width, int height, size_t channels, const Read& read) {
 struct ByteCode {
   std::array<float, 256> values{};
   std::array<float, 255> ends{};  // of what each but the last is nearest to
+  static constexpr size_t table_size = 1 << 12;
+  std::array<uint8_t, table_size> starts{};  // the first end above that value, or one before it
   bool is_srgb;
 
   explicit ByteCode(bool is_of_srgb) : is_srgb(is_of_srgb) {
     for (size_t i = 0; i < values.size(); ++i)
       values[i] = is_srgb ? linear_from_srgb(float(i) / 255.0f) : float(i) / 255.0f;
     for (size_t i = 0; i + 1 < values.size(); ++i) ends[i] = 0.5f * (values[i] + values[i + 1]);
+    for (size_t k = 0; k < table_size; ++k) {
+      const float least = (float(k) - 0.5f) / (table_size - 1);
+      starts[k] = uint8_t(std::upper_bound(ends.begin(), ends.end(), least) - ends.begin());
+    }
   }
+  // A table says where to begin: ends are further apart than its steps, but for the darkest.
   uint8_t nearest(float value) const {
-    return uint8_t(std::upper_bound(ends.begin(), ends.end(), value) - ends.begin());
+    size_t i = starts[size_t(std::clamp(value, 0.0f, 1.0f) * (table_size - 1))];
+    while (i < ends.size() && ends[i] <= value) ++i;
+    return uint8_t(i);
   }
 };
 
@@ -90,14 +109,17 @@ void build_levels(Texture& t) {
                                 : n;  // carries no transfer function; n: there is none
   const ByteCode color(t.is_srgb), plain(false);
   const auto code = [&](size_t c) -> const ByteCode& { return c == alpha ? plain : color; };
+  std::array<const std::array<float, 256>*, 4> tables{};
+  for (size_t c = 0; c < n; ++c) tables[c] = &code(c).values;
   const bool is_bytes = !t.texels8.empty();
   FloatImage at;
   for (int level = 0; level == 0 || at.width > 1 || at.height > 1; ++level) {
     if (level > 0)
       at = halved(at.width, at.height, n, [&](size_t i, size_t c) { return at.texels[i * n + c]; });
     else if (is_bytes)
-      at = halved(t.width, t.height, n,
-                  [&](size_t i, size_t c) { return code(c).values[t.texels8[i * n + c]]; });
+      at = halved(t.width, t.height, n, [&, texels = t.texels8.data()](size_t i, size_t c) {
+        return (*tables[c])[texels[i * n + c]];
+      });
     else
       at = halved(t.width, t.height, n,
                   [&](size_t i, size_t c) { return t.texels_float[i * n + c]; });
@@ -109,8 +131,8 @@ void build_levels(Texture& t) {
     if (l.is_float)
       t.levels_float.insert(t.levels_float.end(), at.texels.begin(), at.texels.end());
     else
-      for (size_t i = 0; i < at.texels.size(); ++i)
-        t.levels8.push_back(code(i % n).nearest(at.texels[i]));
+      for (size_t i = 0; i < at.texels.size(); i += n)
+        for (size_t c = 0; c < n; ++c) t.levels8.push_back(code(c).nearest(at.texels[i + c]));
   }
   t.levels8.shrink_to_fit();
   t.levels_float.shrink_to_fit();

@@ -170,7 +170,7 @@ void Painter::sight(const Orders& orders) {
     RenderOptions o = options_;
     o.width = r.size.width;
     o.height = r.size.height;
-    preview.sight(scene, r.camera, o);
+    preview.sight(scene, r.camera, o, false);
   });
 }
 

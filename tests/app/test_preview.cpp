@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "image/read_image.h"
+#include "image/write_image.h"
 #include "program.h"
 
 using namespace troffer;
@@ -93,4 +94,29 @@ TEST_CASE("what fails after a preview leaves no preview behind, and leaves what 
     CHECK(f.status == 1);
     CHECK(std::filesystem::exists(folder.path("o.png")) == !is_first);
   }
+}
+
+TEST_CASE("a preview comes before images are read, and changes nothing") {
+  const Folder folder;
+  // Enough texels that reading them takes a while.
+  Image texels(2048, 2048);
+  for (size_t i = 0; i < texels.pixels.size(); ++i)
+    texels.pixels[i] = Rgb{float(i % 251) / 251, float(i % 83) / 83, 0.4f};
+  std::string text = lit_floor_pbrt;
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = "t" + std::to_string(i);
+    write_image(folder.path(name + ".png"), texels);
+    text += "Texture \"" + name + "\" \"spectrum\" \"imagemap\" \"string filename\" \"" + name +
+            ".png\"\nMaterial \"diffuse\" \"texture reflectance\" \"" + name +
+            "\"\nShape \"sphere\" \"float radius\" 0.2\n";
+  }
+  const std::string scene = folder.write("room.pbrt", text);
+  const std::vector<std::string> plain{
+      "render", scene, "-o", folder.path("a.pfm"), "--method", "path", "--spp", "4", "--quiet"};
+  std::vector<std::string> shown = plain;
+  shown[3] = folder.path("b.pfm");
+  shown.push_back("--preview");
+  REQUIRE(run_program(folder, plain).status == 0);
+  REQUIRE(run_program(folder, shown).status == 0);
+  CHECK(read_file(folder.path("a.pfm")) == read_file(folder.path("b.pfm")));
 }
