@@ -21,6 +21,7 @@ struct ViewingRays {
   std::vector<uint64_t> streams;  // names the random numbers of the ray's pixel
   std::vector<uint32_t> samples;  // which sample of that pixel
   std::vector<PixelAt> pixels;    // where in the picture; empty: no picture is known
+  std::vector<Vec2> places;       // … and in that pixel, [0,1)²; empty likewise
   // Empty, or for each ray what is known of the rays around it (methods that compare patterns).
   std::vector<NeighbourRecords> neighbours;
 
@@ -32,6 +33,7 @@ struct ViewingRays {
     streams.clear();
     samples.clear();
     pixels.clear();
+    places.clear();
     neighbours.clear();
   }
 };

@@ -9,7 +9,8 @@
 
 namespace troffer {
 
-ViewingCamera::ViewingCamera(const Camera& camera, int width, int height) : camera_(camera) {
+ViewingCamera::ViewingCamera(const Camera& camera, int width, int height)
+    : camera_(camera), longer_side_(std::max(width, height)) {
   const float aspect = float(width) / float(height);
   float x0, x1, y0, y1;  // image plane: x to the right, y up
   if (camera.has_screen_window) {

@@ -22,6 +22,8 @@ class ViewingCamera {
   // What one of `rays` rays of a pixel stands for: between the root's share of its width and an
   // eighth, so that their mean is not blurred by more than the pixel.
   RayCone cone(int rays) const;
+  int longer_side() const { return longer_side_; }  // of the image, pixels
+  bool has_lens() const { return camera_.lens_radius > 0; }
   bool is_perspective() const { return camera_.kind == CameraKind::perspective; }
   // Unit, from a point to where it is seen from.
   Vec3 towards_eye(const Vec3& p) const {
@@ -36,6 +38,7 @@ class ViewingCamera {
   Camera camera_;
   // Image plane coordinates (at distance 1 for perspective) of raster (0,0), and per pixel.
   Vec2 corner_, step_;
+  int longer_side_;
 };
 
 // Image size for a camera: what was asked for; else what the file says; else 768 lines at the

@@ -1,13 +1,12 @@
 #include "render/edge_map.h"
 
-#include "render/light_outlines.h"
 #include "render/pixel_corners.h"
 #include "render/thin_things.h"
 
 namespace troffer {
 
 EdgeMap::EdgeMap(const PreparedScene& scene, const ViewingCamera& camera, const PixelRect& region,
-                 int threads)
+                 const LightOutlines& outlines, int threads)
     : region_(region), edges_(size_t(region.width()) * size_t(region.height()), 0) {
   const PixelCorners corners(scene, camera, region, threads);
   for (int y = region.y0; y < region.y1; ++y)
@@ -17,8 +16,11 @@ EdgeMap::EdgeMap(const PreparedScene& scene, const ViewingCamera& camera, const 
       pixels_with_thin_things(scene, camera, region, corners, edges_, threads);
   for (size_t i = 0; i < edges_.size(); ++i)
     if (has_thing[i] != 0) edges_[i] |= thin_thing;
-  for (const Pixel2& p : pixels_on_light_outlines(scene, camera, region))
-    edges_[index(p.x, p.y)] |= light_edge;
+  for (int y = region.y0; y < region.y1; ++y)
+    for (int x = region.x0; x < region.x1; ++x)
+      if (outlines.has_outline(x, y))
+        edges_[index(x, y)] |=
+            outlines.is_known(x, y) && !outlines.is_doubtful(x, y) ? known_light_edge : light_edge;
 }
 
 }  // namespace troffer

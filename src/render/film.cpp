@@ -148,15 +148,21 @@ Film::Light Film::light_of(size_t i) const {
   if (p.samples == 0) return {};
   const double each = 1.0 / p.samples;
   const Light plain{p.direct * each, p.indirect * each};
-  if (known_.empty() || known_[i].glances.count == 0) return plain;
+  // Of what rays bring more than lamps send on average may be taken off (LightOutlines::evened).
+  // There is no less light than none.
+  const auto least = [](const Light& l) {
+    const Vec3d sum = l.direct + l.indirect;
+    return std::min({sum.x, sum.y, sum.z});
+  };
+  const auto of_samples = [&] { return least(plain) < 0 ? Light{} : plain; };
+  if (known_.empty() || known_[i].glances.count == 0) return of_samples();
   const auto &s = known_[i].samples, &g = known_[i].glances;
   const double glance = 1.0 / g.count, share = double(g.count) / (double(g.count) + p.samples);
   const Light light{
       plain.direct + (as_vec(g.direct) * glance - as_vec(s.direct) * each) * share,
       plain.indirect + (as_vec(g.indirect) * glance - as_vec(s.indirect) * each) * share};
-  // What is known may be too much of what few samples have seen. There is no less light than none.
-  const Vec3d sum = light.direct + light.indirect;
-  return std::min({sum.x, sum.y, sum.z}) < 0 ? plain : light;
+  // What is known may be too much of what few samples have seen.
+  return least(light) < 0 ? of_samples() : light;
 }
 
 void Film::FirstHit::add(const RadianceBatch& batch, size_t i, float at_depth) {

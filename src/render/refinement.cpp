@@ -169,18 +169,43 @@ class Ordered {
   size_t count_ = 0;
 };
 
-// of: what varies; takes a pixel.
+// Whether the outline of a light is all that may set a neighbour apart from a pixel without edges:
+// where these outlines run is known.
+bool is_apart(const RefinementView& v, int x, int y, int nx, int ny) {
+  return v.edges.has_light_edge(nx, ny) && !v.edges.has_light_edge(x, y) &&
+         !v.edges.has_surface_edge(x, y);
+}
+
+bool are_all_apart(const RefinementView& v, int x, int y) {
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx)
+      if ((dx != 0 || dy != 0) && is_inside(v.records.window, x + dx, y + dy) &&
+          !is_apart(v, x, y, x + dx, y + dy))
+        return false;
+  return true;
+}
+
+// The light of lamps whose outlines run through the pixel is no part of what varies in it, but of
+// the means around.
+bool has_known_light(const RefinementView& v, int x, int y) {
+  return v.edges.has_light_edge(x, y) && !v.edges.has_unknown_light_edge(x, y);
+}
+
+// of: what varies; takes a pixel. are_comparable: its means, with the pixel.
 template <class Of>
-Surroundings look_around(const RefinementView& v, int x, int y, const RefinementOptions& options,
-                         const Of& of) {
+Surroundings look_around(const RefinementView& v, int x, int y, bool are_comparable,
+                         const RefinementOptions& options, const Of& of) {
   const PixelRect& w = v.records.window;
   Surroundings s;
   Ordered varying;
   Slope slope;
   size_t count = 0;
+  const bool counts_all = are_all_apart(v, x, y);
+  const auto counts = [&](int nx, int ny) { return counts_all || !is_apart(v, x, y, nx, ny); };
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       if ((dx == 0 && dy == 0) || !is_inside(w, x + dx, y + dy)) continue;
+      if (!counts(x + dx, y + dy)) continue;
       const Varying e = of(x + dx, y + dy);
       s.low = count > 0 ? std::min(s.low, e.mean) : e.mean;
       s.high = count > 0 ? std::max(s.high, e.mean) : e.mean;
@@ -192,13 +217,16 @@ Surroundings look_around(const RefinementView& v, int x, int y, const Refinement
                            !v.edges.has_surface_edge(x + dx, y + dy);
       ++count;
       const bool is_first_of_pair = dx + dy == -1;  // the left one, the upper one
-      if (is_first_of_pair && is_inside(w, x - dx, y - dy))
+      if (is_first_of_pair && is_inside(w, x - dx, y - dy) && counts(x - dx, y - dy))
         s.has_contrast |= differ(v, x + dx, y + dy, x - dx, y - dy, options);
     }
   if (count == 0) return s;
   s.mean /= double(count);
   s.mean_variance /= double(count);
-  s.slope_variance = slope.variance();
+  if (are_comparable)
+    s.slope_variance = slope.variance();
+  else
+    s.low = s.high;
   s.largest = varying.largest();
   s.usual = varying.middle();
   for (Varying* of_sample : {&s.largest, &s.usual})
@@ -225,6 +253,7 @@ double variance_amid_clutter(const RefinementView& v, int x, int y, double of_sl
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx) {
       if ((dx == 0 && dy == 0) || !is_inside(v.records.window, x + dx, y + dy)) continue;
+      if (is_apart(v, x, y, x + dx, y + dy)) continue;
       const double variance = of(x + dx, y + dy).variance - slope_in_samples * of_slope;
       ++all;
       if (variance <= noticed) continue;
@@ -275,7 +304,8 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   // Rays that cost so little may go for all that a picture's mean asks of what is bright.
   constexpr double most_times_less = 100;
   const auto of = [&](int px, int py) { return known_of(v.looks.at(px, py).known); };
-  const Surroundings s = look_around(v, x, y, options, of);
+  const bool is_light_known = has_known_light(v, x, y);
+  const Surroundings s = look_around(v, x, y, !is_light_known, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
   const double allowed = allowed_error(s.mean, v.typical, options, most_times_less);
   const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
@@ -286,7 +316,7 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
                 v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
   // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
   // seen what shines.)
-  const double least = has_light ? 256 : 0;
+  const double least = is_light_known ? 64 : has_light ? 256 : 0;
   const double wanted = variance > 0 ? std::pow(variance / sqr(allowed), 2.0 / 3) : 0;
   if (std::max(wanted, least) <= 4) return 0;
   int count = 16;
@@ -296,13 +326,14 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
 
 int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first, int most,
                    const RefinementOptions& options) {
-  if (v.edges.has_light_edge(x, y) && !has_glances && !options.is_noise) return most;
+  if (v.edges.has_unknown_light_edge(x, y) && !has_glances && !options.is_noise) return most;
   const auto of = [&](int px, int py) -> Varying {
     const PixelEstimate& e = v.looks.at(px, py).estimate;
     if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples, e.independent_variance};
     return {e.luminance, sqr(e.standard_error) * e.samples, e.independent_variance};
   };
-  const Surroundings s = look_around(v, x, y, options, of);
+  const Surroundings s =
+      look_around(v, x, y, has_glances || !has_known_light(v, x, y), options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y);
   const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
   if (!is_uneven && !options.is_everywhere) return first;
@@ -313,8 +344,8 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   if (has_edge && !options.is_noise)
     variance = std::max({variance, sqr(s.high - s.low) / 4, variance_along_edge(v, x, y, of),
                          v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
-  // What is far brighter than usual, as the edges of what the sun lights, is little of a picture and
-  // makes most of its error.
+  // What is far brighter than usual, as the edges of what the sun lights, is little of a picture
+  // and makes most of its error.
   constexpr double most_times_less = 16;
   const double allowed = allowed_error(s.mean, v.typical, options,
                                        options.is_noise ? usual_times_less : most_times_less);

@@ -46,12 +46,13 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
   for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, most.usual));
   if (refining_.most.in_pixel > refining_.first_spp) {
     refining_.records.emplace(plan_.region);
+    refining_.can_glance = integrator.can_glance();
+    refining_.outlines.emplace(scene, camera_, plan_.region, refining_.can_glance);
     if (sampling.is_by_noise()) {
       refining_.options.error = float(sampling.error);
       refining_.options.evenness = sampling.evenness;
       refining_.options.is_everywhere = refining_.options.is_noise = true;
     }
-    refining_.can_glance = integrator.can_glance();
     steps_.further = uint32_t(passes_of(refining_.most.in_pixel - refining_.first_spp));
     if (refining_.can_glance) {
       film_.expect_glances();
@@ -235,6 +236,12 @@ bool Rendering::trace_all(Work& w) {
   return true;
 }
 
+// LightOutlines::evened.
+Rgb Rendering::evened(const Work& w, size_t ray) const {
+  return refining_.outlines->evened(w.pixels[ray].x, w.pixels[ray].y, w.rays.places[ray],
+                                    w.radiance.known[ray].direct);
+}
+
 void Rendering::trace(Work& w) {
   w.radiance.reset(w.rays.size());
   if (refining_.records) w.radiance.records.assign(w.rays.size(), {});
@@ -242,6 +249,11 @@ void Rendering::trace(Work& w) {
   integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
   for (size_t i = 0; i < w.rays.size(); ++i) {
     const auto [x, y] = w.pixels[i];
+    if (refining_.can_glance) {
+      const Rgb even = evened(w, i);
+      w.radiance.direct[i] += even;
+      w.radiance.known[i].direct += even;
+    }
     const bool is_first = film_.estimate(x, y).samples == 0;
     const float depth = camera_.depth(w.radiance.position[i]);
     if (!film_.add(x, y, w.radiance, i, depth)) ++w.counters.nan_samples;

@@ -71,6 +71,7 @@ class Rendering {
     MostViewingRays most;
     RefinementOptions options;
     std::optional<PixelRecords> records;
+    std::optional<const LightOutlines> outlines;
     std::optional<double> typical;  // luminance
     std::optional<FurtherRays> wanted;
     bool has_begun = false;
@@ -104,6 +105,7 @@ class Rendering {
   bool is_limited() const { return options_.deadline != nullptr || options_.error_limit > 0; }
   void add_rays(const Pixel2& p, uint32_t count, Work& w) const;
   void trace(Work& w);
+  Rgb evened(const Work& w, size_t ray) const;
   bool trace_all(Work& w);
   RenderEnd refine();
   RenderEnd refine_by_passes();

@@ -143,7 +143,7 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
 // How many of them the pixels of the region get, by what the first pass has seen.
 Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const PixelRecords& records = *refining_.records;
-  const EdgeMap edges(scene_, camera_, plan_.region, options_.threads);
+  const EdgeMap edges(scene_, camera_, plan_.region, *refining_.outlines, options_.threads);
   FurtherRays wanted;
   wanted.samples.assign(records.records.size(), refining_.first_spp);
   wanted.glances.assign(records.records.size(), 0);
@@ -195,9 +195,11 @@ bool Rendering::glance(const PixelRect& tile, Work& w) {
     w.radiance.reset(w.rays.size());
     w.radiance.known.assign(w.rays.size(), {});
     integrator_.glance(w.rays, *w.scratch, w.radiance, w.counters);
-    for (size_t i = 0; i < w.rays.size(); ++i)
+    for (size_t i = 0; i < w.rays.size(); ++i) {
+      w.radiance.known[i].direct += evened(w, i);
       film_.add_glance(w.pixels[i].x, w.pixels[i].y, w.radiance, i,
                        camera_.depth(w.radiance.position[i]));
+    }
     w.rays.clear();
     w.pixels.clear();
   };

@@ -9,10 +9,10 @@
 
 namespace troffer {
 
-// Points of a segment that fall into the region, no farther apart than half a pixel; none of a
-// segment of more than 2^15 pixels. What lies beside the region is left out by
-// halves: long segments that miss most of it cost little more than what is in it. What lies behind
-// the camera is left out.
+// Points of a segment that fall into the region, no farther apart than half a pixel, and in each
+// pixel that it runs through; none of a segment of more than 2^15 pixels. What lies beside the
+// region is left out by halves: long segments that miss most of it cost little more than what is in
+// it. What lies behind the camera is left out.
 class SegmentWalk {
  public:
   // The camera must outlive this.
@@ -53,6 +53,7 @@ class SegmentWalk {
       if (std::abs(d.x) <= 0.5f && std::abs(d.y) <= 0.5f) {
         for (const Point* p : {&a, &b})
           if (is_inside(p->raster)) visit(p->position, p->raster);
+        visit_between(a, b, visit);
         return;
       }
     }
@@ -60,6 +61,19 @@ class SegmentWalk {
     const Point middle = at((a.position + b.position) * 0.5f);
     halve(a, middle, depth + 1, visit);
     halve(middle, b, depth + 1, visit);
+  }
+  // Of two points in pixels that meet at a corner: one in the third pixel, which the line between
+  // them cuts the corner of.
+  template <class Visit>
+  void visit_between(const Point& a, const Point& b, const Visit& visit) const {
+    const auto border = [](float p, float q) { return std::floor(std::max(p, q)); };
+    const auto is_crossed = [&](float p, float q) { return std::floor(p) != std::floor(q); };
+    const Vec2 &p = a.raster, &q = b.raster;
+    if (!is_crossed(p.x, q.x) || !is_crossed(p.y, q.y)) return;
+    const float tx = (border(p.x, q.x) - p.x) / (q.x - p.x),
+                ty = (border(p.y, q.y) - p.y) / (q.y - p.y), t = 0.5f * (tx + ty);
+    const Vec2 between = p + (q - p) * t;
+    if (is_inside(between)) visit(a.position + (b.position - a.position) * t, between);
   }
   bool is_inside(const Vec2& r) const {
     return r.x >= float(region_.x0) && r.x < float(region_.x1) && r.y >= float(region_.y0) &&

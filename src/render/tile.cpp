@@ -105,11 +105,12 @@ void add_viewing_rays(const ViewingCamera& camera, const Pixel2& pixel, uint32_t
   const uint64_t stream = hash_of(seed, uint64_t(pixel.x), uint64_t(pixel.y));
   for (uint32_t s = first; s < first + count; ++s) {
     const SobolGroup random(stream, purpose_camera, s);
-    const Vec2 raster = Vec2{float(pixel.x), float(pixel.y)} + random.get2(0);
+    const Vec2 place = random.get2(0), raster = Vec2{float(pixel.x), float(pixel.y)} + place;
     rays.rays.push_back(camera.ray(raster, random.get2(2)));
     rays.streams.push_back(stream);
     rays.samples.push_back(s);
     rays.pixels.push_back({pixel.x, pixel.y});
+    rays.places.push_back(place);
   }
 }
 

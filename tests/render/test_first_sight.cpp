@@ -76,20 +76,21 @@ TEST_CASE("a first sight shows where rays meet something, and how it leans, for 
   CHECK(differ == 0);
 }
 
-TEST_CASE("a preview shows a first sight of large scenes alone") {
-  for (const size_t triangles : {size_t{1000}, size_t{200'001}}) {
-    Scene scene = walls_and_crumbs();
-    Mesh& m = scene.meshes[0];
-    m.triangles.resize(triangles, m.triangles[2]);
-    RenderOptions options;
-    options.width = 64;
-    options.height = 48;
-    std::vector<Image> shown;
-    Preview preview([&](const Image& image) { shown.push_back(image); });
-    preview.sight(scene, look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60), options);
-    REQUIRE(shown.size() == (triangles > 200'000 ? 1 : 0));
-    if (shown.empty()) continue;
-    CHECK(shown[0].width == 64);
-    CHECK(shown[0].at(40, 24).g > 0.3f);  // the wall ahead
-  }
+TEST_CASE("a preview shows a first sight of scenes that are large or wait for images alone") {
+  for (const bool waits : {false, true})
+    for (const size_t triangles : {size_t{1000}, size_t{200'001}}) {
+      Scene scene = walls_and_crumbs();
+      Mesh& m = scene.meshes[0];
+      m.triangles.resize(triangles, m.triangles[2]);
+      RenderOptions options;
+      options.width = 64;
+      options.height = 48;
+      std::vector<Image> shown;
+      Preview preview([&](const Image& image) { shown.push_back(image); });
+      preview.sight(scene, look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60), options, waits);
+      REQUIRE(shown.size() == (waits || triangles > 200'000 ? 1 : 0));
+      if (shown.empty()) continue;
+      CHECK(shown[0].width == 64);
+      CHECK(shown[0].at(40, 24).g > 0.3f);  // the wall ahead
+    }
 }

@@ -55,8 +55,8 @@ double rmse(const Image& a, const Image& b) {
 
 TEST_CASE("kj92: byte-identical for any number of threads, with and without coherence") {
   const PreparedScene scene(mixed_room());
-  const auto preparation =
-      prepare(scene, Method::kj92, coarse().kj92, Indirect::automatic, std::nullopt, 2, {}, never_stopped);
+  const auto preparation = prepare(scene, Method::kj92, coarse().kj92, Indirect::automatic,
+                                   std::nullopt, 2, {}, never_stopped);
   for (const bool has_coherence : {true, false})
     for (const int max_spp : {0, 16}) {
       RenderOptions o = coarse();

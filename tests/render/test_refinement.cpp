@@ -85,7 +85,8 @@ TEST_CASE("the edge map finds borders of objects, and every pixel that a small l
   const Camera camera = look_at({0.3f, 0.3f, 1.6f}, {3, 3, 2.2f}, {0, 0, 1}, 70);
   constexpr int side = 64;
   const ViewingCamera viewing(camera, side, side);
-  const EdgeMap map(scene, viewing, {0, 0, side, side}, 1);
+  const PixelRect all{0, 0, side, side};
+  const EdgeMap map(scene, viewing, all, LightOutlines(scene, viewing, all, true), 1);
   // By brute force: many rays in each pixel.
   size_t with_light = 0, missed = 0, marked = 0;
   for (int y = 0; y < side; ++y)
@@ -160,7 +161,8 @@ int wanted_amid(const Value& value, bool tells = false) {
   const PreparedScene scene(std::move(s));
   const Camera camera = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 40);
   const PixelRect window{0, 0, side, side};
-  const EdgeMap edges(scene, ViewingCamera(camera, side, side), window, 1);
+  const ViewingCamera viewing(camera, side, side);
+  const EdgeMap edges(scene, viewing, window, LightOutlines(scene, viewing, window, true), 1);
   Film film(window, {});
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)

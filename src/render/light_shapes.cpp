@@ -1,0 +1,151 @@
+#include "render/light_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/frame.h"
+#include "base/units.h"
+
+namespace troffer {
+
+namespace {
+
+using Loop = LightLoop;
+
+void add_loop(const Loop& loop, std::vector<OutlineEdge>& edges, float hidden_before = 0) {
+  for (size_t i = 0; i < loop.size(); ++i)
+    edges.push_back({loop[i], loop[(i + 1) % loop.size()], hidden_before});
+}
+
+// As a polygon of the circle's area that is as round as can be told in the picture: off by less
+// than .001 pixels, unless the circle is more than 400 pixels wide.
+Loop circle(const Vec3& centre, const Vec3& normal, float radius, const ViewingCamera& camera) {
+  constexpr float fewest = 64, most = 1024, largest_error = 0.001f;
+  const Frame frame(normal);
+  Vec2 middle, rim;
+  float pixels = 0;
+  for (const Vec3& axis : {frame.tangent, frame.bitangent})
+    if (camera.raster_of(centre, middle) && camera.raster_of(centre + axis * radius, rim))
+      pixels = std::max(pixels, std::hypot(rim.x - middle.x, rim.y - middle.y));
+  const int corners =
+      int(std::clamp(pi_f * std::sqrt(0.5f * pixels / largest_error), fewest, most));
+  const float step = 2 * pi_f / float(corners);
+  const float r = radius * std::sqrt(step / std::sin(step));
+  Loop loop;
+  for (int i = 0; i < corners; ++i)
+    loop.push_back(
+        centre + frame.to_world({r * std::cos(step * float(i)), r * std::sin(step * float(i)), 0}));
+  return loop;
+}
+
+Loop outline_of(const Disk& d, const ViewingCamera& camera) {
+  return circle(d.centre, d.normal, d.radius, camera);
+}
+
+// The circle in which the cone from the eye touches the sphere; none from within.
+Loop outline_of(const Sphere& s, const ViewingCamera& camera) {
+  const Vec3 to_eye = camera.towards_eye(s.centre);
+  const float d =
+      camera.is_perspective() ? camera.distance(s.centre) : std::numeric_limits<float>::infinity();
+  if (!(d > s.radius)) return {};
+  const float sine = s.radius / d;
+  return circle(s.centre + to_eye * (s.radius * sine), to_eye, s.radius * std::sqrt(1 - sqr(sine)),
+                camera);
+}
+
+// Edges that one triangle has for itself, or two of which one faces the eye.
+void add_mesh(const Mesh& mesh, const Light& light, const ViewingCamera& camera,
+              std::vector<OutlineEdge>& edges) {
+  struct Side {
+    uint32_t low, high;
+    bool is_front;
+    bool is_like(const Side& o) const { return low == o.low && high == o.high; }
+  };
+  std::vector<Side> sides;
+  for (const uint32_t t : light.triangles) {
+    const Triangle& i = mesh.triangles[t];
+    const Vec3 &a = mesh.positions[i[0]], &b = mesh.positions[i[1]], &c = mesh.positions[i[2]];
+    const bool is_front = dot(cross(b - a, c - a), camera.towards_eye(a)) > 0;
+    for (size_t k = 0; k < 3; ++k)
+      sides.push_back({std::min(i[k], i[(k + 1) % 3]), std::max(i[k], i[(k + 1) % 3]), is_front});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
+    return p.low != q.low ? p.low < q.low : p.high < q.high;
+  });
+  for (size_t i = 0; i < sides.size();) {
+    size_t last = i + 1, fronts = sides[i].is_front ? 1 : 0;
+    for (; last < sides.size() && sides[last].is_like(sides[i]); ++last)
+      fronts += sides[last].is_front ? 1 : 0;
+    if (last - i == 1 || (fronts > 0 && fronts < last - i))
+      edges.push_back({mesh.positions[sides[i].low], mesh.positions[sides[i].high]});
+    i = last;
+  }
+}
+
+bool is_turned_to(const Vec3& normal, const Vec3& at, const Light& light,
+                  const ViewingCamera& camera) {
+  return light.is_two_sided || dot(normal, camera.towards_eye(at)) > 0;
+}
+
+}  // namespace
+
+void add_outline(const Scene& scene, const Light& light, const ViewingCamera& camera,
+                 std::vector<OutlineEdge>& edges) {
+  switch (light.kind) {
+    case LightKind::polygon:
+      add_loop(light.polygon, edges);
+      break;
+    case LightKind::disk:
+      add_loop(outline_of(scene.disks[light.geometry], camera), edges);
+      break;
+    case LightKind::sphere: {
+      const Sphere& sphere = scene.spheres[light.geometry];
+      // of 64 corners: rays to what lies within the circle meet the sphere up to .04 radii before
+      constexpr float chord = 0.05f;
+      add_loop(outline_of(sphere, camera), edges, chord * sphere.radius);
+      break;
+    }
+    case LightKind::mesh:
+      add_mesh(scene.meshes[light.geometry], light, camera, edges);
+      break;
+    case LightKind::point:
+    case LightKind::spot:
+    case LightKind::distant:
+    case LightKind::environment:
+    case LightKind::sky:
+    case LightKind::sun:
+      break;  // nothing that a camera sees has a border
+  }
+}
+
+bool is_even(const Light& light) {
+  return has_surface(light.kind) && light.texture < 0 && !light.is_alpha_masked && light.web < 0;
+}
+
+std::vector<Loop> shining_loops(const Scene& scene, const Light& light,
+                                const ViewingCamera& camera) {
+  std::vector<Loop> loops;
+  if (light.kind == LightKind::polygon && light.polygon.size() >= 3) {
+    const Loop& p = light.polygon;
+    Vec3 area;
+    for (size_t i = 2; i < p.size(); ++i) area += cross(p[i - 1] - p[0], p[i] - p[0]);
+    if (is_turned_to(area, p[0], light, camera)) loops.push_back(p);
+  } else if (light.kind == LightKind::disk) {
+    const Disk& d = scene.disks[light.geometry];
+    if (is_turned_to(d.normal, d.centre, light, camera)) loops.push_back(outline_of(d, camera));
+  } else if (light.kind == LightKind::sphere) {
+    const Sphere& s = scene.spheres[light.geometry];
+    if (!s.is_inside_out || light.is_two_sided) loops.push_back(outline_of(s, camera));
+  } else if (light.kind == LightKind::mesh) {
+    const Mesh& mesh = scene.meshes[light.geometry];
+    for (const uint32_t t : light.triangles) {
+      const Triangle& i = mesh.triangles[t];
+      const Vec3 &a = mesh.positions[i[0]], &b = mesh.positions[i[1]], &c = mesh.positions[i[2]];
+      if (is_turned_to(cross(b - a, c - a), a, light, camera)) loops.push_back({a, b, c});
+    }
+  }
+  return loops;
+}
+
+}  // namespace troffer
