@@ -173,9 +173,9 @@ def page(rows, minutes):
              "lamps and of the single one at the same error, which lies on a curve through `--error` "
              + ", ".join(str(e) for e in ERRORS) + ". *Path: times*: the same ratio for `--method path`; "
              "and how much longer that one takes than the default for the many, at equal error.", "",
-             "A thousand lamps in sight are a thousand outlines, a hard picture by themselves: where they "
-             "light but are not looked at, they cost what the second row says. A light in many triangles "
-             "is drawn by groups of them.", "",
+             "A thousand lamps in sight are a thousand outlines; what they cover of pixels is exact "
+             "([cells](../cells.md), 8). The second row has them where they light, but are not looked at. "
+             "A light in many triangles is drawn by groups of them.", "",
              "| " + " | ".join(HEADER) + " |", "|---" * len(HEADER) + "|"]
     lines += ["| " + " | ".join(r) + " |" for r in rows]
     return "\n".join([*lines, "", f"{minutes:.1f} minutes in all."]) + "\n"

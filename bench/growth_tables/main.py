@@ -91,18 +91,18 @@ EXPLANATION = {
                  "the triangles between a patch of the picture and a light; where they are too many, "
                  "rays take over.",
     "lights": "The lights share one area and one power. Of many weak ones some are drawn; few are "
-              "certified one by one. A thousand in sight are a thousand outlines, whose pixels get more "
-              "viewing rays and glances than any others; [lamps.md](lamps.md) has them, finely divided ones and "
+              "certified one by one. What those in sight cover of a pixel is exact "
+              "([cells](../cells.md), 8); [lamps.md](lamps.md) has them, finely divided ones and "
               "very unequal ones at equal error.",
     "textures": "Each body wears an image of its own, 8-bit PNG of as many texels. Reading decodes "
-                "them, structures are their levels ([textures](../materials.md#textures)); they stay as "
+                "them, on all cores, structures are their levels ([textures](../materials.md#textures)); they stay as "
                 "they are, three bytes a texel and a third more. What rays look up are levels as "
                 "fine as their footprints, so that the picture takes hardly longer.",
     "pixels": "Cells are made for what is seen, and do not know of pixels; gathers and viewing rays go "
               "by pixels. More pixels on one surface share gathers over more neighbours, and clusters "
               "of viewing rays come closer together, which proofs like: time grows more slowly than "
               "pixels. Memory is that of layers and of what each pixel gathered.",
-    "threads": "Pictures have the same bytes for any number. Reading is not divided, and hits are "
+    "threads": "Pictures have the same bytes for any number. Small files are read by one, and hits are "
                "added to cells one after the other.",
 }
 

@@ -26,11 +26,11 @@ namespace troffer {
 
 namespace {
 
-// Nothing where the scene has no camera and none is described.
 Vec3 up_of(const Scene& scene, const RenderCommand& c) {
   return c.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.up, "--up"));
 }
 
+// Nothing where the scene has no camera and none is described.
 std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c) {
   const Vec3 up = up_of(scene, c);
   if (!c.eye.empty() || !c.target.empty()) {
@@ -266,6 +266,7 @@ int run_render(RenderCommand c) {
   Preview preview([&](const Image& picture) { files.write(picture); });
   const auto show_sight = [&](const Scene& shapes, bool has_images) {
     const std::optional<Camera> chosen = choose_camera(shapes, c);
+    if (!chosen && !(bounds(shapes).diagonal() > 0)) return;
     camera = chosen ? *chosen : default_camera(shapes, up_of(shapes, c));
     preview.sight(shapes, camera, c.options, has_images);
   };

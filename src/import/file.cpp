@@ -62,12 +62,12 @@ uint64_t allowed_size(const std::string& path, uint64_t max_bytes) {
 }
 
 template <class Bytes>
-Bytes read_whole(const std::string& path, uint64_t max_bytes) {
+Bytes read_whole(const std::string& path, uint64_t max_bytes, ReadFor purpose) {
   const uint64_t size = allowed_size(path, max_bytes);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path, 0, 0, std::string("cannot be opened: ") + std::strerror(errno));
-  FilesRead::note(path);
+  if (purpose == ReadFor::scene) FilesRead::note(path);
   Bytes bytes(size_t(size), {});
   in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
   // A file that shrank since is cut short here and found out by its parser.
@@ -156,12 +156,12 @@ uint64_t size_of_file(const std::string& path) {
   return size;
 }
 
-std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes) {
-  return unpacked(path, read_whole<std::vector<uint8_t>>(path, max_bytes), max_bytes);
+std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes, ReadFor purpose) {
+  return unpacked(path, read_whole<std::vector<uint8_t>>(path, max_bytes, purpose), max_bytes);
 }
 
 std::string read_text_file(const std::string& path, uint64_t max_bytes) {
-  return unpacked(path, read_whole<std::string>(path, max_bytes), max_bytes);
+  return unpacked(path, read_whole<std::string>(path, max_bytes, ReadFor::scene), max_bytes);
 }
 
 FileBytes::FileBytes(const std::string& path, uint64_t max_bytes, const TellProgress& tell) {

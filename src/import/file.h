@@ -20,10 +20,13 @@ constexpr uint64_t default_max_file_bytes = uint64_t(4) << 30;
 // regular file (a folder, a pipe, a device).
 uint64_t size_of_file(const std::string& path);
 
+// guess: it may not be needed; FilesRead is told when it is.
+enum class ReadFor : uint8_t { scene, guess };
+
 // Contents of a regular file; of one whose name ends in .gz, decompressed. InputError as above,
 // where it is, or becomes, larger than max_bytes, and where compressed data is broken.
-std::vector<uint8_t> read_file(const std::string& path,
-                               uint64_t max_bytes = default_max_file_bytes);
+std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes,
+                               ReadFor purpose = ReadFor::scene);
 std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
 
 // The contents of a file, as they are: what read_text_file reads, on all cores and into pages that

@@ -373,9 +373,14 @@ const GltfMaterial& GltfMaterials::get(std::optional<uint32_t> index) {
 }
 
 void GltfMaterials::expect_images() {
+  if (!loader_.decodes_ahead()) return;
   const auto materials = root_.find("materials");
-  for (size_t i = 0; materials && i < materials->size(); ++i)
-    expect_gltf_images(root_, materials->element(i), buffers_, loader_);
+  try {
+    for (size_t i = 0; materials && i < materials->size(); ++i)
+      expect_gltf_images(root_, materials->element(i), buffers_, loader_);
+  } catch (const InputError&) {
+    return;  // what comes after is read when it is wanted
+  }
 }
 
 void GltfMaterials::check_unused_images() {

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "base/error.h"
 #include "import/file.h"
 #include "import/gltf_uri.h"
 #include "import/uri.h"
@@ -106,20 +105,16 @@ void expect_gltf_images(const JsonNode& root, const JsonNode& node, const GltfBu
                         TextureLoader& loader) {
   for (const std::string& key : node.keys()) {
     const JsonNode below = node.member(key);
-    if (!below.is_object() || key == "occlusionTexture") continue;
+    if (!below.is_object() || key == "occlusionTexture" || key == "extras") continue;
     if (!key.ends_with("Texture")) {
       expect_gltf_images(root, below, buffers, loader);
       continue;
     }
-    try {
-      const JsonNode textures = root.member("textures"), images = root.member("images");
-      const JsonNode texture =
-          textures.element(below.member("index").as_index(textures.size(), "textures"));
-      if (const auto source = source_of(texture))
-        expect_image(images.element(source->as_index(images.size(), "images")), buffers, loader);
-    } catch (const InputError&) {
-      continue;  // an extension that nobody reads, or told later
-    }
+    const JsonNode textures = root.member("textures"), images = root.member("images");
+    const JsonNode texture =
+        textures.element(below.member("index").as_index(textures.size(), "textures"));
+    if (const auto source = source_of(texture))
+      expect_image(images.element(source->as_index(images.size(), "images")), buffers, loader);
   }
 }
 

@@ -22,7 +22,7 @@ struct GltfTextureUse {
 std::string gltf_image_key(const JsonNode& image);
 
 // Tells the loader that it will be asked for the images of the textures that `node`, a material,
-// names. What is wrong with them is told when they are used.
+// names. InputError where one is not as it should be: told when it is used, if it is.
 void expect_gltf_images(const JsonNode& root, const JsonNode& node, const GltfBuffers& buffers,
                         TextureLoader& loader);
 

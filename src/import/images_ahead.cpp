@@ -1,5 +1,6 @@
 #include "import/images_ahead.h"
 
+#include <system_error>
 #include <utility>
 
 namespace troffer {
@@ -13,7 +14,11 @@ uint64_t bytes_of(const Raster& raster) {
 }  // namespace
 
 ImagesAhead::ImagesAhead(int threads, uint64_t most_bytes) : most_bytes_(most_bytes) {
-  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+  try {
+    for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+  } catch (const std::system_error&) {
+    return;  // by those that there are
+  }
 }
 
 ImagesAhead::~ImagesAhead() {
@@ -49,7 +54,6 @@ std::optional<Raster> ImagesAhead::take(const std::string& key) {
   const State state = std::exchange(image.state, State::gone);
   image.decode = nullptr;
   if (state != State::done) return std::nullopt;
-  if (image.error) std::rethrow_exception(std::exchange(image.error, nullptr));
   kept_bytes_ -= bytes_of(image.raster);
   changed_.notify_all();
   return std::exchange(image.raster, {});
@@ -63,18 +67,18 @@ bool ImagesAhead::decode_one(std::unique_lock<std::mutex>& lock) {
   image.state = State::begun;
   const Decode decode = std::exchange(image.decode, nullptr);
   lock.unlock();
-  Raster raster;
-  std::exception_ptr error;
+  std::optional<Raster> raster;
   try {
     raster = decode();
   } catch (...) {
-    error = std::current_exception();
+    // Whoever wants it finds out why: perhaps too many were in memory at once.
   }
   lock.lock();
-  kept_bytes_ += bytes_of(raster);
-  image.raster = std::move(raster);
-  image.error = error;
-  image.state = State::done;
+  image.state = raster ? State::done : State::gone;
+  if (raster) {
+    kept_bytes_ += bytes_of(*raster);
+    image.raster = std::move(*raster);
+  }
   changed_.notify_all();
   return true;
 }

@@ -4,7 +4,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <exception>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -17,8 +16,7 @@
 
 namespace troffer {
 
-// Changes when images are decoded, and nothing else: what one is decoded to, or what is wrong with
-// it, does not depend on the thread. One thread expects and takes.
+// Changes when images are decoded, and nothing else. Nobody expects while another expects or takes.
 class ImagesAhead {
  public:
   // `threads` others decode; 0: none does, and take() has nothing. Of what was decoded and has not
@@ -33,8 +31,8 @@ class ImagesAhead {
   using Decode = std::function<Raster()>;
   void expect(const std::string& key, Decode decode);
 
-  // What decode() gave, or its exception; nothing where nobody has begun it (nobody will then), or
-  // it was not expected, or has been taken.
+  // What decode() gave; nothing where it threw, or nobody has begun it (nobody will then), or it
+  // was not expected, or has been taken.
   std::optional<Raster> take(const std::string& key);
 
  private:
@@ -43,7 +41,6 @@ class ImagesAhead {
     Decode decode;
     State state = State::waiting;
     Raster raster;
-    std::exception_ptr error;
   };
 
   void work();

@@ -27,6 +27,7 @@ WrapMode wrap_mode(const MitsubaNode& node, const std::string& text) {
 // Of all bitmaps: those that nobody uses cost a little time of other cores.
 MitsubaTextures::MitsubaTextures(Scene& scene, const MitsubaTree& tree)
     : scene_(scene), tree_(tree), loader_(scene) {
+  if (!loader_.decodes_ahead()) return;
   for (const MitsubaNode& node : tree.all()) {
     if (node.tag != "texture" || node.type != "bitmap") continue;
     for (const MitsubaNode* child : node.children)

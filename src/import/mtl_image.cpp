@@ -74,6 +74,7 @@ ImagePlace place_of(const MtlMap& map, const std::string& folder) {
 
 void expect_mtl_images(const MtlMaterial& material, const std::string& folder,
                        TextureLoader& loader) {
+  if (!loader.decodes_ahead()) return;
   for (const MtlMap* map : {&material.map_diffuse, &material.map_specular, &material.map_emission,
                             &material.map_opacity, &material.map_roughness, &material.map_metallic,
                             &material.map_exponent, &material.map_normal, &material.map_bump})

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -70,6 +71,7 @@ class ObjReader {
     MtlLibrary library;
     std::unordered_map<std::string, MtlConverted> converted;
     std::unordered_map<std::string, uint32_t> index;
+    std::unordered_set<std::string> expected;  // whose images are
   } materials_;
 
   void read_pieces();
@@ -79,6 +81,7 @@ class ObjReader {
   void add_triangles(const ObjPiece& piece);
   [[noreturn]] void fail_in(const ObjWave& wave, size_t piece);
   void apply(const ObjEvent& event);
+  void expect_images_of(const std::string& material);
   void read_libraries(std::string names);
   bool read_library(const std::string& name);
   bool read_beside(const std::string& name);
@@ -207,8 +210,7 @@ void ObjReader::apply(const ObjEvent& event) {
     case Kind::group:
       return parts_.set_group(event.text);
     case Kind::material:
-      if (const auto found = materials_.library.find(event.text); found != materials_.library.end())
-        expect_mtl_images(found->second, folder_, materials_.loader);
+      expect_images_of(event.text);
       return parts_.set_material(event.text);
     case Kind::library:
       return read_libraries(event.text);
@@ -218,6 +220,12 @@ void ObjReader::apply(const ObjEvent& event) {
     case Kind::colors_begin:
       return parts_.begin_colors();
   }
+}
+
+void ObjReader::expect_images_of(const std::string& material) {
+  const auto found = materials_.library.find(material);
+  if (found == materials_.library.end() || !materials_.expected.insert(material).second) return;
+  expect_mtl_images(found->second, folder_, materials_.loader);
 }
 
 // Names may contain blanks, and several may follow: the whole line first, then up to each ".mtl".

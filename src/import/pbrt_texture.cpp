@@ -139,8 +139,10 @@ ColorInput PbrtTextures::argument(const PbrtParams& params, std::string_view nam
 // is no harm. Without escapes, which nobody writes.
 void PbrtTextures::expect_images_of(std::string_view text) {
   constexpr std::string_view parameter = "filename\"";
-  constexpr size_t most_between = 64, most_name = 4096;
-  for (size_t at = text.find(parameter); at != std::string_view::npos;
+  constexpr size_t most_between = 64, most_name = 4096, most_images = 4096;
+  if (!loader_.decodes_ahead()) return;
+  for (size_t at = text.find(parameter);
+       at != std::string_view::npos && expected_.size() < most_images;
        at = text.find(parameter, at)) {
     at += parameter.size();
     const size_t begin = text.find('"', at) + 1;
@@ -152,6 +154,7 @@ void PbrtTextures::expect_images_of(std::string_view text) {
     if (ending != "png" && ending != "jpg" && ending != "jpeg" && ending != "tga" &&
         ending != "webp")
       continue;
+    if (!expected_.insert(name).second) continue;
     const ConfinedPath path = confined_path(folder_, name);
     if (path.is_fine()) loader_.expect_file(path.path);
   }

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
 
 #include "import/pbrt_params.h"
 #include "import/pbrt_spectrum.h"
@@ -53,6 +55,7 @@ class PbrtTextures {
   std::string folder_;
   TextureLoader loader_;
   std::map<std::string, Named> floats_, colors_;
+  std::set<std::string> expected_;  // files that are
   int depth_ = 0;
 
   Named& find(const std::string& name, bool is_float, const PbrtParam& asked_by);

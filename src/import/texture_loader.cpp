@@ -93,15 +93,21 @@ int32_t TextureLoader::constant(const std::string& key, const Texture& look) {
   return remember(key, look, std::move(constant));
 }
 
+bool TextureLoader::decodes_ahead() const {
+  return !scene_.left_out_image_bytes && thread_count(0) > 1;
+}
+
 void TextureLoader::expect(const std::string& key, ImagesAhead::Decode decode) {
   constexpr int most_threads = 8;  // each may need as much memory as an image
-  if (scene_.left_out_image_bytes) return;
+  if (!decodes_ahead()) return;
   if (!ahead_) ahead_ = std::make_unique<ImagesAhead>(std::min(thread_count(0), most_threads) - 1);
   ahead_->expect(key, std::move(decode));
 }
 
 void TextureLoader::expect_file(const std::string& path) {
-  expect(path, [path] { return decode_raster(read_file(path, max_image_file_bytes), path); });
+  expect(path, [path] {
+    return decode_raster(read_file(path, max_image_file_bytes, ReadFor::guess), path);
+  });
 }
 
 void TextureLoader::expect_memory(std::span<const uint8_t> bytes, const std::string& key) {
@@ -134,12 +140,11 @@ Texture TextureLoader::reduced(Texture texture) {
   return texture;
 }
 
-int32_t TextureLoader::add(const std::string& key, const Texture& look, const Bytes& bytes,
-                           const Size& size) {
+int32_t TextureLoader::add(const std::string& key, const Texture& look, const Source& source) {
   const auto same = by_request_.find(request_key(key, look));
   if (same != by_request_.end()) return same->second;
   if (scene_.left_out_image_bytes) {
-    if (!was_asked_for(key)) *scene_.left_out_image_bytes += size();
+    if (!was_asked_for(key)) *scene_.left_out_image_bytes += source.size();
     return constant(key, look);
   }
 
@@ -156,7 +161,8 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
       texture.texels_float = other->texels_float;
     } else {
       std::optional<Raster> ready = ahead_ ? ahead_->take(key) : std::nullopt;
-      Raster raster = ready ? std::move(*ready) : decode_raster(bytes(), key);
+      if (ready && !source.file.empty()) FilesRead::note(source.file);
+      Raster raster = ready ? std::move(*ready) : decode_raster(source.bytes(), key);
       if (look.is_srgb) raster = color_raster(key, std::move(raster));
       texture.width = raster.width;
       texture.height = raster.height;
@@ -178,19 +184,17 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const By
 
 int32_t TextureLoader::from_file(const std::string& path, const Texture& look) {
   std::vector<uint8_t> contents;
-  return add(
-      path, look,
-      [&]() -> std::span<const uint8_t> {
-        contents = read_file(path, max_image_file_bytes);
-        return contents;
-      },
-      [&] { return size_of_left_out(path); });
+  const auto bytes = [&]() -> std::span<const uint8_t> {
+    contents = read_file(path, max_image_file_bytes);
+    return contents;
+  };
+  return add(path, look, {bytes, [&] { return size_of_left_out(path); }, path});
 }
 
 int32_t TextureLoader::from_memory(std::span<const uint8_t> bytes, const std::string& key,
                                    const Texture& look) {
-  return add(
-      key, look, [&] { return bytes; }, [&] { return std::max(bytes.size(), size_t(1)); });
+  return add(key, look,
+             {[&] { return bytes; }, [&] { return std::max(bytes.size(), size_t(1)); }, ""});
 }
 
 }  // namespace troffer

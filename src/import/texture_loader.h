@@ -40,6 +40,8 @@ class TextureLoader {
   // 8- and 16-bit images are in sRGB, as glTF demands and pbrt and Mitsuba do.
   void obey_own_colours() { obeys_own_colours_ = true; }
 
+  // Whether there is any use in telling what will be asked for.
+  bool decodes_ahead() const;
   // That one of these will be asked for: it is decoded meanwhile where there are cores for it. The
   // bytes must outlive the loader. Changes nothing else, whether it will be or not.
   void expect_file(const std::string& path);
@@ -61,10 +63,14 @@ class TextureLoader {
   bool was_asked_for(const std::string& image) const;
 
  private:
-  using Bytes = std::function<std::span<const uint8_t>()>;
-  using Size = std::function<uint64_t()>;
+  // An encoded image.
+  struct Source {
+    std::function<std::span<const uint8_t>()> bytes;
+    std::function<uint64_t()> size;  // where it is left out
+    std::string file;                // that it is; or none
+  };
 
-  int32_t add(const std::string& key, const Texture& look, const Bytes& bytes, const Size& size);
+  int32_t add(const std::string& key, const Texture& look, const Source& source);
   int32_t constant(const std::string& key, const Texture& look);
   void expect(const std::string& key, ImagesAhead::Decode decode);
   Raster color_raster(const std::string& key, Raster raster);

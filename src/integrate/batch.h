@@ -84,6 +84,9 @@ struct RadianceBatch {
   std::vector<ShadowRecord> records;
   // Empty unless asked for by resizing it to n (Integrator::can_glance).
   std::vector<KnownRadiance> known;
+  // Empty, or what has been added to `direct` and `known`, 0 in the mean over a pixel: to even out
+  // what lamps send to it.
+  std::vector<Rgb> evened;
   // Set by the caller and kept: luminance that is usual in the picture; 0: not known. What is far
   // below it may err by more (methods that keep an error).
   float typical = 0;
@@ -109,6 +112,7 @@ struct RadianceBatch {
     sources.assign(n, Rgb{0});
     records.clear();
     known.clear();
+    evened.clear();
   }
   // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
   void tell_shared_error() {

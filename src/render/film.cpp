@@ -148,21 +148,21 @@ Film::Light Film::light_of(size_t i) const {
   if (p.samples == 0) return {};
   const double each = 1.0 / p.samples;
   const Light plain{p.direct * each, p.indirect * each};
-  // Of what rays bring more than lamps send on average may be taken off (LightOutlines::evened).
-  // There is no less light than none.
-  const auto least = [](const Light& l) {
+  if (known_.empty()) return plain;
+  // There is no less light than none: what is known, or what lamps send on average, may be too much
+  // of what few rays have seen. Then the mean of what these brought stands, as it came.
+  const auto is_less = [](const Light& l) {
     const Vec3d sum = l.direct + l.indirect;
-    return std::min({sum.x, sum.y, sum.z});
+    return std::min({sum.x, sum.y, sum.z}) < 0;
   };
-  const auto of_samples = [&] { return least(plain) < 0 ? Light{} : plain; };
-  if (known_.empty() || known_[i].glances.count == 0) return of_samples();
+  const Light as_it_came{plain.direct - as_vec(known_[i].evened) * each, plain.indirect};
+  if (known_[i].glances.count == 0) return is_less(plain) ? as_it_came : plain;
   const auto &s = known_[i].samples, &g = known_[i].glances;
   const double glance = 1.0 / g.count, share = double(g.count) / (double(g.count) + p.samples);
   const Light light{
       plain.direct + (as_vec(g.direct) * glance - as_vec(s.direct) * each) * share,
       plain.indirect + (as_vec(g.indirect) * glance - as_vec(s.indirect) * each) * share};
-  // What is known may be too much of what few samples have seen.
-  return least(light) < 0 ? of_samples() : light;
+  return is_less(light) ? as_it_came : light;
 }
 
 void Film::FirstHit::add(const RadianceBatch& batch, size_t i, float at_depth) {
@@ -241,6 +241,7 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   if (!known_.empty()) {
     Known& k = known_[at];
     k.samples.add(batch.known[i]);
+    if (!batch.evened.empty()) k.evened += batch.evened[i];
     const double rest =
         y_sample - double(luminance(batch.known[i].direct + batch.known[i].indirect));
     k.add_rest(float(rest), p.samples);

@@ -124,6 +124,7 @@ class Film {
   // Of one pixel.
   struct Known {
     KnownSums samples, glances;
+    Rgb evened;                           // RadianceBatch::evened, of samples
     float rest = 0, squares_of_rest = 0;  // luminance of samples, less what is known
     // … summed over blocks of so many samples; the sums of whole blocks, and their squares
     uint32_t block_size = first_block_size;

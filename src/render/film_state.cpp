@@ -28,7 +28,7 @@ constexpr uint32_t has_variance_flag = 1, is_told_flag = 2;
 }  // namespace
 
 size_t Film::bytes_of_pixel() const {
-  static_assert(sizeof(Known) == 104);
+  static_assert(sizeof(Known) == 116);
   return sizeof(PixelBytes) + (first_hits_.empty() ? 0 : sizeof(FirstHitBytes)) +
          (known_.empty() ? 0 : sizeof(Known));
 }

@@ -14,47 +14,73 @@ namespace troffer {
 
 namespace {
 
-using Outline2 = std::vector<Vec2>;
+using Corner = LightOutlines::Corner;
 
-// What of a convex polygon lies within the unit square (Sutherland & Hodgman 1974).
-void clip_to_pixel(Outline2& polygon) {
-  Outline2 in;
-  for (const bool is_x : {true, false})
-    for (const float sign : {1.0f, -1.0f}) {  // coordinate >= 0; <= 1
-      const auto inside = [&](const Vec2& p) {
-        const float c = is_x ? p.x : p.y;
-        return sign > 0 ? c : 1 - c;
+// What of a convex polygon lies within the unit square (Sutherland & Hodgman 1974). Sides along the
+// square's are not of the outline.
+void clip_to_pixel(std::vector<Corner>& polygon) {
+  std::vector<Corner> in;
+  for (double Vec2d::*const axis : {&Vec2d::x, &Vec2d::y})
+    for (const double border : {0.0, 1.0}) {
+      const auto inside = [&](const Corner& c) {
+        return border == 0 ? c.at.*axis : border - c.at.*axis;
+      };
+      const auto at_border = [&](const Corner& a, const Corner& b, bool is_outline) {
+        const double da = inside(a), db = inside(b);
+        Corner c{a.at + (b.at - a.at) * (da / (da - db)), is_outline};
+        c.at.*axis = border;
+        return c;
       };
       in.swap(polygon);
       polygon.clear();
       for (size_t i = 0; i < in.size(); ++i) {
-        const Vec2 &a = in[i], &b = in[(i + 1) % in.size()];
-        const float da = inside(a), db = inside(b);
-        if (da >= 0) polygon.push_back(a);
-        if ((da >= 0) != (db >= 0)) polygon.push_back(a + (b - a) * (da / (da - db)));
+        const Corner &a = in[i], &b = in[(i + 1) % in.size()];
+        const bool is_in = inside(a) >= 0, comes_in = inside(b) >= 0;
+        if (is_in) polygon.push_back(a);
+        if (is_in && !comes_in) polygon.push_back(at_border(a, b, false));
+        if (!is_in && comes_in) polygon.push_back(at_border(a, b, a.is_outline));
       }
     }
 }
 
 // Of a convex polygon; > 0 where it turns from x to y.
-float area_of(std::span<const Vec2> p) {
+double area_of(std::span<const Corner> p) {
   double twice = 0;
   for (size_t i = 2; i < p.size(); ++i) {
-    const Vec2 a = p[i - 1] - p[0], b = p[i] - p[0];
-    twice += double(a.x) * double(b.y) - double(a.y) * double(b.x);
+    const Vec2d a = p[i - 1].at - p[0].at, b = p[i].at - p[0].at;
+    twice += a.x * b.y - a.y * b.x;
   }
-  return float(0.5 * twice);
+  return 0.5 * twice;
 }
 
-// How far within a convex polygon of positive area a point lies; < 0: it does not.
-float depth_in(std::span<const Vec2> polygon, const Vec2& p) {
-  float least = std::numeric_limits<float>::infinity();
-  for (size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Vec2 side = polygon[i] - polygon[j], d = p - polygon[j];
-    const float size = std::hypot(side.x, side.y);
-    if (size > 0) least = std::min(least, (side.x * d.y - side.y * d.x) / size);
+// Where a point lies, as to a convex polygon of positive area.
+struct Depth {
+  double depth = std::numeric_limits<double>::infinity();    // within it; < 0: it does not
+  double outline = std::numeric_limits<double>::infinity();  // … as to sides of the outline
+};
+Depth depth_in(std::span<const Corner> polygon, const Vec2d& p) {
+  Depth d;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Corner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const Vec2d side = b.at - a.at, to = p - a.at;
+    const double size = std::hypot(side.x, side.y);
+    if (!(size > 0)) continue;
+    const double depth = (side.x * to.y - side.y * to.x) / size;
+    d.depth = std::min(d.depth, depth);
+    if (a.is_outline && std::abs(depth) < std::abs(d.outline)) d.outline = depth;
   }
-  return least;
+  return d;
+}
+
+// So that its area is positive.
+void turn(std::vector<Corner>& piece) {
+  if (!(area_of(piece) < 0)) return;
+  // Each corner says what the side after it is: that comes before it now.
+  const size_t n = piece.size();
+  std::vector<Corner> turned;
+  for (size_t i = 0; i < n; ++i)
+    turned.push_back({piece[n - 1 - i].at, piece[(2 * n - 2 - i) % n].is_outline});
+  piece = std::move(turned);
 }
 
 bool is_shining(const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -76,7 +102,7 @@ struct LightOutlines::Visit {
 struct LightOutlines::Shapes {
   bool is_made = false, is_known = false;
   Rgb radiance;
-  std::vector<Outline2> outlines;
+  std::vector<std::vector<Corner>> pieces;  // of positive area
   void make(const Scene& scene, const Light& light, const ViewingCamera& camera);
 };
 
@@ -87,28 +113,43 @@ void LightOutlines::Shapes::make(const Scene& scene, const Light& light,
   radiance = light.radiance;
   if (camera.has_lens() || !is_even(light) || light.triangles.size() > most) return;
   for (const LightLoop& loop : shining_loops(scene, light, camera)) {
-    Outline2& out = outlines.emplace_back();
-    for (const Vec3& p : loop)
-      if (!camera.raster_of(p, out.emplace_back())) return;  // not all before the camera
+    std::vector<Corner> piece;
+    for (const LightCorner& c : loop) {
+      Vec2 at;
+      if (!camera.raster_of(c.position, at)) return;  // not all before the camera
+      piece.push_back({Vec2d(at), c.is_outline});
+    }
+    turn(piece);
+    pieces.push_back(std::move(piece));
   }
   is_known = true;
 }
 
 // Of places in the picture, relative to its size: rays that are so close to an outline may miss
 // what they should meet.
-static constexpr float rounding = 2e-6f;
+static constexpr double rounding = 2e-6;
 
 LightOutlines::LightOutlines(const PreparedScene& scene, const ViewingCamera& camera,
-                             const PixelRect& region, bool knows_covers)
+                             const PixelRect& region, bool knows_covers, int threads)
     : region_(region),
       knows_covers_(knows_covers),
-      blur_(rounding * float(camera.longer_side())),
+      blur_(rounding * camera.longer_side()),
       pixels_(size_t(region.width()) * size_t(region.height()), nothing) {
   // Where they run, and rays from the eye that end before them: what stands close before the light,
   // a fixture's rim, does not hide it here.
   constexpr float reach = 0.999f;
+  constexpr size_t most_rays = size_t(1) << 16;  // at once
   std::vector<Visit> visits;
   std::vector<Ray> rays;
+  std::vector<uint8_t> is_hidden;
+  const auto trace = [&] {
+    is_hidden.assign(rays.size(), 0);
+    // One by one: in packets it may depend on others what a ray along an edge meets.
+    scene.tracer.occluded(rays, is_hidden, Coherence::none);
+    for (size_t i = 0; i < rays.size(); ++i)
+      visits[visits.size() - rays.size() + i].is_hidden = is_hidden[i] != 0;
+    rays.clear();
+  };
   const SegmentWalk walk(camera, region);
   std::vector<OutlineEdge> edges;
   const std::vector<Light>& lights = scene.scene.lights;
@@ -122,10 +163,9 @@ LightOutlines::LightOutlines(const PreparedScene& scene, const ViewingCamera& ca
         const float distance = length(position - rays.back().origin);
         rays.back().t_max = std::min(reach * distance, distance - e.hidden_before);
       });
+    if (rays.size() > most_rays) trace();
   }
-  std::vector<uint8_t> is_hidden(rays.size());
-  scene.tracer.occluded(rays, is_hidden, Coherence::coherent);
-  for (size_t i = 0; i < visits.size(); ++i) visits[i].is_hidden = is_hidden[i] != 0;
+  trace();
   std::sort(visits.begin(), visits.end(), [](const Visit& a, const Visit& b) {
     return a.pixel != b.pixel ? a.pixel < b.pixel : a.light < b.light;
   });
@@ -134,7 +174,7 @@ LightOutlines::LightOutlines(const PreparedScene& scene, const ViewingCamera& ca
     while (end < visits.size() && visits[end].pixel == visits[first].pixel) ++end;
     take(scene, camera, std::span(visits).subspan(first, end - first), shapes);
   }
-  check_covers(scene, camera);
+  check_covers(scene, camera, threads);
 }
 
 // Of one pixel, sorted by lights.
@@ -158,43 +198,50 @@ void LightOutlines::take(const PreparedScene& scene, const ViewingCamera& camera
     is_known = is_known && hidden == 0 && of_light.is_known;
     if (is_known) add_pieces(of_light, at, cover);
   }
-  if (is_seen) pixel = is_known ? first_known + uint32_t(covers_.size()) : unknown;
-  if (!is_seen || !is_known) return;
   cover.count = uint32_t(pieces_.size()) - cover.first;
-  covers_.push_back(cover);
+  size_t corners = 0;
+  for (uint32_t i = cover.first; i < pieces_.size(); ++i) corners += pieces_[i].count;
+  is_known = is_known && corners <= most_corners;
+  if (is_seen) pixel = is_known ? first_known + uint32_t(covers_.size()) : unknown;
+  if (is_seen && is_known) {
+    covers_.push_back(cover);
+  } else if (cover.first < pieces_.size()) {
+    corners_.resize(pieces_[cover.first].first);
+    pieces_.resize(cover.first);
+  }
 }
 
 // Looks whether lamps are where they should be, at places that do not depend on any sample: what
 // passes before them between the points of their outlines is found so, but what covers little.
-void LightOutlines::check_covers(const PreparedScene& scene, const ViewingCamera& camera) {
+void LightOutlines::check_covers(const PreparedScene& scene, const ViewingCamera& camera,
+                                 int threads) {
   constexpr int across = 4;
-  constexpr float clear = 1e-3f;  // pixels from the outline
+  const double clear = std::max(1e-3, 2 * blur_);  // pixels from the outline
   std::vector<uint8_t> is_wrong(pixels_.size(), 0);
-  parallel_for(size_t(region_.height()), 0, [&](size_t row) {
-    struct Look {
-      size_t pixel;
-      bool is_lamp;  // should be
-    };
-    std::vector<Look> looks;
-    std::vector<Ray> rays;
+  parallel_for(size_t(region_.height()), threads, [&](size_t row) {
     const int y = region_.y0 + int(row);
+    std::vector<Ray> rays;
+    std::vector<uint8_t> is_lamp;  // should be
+    std::vector<Hit> hits;
     for (int x = region_.x0; x < region_.x1; ++x) {
       if (!is_known(x, y)) continue;
+      rays.clear();
+      is_lamp.clear();
       Random random(hash_of(uint64_t(x), uint64_t(y)));
       for (int k = 0; k < across * across; ++k) {
         const Vec2 jitter = random.next_vec2();
         const Vec2 place = (Vec2{float(k % across), float(k / across)} + jitter) * (1.0f / across);
-        const float depth = depth_in_lamp(x, y, place);
+        const double depth = depth_in_lamp(x, y, place);
         if (std::abs(depth) < clear) continue;
-        looks.push_back({index(x, y), depth > 0});
+        is_lamp.push_back(depth > 0 ? 1 : 0);
         rays.push_back(camera.ray(Vec2{float(x), float(y)} + place, {0.5f, 0.5f}));
       }
+      hits.resize(rays.size());
+      scene.tracer.closest(rays, hits, Coherence::none, Meeting::as_seen);
+      for (size_t i = 0; i < rays.size(); ++i)
+        if (is_shining(scene.scene, rays[i], hits[i]) != (is_lamp[i] != 0))
+          is_wrong[index(x, y)] = 1;
     }
-    std::vector<Hit> hits(rays.size());
-    scene.tracer.closest(rays, hits, Coherence::coherent, Meeting::as_seen);
-    for (size_t i = 0; i < looks.size(); ++i)
-      if (is_shining(scene.scene, rays[i], hits[i]) != looks[i].is_lamp)
-        is_wrong[looks[i].pixel] = 1;
   });
   for (size_t i = 0; i < pixels_.size(); ++i)
     if (is_wrong[i] != 0) pixels_[i] = unknown;
@@ -208,28 +255,30 @@ void LightOutlines::check_covers(const PreparedScene& scene, const ViewingCamera
             is_doubtful_[size_t(v) * size_t(width) + size_t(u)] = 1;
 }
 
-// Pixels from the nearest border of a lamp's piece, > 0 within the one that the place is in.
-float LightOutlines::depth_in_lamp(int x, int y, const Vec2& place) const {
-  const Cover& cover = covers_[pixels_[index(x, y)] - first_known];
-  float depth = -std::numeric_limits<float>::infinity();
-  for (const Piece& piece : std::span(pieces_).subspan(cover.first, cover.count))
-    depth = std::max(depth, depth_in(std::span(corners_).subspan(piece.first, piece.count), place));
+std::span<const LightOutlines::Corner> LightOutlines::corners_of(const Piece& piece) const {
+  return std::span(corners_).subspan(piece.first, piece.count);
+}
+
+std::span<const LightOutlines::Piece> LightOutlines::pieces_of(const Cover& cover) const {
+  return std::span(pieces_).subspan(cover.first, cover.count);
+}
+
+// Pixels from the nearest side of a lamp's piece, > 0 within the one that the place is in.
+double LightOutlines::depth_in_lamp(int x, int y, const Vec2& place) const {
+  double depth = -std::numeric_limits<double>::infinity();
+  for (const Piece& piece : pieces_of(covers_[pixels_[index(x, y)] - first_known]))
+    depth = std::max(depth, depth_in(corners_of(piece), Vec2d(place)).depth);
   return depth;
 }
 
 void LightOutlines::add_pieces(const Shapes& shapes, const Pixel2& pixel, Cover& cover) {
-  const Vec2 origin{float(pixel.x), float(pixel.y)};
-  for (const Outline2& outline : shapes.outlines) {
-    Outline2 part;
-    for (const Vec2& p : outline) part.push_back(p - origin);
+  const Vec2d origin{double(pixel.x), double(pixel.y)};
+  for (std::vector<Corner> part : shapes.pieces) {
+    for (Corner& c : part) c.at = c.at - origin;
     clip_to_pixel(part);
-    float area = area_of(part);
-    if (area < 0) {
-      std::reverse(part.begin(), part.end());
-      area = -area;
-    }
+    const double area = area_of(part);
     if (!(area > 0)) continue;
-    cover.mean += shapes.radiance * area;
+    cover.mean += shapes.radiance * float(area);
     pieces_.push_back({shapes.radiance, uint32_t(corners_.size()), uint32_t(part.size())});
     corners_.insert(corners_.end(), part.begin(), part.end());
   }
@@ -240,13 +289,19 @@ Rgb LightOutlines::evened(int x, int y, const Vec2& place, Rgb seen) const {
   if (pixel < first_known) return {};
   const Cover& cover = covers_[pixel - first_known];
   Rgb sum = cover.mean;
-  for (const Piece& piece : std::span(pieces_).subspan(cover.first, cover.count)) {
-    const float depth = depth_in(std::span(corners_).subspan(piece.first, piece.count), place);
-    const bool is_met =
-        std::abs(depth) > blur_ ? depth > 0 : luminance(seen) > 0.5f * luminance(piece.radiance);
-    if (is_met) sum = sum - piece.radiance;
+  bool is_in_any = false;
+  const Piece* along = nullptr;  // one that shines as the ray has seen
+  for (const Piece& piece : pieces_of(cover)) {
+    const Depth d = depth_in(corners_of(piece), Vec2d(place));
+    if (std::abs(d.outline) <= blur_ && d.depth >= -blur_) {
+      if (along == nullptr && luminance(seen) > 0.5f * luminance(piece.radiance)) along = &piece;
+    } else if (d.depth > 0) {
+      sum = sum - piece.radiance;
+      is_in_any = true;
+    }
   }
-  return sum;
+  // What another lamp sends there is not sent twice.
+  return along != nullptr && !is_in_any ? sum - along->radiance : sum;
 }
 
 }  // namespace troffer

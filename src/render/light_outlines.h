@@ -15,12 +15,13 @@ namespace troffer {
 // Of a lamp's flat pieces as the camera sees them the area within a pixel is exact. So what rays of
 // the pixel meet of them may be left out of their mean and the area be put in its place: a control
 // variate, by the places of rays alone. Whatever hides a lamp, or lies before it, the mean over the
-// pixel stays; the noise of the lamp's outline is gone where nothing does.
+// pixel stays (but for what floats round places by along a hidden outline); the noise of the lamp's
+// outline is gone where nothing does.
 class LightOutlines {
  public:
   // knows_covers: else nothing is_known().
   LightOutlines(const PreparedScene& scene, const ViewingCamera& camera, const PixelRect& region,
-                bool knows_covers);
+                bool knows_covers, int threads);
 
   // Whether an outline goes through the pixel that the camera sees directly. Disks and spheres are
   // taken as polygons. With a lens: as seen from its middle.
@@ -32,6 +33,12 @@ class LightOutlines {
   // … but in a pixel beside it something hides what should be seen, and may do so here.
   bool is_doubtful(int x, int y) const { return is_doubtful_[index(x, y)] != 0; }
 
+  // A corner of a lamp, in its pixel, and whether the side from it to the next is of the outline.
+  struct Corner {
+    Vec2d at;
+    bool is_outline = true;
+  };
+
   // To be added to what a ray at `place` in the pixel, in [0,1)², brings: its mean over the pixel
   // is 0. What lamps would send on average over the pixel, less what they send along this ray, if
   // nothing hid them; 0 where that is not known. `seen`: what the ray has found to shine: where it
@@ -40,6 +47,7 @@ class LightOutlines {
 
  private:
   static constexpr uint32_t nothing = 0, unknown = 1, first_known = 2;
+  static constexpr size_t most_corners = 512;  // of a pixel: each ray looks at all
   // Convex, within the pixel, of positive area.
   struct Piece {
     Rgb radiance;
@@ -57,16 +65,18 @@ class LightOutlines {
   void take(const PreparedScene& scene, const ViewingCamera& camera, std::span<const Visit> visits,
             std::vector<Shapes>& shapes);
   void add_pieces(const Shapes& shapes, const Pixel2& pixel, Cover& cover);
-  void check_covers(const PreparedScene& scene, const ViewingCamera& camera);
-  float depth_in_lamp(int x, int y, const Vec2& place) const;
+  void check_covers(const PreparedScene& scene, const ViewingCamera& camera, int threads);
+  double depth_in_lamp(int x, int y, const Vec2& place) const;
+  std::span<const Corner> corners_of(const Piece& piece) const;
+  std::span<const Piece> pieces_of(const Cover& cover) const;
 
   PixelRect region_;
   bool knows_covers_;
-  float blur_;                    // pixels by which places may be rounded
+  double blur_;                   // pixels by which places may be rounded
   std::vector<uint32_t> pixels_;  // from first_known on: covers_[…]
   std::vector<Cover> covers_;
   std::vector<Piece> pieces_;
-  std::vector<Vec2> corners_;         // in their pixel
+  std::vector<Corner> corners_;
   std::vector<uint8_t> is_doubtful_;  // per pixel
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "base/frame.h"
 #include "base/units.h"
@@ -11,7 +13,7 @@ namespace troffer {
 
 namespace {
 
-using Loop = LightLoop;
+using Loop = std::vector<Vec3>;
 
 void add_loop(const Loop& loop, std::vector<OutlineEdge>& edges, float hidden_before = 0) {
   for (size_t i = 0; i < loop.size(); ++i)
@@ -21,7 +23,7 @@ void add_loop(const Loop& loop, std::vector<OutlineEdge>& edges, float hidden_be
 // As a polygon of the circle's area that is as round as can be told in the picture: off by less
 // than .001 pixels, unless the circle is more than 400 pixels wide.
 Loop circle(const Vec3& centre, const Vec3& normal, float radius, const ViewingCamera& camera) {
-  constexpr float fewest = 64, most = 1024, largest_error = 0.001f;
+  constexpr float fewest = 16, most = 1024, largest_error = 0.001f;
   const Frame frame(normal);
   Vec2 middle, rim;
   float pixels = 0;
@@ -101,8 +103,8 @@ void add_outline(const Scene& scene, const Light& light, const ViewingCamera& ca
       break;
     case LightKind::sphere: {
       const Sphere& sphere = scene.spheres[light.geometry];
-      // of 64 corners: rays to what lies within the circle meet the sphere up to .04 radii before
-      constexpr float chord = 0.05f;
+      // Of 16 corners: rays to what lies within the circle meet the sphere up to .2 radii before.
+      constexpr float chord = 0.25f;
       add_loop(outline_of(sphere, camera), edges, chord * sphere.radius);
       break;
     }
@@ -123,27 +125,40 @@ bool is_even(const Light& light) {
   return has_surface(light.kind) && light.texture < 0 && !light.is_alpha_masked && light.web < 0;
 }
 
-std::vector<Loop> shining_loops(const Scene& scene, const Light& light,
-                                const ViewingCamera& camera) {
-  std::vector<Loop> loops;
+std::vector<LightLoop> shining_loops(const Scene& scene, const Light& light,
+                                     const ViewingCamera& camera) {
+  std::vector<LightLoop> loops;
+  const auto add = [&](const Loop& loop) {
+    LightLoop& out = loops.emplace_back();
+    for (const Vec3& p : loop) out.push_back({p});
+  };
   if (light.kind == LightKind::polygon && light.polygon.size() >= 3) {
     const Loop& p = light.polygon;
     Vec3 area;
     for (size_t i = 2; i < p.size(); ++i) area += cross(p[i - 1] - p[0], p[i] - p[0]);
-    if (is_turned_to(area, p[0], light, camera)) loops.push_back(p);
+    if (is_turned_to(area, p[0], light, camera)) add(p);
   } else if (light.kind == LightKind::disk) {
     const Disk& d = scene.disks[light.geometry];
-    if (is_turned_to(d.normal, d.centre, light, camera)) loops.push_back(outline_of(d, camera));
+    if (is_turned_to(d.normal, d.centre, light, camera)) add(outline_of(d, camera));
   } else if (light.kind == LightKind::sphere) {
     const Sphere& s = scene.spheres[light.geometry];
-    if (!s.is_inside_out || light.is_two_sided) loops.push_back(outline_of(s, camera));
+    if (!s.is_inside_out || light.is_two_sided) add(outline_of(s, camera));
   } else if (light.kind == LightKind::mesh) {
     const Mesh& mesh = scene.meshes[light.geometry];
+    std::vector<Triangle> shining;
     for (const uint32_t t : light.triangles) {
       const Triangle& i = mesh.triangles[t];
       const Vec3 &a = mesh.positions[i[0]], &b = mesh.positions[i[1]], &c = mesh.positions[i[2]];
-      if (is_turned_to(cross(b - a, c - a), a, light, camera)) loops.push_back({a, b, c});
+      if (!is_turned_to(cross(b - a, c - a), a, light, camera)) continue;
+      shining.push_back(i);
+      add({a, b, c});
     }
+    std::set<std::pair<uint32_t, uint32_t>> sides;
+    for (const Triangle& t : shining)
+      for (size_t k = 0; k < 3; ++k) sides.insert({t[k], t[(k + 1) % 3]});
+    for (size_t i = 0; i < shining.size(); ++i)
+      for (size_t k = 0; k < 3; ++k)
+        loops[i][k].is_outline = !sides.contains({shining[i][(k + 1) % 3], shining[i][k]});
   }
   return loops;
 }

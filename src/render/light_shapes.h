@@ -22,7 +22,11 @@ void add_outline(const Scene& scene, const Light& light, const ViewingCamera& ca
 bool is_even(const Light& light);
 
 // A convex polygon in space.
-using LightLoop = std::vector<Vec3>;
+struct LightCorner {
+  Vec3 position;
+  bool is_outline = true;  // the side from here to the next corner is no other piece's
+};
+using LightLoop = std::vector<LightCorner>;
 
 // A light's pieces that shine towards the eye.
 std::vector<LightLoop> shining_loops(const Scene& scene, const Light& light,

@@ -169,10 +169,16 @@ class Ordered {
   size_t count_ = 0;
 };
 
+// The light of lamps whose outlines run through the pixel is no part of what varies in it, but of
+// the means around.
+bool has_known_light(const RefinementView& v, int x, int y) {
+  return v.edges.has_light_edge(x, y) && !v.edges.has_unknown_light_edge(x, y);
+}
+
 // Whether the outline of a light is all that may set a neighbour apart from a pixel without edges:
-// where these outlines run is known.
+// where it runs, and what it covers, is known.
 bool is_apart(const RefinementView& v, int x, int y, int nx, int ny) {
-  return v.edges.has_light_edge(nx, ny) && !v.edges.has_light_edge(x, y) &&
+  return has_known_light(v, nx, ny) && !v.edges.has_light_edge(x, y) &&
          !v.edges.has_surface_edge(x, y);
 }
 
@@ -183,12 +189,6 @@ bool are_all_apart(const RefinementView& v, int x, int y) {
           !is_apart(v, x, y, x + dx, y + dy))
         return false;
   return true;
-}
-
-// The light of lamps whose outlines run through the pixel is no part of what varies in it, but of
-// the means around.
-bool has_known_light(const RefinementView& v, int x, int y) {
-  return v.edges.has_light_edge(x, y) && !v.edges.has_unknown_light_edge(x, y);
 }
 
 // of: what varies; takes a pixel. are_comparable: its means, with the pixel.

@@ -47,7 +47,7 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
   if (refining_.most.in_pixel > refining_.first_spp) {
     refining_.records.emplace(plan_.region);
     refining_.can_glance = integrator.can_glance();
-    refining_.outlines.emplace(scene, camera_, plan_.region, refining_.can_glance);
+    refining_.outlines.emplace(scene, camera_, plan_.region, refining_.can_glance, options.threads);
     if (sampling.is_by_noise()) {
       refining_.options.error = float(sampling.error);
       refining_.options.evenness = sampling.evenness;
@@ -251,6 +251,7 @@ void Rendering::trace(Work& w) {
     const auto [x, y] = w.pixels[i];
     if (refining_.can_glance) {
       const Rgb even = evened(w, i);
+      w.radiance.evened.push_back(even);
       w.radiance.direct[i] += even;
       w.radiance.known[i].direct += even;
     }

@@ -236,6 +236,7 @@ double Rendering::typical_luminance() {
     }
   // What was gathered for pixels is known within the window alone: to crops as much as to all.
   w.rays.pixels.clear();
+  w.rays.places.clear();
   const CheckContext context(&w, w.rays.size(), name_of_ray);
   w.radiance.reset(w.rays.size());
   Counters uncounted;

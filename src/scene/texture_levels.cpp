@@ -55,8 +55,8 @@ FloatImage halved(int width, int height, size_t channels, const Read& read) {
         const size_t above = size_t(row.first) * size_t(width) + size_t(column.first);
         const size_t below = above + size_t(width);
         for (size_t c = 0; c < channels; ++c)
-          out[c] =
-              weight * (read(above, c) + read(above + 1, c) + read(below, c) + read(below + 1, c));
+          out[c] = weight * read(above, c) + weight * read(above + 1, c) + weight * read(below, c) +
+                   weight * read(below + 1, c);
         out += channels;
         continue;
       }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/commands.h"
 #include "image/read_image.h"
 #include "image/write_image.h"
 #include "program.h"
@@ -98,25 +99,36 @@ TEST_CASE("what fails after a preview leaves no preview behind, and leaves what 
 
 TEST_CASE("a preview comes before images are read, and changes nothing") {
   const Folder folder;
-  // Enough texels that reading them takes a while.
-  Image texels(2048, 2048);
-  for (size_t i = 0; i < texels.pixels.size(); ++i)
-    texels.pixels[i] = Rgb{float(i % 251) / 251, float(i % 83) / 83, 0.4f};
-  std::string text = lit_floor_pbrt;
-  for (int i = 0; i < 3; ++i) {
-    const std::string name = "t" + std::to_string(i);
-    write_image(folder.path(name + ".png"), texels);
-    text += "Texture \"" + name + "\" \"spectrum\" \"imagemap\" \"string filename\" \"" + name +
-            ".png\"\nMaterial \"diffuse\" \"texture reflectance\" \"" + name +
-            "\"\nShape \"sphere\" \"float radius\" 0.2\n";
-  }
-  const std::string scene = folder.write("room.pbrt", text);
+  write_image(folder.path("t.png"), Image(64, 64, Rgb{0.2f, 0.4f, 0.6f}));
+  const std::string scene = folder.write(
+      "room.pbrt", std::string(lit_floor_pbrt) +
+                       "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.png\"\n"
+                       "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+                       "Shape \"sphere\" \"float radius\" 0.2\n");
+  const auto has_image = [](const Scene& s) {
+    return std::any_of(s.textures.begin(), s.textures.end(),
+                       [](const Texture& t) { return t.kind == TextureKind::image; });
+  };
+  int shown = 0;
+  const ShowShapes show = [&](const Scene& shapes) {
+    ++shown;
+    CHECK(!has_image(shapes));
+    CHECK(triangle_count(shapes) + shapes.spheres.size() > 1);
+  };
+  SceneChoice choice;
+  choice.file = scene;
+  CHECK(has_image(load_scene(choice, {}, nullptr, true, show)));
+  CHECK(shown == 1);
+  choice.file = folder.write("plain.pbrt", lit_floor_pbrt);
+  CHECK(!load_scene(choice, {}, nullptr, true, show).left_out_image_bytes);
+  CHECK(shown == 1);  // nothing was left out
+
   const std::vector<std::string> plain{
       "render", scene, "-o", folder.path("a.pfm"), "--method", "path", "--spp", "4", "--quiet"};
-  std::vector<std::string> shown = plain;
-  shown[3] = folder.path("b.pfm");
-  shown.push_back("--preview");
+  std::vector<std::string> previewed = plain;
+  previewed[3] = folder.path("b.pfm");
+  previewed.push_back("--preview");
   REQUIRE(run_program(folder, plain).status == 0);
-  REQUIRE(run_program(folder, shown).status == 0);
+  REQUIRE(run_program(folder, previewed).status == 0);
   CHECK(read_file(folder.path("a.pfm")) == read_file(folder.path("b.pfm")));
 }

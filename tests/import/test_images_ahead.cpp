@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/error.h"
@@ -96,7 +98,7 @@ Scene import_on(int threads, const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("images ahead: each is decoded once at most, to what it would be, or fails as it would") {
+TEST_CASE("images ahead: each is decoded once at most, to what it would be, or left alone") {
   constexpr int count = 60;
   const auto key = [](int i) { return "k" + std::to_string(i); };
   for (const int threads : {0, 1, 3})
@@ -118,17 +120,11 @@ TEST_CASE("images ahead: each is decoded once at most, to what it would be, or f
         CHECK(!ahead.take("another"));
         for (int n = 0; n < count; ++n) {
           const int i = n * 7 % count;  // in another order
-          try {
-            const auto raster = ahead.take(key(i));
-            if (!raster) continue;
+          if (const auto raster = ahead.take(key(i))) {
             ++taken;
-            CHECK(i % 10 != 7);
+            CHECK(i % 10 != 7);  // whoever wants those finds out what is wrong
             CHECK(raster->width == i);
             CHECK(raster->texels8 == std::vector<uint8_t>(size_t(100 * i), uint8_t(i)));
-          } catch (const InputError& e) {
-            ++taken;
-            CHECK(i % 10 == 7);
-            CHECK(e.reason() == "broken " + std::to_string(i));
           }
           CHECK(!ahead.take(key(i)));
           ahead.expect(key(i), [] { return Raster(); });  // once more: nothing
@@ -136,9 +132,9 @@ TEST_CASE("images ahead: each is decoded once at most, to what it would be, or f
         }
       }
       int all = 0;
-      for (const auto& n : decoded) {
-        CHECK(n <= 1);
-        all += n;
+      for (size_t i = 0; i < count; ++i) {
+        CHECK(decoded[i] <= 1);
+        if (i % 10 != 7) all += decoded[i];
       }
       CHECK(all == taken);
       if (threads == 0) CHECK(taken == 0);
@@ -153,11 +149,11 @@ TEST_CASE("images ahead: whoever leaves early waits for no more than what was be
       ahead.expect(std::to_string(i), [&] {
         ++decoded;
         Raster raster;
-        raster.texels8.resize(size_t(1) << 20);
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
         return raster;
       });
   }
-  CHECK(decoded < 10000);
+  CHECK(decoded < 1000);  // there is no limit but the end: all would take a second
 }
 
 TEST_CASE("images read on many threads make the scene that one thread makes") {

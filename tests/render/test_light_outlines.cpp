@@ -48,7 +48,7 @@ struct Found {
 Found look(Lamps lamps, bool knows = true) {
   const PreparedScene scene(std::move(lamps.scene));
   const ViewingCamera camera(lamps.camera, side, side);
-  const LightOutlines outlines(scene, camera, window, knows);
+  const LightOutlines outlines(scene, camera, window, knows, 1);
   Found f;
   constexpr uint32_t n = 1024;
   std::vector<Ray> rays(n);
@@ -136,6 +136,55 @@ TEST_CASE("light outlines: what lamps of all shapes cover is exact in every pixe
   }
 }
 
+TEST_CASE("light outlines: sides that pieces share do not count twice, in large pictures too") {
+  // A fan of 30 triangles in about a pixel of many; another lamp touches it.
+  Lamps lamps;
+  constexpr int blades = 30;
+  constexpr float radius = 0.0004f;
+  std::vector<Vec3> positions{{0, 0, 0}};
+  std::vector<Triangle> triangles;
+  for (uint32_t i = 0; i < blades; ++i) {
+    const float angle = 2 * 3.14159265f * float(i) / blades;
+    positions.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+    triangles.push_back({0, 1 + i, 1 + (i + 1) % blades});
+  }
+  add_mesh_light(lamps.scene, lamps.grey, positions, triangles, Rgb{1}, false);
+  add_quad(lamps.scene, lamps.grey,
+           {Vec3{radius, -radius, 0},
+            {3 * radius, -radius, 0},
+            {3 * radius, radius, 0},
+            {radius, radius, 0}});
+  make_light(lamps.scene, 1, Rgb{1});
+  const PreparedScene scene(std::move(lamps.scene));
+  constexpr int pixels = 8192, middle = pixels / 2;
+  const ViewingCamera camera(look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 40), pixels, pixels);
+  const PixelRect region{middle - 8, middle - 8, middle + 8, middle + 8};
+  const LightOutlines outlines(scene, camera, region, true, 2);
+  size_t known = 0;
+  double bias = 0;
+  for (int y = region.y0; y < region.y1; ++y)
+    for (int x = region.x0; x < region.x1; ++x) {
+      if (!outlines.is_known(x, y)) continue;
+      ++known;
+      constexpr uint32_t n = 1 << 14;
+      std::vector<Ray> rays(n);
+      std::vector<Vec2> places(n);
+      std::vector<Hit> hits(n);
+      for (uint32_t i = 0; i < n; ++i) {
+        places[i] = SobolGroup(hash_of(uint64_t(x), uint64_t(y)), 0, i).get2(0);
+        rays[i] = camera.ray(Vec2{float(x), float(y)} + places[i], {0.5f, 0.5f});
+      }
+      scene.tracer.closest(rays, hits);
+      double mean = 0;
+      for (uint32_t i = 0; i < n; ++i)
+        mean += double(outlines.evened(x, y, places[i], Rgb{hits[i].is_valid() ? 1.0f : 0.0f}).g);
+      CHECK(std::abs(mean / n) < 0.004);
+      bias += mean / n;
+    }
+  CHECK(known >= 4);
+  CHECK(std::abs(bias) < 0.001 * double(known));
+}
+
 TEST_CASE("light outlines: nothing is known of what hides, varies or is out of focus") {
   Lamps hidden;
   make_light(hidden.scene, hidden.quad(-0.4f, -0.4f, 0.8f), Rgb{1});
@@ -160,7 +209,7 @@ TEST_CASE("light outlines: nothing is known of what hides, varies or is out of f
   away.camera = look_at({0, 0, -3}, {0.2f, 0.1f, 0}, {0, 1, 0}, 40);
   const PreparedScene dark(std::move(away.scene));
   const ViewingCamera from_behind(away.camera, side, side);
-  const LightOutlines outlines(dark, from_behind, window, true);
+  const LightOutlines outlines(dark, from_behind, window, true, 1);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) CHECK(outlines.evened(x, y, {0.3f, 0.6f}, Rgb{0}).is_black());
   textured.scene.textures.emplace_back();

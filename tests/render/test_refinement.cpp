@@ -86,7 +86,7 @@ TEST_CASE("the edge map finds borders of objects, and every pixel that a small l
   constexpr int side = 64;
   const ViewingCamera viewing(camera, side, side);
   const PixelRect all{0, 0, side, side};
-  const EdgeMap map(scene, viewing, all, LightOutlines(scene, viewing, all, true), 1);
+  const EdgeMap map(scene, viewing, all, LightOutlines(scene, viewing, all, true, 1), 1);
   // By brute force: many rays in each pixel.
   size_t with_light = 0, missed = 0, marked = 0;
   for (int y = 0; y < side; ++y)
@@ -162,7 +162,7 @@ int wanted_amid(const Value& value, bool tells = false) {
   const Camera camera = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 40);
   const PixelRect window{0, 0, side, side};
   const ViewingCamera viewing(camera, side, side);
-  const EdgeMap edges(scene, viewing, window, LightOutlines(scene, viewing, window, true), 1);
+  const EdgeMap edges(scene, viewing, window, LightOutlines(scene, viewing, window, true, 1), 1);
   Film film(window, {});
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)

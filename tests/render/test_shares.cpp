@@ -140,6 +140,45 @@ TEST_CASE("… by the default, of a picture larger than what its gathers look at
   check_shares(o, 4);
 }
 
+// Lamps in the plane of the ceiling, behind wires; some sides run along borders of pixels.
+TEST_CASE("outlines of lamps are the same for every region of the picture") {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.5f});
+  add_quad(s, grey, {Vec3{-4, -4, -3}, {4, -4, -3}, {4, 4, -3}, {-4, 4, -3}});
+  for (int i = 0; i < 60; ++i) {
+    const float x = -3.5f + 0.7f * float(i % 10), y = -2 + 0.75f * float(i / 10), r = 0.25f;
+    const uint32_t quad = add_quad(
+        s, grey,
+        {Vec3{x - r, y - r, -3}, {x + r, y - r, -3}, {x + r, y + r, -3}, {x - r, y + r, -3}});
+    make_light(s, quad, Rgb{1});
+  }
+  for (int i = 0; i < 12; ++i) {
+    const float y = -2 + 0.37f * float(i);
+    add_quad(s, grey,
+             {Vec3{-4, y, -2}, {4, y + 0.3f, -2}, {4, y + 0.32f, -2}, {-4, y + 0.02f, -2}});
+  }
+  const PreparedScene scene(std::move(s));
+  const ViewingCamera camera(look_at({0, 0, 0}, {0, 0, -3}, {0, 1, 0}, 60), 192, 128);
+  const LightOutlines whole(scene, camera, {0, 0, 192, 128}, true, 2);
+  size_t known = 0, unknown = 0, off = 0;
+  for (int x0 = 1; x0 < 96; x0 += 5) {
+    const PixelRect region{x0, 40, x0 + 64, 70};
+    const LightOutlines part(scene, camera, region, true, 1);
+    for (int y = region.y0; y < region.y1; ++y)
+      for (int x = region.x0; x < region.x1; ++x) {
+        known += whole.is_known(x, y) ? 1 : 0;
+        unknown += whole.has_outline(x, y) && !whole.is_known(x, y) ? 1 : 0;
+        off += part.has_outline(x, y) != whole.has_outline(x, y) ? 1 : 0;
+        off += part.is_known(x, y) != whole.is_known(x, y) ? 1 : 0;
+        for (const Vec2& place : {Vec2{0.1f, 0.2f}, {0.7f, 0.6f}})
+          off += part.evened(x, y, place, Rgb{0}) == whole.evened(x, y, place, Rgb{0}) ? 0 : 1;
+      }
+  }
+  CHECK(known > 100);
+  CHECK(unknown > 100);
+  CHECK(off == 0);
+}
+
 // The mullions of its window lie exactly on corners of pixels.
 TEST_CASE(
     "edges through pixels are the same for every region of the picture, also where rays tie") {
@@ -147,7 +186,7 @@ TEST_CASE(
   const PreparedScene scene(import_scene(folder + "daylight-room.gltf"));
   const ViewingCamera camera(framing_camera(scene, {0, 1, 0}), 192, 128);
   const auto map_of = [&](const PixelRect& region) {
-    return EdgeMap(scene, camera, region, LightOutlines(scene, camera, region, true), 2);
+    return EdgeMap(scene, camera, region, LightOutlines(scene, camera, region, true, 1), 2);
   };
   const EdgeMap whole = map_of({0, 0, 192, 128});
   size_t edges = 0, off = 0;
