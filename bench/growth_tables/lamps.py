@@ -34,10 +34,39 @@ def mesh(folder, name, points, faces):
     return f'Shape "plymesh" "string filename" "{os.path.basename(folder)}/{name}.ply"\n'
 
 
-def ball(folder, triangles):
+def ball_of(triangles):
     """A bumpy ball of .8 m below the ceiling."""
-    points, faces = rooms.body(triangles, np.array([4, 3, 2.5]), 0.4, np.random.default_rng(5))
-    return mesh(folder, f"ball-{triangles}", points, faces)
+    return rooms.body(triangles, np.array([4, 3, 2.5]), 0.4, np.random.default_rng(5))
+
+
+def ball(folder, triangles):
+    return mesh(folder, f"ball-{triangles}", *ball_of(triangles))
+
+
+def divided_ball(folder, triangles, along):
+    """The same shape, each triangle in along² ones. They do not quite lie in its plane: importers
+    would make one of them again."""
+    points, faces = ball_of(triangles)
+    corners = points[faces].astype(float)
+    corners = corners[np.linalg.norm(np.cross(*(corners[:, k, :3] - corners[:, 0, :3] for k in (1, 2))),
+                                     axis=1) > 0]
+    i, j = np.meshgrid(np.arange(along + 1), np.arange(along + 1), indexing="ij")
+    inside = (i + j <= along).ravel()
+    number = np.cumsum(inside) - 1
+    u, v = i.ravel()[inside] / along, j.ravel()[inside] / along
+    at = (corners[:, None, 0] * (1 - u - v)[:, None] + corners[:, None, 1] * u[:, None]
+          + corners[:, None, 2] * v[:, None])
+    at[..., :3] += np.random.default_rng(6).uniform(-2e-5, 2e-5, at[..., :3].shape)
+
+    def vertex(a, b):
+        return number[a * (along + 1) + b]
+    small = [(vertex(a, b), vertex(a + 1, b), vertex(a, b + 1))
+             for a in range(along) for b in range(along - a)]
+    small += [(vertex(a + 1, b), vertex(a + 1, b + 1), vertex(a, b + 1))
+              for a in range(along - 1) for b in range(along - 1 - a)]
+    every = np.arange(len(corners))[:, None, None] * len(u) + np.array(small)[None]
+    return mesh(folder, f"ball-{triangles}-{along}", at.reshape(-1, at.shape[-1]).astype("<f4"),
+                every.reshape(-1, 3).astype("<i4"))
 
 
 def panel(folder, along):
@@ -67,6 +96,7 @@ def write(out):
         "thousand": of_lamps[1000],
         "panel": emitter(panel(folder, 225)),
         "coarse ball": emitter(ball(folder, 400)),
+        "divided ball": emitter(divided_ball(folder, 400, 16)),
         "fine ball": emitter(ball(folder, 100_000)),
         "strongest": emitter(rooms.quad(*nine[0])),
         "eight decades": "".join(emitter(rooms.quad(*c), 10.0**(1 - k)) for k, c in enumerate(nine)),
@@ -95,7 +125,8 @@ PAIRS = [
     Pair("1,000 lamps, which are seen", "one", "thousand"),
     Pair("1,000 lamps, looking down", "one", "thousand", True),
     Pair("one panel in 100,352 triangles", "one", "panel"),
-    Pair("a bumpy ball in 100,000 triangles, beside one in 400", "coarse ball", "fine ball"),
+    Pair("a bumpy ball of 400 triangles, each in 256", "coarse ball", "divided ball"),
+    Pair("one with finer bumps, of 100,000 triangles, beside that of 400", "coarse ball", "fine ball"),
     Pair("nine lamps over eight decades, beside the strongest", "strongest", "eight decades"),
 ]
 
@@ -175,7 +206,8 @@ def page(rows, minutes):
              "and how much longer that one takes than the default for the many, at equal error.", "",
              "A thousand lamps in sight are a thousand outlines; what they cover of pixels is exact "
              "([cells](../cells.md), 8). The second row has them where they light, but are not looked at. "
-             "A light in many triangles is drawn by groups of them.", "",
+             "A light in many triangles is drawn by groups of them. Finer bumps hide more of a lamp from each "
+             "place: that is another lamp, for paths too.", "",
              "| " + " | ".join(HEADER) + " |", "|---" * len(HEADER) + "|"]
     lines += ["| " + " | ".join(r) + " |" for r in rows]
     return "\n".join([*lines, "", f"{minutes:.1f} minutes in all."]) + "\n"
