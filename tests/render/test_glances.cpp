@@ -96,6 +96,26 @@ TEST_CASE("glances: no pixel sends less light than none") {
   CHECK(film.layers()[0].image.at(0, 0) == Rgb{0.2f});
 }
 
+TEST_CASE("lamps evened out: no pixel sends less light than none, but what its rays brought") {
+  Film film({0, 0, 2, 1}, {});
+  film.expect_glances();
+  RadianceBatch b;
+  b.reset(1);
+  b.known.assign(1, {});
+  b.evened = {Rgb{-0.5f, 0.25f, 0.25f}};
+  b.direct = {Rgb{0.2f} + b.evened[0]};
+  b.known[0].direct = b.evened[0];
+  film.add(0, 0, b, 0, 0);
+  CHECK(film.layers()[0].image.at(0, 0).r == doctest::Approx(0.2f));
+  CHECK(film.layers()[0].image.at(0, 0).g == doctest::Approx(0.2f));
+  // One that is more than none stays evened.
+  b.evened = {Rgb{0.25f}};
+  b.direct = {Rgb{0.2f} + b.evened[0]};
+  b.known[0].direct = b.evened[0];
+  film.add(1, 0, b, 0, 0);
+  CHECK(film.layers()[0].image.at(1, 0).r == doctest::Approx(0.45f));
+}
+
 TEST_CASE("glances: the mean of a picture with blinds stays") {
   const PreparedScene scene(room_behind_blinds());
   RenderOptions o = small_picture();
