@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/prefetch.h"
 #include "base/random.h"
 
 namespace troffer {
@@ -80,7 +81,7 @@ size_t CellMap::bytes() const {
 }
 
 size_t CellMap::slot_of(uint64_t key) const {
-  size_t i = key & (slots_.size() - 1);
+  size_t i = first_slot(key);
   while (slots_[i].key != 0 && slots_[i].key != key) i = (i + 1) & (slots_.size() - 1);
   return i;
 }
@@ -119,8 +120,19 @@ CellMap::Found CellMap::search(uint32_t first, const CellHit& hit) const {
   return found;
 }
 
+size_t CellMap::expect_voxel(const CellHit& hit, float distance) const {
+  const uint32_t level = first_level(distance);
+  const size_t slot = first_slot(key_of(hit, size_at(level), level));
+  prefetch_line(&slots_[slot]);
+  return slot;
+}
+
+void CellMap::expect_cell(size_t voxel) const {
+  if (const uint32_t cell = slots_[voxel].first; cell != no_cell) prefetch_object(anchors_[cell]);
+}
+
 uint32_t CellMap::find(const CellHit& hit, float distance) const {
-  for (uint32_t level = distance < near() ? 1 : 0;; ++level) {
+  for (uint32_t level = first_level(distance);; ++level) {
     const Slot& slot = slots_[slot_of(key_of(hit, size_at(level), level))];
     if (slot.first == no_cell) return no_cell;
     const uint32_t cell = search(slot.first, hit).cell;
@@ -143,7 +155,7 @@ void CellMap::keep(const CellHit& hit, bool is_asked, Hits& h) {
 }
 
 uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
-  uint32_t level = distance < near() ? 1 : 0;
+  uint32_t level = first_level(distance);
   uint32_t cell = add_at(hit, level, is_asked);
   while (anchors_[cell].is_halved && level < most_halvings) cell = add_at(hit, ++level, is_asked);
   if (cell >= frozen_) keep(hit, is_asked, hits_[cell]);

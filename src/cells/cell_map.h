@@ -60,7 +60,11 @@ class CellMap {
   // The cell of what a ray of this length has hit, or no_cell. Any number of threads may call it
   // while nothing is added.
   uint32_t find(const CellHit& hit, float distance) const;
-  // The same, made if there is none. is_asked: by one of the rays that the picture will send.
+  // Asks for the memory that find() will read, in two steps, so that it is there when many others
+  // have been asked for meanwhile: of which voxel, and of what is in that.
+  size_t expect_voxel(const CellHit& hit, float distance) const;
+  void expect_cell(size_t voxel) const;
+  // As find(), made if there is none. is_asked: by one of the rays that the picture will send.
   uint32_t add(const CellHit& hit, float distance, bool is_asked = false);
   // Of cells that are made from here on; any number of halvings, up to a limit.
   void halve_where(IsUneven is_uneven) { is_uneven_ = std::move(is_uneven); }
@@ -105,10 +109,13 @@ class CellMap {
     uint32_t cell = no_cell, last = no_cell;
   };
 
+  size_t first_slot(uint64_t key) const { return key & (slots_.size() - 1); }
   size_t slot_of(uint64_t key) const;
   Found search(uint32_t first, const CellHit& hit) const;
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
+  // Light from near by is that of half cells.
+  uint32_t first_level(float distance) const { return distance < near() ? 1 : 0; }
   float size_at(uint32_t level) const { return std::ldexp(size_, -int(level)); }
   uint32_t make(const CellHit& hit, uint32_t level, bool is_asked);
   uint32_t add_at(const CellHit& hit, uint32_t level, bool is_asked);

@@ -1,5 +1,10 @@
 #include "integrate/cells.h"
 
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+
 namespace troffer {
 
 namespace {
@@ -8,8 +13,20 @@ namespace {
 constexpr int most_bounces = 16;
 // … or are shorter than a cell is wide.
 constexpr int short_bounces = 4;
+// Rays that are followed at a time: few enough for what is known of them to stay in the caches.
+constexpr size_t rays_of_part = 256;
+
+std::string name_in_part(const void*, size_t i) {
+  return "ray " + std::to_string(i) + " of some that gather";
+}
 
 }  // namespace
+
+void GatheredLight::reset(size_t rays) {
+  irradiance.assign(rays, Rgb{0});
+  half_difference.assign(rays, 0);
+  distance.assign(rays, 0);
+}
 
 bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
                         float& half_difference) const {
@@ -34,27 +51,52 @@ bool Cells::look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const
   if (cell == no_cell) return false;
   const uint32_t ray = a.walk.index;
   if (a.distance < map_->near() && !is_last) {
-    s.light.irradiance[ray] += a.walk.throughput * direct_[cell];
+    s.part.irradiance[ray] += a.walk.throughput * direct_[cell];
     s.again.push_back(a);
     return true;
   }
-  s.light.irradiance[ray] += a.walk.throughput * irradiance_[cell];
-  s.light.half_difference[ray] += luminance(a.walk.throughput) * half_difference_[cell];
+  s.part.irradiance[ray] += a.walk.throughput * irradiance_[cell];
+  s.part.half_difference[ray] += luminance(a.walk.throughput) * half_difference_[cell];
   return true;
 }
 
 void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
-  s.light.irradiance.assign(rays, Rgb{0});
-  s.light.half_difference.assign(rays, 0);
-  s.light.distance.assign(rays, 0);
+  s.light.reset(rays);
+  auto next = s.walks.begin();
+  for (size_t first = 0; first < rays; first += rays_of_part) {
+    const size_t n = std::min(rays_of_part, rays - first);
+    s.gather.walks.clear();
+    for (; next != s.walks.end() && next->index < first + n; ++next) {
+      s.gather.walks.push_back(*next);
+      s.gather.walks.back().index -= uint32_t(first);
+    }
+    const CheckContext context(&s, n, name_in_part);
+    gather_part(n, s, counters);
+    const auto put = [first](const auto& from, auto& to) {
+      std::copy(from.begin(), from.end(), to.begin() + std::ptrdiff_t(first));
+    };
+    put(s.part.irradiance, s.light.irradiance);
+    put(s.part.half_difference, s.light.half_difference);
+    put(s.part.distance, s.light.distance);
+  }
+  TROFFER_CHECK(next == s.walks.end());
+}
+
+// s.gather.walks, of indices below `rays`, to s.part.
+void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const {
+  s.part.reset(rays);
   for (int bounce = 0; bounce < most_bounces && !s.gather.walks.empty(); ++bounce) {
     walks_.follow(rays, Coherence::none, s.gather, counters);
-    if (bounce == 0) s.light.distance.swap(s.gather.black);
+    if (bounce == 0) s.part.distance.swap(s.gather.black);
     s.arrivals.swap(s.gather.arrivals);
     s.again.clear();
+    s.voxels.clear();
+    for (const GatherArrival& a : s.arrivals)
+      s.voxels.push_back(map_->expect_voxel(a.hit, a.distance));
+    for (const size_t voxel : s.voxels) map_->expect_cell(voxel);
     size_t missed = 0;
     for (GatherArrival& a : s.arrivals) {
-      float& distance = s.light.distance[a.walk.index];
+      float& distance = s.part.distance[a.walk.index];
       if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
       // The mean of a cell wider than the ray is long is not what the ray sees.
       const bool is_short = a.distance < 0.25f * map_->near() && bounce < short_bounces;
@@ -63,7 +105,7 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
     s.arrivals.resize(missed);
     if (missed > 0) walks_.light_up(s.arrivals, s.gather, counters);
     for (size_t i = 0; i < rays; ++i)
-      s.light.irradiance[i] += (s.gather.light.direct[i] + s.gather.light.indirect[i]) * pi_f;
+      s.part.irradiance[i] += (s.gather.light.direct[i] + s.gather.light.indirect[i]) * pi_f;
     s.again.insert(s.again.end(), s.arrivals.begin(), s.arrivals.end());
     walks_.bounce(s.again, s.gather);
   }

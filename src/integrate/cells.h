@@ -28,6 +28,8 @@ struct GatheredLight {
   std::vector<Rgb> irradiance;         // of each ray: π × radiance
   std::vector<float> half_difference;  // by the noise of cells: luminance (CellLight)
   std::vector<float> distance;  // to the first surface that is matte or black, all the way; 0: none
+
+  void reset(size_t rays);
 };
 
 // Irradiance at a place.
@@ -36,9 +38,14 @@ struct CellLightAt {
 };
 
 struct CellsScratch {
+  std::vector<Walk> walks;  // to be followed
+  GatheredLight light;      // what they bring
+
+  // Of some of them, by indices of their own.
   GatherScratch gather;
   std::vector<GatherArrival> arrivals, again;
-  GatheredLight light;
+  std::vector<size_t> voxels;  // of arrivals
+  GatheredLight part;
 };
 
 class Cells {
@@ -60,7 +67,7 @@ class Cells {
   // For what the pilot asks for.
   const BrightPlaces& bright_places() const { return bright_; }
 
-  // Follows s.gather.walks, of indices below `rays`, and gathers what they see: s.light.
+  // Follows s.walks, of ascending indices below `rays`, and gathers what they see: s.light.
   void gather(size_t rays, CellsScratch& s, Counters& counters) const;
   // Irradiance at a place seen from this far, but for what comes straight from sources, and a draw
   // of the error of its luminance (CellLight); false where there is no cell that is good enough.
@@ -70,6 +77,7 @@ class Cells {
   CellLightAt light_at(const CellHit& hit) const;
 
  private:
+  void gather_part(size_t rays, CellsScratch& s, Counters& counters) const;
   bool look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const;
 
   std::shared_ptr<const CellMap> map_;

@@ -32,7 +32,7 @@ uint32_t rays_of_hit(float wanted, uint32_t sample) {
 
 struct CellsIndirect::Scratch final : IndirectLightScratch {
   CellsScratch cells;
-  // Per hit whose rays are in cells.gather.walks: of which viewing ray, and where its rays end.
+  // Per hit whose rays are in cells.walks: of which viewing ray, and where its rays end.
   std::vector<uint32_t> indices, ends;
   // Per ray: what the hit makes of irradiance by it, times what the walk carries.
   std::vector<Rgb> weights;
@@ -48,7 +48,7 @@ struct CellsIndirect::Scratch final : IndirectLightScratch {
     aim = GatherAim(by.bright_places(), by.bright_places().sight_from({&at, 1}), at);
   }
   void clear() {
-    cells.gather.walks.clear();
+    cells.walks.clear();
     indices.clear();
     ends.clear();
     weights.clear();
@@ -131,7 +131,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       const Vec3 wi = v.frame.to_local(walk.ray.direction);
       s.weights.push_back(
           wi.z > 0 ? at.throughput * evaluate(scattering.diffuse, v.wo, wi) * (1 / wi.z) : Rgb{0});
-      if (!walk.throughput.is_black()) s.cells.gather.walks.push_back(walk);
+      if (!walk.throughput.is_black()) s.cells.walks.push_back(walk);
     }
     s.indices.push_back(at.index);
     s.ends.push_back(uint32_t(s.weights.size()));
@@ -198,7 +198,7 @@ void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scr
     float counts = 1;
     set_out(at, s.aim.direction(at, direction_number(walk), counts), walk);
     walk.throughput *= counts;
-    if (!walk.throughput.is_black()) s.cells.gather.walks.push_back(walk);
+    if (!walk.throughput.is_black()) s.cells.walks.push_back(walk);
   }
   cells_->gather(sensors.size(), s.cells, counters);
   out.tell_shared_error();

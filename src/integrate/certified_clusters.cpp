@@ -95,7 +95,10 @@ std::span<const float> CertifiedLights::certify(std::span<const uint32_t> member
 void CertifiedLights::certify_or_draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                                       RadianceBatch& out, Counters& counters) const {
   constexpr size_t few = 4;
-  const auto draws = double(budget_.draws), n = double(members.size());
+  const bool is_matte =
+      std::all_of(members.begin(), members.end(), [&](uint32_t m) { return s.hits.glossy[m] < 0; });
+  if (is_matte) s.chosen.draws *= budget_.matte_times;
+  const auto draws = double(s.chosen.draws), n = double(members.size());
   bool are_drawn = certify_all(groups_, s.chosen);
   double rays = (rays_of_gather / n + rays_of_pair) * double(s.chosen.certified.size());
   s.first.clear();

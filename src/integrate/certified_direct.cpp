@@ -63,7 +63,8 @@ CertifiedDirect::CertifiedDirect(const PreparedScene& scene,
       occluders_(std::move(occluders)),
       settings_(settings),
       lights_(scene,
-              {float(settings.error), float(settings.viewing_rays), uint32_t(settings.draws)},
+              {float(settings.error), float(settings.viewing_rays), uint32_t(settings.draws),
+               uint32_t(settings.matte_times)},
               uint32_t(settings.gloss_samples)),
       sampler_(scene) {
   lights_.set_occluders(*occluders_);

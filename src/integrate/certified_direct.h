@@ -24,6 +24,7 @@ struct CertifiedSettings {
   int gloss_samples = 32;  // points of a source at which gloss and textures are looked at
   int viewing_rays = 1;    // of a pixel, which share what is drawn
   int draws = 0;           // points of near lights from each hit, in place of certificates; 0: none
+  int matte_times = 1;     // … so many times as many where no hit of a cluster is glossy
 };
 
 // Settings for an allowed standard error of a viewing ray's direct light, relative to what its

@@ -267,7 +267,7 @@ void GatherPass::see(Tile& tile, Worker& w) const {
 void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
                         const Tile& tile, const std::vector<uint32_t>& places, Rays which,
                         Worker& w, BrightTally* tally) const {
-  std::vector<Walk>& walks = w.cells.gather.walks;
+  std::vector<Walk>& walks = w.cells.walks;
   walks.clear();
   std::vector<uint32_t> owners;
   std::vector<Vec3> directions;
@@ -281,6 +281,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
     // Each lattice has a sequence of its own, that is even where only the first is used.
     const uint32_t lattice = is_thinned_ ? class_of(places[r]) : 0,
                    place = (places[r] & 255) >> (is_thinned_ ? 2 : 0);
+    const Bsdf coat = cells_.walks().coat_at(records[r].hit);
     const GatherAim& aim = aims.emplace_back(cells_.bright_places(), tile.sight, records[r].hit);
     for (uint32_t k = 0; k < counts[r]; ++k) {
       Walk walk;
@@ -294,7 +295,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
       walk.throughput *= weight;
       weights.push_back(weight);
       directions.push_back(walk.ray.direction);
-      shares.push_back(cells_.walks().coat_share(records[r].hit, walk.pdf * pi_f));
+      shares.push_back(coat_share(coat, walk.pdf * pi_f));
       if (!walk.throughput.is_black()) walks.push_back(walk);
     }
   }

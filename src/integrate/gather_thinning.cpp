@@ -35,7 +35,7 @@ bool GatherPass::has_close_pixels(Worker& w) const {
     }
   cells_.walks().follow(g.walks.size(), Coherence::none, g, w.counters);
   std::vector<float> spacings;
-  std::vector<Walk>& walks = w.cells.gather.walks;
+  std::vector<Walk>& walks = w.cells.walks;
   walks.clear();
   uint32_t asked = 0;
   for (const GatherArrival& a : g.arrivals) {

@@ -75,15 +75,11 @@ void GatherWalks::follow(size_t rays, Coherence coherence, GatherScratch& s,
   s.light.indirect.assign(rays, Rgb{0});
   s.light.shadow_rays.assign(rays, 0);
   s.black.assign(rays, 0);
-  CheckItems items;
   for (; !s.walks.empty(); coherence = Coherence::none) {
     trace_walks(scene_.tracer, s.walks, coherence, s.trace, counters);
     s.next.clear();
     s.rough.clear();
-    for (size_t i = 0; i < s.walks.size(); ++i) {
-      items.at(s.walks[i].index);
-      arrive(s.walks[i], s.trace.hits[i], s);
-    }
+    arrive_all(s);
     if (s.rough.size() > 0) {
       tree_.queue(s.rough, s.tree, s.light, counters);
       tree_.flush(s.tree, s.light, counters);
@@ -112,18 +108,41 @@ void GatherWalks::note_step(const Walk& before, const Vertex& v, Walk& next) con
     next.last_place = first_image + uint32_t(image);
 }
 
-void GatherWalks::arrive(Walk& walk, const Hit& hit, GatherScratch& s) const {
-  if (!hit.is_valid()) {
-    for (const uint32_t p : scene_.primitives.at_infinity())
-      if (counts(walk, scene_.primitives[p].light))
-        see(walk,
-            radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.last_position,
-                                 walk.ray.direction),
-            walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, s);
-    return;
+// First where all of them arrive, so that their textures are there when they are looked up.
+void GatherWalks::arrive_all(GatherScratch& s) const {
+  const size_t n = s.walks.size();
+  s.vertices.resize(std::max(n, s.vertices.size()));
+  CheckItems items;
+  for (size_t i = 0; i < n; ++i) {
+    const Hit& hit = s.trace.hits[i];
+    items.at(s.walks[i].index);
+    if (!hit.is_valid()) continue;
+    Vertex& v = s.vertices[i];
+    arrive_at(scene_.scene, hit, s.walks[i], v);
+    const ColorInput& color = scene_.scene.materials[v.surface.material].base_color;
+    if (color.texture >= 0) prefetch(scene_.scene.textures, uint32_t(color.texture), v.surface.uv);
   }
-  Vertex v;
-  arrive_at(scene_.scene, hit, walk, v);
+  for (size_t i = 0; i < n; ++i) {
+    const Hit& hit = s.trace.hits[i];
+    items.at(s.walks[i].index);
+    if (hit.is_valid())
+      arrive(s.walks[i], hit, s.vertices[i], s);
+    else
+      leave_scene(s.walks[i], s);
+  }
+}
+
+void GatherWalks::leave_scene(const Walk& walk, GatherScratch& s) const {
+  for (const uint32_t p : scene_.primitives.at_infinity())
+    if (counts(walk, scene_.primitives[p].light))
+      see(walk,
+          radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.last_position,
+                               walk.ray.direction),
+          walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, s);
+}
+
+void GatherWalks::arrive(const Walk& walk, const Hit& hit, const Vertex& v,
+                         GatherScratch& s) const {
   if (v.surface.light >= 0 && counts(walk, uint32_t(v.surface.light)))
     see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
   Bsdf bsdf =
@@ -191,12 +210,10 @@ SurfaceScattering GatherWalks::scattering_at(const GlossPlace& p) const {
       make_bsdf(scene_.bsdf_tables, scene_.scene, p.material, p.uv, p.is_front));
 }
 
-float GatherWalks::coat_share(const CellHit& hit, float cosine) const {
+Bsdf GatherWalks::coat_at(const CellHit& hit) const {
   const uint32_t material = hit.coated / 2;
-  if (material >= scene_.scene.materials.size()) return 1;  // no coat
-  const Bsdf bsdf =
-      make_bsdf(scene_.bsdf_tables, scene_.scene, material, hit.uv, hit.coated % 2 == 0);
-  return troffer::coat_share(bsdf, cosine);
+  if (material >= scene_.scene.materials.size()) return Bsdf{};
+  return make_bsdf(scene_.bsdf_tables, scene_.scene, material, hit.uv, hit.coated % 2 == 0);
 }
 
 Bsdf GatherWalks::white_at(const CellHit& hit, float reflectance) const {
@@ -205,8 +222,7 @@ Bsdf GatherWalks::white_at(const CellHit& hit, float reflectance) const {
   if (material < scene_.scene.materials.size()) {
     white = diffuse_part(
         make_bsdf(scene_.bsdf_tables, scene_.scene, material, hit.uv, hit.coated % 2 == 0));
-    reflectance /=
-        std::max(white.diffuse_mean * troffer::coat_share(white, 1) * white.diffuse_mean, 1e-3f);
+    reflectance /= std::max(white.diffuse_mean * coat_share(white, 1) * white.diffuse_mean, 1e-3f);
   }
   white.diffuse = Rgb{reflectance};
   return white;
@@ -215,7 +231,7 @@ Bsdf GatherWalks::white_at(const CellHit& hit, float reflectance) const {
 float GatherWalks::leave(const CellHit& from, const Vec2& number, Walk& walk) const {
   set_out(from, number, walk);
   if (from.coated == CellHit::uncoated) return 1;
-  const float share = coat_share(from, walk.pdf * pi_f);
+  const float share = coat_share(coat_at(from), walk.pdf * pi_f);
   walk.throughput *= share;
   return share;
 }

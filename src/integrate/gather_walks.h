@@ -47,6 +47,7 @@ struct GatherScratch {
   RadianceBatch light;                  // … and radiance from sources: direct + indirect
   std::vector<float> black;             // how far each ray went to where all is swallowed; or 0
   WalkScratch trace;
+  std::vector<Vertex> vertices;  // of each walk that hit something
   WaveHits rough;
   LightTreeDirectScratch tree;
 };
@@ -64,8 +65,8 @@ class GatherWalks {
   // One such ray of each arrival, in s.walks; the walks have left the arrivals' surfaces.
   void bounce(std::vector<GatherArrival>& arrivals, GatherScratch& s) const;
   SurfaceScattering scattering_at(const GlossPlace& place) const;
-  // What light from a direction of this cosine counts at a place (troffer::coat_share).
-  float coat_share(const CellHit& hit, float cosine) const;
+  // What the coat at a place lets through (coat_share); all, where there is none.
+  Bsdf coat_at(const CellHit& hit) const;
   // A surface there that reflects all, or, of reflectance pi, shows its irradiance; seen from
   // straight above, by way of the coat.
   Bsdf white_at(const CellHit& hit, float reflectance) const;
@@ -75,7 +76,9 @@ class GatherWalks {
                 Counters& counters) const;
 
  private:
-  void arrive(Walk& walk, const Hit& hit, GatherScratch& s) const;
+  void arrive_all(GatherScratch& s) const;
+  void leave_scene(const Walk& walk, GatherScratch& s) const;
+  void arrive(const Walk& walk, const Hit& hit, const Vertex& v, GatherScratch& s) const;
   void arrive_beyond(const Walk& walk, const Vertex& v, Bsdf& bsdf, float distance,
                      GatherScratch& s) const;
   void see(const Walk& walk, Rgb radiance, float weight, GatherScratch& s) const;

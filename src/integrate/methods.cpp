@@ -59,7 +59,9 @@ CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
 // … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
 // shows of all of them.
 CertifiedSettings settings_of_further(const MethodInput& in) {
-  return drawn_beyond(in, 0.1);
+  CertifiedSettings s = drawn_beyond(in, 0.1);
+  s.matte_times = 2;
+  return s;
 }
 // … at cells, which have eight hits or more each.
 CertifiedSettings settings_of_cells(const MethodInput& in) {

@@ -208,10 +208,12 @@ MostViewingRays most_viewing_rays(const RenderOptions& options) {
   const MethodRow& row = options.method.row();
   // By what is known beforehand edges cost little, and further rays are for what is left: more
   // where only what shines is known.
-  if (row.refinement > 1 && !needs_radiosity(options.method, options.indirect))
-    return {256 * options.spp,
-            (needs_cells(options.method, options.indirect) ? 64 : 128) * options.spp,
-            16 * options.spp};
+  if (row.refinement > 1 && !needs_radiosity(options.method, options.indirect)) {
+    const int usual = 16 * options.spp;
+    if (!needs_cells(options.method, options.indirect))
+      return {256 * options.spp, 128 * options.spp, usual};
+    return {512 * options.spp, 256 * options.spp, usual};
+  }
   return all(row.refinement * options.spp);
 }
 
