@@ -153,7 +153,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
       ->capture_default_str();
   r->add_option("--max-spp", c.options.max_spp,
                 "certified, kj92: refine where pixels differ, up to so many viewing rays; "
-                "as --spp: nowhere [certified: 256 times --spp, and 64 times in the mean of 8 x 8 "
+                "as --spp: nowhere [certified: 512 times --spp, and 256 times in the mean of 8 x 8 "
                 "pixels; kj92: as --spp]")
       ->check(CLI::Range(1, 1 << 20));
   r->add_option("--shadow-rays", raw.shadow_rays,

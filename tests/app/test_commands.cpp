@@ -321,7 +321,7 @@ TEST_CASE("render and measure take certified visibility by default") {
   const Json of_plain = stats();
   CHECK(of_plain["method"] == "certified");
   CHECK(of_plain["spp"] == 4);
-  CHECK(of_plain["max_spp"] == 1024);
+  CHECK(of_plain["max_spp"] == 2048);
   CHECK(of_plain["lit_certified"].get<int>() > 40 * 30);
   CHECK(of_plain["shadow_rays"] == 0);
   // Refined at the edges of floor and lamp, and by less elsewhere.

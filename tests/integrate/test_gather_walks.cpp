@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "base/units.h"
+#include "integrate/cells.h"
 #include "support/light_scenes.h"
 #include "support/scenes.h"
 #include "support/surfaceless_lights.h"
@@ -75,4 +76,55 @@ TEST_CASE("gather rays see no texels that their surface does not show") {
   CHECK(scratch.arrivals.size() > 100);
   for (const GatherArrival& a : scratch.arrivals)
     CHECK(double(a.walk.throughput.g) == doctest::Approx(0.8).epsilon(0.001));
+}
+
+// However many there are, and some of them carry nothing and are not followed.
+TEST_CASE("rays that gather together see what each sees by itself") {
+  Scene s;
+  Material m;
+  m.base_color.value = Rgb{0.5f};
+  const uint32_t material = add_material(s, m);
+  add_quad(s, material, {Vec3{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}});
+  const PreparedScene scene(std::move(s));
+  const auto map = std::make_shared<CellMap>(scene.tracer, 0.5f);
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) {
+      const Vec3 at{0.5f * float(i) - 4.75f, 0.5f * float(j) - 4.75f, 0};
+      map->add({at, {0, 0, 1}, {0, 0, 1}, 1e-5f}, 5);
+    }
+  std::vector<Rgb> direct(map->size()), irradiance;
+  for (size_t c = 0; c < map->size(); ++c) irradiance.push_back(Rgb{1 + float(c)});
+  const Cells cells(scene, map, direct, irradiance, std::vector<float>(map->size(), 0.25f), {},
+                    nullptr, {});
+  constexpr uint32_t rays = 1000;
+  const auto walk_of = [&](uint32_t k) {
+    Walk walk;
+    walk.stream = 7;
+    walk.sample = k;
+    const Vec3 from{float(k % 97) / 10 - 4.83f, float(k % 89) / 10 - 4.41f, 5};
+    set_out({from, {0, 0, -1}, {0, 0, -1}, 1e-5f}, Vec3{0, 0, -1}, walk);
+    return walk;
+  };
+  const auto is_followed = [](uint32_t k) { return k % 7 != 3 && (k < 300 || k > 600); };
+  CellsScratch all, one;
+  Counters counters;
+  for (uint32_t k = 0; k < rays; ++k) {
+    if (!is_followed(k)) continue;
+    all.walks.push_back(walk_of(k));
+    all.walks.back().index = k;
+  }
+  cells.gather(rays, all, counters);
+  REQUIRE(all.light.irradiance.size() == rays);
+  for (uint32_t k = 0; k < rays; ++k) {
+    CAPTURE(k);
+    one.walks.clear();
+    if (is_followed(k)) one.walks.push_back(walk_of(k));
+    cells.gather(1, one, counters);
+    CHECK(all.light.irradiance[k].g == one.light.irradiance[0].g);
+    CHECK(all.light.half_difference[k] == one.light.half_difference[0]);
+    CHECK(all.light.distance[k] == one.light.distance[0]);
+    CHECK((one.light.irradiance[0].g >= 0.5f) == is_followed(k));
+    CHECK(one.light.half_difference[0] == (is_followed(k) ? 0.125f : 0.0f));
+    CHECK(double(one.light.distance[0]) == doctest::Approx(is_followed(k) ? 5 : 0));
+  }
 }

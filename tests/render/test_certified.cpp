@@ -139,6 +139,10 @@ TEST_CASE("certified: refinement goes to edges, and gains by it") {
   o.max_spp = 0;
   CHECK(most_viewing_rays(o).in_pixel == 1024);
   CHECK(most_viewing_rays(o).in_mean == 512);
+  o.indirect = Indirect::automatic;
+  CHECK(most_viewing_rays(o).in_pixel == 2048);
+  CHECK(most_viewing_rays(o).in_mean == 1024);
+  o.indirect = Indirect::none;
   const RenderResult refined = render_now(scene, scene.scene.cameras.at(0), o);
   o.threads = 3;
   CHECK(is_identical(refined.layers, render_now(scene, scene.scene.cameras.at(0), o).layers));
