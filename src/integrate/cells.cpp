@@ -67,6 +67,7 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
     const size_t n = std::min(rays_of_part, rays - first);
     s.gather.walks.clear();
     for (; next != s.walks.end() && next->index < first + n; ++next) {
+      TROFFER_CHECK(next->index >= first);
       s.gather.walks.push_back(*next);
       s.gather.walks.back().index -= uint32_t(first);
     }

@@ -206,8 +206,8 @@ MostViewingRays most_viewing_rays(const RenderOptions& options) {
   const auto all = [](int n) { return MostViewingRays{n, n, n}; };
   if (options.max_spp > 0) return all(std::max(options.max_spp, options.spp));
   const MethodRow& row = options.method.row();
-  // By what is known beforehand edges cost little, and further rays are for what is left: more
-  // where only what shines is known.
+  // By what is known beforehand edges cost little, and further rays are for what is left: many in
+  // the few pixels of what is small, of gloss and bright.
   if (row.refinement > 1 && !needs_radiosity(options.method, options.indirect)) {
     const int usual = 16 * options.spp;
     if (!needs_cells(options.method, options.indirect))
