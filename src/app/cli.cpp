@@ -154,7 +154,7 @@ void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
   r->add_option("--max-spp", c.options.max_spp,
                 "certified, kj92: refine where pixels differ, up to so many viewing rays; "
                 "as --spp: nowhere [certified: 512 times --spp, and 256 times in the mean of 8 x 8 "
-                "pixels; kj92: as --spp]")
+                "pixels, with --indirect none 256 and 128, with radiosity 4; kj92: as --spp]")
       ->check(CLI::Range(1, 1 << 20));
   r->add_option("--shadow-rays", raw.shadow_rays,
                 "fixed: shadow rays per source and viewing ray [64]; kj92: initial ones [8]")

@@ -36,22 +36,31 @@ void set_check_command(std::string command) {
 }
 
 constinit thread_local size_t CheckContext::item_ = CheckContext::no_item;
+constinit thread_local size_t CheckContext::first_ = 0;
 
 CheckContext::CheckContext(const void* batch, size_t size, Name name)
-    : batch_(batch), size_(size), name_(name), outer_(context), outer_item_(item_) {
+    : batch_(batch),
+      size_(size),
+      name_(name),
+      outer_(context),
+      outer_item_(item_),
+      outer_first_(first_) {
   context = this;
   item_ = no_item;
+  first_ = 0;
 }
 CheckContext::~CheckContext() {
   context = outer_;
   item_ = outer_item_;
+  first_ = outer_first_;
 }
 
 std::string check_place() {
   if (context == nullptr || context->size_ == 0) return {};
   const CheckContext& c = *context;
   const size_t item = CheckContext::item_;
-  if (item < c.size_) return c.name_(c.batch_, item);
+  if (item < c.size_ && item + CheckContext::first_ < c.size_)
+    return c.name_(c.batch_, item + CheckContext::first_);
   const std::string first = c.name_(c.batch_, 0);
   return c.size_ == 1 ? first : "one from " + first + " to " + c.name_(c.batch_, c.size_ - 1);
 }

@@ -54,14 +54,15 @@ class CheckContext {
 
  private:
   friend class CheckItems;
+  friend class CheckPart;
   friend std::string check_place();
   static constexpr size_t no_item = ~size_t(0);
   const void* batch_ = nullptr;
   size_t size_ = 0;
   Name name_ = nullptr;
   const CheckContext* outer_;
-  size_t outer_item_;
-  static constinit thread_local size_t item_;
+  size_t outer_item_, outer_first_;
+  static constinit thread_local size_t item_, first_;
 };
 
 // Lives as long as a loop over items of the batch; at(i) says at which it is and costs one store.
@@ -73,6 +74,21 @@ class CheckItems {
   CheckItems(const CheckItems&) = delete;
   CheckItems& operator=(const CheckItems&) = delete;
   void at(size_t item) { CheckContext::item_ = item; }
+};
+
+// Lives as long as a part of the batch is worked on, whose items are numbered from 0 again:
+// `first`, by the batch's own numbers, is the first of them.
+class CheckPart {
+ public:
+  explicit CheckPart(size_t first) : outer_first_(CheckContext::first_) {
+    CheckContext::first_ += first;
+  }
+  ~CheckPart() { CheckContext::first_ = outer_first_; }
+  CheckPart(const CheckPart&) = delete;
+  CheckPart& operator=(const CheckPart&) = delete;
+
+ private:
+  size_t outer_first_;
 };
 
 // What the calling thread works on, in words; empty outside of any context.

@@ -1,7 +1,6 @@
 #include "integrate/cells.h"
 
 #include <algorithm>
-#include <string>
 
 #include "base/error.h"
 
@@ -15,10 +14,6 @@ constexpr int most_bounces = 16;
 constexpr int short_bounces = 4;
 // Rays that are followed at a time: few enough for what is known of them to stay in the caches.
 constexpr size_t rays_of_part = 256;
-
-std::string name_in_part(const void*, size_t i) {
-  return "ray " + std::to_string(i) + " of some that gather";
-}
 
 }  // namespace
 
@@ -71,7 +66,7 @@ void Cells::gather(size_t rays, CellsScratch& s, Counters& counters) const {
       s.gather.walks.push_back(*next);
       s.gather.walks.back().index -= uint32_t(first);
     }
-    const CheckContext context(&s, n, name_in_part);
+    const CheckPart part(first);
     gather_part(n, s, counters);
     const auto put = [first](const auto& from, auto& to) {
       std::copy(from.begin(), from.end(), to.begin() + std::ptrdiff_t(first));

@@ -97,7 +97,11 @@ void CertifiedLights::certify_or_draw(std::span<const uint32_t> members, Certifi
   constexpr size_t few = 4;
   const bool is_matte =
       std::all_of(members.begin(), members.end(), [&](uint32_t m) { return s.hits.glossy[m] < 0; });
-  if (is_matte) s.chosen.draws *= budget_.matte_times;
+  if (is_matte && budget_.matte_times > 1) {
+    constexpr uint64_t matte_sequence = 0x6d61'7474;
+    s.chosen.draws *= budget_.matte_times;
+    s.chosen.sequence = matte_sequence;
+  }
   const auto draws = double(s.chosen.draws), n = double(members.size());
   bool are_drawn = certify_all(groups_, s.chosen);
   double rays = (rays_of_gather / n + rays_of_pair) * double(s.chosen.certified.size());

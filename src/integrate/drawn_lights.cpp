@@ -39,6 +39,7 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   out.is_certified.assign(n, 0);
   out.certified.clear();
   out.draws = budget.draws;
+  out.sequence = 0;
   if (budget.draws > 0 && !groups.are_many()) return;
   out.order.clear();
   double total = 0;
@@ -164,7 +165,8 @@ void Drawing::choose(std::span<const uint32_t> members, size_t first) {
   size_t i = 0;
   for (const uint32_t m : members)
     for (uint32_t j = 0; j < lights.draws; ++j, ++i) {
-      s.streams[i] = hits.draw_streams[m];
+      s.streams[i] = lights.sequence == 0 ? hits.draw_streams[m]
+                                          : hash_combine(hits.draw_streams[m], lights.sequence);
       s.samples[i] = hits.samples[m] * lights.draws + j;
       s.hits[i] = m;
       s.receivers[i] = hits.receivers[m].position;

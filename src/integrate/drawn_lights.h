@@ -35,7 +35,10 @@ struct LightsOfCluster {
   std::vector<uint8_t> is_certified;   // per group; the others are drawn
   std::vector<uint32_t> certified;     // groups, in the order of their sources
   uint32_t draws = 0;                  // points from each hit
-  std::vector<uint32_t> order;         // memory
+  // Of the random numbers for them: clusters with other numbers of points from each hit have
+  // another, or hits of one pixel in both would draw the same points.
+  uint64_t sequence = 0;
+  std::vector<uint32_t> order;  // memory
 };
 
 // Groups without sources are drawn in any case, others where they are many. hits: in the ball.

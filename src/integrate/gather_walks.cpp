@@ -119,8 +119,7 @@ void GatherWalks::arrive_all(GatherScratch& s) const {
     if (!hit.is_valid()) continue;
     Vertex& v = s.vertices[i];
     arrive_at(scene_.scene, hit, s.walks[i], v);
-    const ColorInput& color = scene_.scene.materials[v.surface.material].base_color;
-    if (color.texture >= 0) prefetch(scene_.scene.textures, uint32_t(color.texture), v.surface.uv);
+    prefetch_color(scene_.scene, v.surface);
   }
   for (size_t i = 0; i < n; ++i) {
     const Hit& hit = s.trace.hits[i];
@@ -218,10 +217,8 @@ Bsdf GatherWalks::coat_at(const CellHit& hit) const {
 
 Bsdf GatherWalks::white_at(const CellHit& hit, float reflectance) const {
   Bsdf white = sensor_bsdf();
-  const uint32_t material = hit.coated / 2;
-  if (material < scene_.scene.materials.size()) {
-    white = diffuse_part(
-        make_bsdf(scene_.bsdf_tables, scene_.scene, material, hit.uv, hit.coated % 2 == 0));
+  if (const Bsdf coat = coat_at(hit); coat.coat != Bsdf::Coat::none) {
+    white = diffuse_part(coat);
     reflectance /= std::max(white.diffuse_mean * coat_share(white, 1) * white.diffuse_mean, 1e-3f);
   }
   white.diffuse = Rgb{reflectance};

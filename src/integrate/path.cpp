@@ -139,8 +139,7 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
       });
       continue;
     }
-    const ColorInput& color = scene_.scene.materials[v.surface.material].base_color;
-    if (color.texture >= 0) prefetch(scene_.scene.textures, uint32_t(color.texture), v.surface.uv);
+    prefetch_color(scene_.scene, v.surface);
     walks[alive++] = walk;
   }
   for (size_t i = 0; i < alive; ++i) {

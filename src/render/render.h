@@ -75,7 +75,7 @@ struct RenderOptions {
 };
 
 // The most viewing rays that a pixel may get; that pixels of a tile may get in the mean, so that
-// what glitters here and there is refined, and no picture takes very long; that a pixel is taken to
+// what glitters here and there is refined, and all that glitters takes no longer; that a pixel is taken to
 // get where textures are filtered. All are max_spp where it was given, else as many as the method
 // takes by itself (MethodRow::refinement).
 struct MostViewingRays {

@@ -8,6 +8,7 @@
 
 #include "base/frame.h"
 #include "scene/scene.h"
+#include "scene/texture.h"
 #include "trace/ray.h"
 
 namespace troffer {
@@ -27,6 +28,12 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit);
 // The same in place, every member written. cone: of a ray whose direction is unit.
 void surface_at(const Scene& scene, const Ray& ray, const Hit& hit, Surface& out,
                 const RayCone& cone = {});
+
+// Asks for the memory of the texture, if any, that colours the surface (prefetch()).
+inline void prefetch_color(const Scene& scene, const Surface& s) {
+  const int32_t texture = scene.materials[s.material].base_color.texture;
+  if (texture >= 0) prefetch(scene.textures, uint32_t(texture), s.uv);
+}
 
 // Where a new ray in the direction of `towards` starts, clear of the surface it leaves.
 inline Vec3 offset_origin(const Surface& s, const Vec3& towards) {

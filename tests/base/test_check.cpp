@@ -65,6 +65,17 @@ TEST_CASE("the place follows batches, loops and threads") {
         CHECK(check_place() == "pixel (0,7), sample 8");
       }
       CHECK(check_place() == "pixel (2,7), sample 60");
+      {
+        const CheckPart part(1);
+        items.at(0);
+        CHECK(check_place() == "pixel (1,7), sample 50");
+        const CheckPart part_of_part(1);
+        CHECK(check_place() == "pixel (2,7), sample 60");
+        const CheckContext inner(&samples, samples.size(), name_of);
+        items.at(1);
+        CHECK(check_place() == "pixel (1,7), sample 50");
+      }
+      CHECK(check_place() == "pixel (0,7), sample 40");
       std::string elsewhere = "?";
       std::thread([&] { elsewhere = check_place(); }).join();
       CHECK(elsewhere.empty());

@@ -258,9 +258,10 @@ TEST_CASE("many lights: curved meshes take few rays, without bias, over matte an
 namespace {
 
 // As `further` rays of a pixel are lit: points are drawn where certificates take more.
-WaveIntegrator drawn_or_certified(const PreparedScene& scene, int draws) {
+WaveIntegrator drawn_or_certified(const PreparedScene& scene, int draws, int matte_times = 1) {
   CertifiedSettings settings = certified_settings(0.1, scene.scene.lights.size());
   settings.draws = draws;
+  settings.matte_times = matte_times;
   return {scene,
           std::make_unique<CertifiedDirect>(scene, std::make_shared<const Occluders>(scene.scene),
                                             settings),
@@ -317,6 +318,30 @@ TEST_CASE("few lights: certified in the open, drawn behind a net, the same in th
     const double sigma = std::sqrt(a.variance_of_mean() + b.variance_of_mean());
     CHECK(b.mean() > 0);
     CHECK(std::abs(a.mean() - b.mean()) < 5 * sigma + 0.003 * b.mean());
+  }
+}
+
+TEST_CASE("few lights: matte hits draw so many times more points, in the mean the same") {
+  const Vec3 below_the_net{-1.5f, 0, 0};
+  const Ray up = ray_towards(below_the_net + Vec3{0.02f, 0.01f, 0.15f}, below_the_net);
+  for (const bool is_glossy : {false, true}) {
+    CAPTURE(is_glossy);
+    Scene s = room_with_net();
+    if (is_glossy) {
+      s.materials[0].kind = MaterialKind::coated_diffuse;
+      s.materials[0].roughness.value = 0.3f;
+    }
+    const PreparedScene scene(std::move(s));
+    const WaveIntegrator once = drawn_or_certified(scene, 2),
+                         twice = drawn_or_certified(scene, 2, 2),
+                         none = drawn_or_certified(scene, 0);
+    const auto few = double(counted(once, up).shadow_rays),
+               many = double(counted(twice, up).shadow_rays);
+    CHECK(few > 64);
+    CHECK(many / few == doctest::Approx(is_glossy ? 1 : 2).epsilon(0.15));
+    const Moments a = probe(twice, up, 32, 100).direct, b = probe(none, up, 32, 100, 9).direct;
+    CHECK(std::abs(a.mean() - b.mean()) <
+          5 * std::sqrt(a.variance_of_mean() + b.variance_of_mean()) + 0.003 * b.mean());
   }
 }
 
