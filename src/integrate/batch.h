@@ -93,6 +93,11 @@ struct RadianceBatch {
   // Set by the caller and kept: so many times the usual error may each ray have, since a pixel gets
   // many of them (methods that keep an error).
   float looseness = 1;
+  // Set by the caller and kept: so many times fewer points and rays than usual may each ray's light
+  // be drawn with, a power of two up to most_thrift: a pixel whose rays meet different things is
+  // better served by more of them (methods that draw).
+  static constexpr uint32_t most_thrift = 16;
+  uint32_t thrift = 1;
   // Set by the caller and kept: nothing but the mean over many rays counts, each may be off by a
   // third of its light.
   bool is_rough = false;

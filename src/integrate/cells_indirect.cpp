@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/random.h"
 
 namespace troffer {
 
@@ -13,17 +14,21 @@ constexpr uint32_t least_rays = 4, most_rays = 64, most_further_rays = 16;
 // Viewing rays that a pixel has at least.
 constexpr uint32_t first_samples = 4;
 
+constexpr uint64_t thrifty_numbers = 0x7468'7266;
+
 // As many as the pixel wants, in powers of two, if it has no other samples than its first. Where it
 // has further ones, n in all, these want fewer: with wanted / (2 s + 1) from sample s the sum of
 // 1 / rays is n² / wanted for every n, and the mean over samples, all of which count the same, has
-// the noise of `wanted` rays. But a hit takes as long as many rays, so they are not too few.
-uint32_t rays_of_hit(float wanted, uint32_t sample) {
+// the noise of `wanted` rays. But a hit takes as long as many rays, so they are not too few, unless
+// the pixel gets them with thrift.
+uint32_t rays_of_hit(float wanted, uint32_t sample, uint32_t thrift) {
   const auto as_wanted = [&](float hits, uint32_t most) {
     uint32_t n = least_rays;
     while (n < most && float(n) * hits < wanted) n *= 2;
     return n;
   };
   if (sample < first_samples) return as_wanted(first_samples, most_rays);
+  if (thrift > 1) return std::max(most_further_rays / thrift, 1u);
   return std::max(as_wanted(first_samples, most_further_rays),
                   as_wanted(float(2 * sample + 1), most_rays));
 }
@@ -117,13 +122,17 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
       aim = records_->aim_at(pixel.x, pixel.y, hit, cells_->bright_places());
     }
-    const uint32_t rays = rays_of_hit(fitted.rays, at.sample);
-    // Numbers of a pixel's first samples follow each other.
-    const uint32_t first = at.sample * (at.sample < first_samples ? rays : most_rays);
+    const uint32_t rays = rays_of_hit(fitted.rays, at.sample, out.thrift);
+    // Numbers of a pixel's first samples follow each other, and so do those with thrift.
+    const bool is_thrifty = out.thrift > 1 && at.sample >= first_samples;
+    const uint32_t first = at.sample * (at.sample < first_samples || is_thrifty ? rays : most_rays);
+    const uint64_t stream =
+        is_thrifty ? hash_combine(at.stream, thrifty_numbers + out.thrift) : at.stream;
     for (uint32_t k = 0; k < rays; ++k) {
       Walk walk = at;
       walk.throughput = Rgb{1};
       walk.index = uint32_t(s.weights.size());
+      walk.stream = stream;
       walk.sample = first + k;
       float counts = 1;
       set_out(hit, aim.direction(hit, direction_number(walk), counts), walk);
@@ -154,10 +163,12 @@ void CellsIndirect::know(const WaveHits& wave, RadianceBatch& out) const {
     FittedRecord fitted;
     const bool is_fitted =
         records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
-    out.known[at.index].direct += weights.matte * cell.direct;
+    // Light from everywhere, gloss would show as much of it as what is matte.
+    const Rgb evenly = weights.matte + weights.gloss * inv_pi_f;
+    out.known[at.index].direct += evenly * cell.direct;
     out.known[at.index].indirect +=
         is_fitted ? weights.matte * fitted.irradiance + weights.gloss * fitted.gloss
-                  : weights.matte * cell.indirect;
+                  : evenly * cell.indirect;
   }
 }
 
@@ -181,7 +192,10 @@ void CellsIndirect::flush(IndirectLightScratch& scratch, RadianceBatch& out,
     out.told_indirect[s.indices[i]] += luminance(sum) / n;
     out.drawn_error[s.indices[i]] += halves / n;
     if (out.direct_variance.empty()) continue;
-    const float variance = std::max(squares / n - sqr(luminance(sum) / n), 0.0f) / (n - 1);
+    // A single ray tells nothing: taken to vary by half of its square.
+    const float mean = luminance(sum) / n;
+    const float variance =
+        n > 1 ? std::max(squares / n - sqr(mean), 0.0f) / (n - 1) : 0.5f * squares;
     out.direct_variance[s.indices[i]] += variance;
   }
   s.clear();

@@ -20,6 +20,9 @@ float least_light(float weight, float typical) {
 // texture is looked at.
 constexpr double rays_of_gather = 12, rays_of_pair = 0.15, rays_of_mask = 0.3,
                  rays_of_facet = 1.0 / 12, rays_of_point = 0.3;
+// LightsOfCluster::sequence
+constexpr uint64_t matte_sequence = 0x6d61'7474, thrifty_sequence = 0x7468'7269;
+
 struct Counted {
   CertifiedCounters counters;
   uint64_t rays = 0;
@@ -36,13 +39,17 @@ double rays_between(const Counted& a, const Counted& b) {
 void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
                                          CertifiedLightsScratch& s, RadianceBatch& out,
                                          Counters& counters) const {
-  choose_lights(groups_, ball_about(s.hits, members), members.size(), budget_, s.chosen);
+  DrawingBudget budget = budget_;
+  budget.thrift = out.thrift;
+  choose_lights(groups_, ball_about(s.hits, members), members.size(), budget, s.chosen);
   const bool is_closed_off = std::all_of(members.begin(), members.end(),
                                          [&](uint32_t m) { return s.is_closed_off[m] != 0; });
   if (is_closed_off) count_closed_off(members, s, out, counters);
-  const bool has_far = !is_closed_off && is_proof_of_far_worth(members, s, out.typical > 0);
+  const bool has_far = !is_closed_off && is_proof_of_far_worth(members, s, out);
   std::span<const float> seen;
-  if (budget_.draws > 0 && !groups_.are_many()) {
+  if (budget.draws > 0 && budget.thrift > 1) {
+    draw_with_thrift(members, s, out, counters);
+  } else if (budget.draws > 0 && !groups_.are_many()) {
     certify_or_draw(members, s, out, counters);
     s.chosen.certified.clear();
   } else {
@@ -50,7 +57,7 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
   }
   if (has_far || !s.chosen.certified.empty()) seen = certify(members, has_far, s, out, counters);
   if (!is_closed_off && !has_far)
-    cast_far_rays(far_draws(s), members, s.far, seen, budget_, s.far_rays, out, counters);
+    cast_far_rays(far_draws(s), members, s.far, seen, budget, s.far_rays, out, counters);
 }
 
 // Light of the lights that are drawn.
@@ -90,15 +97,29 @@ std::span<const float> CertifiedLights::certify(std::span<const uint32_t> member
   return s.cluster.memory.light;
 }
 
+bool CertifiedLights::are_matte(std::span<const uint32_t> members,
+                                const CertifiedLightsScratch& s) {
+  return std::all_of(members.begin(), members.end(),
+                     [&](uint32_t m) { return s.hits.glossy[m] < 0; });
+}
+
+// All lights are drawn, by few points.
+void CertifiedLights::draw_with_thrift(std::span<const uint32_t> members, CertifiedLightsScratch& s,
+                                       RadianceBatch& out, Counters& counters) const {
+  const bool is_matte = are_matte(members, s);
+  const uint32_t usual = budget_.draws * (is_matte ? budget_.matte_times : 1);
+  certify_none(s.chosen);
+  s.chosen.draws = std::max(usual / out.thrift, 1u);
+  s.chosen.sequence = thrifty_sequence + 2 * out.thrift + (is_matte ? 1 : 0);
+  draw(members, s, out, counters);
+}
+
 // A few hits are certified, and the others too if that took no more than draws do. What a few have
 // met decides about others alone, whose random numbers are their own.
 void CertifiedLights::certify_or_draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                                       RadianceBatch& out, Counters& counters) const {
   constexpr size_t few = 4;
-  const bool is_matte =
-      std::all_of(members.begin(), members.end(), [&](uint32_t m) { return s.hits.glossy[m] < 0; });
-  if (is_matte && budget_.matte_times > 1) {
-    constexpr uint64_t matte_sequence = 0x6d61'7474;
+  if (are_matte(members, s) && budget_.matte_times > 1) {
     s.chosen.draws *= budget_.matte_times;
     s.chosen.sequence = matte_sequence;
   }

@@ -267,21 +267,23 @@ double rays_of_hit(const FarShare& share, bool has_suns, double error) {
 // wait.
 bool CertifiedLights::is_proof_of_far_worth(std::span<const uint32_t> members,
                                             const CertifiedLightsScratch& s,
-                                            bool is_picture) const {
+                                            const RadianceBatch& out) const {
   constexpr double cost_of_look = 4000;      // in rays
   constexpr double cost_of_gloss = 4;        // … of a cell that a glossy hit may see, more
   constexpr double share_of_further = 0.25;  // a further viewing ray of a pixel gets fewer
   // … and of a cell before a hit, in rays as they are estimated; of what is that open.
   constexpr double cost_of_mask = 40, open_enough = 0.25;
   if (s.far.seems_closed) return false;
-  if (!is_picture) return true;
+  if (!(out.typical > 0)) return true;
   if (s.far.is_behind_clutter) return false;
   const double rays = rays_of_hit(s.far, far_.points.suns() > 0, double(s.options.mask_error));
   const size_t cells = sources_.size() - far_.first_source;
   if (s.far.open > open_enough && rays < cost_of_mask * double(cells)) return false;
   double all = 0, proofs = cost_of_look;
   for (const uint32_t m : members) {
-    all += s.hits.samples[m] < uint32_t(budget_.viewing_rays) ? rays : rays * share_of_further;
+    all += s.hits.samples[m] < uint32_t(budget_.viewing_rays)
+               ? rays
+               : rays * share_of_further / out.thrift;
     if (s.hits.glossy[m] >= 0) proofs += cost_of_gloss * double(cells);
   }
   return all > proofs;

@@ -89,13 +89,16 @@ class CertifiedLights {
   void count_closed_off(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
                         RadianceBatch& out, Counters& counters) const;
   bool is_proof_of_far_worth(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
-                             bool is_picture) const;
+                             const RadianceBatch& out) const;
   void set_requests(CertifiedLightsScratch& s, bool has_far) const;
   void draw(std::span<const uint32_t> members, CertifiedLightsScratch& s, RadianceBatch& out,
             Counters& counters) const;
   std::span<const float> certify(std::span<const uint32_t> members, bool has_far,
                                  CertifiedLightsScratch& s, RadianceBatch& out,
                                  Counters& counters) const;
+  static bool are_matte(std::span<const uint32_t> members, const CertifiedLightsScratch& s);
+  void draw_with_thrift(std::span<const uint32_t> members, CertifiedLightsScratch& s,
+                        RadianceBatch& out, Counters& counters) const;
   void certify_or_draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                        RadianceBatch& out, Counters& counters) const;
   void add_answers(uint32_t request, std::span<const uint32_t> members,

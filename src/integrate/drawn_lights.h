@@ -27,6 +27,7 @@ struct DrawingBudget {
   // Of few lights: points from each hit where that takes less than certificates; 0: no points.
   uint32_t draws = 0;
   uint32_t matte_times = 1;  // … so many times as many where no hit is glossy: they cost less there
+  uint32_t thrift = 1;       // RadianceBatch::thrift
 };
 
 // Which lights of a cluster are drawn; memory, and the result.

@@ -31,6 +31,7 @@ class FarCounts {
     const double fewer = std::clamp(most_fewer * open / much, 1.0, most_fewer);
     const double most_few = least_most_few * sqr(most_fewer / fewer);
     few_ = std::min(power_near(std::clamp(each / fewer, least, std::max(most_few, least))), usual_);
+    if (few_ > 0) few_ = std::max(few_ / budget.thrift, 1u);
   }
 
   uint32_t usual() const { return usual_; }

@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "integrate/allowed_error.h"
+#include "render/sample_spread.h"
 
 namespace troffer {
 
@@ -99,6 +100,9 @@ struct Surroundings {
   double low = 0, high = 0;  // … of them, or of what is not known of them
   Varying largest;           // the one whose samples vary most, likewise
   Varying usual;             // … and the middle one
+  // The largest in a neighbour that is_apart(), without what lamps send it: what varies beside one,
+  // such as what it lights close by, goes on here.
+  Varying apart;
   double mean_variance = 0;
   // Within a pixel, of the even slope that fits the neighbours' means: as a pixel's samples are
   // spread over it, they err little by it. The variances above are without it.
@@ -205,8 +209,11 @@ Surroundings look_around(const RefinementView& v, int x, int y, bool are_compara
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       if ((dx == 0 && dy == 0) || !is_inside(w, x + dx, y + dy)) continue;
-      if (!counts(x + dx, y + dy)) continue;
       const Varying e = of(x + dx, y + dy);
+      if (!counts(x + dx, y + dy)) {
+        if (e.variance > s.apart.variance) s.apart = e;
+        continue;
+      }
       s.low = count > 0 ? std::min(s.low, e.mean) : e.mean;
       s.high = count > 0 ? std::max(s.high, e.mean) : e.mean;
       s.mean_variance += e.variance;
@@ -229,7 +236,7 @@ Surroundings look_around(const RefinementView& v, int x, int y, bool are_compara
     s.low = s.high;
   s.largest = varying.largest();
   s.usual = varying.middle();
-  for (Varying* of_sample : {&s.largest, &s.usual})
+  for (Varying* of_sample : {&s.largest, &s.usual, &s.apart})
     of_sample->variance = std::max(of_sample->variance - slope_in_samples * s.slope_variance, 0.0);
   return s;
 }
@@ -309,11 +316,13 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
   const double allowed = allowed_error(s.mean, v.typical, options, most_times_less);
   const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
-  if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0) return 0;
+  if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0 &&
+      s.apart.variance <= sqr(allowed))
+    return 0;
   const bool is_divided = has_edge || has_light;
   const double variance =
-      std::max({s.largest.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0, clutter,
-                v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
+      std::max({s.largest.variance, s.apart.variance, is_divided ? sqr(s.high - s.low) / 4 : 0.0,
+                clutter, v.edges.has_thin_thing(x, y) ? variance_of_thin_thing(s.mean) : 0.0});
   // Samples that are spread over a pixel with an edge err by n^-3/4. (The neighbours need not have
   // seen what shines.)
   const double least = is_light_known ? 64 : has_light ? 256 : 0;
@@ -324,9 +333,9 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   return count;
 }
 
-int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first, int most,
-                   const RefinementOptions& options) {
-  if (v.edges.has_unknown_light_edge(x, y) && !has_glances && !options.is_noise) return most;
+WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first,
+                             int most, const RefinementOptions& options) {
+  if (v.edges.has_unknown_light_edge(x, y) && !has_glances && !options.is_noise) return {most, 1};
   const auto of = [&](int px, int py) -> Varying {
     const PixelEstimate& e = v.looks.at(px, py).estimate;
     if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples, e.independent_variance};
@@ -336,8 +345,9 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
       look_around(v, x, y, has_glances || !has_known_light(v, x, y), options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y);
   const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
-  if (!is_uneven && !options.is_everywhere) return first;
-  const Varying& neighbour = is_uneven ? s.largest : s.usual;
+  if (!is_uneven && !options.is_everywhere) return {first, 1};
+  Varying neighbour = is_uneven ? s.largest : s.usual;
+  if (has_glances && s.apart.variance > neighbour.variance) neighbour = s.apart;
   double variance = neighbour.variance;
   if (options.is_noise) variance = s.mean_variance;
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
@@ -349,24 +359,22 @@ int samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int 
   constexpr double most_times_less = 16;
   const double allowed = allowed_error(s.mean, v.typical, options,
                                        options.is_noise ? usual_times_less : most_times_less);
-  // Samples that are spread over a pixel err by n^-3/4 by what an edge divides (of thin things they
-  // know too little), and by n^-1/2 by chance of their own. (Nothing to see by: no light is
-  // allowed, none varies.)
-  const double independent =
-      options.is_noise || s.has_thin_things ? variance : std::min(variance, neighbour.independent);
-  double wanted = variance > 0 ? std::pow(independent / sqr(allowed), 1 / (1 + options.evenness)) +
-                                     std::pow((variance - independent) / sqr(allowed), 2.0 / 3)
-                               : 0;
-  if (!options.is_noise) {
-    const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
-    if (clutter > 0) wanted = std::max(wanted, clutter / sqr(allowed));
-  }
-  const double even = double(options.most_even);
-  if (even > 0 && wanted > sqr(even)) wanted = even * std::sqrt(wanted);
+  // Of thin things samples that are spread over a pixel know too little.
+  SampleSpread spread;
+  spread.chance = options.is_noise ? variance : std::min(variance, neighbour.independent);
+  (s.has_thin_things ? spread.thin : spread.placed) = variance - spread.chance;
+  if (!options.is_noise)
+    spread.clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
+  const SampleNeed need =
+      least_work(spread, s.mean, allowed,
+                 {double(first), double(most), double(options.most_even), options.evenness,
+                  options.is_noise ? 1 : options.most_thrift});
+  double wanted = need.count;
   // Of a slope n samples that are spread over the pixel leave a variance of n^-3.
   if (!options.is_noise) wanted = std::max(wanted, std::cbrt(s.slope_variance / sqr(allowed)));
   if (has_glances) wanted = std::max(wanted, double(options.least_beside_glances));
-  return wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most;
+  return {wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most,
+          need.thrift};
 }
 
 }  // namespace troffer

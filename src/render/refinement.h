@@ -37,6 +37,7 @@ struct RefinementOptions {
   // More rays than this squared are in proportion to the pixel's standard deviation, not to its
   // variance: so many rays leave the picture the least error. 0: all by the variance.
   float most_even = 0;
+  uint32_t most_thrift = 1;  // RadianceBatch::thrift
   // Pixels that are glanced at get so many rays at least: where a glance knows what shines, but not
   // what is lit, thin things that are lit would be left to the first few.
   int least_beside_glances = 0;
@@ -98,9 +99,14 @@ struct RefinementView {
 constexpr int most_glances = 16'384;
 int glances_wanted(const RefinementView& view, int x, int y, const RefinementOptions& options);
 
+struct WantedSamples {
+  int count = 0;
+  uint32_t thrift = 1;  // RadianceBatch::thrift, of those after the first
+};
+
 // How many viewing rays a pixel should have, between `first` (what it has) and `most`; has_glances:
 // it will have some.
-int samples_wanted(const RefinementView& view, int x, int y, bool has_glances, int first, int most,
-                   const RefinementOptions& options);
+WantedSamples samples_wanted(const RefinementView& view, int x, int y, bool has_glances, int first,
+                             int most, const RefinementOptions& options);
 
 }  // namespace troffer

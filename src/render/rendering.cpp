@@ -59,6 +59,8 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
       refining_.options.error = float(options.error);
       refining_.options.is_everywhere = true;
       refining_.options.most_even = 6;
+      if (options.indirect != Indirect::none)
+        refining_.options.most_thrift = RadianceBatch::most_thrift;
       if (options.indirect == Indirect::none)
         refining_.options.least_beside_glances = options.method.row().refinement * options.spp;
       steps_.glances = 1;

@@ -57,13 +57,26 @@ class Rendering {
     std::unique_ptr<IntegratorScratch> scratch;
     Counters counters;  // of the tile under way
   };
+  // Of one pixel, as checkpoints and other processes get it: viewing rays in all, and the thrift of
+  // those after the first (RadianceBatch::thrift).
+  struct WantedPixel {
+    uint32_t samples, glances, thrift;
+  };
   // By pixels of the region, row by row.
   struct FurtherRays {
-    std::vector<int> samples, glances;  // in all
-  };
-  // Of one pixel, as checkpoints and other processes get it.
-  struct WantedPixel {
-    uint32_t samples, glances;
+    std::vector<int> samples, glances;
+    std::vector<uint32_t> thrift;
+    // As if no further ray was wanted.
+    FurtherRays(size_t pixels, int first)
+        : samples(pixels, first), glances(pixels), thrift(pixels, 1) {}
+    WantedPixel at(size_t i) const {
+      return {uint32_t(samples[i]), uint32_t(glances[i]), thrift[i]};
+    }
+    void set(size_t i, const WantedPixel& w) {
+      samples[i] = int(w.samples);
+      glances[i] = int(w.glances);
+      thrift[i] = w.thrift;
+    }
   };
   // What refinement knows; empty where pixels get no further rays.
   struct Refining {
@@ -116,6 +129,7 @@ class Rendering {
   Tiles noisiest_first() const;
   FurtherRays further_rays(double typical) const;
   void keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const;
+  void keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const;
   bool glance(const PixelRect& tile, Work& w);
   // Not compared with neighbours' patterns, which come pass by pass.
   bool refines_at_once() const { return refining_.can_glance || refining_.options.is_noise; }

@@ -73,8 +73,7 @@ void Rendering::brief(size_t tile, std::vector<uint8_t>& out) const {
   for (int y = r.y0; y < r.y1; ++y)
     for (int x = r.x0; x < r.x1; ++x) {
       const size_t i = refining_.records->index(x, y);
-      append(out, WantedPixel{uint32_t(refining_.wanted->samples[i]),
-                              uint32_t(refining_.wanted->glances[i])});
+      append(out, refining_.wanted->at(i));
     }
 }
 
@@ -87,9 +86,7 @@ void Rendering::take_brief(size_t tile, ByteReader in) {
   for (int y = r.y0; y < r.y1; ++y)
     for (int x = r.x0; x < r.x1; ++x) {
       const size_t i = refining_.records->index(x, y);
-      const auto wanted = in.next<WantedPixel>();
-      refining_.wanted->samples[i] = int(wanted.samples);
-      refining_.wanted->glances[i] = int(wanted.glances);
+      refining_.wanted->set(i, in.next<WantedPixel>());
     }
 }
 

@@ -1,5 +1,7 @@
 // Refinement of a rendering under way (rendering.h).
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -20,9 +22,7 @@ constexpr size_t looks = 32;
 RenderEnd Rendering::refine() {
   const bool is_same_in_crops = options_.method.row().is_same_in_crops;
   if (!leads())  // told tile by tile
-    refining_.wanted.emplace(
-        FurtherRays{std::vector<int>(refining_.records->records.size(), refining_.first_spp),
-                    std::vector<int>(refining_.records->records.size(), 0)});
+    refining_.wanted.emplace(refining_.records->records.size(), refining_.first_spp);
   else if (!refining_.wanted)
     refining_.wanted =
         further_rays(is_same_in_crops ? typical_luminance() : mean_luminance(plan_.asked));
@@ -115,18 +115,22 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
   const auto wanted = [&](const Pixel2& p) {
     return refining_.wanted->samples[refining_.records->index(p.x, p.y)];
   };
+  const auto care = [&](const Pixel2& p) {
+    return std::pair(refining_.wanted->thrift[refining_.records->index(p.x, p.y)],
+                     looseness(wanted(p)));
+  };
   std::vector<Pixel2> pixels = pixels_in_order(tile);
-  std::stable_sort(pixels.begin(), pixels.end(), [&](const Pixel2& a, const Pixel2& b) {
-    return looseness(wanted(a)) < looseness(wanted(b));
-  });
+  std::stable_sort(pixels.begin(), pixels.end(),
+                   [&](const Pixel2& a, const Pixel2& b) { return care(a) < care(b); });
   const auto end = [&](bool is_whole) {
     send();
     w.radiance.looseness = 1;
+    w.radiance.thrift = 1;
     return is_whole;
   };
   for (const Pixel2& p : pixels) {
-    if (looseness(wanted(p)) != w.radiance.looseness) send();
-    w.radiance.looseness = looseness(wanted(p));
+    if (care(p) != std::pair(w.radiance.thrift, w.radiance.looseness)) send();
+    std::tie(w.radiance.thrift, w.radiance.looseness) = care(p);
     film_.expect_samples(p.x, p.y, uint32_t(wanted(p)));
     int left = wanted(p) - refining_.first_spp;
     while (left > 0) {
@@ -144,16 +148,17 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
 Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const PixelRecords& records = *refining_.records;
   const EdgeMap edges(scene_, camera_, plan_.region, *refining_.outlines, options_.threads);
-  FurtherRays wanted;
-  wanted.samples.assign(records.records.size(), refining_.first_spp);
-  wanted.glances.assign(records.records.size(), 0);
+  FurtherRays wanted(records.records.size(), refining_.first_spp);
   const PixelRect& r = plan_.inner;
   const auto row = [&](const RefinementView& view, int y) {
     for (int x = r.x0; x < r.x1; ++x) {
       const size_t i = records.index(x, y);
       if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
-      wanted.samples[i] = samples_wanted(view, x, y, wanted.glances[i] > 0, refining_.first_spp,
-                                         refining_.most.in_pixel, refining_.options);
+      const WantedSamples samples =
+          samples_wanted(view, x, y, wanted.glances[i] > 0, refining_.first_spp,
+                         refining_.most.in_pixel, refining_.options);
+      wanted.samples[i] = samples.count;
+      wanted.thrift[i] = samples.thrift;
     }
   };
   constexpr int rows_at_a_time = 8;
@@ -165,8 +170,7 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
   });
   constexpr int glances_in_mean = 4096;
   for (const PixelRect& tile : plan_.tiles) {
-    if (refining_.most.in_mean < refining_.most.in_pixel)
-      keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
+    if (refining_.most.in_mean < refining_.most.in_pixel) keep_in_bounds(tile, wanted);
     if (refining_.can_glance) keep_in_bounds(tile, glances_in_mean, wanted.glances);
   }
   return wanted;
@@ -183,6 +187,20 @@ void Rendering::keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>
   for (size_t i = 0; i < most_last.size(); ++i) {
     *most_last[i] = int(std::min<int64_t>(*most_last[i], left / int64_t(most_last.size() - i)));
     left -= *most_last[i];
+  }
+}
+
+// Viewing rays; those that are fewer than were wanted are lit with less thrift.
+void Rendering::keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const {
+  const std::vector<Pixel2> pixels = pixels_in_order(tile);
+  std::vector<int> asked;
+  for (const Pixel2& p : pixels)
+    asked.push_back(wanted.samples[refining_.records->index(p.x, p.y)]);
+  keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
+  for (size_t k = 0; k < pixels.size(); ++k) {
+    const size_t i = refining_.records->index(pixels[k].x, pixels[k].y);
+    for (int n = wanted.samples[i]; n < asked[k] && wanted.thrift[i] > 1; n *= 2)
+      wanted.thrift[i] /= 2;
   }
 }
 

@@ -1,4 +1,6 @@
 // A rendering as chunks of a checkpoint, and back (rendering.h).
+#include <bit>
+
 #include "base/error.h"
 #include "render/checkpoint.h"
 #include "render/rendering.h"
@@ -46,8 +48,7 @@ void Rendering::save() {
     chunk.clear();
     append(chunk, wanted_chunk);
     for (size_t i = 0; i < refining_.wanted->samples.size(); ++i)
-      append(chunk, WantedPixel{uint32_t(refining_.wanted->samples[i]),
-                                uint32_t(refining_.wanted->glances[i])});
+      append(chunk, refining_.wanted->at(i));
     add(chunk);
   });
 }
@@ -77,15 +78,15 @@ bool Rendering::restore_wanted(ByteReader in) {
   if (!refining_.records || refining_.wanted) return false;
   const size_t pixels = refining_.records->records.size();
   if (in.left() != pixels * sizeof(WantedPixel)) return false;
-  FurtherRays wanted;
+  FurtherRays wanted(pixels, refining_.first_spp);
   for (size_t i = 0; i < pixels; ++i) {
     const auto w = in.next<WantedPixel>();
     if (w.samples < uint32_t(refining_.first_spp) ||
         w.samples > uint32_t(refining_.most.in_pixel) ||
-        w.glances > (refining_.can_glance ? uint32_t(most_glances) : 0))
+        w.glances > (refining_.can_glance ? uint32_t(most_glances) : 0) ||
+        !std::has_single_bit(w.thrift) || w.thrift > refining_.options.most_thrift)
       return false;
-    wanted.samples.push_back(int(w.samples));
-    wanted.glances.push_back(int(w.glances));
+    wanted.set(i, w);
   }
   refining_.wanted = std::move(wanted);
   return true;

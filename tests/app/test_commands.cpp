@@ -323,7 +323,8 @@ TEST_CASE("render and measure take certified visibility by default") {
   CHECK(of_plain["spp"] == 4);
   CHECK(of_plain["max_spp"] == 2048);
   CHECK(of_plain["lit_certified"].get<int>() > 40 * 30);
-  CHECK(of_plain["shadow_rays"] == 0);
+  // Proofs, but for rays that are drawn with thrift along the edges.
+  CHECK(of_plain["shadow_rays"].get<int>() < of_plain["viewing_rays"].get<int>() / 20);
   // Refined at the edges of floor and lamp, and by less elsewhere.
   CHECK(of_plain["viewing_rays"].get<int>() > 40 * 30 * 4);
   CHECK(of_plain["viewing_rays"].get<int>() < 40 * 30 * 32);

@@ -34,6 +34,7 @@ inline WaveIntegrator certified_integrator(const PreparedScene& scene, double er
 
 struct Probed {
   Moments direct, indirect, total;  // of the green channel
+  uint64_t shadow_rays = 0;
 };
 
 inline Ray ray_towards(const Vec3& from, const Vec3& to) {
@@ -53,10 +54,12 @@ inline ViewingRays repeated(const Ray& ray, uint64_t stream, uint32_t samples) {
 
 // `sets` independently scrambled sets of `samples` rays each; a set's mean is one value.
 inline Probed probe(const Integrator& integrator, const Ray& ray, uint32_t samples, int sets,
-                    uint64_t seed = 0) {
+                    uint64_t seed = 0, uint32_t thrift = 1, float typical = 0) {
   Probed out;
   const auto scratch = integrator.make_scratch();
   RadianceBatch batch;
+  batch.thrift = thrift;
+  batch.typical = typical;
   Counters counters;
   for (int s = 0; s < sets; ++s) {
     const ViewingRays rays = repeated(ray, hash_of(seed, uint64_t(s)), samples);
@@ -71,6 +74,7 @@ inline Probed probe(const Integrator& integrator, const Ray& ray, uint32_t sampl
     out.indirect.add(indirect);
     out.total.add(direct + indirect);
   }
+  out.shadow_rays = counters.shadow_rays;
   return out;
 }
 

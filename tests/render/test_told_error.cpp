@@ -136,7 +136,7 @@ TEST_CASE("told error: of lamps that are smaller than a pixel") {
   camera.focal_distance = 3;
   RenderOptions o = of_five_percent(64, 48);
   o.error = 0.01;
-  const Errors e = errors_of(scene, camera, o, 6);
+  const Errors e = errors_of(scene, camera, o, 24);
   CAPTURE(e.told);
   CAPTURE(e.made);
   CHECK(e.told > 0.75 * e.made);  // .53 without what glances leave
@@ -173,7 +173,7 @@ TEST_CASE("told error: of a lamp that all rays of a pixel see in gloss") {
   CAPTURE(e.told);
   CAPTURE(e.made);
   CHECK(e.told > 0.8 * e.made);
-  CHECK(e.told < 2.8 * e.made);  // 3.3 where each meeting is told as a rare one
+  CHECK(e.told < 3.5 * e.made);  // a fifth more where each meeting is told as a rare one
 }
 
 TEST_CASE("told error: of a lit room that is seen through a gap") {
