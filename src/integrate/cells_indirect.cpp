@@ -14,6 +14,7 @@ constexpr uint32_t least_rays = 4, most_rays = 64, most_further_rays = 16;
 // Viewing rays that a pixel has at least.
 constexpr uint32_t first_samples = 4;
 
+// Names the random numbers of gather rays with thrift.
 constexpr uint64_t thrifty_numbers = 0x7468'7266;
 
 // As many as the pixel wants, in powers of two, if it has no other samples than its first. Where it
@@ -31,6 +32,21 @@ uint32_t rays_of_hit(float wanted, uint32_t sample, uint32_t thrift) {
   if (thrift > 1) return std::max(most_further_rays / thrift, 1u);
   return std::max(as_wanted(first_samples, most_further_rays),
                   as_wanted(float(2 * sample + 1), most_rays));
+}
+
+// How many gather rays a hit gets, and by which numbers.
+struct GatherNumbers {
+  uint32_t rays, first;
+  uint64_t stream;
+};
+
+// Those of a pixel's first samples follow each other, and so do those with thrift.
+GatherNumbers numbers_of_hit(float wanted, const Walk& at, uint32_t thrift) {
+  const bool is_first = at.sample < first_samples;
+  if (is_first) thrift = 1;
+  const uint32_t rays = rays_of_hit(wanted, at.sample, thrift);
+  return {rays, at.sample * (is_first || thrift > 1 ? rays : most_rays),
+          thrift > 1 ? hash_combine(at.stream, thrifty_numbers + thrift) : at.stream};
 }
 
 }  // namespace
@@ -122,18 +138,13 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
       aim = records_->aim_at(pixel.x, pixel.y, hit, cells_->bright_places());
     }
-    const uint32_t rays = rays_of_hit(fitted.rays, at.sample, out.thrift);
-    // Numbers of a pixel's first samples follow each other, and so do those with thrift.
-    const bool is_thrifty = out.thrift > 1 && at.sample >= first_samples;
-    const uint32_t first = at.sample * (at.sample < first_samples || is_thrifty ? rays : most_rays);
-    const uint64_t stream =
-        is_thrifty ? hash_combine(at.stream, thrifty_numbers + out.thrift) : at.stream;
-    for (uint32_t k = 0; k < rays; ++k) {
+    const GatherNumbers numbers = numbers_of_hit(fitted.rays, at, out.thrift);
+    for (uint32_t k = 0; k < numbers.rays; ++k) {
       Walk walk = at;
       walk.throughput = Rgb{1};
       walk.index = uint32_t(s.weights.size());
-      walk.stream = stream;
-      walk.sample = first + k;
+      walk.stream = numbers.stream;
+      walk.sample = numbers.first + k;
       float counts = 1;
       set_out(hit, aim.direction(hit, direction_number(walk), counts), walk);
       walk.throughput *= counts;

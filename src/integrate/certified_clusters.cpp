@@ -47,9 +47,10 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
   if (is_closed_off) count_closed_off(members, s, out, counters);
   const bool has_far = !is_closed_off && is_proof_of_far_worth(members, s, out);
   std::span<const float> seen;
-  if (budget.draws > 0 && budget.thrift > 1) {
-    draw_with_thrift(members, s, out, counters);
-  } else if (budget.draws > 0 && !groups_.are_many()) {
+  const bool are_all_drawn = budget.draws > 0 && budget.thrift > 1;
+  const bool may_be_drawn = budget.draws > 0 && !groups_.are_many();
+  if (are_all_drawn || may_be_drawn) set_draws(members, budget.thrift, s);
+  if (may_be_drawn && !are_all_drawn) {
     certify_or_draw(members, s, out, counters);
     s.chosen.certified.clear();
   } else {
@@ -97,21 +98,17 @@ std::span<const float> CertifiedLights::certify(std::span<const uint32_t> member
   return s.cluster.memory.light;
 }
 
-bool CertifiedLights::are_matte(std::span<const uint32_t> members,
-                                const CertifiedLightsScratch& s) {
-  return std::all_of(members.begin(), members.end(),
-                     [&](uint32_t m) { return s.hits.glossy[m] < 0; });
-}
-
-// All lights are drawn, by few points.
-void CertifiedLights::draw_with_thrift(std::span<const uint32_t> members, CertifiedLightsScratch& s,
-                                       RadianceBatch& out, Counters& counters) const {
-  const bool is_matte = are_matte(members, s);
-  const uint32_t usual = budget_.draws * (is_matte ? budget_.matte_times : 1);
-  certify_none(s.chosen);
-  s.chosen.draws = std::max(usual / out.thrift, 1u);
-  s.chosen.sequence = thrifty_sequence + 2 * out.thrift + (is_matte ? 1 : 0);
-  draw(members, s, out, counters);
+// How many points are drawn from each of `members`, and by which numbers.
+void CertifiedLights::set_draws(std::span<const uint32_t> members, uint32_t thrift,
+                                CertifiedLightsScratch& s) const {
+  const bool is_matte =
+      budget_.matte_times > 1 &&
+      std::all_of(members.begin(), members.end(), [&](uint32_t m) { return s.hits.glossy[m] < 0; });
+  s.chosen.draws = std::max(budget_.draws * (is_matte ? budget_.matte_times : 1) / thrift, 1u);
+  if (thrift > 1)
+    s.chosen.sequence = thrifty_sequence + 2 * thrift + (is_matte ? 1 : 0);
+  else if (is_matte)
+    s.chosen.sequence = matte_sequence;
 }
 
 // A few hits are certified, and the others too if that took no more than draws do. What a few have
@@ -119,10 +116,6 @@ void CertifiedLights::draw_with_thrift(std::span<const uint32_t> members, Certif
 void CertifiedLights::certify_or_draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                                       RadianceBatch& out, Counters& counters) const {
   constexpr size_t few = 4;
-  if (are_matte(members, s) && budget_.matte_times > 1) {
-    s.chosen.draws *= budget_.matte_times;
-    s.chosen.sequence = matte_sequence;
-  }
   const auto draws = double(s.chosen.draws), n = double(members.size());
   bool are_drawn = certify_all(groups_, s.chosen);
   double rays = (rays_of_gather / n + rays_of_pair) * double(s.chosen.certified.size());

@@ -96,9 +96,8 @@ class CertifiedLights {
   std::span<const float> certify(std::span<const uint32_t> members, bool has_far,
                                  CertifiedLightsScratch& s, RadianceBatch& out,
                                  Counters& counters) const;
-  static bool are_matte(std::span<const uint32_t> members, const CertifiedLightsScratch& s);
-  void draw_with_thrift(std::span<const uint32_t> members, CertifiedLightsScratch& s,
-                        RadianceBatch& out, Counters& counters) const;
+  void set_draws(std::span<const uint32_t> members, uint32_t thrift,
+                 CertifiedLightsScratch& s) const;
   void certify_or_draw(std::span<const uint32_t> members, CertifiedLightsScratch& s,
                        RadianceBatch& out, Counters& counters) const;
   void add_answers(uint32_t request, std::span<const uint32_t> members,

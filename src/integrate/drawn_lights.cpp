@@ -40,7 +40,7 @@ void choose_lights(const LightGroups& groups, const ClusterBall& ball, size_t hi
   out.certified.clear();
   out.draws = budget.draws;
   out.sequence = 0;
-  if (budget.draws > 0 && !groups.are_many()) return;
+  if (budget.draws > 0 && (budget.thrift > 1 || !groups.are_many())) return;
   out.order.clear();
   double total = 0;
   for (uint32_t g = 0; g < n; ++g) total += double(out.estimates[g]);

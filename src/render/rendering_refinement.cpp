@@ -115,13 +115,13 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
   const auto wanted = [&](const Pixel2& p) {
     return refining_.wanted->samples[refining_.records->index(p.x, p.y)];
   };
-  const auto care = [&](const Pixel2& p) {
+  const auto leniency = [&](const Pixel2& p) {
     return std::pair(refining_.wanted->thrift[refining_.records->index(p.x, p.y)],
                      looseness(wanted(p)));
   };
   std::vector<Pixel2> pixels = pixels_in_order(tile);
   std::stable_sort(pixels.begin(), pixels.end(),
-                   [&](const Pixel2& a, const Pixel2& b) { return care(a) < care(b); });
+                   [&](const Pixel2& a, const Pixel2& b) { return leniency(a) < leniency(b); });
   const auto end = [&](bool is_whole) {
     send();
     w.radiance.looseness = 1;
@@ -129,8 +129,8 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
     return is_whole;
   };
   for (const Pixel2& p : pixels) {
-    if (care(p) != std::pair(w.radiance.thrift, w.radiance.looseness)) send();
-    std::tie(w.radiance.thrift, w.radiance.looseness) = care(p);
+    if (leniency(p) != std::pair(w.radiance.thrift, w.radiance.looseness)) send();
+    std::tie(w.radiance.thrift, w.radiance.looseness) = leniency(p);
     film_.expect_samples(p.x, p.y, uint32_t(wanted(p)));
     int left = wanted(p) - refining_.first_spp;
     while (left > 0) {

@@ -28,7 +28,7 @@ Scene floor_below(int n, bool is_glossy, bool has_sky) {
     make_light(s, quad, Rgb{1.0f + float(i % 3)});
   }
   add_block(s, matte, {0.1f, -0.5f, 1}, {0.4f, 0.5f, 1.1f});
-  if (has_sky) add_environment(s, Rgb{0.2f});
+  if (has_sky) add_environment(s, Rgb{0.4f});
   return s;
 }
 
@@ -48,9 +48,10 @@ WaveIntegrator drawing(const PreparedScene& scene) {
 TEST_CASE("with thrift rays get fewer points, and in the mean the same light") {
   constexpr float typical = 0.5f;  // of a picture: not all points of the sky are asked for
   const Ray ray = ray_towards({1.2f, 0.3f, 0.9f}, {0.9f, 0.1f, 0});
-  for (const int lights : {5, 40})  // few and many
+  for (const int lights : {0, 5, 40})  // none, few and many
     for (const bool is_glossy : {false, true})
       for (const bool has_sky : {false, true}) {
+        if (lights == 0 && !has_sky) continue;
         CAPTURE(lights);
         CAPTURE(is_glossy);
         CAPTURE(has_sky);
@@ -70,6 +71,8 @@ TEST_CASE("with thrift rays get fewer points, and in the mean the same light") {
                 5 * sigma + 0.004 * usual.total.mean());
           CHECK(some.shadow_rays > last);
           last = some.shadow_rays;
+          if (lights == 0)
+            CHECK(double(some.shadow_rays) / 200 < 0.5 * double(usual.shadow_rays) / 60);
           // Lights are drawn by so many points a ray, of which those that send nothing cast none.
           if (!has_sky) {
             CHECK(some.shadow_rays <= 200 * 64 * (is_glossy ? 16 : 32) / thrift);

@@ -173,7 +173,7 @@ TEST_CASE("told error: of a lamp that all rays of a pixel see in gloss") {
   CAPTURE(e.told);
   CAPTURE(e.made);
   CHECK(e.told > 0.8 * e.made);
-  CHECK(e.told < 3.5 * e.made);  // a fifth more where each meeting is told as a rare one
+  CHECK(e.told < 3.5 * e.made);  // 3.9 where each meeting is told as a rare one
 }
 
 TEST_CASE("told error: of a lit room that is seen through a gap") {
