@@ -36,7 +36,10 @@ constexpr double enough_of_wanted = 1.5;  // further rays that a kept cell has: 
 constexpr int most_rounds = 12;
 constexpr size_t most_cells_of_map = 1 << 21;
 constexpr size_t tasks_at_a_time = 1 << 14;
-constexpr int bounces_of_importance = 24;
+// By how many bounces importance is brought on where further rays are shared out, and where rows
+// seem to be complete; and at a look at which cells lack them: what one look leaves the next takes
+// up.
+constexpr int bounces_of_importance = 24, bounces_of_look = 6;
 
 using Clock = std::chrono::steady_clock;
 
@@ -78,7 +81,7 @@ class Builder {
   bool run(const std::vector<CellTask>& tasks);
   std::span<const CellHit> hits_of(const CellTask& task) const;
   CellTask task_of(uint32_t cell, uint32_t first, uint32_t count) const;
-  std::vector<uint32_t> cells_to_resolve();
+  std::vector<uint32_t> cells_to_resolve(int bounces);
   uint32_t first_rays(uint32_t cell) const;
   void add_first_tasks(uint32_t cell, uint32_t had, uint32_t count, std::vector<CellTask>& tasks);
   std::vector<CellTask> first_tasks();
@@ -210,9 +213,8 @@ bool Builder::run(const std::vector<CellTask>& tasks) {
 }
 
 // Cells without a row, the most important first, but for those that hardly matter.
-std::vector<uint32_t> Builder::cells_to_resolve() {
-  asked_.importance =
-      rows_.importance(asked_.light, std::move(asked_.importance), bounces_of_importance);
+std::vector<uint32_t> Builder::cells_to_resolve(int bounces) {
+  asked_.importance = rows_.importance(asked_.light, std::move(asked_.importance), bounces);
   const std::vector<float>& y = asked_.importance;
   double all = 0, open = 0;
   std::vector<uint32_t> cells;
@@ -259,7 +261,9 @@ void Builder::add_first_tasks(uint32_t cell, uint32_t had, uint32_t count,
 // one whose few rays met itself, say, and would keep its light for ever.
 std::vector<CellTask> Builder::first_tasks() {
   std::vector<CellTask> tasks;
-  for (const uint32_t c : cells_to_resolve()) add_first_tasks(c, 0, first_rays(c), tasks);
+  std::vector<uint32_t> cells = cells_to_resolve(bounces_of_look);
+  if (cells.empty()) cells = cells_to_resolve(bounces_of_importance);
+  for (const uint32_t c : cells) add_first_tasks(c, 0, first_rays(c), tasks);
   for (uint32_t c = 0; !tasks.empty() && c < asked_.importance.size(); ++c)
     if (rows_.has_row(c) && first_rays(c) >= 2 * rows_.rays(c))
       add_first_tasks(c, rows_.rays(c), first_rays(c), tasks);

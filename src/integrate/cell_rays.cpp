@@ -65,6 +65,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
     if (shares > 0) w.scales[t - chunk.first] = float(tasks[t].count) / shares;
   }
   const CheckContext context(&w, w.tasks.size(), name_of_ray);
+  g.is_of_rows = true;
   walks.follow(w.tasks.size(), Coherence::none, g, w.counters);
   chunk.seen.reserve(g.arrivals.size());
   for (const GatherArrival& a : g.arrivals) {

@@ -1,6 +1,7 @@
 #include "integrate/gather_walks.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "base/error.h"
@@ -16,6 +17,26 @@ namespace {
 constexpr uint32_t from_matte = 1;
 // nor what image i shines on it: first_image + i, from there by way of its mirror.
 constexpr uint32_t first_image = 2;
+
+// How often a light is drawn for gloss that a ray meets, and how often the ray goes on: where less
+// is carried than these, in proportion to it, and then as much as these. What the gloss of a
+// varnish or of plastics brings is a twentieth of what its surface does, and need not be known as
+// well. Less for narrow gloss, of which few rays bring most.
+constexpr float least_of_light = 0.25f, least_of_ray = 0.5f, least_of_narrow_ray = 0.1f;
+constexpr float least_by_width = 8;  // times alpha squared
+
+struct ChancesOfGloss {
+  float of_light = 1, of_ray = 1;
+
+  ChancesOfGloss(const Walk& walk, const Bsdf& specular, float cosine, bool is_of_rows) {
+    const float least = least_by_width * sqr(glossy_alpha(specular));
+    const Rgb carried = walk.throughput * albedo(specular, cosine);
+    of_light = chance_of_spawning(walk, carried, std::clamp(least, 1e-6f, least_of_light));
+    of_ray = chance_of_spawning(
+        walk, carried,
+        is_of_rows ? least_of_narrow_ray : std::clamp(least, least_of_narrow_ray, least_of_ray));
+  }
+};
 
 }  // namespace
 
@@ -144,36 +165,30 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, const Vertex& v,
                          GatherScratch& s) const {
   if (v.surface.light >= 0 && counts(walk, uint32_t(v.surface.light)))
     see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
-  Bsdf bsdf =
-      make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+  const SurfaceScattering* even = scene_.even_scatterings.find(v.surface.material, v.is_front);
+  std::optional<Bsdf> made;
+  if (even == nullptr)
+    made =
+        make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+  const Bsdf& bsdf = even != nullptr ? even->whole : *made;
   const float distance = hit.t * length(walk.ray.direction);
   const bool is_passing = has_two_sides(bsdf);
-  if (is_passing) arrive_beyond(walk, v, bsdf, distance, s);
+  if (is_passing) arrive_beyond(walk, v, *made, distance, s);
   GlossPlace gloss;
   float gloss_weight = 0;
   Rgb reflectance = bsdf.diffuse;
   const bool is_matte = is_lambertian(bsdf, nullptr);
   bool goes_on = false;
   if (!is_matte) {
-    const SurfaceScattering scattering(bsdf);
+    std::optional<SurfaceScattering> taken_apart;
+    const SurfaceScattering& scattering = even != nullptr ? *even : taken_apart.emplace(bsdf);
     reflectance = scattering.has_diffuse ? albedo(scattering.diffuse, v.wo.z) : Rgb{0};
     if (s.is_view && scattering.is_wide()) {
       gloss = {v.surface.material, v.is_front, v.surface.uv, v.wo};
       gloss_weight = luminance(walk.throughput * albedo(scattering.specular, v.wo.z));
     } else if (scattering.has_specular) {
       goes_on = true;
-      if (scattering.has_rough && !s.is_view) {
-        s.rough.walks.push_back(walk);
-        s.rough.vertices.push_back(v);
-        s.rough.bsdfs.push_back(scattering.specular);
-      }
-      Walk next = walk;
-      next.length += distance;
-      if (step(next, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
-          !(s.is_view && next.scatterings > 0) && survives_spawning(next)) {
-        note_step(walk, v, next);
-        s.next.push_back(next);
-      }
+      go_on(walk, v, scattering, distance, s);
     }
   }
   if (reflectance.is_black() && !gloss.is_there()) {
@@ -189,6 +204,42 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, const Vertex& v,
   a.gloss_weight = gloss_weight;
   a.distance = distance;
   a.length = walk.length + distance;
+}
+
+// By gloss: with a light drawn for it, or further along the ray that it sends on. Either only
+// sometimes, where it matters little.
+void GatherWalks::go_on(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
+                        float distance, GatherScratch& s) const {
+  // Panes and clear coats send on what albedo() does not tell of.
+  const bool is_spread = scattering.has_rough && !s.is_view;
+  const bool is_told = !scattering.specular.is_pane && !scattering.specular.clear.has_lobe();
+  const auto light = [&](const Walk& lit, float going_on) {
+    s.rough.walks.push_back(lit);
+    s.rough.vertices.push_back(v);
+    s.rough.bsdfs.push_back(scattering.specular);
+    s.rough.going_on.push_back(going_on);
+  };
+  const auto sets_out = [&](Walk& next) {
+    next.length += distance;
+    return step(next, v, scattering.specular, lobe_number(walk), direction_number(walk));
+  };
+  Walk next = walk;
+  if (!is_spread || !is_told) {
+    if (is_spread) light(walk, 1);
+    if (!sets_out(next) || (s.is_view && next.scatterings > 0) || !survives_spawning(next)) return;
+    note_step(walk, v, next);
+    s.next.push_back(next);
+    return;
+  }
+  const ChancesOfGloss chances(walk, scattering.specular, v.wo.z, s.is_of_rows);
+  const float number = spawning_number(walk);
+  if (survives(next, chances.of_light, number)) light(next, chances.of_ray / chances.of_light);
+  next.throughput = walk.throughput;
+  // From the other end: both come less often together than each by itself.
+  if (!survives(next, chances.of_ray, 1 - number) || !sets_out(next)) return;
+  next.pdf *= chances.of_ray / chances.of_light;
+  note_step(walk, v, next);
+  s.next.push_back(next);
 }
 
 // At the far side of a surface that light passes evenly; takes its part from bsdf.

@@ -4,7 +4,7 @@
 // Emission that a ray runs into first is not counted: light straight from sources is somebody
 // else's, and so is that of lights whose image in the mirror that it meets first is one of
 // `images`. Behind other mirrors, glass or gloss it is, in competition with one sample of the light
-// tree at the gloss, as in path tracing.
+// tree at the gloss, as in path tracing; at wide gloss that sends on little, either only sometimes.
 #pragma once
 
 #include <memory>
@@ -42,6 +42,8 @@ struct GatherArrival {
 struct GatherScratch {
   // Rays of a view end where gloss would spread them.
   bool is_view = false;
+  // Rays of cells, whose rows are bounded: one that carries more than its share would be cut.
+  bool is_of_rows = false;
   std::vector<Walk> walks, next;
   std::vector<GatherArrival> arrivals;  // the result …
   RadianceBatch light;                  // … and radiance from sources: direct + indirect
@@ -86,6 +88,8 @@ class GatherWalks {
   void light_up_by(const LightTreeDirect& tree, const FlatMirror* mirror,
                    std::span<const GatherArrival> arrivals, GatherScratch& s,
                    Counters& counters) const;
+  void go_on(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering, float distance,
+             GatherScratch& s) const;
   void note_step(const Walk& before, const Vertex& v, Walk& next) const;
 
   const PreparedScene& scene_;

@@ -144,10 +144,14 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
   }
   for (size_t i = 0; i < alive; ++i) {
     const Surface& surface = vertices[i].surface;
-    // Made in its place: it is too large to be made and copied.
+    // Made in its place: it is too large to be made and moved there.
     static_assert(std::is_trivially_destructible_v<Bsdf>);
-    new (&bsdfs[i]) Bsdf(make_bsdf(scene_.bsdf_tables, scene_.scene, surface.material, surface.uv,
-                                   vertices[i].is_front));
+    const SurfaceScattering* even =
+        scene_.even_scatterings.find(surface.material, vertices[i].is_front);
+    new (&bsdfs[i])
+        Bsdf(even != nullptr ? even->whole
+                             : make_bsdf(scene_.bsdf_tables, scene_.scene, surface.material,
+                                         surface.uv, vertices[i].is_front));
     if (walks[i].vertex == 0) record_first_hit(walks[i], vertices[i], bsdfs[i], out);
     if (has_two_sides(bsdfs[i])) choose_side(walks[i], vertices[i], bsdfs[i]);
   }

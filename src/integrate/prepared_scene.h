@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "bsdf/bsdf.h"
+#include "integrate/even_scatterings.h"
 #include "integrate/scene_glass.h"
 #include "light/far_cells.h"
 #include "light/light_primitive.h"
@@ -27,6 +28,7 @@ struct PreparedScene {
   explicit PreparedScene(Scene s)
       : scene(with_room_for_tracer(with_levels(std::move(s)))),
         bsdf_tables(scene),
+        even_scatterings(scene, bsdf_tables),
         glass(scene, bsdf_tables),
         panes(scene, glass),
         tracer(scene, panes.is_empty() ? nullptr : &glass),
@@ -38,6 +40,7 @@ struct PreparedScene {
 
   const Scene scene;
   const BsdfTables bsdf_tables;
+  const EvenScatterings even_scatterings;
   const SceneGlass glass;
   const PanePlaces panes;
   Tracer tracer;

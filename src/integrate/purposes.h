@@ -14,7 +14,7 @@ constexpr uint32_t purpose_light(uint32_t vertex) {
   return 2 + 2 * vertex;
 }
 
-// Whether a spawned walk goes on.
+// Whether a spawned walk goes on, and a light is drawn for the gloss that would spawn it.
 constexpr uint32_t purpose_roulette(uint32_t vertex) {
   return 0x8000'0000u + vertex;
 }

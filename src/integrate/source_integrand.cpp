@@ -224,7 +224,36 @@ void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
   }
 }
 
+// Gloss is gentle over sources no wider than this many lobes. Measured: docs/certified.md.
+constexpr float sources_in_lobe = 2;
+
+// Width of a source over its distance from x; without bound where x may be in it.
+float angular_width(const CertifiedSource& source, const Vec3& x) {
+  if (source.is_round) {
+    const double distance = length(source.sphere.centre - Vec3d(x));
+    return float(2 * source.sphere.radius / std::max(distance - source.sphere.radius, 1e-30));
+  }
+  const Parallelogram& p = source.flat.plane;
+  const double width = std::max(length(p.u + p.v), length(p.u - p.v));
+  const double distance = length(p.origin + (p.u + p.v) * 0.5 - Vec3d(x));
+  return float(width / std::max(distance - 0.5 * width, 1e-30));
+}
+
+// Directions in the lobe are as far apart, about, as twice the normals of its facets; across the
+// plane of incidence less, by the cosine.
+float lobe_width(const GlossyHit& g) {
+  return 2 * glossy_alpha(g.rough) * std::max(g.wo.z, 0.0f);
+}
+
 }  // namespace
+
+bool SourceIntegrand::is_gentle(uint32_t request, uint32_t member) const {
+  const CertifiedSource& source = *sources_[request];
+  if (source.far != nullptr || is_taken_on_the_way(request)) return false;
+  const GlossyHit* g = hits_[member].glossy;
+  return g == nullptr || !g->has_rough ||
+         angular_width(source, hits_[member].position) < sources_in_lobe * lobe_width(*g);
+}
 
 void SourceIntegrand::evaluate_many(uint32_t request, uint32_t member, PointArrays& p) {
   const CertifiedSource& source = *sources_[request];

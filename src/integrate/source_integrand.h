@@ -120,11 +120,7 @@ class SourceIntegrand final : public ShadowIntegrand {
            (hits_[member].glossy != nullptr && !varies(request));
   }
   void evaluate_many(uint32_t request, uint32_t member, PointArrays& points) override;
-  bool is_gentle(uint32_t request, uint32_t member) const override {
-    const GlossyHit* g = hits_[member].glossy;
-    return sources_[request]->far == nullptr && !is_taken_on_the_way(request) &&
-           (g == nullptr || !g->has_rough);
-  }
+  bool is_gentle(uint32_t request, uint32_t member) const override;
 
  private:
   bool is_behind_panes(uint32_t request) const {

@@ -84,6 +84,10 @@ float roulette_number(const Walk& walk) {
   return SobolGroup(walk.stream, purpose_roulette(walk.vertex), walk.sample).get(0);
 }
 
+float spawning_number(const Walk& walk) {
+  return SobolGroup(walk.stream, purpose_roulette(walk.vertex + 1), walk.sample).get(0);
+}
+
 bool step(Walk& walk, const Vertex& v, const Bsdf& bsdf, float lobe, const Vec2& direction) {
   BsdfSample sampled;
   if (!sample(bsdf, v.wo, lobe, direction, sampled)) return false;
@@ -140,19 +144,26 @@ bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf) {
   return true;
 }
 
-bool survives_spawning(Walk& walk) {
-  constexpr float threshold = 0.1f;
+float chance_of_spawning(const Walk& walk, const Rgb& carried, float threshold) {
   // Between white metals throughput alone would hardly ever end a walk: from this vertex on some 5
   // % end all the same. To end all of them would lose the light of all further bounces.
   constexpr uint32_t long_walk = 24;
   constexpr float long_walk_survival = 0.95f;
   const float most = walk.vertex < long_walk ? 1 : long_walk_survival;
-  const float carried = max_component(walk.throughput) * walk.eta_squared;
-  const float survival = std::min(carried / threshold, most);
-  if (survival >= 1) return true;
-  if (roulette_number(walk) >= survival) return false;
-  walk.throughput *= 1 / survival;
+  return std::min(max_component(carried) * walk.eta_squared / threshold, most);
+}
+
+bool survives(Walk& walk, float chance, float number) {
+  if (chance >= 1) return true;
+  if (number >= chance) return false;
+  walk.throughput *= 1 / chance;
   return true;
+}
+
+bool survives_spawning(Walk& walk) {
+  constexpr float threshold = 0.1f;
+  const float chance = chance_of_spawning(walk, walk.throughput, threshold);
+  return chance >= 1 || survives(walk, chance, roulette_number(walk));
 }
 
 void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, RadianceBatch& out) {

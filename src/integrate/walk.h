@@ -67,6 +67,8 @@ float side_number(const Walk& walk);
 // For Russian roulette of spawned walks: even over the samples, so that of a few rays about as many
 // as should go on do.
 float roulette_number(const Walk& walk);
+// … of what a walk at its vertex would spawn: the roulette_number() of that.
+float spawning_number(const Walk& walk);
 
 // How often it has been sent on by a surface: panes that it went straight through do not count.
 inline uint32_t bounces(const Walk& walk) {
@@ -86,6 +88,11 @@ bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
 // Spawned walks that carry less than a tenth of the light go on as rarely as they are weak, and
 // carry more; so do those of many vertices, whatever they carry: false where the walk ends.
 bool survives_spawning(Walk& walk);
+// Their chance; `carried`: of light, by a walk that goes on from where it has got to; goes on for
+// sure, but for the last, from `threshold` up.
+float chance_of_spawning(const Walk& walk, const Rgb& carried, float threshold);
+// Goes on by this chance where `number` says so, and carries more.
+bool survives(Walk& walk, float chance, float number);
 
 // Fills in what AOVs want to know of the first surface.
 void record_first_hit(const Walk& walk, const Vertex& v, const Bsdf& bsdf, RadianceBatch& out);

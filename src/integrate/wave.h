@@ -19,6 +19,8 @@ struct WaveHits {
   std::vector<Vertex> vertices;
   std::vector<Bsdf> bsdfs;                     // of methods that take surfaces whole, or
   std::vector<SurfaceScattering> scatterings;  // … of those that take them apart; else empty
+  // How often walks go on from them, over how often lights are drawn for them; empty: as often.
+  std::vector<float> going_on;
   // Where the hits lie on the radiosity mesh; empty until somebody asks (RadiosityLight::places).
   std::vector<RadiosityPlace> places;
   const ViewingRays* viewing = nullptr;  // of the batch; null: sensors
@@ -32,6 +34,7 @@ struct WaveHits {
     vertices.push_back(other.vertices[i]);
     if (!other.bsdfs.empty()) bsdfs.push_back(other.bsdfs[i]);
     if (!other.scatterings.empty()) scatterings.push_back(other.scatterings[i]);
+    if (!other.going_on.empty()) going_on.push_back(other.going_on[i]);
   }
   void clear() {
     walks.clear();
@@ -39,6 +42,7 @@ struct WaveHits {
     vertices.clear();
     bsdfs.clear();
     scatterings.clear();
+    going_on.clear();
     places.clear();
     viewing = nullptr;
   }

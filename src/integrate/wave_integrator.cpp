@@ -232,8 +232,10 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
       w.vertices[kept] = w.vertices[i];
     }
     const Vertex& v = w.vertices[kept];
-    Bsdf bsdf =
-        make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+    const SurfaceScattering* even = scene_.even_scatterings.find(v.surface.material, v.is_front);
+    Bsdf bsdf = even != nullptr ? even->whole
+                                : make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material,
+                                            v.surface.uv, v.is_front);
     if (w.walks[kept].vertex == 0) record_first_hit(w.walks[kept], v, bsdf, out);
     if (has_two_sides(bsdf)) {
       FarSide& far = s.far.emplace_back(w.walks[kept], w.hits[kept]);

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "base/random.h"
 #include "base/units.h"
 #include "integrate/cells.h"
@@ -43,6 +45,107 @@ TEST_CASE("draws of sources bring coated surfaces all of their light") {
     walks.light_up(arrivals, scratch, counters);
     const Rgb sum = scratch.light.direct[0] + scratch.light.indirect[0];
     CHECK(double(luminance(sum)) / draws * pi == doctest::Approx(pi).epsilon(0.01));
+  }
+}
+
+namespace {
+
+enum class Cover { none, clear_coat, smooth_clear_coat };
+
+// Black gloss all around the origin, which under an even sky of radiance 1 sends what it reflects.
+// With a cover the gloss itself is black, too.
+Scene black_gloss(float alpha, Cover cover) {
+  Scene s;
+  Material m;
+  m.kind = MaterialKind::metallic_roughness;
+  m.base_color.value = Rgb{0};
+  m.roughness.value = alpha;
+  if (cover != Cover::none) {
+    m.specular.value = 0;
+    m.coat.value = 1;
+    m.coat_roughness.value = cover == Cover::clear_coat ? 0.3f : 0.0f;
+  }
+  const uint32_t material = add_material(s, m);
+  add_quad(s, material, {Vec3{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
+  add_light(s, LightKind::environment, Rgb{1});
+  return s;
+}
+
+struct Gathered {
+  double mean = 0, sigma = 0;        // of what rays bring; sigma: of the mean
+  double went_on = 0, were_lit = 0;  // per ray
+};
+
+// Rays that come down on the origin by a cosine of .8.
+Gathered gathered(const PreparedScene& scene, bool is_of_rows) {
+  const GatherWalks walks(scene, nullptr);
+  constexpr uint32_t rays = 1 << 17;
+  GatherScratch scratch;
+  scratch.is_of_rows = is_of_rows;
+  for (uint32_t k = 0; k < rays; ++k) {
+    Walk& walk = scratch.walks.emplace_back();
+    walk.index = walk.sample = k;
+    walk.stream = 5;
+    set_out({{-0.75f, 0, 1}, {0, 0, -1}, {0, 0, -1}, 1e-5f}, Vec3{0.6f, 0, -0.8f}, walk);
+  }
+  Counters counters;
+  walks.follow(rays, Coherence::none, scratch, counters);
+  double sum = 0, squares = 0;
+  for (uint32_t k = 0; k < rays; ++k) {
+    const double x = double(luminance(scratch.light.direct[k] + scratch.light.indirect[k]));
+    sum += x;
+    squares += x * x;
+  }
+  Gathered g;
+  g.mean = sum / rays;
+  g.sigma = std::sqrt((squares / rays - sqr(g.mean)) / rays);
+  g.went_on = double(counters.extension_rays) / rays - 1;
+  g.were_lit = double(counters.shadow_rays) / rays;
+  return g;
+}
+
+}  // namespace
+
+// By a light that is drawn, and by a ray that goes on, either of which only sometimes; rays of
+// cells go on more often, and those of narrow gloss too.
+TEST_CASE("gather rays bring what gloss sends, though few go on from it") {
+  for (const float alpha : {0.01f, 0.1f, 0.25f, 0.5f, 0.9f})
+    for (const bool is_of_rows : {false, true}) {
+      CAPTURE(alpha);
+      CAPTURE(is_of_rows);
+      const PreparedScene scene(black_gloss(alpha, Cover::none));
+      const SurfaceScattering* gloss = scene.even_scatterings.find(0, true);
+      REQUIRE(gloss != nullptr);
+      const double all = double(luminance(albedo(gloss->specular, 0.8f)));
+      REQUIRE(all > 0.01);
+      const Gathered g = gathered(scene, is_of_rows);
+      CHECK(std::abs(g.mean - all) < 5 * g.sigma + 0.003 * all);
+      const bool is_narrow = alpha < 0.2f;
+      CHECK(g.went_on ==
+            doctest::Approx(all / (is_of_rows || is_narrow ? 0.1 : 0.5)).epsilon(0.03));
+      // Half of the lights that are drawn are below the floor.
+      if (!is_narrow) CHECK(g.were_lit == doctest::Approx(0.5 * all / 0.25).epsilon(0.03));
+    }
+}
+
+// Which albedo() leaves out, so that it does not say how rarely they may go on.
+TEST_CASE("gather rays bring what a clear coat over black sends") {
+  for (const Cover cover : {Cover::clear_coat, Cover::smooth_clear_coat}) {
+    CAPTURE(int(cover));
+    const PreparedScene scene(black_gloss(0.5f, cover));
+    const SurfaceScattering* gloss = scene.even_scatterings.find(0, true);
+    REQUIRE(gloss != nullptr);
+    double all = 0;
+    constexpr uint32_t n = 1 << 16;
+    for (uint32_t k = 0; k < n; ++k) {
+      const SobolGroup numbers(3, 0, k);
+      BsdfSample sampled;
+      if (sample(gloss->specular, {0.6f, 0, 0.8f}, numbers.get(2), numbers.get2(0), sampled))
+        all += double(luminance(sampled.weight)) / n;
+    }
+    REQUIRE(all > 0.03);
+    const Gathered g = gathered(scene, false);
+    CHECK(std::abs(g.mean - all) < 5 * g.sigma + 0.01 * all);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "integrate/probe.h"
+#include "integrate/source_integrand.h"
 
 using namespace troffer;
 using namespace troffer::test;
@@ -12,7 +13,7 @@ using namespace troffer::test;
 namespace {
 
 // A rough floor under a panel; `leaf`: between the two, so that lists are not complete.
-Scene glossy_room(MaterialKind kind, float roughness, bool has_leaf) {
+Scene glossy_room(MaterialKind kind, float roughness, bool has_leaf, float panel = 1) {
   Scene s;
   Material m;
   m.kind = kind;
@@ -21,7 +22,7 @@ Scene glossy_room(MaterialKind kind, float roughness, bool has_leaf) {
   m.is_reflectance = true;
   const uint32_t floor = add_material(s, m);
   add_quad(s, floor, {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
-  add_ceiling_light(s, 1.0f, 2, Rgb{5});
+  add_ceiling_light(s, panel, 2, Rgb{5});
   if (has_leaf)
     add_leaf(s, {Vec3{0, -0.1f, 1}, {0.4f, -0.1f, 1.1f}, {0.4f, 0.3f, 1.1f}, {0, 0.3f, 1}});
   return s;
@@ -51,6 +52,60 @@ TEST_CASE("gloss: an open source is hardly noisy over rough metal and coats") {
       // 32 points drawn from the mask: up to .028
       CHECK(deviation(got.direct, 2000) < 0.006 * got.direct.mean());
     }
+}
+
+// Then few points of it say what all do.
+TEST_CASE("gloss: a source is gentle that is small beside the lobe, however near or narrow") {
+  const PreparedScene scene(glossy_room(MaterialKind::conductor, 0.3f, false));
+  SourceIntegrand integrand(scene, 32, LobeCompetition(scene, 32, false));
+  CertifiedSource panel;
+  REQUIRE(make_flat_source(
+      std::vector<Vec3>{{-0.5f, -0.5f, 2}, {-0.5f, 0.5f, 2}, {0.5f, 0.5f, 2}, {0.5f, -0.5f, 2}},
+      panel.flat));
+  GlossyHit gloss;
+  gloss.wo = normalize(Vec3{0.5f, 0, 1});
+  gloss.has_rough = true;
+  integrand.sources() = {&panel};
+  integrand.portals() = {nullptr};
+  const auto is_gentle = [&](float roughness, float below) {
+    Material m;
+    m.kind = MaterialKind::conductor;
+    m.roughness.value = roughness;
+    gloss.rough = make_bsdf(scene.bsdf_tables, {m}, {}, 0, {}, true);
+    integrand.hits() = {{{0, 0, 2 - below}, &gloss}};
+    return integrand.is_gentle(0, 0);
+  };
+  const float alpha = 0.25f, lobe = 2 * alpha * gloss.wo.z;
+  const float reach = 0.5f * std::sqrt(2.0f) * (1 + 1 / lobe);  // two lobes wide from there
+  CHECK(is_gentle(alpha, 1.01f * reach));
+  CHECK(!is_gentle(alpha, 0.99f * reach));
+  CHECK(!is_gentle(0.01f, 10));
+  CHECK(!is_gentle(1, 0.1f));
+  gloss.has_rough = false;
+  CHECK(is_gentle(0.01f, 0.1f));
+}
+
+TEST_CASE("gloss: few points of a panel that is small beside the lobe bring no bias") {
+  for (const float panel : {0.3f, 0.7f, 1.0f})
+    for (const bool has_leaf : {false, true})
+      for (const double error : {0.01, 0.05})
+        for (const Vec3& point : {seen, Vec3{0.3f, 0.2f, 0}, Vec3{0.1f, 0.1f, 0}}) {
+          // Some of the panel is seen past the leaf from all of these points.
+          const PreparedScene scene(glossy_room(MaterialKind::conductor, 0.6f, has_leaf, panel));
+          const Ray ray = ray_towards(eye, point);
+          const Probed got = probe(certified_integrator(scene, error), ray, 1, 2000, 5);
+          const Probed reference = probe(fixed_integrator(scene, 64), ray, 16, 128, 3);
+          CAPTURE(panel);
+          CAPTURE(has_leaf);
+          CAPTURE(error);
+          CAPTURE(point.x);
+          CAPTURE(got.direct.mean());
+          CAPTURE(reference.direct.mean());
+          CHECK(p_of_difference(got.direct, reference.direct, 1e-3 * reference.direct.mean()) >
+                1e-4);
+          if (!has_leaf)
+            CHECK(deviation(got.direct, 2000) < (error < 0.02 ? 0.006 : 0.02) * got.direct.mean());
+        }
 }
 
 TEST_CASE("gloss: where rays decide, they tell what is hidden, without bias") {
