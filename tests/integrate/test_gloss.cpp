@@ -90,7 +90,6 @@ TEST_CASE("gloss: few points of a panel that is small beside the lobe bring no b
     for (const bool has_leaf : {false, true})
       for (const double error : {0.01, 0.05})
         for (const Vec3& point : {seen, Vec3{0.3f, 0.2f, 0}, Vec3{0.1f, 0.1f, 0}}) {
-          // Some of the panel is seen past the leaf from all of these points.
           const PreparedScene scene(glossy_room(MaterialKind::conductor, 0.6f, has_leaf, panel));
           const Ray ray = ray_towards(eye, point);
           const Probed got = probe(certified_integrator(scene, error), ray, 1, 2000, 5);
