@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "integrate/sensor_aims.h"
 
 namespace troffer {
 
@@ -57,17 +58,7 @@ struct CellsIndirect::Scratch final : IndirectLightScratch {
   std::vector<uint32_t> indices, ends;
   // Per ray: what the hit makes of irradiance by it, times what the walk carries.
   std::vector<Rgb> weights;
-  // Of sensors: many follow each other at one place.
-  GatherAim aim;
-  CellHit last;
-  bool has_last = false;
-
-  void aim_at(const Cells& by, const CellHit& at) {
-    if (has_last && at.position == last.position && at.normal == last.normal) return;
-    last = at;
-    has_last = true;
-    aim = GatherAim(by.bright_places(), by.bright_places().sight_from({&at, 1}), at);
-  }
+  SensorAims aims;
   void clear() {
     cells.walks.clear();
     indices.clear();
@@ -216,12 +207,12 @@ void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scr
                            RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
   s.clear();
+  s.aims.begin(cells_->bright_places(), sensors);
   for (uint32_t i = 0; i < sensors.size(); ++i) {
     Walk walk = sensor_walk(sensors, i);
-    const CellHit at{sensors.positions[i], sensors.normals[i], sensors.normals[i], sensors.offset};
-    s.aim_at(*cells_, at);
+    const CellHit at = hit_of(sensors, i);
     float counts = 1;
-    set_out(at, s.aim.direction(at, direction_number(walk), counts), walk);
+    set_out(at, s.aims.at(i).direction(at, direction_number(walk), counts), walk);
     walk.throughput *= counts;
     if (!walk.throughput.is_black()) s.cells.walks.push_back(walk);
   }
