@@ -236,7 +236,7 @@ TEST_CASE("cells: a room with mirror, glass, gloss is as bright as by paths") {
   const Ensemble mine = render_ensemble(scene, mixed_room_camera(), o, 8);
   o.method = Method::path;
   o.indirect = Indirect::automatic;
-  o.spp = 1024;
+  o.spp = 512;
   const Ensemble paths = render_ensemble(scene, mixed_room_camera(), o, 8);
   CAPTURE(mine.mean.mean());
   CAPTURE(paths.mean.mean());

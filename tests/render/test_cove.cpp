@@ -54,17 +54,17 @@ TEST_CASE("a cove lights all parts of a room as much as by paths") {
   const Camera camera = look_at({0.5f, 0.5f, 1.5f}, {3.2f, 4.2f, 0.9f}, {0, 0, 1}, 75);
   RenderOptions path;
   path.method = Method::path;
-  path.spp = path.max_spp = 2048;
+  path.spp = path.max_spp = 1024;
   const Image truth = reflected_light(scene, camera, width, height, path);
   RenderOptions ours;
   ours.error = 0.05;
   double squares = 0;
-  for (const uint64_t seed : {1, 2, 3, 4}) {
+  for (const uint64_t seed : {1, 2, 3}) {
     ours.seed = seed;
     const double off = off_in_blocks(reflected_light(scene, camera, width, height, ours), truth);
     CAPTURE(off);
     CHECK(off < 0.13);
-    squares += sqr(off) / 4;
+    squares += sqr(off) / 3;
   }
   CHECK(std::sqrt(squares) < 0.09);  // .14 to .17 by cells that are not halved; other paths: .03
 }
@@ -111,7 +111,7 @@ TEST_CASE("the bright rim over a cove's lip gets its light but for three percent
   };
   RenderOptions path;
   path.method = Method::path;
-  path.spp = path.max_spp = 4096;
+  path.spp = path.max_spp = 2048;
   const Image truth = rim(path);
   const double typical = mean(truth);
   for (const uint64_t seed : {1, 2}) {

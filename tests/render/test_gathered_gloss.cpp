@@ -92,11 +92,11 @@ TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
         {{0.4f, 0.5f, 0.9f}, 0.5f, false, uint32_t(s.materials.size() - 1), no_light});
     add_ceiling_light(s, 1, 2.4f, Rgb{10});
     const PreparedScene scene(std::move(s));
-    RenderOptions o = picture(32, 0.01);
+    RenderOptions o = picture(32, 0.02);
     o.max_spp = 64;
     const Ensemble mine = render_ensemble(scene, mixed_room_camera(), o, 4);
     o.method = Method::path;
-    o.spp = 512;
+    o.spp = 256;
     const Ensemble paths = render_ensemble(scene, mixed_room_camera(), o, 4);
     CAPTURE(m.roughness.value);
     CAPTURE(paths.mean.standard_error() / paths.mean.mean());

@@ -136,13 +136,13 @@ TEST_CASE("told error: of lamps that are smaller than a pixel") {
   camera.focal_distance = 3;
   RenderOptions o = of_five_percent(64, 48);
   o.error = 0.01;
-  const Errors e = errors_of(scene, camera, o, 24);
+  const Errors e = errors_of(scene, camera, o, 14);
   CAPTURE(e.told);
   CAPTURE(e.made);
   CHECK(e.told > 0.75 * e.made);  // .53 without what glances leave
   CHECK(e.told < 1.8 * e.made);
   camera.lens_radius = 0;
-  const Errors known = errors_of(scene, camera, o, 6);
+  const Errors known = errors_of(scene, camera, o, 4);
   CAPTURE(known.told);
   CAPTURE(known.made);
   CHECK(known.made < 0.9 * e.made);

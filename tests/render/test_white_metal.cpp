@@ -34,11 +34,11 @@ TEST_CASE("no light is lost between white metals, however often it is reflected"
     const Camera camera = look_at({-1, -1, 1.5f}, {1, 1, 0.5f}, {0, 0, 1}, 70);
     RenderOptions path;
     path.method = Method::path;
-    path.spp = 1024;
+    path.spp = 512;
     RenderOptions ours;
     ours.error = 0.02;
-    const double truth = mean(reflected_light(scene, camera, 32, 24, path));
-    CHECK(mean(reflected_light(scene, camera, 32, 24, ours)) / truth ==
+    const double truth = mean(reflected_light(scene, camera, 24, 18, path));
+    CHECK(mean(reflected_light(scene, camera, 24, 18, ours)) / truth ==
           doctest::Approx(1).epsilon(0.007));
   }
 }

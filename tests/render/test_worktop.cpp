@@ -48,7 +48,7 @@ TEST_CASE("a floor lit by way of a worktop gets all of that light") {
   const double right = mean(reflected_light(scene, camera, 64, 48, path));
   ours.error = 0.05;
   double made = 0;
-  constexpr int pictures = 12;
+  constexpr int pictures = 8;
   for (uint64_t seed = 0; seed < pictures; ++seed) {
     ours.seed = seed;
     made += mean(reflected_light(scene, camera, 64, 48, ours)) / pictures;

@@ -19,7 +19,7 @@ struct Errors {
 
 // Of 16 receivers on 15 cm of floor, four viewing rays of each of four pixels.
 Errors errors_of(float error, const std::function<std::vector<Quad>(Random&)>& make) {
-  constexpr int scenes = 4, seeds = 30, count = 16;
+  constexpr int scenes = 4, seeds = 20, count = 16;
   Random random(3);
   double made = 0, told = 0;
   for (int s = 0; s < scenes; ++s) {
