@@ -1,12 +1,12 @@
 #include "integrate/gather_walks.h"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "base/warp.h"
+#include "integrate/bsdf_at.h"
 #include "integrate/two_sides.h"
 
 namespace troffer {
@@ -165,23 +165,18 @@ void GatherWalks::arrive(const Walk& walk, const Hit& hit, const Vertex& v,
                          GatherScratch& s) const {
   if (v.surface.light >= 0 && counts(walk, uint32_t(v.surface.light)))
     see(walk, emission_at(scene_, v), walk.pdf > 0 ? tree_.weight_of(walk, v) : 1, s);
-  const SurfaceScattering* even = scene_.even_scatterings.find(v.surface.material, v.is_front);
-  std::optional<Bsdf> made;
-  if (even == nullptr)
-    made =
-        make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
-  const Bsdf& bsdf = even != nullptr ? even->whole : *made;
+  ScatteringAt at(scene_, v);
+  const Bsdf& bsdf = at.whole();
   const float distance = hit.t * length(walk.ray.direction);
   const bool is_passing = has_two_sides(bsdf);
-  if (is_passing) arrive_beyond(walk, v, *made, distance, s);
+  if (is_passing) arrive_beyond(walk, v, at.of_two_sides(), distance, s);
   GlossPlace gloss;
   float gloss_weight = 0;
   Rgb reflectance = bsdf.diffuse;
   const bool is_matte = is_lambertian(bsdf, nullptr);
   bool goes_on = false;
   if (!is_matte) {
-    std::optional<SurfaceScattering> taken_apart;
-    const SurfaceScattering& scattering = even != nullptr ? *even : taken_apart.emplace(bsdf);
+    const SurfaceScattering& scattering = at.in_parts();
     reflectance = scattering.has_diffuse ? albedo(scattering.diffuse, v.wo.z) : Rgb{0};
     if (s.is_view && scattering.is_wide()) {
       gloss = {v.surface.material, v.is_front, v.surface.uv, v.wo};
@@ -256,14 +251,13 @@ void GatherWalks::arrive_beyond(const Walk& walk, const Vertex& v, Bsdf& bsdf, f
 }
 
 SurfaceScattering GatherWalks::scattering_at(const GlossPlace& p) const {
-  return SurfaceScattering(
-      make_bsdf(scene_.bsdf_tables, scene_.scene, p.material, p.uv, p.is_front));
+  return SurfaceScattering(bsdf_at(scene_, p.material, p.uv, p.is_front));
 }
 
 Bsdf GatherWalks::coat_at(const CellHit& hit) const {
   const uint32_t material = hit.coated / 2;
   if (material >= scene_.scene.materials.size()) return Bsdf{};
-  return make_bsdf(scene_.bsdf_tables, scene_.scene, material, hit.uv, hit.coated % 2 == 0);
+  return bsdf_at(scene_, material, hit.uv, hit.coated % 2 == 0);
 }
 
 Bsdf GatherWalks::white_at(const CellHit& hit, float reflectance) const {

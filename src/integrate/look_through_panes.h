@@ -1,7 +1,7 @@
 // Walks that only look for emission any more, behind panes.
 #pragma once
 
-#include "integrate/prepared_scene.h"
+#include "integrate/bsdf_at.h"
 #include "integrate/walk.h"
 
 namespace troffer {
@@ -12,9 +12,7 @@ template <class See>
 void look_through_panes(const PreparedScene& scene, Walk walk, Vertex v, const See& see) {
   constexpr int most_panes = 64;
   for (int i = 0; i < most_panes && scene.glass.is_pane(v.surface.material); ++i) {
-    const Bsdf bsdf =
-        make_bsdf(scene.bsdf_tables, scene.scene, v.surface.material, v.surface.uv, v.is_front);
-    if (!pass_pane(walk, v, bsdf)) return;
+    if (!pass_pane(walk, v, bsdf_at(scene, v))) return;
     Hit hit;
     scene.tracer.closest({&walk.ray, 1}, {&hit, 1});
     if (!hit.is_valid()) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "integrate/bsdf_at.h"
 #include "integrate/look_through_panes.h"
 #include "integrate/purposes.h"
 #include "integrate/two_sides.h"
@@ -143,15 +144,9 @@ void PathIntegrator::arrive(Scratch& s, RadianceBatch& out) const {
     walks[alive++] = walk;
   }
   for (size_t i = 0; i < alive; ++i) {
-    const Surface& surface = vertices[i].surface;
     // Made in its place: it is too large to be made and moved there.
     static_assert(std::is_trivially_destructible_v<Bsdf>);
-    const SurfaceScattering* even =
-        scene_.even_scatterings.find(surface.material, vertices[i].is_front);
-    new (&bsdfs[i])
-        Bsdf(even != nullptr ? even->whole
-                             : make_bsdf(scene_.bsdf_tables, scene_.scene, surface.material,
-                                         surface.uv, vertices[i].is_front));
+    new (&bsdfs[i]) Bsdf(bsdf_at(scene_, vertices[i]));
     if (walks[i].vertex == 0) record_first_hit(walks[i], vertices[i], bsdfs[i], out);
     if (has_two_sides(bsdfs[i])) choose_side(walks[i], vertices[i], bsdfs[i]);
   }

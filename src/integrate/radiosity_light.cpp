@@ -1,5 +1,6 @@
 #include "integrate/radiosity_light.h"
 
+#include "integrate/bsdf_at.h"
 #include "radiosity/interpolation.h"
 
 namespace troffer {
@@ -36,8 +37,7 @@ Rgb RadiosityLight::radiance_seen(const Ray& ray, const Hit& hit) const {
   Interpolation at;
   interpolate(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u, hit.v,
               v.surface.position, !v.is_front, at);
-  Bsdf bsdf =
-      make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material, v.surface.uv, v.is_front);
+  Bsdf bsdf = bsdf_at(scene_, v);
   bsdf.through = Rgb{0};  // not in the exchange
   return albedo(bsdf, v.wo.z) * inv_pi_f *
          (interpolated_irradiance(solution_, at) + solution_.ambient);

@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "base/error.h"
+#include "integrate/bsdf_at.h"
 #include "integrate/look_through_panes.h"
 #include "integrate/two_sides.h"
 
@@ -210,12 +211,8 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
   // What is gathered is by pixels.
   const bool gathers_gloss = indirect_ && indirect_->gathers_gloss() && !w.viewing->pixels.empty();
-  const auto add = [&](const Walk& walk, const Bsdf& bsdf) {
-    if (is_whole) {
-      w.bsdfs.push_back(bsdf);
-      return;
-    }
-    SurfaceScattering& scattering = w.scatterings.emplace_back(bsdf);
+  const auto add_parts = [&](const Walk& walk, const SurfaceScattering& parts) {
+    SurfaceScattering& scattering = w.scatterings.emplace_back(parts);
     if (walk.scatterings == 0 && gathers_gloss && scattering.is_wide()) scattering.gather_gloss();
   };
   size_t kept = 0;
@@ -232,16 +229,16 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
       w.vertices[kept] = w.vertices[i];
     }
     const Vertex& v = w.vertices[kept];
-    const SurfaceScattering* even = scene_.even_scatterings.find(v.surface.material, v.is_front);
-    Bsdf bsdf = even != nullptr ? even->whole
-                                : make_bsdf(scene_.bsdf_tables, scene_.scene, v.surface.material,
-                                            v.surface.uv, v.is_front);
-    if (w.walks[kept].vertex == 0) record_first_hit(w.walks[kept], v, bsdf, out);
-    if (has_two_sides(bsdf)) {
+    ScatteringAt at(scene_, v);
+    if (w.walks[kept].vertex == 0) record_first_hit(w.walks[kept], v, at.whole(), out);
+    if (has_two_sides(at.whole())) {
       FarSide& far = s.far.emplace_back(w.walks[kept], w.hits[kept]);
-      far.bsdf = take_far_side(v, bsdf, far.walk, far.vertex);
+      far.bsdf = take_far_side(v, at.of_two_sides(), far.walk, far.vertex);
     }
-    add(w.walks[kept], bsdf);
+    if (is_whole)
+      w.bsdfs.push_back(at.whole());
+    else
+      add_parts(w.walks[kept], at.in_parts());
     ++kept;
   }
   w.walks.resize(kept);
@@ -251,7 +248,10 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
     w.walks.push_back(far.walk);
     w.hits.push_back(far.hit);
     w.vertices.push_back(far.vertex);
-    add(far.walk, far.bsdf);
+    if (is_whole)
+      w.bsdfs.push_back(far.bsdf);
+    else
+      add_parts(far.walk, SurfaceScattering(far.bsdf));
   }
 }
 

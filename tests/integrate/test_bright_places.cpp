@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "integrate/bright_places.h"
+#include "integrate/sensor_aims.h"
 #include "support/light_scenes.h"
 
 using namespace troffer;
@@ -180,4 +181,82 @@ TEST_CASE("what the first rays bring tells later ones where to look") {
   // None at all: nothing is changed.
   BrightTally().tell(told);
   CHECK(told.rest == doctest::Approx(100));
+}
+
+TEST_CASE("sensors of a patch share an aim: the mean of rays by cosine, and less noise") {
+  const Scene scene = nothing_in_the_way();
+  const Tracer tracer(scene);
+  constexpr float brightness = 500;
+  const Floor floor(brightness);
+  const BrightPlaces places(tracer, floor.seen, floor.irradiance, cell_size);
+  Random random(2);
+  SensorAims aims;
+  for (int round = 0; round < 8; ++round) {
+    // Patches of 20 cm, each turned its own way and seldom flat, of 1000 sensors each.
+    SensorBatch sensors;
+    sensors.offset = 1e-5f;
+    for (uint64_t patch = 0; patch < 4; ++patch) {
+      Vec3 middle = random_point(random, 2);
+      middle.z = random_size(random, 0.3f, 2);
+      const Vec3 normal = random_direction(random);
+      for (uint32_t i = 0; i < 1000; ++i) {
+        sensors.positions.push_back(middle + random_point(random, 0.1f));
+        sensors.normals.push_back(normalize(normal + random_point(random, 0.3f)));
+        sensors.streams.push_back(patch);
+        sensors.samples.push_back(i);
+      }
+    }
+    aims.begin(places, sensors);
+    RayMoments ones, aimed, by_cosine;
+    double truth = 0;
+    for (size_t i = 0; i < sensors.size(); ++i) {
+      const CellHit at = hit_of(sensors, i);
+      float weight = 0;
+      const Vec3 d = aims.at(i).direction(at, number(random), weight);
+      ones.add(double(weight));
+      aimed.add(double(weight) * double(Floor::shines(at.position, d, brightness)));
+      const Vec3 e = GatherAim().direction(at, number(random), weight);
+      by_cosine.add(double(Floor::shines(at.position, e, brightness)));
+      if (i % 50 == 0) truth += Floor::mean_at(at, brightness) * 50 / double(sensors.size());
+    }
+    CAPTURE(round);
+    CHECK(ones.largest <= 1 / double(GatherAim::least_by_cosine) + 1e-5);
+    CHECK(std::abs(ones.mean() - 1) < 5 * ones.error() + 1e-6);
+    CHECK(std::abs(aimed.mean() - truth) < 5 * aimed.error() + 0.02 * truth);
+    if (by_cosine.variance() > 50) CHECK(aimed.variance() < 0.7 * by_cosine.variance());
+  }
+}
+
+TEST_CASE("a sensor by itself is aimed for as before, whatever was asked for before it") {
+  const Scene scene = nothing_in_the_way();
+  const Tracer tracer(scene);
+  const Floor floor(500);
+  const BrightPlaces places(tracer, floor.seen, floor.irradiance, cell_size);
+  const SensorBatch apart{{{0, 0, 1}, {0, 0, 1}, {1, 0, 1}},
+                          {{0, 0, -1}, {0, 0, -1}, {0, 0, -1}},
+                          {1, 1, 2},
+                          {0, 1, 0},
+                          1e-5f};
+  const SensorBatch patch{{{0, 0, 1}, {0, 1, 1}}, {{0, 0, -1}, {0, 0, -1}}, {1, 1}, {0, 1}, 1e-5f};
+  SensorAims aims, fresh;
+  const auto first_of = [&](SensorAims& by, const SensorBatch& batch) {
+    by.begin(places, batch);
+    std::vector<Vec3> directions;
+    for (size_t i = 0; i < batch.size(); ++i) {
+      float weight = 0;
+      directions.push_back(by.at(i).direction(hit_of(batch, i), {0.9f, 0.4f}, weight));
+    }
+    return directions;
+  };
+  const std::vector<Vec3> alone = first_of(fresh, apart);
+  const CellHit at = hit_of(apart, 0);
+  float weight = 0;
+  CHECK(alone[0] ==
+        GatherAim(places, places.sight_from({&at, 1}), at).direction(at, {0.9f, 0.4f}, weight));
+  CHECK(alone[0] == alone[1]);
+  CHECK(!(alone[0] == alone[2]));
+  first_of(aims, patch);
+  CHECK(first_of(aims, apart) == alone);
+  first_of(aims, patch);
+  CHECK(first_of(aims, apart) == alone);
 }
