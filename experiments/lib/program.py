@@ -24,6 +24,7 @@ class Run:
     stats: dict = field(default_factory=dict)  # of --stats
     wall: float = 0  # seconds of the whole process
     cpu: float = 0  # seconds of processor time, all threads
+    csv: str = ""  # of measured points
     _layers: dict = None
 
     @property
@@ -114,6 +115,15 @@ class Program:
         with open(stats) as file:
             numbers = json.load(file)
         return Run(self.shown(words), target, numbers, record["wall"], record["cpu"])
+
+    def measure(self, name, scene, points, options, is_of_any_version=False):
+        """Values at the points of a CSV file; run again when this has changed."""
+        target = f"{self.out}/renders/{name}.csv"
+        words = [self.troffer, "measure", scene, "--points", points, *options.split(), "--quiet",
+                 "-o", target]
+        record = self._execute(f"{name}-{_digest(points)[:12]}", words, scene, target,
+                               is_of_any_version)
+        return Run(self.shown(words), "", {}, record["wall"], record["cpu"], target)
 
     def timed(self, name, scene, options, repeats=3):
         """Renders anew, `repeats` times, on one thread; seconds of the quickest in the stats."""

@@ -45,6 +45,10 @@ struct SensorBatch {
   std::vector<uint64_t> streams;
   std::vector<uint32_t> samples;
   float offset = 0;  // metres off the points, along their normals, at which rays start
+  // Light straight from sources is asked for at every so many-th sample alone, as sample number
+  // samples[i] / samples_per_direct of it, and counts so many times there (methods that compute it
+  // apart).
+  uint32_t samples_per_direct = 1;
   size_t size() const { return positions.size(); }
 };
 

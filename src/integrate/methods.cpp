@@ -286,6 +286,7 @@ const std::array<MethodRow, 4> MethodTable::methods{{
         .wants_typical = true,
         .refinement = 4,
         .measures_to_error = true,
+        .measuring_samples_per_direct = 32,
     },
     {
         .name = "kj92",

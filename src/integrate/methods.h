@@ -129,6 +129,9 @@ struct MethodRow {
   // … and where their error is above a quarter of MethodSettings::error, as many as that wants.
   bool measures_to_error = false;
   int rays_of_measuring_sample = 1;  // one estimate stands for so many of these samples
+  // Light straight from sources, which errs by far less, takes part in every so many-th of them,
+  // where it is measured to an error; a power of two.
+  int measuring_samples_per_direct = 1;
 };
 
 struct IndirectRow {

@@ -121,7 +121,9 @@ void WaveIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
     WaveHits& w = s.wave;
     w.clear();
     for (uint32_t i = first; i < std::min(first + uint32_t(hits_at_a_time), n); ++i) {
-      w.walks.push_back(sensor_walk(sensors, i));
+      if (sensors.samples[i] % sensors.samples_per_direct != 0) continue;
+      Walk& walk = w.walks.emplace_back(sensor_walk(sensors, i));
+      walk.sample /= sensors.samples_per_direct;
       w.vertices.push_back(
           make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset));
       if (is_whole)
@@ -132,6 +134,12 @@ void WaveIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
     direct_->queue(w, *s.direct, out, counters);
   }
   direct_->flush(*s.direct, out, counters);
+  // What mirrors bring of it is told as indirect.
+  if (sensors.samples_per_direct > 1)
+    for (uint32_t i = 0; i < n; ++i) {
+      out.direct[i] *= float(sensors.samples_per_direct);
+      out.indirect[i] *= float(sensors.samples_per_direct);
+    }
   if (indirect_) indirect_->gather(sensors, *s.indirect, out, counters);
 }
 

@@ -11,16 +11,15 @@
 #include "integrate/path.h"
 #include "render/audit.h"
 #include "render/measuring_places.h"
+#include "render/point_plan.h"
 #include "render/sample_sets.h"
 
 namespace troffer {
 
 namespace {
 
-// Of a point whose usual samples err by more than this share of the allowed error …
+// Points whose usual samples err by more than this share of the allowed error get more of them.
 constexpr double share_of_error = 0.25;
-// … at most so many times as many are taken.
-constexpr double most_times_usual = 128;
 // Paths of a point that is audited, for each of its samples; and so many times as many at most
 // where all points are measured by paths.
 constexpr int paths_of_sample = 4;
@@ -39,14 +38,8 @@ struct Sum {
   }
 };
 struct Sums {
-  Sum all, direct, indirect;
+  Sum direct, indirect;
   double shared_error = 0;  // as RadianceBatch::drawn_error has it
-};
-
-// Light straight from sources, the rest, and both together, whose error is less than their errors'
-// sum where these have to do with each other.
-struct PointLight {
-  Measurement all, direct, indirect;
 };
 
 struct Worker {
@@ -85,7 +78,6 @@ Sums sum_of_set(const Integrator& integrator, uint64_t stream, int samples, cons
         ++counters.nan_samples;
         continue;
       }
-      sums.all.add(e);
       sums.direct.add(w.out.direct[i]);
       sums.indirect.add(w.out.indirect[i]);
       if (!w.out.drawn_error.empty()) sums.shared_error += double(w.out.drawn_error[i]);
@@ -93,16 +85,6 @@ Sums sum_of_set(const Integrator& integrator, uint64_t stream, int samples, cons
   }
   return sums;
 }
-
-// How a point is measured.
-struct PointPlan {
-  int samples;
-  int samples_per_estimate;
-  double error = 0;  // relative, that is aimed at; 0: so many samples do
-  double lx_per_unit = 1;
-  double most_times = most_times_usual;  // … as many are taken for that
-  bool is_of_indirect = false;           // the error aimed at is that of indirect light alone
-};
 
 Measurement measurement_of(const SampleSets& sets, double lx_per_unit) {
   const Vec3d& e = sets.irradiance();
@@ -118,10 +100,12 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
   const double weight = 1.0 / estimates;
   SampleSets all, direct, indirect;
   w.shared_error = 0;
+  w.sensors.samples_per_direct = uint32_t(plan.samples_per_direct);
   for (int k = 0; k < sets; ++k) {
     const Sums s =
         sum_of_set(integrator, hash_combine(stream, uint64_t(k)), estimates, stop, w, counters);
-    all.add(s.all.irradiance * weight, s.all.luminance * weight);
+    all.add((s.direct.irradiance + s.indirect.irradiance) * weight,
+            (s.direct.luminance + s.indirect.luminance) * weight);
     direct.add(s.direct.irradiance * weight, s.direct.luminance * weight);
     indirect.add(s.indirect.irradiance * weight, s.indirect.luminance * weight);
     w.shared_error += s.shared_error * (weight / sets);
@@ -133,15 +117,11 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
 // The same, and once more where the error is larger than the plan has it. The first samples only
 // say how many are taken then: were they used again, a sum that is small by chance, with a small
 // error, would stay, and one that is large would not.
-PointLight measure_to_error(const Integrator& integrator, uint64_t stream, PointPlan plan,
+PointLight measure_to_error(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
                             const StopFlag& stop, Worker& w, Counters& counters) {
   const PointLight first = measure_point(integrator, stream, plan, stop, w, counters);
-  const double aim = plan.error * first.all.illuminance_lx;
-  const double error = (plan.is_of_indirect ? first.indirect : first.all).standard_error;
-  if (!(aim > 0) || error <= aim) return first;
-  const double times = std::min(sqr(error / aim), plan.most_times);
-  plan.samples = int(double(plan.samples) * std::exp2(std::ceil(std::log2(times))));
-  return measure_point(integrator, hash_of(stream, 1u), plan, stop, w, counters);
+  if (is_as_planned(first, plan)) return first;
+  return measure_point(integrator, hash_of(stream, 1u), enough_for(first, plan), stop, w, counters);
 }
 
 // What the method knows of errors that no spread of its samples shows: half the difference between
@@ -261,7 +241,7 @@ bool audit(const PreparedScene& scene, const std::vector<MeasuringPlace>& places
     by_cells.push_back(values[i].indirect);
   }
   PointPlan of_paths{
-      plan.samples * paths_of_sample, 1, 0, plan.lx_per_unit, most_times_audit, true};
+      plan.samples * paths_of_sample, 1, 1, 0, plan.lx_per_unit, most_times_audit, true};
   const PathIntegrator integrator(scene, {options.depth, false, {}});
   const auto measured = [&](const std::vector<MeasuringPlace>& points, uint64_t round) {
     return measure_points(integrator, points, of_paths,
@@ -348,9 +328,12 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   const int samples_per_batch =
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 
-  PointPlan plan{spp, row.rays_of_measuring_sample, 0,
+  PointPlan plan{spp, row.rays_of_measuring_sample, 1, 0,
                  scene.scene.is_photometric ? 1.0 : luminous_efficacy};
-  if (row.measures_to_error && options.spp == 0) plan.error = share_of_error * options.error;
+  if (row.measures_to_error && options.spp == 0) {
+    plan.error = share_of_error * options.error;
+    plan.samples_per_direct = row.measuring_samples_per_direct;
+  }
 
   PointValues found =
       measure_points(*integrator, places, plan,

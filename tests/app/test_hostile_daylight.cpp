@@ -99,10 +99,11 @@ void check_agreement(const std::vector<std::string>& light, const Place& place =
     CAPTURE(light.back());
     CAPTURE(i);
     CHECK(proved[i].lx > 0);
+    // Behind slats up to .5 % of what a single pixel of the image sends are missing.
     CHECK(std::abs(proved[i].lx - cast[i].lx) <
-          5 * (cast[i].error + proved[i].error) + 3e-3 * proved[i].lx);
+          5 * (cast[i].error + proved[i].error) + 6e-3 * proved[i].lx);
     CHECK(std::abs(proved[i].lx - paths[i].lx) <
-          5 * (paths[i].error + proved[i].error) + 3e-3 * proved[i].lx);
+          5 * (paths[i].error + proved[i].error) + 6e-3 * proved[i].lx);
   }
 }
 

@@ -1,0 +1,33 @@
+// How many samples a measured point gets, and how much of them is light straight from sources.
+#pragma once
+
+#include "render/measure.h"
+
+namespace troffer {
+
+// Light straight from sources, the rest, and both together, whose error is less than their errors'
+// sum where these have to do with each other.
+struct PointLight {
+  Measurement all, direct, indirect;
+};
+
+struct PointPlan {
+  int samples;
+  int samples_per_estimate;
+  int samples_per_direct = 1;  // of those, as SensorBatch has it; divides those of a set
+  double error = 0;            // relative, that is aimed at; 0: so many samples do
+  double lx_per_unit = 1;
+  double most_times = 128;      // so many times as many samples are taken for that, at most
+  bool is_of_indirect = false;  // the error aimed at is that of indirect light alone
+};
+
+// Whether a point that was measured by the plan errs by no more than it has it.
+bool is_as_planned(const PointLight& found, const PointPlan& plan);
+
+// As many samples as bring the error of a point that was measured by the plan down to that. Where
+// direct light takes part in some of the samples alone, of either as many as take the least time
+// together: both parts' samples are taken to cost the same by now, so that each is to be taken in
+// proportion to its error (Neyman's allocation). Numbers of samples grow by powers of two.
+PointPlan enough_for(const PointLight& found, PointPlan plan);
+
+}  // namespace troffer
