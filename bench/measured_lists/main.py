@@ -60,7 +60,7 @@ def scene_file(name, out):
 
 
 def write_points(program, name, file):
-    """The two lists, as (file, number of points)."""
+    """The files of the two lists."""
     run = program.render(f"{name}-seen", file, f"--size {PIXELS} --method path --spp 1 --max-spp 1 "
                          "--aov position,normal", is_of_any_version=True)
     layers = run.layers

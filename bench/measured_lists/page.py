@@ -10,8 +10,8 @@ command, all threads, reading the scene and all preparation included. *Standard 
 root mean square over the list's mean. *Inside*: of 95 % intervals, those that hold what other paths
 have found (131 072 at points of the short list, 32 768 of the long one), both errors together; *z*:
 root mean square of the differences over these errors, 1 where errors are honest. *In all*: the list's
-mean against that of these paths, whose own standard errors are in the table `measuring.csv`. *Path, s at equal error*: path tracing's error falls with the root
-of its time.
+mean against that of these paths, whose own standard errors are in the table `measuring.csv`. *Path, s
+at equal error*: path tracing's error falls with the root of its time.
 """
 
 

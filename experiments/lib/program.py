@@ -118,11 +118,11 @@ class Program:
 
     def measure(self, name, scene, points, options, is_of_any_version=False):
         """Values at the points of a CSV file; run again when this has changed."""
+        name = f"{name}-{_digest(points)[:12]}"
         target = f"{self.out}/renders/{name}.csv"
         words = [self.troffer, "measure", scene, "--points", points, *options.split(), "--quiet",
                  "-o", target]
-        record = self._execute(f"{name}-{_digest(points)[:12]}", words, scene, target,
-                               is_of_any_version)
+        record = self._execute(name, words, scene, target, is_of_any_version)
         return Run(self.shown(words), "", {}, record["wall"], record["cpu"], target)
 
     def timed(self, name, scene, options, repeats=3):

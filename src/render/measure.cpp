@@ -240,8 +240,11 @@ bool audit(const PreparedScene& scene, const std::vector<MeasuringPlace>& places
     at.push_back(places[i]);
     by_cells.push_back(values[i].indirect);
   }
-  PointPlan of_paths{
-      plan.samples * paths_of_sample, 1, 1, 0, plan.lx_per_unit, most_times_audit, true};
+  PointPlan of_paths{.samples = plan.samples * paths_of_sample,
+                     .samples_per_estimate = 1,
+                     .lx_per_unit = plan.lx_per_unit,
+                     .most_times = most_times_audit,
+                     .is_of_indirect = true};
   const PathIntegrator integrator(scene, {options.depth, false, {}});
   const auto measured = [&](const std::vector<MeasuringPlace>& points, uint64_t round) {
     return measure_points(integrator, points, of_paths,
@@ -328,8 +331,9 @@ MeasureResult measure(const PreparedScene& scene, const std::vector<MeasuringPoi
   const int samples_per_batch =
       int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 
-  PointPlan plan{spp, row.rays_of_measuring_sample, 1, 0,
-                 scene.scene.is_photometric ? 1.0 : luminous_efficacy};
+  PointPlan plan{.samples = spp,
+                 .samples_per_estimate = row.rays_of_measuring_sample,
+                 .lx_per_unit = scene.scene.is_photometric ? 1.0 : luminous_efficacy};
   if (row.measures_to_error && options.spp == 0) {
     plan.error = share_of_error * options.error;
     plan.samples_per_direct = row.measuring_samples_per_direct;

@@ -27,7 +27,8 @@ bool is_as_planned(const PointLight& found, const PointPlan& plan);
 // As many samples as bring the error of a point that was measured by the plan down to that. Where
 // direct light takes part in some of the samples alone, of either as many as take the least time
 // together: both parts' samples are taken to cost the same by now, so that each is to be taken in
-// proportion to its error (Neyman's allocation). Numbers of samples grow by powers of two.
+// proportion to its error (Neyman's allocation), but direct light never takes part in fewer of them
+// than before. Numbers of samples grow by powers of two.
 PointPlan enough_for(const PointLight& found, PointPlan plan);
 
 }  // namespace troffer

@@ -90,7 +90,9 @@ std::vector<std::string> with(std::vector<std::string> options, std::vector<std:
   return options;
 }
 
-void check_agreement(const std::vector<std::string>& light, const Place& place = {}) {
+// share: of the light, that methods may differ by beyond their errors.
+void check_agreement(const std::vector<std::string>& light, const Place& place = {},
+                     double share = 3e-3) {
   const auto proved = measure(place, light);
   const auto cast = measure(place, with(light, {"--method", "fixed", "--spp", "32768"}));
   const auto paths =
@@ -99,11 +101,10 @@ void check_agreement(const std::vector<std::string>& light, const Place& place =
     CAPTURE(light.back());
     CAPTURE(i);
     CHECK(proved[i].lx > 0);
-    // Behind slats up to .5 % of what a single pixel of the image sends are missing.
     CHECK(std::abs(proved[i].lx - cast[i].lx) <
-          5 * (cast[i].error + proved[i].error) + 6e-3 * proved[i].lx);
+          5 * (cast[i].error + proved[i].error) + share * proved[i].lx);
     CHECK(std::abs(proved[i].lx - paths[i].lx) <
-          5 * (paths[i].error + proved[i].error) + 6e-3 * proved[i].lx);
+          5 * (paths[i].error + proved[i].error) + share * proved[i].lx);
   }
 }
 
@@ -141,5 +142,6 @@ TEST_CASE("an image with all its light in one pixel sends it through the window"
       const float v = x == 63 && y == 42 ? 1e6f : 10.0f;
       for (int c = 0; c < 3; ++c) pfm.append(reinterpret_cast<const char*>(&v), sizeof v);
     }
-  check_agreement({"--environment", folder.write("hot.pfm", pfm)});
+  // By a slat's shadow .5 % are missing of what paths find, of which the told errors know nothing.
+  check_agreement({"--environment", folder.write("hot.pfm", pfm)}, {}, 4e-3);
 }
