@@ -27,16 +27,16 @@ class Interior:
 
 INTERIORS = [
     Interior("kj92room", "scenes/kj92room/kj92room.gltf", "256x256", 1024, 50),
-    Interior("modern-hall-diffuse", "scenes/modern-hall/modern-hall-diffuse.pbrt", "128x96", 1024,
+    Interior("modern-hall-diffuse", "scenes/modern-hall/modern-hall-diffuse.pbrt", "256x192", 512,
              30),
-    Interior("modern-hall", "scenes/modern-hall/modern-hall.pbrt", "128x96", 1024, 10),
-    Interior("staircase", "", "128x96", 1024, 10),
-    Interior("bathroom", "", "128x96", 1024, 10),
-    Interior("ajar", "", "128x96", 1024, 20),
-    Interior("gallery", "", "128x96", 1024, 20),
-    Interior("furniture", "", "128x96", 1024, 10),
-    Interior("staircase-metal", "", "128x96", 1024, 10),
-    Interior("gloss", "", "128x96", 1024, 10),
+    Interior("modern-hall", "scenes/modern-hall/modern-hall.pbrt", "256x192", 512, 10),
+    Interior("staircase", "", "256x192", 512, 10),
+    Interior("bathroom", "", "256x192", 512, 10),
+    Interior("ajar", "", "256x192", 512, 20),
+    Interior("gallery", "", "256x192", 512, 20),
+    Interior("furniture", "", "256x192", 512, 10),
+    Interior("staircase-metal", "", "256x192", 512, 10),
+    Interior("gloss", "", "256x192", 512, 10),
 ]
 ERRORS = (0.05, 0.02, 0.01, 0.005)
 PATHS = (16, 64, 256)
