@@ -11,19 +11,23 @@ root mean square over the list's mean. *Inside*: of 95 % intervals, those that h
 have found (131 072 at points of the short list, 32 768 of the long one), both errors together; *z*:
 root mean square of the differences over these errors, 1 where errors are honest. *In all*: the list's
 mean against that of these paths, whose own standard errors are in the table `measuring.csv`. *Path, s
-at equal error*: path tracing's error falls with the root of its time.
+at equal error*: path tracing's error falls with the root of its time. *Each point*: the same with
+each point's error over its own light, root mean square, which is what `--error` bounds: points in
+the dark then count as much as bright ones, and paths, of which all get as many, are the dearer.
 """
 
 
 def table(rows):
     lines = ["| scene | points | processor s | standard error | inside | z | in all | "
-             "path, s at equal error | times as fast |", "|---" * 9 + "|"]
+             "path, s at equal error | times as fast | each point | path, s at equal error | "
+             "times as fast |", "|---" * 12 + "|"]
     for r in rows:
         lines.append(
             f"| {r['scene']} | {r['points']} | {r['processor s']} | "
             f"{100 * float(r['standard error']):.2f} % | {100 * float(r['inside']):.0f} % | "
             f"{r['z']} | {100 * float(r['in all']):+.2f} % | {r['path s at equal error']} | "
-            f"**{r['times as fast']}** |")
+            f"**{r['times as fast']}** | {100 * float(r['relative error']):.2f} % | "
+            f"{r['path s at equal relative error']} | **{r['times as fast by relative error']}** |")
     return "\n".join(lines)
 
 

@@ -63,6 +63,9 @@ struct KnownRadiance {
 // straight from sources, and the sources themselves.
 struct RadianceBatch {
   std::vector<Rgb> direct, indirect;
+  // What of a sensor's `indirect` light mirrors bring straight from sources, asked for with
+  // `direct`; empty where nothing is asked for apart (SensorBatch::samples_per_direct).
+  std::vector<Rgb> images;
   std::vector<uint32_t> shadow_rays;
   // Variance of the luminance of `direct` by the sampling of sources; empty where the method does
   // not tell.
@@ -109,6 +112,7 @@ struct RadianceBatch {
   void reset(size_t n) {
     direct.assign(n, Rgb{0});
     indirect.assign(n, Rgb{0});
+    images.clear();
     shadow_rays.assign(n, 0);
     direct_variance.clear();
     shared_error.clear();

@@ -14,6 +14,7 @@
 #include "integrate/imaged_direct.h"
 #include "integrate/path.h"
 #include "integrate/path_forecast.h"
+#include "integrate/paths_indirect.h"
 #include "integrate/radiosity_indirect.h"
 #include "integrate/staged_direct.h"
 #include "integrate/wave_integrator.h"
@@ -186,14 +187,21 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
   const bool keeps_cells = in.cells != nullptr && in.cells->store != nullptr;
   if (in.scene.scene.lights.empty() && !keeps_cells) return make_path(in);
   std::optional<PathForecast> paths;
-  if (needs_cells(Method::certified, in.settings.indirect)) paths = forecast(in);
+  const bool takes_cells =
+      needs_cells(Method::certified, in.settings.indirect) && !in.settings.measures_by_paths;
+  if (takes_cells) paths = forecast(in);
   if (paths && paths->rays_for_cells < 0) return make_paths(in, *paths);
   const CertifiedSettings settings = settings_of_first(in);
   const std::shared_ptr<const Occluders> occluders = occluders_for(in);
   std::unique_ptr<DirectLight> direct =
       std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
   std::unique_ptr<IndirectLight> indirect;
-  if (needs_cells(Method::certified, in.settings.indirect)) {
+  if (in.settings.measures_by_paths) {
+    add_images(in, {{direct, settings}});
+    indirect = std::make_unique<PathsIndirect>(in.scene, direct->images());
+    return std::make_unique<WaveIntegrator>(in.scene, std::move(direct), std::move(indirect));
+  }
+  if (takes_cells) {
     const CertifiedSettings at_cells = settings_of_cells(in);
     std::unique_ptr<DirectLight> of_cells =
         std::make_unique<CertifiedDirect>(in.scene, occluders, at_cells);
@@ -201,8 +209,7 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
     std::unique_ptr<DirectLight> further;
     if (drawn.draws > 0) further = std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
     add_images(in, {{direct, settings}, {of_cells, at_cells}, {further, drawn}});
-    constexpr double any = std::numeric_limits<double>::infinity();
-    const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : any;
+    const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : in.cells->most_cells;
     indirect = make_cells_indirect(in, *of_cells, most_cells);
     if (!indirect) return paths && !in.cells->stop.load() ? make_paths(in, *paths) : nullptr;
     if (!further) further = std::move(of_cells);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,8 +70,9 @@ struct MethodSettings {
   // certified: of a pixel, all in all, where they are not left to the method; 0: they are
   int most_viewing_rays = 0;
   bool is_refined = false;  // certified: pixels of a picture get further ones where they want them
-  int depth = -1;   // path: most bounces; -1 = unlimited
-  int threads = 0;  // for what is built; 0 = all cores
+  bool measures_by_paths = false;  // certified: at sensors, paths in place of cells
+  int depth = -1;                  // path: most bounces; -1 = unlimited
+  int threads = 0;                 // for what is built; 0 = all cores
 
   bool is_direct_only() const { return indirect == Indirect::none; }
 };
@@ -86,6 +88,8 @@ struct CellInput {
   CellStatistics statistics;
   CellStore* store = nullptr;  // make_cells
   Crew* crew = nullptr;        // others that make the same; may be null
+  // Without a view: where more are wanted, there is no integrator.
+  double most_cells = std::numeric_limits<double>::infinity();
 };
 
 // What a method is made from. radiosity, cells: null where there is none; radiosity is copied.
@@ -148,7 +152,8 @@ bool needs_radiosity(Method method, Indirect indirect);
 // Cells are made with the method: it needs CellInput.
 bool needs_cells(Method method, Indirect indirect);
 
-// Throws EnvironmentError if memory runs out. Null where CellInput::stop was set meanwhile.
+// Throws EnvironmentError if memory runs out. Null where CellInput::stop was set meanwhile, or by
+// CellInput::most_cells.
 std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input);
 
 }  // namespace troffer

@@ -26,6 +26,10 @@ constexpr float long_path_survival = 0.95f;
 // So many paths and what is known of their vertices fit a core's second cache.
 constexpr size_t most_at_a_time = 256;
 
+// Notes in Walk::last_place, where images are asked: the walk comes straight from a matte surface;
+// or from there by way of the mirror of image i, first_image + i.
+constexpr uint32_t from_matte = 1, first_image = 2;
+
 // Ends paths that carry little, and strengthens those that survive; false where it ends. By a
 // number of the vertex that the path has left, stratified over the samples of a pixel.
 bool survives_roulette(Walk& walk) {
@@ -45,7 +49,8 @@ bool survives_roulette(Walk& walk) {
 // One wave of a batch: all walks have the same number of vertices behind them. Stages pass it from
 // array to array.
 struct PathIntegrator::Scratch final : IntegratorScratch {
-  WaveHits wave;  // walks[i] stands at vertices[i]; without `hits`
+  WaveHits wave;    // walks[i] stands at vertices[i]; without `hits`
+  WaveHits imaged;  // those that an image may shine on
   WalkScratch trace;
   LightTreeDirectScratch lights;
   ResampledDirectScratch few_lights;
@@ -86,16 +91,21 @@ void PathIntegrator::radiance(const ViewingRays& rays, IntegratorScratch& scratc
 void PathIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& scratch,
                                 RadianceBatch& out, Counters& counters) const {
   auto& s = static_cast<Scratch&>(scratch);
-  s.wave.clear();
   if (options_.depth == 0) return;
-  for (uint32_t i = 0; i < sensors.size(); ++i) {
-    s.wave.walks.push_back(sensor_walk(sensors, i));
-    s.wave.vertices.push_back(
-        make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset));
-    s.wave.bsdfs.push_back(sensor_bsdf());
+  for (size_t first = 0; first < sensors.size(); first += most_at_a_time) {
+    s.wave.clear();
+    for (size_t i = first; i < std::min(first + most_at_a_time, sensors.size()); ++i) {
+      s.wave.walks.push_back(sensor_walk(sensors, uint32_t(i)));
+      s.wave.vertices.push_back(
+          make_sensor_vertex(sensors.positions[i], sensors.normals[i], sensors.offset));
+      s.wave.bsdfs.push_back(sensor_bsdf());
+    }
+    if (options_.leaves_out_direct_at_sensors)
+      step_on(s);
+    else
+      shade(s, out, counters);
+    follow(s, Coherence::none, out, counters);
   }
-  shade(s, out, counters);
-  follow(s, Coherence::none, out, counters);
 }
 
 // True where only emission is still to be gathered.
@@ -165,7 +175,25 @@ void PathIntegrator::shade(Scratch& s, RadianceBatch& out, Counters& counters) c
     tree_.queue(s.wave, s.lights, out, counters);
     tree_.flush(s.lights, out, counters);
   }
+  if (!lit_images_.empty()) add_images(s, out, counters);
   step_on(s);
+}
+
+void PathIntegrator::add_images(Scratch& s, RadianceBatch& out, Counters& counters) const {
+  for (size_t m = 0; m < lit_images_.size(); ++m) {
+    const FlatMirror& mirror = options_.images->all()[m].mirror;
+    s.imaged.clear();
+    for (size_t i = 0; i < s.wave.size(); ++i) {
+      if (!is_lambertian(s.wave.bsdfs[i], nullptr)) continue;
+      if (mirror.above(s.wave.vertices[i].surface.position) <= mirror.tolerance) continue;
+      s.imaged.take(s.wave, i);
+      Walk& walk = s.imaged.walks.back();
+      walk.stream = hash_of(walk.stream, uint64_t{0x696d'6167}, uint64_t(m));
+    }
+    if (s.imaged.size() == 0) continue;
+    lit_images_[m].queue(s.imaged, s.lights, out, counters);
+    lit_images_[m].flush(s.lights, out, counters);
+  }
 }
 
 float PathIntegrator::weight_of(const Walk& walk, const Vertex& v) const {
@@ -176,23 +204,44 @@ float PathIntegrator::weight_of(const Walk& walk, const Vertex& v) const {
 void PathIntegrator::add_emission(const Walk& walk, const Vertex& v, RadianceBatch& out) const {
   const Rgb radiance = emission_at(scene_, v);
   if (radiance.is_black()) return;
-  add_seen(walk, radiance, walk.pdf > 0 ? weight_of(walk, v) : 1, out);
+  add_seen(walk, uint32_t(v.surface.light), radiance, walk.pdf > 0 ? weight_of(walk, v) : 1, out);
 }
 
 // What lights at infinity show to a path that has left the scene.
 void PathIntegrator::add_miss(const Walk& walk, RadianceBatch& out) const {
   for (const uint32_t p : scene_.primitives.at_infinity())
-    add_seen(walk,
+    add_seen(walk, scene_.primitives[p].light,
              radiance_at_infinity(scene_.scene, scene_.primitives[p], walk.last_position,
                                   walk.ray.direction),
              walk.pdf > 0 ? tree_.weight_of_miss(walk, p) : 1, out);
 }
 
-void PathIntegrator::add_seen(const Walk& walk, Rgb radiance, float weight,
+void PathIntegrator::add_seen(const Walk& walk, uint32_t light, Rgb radiance, float weight,
                               RadianceBatch& out) const {
   // Straight from the source: seen as it is, or scattered once with nothing in between.
   const bool is_direct = is_direct_at(walk) || (walk.scatterings == 1 && walk.pdf > 0);
+  if (is_direct && options_.leaves_out_direct_at_sensors) return;
+  if (walk.last_place >= first_image &&
+      options_.images->shows(walk.last_place - first_image, light))
+    return;
   (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;
+}
+
+// False where the walk ends.
+bool PathIntegrator::step_from(Walk& walk, const Vertex& v, const Bsdf& bsdf,
+                               const Vec2& direction) const {
+  // Only surfaces with several lobes ask for the third number.
+  const float lobe = is_lambertian(bsdf, nullptr) ? 0 : lobe_number(walk);
+  const uint32_t came_from = walk.last_place, panes = walk.panes, scatterings = walk.scatterings;
+  if (!step(walk, v, bsdf, lobe, direction)) return false;
+  if (!options_.images || walk.panes != panes) return true;
+  walk.last_place = is_lambertian(bsdf, nullptr) ? from_matte : 0;
+  // A mirror: the walk has not been scattered, nor has it gone through.
+  if (came_from != from_matte || walk.scatterings != scatterings) return true;
+  const int32_t image = options_.images->at(v);
+  if (image >= 0 && dot(walk.ray.direction, v.geometric_normal) > 0)
+    walk.last_place = first_image + uint32_t(image);
+  return true;
 }
 
 // Sets out from every vertex; keeps the walks that do not end.
@@ -206,9 +255,7 @@ void PathIntegrator::step_on(Scratch& s) const {
     Walk& walk = walks[i];
     items.at(walk.index);
     const Bsdf& bsdf = s.wave.bsdfs[i];
-    // Only surfaces with several lobes ask for the third number.
-    const float lobe = is_lambertian(bsdf, nullptr) ? 0 : lobe_number(walk);
-    if (step(walk, s.wave.vertices[i], bsdf, lobe, {s.numbers[i], s.numbers[n + i]}) &&
+    if (step_from(walk, s.wave.vertices[i], bsdf, {s.numbers[i], s.numbers[n + i]}) &&
         survives_roulette(walk))
       walks[alive++] = walk;
   }

@@ -117,10 +117,10 @@ void WaveIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
   begin(s, out);
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
   const auto n = uint32_t(sensors.size());
-  for (uint32_t first = 0; first < n; first += uint32_t(hits_at_a_time)) {
-    WaveHits& w = s.wave;
+  WaveHits& w = s.wave;
+  for (uint32_t i = 0; i < n;) {
     w.clear();
-    for (uint32_t i = first; i < std::min(first + uint32_t(hits_at_a_time), n); ++i) {
+    for (; i < n && w.walks.size() < hits_at_a_time; ++i) {
       if (sensors.samples[i] % sensors.samples_per_direct != 0) continue;
       Walk& walk = w.walks.emplace_back(sensor_walk(sensors, i));
       walk.sample /= sensors.samples_per_direct;
@@ -134,12 +134,13 @@ void WaveIntegrator::irradiance(const SensorBatch& sensors, IntegratorScratch& s
     direct_->queue(w, *s.direct, out, counters);
   }
   direct_->flush(*s.direct, out, counters);
-  // What mirrors bring of it is told as indirect.
-  if (sensors.samples_per_direct > 1)
+  if (sensors.samples_per_direct > 1) {
     for (uint32_t i = 0; i < n; ++i) {
       out.direct[i] *= float(sensors.samples_per_direct);
       out.indirect[i] *= float(sensors.samples_per_direct);
     }
+    out.images = out.indirect;
+  }
   if (indirect_) indirect_->gather(sensors, *s.indirect, out, counters);
 }
 

@@ -1,10 +1,40 @@
 #include "render/audit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
+#include "render/sample_sets.h"
 
 namespace troffer {
+
+namespace {
+
+// Paths of a point that is audited, for each of its samples; and so many times as many at most
+// where all points are measured by paths.
+constexpr int paths_of_sample = 4;
+constexpr double most_times_audit = 16;
+constexpr double much_more = 2;  // than another error
+
+// Whether points by cells err by more than is aimed at, and as many paths as are allowed, of which
+// `few` were some, would err by much less.
+bool are_worth_paths(const std::vector<PointLight>& by_cells, const std::vector<PointLight>& few,
+                     double aim) {
+  const double told = relative_error(by_cells, &PointLight::all);
+  const double by_paths = relative_error(few, &PointLight::indirect) / std::sqrt(most_times_audit);
+  return aim > 0 && told > much_more * aim && told > much_more * by_paths;
+}
+
+// Light straight from sources is known already, and takes part in one sample of each set.
+PointPlan audit_plan(const PointPlan& plan) {
+  PointPlan p{.samples = plan.samples * paths_of_sample,
+              .samples_per_estimate = 1,
+              .lx_per_unit = plan.lx_per_unit};
+  p.samples_per_direct = (p.samples + most_sets - 1) / most_sets;
+  return p;
+}
+
+}  // namespace
 
 double relative_bias(const std::vector<Measurement>& points,
                      const std::vector<Measurement>& others) {
@@ -22,6 +52,85 @@ double relative_bias(const std::vector<Measurement>& points,
   const double part = 2 / (9 * count), root = 1 - part + 2.326 * std::sqrt(part);
   if (squares <= count * root * root * root) return 0;
   return std::sqrt((squares - count) / weights);
+}
+
+std::vector<size_t> few_of(size_t points) {
+  constexpr size_t most = 32;
+  std::vector<size_t> which;
+  for (size_t i = 0; i < points; i += (points + most - 1) / most) which.push_back(i);
+  return which;
+}
+
+std::optional<AuditFinding> audit(const Integrator& paths,
+                                  const std::vector<MeasuringPlace>& places,
+                                  const std::vector<PointLight>& by_cells, const PointPlan& plan,
+                                  const PointsRun& run) {
+  AuditFinding f;
+  f.points = few_of(places.size());
+  std::vector<MeasuringPlace> at;
+  std::vector<Measurement> of_cells;
+  for (const size_t i : f.points) {
+    at.push_back(places[i]);
+    of_cells.push_back(by_cells[i].indirect);
+  }
+  const PointPlan of_paths = audit_plan(plan);
+  PointValues few = measure_points(paths, at, of_paths, run);
+  if (!few.is_complete()) return std::nullopt;
+  for (size_t k = 0; k < at.size(); ++k) {
+    f.by_paths.push_back(few.values[k].indirect);
+    few.values[k].all = by_cells[f.points[k]].all;
+  }
+  f.bias = relative_bias(of_cells, f.by_paths);
+  f.is_worth_paths = are_worth_paths(by_cells, few.values, plan.error);
+  return f;
+}
+
+PointPlan plan_by_paths(PointPlan plan) {
+  if (!(plan.error > 0)) return audit_plan(plan);
+  plan.samples *= paths_of_sample;
+  plan.samples_per_direct *= paths_of_sample;
+  plan.most_times = most_times_audit;
+  return plan;
+}
+
+void take_better(const Measurement& by_paths, double bias, PointLight& v) {
+  const double more = bias * v.indirect.illuminance_lx;
+  if (by_paths.standard_error >= std::hypot(v.indirect.standard_error, more)) {
+    v.all.standard_error = std::hypot(v.all.standard_error, more);
+    return;
+  }
+  v.all = {v.direct.irradiance + by_paths.irradiance,
+           v.direct.illuminance_lx + by_paths.illuminance_lx,
+           std::hypot(v.direct.standard_error, by_paths.standard_error)};
+}
+
+void take_both(const AuditFinding& finding, std::vector<PointLight>& by_cells) {
+  constexpr size_t several = 8;
+  if (finding.points.size() < several) return;
+  double of_cells = 0, of_paths = 0;  // variances, relative to all light
+  for (size_t k = 0; k < finding.points.size(); ++k) {
+    const PointLight& v = by_cells[finding.points[k]];
+    if (!(v.all.illuminance_lx > 0)) continue;
+    of_cells += sqr(v.indirect.standard_error / v.all.illuminance_lx);
+    of_paths += sqr(finding.by_paths[k].standard_error / v.all.illuminance_lx);
+  }
+  if (!(of_cells > 0) || !(of_paths > 0)) return;
+  const double weight = of_cells / (of_cells + of_paths);
+  for (size_t k = 0; k < finding.points.size(); ++k) {
+    PointLight& v = by_cells[finding.points[k]];
+    const Measurement &cells = v.indirect, &paths = finding.by_paths[k];
+    Measurement both = cells;
+    both.standard_error =
+        std::hypot((1 - weight) * cells.standard_error, weight * paths.standard_error);
+    both.irradiance += (paths.irradiance - cells.irradiance) * float(weight);
+    both.illuminance_lx += (paths.illuminance_lx - cells.illuminance_lx) * weight;
+    v.all.irradiance += both.irradiance - cells.irradiance;
+    v.all.illuminance_lx += both.illuminance_lx - cells.illuminance_lx;
+    v.all.standard_error =
+        std::sqrt(std::max(sqr(v.all.standard_error) - sqr(cells.standard_error), 0.0) +
+                  sqr(both.standard_error));
+    v.indirect = both;
+  }
 }
 
 }  // namespace troffer

@@ -6,9 +6,10 @@
 //   Trials 7, 1986: the moments' estimate of what spreads measurements beyond their errors.
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "render/measure.h"
+#include "render/measured_points.h"
 
 namespace troffer {
 
@@ -17,5 +18,36 @@ namespace troffer {
 // root mean square. 0 where chance alone would let them differ by as much in one list of a hundred.
 double relative_bias(const std::vector<Measurement>& points,
                      const std::vector<Measurement>& others);
+
+// Numbers of points of a list, evenly spread over it: few, so that a long list takes little longer.
+std::vector<size_t> few_of(size_t points);
+
+struct AuditFinding {
+  double bias = 0;              // relative_bias() of light that was reflected before
+  bool is_worth_paths = false;  // points err by more than is aimed at, and paths would by much less
+  // That light by paths, and whose it is.
+  std::vector<size_t> points;
+  std::vector<Measurement> by_paths;
+};
+
+// Of points that were measured by cells, beside few of them by `paths` (light straight from sources
+// as theirs, MethodSettings::measures_by_paths), each with four times the plan's samples. plan:
+// theirs. Empty where a stop came before.
+std::optional<AuditFinding> audit(const Integrator& paths,
+                                  const std::vector<MeasuringPlace>& places,
+                                  const std::vector<PointLight>& by_cells, const PointPlan& plan,
+                                  const PointsRun& run);
+
+// How all points are measured by paths where those of `plan` are not good enough.
+PointPlan plan_by_paths(PointPlan plan);
+
+// Light that was reflected before by paths in place of that by cells, which is biased by about so
+// much of it; but not where paths err by more.
+void take_better(const Measurement& by_paths, double bias, PointLight& by_cells);
+
+// Where nothing is found wrong, points have been measured twice: those that were audited become the
+// mean of both, weighted by what errs less. By one weight for all of them, and of several: weights
+// of their own would prefer sums that are small by chance, as their errors are then.
+void take_both(const AuditFinding& finding, std::vector<PointLight>& by_cells);
 
 }  // namespace troffer

@@ -9,6 +9,9 @@ namespace troffer {
 // sum where these have to do with each other.
 struct PointLight {
   Measurement all, direct, indirect;
+  // Standard errors, lx, of what takes part in every so many-th sample alone (`direct`, and what
+  // mirrors bring of it), and of the rest.
+  double seldom_error = 0, often_error = 0;
 };
 
 struct PointPlan {
@@ -16,9 +19,9 @@ struct PointPlan {
   int samples_per_estimate;
   int samples_per_direct = 1;  // of those, as SensorBatch has it; divides those of a set
   double error = 0;            // relative, that is aimed at; 0: so many samples do
+  double tolerance = 1;        // so many times that is well, since samples were chosen for it
   double lx_per_unit = 1;
-  double most_times = 128;      // so many times as many samples are taken for that, at most
-  bool is_of_indirect = false;  // the error aimed at is that of indirect light alone
+  double most_times = 128;  // so many times as many samples are taken for that, at most
 };
 
 // Whether a point that was measured by the plan errs by no more than it has it.
@@ -27,8 +30,8 @@ bool is_as_planned(const PointLight& found, const PointPlan& plan);
 // As many samples as bring the error of a point that was measured by the plan down to that. Where
 // direct light takes part in some of the samples alone, of either as many as take the least time
 // together: both parts' samples are taken to cost the same by now, so that each is to be taken in
-// proportion to its error (Neyman's allocation), but direct light never takes part in fewer of them
-// than before. Numbers of samples grow by powers of two.
+// proportion to its error (Neyman's allocation), but neither are fewer than before. Numbers of
+// samples grow by powers of two.
 PointPlan enough_for(const PointLight& found, PointPlan plan);
 
 }  // namespace troffer

@@ -88,7 +88,9 @@ TEST_CASE("--solution: measure takes and keeps cells too") {
   const std::vector<std::string> plain{"measure", scene, "--points", points, "--quiet"};
   std::vector<std::string> keeping = plain;
   keeping.insert(keeping.end(), {"--solution", file});
-  const std::vector<Measured> without = measured(run_program(folder, plain));
+  std::vector<std::string> by_cells = plain;  // two points are measured by paths otherwise
+  by_cells.insert(by_cells.end(), {"--indirect", "cells"});
+  const std::vector<Measured> without = measured(run_program(folder, by_cells));
   const std::vector<Measured> first = measured(run_program(folder, keeping));
   const std::vector<Measured> second = measured(run_program(folder, keeping));
   REQUIRE(without.size() == 2);

@@ -51,8 +51,10 @@ void add_lamp(Scene& s, uint32_t material, const Vec3& c, float half, Rgb radian
 }
 
 Measurement at(const PreparedScene& scene, const Vec3d& point, const Vec3& normal,
-               Method method = Method::certified, int spp = 0) {
+               Method method = Method::certified, int spp = 0,
+               Indirect indirect = Indirect::automatic) {
   MeasureOptions o;
+  o.indirect = indirect;
   o.method = method;
   o.spp = spp;
   o.error = 0.004;
@@ -124,13 +126,15 @@ TEST_CASE("every kind of light is seen in a mirror as by paths") {
     if (kind == 2) add_environment(s, Rgb{1.5f});
     const PreparedScene scene(std::move(s));
     const Vec3d point{0.9, 0.6, 1};
-    const Measurement found = at(scene, point, normalize(Vec3{-0.3f, -0.2f, -1}));
-    const Measurement paths =
-        at(scene, point, normalize(Vec3{-0.3f, -0.2f, -1}), Method::path, 1 << 16);
+    const Vec3 normal = normalize(Vec3{-0.3f, -0.2f, -1});
+    const Measurement paths = at(scene, point, normal, Method::path, 1 << 16);
     CAPTURE(kind);
-    const double spread = std::hypot(found.standard_error, paths.standard_error);
-    CHECK(std::abs(found.illuminance_lx - paths.illuminance_lx) < 4 * spread);
-    CHECK(spread < 0.02 * paths.illuminance_lx);
+    for (const Indirect indirect : {Indirect::automatic, Indirect::cells}) {
+      const Measurement found = at(scene, point, normal, Method::certified, 0, indirect);
+      const double spread = std::hypot(found.standard_error, paths.standard_error);
+      CHECK(std::abs(found.illuminance_lx - paths.illuminance_lx) < 4 * spread);
+      CHECK(spread < 0.02 * paths.illuminance_lx);
+    }
   }
 }
 
@@ -141,8 +145,10 @@ TEST_CASE("a point light, which no path finds, is seen in a mirror by the invers
   add_point(s, {0, 0, 1}, Rgb{5});
   const PreparedScene scene(std::move(s));
   // from (0,0,2), which faces down: the light itself at 1 m, its image at 3 m
-  const Measurement m = at(scene, {0, 0, 2}, {0, 0, -1});
-  CHECK(double(m.irradiance.g) == doctest::Approx(5 + 5.0 / 9).epsilon(1e-4));
+  for (const Indirect indirect : {Indirect::automatic, Indirect::cells}) {
+    const Measurement m = at(scene, {0, 0, 2}, {0, 0, -1}, Method::certified, 0, indirect);
+    CHECK(double(m.irradiance.g) == doctest::Approx(5 + 5.0 / 9).epsilon(1e-4));
+  }
 }
 
 TEST_CASE("rooms with mirrors, in pictures: the mean of paths, and the same for any threads") {
