@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.h"
 #include "base/units.h"
 #include "render/sample_sets.h"
 
@@ -15,6 +16,10 @@ namespace {
 constexpr int paths_of_sample = 4;
 constexpr double most_times_audit = 16;
 constexpr double much_more = 2;  // than another error
+// Where an audit finds what it would by chance in one list of ten, so many times as many paths look
+// again.
+constexpr double quantile_of_doubt = 1.2816;
+constexpr int times_in_doubt = 4;
 
 // Whether points by cells err by more than is aimed at, and as many paths as are allowed, of which
 // `few` were some, would err by much less.
@@ -36,8 +41,8 @@ PointPlan audit_plan(const PointPlan& plan) {
 
 }  // namespace
 
-double relative_bias(const std::vector<Measurement>& points,
-                     const std::vector<Measurement>& others) {
+double relative_bias(const std::vector<Measurement>& points, const std::vector<Measurement>& others,
+                     double normal_quantile) {
   double squares = 0, weights = 0, count = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     const double e = points[i].illuminance_lx;
@@ -48,16 +53,20 @@ double relative_bias(const std::vector<Measurement>& points,
     count += 1;
   }
   if (count == 0) return 0;
-  // The 99 % quantile of chi-squared, by Wilson and Hilferty.
-  const double part = 2 / (9 * count), root = 1 - part + 2.326 * std::sqrt(part);
+  // The quantile of chi-squared, by Wilson and Hilferty.
+  const double part = 2 / (9 * count), root = 1 - part + normal_quantile * std::sqrt(part);
   if (squares <= count * root * root * root) return 0;
   return std::sqrt((squares - count) / weights);
 }
 
 std::vector<size_t> few_of(size_t points) {
   constexpr size_t most = 32;
+  const size_t few = std::min(points, most);
   std::vector<size_t> which;
-  for (size_t i = 0; i < points; i += (points + most - 1) / most) which.push_back(i);
+  for (size_t k = 0; k < few; ++k) {
+    const size_t first = k * points / few, end = (k + 1) * points / few;
+    which.push_back(first + size_t(hash_of(uint64_t{k}) % (end - first)));
+  }
   return which;
 }
 
@@ -73,15 +82,27 @@ std::optional<AuditFinding> audit(const Integrator& paths,
     at.push_back(places[i]);
     of_cells.push_back(by_cells[i].indirect);
   }
-  const PointPlan of_paths = audit_plan(plan);
-  PointValues few = measure_points(paths, at, of_paths, run);
-  if (!few.is_complete()) return std::nullopt;
-  for (size_t k = 0; k < at.size(); ++k) {
-    f.by_paths.push_back(few.values[k].indirect);
-    few.values[k].all = by_cells[f.points[k]].all;
+  PointPlan of_paths = audit_plan(plan);
+  PointsRun round = run;
+  for (const bool is_last : {false, true}) {
+    PointValues few = measure_points(paths, at, of_paths, round);
+    if (!few.is_complete()) return std::nullopt;
+    f.by_paths.clear();
+    for (size_t k = 0; k < at.size(); ++k) {
+      f.by_paths.push_back(few.values[k].indirect);
+      few.values[k].all = by_cells[f.points[k]].all;
+    }
+    f.bias = relative_bias(of_cells, f.by_paths);
+    f.is_slight = is_last;
+    if (!is_last) f.is_worth_paths = are_worth_paths(by_cells, few.values, plan.error);
+    // What is far from clear decides by itself, and so does what cannot be trusted anyway.
+    if (f.is_worth_paths || f.bias > 0 ||
+        relative_bias(of_cells, f.by_paths, quantile_of_doubt) == 0)
+      break;
+    of_paths.samples *= times_in_doubt;
+    of_paths.samples_per_direct *= times_in_doubt;
+    round.seed = hash_of(run.seed, 1u);
   }
-  f.bias = relative_bias(of_cells, f.by_paths);
-  f.is_worth_paths = are_worth_paths(by_cells, few.values, plan.error);
   return f;
 }
 
@@ -91,6 +112,11 @@ PointPlan plan_by_paths(PointPlan plan) {
   plan.samples_per_direct *= paths_of_sample;
   plan.most_times = most_times_audit;
   return plan;
+}
+
+void tell_bias(double bias, std::vector<PointLight>& by_cells) {
+  for (PointLight& v : by_cells)
+    v.all.standard_error = std::hypot(v.all.standard_error, bias * v.indirect.illuminance_lx);
 }
 
 void take_better(const Measurement& by_paths, double bias, PointLight& v) {

@@ -23,22 +23,22 @@ constexpr double share_of_error = 0.25;
 enum class Round : uint64_t { audit = 0, by_paths = 1, forecast = 2 };
 
 // What the method knows of errors that no spread of its samples shows: half the difference between
-// two halves of what it has learnt is one draw of that error. Relative to the light it is much the
-// same at all points.
+// two halves of what it has learnt is one draw of that error. Relative to the light that was
+// reflected before it is much the same at all points.
 void add_shared_errors(const std::vector<double>& of_luminance, double lx_per_unit,
                        std::vector<PointLight>& values) {
   double squares = 0;
   int points = 0;
   for (size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i].all.illuminance_lx > 0)) continue;
-    squares += sqr(of_luminance[i] * lx_per_unit / values[i].all.illuminance_lx);
+    if (!(values[i].indirect.illuminance_lx > 0)) continue;
+    squares += sqr(of_luminance[i] * lx_per_unit / values[i].indirect.illuminance_lx);
     ++points;
   }
   if (!(squares > 0)) return;
   const double relative = std::sqrt(squares / points) * t_quantile_95(points) / 1.959964;
   for (PointLight& v : values)
     for (Measurement* m : {&v.all, &v.indirect})
-      m->standard_error = std::hypot(m->standard_error, relative * v.all.illuminance_lx);
+      m->standard_error = std::hypot(m->standard_error, relative * v.indirect.illuminance_lx);
 }
 
 MeasureResult nothing_measured(size_t points) {
@@ -170,6 +170,10 @@ class PointsMeasuring {
     }
     if (finding->bias == 0 && !finding->is_worth_paths) {
       take_both(*finding, found.values);
+      return;
+    }
+    if (finding->is_slight && !finding->is_worth_paths) {
+      tell_bias(finding->bias, found.values);
       return;
     }
     // By numbers of their own: those of the audit are why these are taken.
