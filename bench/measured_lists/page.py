@@ -12,7 +12,7 @@ have found (131 072 at points of the short list, 32 768 of the long one), both e
 root mean square of the differences over these errors, 1 where errors are honest. *In all*: the list's
 mean against that of these paths, whose own standard errors are in the table `measuring.csv`. *Path, s
 at equal error*: path tracing's error falls with the root of its time. *Each point*: the same with
-each point's error over its own light, root mean square, which is what `--error` bounds: points in
+each point's error over its own light, root mean square, which is what `--error` asks for: points in
 the dark then count as much as bright ones, and paths, of which all get as many, are the dearer.
 """
 

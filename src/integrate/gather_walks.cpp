@@ -13,10 +13,9 @@ namespace troffer {
 
 namespace {
 
-// A walk's note about where it comes from: what shines on a matte surface is not for it to say;
-constexpr uint32_t from_matte = 1;
-// nor what image i shines on it: first_image + i, from there by way of its mirror.
-constexpr uint32_t first_image = 2;
+// A walk's note about where it comes from: what shines on a matte surface is not for it to say, nor
+// what images shine on it.
+constexpr uint32_t from_matte = MirrorImages::from_matte;
 
 // How often a light is drawn for gloss that a ray meets, and how often the ray goes on: where less
 // is carried than these, in proportion to it, and then as much as these. What the gloss of a
@@ -116,17 +115,15 @@ void GatherWalks::see(const Walk& walk, Rgb radiance, float weight, GatherScratc
 // Whether light that a walk runs into is for it to tell of.
 bool GatherWalks::counts(const Walk& walk, uint32_t light) const {
   if (walk.last_place == from_matte) return false;
-  return walk.last_place < first_image || !images_->shows(walk.last_place - first_image, light);
+  return !images_ || !images_->is_shown(walk.last_place, light);
 }
 
 void GatherWalks::note_step(const Walk& before, const Vertex& v, Walk& next) const {
   if (next.panes != before.panes) return;
-  next.last_place = 0;
-  // A mirror: it has not been scattered, nor has it gone through.
-  if (before.last_place != from_matte || !images_ || next.scatterings != before.scatterings) return;
-  const int32_t image = images_->at(v);
-  if (image >= 0 && dot(next.ray.direction, v.geometric_normal) > 0)
-    next.last_place = first_image + uint32_t(image);
+  next.last_place =
+      images_ ? images_->note_beyond(v, before.last_place, next.scatterings != before.scatterings,
+                                     next.ray.direction)
+              : 0;
 }
 
 // First where all of them arrive, so that their textures are there when they are looked up.

@@ -200,4 +200,12 @@ int32_t MirrorImages::at(const Vertex& v) const {
   return of_triangle.empty() ? -1 : of_triangle[v.surface.primitive][v.is_front ? 0 : 1];
 }
 
+uint32_t MirrorImages::note_beyond(const Vertex& v, uint32_t note, bool is_scattered,
+                                   const Vec3& direction) const {
+  // A mirror: the walk has not been scattered, nor has it gone through.
+  if (note != from_matte || is_scattered) return 0;
+  const int32_t image = at(v);
+  return image >= 0 && dot(direction, v.geometric_normal) > 0 ? first_image + uint32_t(image) : 0;
+}
+
 }  // namespace troffer

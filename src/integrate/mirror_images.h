@@ -31,7 +31,19 @@ class MirrorImages {
   const std::vector<Image>& all() const { return images_; }
   // The one that a ray looks into which has come to v and is mirrored there; -1: none.
   int32_t at(const Vertex& v) const;
-  bool shows(uint32_t image, uint32_t light) const { return images_[image].shows[light]; }
+
+  // Notes of walks (Walk::last_place) whose integrator asks images at matte surfaces, and so must
+  // not count what is met by way of their mirrors: the walk comes straight from a matte surface; or
+  // from there by way of the mirror of image i, first_image + i.
+  static constexpr uint32_t from_matte = 1, first_image = 2;
+  // Of a walk that came to v with this note and has been sent on there: 0, or an image's. (A pane
+  // that it goes straight through leaves its note as it is.)
+  uint32_t note_beyond(const Vertex& v, uint32_t note, bool is_scattered,
+                       const Vec3& direction) const;
+  // Whether the image of a walk's note shows this light.
+  bool is_shown(uint32_t note, uint32_t light) const {
+    return note >= first_image && images_[note - first_image].shows[light];
+  }
 
  private:
   // Per mesh, empty or per triangle: its polygon's image, seen from the front and from behind; -1:

@@ -26,10 +26,6 @@ constexpr float long_path_survival = 0.95f;
 // So many paths and what is known of their vertices fit a core's second cache.
 constexpr size_t most_at_a_time = 256;
 
-// Notes in Walk::last_place, where images are asked: the walk comes straight from a matte surface;
-// or from there by way of the mirror of image i, first_image + i.
-constexpr uint32_t from_matte = 1, first_image = 2;
-
 // Ends paths that carry little, and strengthens those that survive; false where it ends. By a
 // number of the vertex that the path has left, stratified over the samples of a pixel.
 bool survives_roulette(Walk& walk) {
@@ -221,9 +217,7 @@ void PathIntegrator::add_seen(const Walk& walk, uint32_t light, Rgb radiance, fl
   // Straight from the source: seen as it is, or scattered once with nothing in between.
   const bool is_direct = is_direct_at(walk) || (walk.scatterings == 1 && walk.pdf > 0);
   if (is_direct && options_.leaves_out_direct_at_sensors) return;
-  if (walk.last_place >= first_image &&
-      options_.images->shows(walk.last_place - first_image, light))
-    return;
+  if (options_.images && options_.images->is_shown(walk.last_place, light)) return;
   (is_direct ? out.direct : out.indirect)[walk.index] += walk.throughput * radiance * weight;
 }
 
@@ -235,12 +229,10 @@ bool PathIntegrator::step_from(Walk& walk, const Vertex& v, const Bsdf& bsdf,
   const uint32_t came_from = walk.last_place, panes = walk.panes, scatterings = walk.scatterings;
   if (!step(walk, v, bsdf, lobe, direction)) return false;
   if (!options_.images || walk.panes != panes) return true;
-  walk.last_place = is_lambertian(bsdf, nullptr) ? from_matte : 0;
-  // A mirror: the walk has not been scattered, nor has it gone through.
-  if (came_from != from_matte || walk.scatterings != scatterings) return true;
-  const int32_t image = options_.images->at(v);
-  if (image >= 0 && dot(walk.ray.direction, v.geometric_normal) > 0)
-    walk.last_place = first_image + uint32_t(image);
+  walk.last_place = is_lambertian(bsdf, nullptr)
+                        ? MirrorImages::from_matte
+                        : options_.images->note_beyond(
+                              v, came_from, walk.scatterings != scatterings, walk.ray.direction);
   return true;
 }
 

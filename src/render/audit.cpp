@@ -31,8 +31,8 @@ bool are_worth_paths(const std::vector<PointLight>& by_cells, const std::vector<
 }
 
 // Light straight from sources is known already, and takes part in one sample of each set.
-PointPlan audit_plan(const PointPlan& plan) {
-  PointPlan p{.samples = plan.samples * paths_of_sample,
+PointPlan audit_plan(const PointPlan& plan, int times = 1) {
+  PointPlan p{.samples = plan.samples * paths_of_sample * times,
               .samples_per_estimate = 1,
               .lx_per_unit = plan.lx_per_unit};
   p.samples_per_direct = (p.samples + most_sets - 1) / most_sets;
@@ -82,10 +82,10 @@ std::optional<AuditFinding> audit(const Integrator& paths,
     at.push_back(places[i]);
     of_cells.push_back(by_cells[i].indirect);
   }
-  PointPlan of_paths = audit_plan(plan);
   PointsRun round = run;
   for (const bool is_last : {false, true}) {
-    PointValues few = measure_points(paths, at, of_paths, round);
+    PointValues few =
+        measure_points(paths, at, audit_plan(plan, is_last ? times_in_doubt : 1), round);
     if (!few.is_complete()) return std::nullopt;
     f.by_paths.clear();
     for (size_t k = 0; k < at.size(); ++k) {
@@ -99,8 +99,6 @@ std::optional<AuditFinding> audit(const Integrator& paths,
     if (f.is_worth_paths || f.bias > 0 ||
         relative_bias(of_cells, f.by_paths, quantile_of_doubt) == 0)
       break;
-    of_paths.samples *= times_in_doubt;
-    of_paths.samples_per_direct *= times_in_doubt;
     round.seed = hash_of(run.seed, 1u);
   }
   return f;

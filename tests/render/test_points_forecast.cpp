@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "render/audit.h"
 #include "render/preparation.h"
@@ -179,5 +181,26 @@ TEST_CASE("a forecast that is stopped is none; lists are measured alike by any n
     CHECK(one.values[i].illuminance_lx == three.values[i].illuminance_lx);
     CHECK(one.values[i].standard_error == three.values[i].standard_error);
     CHECK(one.values[i].standard_error < 0.0076 * one.values[i].illuminance_lx);
+  }
+}
+
+TEST_CASE("lists that are stopped at any time, while cells are made too, are told as incomplete") {
+  const PreparedScene scene = room_with_lamp();
+  const auto points = points_over_floor(40);
+  for (const int milliseconds : {1, 10, 30, 60, 100}) {
+    StopFlag stop = false;
+    std::thread later([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      stop = true;
+    });
+    MeasureOptions o;
+    o.indirect = Indirect::cells;
+    o.error = 1e-4;  // which takes much longer
+    const MeasureResult r = measure(scene, points, o, {}, stop);
+    later.join();
+    CAPTURE(milliseconds);
+    CHECK(r.values.size() == points.size());
+    CHECK(r.is_measured.size() == points.size());
+    CHECK_FALSE(r.is_complete);
   }
 }
