@@ -225,6 +225,11 @@ float GatherAim::density_towards(const Vec3& direction) const {
   return density;
 }
 
+float GatherAim::density(const CellHit& at, const Vec3& direction) const {
+  return by_cosine_ * std::max(dot(direction, at.normal), 0.0f) * inv_pi_f +
+         density_towards(direction);
+}
+
 Vec3 GatherAim::direction(const CellHit& at, Vec2 number, float& weight) const {
   const Frame frame(at.normal);
   weight = 1;
@@ -244,7 +249,7 @@ Vec3 GatherAim::direction(const CellHit& at, Vec2 number, float& weight) const {
     world = c.frame.to_world({d.x * scale, d.y * scale, 1 - below});
   }
   const float by_cosine = std::max(dot(world, at.normal), 0.0f) * inv_pi_f;
-  weight = by_cosine > 0 ? by_cosine / (by_cosine_ * by_cosine + density_towards(world)) : 0;
+  weight = by_cosine > 0 ? by_cosine / density(at, world) : 0;
   return world;
 }
 

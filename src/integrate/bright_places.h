@@ -82,6 +82,8 @@ class GatherAim {
 
   // The direction of a ray, and what it counts, over one that is drawn by its cosine.
   Vec3 direction(const CellHit& at, Vec2 number, float& weight) const;
+  // … with which it is drawn, per steradian.
+  float density(const CellHit& at, const Vec3& direction) const;
   bool is_towards_bright(const Vec3& direction) const { return density_towards(direction) > 0; }
   // Mean over rays by cosine of the square of what those bring that are towards bright places.
   float expected() const { return expected_; }

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "integrate/gather_lobe.h"
 #include "integrate/sensor_aims.h"
 
 namespace troffer {
@@ -129,6 +130,11 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
       aim = records_->aim_at(pixel.x, pixel.y, hit, cells_->bright_places());
     }
+    const Bsdf& all = scattering.is_gathered ? scattering.whole : scattering.diffuse;
+    GatherLobe lobe;
+    if (scattering.is_gathered)
+      lobe = {scattering.specular, v.frame.normal, v.wo, luminance(weights.matte) * pi_f,
+              luminance(weights.gloss)};
     const GatherNumbers numbers = numbers_of_hit(fitted.rays, at, out.thrift);
     for (uint32_t k = 0; k < numbers.rays; ++k) {
       Walk walk = at;
@@ -137,11 +143,11 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       walk.stream = numbers.stream;
       walk.sample = numbers.first + k;
       float counts = 1;
-      set_out(hit, aim.direction(hit, direction_number(walk), counts), walk);
+      set_out(hit, lobe.direction(aim, hit, direction_number(walk), lobe_number(walk), counts),
+              walk);
       walk.throughput *= counts;
       const Vec3 wi = v.frame.to_local(walk.ray.direction);
-      s.weights.push_back(
-          wi.z > 0 ? at.throughput * evaluate(scattering.diffuse, v.wo, wi) * (1 / wi.z) : Rgb{0});
+      s.weights.push_back(wi.z > 0 ? at.throughput * evaluate(all, v.wo, wi) * (1 / wi.z) : Rgb{0});
       if (!walk.throughput.is_black()) s.cells.walks.push_back(walk);
     }
     s.indices.push_back(at.index);

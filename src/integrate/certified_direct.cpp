@@ -124,7 +124,7 @@ void CertifiedDirect::queue_hit(const WaveHits& wave, size_t i, Scratch& s, Radi
     if (scattering.is_lambertian)
       s.lights.hits.add_matte(walk, v, scattering.whole.diffuse, is_direct);
     else
-      s.lights.hits.add_glossy(walk, v, scattering, is_direct);
+      s.lights.hits.add_glossy(walk, v, scattering, lights_.competition(), is_direct);
   }
   const SampledVertex at{walk,
                          v,
@@ -146,14 +146,19 @@ void CertifiedDirect::weigh(SeenEmission& seen) const {
                           : weight_of(*seen.walks[i], *seen.vertices[i]);
 }
 
+float CertifiedDirect::weight_against(const CertifiedSource& source, const Walk& walk) const {
+  const LobeCompetition& rival = lights_.competition();
+  return power_heuristic(
+      walk.pdf,
+      rival.density(source, rival.place(walk.last_position, walk.last_normal), walk.ray.direction));
+}
+
 float CertifiedDirect::weight_of_miss(const Walk& walk, uint32_t primitive) const {
   if (walk.last_both_sides || !lights_.has(scene_.primitives[primitive].light))
     return sampler_.miss_weight(walk, primitive, uint32_t(settings_.shadow_rays));
   const CertifiedSource* source = lights_.source_towards(primitive, walk.ray.direction);
   if (source == nullptr) return 1;
-  return power_heuristic(
-      walk.pdf, lights_.competition().density(*source, walk.last_position, walk.last_normal,
-                                              walk.ray.direction));
+  return weight_against(*source, walk);
 }
 
 // Of emission that a walk has run into, against points on the source chosen at the vertex before.
@@ -162,19 +167,17 @@ float CertifiedDirect::weight_of(const Walk& walk, const Vertex& v) const {
   if (is_sampled) return sampler_.emission_weight(walk, v, uint32_t(settings_.shadow_rays));
   const int32_t primitive = primitive_at(scene_, v.surface);
   if (primitive >= 0 && lights_.is_drawn(uint32_t(v.surface.light))) {
-    const float pdf = pdf_of_hit(scene_, scene_.primitives[size_t(primitive)], walk.last_position,
-                                 walk.ray.direction, v);
-    return power_heuristic(walk.pdf,
-                           lights_.competition().density(uint32_t(primitive), walk.last_position,
-                                                         walk.last_normal, pdf));
+    const LobeCompetition& rival = lights_.competition();
+    return power_heuristic(
+        walk.pdf,
+        rival.density(uint32_t(primitive), rival.place(walk.last_position, walk.last_normal),
+                      walk.ray.direction));
   }
   const CertifiedSource* source =
       primitive < 0 ? nullptr
                     : lights_.source_of(uint32_t(primitive), !v.is_front, v.surface.position);
   if (source == nullptr) return 1;
-  return power_heuristic(
-      walk.pdf, lights_.competition().density(*source, walk.last_position, walk.last_normal,
-                                              walk.ray.direction));
+  return weight_against(*source, walk);
 }
 
 }  // namespace troffer

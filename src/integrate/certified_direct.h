@@ -54,6 +54,7 @@ class CertifiedDirect final : public DirectLight {
   void queue_hit(const WaveHits& wave, size_t i, Scratch& s, RadianceBatch& out,
                  Counters& counters) const;
   float weight_of(const Walk& walk, const Vertex& v) const;
+  float weight_against(const CertifiedSource& source, const Walk& walk) const;
   float weight_of_miss(const Walk& walk, uint32_t primitive) const;
 
   const PreparedScene& scene_;

@@ -26,7 +26,7 @@ constexpr double reach_of_frame = 16;
 CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget,
                                  uint32_t gloss_points)
     : scene_(scene),
-      competition_(scene, gloss_points, false),
+      competition_(scene, gloss_points),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
       far_{&scene.far_cells(), 0, nullptr, {}, {}, {}, false, {}, 0},
@@ -36,7 +36,8 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
   add_far_lights(scene);
   add_drawn_lights(scene);
   groups_.finish();
-  competition_ = LobeCompetition(scene, gloss_points, groups_.are_many() || budget.draws > 0);
+  if (groups_.are_many() || budget.draws > 0)
+    competition_ = LobeCompetition(scene, gloss_points, groups_);
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }

@@ -214,13 +214,10 @@ Rgb Drawing::value(uint32_t i) const {
   const LobeCompetition& rival = world.competition;
   const LightGroup& g = groups[s.chosen[i]];
   if (g.first_source == g.last_source)
-    return glossy_value(
-        hit, light.wi,
-        rival.density(s.primitives[i], r.position, r.horizon, light.pdf_solid_angle));
+    return glossy_value(hit, light.wi, rival.density(s.primitives[i], hit.place, light.wi));
   for (uint32_t k = g.first_source; k < g.last_source; ++k)
     if (world.sources[k].is_back != light.is_front)
-      return glossy_value(hit, light.wi,
-                          rival.density(world.sources[k], r.position, r.horizon, light.wi));
+      return glossy_value(hit, light.wi, rival.density(world.sources[k], hit.place, light.wi));
   return {};
 }
 

@@ -135,9 +135,8 @@ class FarDrawing {
   // BRDF × cosine, of what does not compete or wins.
   Rgb value(const CertifiedSource& source, uint32_t m, const Vec3& wi, float cosine) const {
     if (d_.hits.glossy[m] < 0) return Rgb{cosine};
-    const ShadowReceiver& r = d_.hits.receivers[m];
-    return glossy_value(d_.hits.glossy_hits[size_t(d_.hits.glossy[m])], wi,
-                        d_.competition.density(source, r.position, r.horizon, wi));
+    const GlossyHit& hit = d_.hits.glossy_hits[size_t(d_.hits.glossy[m])];
+    return glossy_value(hit, wi, d_.competition.density(source, hit.place, wi));
   }
 
   const FarDraws& d_;

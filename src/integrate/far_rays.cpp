@@ -134,10 +134,10 @@ class Casting {
     if (p.source == nullptr || !is_above(r, p.wi)) return;
     if (!is_through_portal(d_.scene.primitives, *p.source, r.position, p.wi)) return;
     const int32_t g = d_.hits.glossy[m];
-    const Rgb value =
-        g < 0 ? Rgb{dot(p.wi, r.normal)}
-              : glossy_value(d_.hits.glossy_hits[size_t(g)], p.wi,
-                             d_.competition.density(*p.source, r.position, r.horizon, p.wi));
+    const auto of_gloss = [&](const GlossyHit& hit) {
+      return glossy_value(hit, p.wi, d_.competition.density(*p.source, hit.place, p.wi));
+    };
+    const Rgb value = g < 0 ? Rgb{dot(p.wi, r.normal)} : of_gloss(d_.hits.glossy_hits[size_t(g)]);
     term.light = d_.hits.weights[m] * radiance * value * p.inverse_pdf;
     if (term.light.is_black()) return;
     term.ray = int32_t(s_.rays.size());

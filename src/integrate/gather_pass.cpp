@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "integrate/gather_lobe.h"
 
 namespace troffer {
 
@@ -21,29 +22,12 @@ uint32_t class_of(uint32_t place) {
   return place & 3;
 }
 
-// What a record's gloss makes of light from one direction.
-struct Lobe {
-  Lobe(const GatherWalks& walks, GatherRecord& r) {
-    if (!r.place.is_there()) return;
-    specular = walks.scattering_at(r.place).specular;
-    frame = Frame(r.hit.normal);
-    wo = r.place.wo;
-    r.width = glossy_alpha(specular);
-    const Rgb all = albedo(specular, wo.z);
-    const auto inverse = [](float x) { return x > 0 ? 1 / x : 0.0f; };
-    scale = {inverse(all.r), inverse(all.g), inverse(all.b)};
-  }
-  // Of a ray drawn by its cosine: mean radiance shown, over its π × radiance.
-  Rgb share_of(const Vec3& world) const {
-    const Vec3 wi = frame.to_local(world);
-    return wi.z > 0 ? evaluate(specular, wo, wi) * scale * (1 / wi.z) : Rgb{0};
-  }
-
-  Bsdf specular;
-  Frame frame;
-  Vec3 wo;
-  Rgb scale;
-};
+GatherLobe lobe_of(const GatherWalks& walks, GatherRecord& r) {
+  if (!r.place.is_there()) return {};
+  const Bsdf specular = walks.scattering_at(r.place).specular;
+  r.width = glossy_alpha(specular);
+  return {specular, r.hit.normal, r.place.wo, r.matte.weight * pi_f, r.gloss.weight};
+}
 
 void add(GatherSums& sums, const Rgb& light, float half, float nearness) {
   sums.sum += light;
@@ -76,33 +60,6 @@ bool GatherPass::over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters&
     w.counters = {};
   }
   return is_done && !stop_.load();
-}
-
-// Visits (x, y, record).
-template <class Visit>
-void GatherPass::records_of(const Tile& t, const Visit& visit) const {
-  for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
-    for (int x = t.pixels.x0; x < t.pixels.x1; ++x)
-      out_.of_pixel(x, y, [&](uint32_t r) { visit(x, y, r); });
-}
-
-// A value for every record, of(x, y, record), which looks at records around it, not at these
-// values.
-template <class T, class Of>
-bool GatherPass::for_records(std::vector<Tile>& tiles, Counters& counters, std::vector<T>& values,
-                             const Of& of) {
-  SharedWork work;
-  work.act = [&](size_t t, size_t) {
-    records_of(tiles[t], [&](int x, int y, uint32_t r) { values[r] = of(x, y, r); });
-    return true;
-  };
-  work.save = [&](size_t t, SharedWork::Bytes& out) {
-    records_of(tiles[t], [&](int, int, uint32_t r) { append(out, values[r]); });
-  };
-  work.load = [&](size_t t, ByteReader in) {
-    records_of(tiles[t], [&](int, int, uint32_t r) { values[r] = in.next<T>(); });
-  };
-  return over_tiles(tiles, std::move(work), counters);
 }
 
 bool GatherPass::see_all(std::vector<Tile>& tiles, Counters& counters) {
@@ -273,11 +230,11 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   std::vector<Vec3> directions;
   std::vector<float> shares;   // what their light counts below the coat
   std::vector<float> weights;  // … and over drawn by its cosine
-  std::vector<Lobe> lobes;
+  std::vector<GatherLobe> lobes;
   std::vector<GatherAim> aims;
   const bool is_further = which == Rays::further;
   for (uint32_t r = 0; r < records.size(); ++r) {
-    lobes.emplace_back(cells_.walks(), records[r]);
+    const GatherLobe& lobe = lobes.emplace_back(lobe_of(cells_.walks(), records[r]));
     // Each lattice has a sequence of its own, that is even where only the first is used.
     const uint32_t lattice = is_thinned_ ? class_of(places[r]) : 0,
                    place = (places[r] & 255) >> (is_thinned_ ? 2 : 0);
@@ -291,7 +248,10 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
       walk.sample = place * (is_further ? most_rays : first_rays) + k;
       owners.push_back(r);
       float weight = 1;
-      set_out(records[r].hit, aim.direction(records[r].hit, direction_number(walk), weight), walk);
+      set_out(
+          records[r].hit,
+          lobe.direction(aim, records[r].hit, direction_number(walk), lobe_number(walk), weight),
+          walk);
       walk.throughput *= weight;
       weights.push_back(weight);
       directions.push_back(walk.ray.direction);

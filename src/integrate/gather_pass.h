@@ -103,4 +103,31 @@ class GatherPass {
   std::vector<float> usual_rays_;
 };
 
+// Visits (x, y, record).
+template <class Visit>
+void GatherPass::records_of(const Tile& t, const Visit& visit) const {
+  for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
+    for (int x = t.pixels.x0; x < t.pixels.x1; ++x)
+      out_.of_pixel(x, y, [&](uint32_t r) { visit(x, y, r); });
+}
+
+// A value for every record, of(x, y, record), which looks at records around it, not at these
+// values.
+template <class T, class Of>
+bool GatherPass::for_records(std::vector<Tile>& tiles, Counters& counters, std::vector<T>& values,
+                             const Of& of) {
+  SharedWork work;
+  work.act = [&](size_t t, size_t) {
+    records_of(tiles[t], [&](int x, int y, uint32_t r) { values[r] = of(x, y, r); });
+    return true;
+  };
+  work.save = [&](size_t t, SharedWork::Bytes& out) {
+    records_of(tiles[t], [&](int, int, uint32_t r) { append(out, values[r]); });
+  };
+  work.load = [&](size_t t, ByteReader in) {
+    records_of(tiles[t], [&](int, int, uint32_t r) { values[r] = in.next<T>(); });
+  };
+  return over_tiles(tiles, std::move(work), counters);
+}
+
 }  // namespace troffer

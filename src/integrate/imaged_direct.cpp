@@ -51,9 +51,11 @@ void ImagedDirect::queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBa
       walk.stream = hash_of(walk.stream, uint64_t{0x696d'6167}, uint64_t(m));
       s.wave.walks.push_back(walk);
       s.wave.vertices.push_back(wave.vertices[i]);
-      const bool is_gathered = wave.scatterings[i].is_gathered;
-      s.wave.scatterings.emplace_back(wave.scatterings[i].diffuse);
-      if (is_gathered) s.wave.scatterings.back().gather_gloss();
+      const SurfaceScattering& scattering = wave.scatterings[i];
+      if (scattering.is_gathered)
+        s.wave.scatterings.emplace_back(scattering.whole).gather_gloss();
+      else
+        s.wave.scatterings.emplace_back(scattering.diffuse);
     }
     if (s.wave.size() > 0) of_image_[m]->queue(s.wave, *s.of_image[m], out, counters);
   }

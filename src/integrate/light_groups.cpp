@@ -1,6 +1,7 @@
 #include "integrate/light_groups.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -50,16 +51,21 @@ void LightGroups::add(const LightPrimitives& all, std::span<const uint32_t> prim
   const float spread = spread_about(all, primitives, normal);
   if (!(spread < 1) || (is_two_sided && spread > 0)) normal = {};
   const Vec3 centre = box.centre(), n(normal);
-  arrays_.x.push_back(centre.x);
-  arrays_.y.push_back(centre.y);
-  arrays_.z.push_back(centre.z);
-  arrays_.radius.push_back(0.5f * box.diagonal());
-  arrays_.nx.push_back(n.x);
-  arrays_.ny.push_back(n.y);
-  arrays_.nz.push_back(n.z);
-  arrays_.spread.push_back(spread);
-  arrays_.two_sided.push_back(is_two_sided ? 1.0f : 0.0f);
-  arrays_.strength.push_back(strength);
+  arrays_.add(centre, 0.5f * box.diagonal(), n, spread, is_two_sided ? 1.0f : 0.0f, strength);
+}
+
+void LightGroups::Arrays::add(const Vec3& centre, float r, const Vec3& normal, float sine,
+                              float both_sides, float light) {
+  x.push_back(centre.x);
+  y.push_back(centre.y);
+  z.push_back(centre.z);
+  radius.push_back(r);
+  nx.push_back(normal.x);
+  ny.push_back(normal.y);
+  nz.push_back(normal.z);
+  spread.push_back(sine);
+  two_sided.push_back(both_sides);
+  strength.push_back(light);
 }
 
 namespace {
@@ -101,6 +107,40 @@ void LightGroups::finish() {
   for (auto* a : {&arrays_.x, &arrays_.y, &arrays_.z, &arrays_.radius, &arrays_.nx, &arrays_.ny,
                   &arrays_.nz, &arrays_.spread, &arrays_.two_sided, &arrays_.strength})
     permute(order, *a);
+  take_together();
+}
+
+// Where their normals differ by a right angle or more, or some shine both ways, the light of all
+// goes all ways.
+void LightGroups::take_together() {
+  const size_t n = size(), parts = std::min<size_t>(n, most_taken_together);
+  for (size_t part = 0; part < parts; ++part) {
+    const size_t first = part * n / parts, last = (part + 1) * n / parts;
+    Vec3 centre, normal;
+    float strength = 0, both_sides = arrays_.two_sided[first];
+    for (size_t i = first; i < last; ++i) {
+      strength += arrays_.strength[i];
+      centre += arrays_.centre(i) * arrays_.strength[i];
+      normal += arrays_.normal(i) * arrays_.strength[i];
+    }
+    centre = strength > 0 ? centre * (1 / strength) : arrays_.centre(first);
+    const float turned = length(normal);
+    normal = turned > 1e-3f * strength ? normal * (1 / turned) : Vec3{};
+    float radius = 0, spread = 0;
+    for (size_t i = first; i < last; ++i) {
+      radius = std::max(radius, length(arrays_.centre(i) - centre) + arrays_.radius[i]);
+      const float cosine = dot(arrays_.normal(i), normal);
+      const float sine = std::sqrt(std::max(1 - sqr(cosine), 0.0f)) + arrays_.spread[i];
+      spread = std::max(spread, cosine > 0 ? sine : 1.0f);
+      if (last > first + 1 && arrays_.two_sided[i] > 0) spread = 1;
+    }
+    if (!(spread < 1)) {
+      normal = {};
+      spread = 1;
+      both_sides = 0;
+    }
+    together_.add(centre, radius, normal, spread, both_sides, strength);
+  }
 }
 
 uint32_t LightGroups::choose_primitive(uint32_t group, float& u, float& pmf) const {
@@ -166,14 +206,23 @@ void estimate_all(size_t n, const float* __restrict x, const float* __restrict y
 
 }  // namespace
 
+void LightGroups::estimate(const Arrays& a, const ClusterBall& ball, float* values, float* near) {
+  estimate_all(a.size(), a.x.data(), a.y.data(), a.z.data(), a.radius.data(), a.nx.data(),
+               a.ny.data(), a.nz.data(), a.spread.data(), a.two_sided.data(), a.strength.data(),
+               ball, values, near);
+}
+
 void LightGroups::estimate(const ClusterBall& ball, std::vector<float>& values,
                            std::vector<float>& near) const {
   values.resize(size());
   near.resize(size());
-  const Arrays& a = arrays_;
-  estimate_all(size(), a.x.data(), a.y.data(), a.z.data(), a.radius.data(), a.nx.data(),
-               a.ny.data(), a.nz.data(), a.spread.data(), a.two_sided.data(), a.strength.data(),
-               ball, values.data(), near.data());
+  estimate(arrays_, ball, values.data(), near.data());
+}
+
+float LightGroups::all_light(const Vec3& x, const Vec3& n) const {
+  std::array<float, most_taken_together> values{}, near{};
+  estimate(together_, {x, 0, n, 0}, values.data(), near.data());
+  return std::accumulate(values.begin(), values.begin() + std::ptrdiff_t(together_.size()), 0.0f);
 }
 
 }  // namespace troffer

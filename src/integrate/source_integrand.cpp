@@ -33,44 +33,9 @@ double CertifiedSource::unoccluded(const Vec3d& x, const Vec3d& n) const {
   return polygon_irradiance(flat.corners(), x, n, Sides::both);
 }
 
-namespace {
-
-// Points that lights which are drawn are taken to share.
-constexpr float shared_points = 8;
-
-}  // namespace
-
-float LobeCompetition::density_of(const CertifiedSource& source, const Vec3& x,
-                                  const Vec3& n) const {
-  if (source.far != nullptr) {
-    // Where its middle is about at the horizon, about half of it is above.
-    const float half_width = std::sqrt(source.solid_angle * inv_pi_f) * 0.5f;
-    const float cosine = std::max(dot(n, source.towards), half_width);
-    const float projected = source.solid_angle * cosine;
-    return projected > 0 ? float(points_) / projected : 0;
-  }
-  const auto unoccluded = float(source.unoccluded(Vec3d(x), Vec3d(n)));
-  if (!(unoccluded > 0)) return 0;
-  const float points = are_many_
-                           ? shared_points * scene_->light_tree.pmf(x, n, false, source.primitive)
-                           : float(points_);
-  return points / unoccluded;
-}
-
-float LobeCompetition::density(const CertifiedSource& source, const Vec3& x, const Vec3& n,
-                               const Vec3& wi) const {
-  const float cosine = dot(n, wi);
-  return cosine > 0 ? density_of(source, x, n) * cosine : 0;
-}
-
-float LobeCompetition::density(uint32_t primitive, const Vec3& x, const Vec3& n,
-                               float pdf_solid_angle) const {
-  return shared_points * scene_->light_tree.pmf(x, n, false, primitive) * pdf_solid_angle;
-}
-
 Rgb glossy_value(const GlossyHit& g, const Vec3& world, float density) {
   const Vec3 wi = g.frame.to_local(world);
-  const float cosine = dot(world, g.geometric_normal);
+  const float cosine = dot(world, g.place.n);
   Rgb f_cos;
   if (!(cosine > 0) || !(wi.z > 0)) return f_cos;
   if (g.has_diffuse) f_cos += troffer::evaluate(g.diffuse, g.wo, wi);
@@ -139,14 +104,13 @@ void SourceIntegrand::evaluate(uint32_t request, uint32_t member, std::span<cons
     return;
   }
   const GlossyHit& g = *hit.glossy;
-  const float density =
-      g.has_rough ? competition_.density_of(source, hit.position, g.geometric_normal) : 0;
+  const float density = g.has_rough ? competition_.density_of(source, g.place) : 0;
   for (size_t i = 0; i < points.size(); ++i) {
     const Vec3 wi = normalize(points[i] - hit.position);
     const float cosine = dot(wi, g.frame.normal);
     values[i] = {};
     if (cosine > 0)
-      values[i] = glossy_value(g, wi, density * dot(wi, g.geometric_normal)) * (1 / cosine) *
+      values[i] = glossy_value(g, wi, density * dot(wi, g.place.n)) * (1 / cosine) *
                   radiance_at(source, points[i], hit.position);
   }
   take_on_the_way(request, hit.position, points, values);
@@ -251,7 +215,7 @@ bool SourceIntegrand::is_gentle(uint32_t request, uint32_t member) const {
   const CertifiedSource& source = *sources_[request];
   if (source.far != nullptr || is_taken_on_the_way(request)) return false;
   const GlossyHit* g = hits_[member].glossy;
-  return g == nullptr || !g->has_rough ||
+  return g == nullptr || !g->has_rough || g->is_gathered ||
          angular_width(source, hits_[member].position) < sources_in_lobe * lobe_width(*g);
 }
 
@@ -332,14 +296,13 @@ void SourceIntegrand::evaluate_gloss(const CertifiedSource& source, const Integr
   const size_t n = p.size();
   lanes_.resize(n);
   GlossyLanes& l = lanes_;
-  to_local(g.frame, g.geometric_normal, n, p.x.data(), p.y.data(), p.z.data(), l.x.data(),
-           l.y.data(), l.z.data(), l.above.data());
+  to_local(g.frame, g.place.n, n, p.x.data(), p.y.data(), p.z.data(), l.x.data(), l.y.data(),
+           l.z.data(), l.above.data());
   if (g.has_diffuse)
     troffer::evaluate_many(
         g.diffuse, g.wo, n,
         {l.x.data(), l.y.data(), l.z.data(), p.r.data(), p.g.data(), p.b.data(), l.pdf.data()});
-  const float density =
-      g.has_rough ? competition_.density_of(source, hit.position, g.geometric_normal) : 0;
+  const float density = g.has_rough ? competition_.density_of(source, g.place) : 0;
   if (density > 0) {
     troffer::evaluate_many(
         g.rough, g.wo, n,

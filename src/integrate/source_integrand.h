@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "integrate/lobe_competition.h"
 #include "integrate/prepared_scene.h"
 #include "integrate/surface_scattering.h"
 #include "integrate/vertex.h"
@@ -40,32 +41,12 @@ struct CertifiedSource {
 // A hit on a surface that is not matte.
 struct GlossyHit {
   Frame frame;
-  Vec3 geometric_normal, wo;
+  Vec3 wo;
+  LobePlace place;
   Bsdf diffuse, rough;  // the second competes with spawned rays
   bool has_diffuse = false, has_rough = false;
-  bool is_gentle = false;  // SurfaceScattering; not rough
-};
-
-// Rough lobes send rays of their own, which compete with points of sources: a density of
-// directions, per sr, in which the latter are taken to be chosen. Close to what is done, and the
-// same whoever asks, which is all that multiple importance sampling needs.
-class LobeCompetition {
- public:
-  // points: at how many points each source is looked at. are_many: lights are mostly drawn; some
-  // points are taken to be shared by all, as the scene's light tree would share them.
-  LobeCompetition(const PreparedScene& scene, uint32_t points, bool are_many)
-      : scene_(&scene), points_(points), are_many_(are_many) {}
-  // For a surface at x of unit geometric normal n, in the unit direction wi: density_of() × n · wi.
-  // What a cell at infinity sends is taken to come from its middle.
-  float density_of(const CertifiedSource& source, const Vec3& x, const Vec3& n) const;
-  float density(const CertifiedSource& source, const Vec3& x, const Vec3& n, const Vec3& wi) const;
-  // Of points of a primitive of no source, chosen with this density per sr once it is given.
-  float density(uint32_t primitive, const Vec3& x, const Vec3& n, float pdf_solid_angle) const;
-
- private:
-  const PreparedScene* scene_;
-  uint32_t points_;
-  bool are_many_;
+  bool is_gentle = false;    // SurfaceScattering; not rough
+  bool is_gathered = false;  // … whose rough part competes with rays that look for sources alone
 };
 
 // BRDF × cosine towards the unit direction wi in the world: the diffuse part, and the share of the

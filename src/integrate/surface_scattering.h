@@ -2,6 +2,7 @@
 // general radiosity value and by shadow rays, the specular part by spawned viewing rays.
 #pragma once
 
+#include "base/units.h"
 #include "bsdf/bsdf.h"
 
 namespace troffer {
@@ -38,12 +39,26 @@ struct SurfaceScattering {
     constexpr float least_width = 0.2f;
     return has_rough && !whole.has_transmission && glossy_alpha(specular) >= least_width;
   }
+  // Whether, seen at this cosine, it shows some directions for so much more than others that points
+  // of sources, chosen as for a matte surface, seldom are where it looks.
+  bool is_peaked(float cosine) const {
+    constexpr float least_peak = 8;
+    return 1 > least_peak * 4 * sqr(glossy_alpha(specular)) * cosine;
+  }
   // No ray is spawned: what `specular` does is asked for with the diffuse part, which then is the
   // whole.
   void gather_gloss() {
     is_gathered = has_diffuse = true;
     has_specular = has_rough = false;
     diffuse = whole;
+  }
+  // So, seen at this cosine; but where it is peaked, `diffuse` remains what it is, and a ray is
+  // spawned that looks for sources alone, in competition with points of these.
+  void gather_gloss(float cosine) {
+    if (is_peaked(cosine))
+      is_gathered = has_diffuse = true;
+    else
+      gather_gloss();
   }
 };
 

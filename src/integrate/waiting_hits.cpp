@@ -43,11 +43,15 @@ void WaitingHits::add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, 
 }
 
 void WaitingHits::add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
-                             bool direct) {
+                             const LobeCompetition& competition, bool direct) {
   add(walk, v, walk.throughput, direct);
   glossy.back() = int32_t(glossy_hits.size());
-  glossy_hits.push_back({v.frame, v.geometric_normal, v.wo, scattering.diffuse, scattering.specular,
-                         scattering.has_diffuse, scattering.has_rough, scattering.is_gentle});
+  const LobePlace place = scattering.has_rough
+                              ? competition.place(v.surface.position, v.geometric_normal)
+                              : LobePlace{v.surface.position, v.geometric_normal};
+  glossy_hits.push_back({v.frame, v.wo, place, scattering.diffuse, scattering.specular,
+                         scattering.has_diffuse, scattering.has_rough, scattering.is_gentle,
+                         scattering.is_gathered});
 }
 
 }  // namespace troffer

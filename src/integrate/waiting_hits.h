@@ -30,7 +30,7 @@ struct WaitingHits {
   // A hit at v; the light counts as direct or not.
   void add_matte(const Walk& walk, const Vertex& v, Rgb reflectance, bool direct);
   void add_glossy(const Walk& walk, const Vertex& v, const SurfaceScattering& scattering,
-                  bool direct);
+                  const LobeCompetition& competition, bool direct);
 
  private:
   void add(const Walk& walk, const Vertex& v, const Rgb& weight, bool direct);

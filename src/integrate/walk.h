@@ -21,8 +21,9 @@ struct Walk {
   // light could have been sampled from there, and for what portals show.
   Vec3 last_position, last_normal;
   bool last_both_sides = false;
-  uint32_t vertex = 0;  // how many vertices it has left behind
-  uint32_t panes = 0;   // … of which so many straight through panes, as if they were not there
+  bool is_last = false;  // what it arrives at is asked for its emission alone
+  uint32_t vertex = 0;   // how many vertices it has left behind
+  uint32_t panes = 0;    // … of which so many straight through panes, as if they were not there
   uint32_t scatterings = 0;    // … by lobes that are not deltas
   float eta_squared = 1;       // by which refraction has scaled radiance so far, inverted
   uint32_t index = 0;          // of the viewing ray in its batch

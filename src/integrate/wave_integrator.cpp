@@ -170,8 +170,7 @@ void WaveIntegrator::arrive(size_t first, size_t last, Scratch& s, RadianceBatch
       const Rgb radiance = emission_at(scene_, v);
       if (!radiance.is_black()) (walk.pdf > 0 ? s.seen : s.undivided).add(walk, &v, radiance);
     }
-    if (!indirect_ && walk.scatterings > 0 && scene_.tracer.has_panes())
-      see_through_panes(walk, v, s);
+    if (ends_here(walk) && scene_.tracer.has_panes()) see_through_panes(walk, v, s);
   }
   add_emission(s, out);
 }
@@ -220,17 +219,17 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
   // What is gathered is by pixels.
   const bool gathers_gloss = indirect_ && indirect_->gathers_gloss() && !w.viewing->pixels.empty();
-  const auto add_parts = [&](const Walk& walk, const SurfaceScattering& parts) {
+  const auto add_parts = [&](const Walk& walk, const SurfaceScattering& parts, float cosine) {
     SurfaceScattering& scattering = w.scatterings.emplace_back(parts);
-    if (walk.scatterings == 0 && gathers_gloss && scattering.is_wide()) scattering.gather_gloss();
+    if (walk.scatterings == 0 && gathers_gloss && scattering.is_wide())
+      scattering.gather_gloss(cosine);
   };
   size_t kept = 0;
   s.far.clear();
   CheckItems items;
   for (size_t i = 0; i < w.size(); ++i) {
     const Walk& walk = w.walks[i];
-    // Without indirect light it left a rough surface only to look for emission.
-    if (!indirect_ && walk.scatterings > 0) continue;
+    if (ends_here(walk)) continue;
     items.at(walk.index);
     if (kept != i) {
       w.walks[kept] = walk;
@@ -247,7 +246,7 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
     if (is_whole)
       w.bsdfs.push_back(at.whole());
     else
-      add_parts(w.walks[kept], at.in_parts());
+      add_parts(w.walks[kept], at.in_parts(), v.wo.z);
     ++kept;
   }
   w.walks.resize(kept);
@@ -260,7 +259,7 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
     if (is_whole)
       w.bsdfs.push_back(far.bsdf);
     else
-      add_parts(far.walk, SurfaceScattering(far.bsdf));
+      add_parts(far.walk, SurfaceScattering(far.bsdf), far.vertex.wo.z);
   }
 }
 
@@ -291,6 +290,7 @@ void WaveIntegrator::step_on(Scratch& s) const {
                scattering.has_specular &&
                step(walk, v, scattering.specular, lobe_number(walk), direction_number(walk)) &&
                survives_spawning(walk)) {
+      walk.is_last = scattering.is_gathered;
       s.next_walks.push_back(walk);
     }
   }

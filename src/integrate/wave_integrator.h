@@ -43,6 +43,10 @@ class WaveIntegrator final : public Integrator {
   void begin(Scratch& s, RadianceBatch& out) const;
   void arrive(size_t first, size_t last, Scratch& s, RadianceBatch& out) const;
   void see_through_panes(const Walk& walk, const Vertex& v, Scratch& s) const;
+  // It left a rough surface only to look for emission.
+  bool ends_here(const Walk& walk) const {
+    return walk.is_last || (!indirect_ && walk.scatterings > 0);
+  }
   void see_lights_at_infinity(const Walk& walk, Scratch& s) const;
   void add_emission(Scratch& s, RadianceBatch& out) const;
   void scatter(Scratch& s, RadianceBatch& out) const;

@@ -104,6 +104,39 @@ TEST_CASE("gathered gloss: as bright as by paths, whatever its width") {
   }
 }
 
+// There rays of the gloss look for lamps, in competition with points of these.
+TEST_CASE("gathered gloss: as bright as by paths where it is seen from the side under many lamps") {
+  for (const float width : {0.22f, 0.4f}) {
+    Scene s;
+    const uint32_t board = add_material(s, coated(0.2f, width)), black = add_diffuse(s, Rgb{0});
+    add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {-3, -3, 0}, {3, 3, 2.5f});
+    for (int i = 0; i < 4; ++i) {
+      const float y = -2.2f + 1.2f * float(i), z = 0.8f + 0.05f * float(i);
+      add_quad(s, board, {Vec3{-2.5f, y, z}, {2.5f, y, z}, {2.5f, y + 1, z}, {-2.5f, y + 1, z}});
+    }
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) {
+        const Vec3 c{float(i) - 2.6f, float(j) - 2.6f, 2.45f};
+        make_light(
+            s,
+            add_quad(s, black,
+                     {c, c + Vec3{0, 0.2f, 0}, c + Vec3{0.2f, 0.2f, 0}, c + Vec3{0.2f, 0, 0}}),
+            Rgb{12});
+      }
+    const PreparedScene scene(std::move(s));
+    const Camera camera = look_at({0, -2.9f, 1.3f}, {0, 0, 0.7f}, {0, 0, 1}, 60);
+    RenderOptions o = picture(32, 0.02);
+    o.max_spp = 64;
+    const Ensemble mine = render_ensemble(scene, camera, o, 4);
+    o.method = Method::path;
+    o.spp = 256;
+    const Ensemble paths = render_ensemble(scene, camera, o, 4);
+    CAPTURE(width);
+    CAPTURE(paths.mean.standard_error() / paths.mean.mean());
+    CHECK(mine.mean.mean() == doctest::Approx(paths.mean.mean()).epsilon(0.004));
+  }
+}
+
 TEST_CASE("the error that is told has the noise of what gloss shows") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.6f}), {-2, -2, 0}, {2, 2, 2.5f});
