@@ -148,6 +148,9 @@ void CertifiedDirect::weigh(SeenEmission& seen) const {
 
 float CertifiedDirect::weight_against(const CertifiedSource& source, const Walk& walk) const {
   const LobeCompetition& rival = lights_.competition();
+  if (source.far != nullptr)
+    return power_heuristic(walk.pdf, rival.density(source, {walk.last_position, walk.last_normal},
+                                                   walk.ray.direction));
   return power_heuristic(
       walk.pdf,
       rival.density(source, rival.place(walk.last_position, walk.last_normal), walk.ray.direction));

@@ -36,8 +36,8 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
   add_far_lights(scene);
   add_drawn_lights(scene);
   groups_.finish();
-  if (groups_.are_many() || budget.draws > 0)
-    competition_ = LobeCompetition(scene, gloss_points, groups_);
+  competition_ =
+      LobeCompetition(scene, gloss_points, groups_, groups_.are_many() || budget.draws > 0);
   const Box box = bounds(scene.scene);
   if (!box.is_empty()) reach_ = reach_of_diagonal * box.diagonal();
 }

@@ -50,6 +50,8 @@ class CertifiedLights {
  public:
   // gloss_points: of each source at which gloss and textures are looked at.
   CertifiedLights(const PreparedScene& scene, const DrawingBudget& budget, uint32_t gloss_points);
+  CertifiedLights(const CertifiedLights&) = delete;
+  CertifiedLights& operator=(const CertifiedLights&) = delete;
 
   // The light is dealt with here, whole, by certificates or because it is drawn. The latter are
   // meshes of too many pieces that lie in no common plane, or have no certificate shape (light.h).

@@ -42,8 +42,8 @@ Rgb GatherLobe::share_of(const Vec3& direction) const {
   return wi.z > 0 ? evaluate(specular_, wo_, wi) * scale_ * (1 / wi.z) : Rgb{0};
 }
 
-// Of share_of(), over rays by their cosine: the mean of share_of() over directions by what the lobe
-// sends on, of which a few are looked at.
+// Of share_of(), over rays by their cosine and over the square of its mean, 1 / pi: pi times the
+// mean of share_of() over directions by what the lobe sends on, of which a few are looked at.
 float GatherLobe::second_moment() const {
   constexpr std::array<Vec2, 4> places{
       {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}}};
@@ -54,7 +54,7 @@ float GatherLobe::second_moment() const {
     sum += luminance(s.weight * scale_) *
            luminance(evaluate(specular_, wo_, s.wi) * scale_ * (1 / s.wi.z));
   }
-  return sum / float(places.size());
+  return pi_f * sum / float(places.size());
 }
 
 Vec3 GatherLobe::direction(const GatherAim& aim, const CellHit& at, Vec2 number, float lobe_number,

@@ -22,10 +22,12 @@ uint32_t class_of(uint32_t place) {
   return place & 3;
 }
 
-GatherLobe lobe_of(const GatherWalks& walks, GatherRecord& r) {
+// Sets the record's width; of one without gloss, or without rays, there is no lobe.
+GatherLobe make_lobe(const GatherWalks& walks, uint32_t rays, GatherRecord& r) {
   if (!r.place.is_there()) return {};
   const Bsdf specular = walks.scattering_at(r.place).specular;
   r.width = glossy_alpha(specular);
+  if (rays == 0) return {};
   return {specular, r.hit.normal, r.place.wo, r.matte.weight * pi_f, r.gloss.weight};
 }
 
@@ -234,7 +236,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
   std::vector<GatherAim> aims;
   const bool is_further = which == Rays::further;
   for (uint32_t r = 0; r < records.size(); ++r) {
-    const GatherLobe& lobe = lobes.emplace_back(lobe_of(cells_.walks(), records[r]));
+    const GatherLobe& lobe = lobes.emplace_back(make_lobe(cells_.walks(), counts[r], records[r]));
     // Each lattice has a sequence of its own, that is even where only the first is used.
     const uint32_t lattice = is_thinned_ ? class_of(places[r]) : 0,
                    place = (places[r] & 255) >> (is_thinned_ ? 2 : 0);

@@ -40,6 +40,7 @@ class LightGroups {
   void finish();
 
   uint32_t size() const { return uint32_t(groups_.size()); }
+  bool have_all_sources() const { return with_sources_ == size(); }
   // So many have certificates that not all of them should be asked for.
   bool are_many() const { return with_sources_ >= fewest_of_many; }
   const LightGroup& operator[](uint32_t group) const { return groups_[group]; }

@@ -11,10 +11,17 @@ namespace troffer {
 namespace {
 
 // Points that a viewing ray's hit is taken to get of all lights that are drawn. Measured:
-// docs/cells.md, "Wide gloss at grazing angles".
+// docs/cells.md, "Wide gloss seen from the side".
 constexpr float drawn_points = 4;
 
 }  // namespace
+
+LobeCompetition::LobeCompetition(const PreparedScene& scene, uint32_t points,
+                                 const LightGroups& groups, bool are_sources_drawn)
+    : scene_(&scene),
+      points_(points),
+      drawn_(are_sources_drawn || !groups.have_all_sources() ? &groups : nullptr),
+      are_sources_drawn_(are_sources_drawn) {}
 
 LobePlace LobeCompetition::place(const Vec3& x, const Vec3& n) const {
   return {x, n, drawn_ != nullptr ? drawn_->all_light(x, n) : 0};
@@ -32,7 +39,7 @@ float LobeCompetition::density_of(const CertifiedSource& source, const LobePlace
     const float projected = source.solid_angle * cosine;
     return projected > 0 ? float(points_) / projected : 0;
   }
-  if (drawn_ != nullptr) return density_of_drawn(luminance(source.radiance), at);
+  if (are_sources_drawn_) return density_of_drawn(luminance(source.radiance), at);
   const auto unoccluded = float(source.unoccluded(Vec3d(at.x), Vec3d(at.n)));
   return unoccluded > 0 ? float(points_) / unoccluded : 0;
 }

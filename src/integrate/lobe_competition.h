@@ -16,18 +16,19 @@ struct CertifiedSource;
 // A surface at x of unit geometric normal n.
 struct LobePlace {
   Vec3 x, n;
-  float all_light = 0;  // where lights are mostly drawn: all that they may send there
+  float all_light = 0;  // where lights are drawn: what all lights may send there
 };
 
 class LobeCompetition {
  public:
   // Each source is looked at, at so many points.
   LobeCompetition(const PreparedScene& scene, uint32_t points) : scene_(&scene), points_(points) {}
-  // Lights with a surface are mostly drawn, about in proportion to what they may send: so a
-  // direction is chosen by the light of a matte surface that comes from there, nothing hidden. The
-  // groups must stay.
-  LobeCompetition(const PreparedScene& scene, uint32_t points, const LightGroups& drawn)
-      : scene_(&scene), points_(points), drawn_(&drawn) {}
+  // … but for lights with a surface that are drawn, about in proportion to what they may send:
+  // there a direction is chosen by the light of a matte surface that comes from it, nothing hidden.
+  // So are those of no source, and, with are_sources_drawn, mostly all. The groups, of all such
+  // lights, must stay.
+  LobeCompetition(const PreparedScene& scene, uint32_t points, const LightGroups& groups,
+                  bool are_sources_drawn);
 
   LobePlace place(const Vec3& x, const Vec3& n) const;
   // In the unit direction wi: density_of() × n · wi. What a cell at infinity sends is taken to come
@@ -42,7 +43,8 @@ class LobeCompetition {
 
   const PreparedScene* scene_;
   uint32_t points_;
-  const LightGroups* drawn_ = nullptr;
+  const LightGroups* drawn_ = nullptr;  // null: no light is
+  bool are_sources_drawn_ = false;
 };
 
 }  // namespace troffer

@@ -188,7 +188,8 @@ void scale_all(const Rgb& radiance, size_t n, const float* __restrict z,
   }
 }
 
-// Gloss is gentle over sources no wider than this many lobes. Measured: docs/certified.md.
+// Gloss is gentle over sources no wider than this many lobes. Measured: docs/certified.md. So is
+// all that is gathered, since rays that look for sources take over where it is not.
 constexpr float sources_in_lobe = 2;
 
 // Width of a source over its distance from x; without bound where x may be in it.

@@ -45,8 +45,9 @@ struct GlossyHit {
   LobePlace place;
   Bsdf diffuse, rough;  // the second competes with spawned rays
   bool has_diffuse = false, has_rough = false;
-  bool is_gentle = false;    // SurfaceScattering; not rough
-  bool is_gathered = false;  // … whose rough part competes with rays that look for sources alone
+  bool is_gentle = false;  // SurfaceScattering; not rough
+  // What a lobe's rays bring otherwise is gathered: they look for sources alone.
+  bool is_gathered = false;
 };
 
 // BRDF × cosine towards the unit direction wi in the world: the diffuse part, and the share of the

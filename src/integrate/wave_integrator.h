@@ -43,7 +43,7 @@ class WaveIntegrator final : public Integrator {
   void begin(Scratch& s, RadianceBatch& out) const;
   void arrive(size_t first, size_t last, Scratch& s, RadianceBatch& out) const;
   void see_through_panes(const Walk& walk, const Vertex& v, Scratch& s) const;
-  // It left a rough surface only to look for emission.
+  // Whether it left a rough surface only to look for emission.
   bool ends_here(const Walk& walk) const {
     return walk.is_last || (!indirect_ && walk.scatterings > 0);
   }

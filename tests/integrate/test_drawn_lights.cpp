@@ -391,3 +391,24 @@ TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
   CHECK(sum < all);
   CHECK(sum > 0.8 * all);
 }
+
+// Were it left to the lobe's rays alone, a ray in some would bring all of the light.
+TEST_CASE(
+    "a lamp without certificates competes with what gloss sends, however few lights there are") {
+  Scene s;
+  Material m;
+  m.kind = MaterialKind::conductor;
+  m.is_reflectance = true;
+  m.base_color.value = Rgb{0.7f};
+  m.roughness.value = 0.6f;
+  const uint32_t floor = add_material(s, m);
+  add_quad(s, floor, {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
+  add_ball_light(s, {-0.5f, -0.3f, 1.2f}, 0.2f, 16, Rgb{20});
+  const PreparedScene scene(std::move(s));
+  const Ray ray = ray_towards({2.2f, 1, 1.6f}, {0.9f, 0.4f, 0});
+  const Probed got = probe(certified_integrator(scene, 0.05), ray, 1, 2000, 5);
+  const Probed reference = probe(fixed_integrator(scene, 64), ray, 16, 64, 3);
+  CHECK(p_of_difference(got.direct, reference.direct, 1e-3 * reference.direct.mean()) > 1e-4);
+  const double deviation = std::sqrt(got.direct.variance_of_mean() * 2000) / got.direct.mean();
+  CHECK(deviation < 0.02);
+}
