@@ -148,12 +148,9 @@ void CertifiedDirect::weigh(SeenEmission& seen) const {
 
 float CertifiedDirect::weight_against(const CertifiedSource& source, const Walk& walk) const {
   const LobeCompetition& rival = lights_.competition();
-  if (source.far != nullptr)
-    return power_heuristic(walk.pdf, rival.density(source, {walk.last_position, walk.last_normal},
-                                                   walk.ray.direction));
-  return power_heuristic(
-      walk.pdf,
-      rival.density(source, rival.place(walk.last_position, walk.last_normal), walk.ray.direction));
+  const LobePlace at = source.far != nullptr ? LobePlace{walk.last_position, walk.last_normal}
+                                             : rival.place(walk.last_position, walk.last_normal);
+  return power_heuristic(walk.pdf, rival.density(source, at, walk.ray.direction));
 }
 
 float CertifiedDirect::weight_of_miss(const Walk& walk, uint32_t primitive) const {

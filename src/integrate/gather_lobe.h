@@ -1,8 +1,8 @@
 // Gather rays of places with wide gloss: some are drawn by the lobe, and all count by the density
 // of both kinds together (Veach & Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
-// Rendering", 1995: the balance heuristic). Of the rays that are drawn by the cosine alone, one of
-// width .25 seen at a cosine of .12 shows some for 95 times their mean, of one in some hundreds:
-// what such a ray meets is a blot on all pixels that share it.
+// Rendering", 1995: the balance heuristic). Of rays by the cosine alone, a lobe of width .25 seen
+// at a cosine of .12 shows some for hundreds of times their mean: what such a ray meets is a blot
+// on all pixels that share it.
 #pragma once
 
 #include "base/frame.h"

@@ -78,13 +78,16 @@ inline Probed probe(const Integrator& integrator, const Ray& ray, uint32_t sampl
   return out;
 }
 
-inline uint32_t add_mirror(Scene& s) {
+inline uint32_t add_metal(Scene& s, float roughness) {
   Material m;
   m.kind = MaterialKind::conductor;
   m.is_reflectance = true;
   m.base_color.value = Rgb{1};
-  m.roughness.value = 0;
+  m.roughness.value = roughness;
   return add_material(s, m);
+}
+inline uint32_t add_mirror(Scene& s) {
+  return add_metal(s, 0);
 }
 
 inline uint32_t add_glass(Scene& s, bool is_thin, float roughness = 0) {

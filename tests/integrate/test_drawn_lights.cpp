@@ -396,13 +396,7 @@ TEST_CASE("few lights: what is drawn is never far above what nothing hides") {
 TEST_CASE(
     "a lamp without certificates competes with what gloss sends, however few lights there are") {
   Scene s;
-  Material m;
-  m.kind = MaterialKind::conductor;
-  m.is_reflectance = true;
-  m.base_color.value = Rgb{0.7f};
-  m.roughness.value = 0.6f;
-  const uint32_t floor = add_material(s, m);
-  add_quad(s, floor, {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
+  add_quad(s, add_metal(s, 0.6f), {Vec3{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}});
   add_ball_light(s, {-0.5f, -0.3f, 1.2f}, 0.2f, 16, Rgb{20});
   const PreparedScene scene(std::move(s));
   const Ray ray = ray_towards({2.2f, 1, 1.6f}, {0.9f, 0.4f, 0});

@@ -154,13 +154,7 @@ TEST_CASE("sensors are hits without a walk; indirect light gathers for them") {
 
 TEST_CASE("only emission that competes with the sampling of sources is weighed") {
   Scene s;
-  Material rough;
-  rough.kind = MaterialKind::conductor;
-  rough.is_reflectance = true;
-  rough.base_color.value = Rgb{1};
-  rough.roughness.value = 0.2f;
-  const uint32_t metal = add_material(s, rough);
-  add_quad(s, metal, {Vec3{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
+  add_quad(s, add_metal(s, 0.2f), {Vec3{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
   add_ceiling_light(s, 100, 10, Rgb{1});
   const PreparedScene scene(std::move(s));
   Log log;
