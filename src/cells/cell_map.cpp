@@ -120,23 +120,31 @@ CellMap::Found CellMap::search(uint32_t first, const CellHit& hit) const {
   return found;
 }
 
-size_t CellMap::expect_voxel(const CellHit& hit, float distance) const {
+uint64_t CellMap::expect_voxel(const CellHit& hit, float distance) const {
   const uint32_t level = first_level(distance);
-  const size_t slot = first_slot(key_of(hit, size_at(level), level));
-  prefetch_line(&slots_[slot]);
-  return slot;
+  const uint64_t key = key_of(hit, size_at(level), level);
+  prefetch_line(&slots_[first_slot(key)]);
+  return key;
 }
 
-void CellMap::expect_cell(size_t voxel) const {
-  if (const uint32_t cell = slots_[voxel].first; cell != no_cell) prefetch_object(anchors_[cell]);
+void CellMap::expect_cell(uint64_t voxel) const {
+  const uint32_t cell = slots_[first_slot(voxel)].first;
+  if (cell != no_cell) prefetch_object(anchors_[cell]);
 }
 
 uint32_t CellMap::find(const CellHit& hit, float distance) const {
-  for (uint32_t level = first_level(distance);; ++level) {
-    const Slot& slot = slots_[slot_of(key_of(hit, size_at(level), level))];
+  const uint32_t level = first_level(distance);
+  return find(hit, distance, key_of(hit, size_at(level), level));
+}
+
+uint32_t CellMap::find(const CellHit& hit, float distance, uint64_t voxel) const {
+  for (uint32_t level = first_level(distance);;) {
+    const Slot& slot = slots_[slot_of(voxel)];
     if (slot.first == no_cell) return no_cell;
     const uint32_t cell = search(slot.first, hit).cell;
     if (cell == no_cell || !anchors_[cell].is_halved || level == most_halvings) return cell;
+    ++level;
+    voxel = key_of(hit, size_at(level), level);
   }
 }
 

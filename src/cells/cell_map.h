@@ -61,9 +61,11 @@ class CellMap {
   // while nothing is added.
   uint32_t find(const CellHit& hit, float distance) const;
   // Asks for the memory that find() will read, in two steps, so that it is there when many others
-  // have been asked for meanwhile: of which voxel, and of what is in that.
-  size_t expect_voxel(const CellHit& hit, float distance) const;
-  void expect_cell(size_t voxel) const;
+  // have been asked for meanwhile: of which voxel, and of what is in that. The voxel's key is for
+  // find(), too.
+  uint64_t expect_voxel(const CellHit& hit, float distance) const;
+  void expect_cell(uint64_t voxel) const;
+  uint32_t find(const CellHit& hit, float distance, uint64_t voxel) const;
   // As find(), made if there is none. is_asked: by one of the rays that the picture will send.
   uint32_t add(const CellHit& hit, float distance, bool is_asked = false);
   // Of cells that are made from here on; any number of halvings, up to a limit.

@@ -77,15 +77,50 @@ BrightPlace place_of(std::span<const BrightCell> cells, float margin) {
   }
   p.normal = p.normal * float(1 / share);
   p.mean_square = float(squares / share);
-  const size_t step = std::max<size_t>(cells.size() / BrightPlace::most_hits, 1);
-  for (size_t i = 0; i < cells.size() && p.hit_count < BrightPlace::most_hits; i += step)
-    p.hits[p.hit_count++] = cells[i].first->hit;
-  // Of few cells more than one hit each.
-  for (uint32_t k = 1; k < BrightPlace::most_hits && p.hit_count < BrightPlace::most_hits; ++k)
-    for (const BrightCell& c : cells)
-      if (k < c.hits && p.hit_count < BrightPlace::most_hits)
-        p.hits[p.hit_count++] = c.first[k].hit;
   return p;
+}
+
+BrightHits hits_of(std::span<const BrightCell> cells) {
+  BrightHits h;
+  const size_t step = std::max<size_t>(cells.size() / BrightHits::most, 1);
+  for (size_t i = 0; i < cells.size() && h.count < BrightHits::most; i += step)
+    h.hits[h.count++] = cells[i].first->hit;
+  // Of few cells more than one hit each.
+  for (uint32_t k = 1; k < BrightHits::most && h.count < BrightHits::most; ++k)
+    for (const BrightCell& c : cells)
+      if (k < c.hits && h.count < BrightHits::most) h.hits[h.count++] = c.first[k].hit;
+  return h;
+}
+
+// What is known of rays towards a place that is seen from somewhere. Without first values: of room
+// for many, little is used.
+struct Towards {
+  uint32_t place;
+  float height;     // 1 - cosine of the cone's half angle
+  float by_cosine;  // share of rays drawn so
+  float expected;   // mean over those of the square of what they bring
+  float wanted;     // of rays, not over all of them
+};
+
+// All but the place's number; false where nothing can be seen of it, or one stands in it.
+bool look_towards(const BrightPlace& p, float visible, const CellHit& at, Towards& t) {
+  const Vec3 d = p.centre - at.position;
+  const bool is_flat = length_squared(p.normal) >= sqr(least_flat);
+  if (is_flat && dot(d, p.normal) >= 0) return false;
+  const float distance = length(d);
+  if (!(distance > least_distance * p.radius)) return false;
+  const Vec3 axis = d * (1 / distance);
+  const float sine = std::max(p.radius / distance, least_sine), height = dot(axis, at.normal);
+  if (height <= -sine) return false;
+  // Of its cosines, where the horizon cuts through it.
+  const float mean_cosine = height >= sine ? height : sqr(height + sine) / (4 * sine);
+  const float fill = is_flat ? std::max(-dot(axis, p.normal), 0.0f) : unknown_fill;
+  t.height = sqr(sine) / (1 + std::sqrt(1 - sqr(sine)));
+  t.by_cosine = std::min(2 * t.height * mean_cosine, 1.0f);
+  const float mean_square = p.mean_square * fill * visible;
+  t.expected = t.by_cosine * mean_square;
+  t.wanted = t.by_cosine * std::sqrt(mean_square);
+  return true;
 }
 
 }  // namespace
@@ -139,18 +174,20 @@ BrightPlaces::BrightPlaces(const Tracer& tracer, std::vector<PilotHit> seen,
     parts.clear();
     divide(cells, margin, radius, parts);
   }
-  for (const std::span<BrightCell> part : parts) places_.push_back(place_of(part, margin));
+  for (const std::span<BrightCell> part : parts) {
+    places_.push_back(place_of(part, margin));
+    hits_.push_back(hits_of(part));
+  }
 }
 
 BrightSight BrightPlaces::sight_from(std::span<const CellHit> from, size_t rays) const {
   BrightSight sight{std::vector<float>(places_.size(), 1), rest_};
   if (places_.empty() || from.empty()) return sight;
-  const size_t tried =
-      std::clamp(rays / places_.size(), least_tries, size_t{BrightPlace::most_hits});
+  const size_t tried = std::clamp(rays / places_.size(), least_tries, size_t{BrightHits::most});
   std::vector<Ray> towards;
-  for (const BrightPlace& p : places_)
+  for (const BrightHits& h : hits_)
     for (size_t i = 0; i < tried; ++i) {
-      const CellHit &a = from[i * from.size() / tried], &b = p.hits[i % p.hit_count];
+      const CellHit &a = from[i * from.size() / tried], &b = h.hits[i % h.count];
       towards.push_back(
           segment(a.position + a.horizon * a.offset, b.position + b.horizon * b.offset));
     }
@@ -167,54 +204,31 @@ BrightSight BrightPlaces::sight_from(std::span<const CellHit> from, size_t rays)
 GatherAim::GatherAim(const BrightPlaces& places, std::span<const float> visible, float rest,
                      const CellHit& at) {
   if (places.all().empty()) return;
-  struct Towards {
-    float by_cosine = 0;  // share of rays drawn so
-    float wanted = 0;     // of rays, not over all of them
-  };
-  std::vector<Towards> towards;
+  std::array<Towards, BrightPlaces::most_places> towards;
+  size_t count = 0;
   const float others = std::sqrt(rest);
   float all = others;
-  for (size_t k = 0; k < places.all().size(); ++k) {
-    const BrightPlace& p = places.all()[k];
-    const Vec3 d = p.centre - at.position;
-    const float distance = length(d);
-    if (!(distance > least_distance * p.radius)) continue;
-    const Vec3 axis = d * (1 / distance);
-    const float sine = std::max(p.radius / distance, least_sine), height = dot(axis, at.normal);
-    if (height <= -sine) continue;
-    // Of its cosines, where the horizon cuts through it.
-    const float mean_cosine = height >= sine ? height : sqr(height + sine) / (4 * sine);
-    const float facing = -dot(axis, p.normal);
-    const float fill = length(p.normal) < least_flat ? unknown_fill : std::max(facing, 0.0f);
-    if (fill <= 0) continue;
-    Cone c;
-    c.frame = Frame(axis);
-    c.height = sqr(sine) / (1 + std::sqrt(1 - sqr(sine)));
-    const float by_cosine = std::min(2 * c.height * mean_cosine, 1.0f);
-    const float mean_square = p.mean_square * fill * visible[k];
-    c.expected = by_cosine * mean_square;
-    const float wanted = by_cosine * std::sqrt(mean_square);
-    all += wanted;
-    cones_.push_back(c);
-    towards.push_back({by_cosine, wanted});
+  for (uint32_t k = 0; k < places.all().size(); ++k) {
+    if (!look_towards(places.all()[k], visible[k], at, towards[count])) continue;
+    towards[count].place = k;
+    all += towards[count++].wanted;
   }
-  if (!(all > 0)) {
-    cones_.clear();
-    return;
-  }
+  if (!(all > 0)) return;
+  const auto share_of = [&](const Towards& t) {
+    const float share = (t.wanted - others * t.by_cosine) / all;
+    return share > least_share ? share : 0;
+  };
   float sum = 0;
-  for (size_t k = 0; k < cones_.size(); ++k) {
-    const float share = (towards[k].wanted - others * towards[k].by_cosine) / all;
-    cones_[k].share = share > least_share ? share : 0;
-    sum += cones_[k].share;
-  }
-  std::erase_if(cones_, [](const Cone& c) { return c.share == 0; });
+  for (size_t i = 0; i < count; ++i) sum += share_of(towards[i]);
   const float scale = sum > 1 - least_by_cosine ? (1 - least_by_cosine) / sum : 1;
-  for (Cone& c : cones_) {
-    c.share *= scale;
-    c.density = c.share / (2 * pi_f * c.height);
-    by_cosine_ -= c.share;
-    expected_ += c.expected;
+  for (size_t i = 0; i < count; ++i) {
+    const Towards& t = towards[i];
+    const float share = share_of(t) * scale;
+    if (share == 0) continue;
+    const Vec3 axis = normalize(places.all()[t.place].centre - at.position);
+    cones_.push_back({Frame(axis), t.height, share, share / (2 * pi_f * t.height)});
+    by_cosine_ -= share;
+    expected_ += t.expected;
   }
 }
 

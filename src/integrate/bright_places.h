@@ -31,14 +31,18 @@ struct PilotHit {
 
 // A sphere around bright cells.
 struct BrightPlace {
-  static constexpr size_t most_hits = 8;
-
   Vec3 centre;
   float radius = 0;
   Vec3 normal;            // mean of those of its surfaces: short where they are turned many ways
   float mean_square = 0;  // of the irradiance that a ray brings which meets them
-  std::array<CellHit, most_hits> hits;
-  uint32_t hit_count = 0;
+};
+
+// Where its cells were met.
+struct BrightHits {
+  static constexpr size_t most = 8;
+
+  std::array<CellHit, most> hits;
+  uint32_t count = 0;
 };
 
 // What about there is seen of all places.
@@ -50,7 +54,7 @@ struct BrightSight {
 class BrightPlaces {
  public:
   static constexpr size_t most_places = 128;
-  static constexpr size_t most_tries = most_places * BrightPlace::most_hits;
+  static constexpr size_t most_tries = most_places * BrightHits::most;
 
   BrightPlaces() = default;
   // None where it is evenly bright. irradiance: of cells, of this size. The tracer must outlive it.
@@ -65,6 +69,7 @@ class BrightPlaces {
  private:
   const Tracer* tracer_ = nullptr;
   std::vector<BrightPlace> places_;
+  std::vector<BrightHits> hits_;  // of each
   float rest_ = 0;
 };
 
@@ -94,7 +99,6 @@ class GatherAim {
     float height = 0;   // 1 - cosine of its half angle
     float share = 0;    // of rays
     float density = 0;  // of those, per steradian, all rays being 1
-    float expected = 0;
   };
 
   float density_towards(const Vec3& direction) const;

@@ -41,8 +41,8 @@ CellLightAt Cells::light_at(const CellHit& hit) const {
 
 // What one arrival sees: the cell's irradiance, or its direct part where what is behind it is
 // looked at more closely; false where there is no cell.
-bool Cells::look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const {
-  const uint32_t cell = map_->find(a.hit, a.distance);
+bool Cells::look_up(const GatherArrival& a, uint64_t voxel, bool is_last, CellsScratch& s) const {
+  const uint32_t cell = map_->find(a.hit, a.distance, voxel);
   if (cell == no_cell) return false;
   const uint32_t ray = a.walk.index;
   if (a.distance < map_->near() && !is_last) {
@@ -89,14 +89,15 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
     s.voxels.clear();
     for (const GatherArrival& a : s.arrivals)
       s.voxels.push_back(map_->expect_voxel(a.hit, a.distance));
-    for (const size_t voxel : s.voxels) map_->expect_cell(voxel);
+    for (const uint64_t voxel : s.voxels) map_->expect_cell(voxel);
     size_t missed = 0;
-    for (GatherArrival& a : s.arrivals) {
+    for (size_t i = 0; i < s.arrivals.size(); ++i) {
+      const GatherArrival& a = s.arrivals[i];
       float& distance = s.part.distance[a.walk.index];
       if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
       // The mean of a cell wider than the ray is long is not what the ray sees.
       const bool is_short = a.distance < 0.25f * map_->near() && bounce < short_bounces;
-      if (is_short || !look_up(a, bounce > 0, s)) s.arrivals[missed++] = a;
+      if (is_short || !look_up(a, s.voxels[i], bounce > 0, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);
     if (missed > 0) walks_.light_up(s.arrivals, s.gather, counters);

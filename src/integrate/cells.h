@@ -44,7 +44,7 @@ struct CellsScratch {
   // Of some of them, by indices of their own.
   GatherScratch gather;
   std::vector<GatherArrival> arrivals, again;
-  std::vector<size_t> voxels;  // of arrivals
+  std::vector<uint64_t> voxels;  // of arrivals
   GatheredLight part;
 };
 
@@ -78,7 +78,7 @@ class Cells {
 
  private:
   void gather_part(size_t rays, CellsScratch& s, Counters& counters) const;
-  bool look_up(const GatherArrival& a, bool is_last, CellsScratch& s) const;
+  bool look_up(const GatherArrival& a, uint64_t voxel, bool is_last, CellsScratch& s) const;
 
   std::shared_ptr<const CellMap> map_;
   std::vector<Rgb> direct_, irradiance_;

@@ -142,10 +142,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       walk.index = uint32_t(s.weights.size());
       walk.stream = numbers.stream;
       walk.sample = numbers.first + k;
-      float counts = 1;
-      set_out(hit, lobe.direction(aim, hit, direction_number(walk), lobe_number(walk), counts),
-              walk);
-      walk.throughput *= counts;
+      set_out(hit, aim, lobe, walk);
       const Vec3 wi = v.frame.to_local(walk.ray.direction);
       s.weights.push_back(wi.z > 0 ? at.throughput * evaluate(all, v.wo, wi) * (1 / wi.z) : Rgb{0});
       if (!walk.throughput.is_black()) s.cells.walks.push_back(walk);

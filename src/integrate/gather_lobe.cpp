@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "integrate/gather_walks.h"
 
 namespace troffer {
 
@@ -78,6 +79,14 @@ Vec3 GatherLobe::direction(const GatherAim& aim, const CellHit& at, Vec2 number,
   const float density = (1 - by_lobe_) * aim.density(at, world) + by_lobe_ * by_lobe;
   weight = by_cosine > 0 ? by_cosine / density : 0;
   return world;
+}
+
+float set_out(const CellHit& from, const GatherAim& aim, const GatherLobe& lobe, Walk& walk) {
+  float weight = 1;
+  const float which = lobe.by_lobe() > 0 ? lobe_number(walk) : 0;
+  set_out(from, lobe.direction(aim, from, direction_number(walk), which, weight), walk);
+  walk.throughput *= weight;
+  return weight;
 }
 
 }  // namespace troffer

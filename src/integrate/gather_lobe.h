@@ -10,6 +10,7 @@
 #include "base/vec.h"
 #include "bsdf/bsdf.h"
 #include "integrate/bright_places.h"
+#include "integrate/walk.h"
 
 namespace troffer {
 
@@ -40,5 +41,9 @@ class GatherLobe {
   Rgb scale_;
   float by_lobe_ = 0;
 };
+
+// Sends a ray out by the walk's numbers. Returns what its light counts, over a ray's drawn by its
+// cosine.
+float set_out(const CellHit& from, const GatherAim& aim, const GatherLobe& lobe, Walk& walk);
 
 }  // namespace troffer

@@ -249,13 +249,7 @@ void GatherPass::gather(std::vector<GatherRecord>& records, const std::vector<ui
                             uint32_t(is_further) | lattice << 1);
       walk.sample = place * (is_further ? most_rays : first_rays) + k;
       owners.push_back(r);
-      float weight = 1;
-      set_out(
-          records[r].hit,
-          lobe.direction(aim, records[r].hit, direction_number(walk), lobe_number(walk), weight),
-          walk);
-      walk.throughput *= weight;
-      weights.push_back(weight);
+      weights.push_back(set_out(records[r].hit, aim, lobe, walk));
       directions.push_back(walk.ray.direction);
       shares.push_back(coat_share(coat, walk.pdf * pi_f));
       if (!walk.throughput.is_black()) walks.push_back(walk);
