@@ -60,6 +60,7 @@ struct CellsIndirect::Scratch final : IndirectLightScratch {
   // Per ray: what the hit makes of irradiance by it, times what the walk carries.
   std::vector<Rgb> weights;
   SensorAims aims;
+  GatherRecords::KnownAim aim;
   void clear() {
     cells.walks.clear();
     indices.clear();
@@ -98,6 +99,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
                           Counters&) const {
   auto& s = static_cast<Scratch&>(scratch);
   out.tell_shared_error();
+  static const GatherAim by_cosine;
   CheckItems items;
   for (size_t i = 0; i < wave.size(); ++i) {
     const SurfaceScattering& scattering = wave.scatterings[i];
@@ -116,7 +118,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       continue;
     }
     FittedRecord fitted;
-    GatherAim aim;
+    const GatherAim* aim = &by_cosine;
     if (at.scatterings == 0 && records_ && !wave.viewing->pixels.empty()) {
       const PixelAt& pixel = wave.viewing->pixels[at.index];
       if (records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), false, fitted)) {
@@ -128,7 +130,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
         continue;
       }
       records_->irradiance_at(pixel.x, pixel.y, hit, gloss_of(v, scattering), true, fitted);
-      aim = records_->aim_at(pixel.x, pixel.y, hit, cells_->bright_places());
+      aim = &records_->aim_at(pixel.x, pixel.y, hit, cells_->bright_places(), s.aim);
     }
     const Bsdf& all = scattering.is_gathered ? scattering.whole : scattering.diffuse;
     GatherLobe lobe;
@@ -142,7 +144,7 @@ void CellsIndirect::queue(WaveHits& wave, IndirectLightScratch& scratch, Radianc
       walk.index = uint32_t(s.weights.size());
       walk.stream = numbers.stream;
       walk.sample = numbers.first + k;
-      set_out(hit, aim, lobe, walk);
+      set_out(hit, *aim, lobe, walk);
       const Vec3 wi = v.frame.to_local(walk.ray.direction);
       s.weights.push_back(wi.z > 0 ? at.throughput * evaluate(all, v.wo, wi) * (1 / wi.z) : Rgb{0});
       if (!walk.throughput.is_black()) s.cells.walks.push_back(walk);

@@ -39,13 +39,26 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   return records;
 }
 
-GatherAim GatherRecords::aim_at(int x, int y, const CellHit& hit,
-                                const BrightPlaces& places) const {
+const GatherAim& GatherRecords::aim_at(int x, int y, const CellHit& hit,
+                                       const BrightPlaces& places, KnownAim& last) const {
+  const CellHit* at = &hit;
+  uint32_t record = KnownAim{}.record;
+  of_pixel(x, y, [&](uint32_t r) {
+    const GatherRecord& n = records_[r];
+    constexpr float close = 4;  // pixels
+    if (length_squared(n.hit.position - hit.position) > sqr(close * n.spacing) ||
+        !is_one_surface(n.hit, hit, n.spacing))
+      return;
+    at = &n.hit;
+    record = r;
+  });
+  if (at != &hit && record == last.record) return last.aim;
   const int x0 = window_.x0 / tile_side, y0 = window_.y0 / tile_side;
   const int across = (window_.x1 + tile_side - 1) / tile_side - x0;
   const auto tile = size_t(y / tile_side - y0) * size_t(across) + size_t(x / tile_side - x0);
   const size_t n = places.all().size();
-  return GatherAim(places, std::span(visible_).subspan(tile * n, n), rest_[tile], hit);
+  last = {GatherAim(places, std::span(visible_).subspan(tile * n, n), rest_[tile], *at), record};
+  return last.aim;
 }
 
 bool GatherRecords::irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,

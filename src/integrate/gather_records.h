@@ -90,8 +90,14 @@ class GatherRecords {
   // far away to hold there is better than nothing.
   bool irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                      FittedRecord& out) const;
-  // How gather rays are drawn at a place that pixel (x, y) sees.
-  GatherAim aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places) const;
+  // How gather rays are drawn at a place that pixel (x, y) sees: as at its record of that surface,
+  // if it has one, so that one aim serves many rays. `last` is the caller's memory.
+  struct KnownAim {
+    GatherAim aim;
+    uint32_t record = 0xffffffffu;  // that it is for; none
+  };
+  const GatherAim& aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places,
+                          KnownAim& last) const;
   size_t bytes() const {
     return records_.capacity() * sizeof(GatherRecord) + fitted_.capacity() * sizeof(FittedRecord) +
            first_.capacity() * sizeof(uint32_t) +
