@@ -297,11 +297,14 @@ double variance_of_thin_thing(double mean) {
   return sqr(mean) / 18;
 }
 
+// By p of AllowedOfBright.
+constexpr double of_usual_at_edges = 0.6;
+
 // Of the luminance of a pixel amid such a mean.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
-                     double most_times_less = usual_times_less) {
+                     const AllowedOfBright& of_bright) {
   return options.is_everywhere
-             ? troffer::allowed_error(double(options.error), mean, typical, most_times_less)
+             ? troffer::allowed_error(double(options.error), mean, typical, of_bright)
              : double(options.error) * std::max(mean, typical);
 }
 
@@ -314,7 +317,8 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   const bool is_light_known = has_known_light(v, x, y);
   const Surroundings s = look_around(v, x, y, !is_light_known, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
-  const double allowed = allowed_error(s.mean, v.typical, options, most_times_less);
+  const double allowed =
+      allowed_error(s.mean, v.typical, options, {most_times_less, of_usual_at_edges});
   const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
   if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0 &&
       s.apart.variance <= sqr(allowed))
@@ -357,8 +361,9 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_gla
   // What is far brighter than usual, as the edges of what the sun lights, is little of a picture
   // and makes most of its error.
   constexpr double most_times_less = 16;
-  const double allowed = allowed_error(s.mean, v.typical, options,
-                                       options.is_noise ? usual_times_less : most_times_less);
+  const double allowed = allowed_error(
+      s.mean, v.typical, options,
+      options.is_noise ? AllowedOfBright{} : AllowedOfBright{most_times_less, of_usual_at_edges});
   // Of thin things samples that are spread over a pixel know too little.
   SampleSpread spread;
   spread.chance = options.is_noise ? variance : std::min(variance, neighbour.independent);
