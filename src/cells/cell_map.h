@@ -82,6 +82,9 @@ class CellMap {
                              : std::span<const CellHit>(more_hits_[h.more]);
   }
   const Vec3& position(size_t cell) const { return anchors_[cell].position; }
+  // Of each cell, whether it is of a thing about as narrow as it (a slat, a bar, a lip): light
+  // differs from one edge of it to the other, and from here the one is seen, from there the other.
+  std::vector<uint8_t> narrow_cells(int threads) const;
   void forget_hits() {
     hits_ = {};
     more_hits_ = {};
@@ -116,6 +119,7 @@ class CellMap {
   Found search(uint32_t first, const CellHit& hit) const;
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
+  bool is_narrow(const Anchor& a) const;
   // Light from near by is that of half cells.
   uint32_t first_level(float distance) const { return distance < near() ? 1 : 0; }
   float size_at(uint32_t level) const { return std::ldexp(size_, -int(level)); }
