@@ -1,9 +1,7 @@
 #include "cells/cell_map.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "base/prefetch.h"
 #include "base/random.h"
 
@@ -15,12 +13,8 @@ namespace {
 constexpr float flatness = 0.05f;
 // Cosine of the angle by which normals in a cell may differ.
 constexpr float least_cosine = 0.87f;
-// Where shading turns a surface farther from its plane (cosine) it has no outline to look at.
-constexpr float least_upright = 0.2f;
 // How high above the surface sight is tried, in sizes.
 constexpr float lift = 0.1f;
-// How far from it its surface may end on both sides for a cell to be narrow, in sizes.
-constexpr float reach_of_narrow = 0.6f;
 // Cells of one voxel; what is compatible with none of so many joins the least incompatible, or the
 // leaves of a tree would be a list each voxel.
 constexpr int most_in_voxel = 12;
@@ -199,7 +193,8 @@ uint32_t CellMap::make(const CellHit& hit, uint32_t level, bool is_asked) {
   a.normal = hit.horizon;
   a.size = size_at(level);
   const size_t up = face_of(hit.normal) / 2;
-  a.is_divided = std::abs(hit.horizon[up]) < least_upright;
+  // Where shading turns it too far from its plane there is no outline to look at.
+  a.is_divided = std::abs(hit.horizon[up]) < 0.2f;
   if (!a.is_divided) {
     const CellOutline outline = outline_of(hit, a.size);
     a.is_divided = is_divided(hit, outline, a.size);
@@ -220,35 +215,6 @@ bool CellMap::is_divided(const CellHit& hit, const CellOutline& outline, float s
   // … and stands between the outline and the hit, if it is small
   return is_blocked(tracer_, segment(hit.position + up, corner(0))) ||
          is_blocked(tracer_, segment(hit.position + up, corner(2)));
-}
-
-// Whether along one side of the voxel's outline the surface ends before and behind where the cell
-// was made.
-bool CellMap::is_narrow(const Anchor& a) const {
-  if (a.is_halved || std::abs(a.normal[face_of(a.normal) / 2]) < least_upright) return false;
-  CellHit hit;
-  hit.position = a.position;
-  hit.normal = hit.horizon = a.normal;
-  const CellOutline outline = outline_of(hit, a.size);
-  const Vec3 up = a.normal * (lift * a.size);
-  const auto ends = [&](const Vec3& d) {
-    return !is_blocked(tracer_, segment(a.position + d + up, a.position + d - up));
-  };
-  for (const size_t side : {1, 3}) {
-    const Vec3 d = (outline.corners[side] - outline.corners[0]) * reach_of_narrow;
-    if (ends(d) && ends(-d)) return true;
-  }
-  return false;
-}
-
-std::vector<uint8_t> CellMap::narrow_cells(int threads) const {
-  constexpr size_t at_a_time = 1024;
-  std::vector<uint8_t> narrow(anchors_.size());
-  parallel_for((narrow.size() + at_a_time - 1) / at_a_time, threads, [&](size_t part) {
-    const size_t end = std::min((part + 1) * at_a_time, narrow.size());
-    for (size_t c = part * at_a_time; c < end; ++c) narrow[c] = is_narrow(anchors_[c]) ? 1 : 0;
-  });
-  return narrow;
 }
 
 void CellMap::grow() {

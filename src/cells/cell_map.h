@@ -62,7 +62,7 @@ class CellMap {
   uint32_t find(const CellHit& hit, float distance) const;
   // Asks for the memory that find() will read, in two steps, so that it is there when many others
   // have been asked for meanwhile: of which voxel, and of what is in that. The voxel's key is for
-  // find(), too.
+  // find(), too, of the same hit and distance.
   uint64_t expect_voxel(const CellHit& hit, float distance) const;
   void expect_cell(uint64_t voxel) const;
   uint32_t find(const CellHit& hit, float distance, uint64_t voxel) const;
@@ -82,9 +82,6 @@ class CellMap {
                              : std::span<const CellHit>(more_hits_[h.more]);
   }
   const Vec3& position(size_t cell) const { return anchors_[cell].position; }
-  // Of each cell, whether it is of a thing about as narrow as it (a slat, a bar, a lip): light
-  // differs from one edge of it to the other, and from here the one is seen, from there the other.
-  std::vector<uint8_t> narrow_cells(int threads) const;
   void forget_hits() {
     hits_ = {};
     more_hits_ = {};
@@ -119,7 +116,6 @@ class CellMap {
   Found search(uint32_t first, const CellHit& hit) const;
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
-  bool is_narrow(const Anchor& a) const;
   // Light from near by is that of half cells.
   uint32_t first_level(float distance) const { return distance < near() ? 1 : 0; }
   float size_at(uint32_t level) const { return std::ldexp(size_, -int(level)); }

@@ -67,10 +67,6 @@ class Cells {
   // For what the pilot asks for.
   const BrightPlaces& bright_places() const { return bright_; }
 
-  // From here on rays that gather look at narrow cells (CellMap) more closely: light straight from
-  // sources is sampled where they hit, and they go on from there.
-  void look_closely(int threads) { narrow_ = map_->narrow_cells(threads); }
-
   // Follows s.walks, of ascending indices below `rays`, and gathers what they see: s.light.
   void gather(size_t rays, CellsScratch& s, Counters& counters) const;
   // Irradiance at a place seen from this far, but for what comes straight from sources, and a draw
@@ -82,12 +78,11 @@ class Cells {
 
  private:
   void gather_part(size_t rays, CellsScratch& s, Counters& counters) const;
-  bool look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const;
+  bool look_up(const GatherArrival& a, uint64_t voxel, bool is_last, CellsScratch& s) const;
 
   std::shared_ptr<const CellMap> map_;
   std::vector<Rgb> direct_, irradiance_;
   std::vector<float> half_difference_;
-  std::vector<uint8_t> narrow_;  // of cells that are looked at closely; or empty
   CellStatistics statistics_;
   BrightPlaces bright_;
   GatherWalks walks_;

@@ -42,8 +42,8 @@ class GatherLobe {
   float by_lobe_ = 0;
 };
 
-// Sends a ray out by the walk's numbers. Returns what its light counts, over a ray's drawn by its
-// cosine.
+// Sends a gather ray out by the walk's numbers. Returns what its light counts, over that of a ray
+// drawn by its cosine; the walk carries so much.
 float set_out(const CellHit& from, const GatherAim& aim, const GatherLobe& lobe, Walk& walk);
 
 }  // namespace troffer

@@ -39,10 +39,10 @@ std::unique_ptr<GatherRecords> GatherRecords::make(const Cells& cells, const Pic
   return records;
 }
 
-const GatherAim& GatherRecords::aim_at(int x, int y, const CellHit& hit,
-                                       const BrightPlaces& places, KnownAim& last) const {
+const GatherAim& GatherRecords::aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places,
+                                       KnownAim& last) const {
   const CellHit* at = &hit;
-  uint32_t record = KnownAim{}.record;
+  uint32_t record = no_record;
   of_pixel(x, y, [&](uint32_t r) {
     const GatherRecord& n = records_[r];
     constexpr float close = 4;  // pixels

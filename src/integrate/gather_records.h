@@ -90,12 +90,15 @@ class GatherRecords {
   // far away to hold there is better than nothing.
   bool irradiance_at(int x, int y, const CellHit& hit, uint32_t gloss, bool is_rough,
                      FittedRecord& out) const;
-  // How gather rays are drawn at a place that pixel (x, y) sees: as at its record of that surface,
-  // if it has one, so that one aim serves many rays. `last` is the caller's memory.
+  // An aim, and the record for which it is; no_record: for a place that has none.
+  static constexpr uint32_t no_record = 0xffffffffu;
   struct KnownAim {
     GatherAim aim;
-    uint32_t record = 0xffffffffu;  // that it is for; none
+    uint32_t record = no_record;
   };
+  // How gather rays are drawn at a place that pixel (x, y) sees: as at a record of the pixel that
+  // is of that surface, the last of them, so that one aim serves many rays. `last` is the caller's
+  // memory, for these records alone.
   const GatherAim& aim_at(int x, int y, const CellHit& hit, const BrightPlaces& places,
                           KnownAim& last) const;
   size_t bytes() const {

@@ -90,7 +90,6 @@ struct CellInput {
   Crew* crew = nullptr;        // others that make the same; may be null
   // Without a view: where more are wanted, there is no integrator.
   double most_cells = std::numeric_limits<double>::infinity();
-  bool looks_closely = false;  // Cells::look_closely()
 };
 
 // What a method is made from. radiosity, cells: null where there is none; radiosity is copied.

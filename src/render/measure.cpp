@@ -109,7 +109,6 @@ class PointsMeasuring {
     if (!needs_cells(options_.method, options_.indirect)) return measured_by_method(nullptr);
     CellInput cells{points_pilot(places_), nullptr, options_.seed, nullptr, stop_, {}, {},
                     options_.cells};
-    cells.looks_closely = true;
     if (may_choose()) {
       const auto forecast =
           forecast_points(by_paths(), places_, plans_[0], run_of(Round::forecast));

@@ -297,8 +297,8 @@ double variance_of_thin_thing(double mean) {
   return sqr(mean) / 18;
 }
 
-// By p of AllowedOfBright.
-constexpr double of_usual_at_edges = 0.6;
+// p of AllowedOfBright, as for edges: most further rays are theirs.
+constexpr double of_usual_of_further = 0.6;
 
 // Of the luminance of a pixel amid such a mean.
 double allowed_error(double mean, double typical, const RefinementOptions& options,
@@ -318,7 +318,7 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   const Surroundings s = look_around(v, x, y, !is_light_known, options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y), has_light = v.edges.has_light_edge(x, y);
   const double allowed =
-      allowed_error(s.mean, v.typical, options, {most_times_less, of_usual_at_edges});
+      allowed_error(s.mean, v.typical, options, {most_times_less, of_usual_of_further});
   const double clutter = variance_amid_clutter(v, x, y, s.slope_variance, sqr(allowed), of);
   if (!has_edge && !has_light && !s.has_contrast && !s.has_thin_things && clutter <= 0 &&
       s.apart.variance <= sqr(allowed))
@@ -363,7 +363,7 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_gla
   constexpr double most_times_less = 16;
   const double allowed = allowed_error(
       s.mean, v.typical, options,
-      options.is_noise ? AllowedOfBright{} : AllowedOfBright{most_times_less, of_usual_at_edges});
+      options.is_noise ? AllowedOfBright{} : AllowedOfBright{most_times_less, of_usual_of_further});
   // Of thin things samples that are spread over a pixel know too little.
   SampleSpread spread;
   spread.chance = options.is_noise ? variance : std::min(variance, neighbour.independent);
