@@ -1,7 +1,9 @@
 #include "cells/cell_map.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "base/prefetch.h"
 #include "base/random.h"
 
@@ -15,6 +17,9 @@ constexpr float flatness = 0.05f;
 constexpr float least_cosine = 0.87f;
 // How high above the surface sight is tried, in sizes.
 constexpr float lift = 0.1f;
+// How wide the surface of a narrow cell is at the most, and within what that is found out, in
+// sizes.
+constexpr float most_of_narrow = 1.2f, known_width = 0.05f;
 // Cells of one voxel; what is compatible with none of so many joins the least incompatible, or the
 // leaves of a tree would be a list each voxel.
 constexpr int most_in_voxel = 12;
@@ -200,6 +205,7 @@ uint32_t CellMap::make(const CellHit& hit, uint32_t level, bool is_asked) {
     a.is_divided = is_divided(hit, outline, a.size);
     a.is_halved = level < most_halvings && is_uneven_ && is_uneven_(outline, is_asked);
   }
+  a.is_narrow = looks_closely_ && !a.is_halved && ends_both_ways(a.position, a.normal, a.size);
   anchors_.push_back(a);
   hits_.emplace_back();
   return uint32_t(anchors_.size() - 1);
@@ -215,6 +221,53 @@ bool CellMap::is_divided(const CellHit& hit, const CellOutline& outline, float s
   // … and stands between the outline and the hit, if it is small
   return is_blocked(tracer_, segment(hit.position + up, corner(0))) ||
          is_blocked(tracer_, segment(hit.position + up, corner(2)));
+}
+
+// Whether along one of the voxel's axes a surface is not much wider than a cell: it ends, or bends
+// away, before and behind. By its width, not by where on it that place is: a cell's light is that
+// of few hits, and cells made at the darker edge would be another kind than those made at the
+// brighter one.
+bool CellMap::ends_both_ways(const Vec3& position, const Vec3& normal, float size) const {
+  const size_t up = face_of(normal) / 2;
+  const Vec3 above = normal * (lift * size);
+  const auto is_there = [&](const Vec3& d) {
+    return is_blocked(tracer_, segment(position + d + above, position + d - above));
+  };
+  // How far it goes, in sizes, where that is less than `most`; by halves of what is not known.
+  const auto extent = [&](const Vec3& to, float most) {
+    if (is_there(to * most)) return most;
+    float is = 0, ends = most;
+    while (ends - is > known_width) {
+      const float middle = 0.5f * (is + ends);
+      (is_there(to * middle) ? is : ends) = middle;
+    }
+    return 0.5f * (is + ends);
+  };
+  for (const size_t along : {(up + 1) % 3, (up + 2) % 3}) {
+    Vec3 d;  // on the surface's plane
+    d[along] = size;
+    d[up] = -d[along] * normal[along] / normal[up];
+    const float before = extent(d, most_of_narrow), most = most_of_narrow - before;
+    if (most > 0 && extent(-d, most) < most) return true;
+  }
+  return false;
+}
+
+void CellMap::look_closely(bool looks, int threads) {
+  looks_closely_ = looks;
+  constexpr size_t at_a_time = 1024;
+  parallel_for((size() + at_a_time - 1) / at_a_time, threads, [&](size_t part) {
+    const size_t end = std::min((part + 1) * at_a_time, size());
+    for (size_t c = part * at_a_time; c < end; ++c) {
+      Anchor& a = anchors_[c];
+      a.is_narrow = looks && !a.is_halved && ends_both_ways(a.position, a.normal, a.size);
+    }
+  });
+}
+
+bool CellMap::would_be_narrow(const CellHit& hit, float distance) const {
+  return looks_closely_ &&
+         ends_both_ways(hit.position, hit.horizon, size_at(first_level(distance)));
 }
 
 void CellMap::grow() {

@@ -82,6 +82,13 @@ class CellMap {
                              : std::span<const CellHit>(more_hits_[h.more]);
   }
   const Vec3& position(size_t cell) const { return anchors_[cell].position; }
+  // Whether it is known from here on which cells are narrow: of a thing about as narrow as the cell
+  // (a slat, a bar, a lip), or bent as much (a thin pillar). Light differs from one side of it to
+  // the other, and from here the one is seen, from there the other.
+  void look_closely(bool looks, int threads);
+  bool is_narrow(size_t cell) const { return anchors_[cell].is_narrow; }
+  // Whether a cell that were made of what a ray of this length has hit would be narrow.
+  bool would_be_narrow(const CellHit& hit, float distance) const;
   void forget_hits() {
     hits_ = {};
     more_hits_ = {};
@@ -96,6 +103,7 @@ class CellMap {
     float size = 0;
     bool is_divided = false;  // something stands in the voxel: sight decides
     bool is_halved = false;   // no cell: smaller ones are in its place
+    bool is_narrow = false;   // so far as that is looked at
   };
   struct Hits {
     std::array<CellHit, hits_per_cell> hits;
@@ -116,6 +124,7 @@ class CellMap {
   Found search(uint32_t first, const CellHit& hit) const;
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
+  bool ends_both_ways(const Vec3& position, const Vec3& normal, float size) const;
   // Light from near by is that of half cells.
   uint32_t first_level(float distance) const { return distance < near() ? 1 : 0; }
   float size_at(uint32_t level) const { return std::ldexp(size_, -int(level)); }
@@ -130,6 +139,7 @@ class CellMap {
   std::vector<Hits> hits_;
   std::vector<std::vector<CellHit>> more_hits_;
   std::vector<Slot> slots_;  // open addressing; a power of two of them
+  bool looks_closely_ = false;
   size_t used_ = 0;
   size_t frozen_ = 0;  // cells from 0 that get no more hits
   IsUneven is_uneven_;

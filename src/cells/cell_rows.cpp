@@ -122,6 +122,24 @@ float CellRows::difference_of_halves(size_t cell, const std::vector<Rgb>& e) con
   return (mix64(cell) & 1) != 0 ? 0.5f * mean[0] : -0.5f * mean[0];
 }
 
+std::vector<float> CellRows::differences(const std::vector<Rgb>& e, int threads) const {
+  std::vector<float> own(e.size());
+  by_cells(e.size(), threads, [&](size_t i) { own[i] = difference_of_halves(i, e); });
+  return own;
+}
+
+std::vector<std::vector<float>> CellRows::noise_draws(const std::vector<float>& own, int draws,
+                                                      int threads) const {
+  const Packed rows = packed();
+  std::vector<std::vector<float>> all(static_cast<size_t>(draws), own);
+  for (uint64_t k = 0; k < all.size(); ++k) {
+    for (size_t i = 0; i < own.size(); ++i)
+      if ((hash_of(k, i) & 1) != 0) all[k][i] = -own[i];
+    spread(rows, all[k], threads);
+  }
+  return all;
+}
+
 // What is off in one cell is off in those that see it: d = s + W d, to the first few bounces.
 void CellRows::spread(const Packed& rows, std::vector<float>& differences, int threads) {
   const std::vector<float> source = differences;
@@ -155,8 +173,8 @@ CellLight CellRows::solve(const std::vector<Rgb>& direct, const std::vector<floa
   std::vector<Rgb> e = std::move(balance.light);
   for (Rgb& x : e) x = {std::max(x.r, 0.0f), std::max(x.g, 0.0f), std::max(x.b, 0.0f)};
   light.half_difference = of_direct;
-  by_cells(e.size(), threads,
-           [&](size_t i) { light.half_difference[i] += difference_of_halves(i, e); });
+  const std::vector<float> own = differences(e, threads);
+  for (size_t i = 0; i < own.size(); ++i) light.half_difference[i] += own[i];
   spread(rows, light.half_difference, threads);
   light.irradiance = std::move(e);
   return light;

@@ -25,7 +25,8 @@ struct RowPart {
   uint32_t rays = 0;
   uint32_t entries = 0;
   bool is_second_half = false;  // which half of all rays it belongs to
-  Rgb emission;                 // irradiance times rays, of sources that were run into
+  // Irradiance times rays, of sources that were run into, or drawn at narrow things.
+  Rgb emission;
 };
 
 struct CellLight {
@@ -61,11 +62,17 @@ class CellRows {
   // of rows that were nearly these, or nothing; not more than `iterations` bounces more.
   std::vector<float> importance(const std::vector<float>& asked, std::vector<float> known,
                                 int iterations) const;
+  // What each cell is off by, by the choice of its own rays: half the difference of two halves of
+  // them, as one draw. e: light of cells.
+  std::vector<float> differences(const std::vector<Rgb>& e, int threads) const;
+  // Draws of what cells are off by, by way of others too, where each by itself is off by `own`,
+  // either way.
+  std::vector<std::vector<float>> noise_draws(const std::vector<float>& own, int draws,
+                                              int threads) const;
 
  private:
   enum class Half { first, second };
-  // Over half of a cell's rays: what the cells that they see reflect, and sources that they ran
-  // into.
+  // Over half of a cell's rays: what the cells that they see reflect, and `emission`.
   struct RowSum {
     Rgb reflected, emitted;
     uint32_t rays = 0;

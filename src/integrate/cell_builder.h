@@ -13,6 +13,7 @@
 #include "cells/cell_store.h"
 #include "integrate/cells.h"
 #include "integrate/direct_light.h"
+#include "integrate/points_noise.h"
 
 namespace troffer {
 
@@ -29,7 +30,8 @@ struct CellBuilderOptions {
   double error = 0.01;      // asked of the picture
   // None are made where there would be more than this.
   double most_cells = std::numeric_limits<double>::infinity();
-  Crew* crew = nullptr;  // others that make the same cells; may be null
+  Crew* crew = nullptr;      // others that make the same cells; may be null
+  GatheringPoints points{};  // how those of the pilot gather; most_rays 0: nothing is done for that
 };
 
 // direct: light straight from sources. store: what is kept from before, or nothing yet; left with

@@ -13,8 +13,15 @@ namespace {
 
 constexpr size_t cells_of_group = 32;
 constexpr size_t hits_of_group = 64;
+constexpr uint64_t stream_of_cells = 0x6365'6c6c, stream_of_places = 0x706c'6163;
+
+struct StreamedHit {
+  const CellHit* hit;
+  uint64_t stream;
+};
 
 struct Worker {
+  std::vector<StreamedHit> hits;
   std::unique_ptr<DirectLightScratch> direct;
   WaveHits wave;
   RadianceBatch out;
@@ -70,35 +77,40 @@ void set(CellDirectLight& light, uint32_t cell, size_t n, const F& value) {
         luminance(halves[0]) / float(n / 2) - luminance(light.irradiance[cell]);
 }
 
-void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
-                 std::span<const uint32_t> cells, Worker& w, CellDirectLight& light) {
+// Of hits that are asked one after the other, each with a stream of its own; to w.out.
+void light_hits(const GatherWalks& walks, const DirectLight& direct,
+                std::span<const StreamedHit> hits, Worker& w) {
   if (!w.direct) w.direct = direct.make_scratch();
   direct.begin(*w.direct);
-  size_t hits = 0;
-  for (const uint32_t c : cells) hits += map.hits(c).size();
-  w.out.reset(hits);
-  const CheckContext context(&w, hits, name_of_hit);
-  uint32_t index = 0;
+  w.out.reset(hits.size());
+  const CheckContext context(&w, hits.size(), name_of_hit);
   w.wave.clear();
   const auto send = [&] {
     if (w.wave.size() > 0) direct.queue(w.wave, *w.direct, w.out, w.counters);
     w.wave.clear();
   };
-  for (const uint32_t c : cells)
-    for (const CellHit& hit : map.hits(c)) {
-      Walk walk;
-      walk.index = index;
-      walk.sample = 0;
-      walk.stream = hash_of(uint64_t(c), index, uint64_t{0x6365'6c6c});
-      ++index;
-      w.wave.walks.push_back(walk);
-      w.wave.vertices.push_back(vertex_of(hit));
-      w.wave.scatterings.emplace_back(walks.white_at(hit, pi_f)).is_gentle = true;
-      if (w.wave.size() == hits_of_group) send();
-    }
+  for (uint32_t index = 0; index < hits.size(); ++index) {
+    Walk walk;
+    walk.index = index;
+    walk.sample = 0;
+    walk.stream = hits[index].stream;
+    w.wave.walks.push_back(walk);
+    w.wave.vertices.push_back(vertex_of(*hits[index].hit));
+    w.wave.scatterings.emplace_back(walks.white_at(*hits[index].hit, pi_f)).is_gentle = true;
+    if (w.wave.size() == hits_of_group) send();
+  }
   send();
   direct.flush(*w.direct, w.out, w.counters);
-  index = 0;
+}
+
+void light_group(const CellMap& map, const GatherWalks& walks, const DirectLight& direct,
+                 std::span<const uint32_t> cells, Worker& w, CellDirectLight& light) {
+  w.hits.clear();
+  for (const uint32_t c : cells)
+    for (const CellHit& hit : map.hits(c))
+      w.hits.push_back({&hit, hash_of(uint64_t(c), uint32_t(w.hits.size()), stream_of_cells)});
+  light_hits(walks, direct, w.hits, w);
+  size_t index = 0;
   for (const uint32_t c : cells) {
     const size_t n = map.hits(c).size();
     set(light, c, n, [&](size_t) {
@@ -176,6 +188,27 @@ void add_direct_light(const CellMap& map, const GatherWalks& walks, const Direct
   };
   share(crew, work, stop);
   for (const Worker& w : workers) counters += w.counters;
+}
+
+std::vector<Rgb> direct_light_at(std::span<const CellHit> places, const GatherWalks& walks,
+                                 const DirectLight& direct, int threads, const StopFlag& stop,
+                                 Counters& counters) {
+  std::vector<Rgb> irradiance(places.size());
+  std::vector<Worker> workers(size_t(thread_count(threads)));
+  const size_t groups = (places.size() + hits_of_group - 1) / hits_of_group;
+  parallel_for_slots(groups, threads, [&](size_t g, size_t slot) {
+    if (stop.load(std::memory_order_relaxed)) return;
+    Worker& w = workers[slot];
+    const size_t first = g * hits_of_group, end = std::min(first + hits_of_group, places.size());
+    w.hits.clear();
+    for (size_t i = first; i < end; ++i)
+      w.hits.push_back({&places[i], hash_of(uint64_t(i), stream_of_places)});
+    light_hits(walks, direct, w.hits, w);
+    for (size_t i = first; i < end; ++i)
+      irradiance[i] = w.out.direct[i - first] + w.out.indirect[i - first];
+  });
+  for (const Worker& w : workers) counters += w.counters;
+  return irradiance;
 }
 
 }  // namespace troffer

@@ -25,4 +25,10 @@ void add_direct_light(const CellMap& map, const GatherWalks& walks, const Direct
                       std::span<const uint8_t> samples, size_t first, int threads, Crew* crew,
                       const StopFlag& stop, CellDirectLight& light, Counters& counters);
 
+// Light straight from sources at any places, by way of their coats: irradiance of each. Not all of
+// them once `stop` is set.
+std::vector<Rgb> direct_light_at(std::span<const CellHit> places, const GatherWalks& walks,
+                                 const DirectLight& direct, int threads, const StopFlag& stop,
+                                 Counters& counters);
+
 }  // namespace troffer

@@ -9,11 +9,14 @@ namespace troffer {
 namespace {
 
 constexpr size_t rays_at_a_time = 1024;
+// Narrow things that a ray looks at closely, one after the other, before it takes one as it is.
+constexpr int most_close = 8;
 
 struct RayWorker {
   GatherScratch gather;
-  std::vector<uint32_t> tasks;  // of each ray
-  std::vector<float> scales;    // of each task of a chunk: rays over what their light counts
+  std::vector<GatherArrival> close;  // at narrow things
+  std::vector<uint32_t> tasks;       // of each ray
+  std::vector<float> scales;         // of each task of a chunk: rays over what their light counts
   Counters counters;
 };
 
@@ -66,22 +69,34 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
   }
   const CheckContext context(&w, w.tasks.size(), name_of_ray);
   g.is_of_rows = true;
-  walks.follow(w.tasks.size(), Coherence::none, g, w.counters);
-  chunk.seen.reserve(g.arrivals.size());
-  for (const GatherArrival& a : g.arrivals) {
-    CellSeen& seen = chunk.seen.emplace_back();
-    seen.task = w.tasks[a.walk.index];
-    seen.weight = a.walk.throughput * w.scales[seen.task - chunk.first];
-    seen.distance = a.distance;
-    seen.hit = a.hit;
-    if (map != nullptr) seen.cell = map->find(a.hit, a.distance);
+  for (int bounce = 0; !g.walks.empty(); ++bounce) {
+    walks.follow(w.tasks.size(), Coherence::none, g, w.counters);
+    w.close.clear();
+    for (const GatherArrival& a : g.arrivals) {
+      const uint32_t cell = map != nullptr ? map->find(a.hit, a.distance) : no_cell;
+      const bool is_narrow = cell != no_cell
+                                 ? map->is_narrow(cell)
+                                 : map != nullptr && map->would_be_narrow(a.hit, a.distance);
+      if (is_narrow && bounce < most_close) {
+        w.close.push_back(a);
+        continue;
+      }
+      CellSeen& seen = chunk.seen.emplace_back();
+      seen.task = w.tasks[a.walk.index];
+      seen.weight = a.walk.throughput * w.scales[seen.task - chunk.first];
+      seen.distance = a.distance;
+      seen.hit = a.hit;
+      seen.cell = cell;
+    }
+    if (!w.close.empty()) walks.light_up(w.close, g, w.counters);
+    for (size_t i = 0; i < w.tasks.size(); ++i)
+      emission[w.tasks[i]] +=
+          (g.light.direct[i] + g.light.indirect[i]) * (pi_f * w.scales[w.tasks[i] - chunk.first]);
+    walks.bounce(w.close, g);
   }
-  // What was seen by way of mirrors came later.
+  // What was seen by way of mirrors, or of narrow things, came later.
   std::stable_sort(chunk.seen.begin(), chunk.seen.end(),
                    [](const CellSeen& a, const CellSeen& b) { return a.task < b.task; });
-  for (size_t i = 0; i < w.tasks.size(); ++i)
-    emission[w.tasks[i]] +=
-        (g.light.direct[i] + g.light.indirect[i]) * (pi_f * w.scales[w.tasks[i] - chunk.first]);
 }
 
 }  // namespace

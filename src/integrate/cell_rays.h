@@ -28,10 +28,12 @@ struct CellSeen {
 
 struct CellsSeen {
   std::vector<CellSeen> seen;  // by tasks
-  std::vector<Rgb> emission;   // of each task: irradiance times rays, of sources run into
+  // Of each task: irradiance times rays, of sources that were run into, or drawn at narrow things.
+  std::vector<Rgb> emission;
 };
 
-// map: may be null; else cells that it has are found. crew: may be null. Not all of them once
+// map: may be null; else cells that it has are found, and rays look closely at narrow things if it
+// does. crew: may be null. Not all of them once
 // `stop` is set.
 void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
                      int threads, Crew* crew, const StopFlag& stop, CellsSeen& out,

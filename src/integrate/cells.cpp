@@ -40,12 +40,14 @@ CellLightAt Cells::light_at(const CellHit& hit) const {
 }
 
 // What one arrival sees: the cell's irradiance, or its direct part where what is behind it is
-// looked at more closely; false where there is no cell.
-bool Cells::look_up(const GatherArrival& a, uint64_t voxel, bool is_last, CellsScratch& s) const {
+// looked at more closely; false where there is no cell, or what the ray meets first is narrow, and
+// looked at closely: light straight from sources is drawn there, and the ray goes on.
+bool Cells::look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const {
   const uint32_t cell = map_->find(a.hit, a.distance, voxel);
   if (cell == no_cell) return false;
+  if (bounce == 0 && map_->is_narrow(cell)) return false;
   const uint32_t ray = a.walk.index;
-  if (a.distance < map_->near() && !is_last) {
+  if (a.distance < map_->near() && bounce == 0) {
     s.part.irradiance[ray] += a.walk.throughput * direct_[cell];
     s.again.push_back(a);
     return true;
@@ -97,7 +99,7 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
       if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
       // The mean of a cell wider than the ray is long is not what the ray sees.
       const bool is_short = a.distance < 0.25f * map_->near() && bounce < short_bounces;
-      if (is_short || !look_up(a, s.voxels[i], bounce > 0, s)) s.arrivals[missed++] = a;
+      if (is_short || !look_up(a, s.voxels[i], bounce, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);
     if (missed > 0) walks_.light_up(s.arrivals, s.gather, counters);

@@ -78,7 +78,7 @@ class Cells {
 
  private:
   void gather_part(size_t rays, CellsScratch& s, Counters& counters) const;
-  bool look_up(const GatherArrival& a, uint64_t voxel, bool is_last, CellsScratch& s) const;
+  bool look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const;
 
   std::shared_ptr<const CellMap> map_;
   std::vector<Rgb> direct_, irradiance_;

@@ -95,7 +95,7 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in, const 
   std::unique_ptr<Cells> cells =
       make_cells(in.scene, direct, in.cells->pilot,
                  {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error,
-                  most_cells, in.cells->crew},
+                  most_cells, in.cells->crew, in.cells->points},
                  in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();

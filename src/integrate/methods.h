@@ -90,6 +90,9 @@ struct CellInput {
   Crew* crew = nullptr;        // others that make the same; may be null
   // Without a view: where more are wanted, there is no integrator.
   double most_cells = std::numeric_limits<double>::infinity();
+  // How points gather from them, where it is to points: then their rays look closely, too
+  // (CellMap::look_closely).
+  GatheringPoints points{};
 };
 
 // What a method is made from. radiosity, cells: null where there is none; radiosity is copied.

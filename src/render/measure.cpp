@@ -87,6 +87,11 @@ PointPlan plan_of(const MeasureOptions& options, const Scene& scene) {
   return plan;
 }
 
+GatheringPoints gathering_by(const PointPlan& plan) {
+  const double most_times = plan.error > 0 ? plan.most_times : 1;
+  return {double(plan.samples), plan.samples * most_times, plan.error};
+}
+
 // A list that is measured, by whatever suits it.
 class PointsMeasuring {
  public:
@@ -109,6 +114,7 @@ class PointsMeasuring {
     if (!needs_cells(options_.method, options_.indirect)) return measured_by_method(nullptr);
     CellInput cells{points_pilot(places_), nullptr, options_.seed, nullptr, stop_, {}, {},
                     options_.cells};
+    cells.points = gathering_by(plan_);
     if (may_choose()) {
       const auto forecast =
           forecast_points(by_paths(), places_, plans_[0], run_of(Round::forecast));

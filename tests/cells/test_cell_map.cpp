@@ -144,6 +144,62 @@ TEST_CASE("cells of a sphere: few, and with normals that are near each other") {
   CHECK(map.bytes() > map.size() * sizeof(CellHit));
 }
 
+TEST_CASE("cells of slats are narrow, those of a floor and at its edge are not") {
+  constexpr float size = 0.1f;
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.5f});
+  add_quad(s, grey, {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  // Slats of .03 m, 1 m above it, one above the other, and shelves of one cell and three.
+  const auto add_shelf = [&](float width, float z) {
+    add_quad(s, grey, {Vec3{0, -1, z}, {width, -1, z}, {width, 1, z}, {0, 1, z}});
+  };
+  for (const float z : {1.0f, 1.03f, 1.06f}) add_shelf(0.03f, z);
+  add_shelf(size, 1.5f);
+  add_shelf(0.3f, 2);
+  const Tracer tracer(s);
+  CellMap map(tracer, size);
+  map.look_closely(true, 1);
+  Random random(3);
+  enum class On { floor, slat, shelf };
+  std::vector<On> on;
+  const auto add = [&](const Vec3& p, On what) {
+    CellHit hit = on_floor(p.x, p.y);
+    hit.position.z = p.z;
+    const uint32_t cell = map.add(hit, 5);
+    if (cell == on.size()) on.push_back(what);
+    REQUIRE(on[cell] == what);
+  };
+  for (int i = 0; i < 3000; ++i) {
+    const float u = random.next_float(), v = 2 * random.next_float() - 1;
+    // The floor's outermost cells among them.
+    add({2 * v, 2 * (2 * u - 1), 0}, On::floor);
+    add({0.03f * u, v, 1 + 0.03f * float(i % 3)}, On::slat);
+    // Wherever on it a cell is made.
+    add({size * u, v, 1.5f}, On::slat);
+    add({0.3f * u, v, 2}, On::shelf);
+  }
+  REQUIRE(on.size() == map.size());
+  size_t slats = 0;
+  for (size_t c = 0; c < on.size(); ++c) {
+    CHECK(map.is_narrow(c) == (on[c] == On::slat));
+    slats += on[c] == On::slat ? 1 : 0;
+  }
+  CHECK(slats >= 60);
+  // Of cells that were there before, and where there are none.
+  map.look_closely(false, 2);
+  for (size_t c = 0; c < on.size(); ++c) CHECK_FALSE(map.is_narrow(c));
+  map.look_closely(true, 2);
+  for (size_t c = 0; c < on.size(); ++c) CHECK(map.is_narrow(c) == (on[c] == On::slat));
+  CellMap none(tracer, size);
+  CellHit hit = on_floor(0.015f, 0.4f);
+  hit.position.z = 1.03f;
+  CHECK_FALSE(none.would_be_narrow(hit, 5));
+  none.look_closely(true, 1);
+  CHECK(none.would_be_narrow(hit, 5));
+  hit.position.z = 0;
+  CHECK_FALSE(none.would_be_narrow(hit, 5));
+}
+
 TEST_CASE("voxels full of leaves do not make a cell of every leaf") {
   Scene s;
   add_diffuse(s, Rgb{0.5f});

@@ -118,6 +118,7 @@ TEST_CASE("cells: byte-identical for any number of threads, and crops are parts 
   const RenderResult one = render_now(scene, mixed_room_camera(), o);
   CHECK(one.statistics.cells.cells > 100);
   CHECK(one.statistics.cells.unresolved <= 1e-5);
+  CHECK(one.statistics.cells.unresolved > 0);
   CHECK(one.statistics.counters.nan_samples == 0);
   for (const int threads : {2, 5}) {
     o.threads = threads;

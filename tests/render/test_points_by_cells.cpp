@@ -1,0 +1,126 @@
+// Points that gather from cells, by those alone: nobody audits them.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "integrate/methods.h"
+#include "render/blinds_in_the_sun.h"
+#include "render/measured_points.h"
+#include "render/measuring_places.h"
+#include "render/preparation.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+const StopFlag never_stopped = false;
+
+// A point light in one half of a room without windows, and the other half, which gets what passes
+// over a partition.
+Scene room_behind_a_partition() {
+  Scene s = WindowRoom::make(0.7f, false);
+  constexpr float x = 2.5f, z = WindowRoom::Z - 0.1f;
+  add_quad(s, add_diffuse(s, Rgb{0.7f}),
+           {Vec3{x, 0, 0}, {x, 0, z}, {x, WindowRoom::Y, z}, {x, WindowRoom::Y, 0}});
+  add_point(s, {3.5f, 1.7f, 1.2f}, Rgb{100});
+  return s;
+}
+
+std::vector<MeasuringPoint> points_behind_the_partition(int n) {
+  std::vector<MeasuringPoint> points;
+  Random random(9);
+  for (int i = 0; i < n; ++i) {
+    MeasuringPoint& p = points.emplace_back();
+    p.position = {0.2 + 2.1 * random.next_double(), 0.2 + 3.6 * random.next_double(), 0.8};
+    p.normal = {0, 0, 1};
+  }
+  return points;
+}
+
+class List {
+ public:
+  List(const PreparedScene& scene, const std::vector<MeasuringPoint>& points, int threads = 2)
+      : scene_(scene), places_(measuring_places(scene, points)) {
+    settings_.threads = threads;
+  }
+
+  std::vector<double> by_paths(int samples) const {
+    return measured(*make_integrator(scene_, Method::path, settings_, nullptr, nullptr),
+                    {.samples = samples, .samples_per_estimate = 1}, 5);
+  }
+  // gathering: most_rays 0: cells know nothing of points. rays: of rows.
+  std::vector<double> by_cells(int samples, const GatheringPoints& gathering, uint64_t seed,
+                               uint64_t* rays = nullptr) const {
+    CellInput cells{{}, nullptr, seed, nullptr, never_stopped, {}, {}};
+    for (const MeasuringPlace& p : places_)
+      cells.pilot.places.push_back({p.position, p.normal, p.normal, p.offset});
+    cells.points = gathering;
+    const auto integrator = make_integrator(scene_, Method::certified, settings_, nullptr, &cells);
+    if (rays != nullptr) *rays = cells.statistics.rays;
+    return measured(*integrator,
+                    {.samples = samples, .samples_per_estimate = 1, .samples_per_direct = 32}, 2);
+  }
+
+ private:
+  std::vector<double> measured(const Integrator& integrator, const PointPlan& plan,
+                               uint64_t seed) const {
+    const PointValues found = measure_points(
+        integrator, places_, plan, {seed, 2, samples_per_batch(1000), nullptr, never_stopped});
+    std::vector<double> lx;
+    for (const PointLight& p : found.values) lx.push_back(p.all.illuminance_lx);
+    return lx;
+  }
+
+  const PreparedScene& scene_;
+  std::vector<MeasuringPlace> places_;
+  MethodSettings settings_;
+};
+
+double relative_rms(const std::vector<double>& a, const std::vector<double>& b) {
+  double squares = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const double off = a[i] / b[i] - 1;
+    squares += off * off;
+  }
+  return std::sqrt(squares / double(a.size()));
+}
+
+}  // namespace
+
+TEST_CASE("behind slats points by cells are right where narrow ones are looked at closely") {
+  const PreparedScene scene(blinds_in_the_sun());
+  const List list(scene, points_above(12));
+  const std::vector<double> paths = list.by_paths(1 << 16);
+  constexpr int samples = 1 << 15;
+  CHECK(relative_rms(list.by_cells(samples, {}, 1), paths) > 0.2);
+  CHECK(relative_rms(list.by_cells(samples, {samples, samples, 0}, 1), paths) < 0.024);
+}
+
+TEST_CASE("cells for many points that are measured well have more rays, and less noise of theirs") {
+  const PreparedScene scene(room_behind_a_partition());
+  const List list(scene, points_behind_the_partition(16));
+  constexpr int samples = 1 << 14;
+  uint64_t rays = 0;
+  // Cells of different seeds, asked by the same gather rays.
+  const auto noise = [&](const GatheringPoints& gathering) {
+    const std::vector<double> first = list.by_cells(samples, gathering, 1, &rays);
+    double squares = 0;
+    constexpr int others = 3;
+    for (uint64_t seed = 2; seed < 2 + others; ++seed)
+      squares += std::pow(relative_rms(list.by_cells(samples, gathering, seed), first), 2);
+    return std::sqrt(squares / others);
+  };
+  const double before = noise({samples, samples, 0});
+  const uint64_t usual = rays;
+  const double now = noise({samples, 32 * samples, 0.0025});
+  CAPTURE(usual);
+  CAPTURE(rays);
+  CAPTURE(before);
+  CAPTURE(now);
+  CHECK(list.by_cells(samples, {samples, 32 * samples, 0.0025}, 1) ==
+        List(scene, points_behind_the_partition(16), 3)
+            .by_cells(samples, {samples, 32 * samples, 0.0025}, 1));
+  CHECK(rays > 3 * usual);
+  CHECK(now < 0.6 * before);
+}
