@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/random.h"
+#include "base/units.h"
 
 namespace troffer {
 
@@ -14,6 +16,11 @@ constexpr int most_bounces = 16;
 constexpr int short_bounces = 4;
 // Rays that are followed at a time: few enough for what is known of them to stay in the caches.
 constexpr size_t rays_of_part = 256;
+// Whether looking closely is worth it: places and rays of each that tell, and how many times what
+// variance there is without it.
+constexpr size_t most_tried = 16;
+constexpr uint32_t rays_of_try = 1024;
+constexpr double most_times_usual = 3;
 
 }  // namespace
 
@@ -45,7 +52,7 @@ CellLightAt Cells::light_at(const CellHit& hit) const {
 bool Cells::look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const {
   const uint32_t cell = map_->find(a.hit, a.distance, voxel);
   if (cell == no_cell) return false;
-  if (bounce == 0 && map_->is_narrow(cell)) return false;
+  if (bounce == 0 && looks_closely_ && map_->is_narrow(cell)) return false;
   const uint32_t ray = a.walk.index;
   if (a.distance < map_->near() && bounce == 0) {
     s.part.irradiance[ray] += a.walk.throughput * direct_[cell];
@@ -108,6 +115,40 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
     s.again.insert(s.again.end(), s.arrivals.begin(), s.arrivals.end());
     walks_.bounce(s.again, s.gather);
   }
+}
+
+// Of one ray over the square of what it brings, the mean over some of these places.
+double Cells::variance_of_rays(std::span<const CellHit> places, uint64_t seed,
+                               Counters& counters) const {
+  CellsScratch s;
+  double sum_of_variances = 0;
+  const size_t tried = std::min(places.size(), most_tried);
+  for (size_t p = 0; p < tried; ++p) {
+    s.walks.clear();
+    for (uint32_t k = 0; k < rays_of_try; ++k) {
+      Walk walk;
+      walk.index = k;
+      walk.sample = k;
+      walk.stream = hash_of(seed, p, uint64_t{0x6e61'7272});
+      set_out(places[p * places.size() / tried], direction_number(walk), walk);
+      s.walks.push_back(walk);
+    }
+    gather(rays_of_try, s, counters);
+    double sum = 0, squares = 0;
+    for (const Rgb& e : s.light.irradiance) {
+      sum += double(luminance(e));
+      squares += sqr(double(luminance(e)));
+    }
+    if (sum > 0) sum_of_variances += squares * rays_of_try / sqr(sum) - 1;
+  }
+  return tried > 0 ? sum_of_variances / double(tried) : 0;
+}
+
+void Cells::look_closely_where_worth_it(std::span<const CellHit> places, uint64_t seed,
+                                        Counters& counters) {
+  const double usual = variance_of_rays(places, seed, counters);
+  looks_closely_ = true;
+  if (variance_of_rays(places, seed, counters) > most_times_usual * usual) looks_closely_ = false;
 }
 
 }  // namespace troffer

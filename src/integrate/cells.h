@@ -67,6 +67,12 @@ class Cells {
   // For what the pilot asks for.
   const BrightPlaces& bright_places() const { return bright_; }
 
+  // From here on rays that gather look closely at narrow things (CellMap::look_closely), unless
+  // they would err so much more at some of these places that it is not worth it: amid clutter, or
+  // where lights are hard to draw.
+  void look_closely_where_worth_it(std::span<const CellHit> places, uint64_t seed,
+                                   Counters& counters);
+
   // Follows s.walks, of ascending indices below `rays`, and gathers what they see: s.light.
   void gather(size_t rays, CellsScratch& s, Counters& counters) const;
   // Irradiance at a place seen from this far, but for what comes straight from sources, and a draw
@@ -79,12 +85,14 @@ class Cells {
  private:
   void gather_part(size_t rays, CellsScratch& s, Counters& counters) const;
   bool look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScratch& s) const;
+  double variance_of_rays(std::span<const CellHit> places, uint64_t seed, Counters& counters) const;
 
   std::shared_ptr<const CellMap> map_;
   std::vector<Rgb> direct_, irradiance_;
   std::vector<float> half_difference_;
   CellStatistics statistics_;
   BrightPlaces bright_;
+  bool looks_closely_ = false;
   GatherWalks walks_;
 };
 

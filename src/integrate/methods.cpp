@@ -99,6 +99,8 @@ std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in, const 
                  in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
   if (!cells) return nullptr;
   in.cells->statistics = cells->statistics();
+  if (in.cells->points.most_rays > 0)
+    cells->look_closely_where_worth_it(in.cells->pilot.places, in.cells->seed, in.cells->counters);
   std::unique_ptr<GatherRecords> records;
   if (in.cells->view != nullptr) {
     const GatherOptions options{error_of_gather(in.settings.error), cells->statistics().typical,

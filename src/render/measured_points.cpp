@@ -18,6 +18,11 @@ namespace {
 // Stops are looked for between batches: those of scenes with many sources are smaller.
 constexpr int largest_batch = 4096;
 constexpr double most_rays_per_batch = 1 << 22;
+// Where direct light takes part in fewer samples than every so many-th, batches are as many times
+// as large: what certificates find out about a point serves the direct samples of a batch, and for
+// a few of them nothing is proved, so that each errs by far more than one of many.
+constexpr int usual_samples_per_direct = 32;
+constexpr int most_times_larger = 32;
 
 struct Sum {
   Vec3d irradiance;
@@ -54,9 +59,12 @@ std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, in
                                const StopFlag& stop, Worker& w, Counters& counters) {
   std::vector<Sums> sums(static_cast<size_t>(sets));
   const int all = sets * samples;
-  for (int first = 0; first < all; first += w.samples_per_batch) {
+  const int per_batch =
+      w.samples_per_batch * std::clamp(int(w.sensors.samples_per_direct) / usual_samples_per_direct,
+                                       1, most_times_larger);
+  for (int first = 0; first < all; first += per_batch) {
     if (stop.load(std::memory_order_relaxed)) break;
-    const int count = std::min(w.samples_per_batch, all - first);
+    const int count = std::min(per_batch, all - first);
     w.sensors.positions.assign(size_t(count), w.place.position);
     w.sensors.normals.assign(size_t(count), w.place.normal);
     w.sensors.streams.clear();

@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-const StopFlag never_stopped = false;
+const StopFlag runs_on = false;
 
 // A point light in one half of a room without windows, and the other half, which gets what passes
 // over a partition.
@@ -52,7 +52,7 @@ class List {
   // gathering: most_rays 0: cells know nothing of points. rays: of rows.
   std::vector<double> by_cells(int samples, const GatheringPoints& gathering, uint64_t seed,
                                uint64_t* rays = nullptr) const {
-    CellInput cells{{}, nullptr, seed, nullptr, never_stopped, {}, {}};
+    CellInput cells{{}, nullptr, seed, nullptr, runs_on, {}, {}};
     for (const MeasuringPlace& p : places_)
       cells.pilot.places.push_back({p.position, p.normal, p.normal, p.offset});
     cells.points = gathering;
@@ -65,8 +65,8 @@ class List {
  private:
   std::vector<double> measured(const Integrator& integrator, const PointPlan& plan,
                                uint64_t seed) const {
-    const PointValues found = measure_points(
-        integrator, places_, plan, {seed, 2, samples_per_batch(1000), nullptr, never_stopped});
+    const PointValues found = measure_points(integrator, places_, plan,
+                                             {seed, 2, samples_per_batch(1000), nullptr, runs_on});
     std::vector<double> lx;
     for (const PointLight& p : found.values) lx.push_back(p.all.illuminance_lx);
     return lx;
@@ -123,4 +123,44 @@ TEST_CASE("cells for many points that are measured well have more rays, and less
             .by_cells(samples, {samples, 32 * samples, 0.0025}, 1));
   CHECK(rays > 3 * usual);
   CHECK(now < 0.6 * before);
+}
+
+TEST_CASE("light straight from sources is as good where it takes part in few of many samples") {
+  Scene room = WindowRoom::make(0.5f);
+  const uint32_t grey = add_diffuse(room, Rgb{0.6f});
+  Random random(3);
+  const auto between = [&](float low, float high) {
+    return low + (high - low) * random.next_float();
+  };
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 c{between(0.3f, 4.5f), between(0.3f, 3.7f), between(0.2f, 2.5f)};
+    const Vec3 along = random_direction(random) * 0.15f, across = random_direction(random) * 0.01f;
+    add_quad(room, grey,
+             {c - along - across, c + along - across, c + along + across, c - along + across});
+  }
+  add_environment(room, Rgb{1});
+  const PreparedScene scene(std::move(room));
+  const std::vector<MeasuringPlace> places =
+      measuring_places(scene, std::vector<MeasuringPoint>{{{4.55f, 1.5f, 0.1f}, {0, 0, 1}}});
+  MethodSettings settings;
+  settings.threads = 2;
+  settings.measures_by_paths = true;
+  settings.error = 0.01;
+  settings.viewing_rays = 4096;
+  const auto integrator = make_integrator(scene, Method::certified, settings, nullptr, nullptr);
+  const auto direct = [&](int samples, int samples_per_direct) {
+    const PointPlan plan{
+        .samples = samples, .samples_per_estimate = 1, .samples_per_direct = samples_per_direct};
+    return measure_points(*integrator, places, std::span(&plan, 1),
+                          {7, 2, samples_per_batch(1), nullptr, runs_on})
+        .values[0]
+        .direct;
+  };
+  const Measurement usual = direct(1 << 12, 32), few = direct(1 << 16, 512);
+  CAPTURE(usual.standard_error);
+  CAPTURE(few.standard_error);
+  CHECK(usual.standard_error > 0);
+  CHECK(few.standard_error < 3 * usual.standard_error);
+  CHECK(std::abs(few.illuminance_lx - usual.illuminance_lx) <
+        4 * std::hypot(few.standard_error, usual.standard_error));
 }
