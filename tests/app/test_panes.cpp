@@ -22,10 +22,11 @@ namespace {
 std::string pane(double height) {
   return pbrt_glass({{{-500, -500, height}, {1000, 0, 0}, {0, 1000, 0}}});
 }
+// Wider than the pane, which would mirror surroundings below it otherwise.
 const char* const floor_below =
     "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
-    "\"point3 P\" [-50 -50 0  50 -50 0  50 50 0  -50 50 0]\n";
+    "\"point3 P\" [-600 -600 0  600 -600 0  600 600 0  -600 600 0]\n";
 const char* const two_points = "x,y,z,nx,ny,nz\n.3,.1,0,0,0,1\n1.7,0,0,0,0,1\n";
 
 std::vector<Measured> measure(const std::string& world, const std::vector<std::string>& options) {
