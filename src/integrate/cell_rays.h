@@ -33,8 +33,7 @@ struct CellsSeen {
 };
 
 // map: may be null; else cells that it has are found, and rays look closely at narrow things if it
-// does. crew: may be null. Not all of them once
-// `stop` is set.
+// does. crew: may be null. Not all of them once `stop` is set.
 void trace_cell_rays(const GatherWalks& walks, const CellMap* map, std::span<const CellTask> tasks,
                      int threads, Crew* crew, const StopFlag& stop, CellsSeen& out,
                      Counters& counters);
