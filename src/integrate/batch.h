@@ -1,6 +1,7 @@
 // The plain arrays that flow through the renderer: viewing rays of a tile in, radiance out.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -94,6 +95,9 @@ struct RadianceBatch {
   // Empty, or what has been added to `direct` and `known`, 0 in the mean over a pixel: to even out
   // what lamps send to it.
   std::vector<Rgb> evened;
+  // Luminance of `direct` that the weightiest of all points drawn of sources stands for, 0 where
+  // none are: samples that happen to find all of them open, or none, differ by nothing.
+  float largest_draw = 0;
   // Set by the caller and kept: luminance that is usual in the picture; 0: not known. What is far
   // below it may err by more (methods that keep an error).
   float typical = 0;
@@ -126,6 +130,7 @@ struct RadianceBatch {
     records.clear();
     known.clear();
     evened.clear();
+    largest_draw = 0;
   }
   // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
   void tell_shared_error() {
@@ -137,6 +142,10 @@ struct RadianceBatch {
   void add(size_t i, bool is_direct, Rgb light, float variance) {
     (is_direct ? direct : indirect)[i] += light;
     if (is_direct && !direct_variance.empty()) direct_variance[i] += variance;
+  }
+  // A point of a source is looked at that brings so much, or nothing.
+  void note_draw(bool is_direct, float luminance) {
+    if (is_direct) largest_draw = std::max(largest_draw, luminance);
   }
   // Of light that was added as direct. Where samples are not asked, the variance of one of them is
   // no more than the mean of its square.

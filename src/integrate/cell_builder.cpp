@@ -68,8 +68,11 @@ class Builder {
   bool run_and_go_on(std::vector<CellTask> tasks, double most_cells,
                      const std::function<void(double)>& progress);
   bool refine(double times);
-  double times_for_points(const DirectLight& direct, const CellPilot& pilot,
-                          const CellDirectLight& lit, const CellLight& light);
+  struct NoiseOfPoints {
+    PointsNoise closely, plainly;  // looked at, narrow cells
+  };
+  NoiseOfPoints noise_of_points(const DirectLight& direct, const CellPilot& pilot,
+                                const CellDirectLight& lit, const CellLight& light);
 
   const PreparedScene& scene_;
   GatherWalks walks_;
@@ -228,10 +231,11 @@ bool Builder::refine(double times) {
   return run_and_go_on(plan_.first_tasks(), std::numeric_limits<double>::infinity(), nullptr);
 }
 
-// How many times as many rays are worth it for points; once, where they are kept for others.
-double Builder::times_for_points(const DirectLight& direct, const CellPilot& pilot,
-                                 const CellDirectLight& lit, const CellLight& light) {
-  if (options_.points.most_rays <= 0 || store_ != nullptr) return 1;
+// What cells' noise makes of points' errors.
+Builder::NoiseOfPoints Builder::noise_of_points(const DirectLight& direct, const CellPilot& pilot,
+                                                const CellDirectLight& lit,
+                                                const CellLight& light) {
+  if (options_.points.most_rays <= 0) return {};
   PointsSeen points{asking_.rays, {}, asking_.end};
   for (const PilotHit& h : asking_.seen) points.seen.push_back({h.cell, h.weight});
   std::vector<float> straight;
@@ -239,11 +243,19 @@ double Builder::times_for_points(const DirectLight& direct, const CellPilot& pil
        direct_light_at(pilot.places, walks_, direct, options_.threads, stop_, counters_))
     straight.push_back(luminance(e));
   CellsOff off{rows_.differences(light.irradiance, options_.threads), lit.half_difference};
-  for (uint32_t c = 0; c < map_->size(); ++c)
-    if (map_->is_narrow(c)) off.by_rows[c] = off.by_hits[c] = 0;
-  const PointsNoise noise = noise_at_points(points, straight, rows_, light.irradiance, off,
-                                            options_.points, options_.threads);
-  return times_as_many_rays(noise, double(rows_.ray_count()));
+  const auto noise_of = [&] {
+    return noise_at_points(points, straight, rows_, light.irradiance, off, options_.points,
+                           options_.threads);
+  };
+  NoiseOfPoints noise{{}, noise_of()};
+  bool are_narrow = false;
+  for (uint32_t c = 0; c < map_->size(); ++c) {
+    if (!map_->is_narrow(c)) continue;
+    off.by_rows[c] = off.by_hits[c] = 0;
+    are_narrow = true;
+  }
+  noise.closely = are_narrow ? noise_of() : noise.plainly;
+  return noise;
 }
 
 // Light straight from sources, where it is not kept, or there yet; false once stopped.
@@ -284,11 +296,16 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   };
   if (!add_direct(direct, lit)) return nullptr;
   CellLight light = solve();
-  const double times = times_for_points(direct, pilot, lit, light);
+  const NoiseOfPoints noise = noise_of_points(direct, pilot, lit, light);
+  const auto rays = double(rows_.ray_count());
+  const double times = store_ == nullptr ? times_as_many_rays(noise.closely, rays) : 1;
   if (times >= enough_times_more) {
     if (!refine(times) || !add_direct(direct, lit)) return nullptr;
     light = solve();
   }
+  const double more = rays > 0 ? double(rows_.ray_count()) / rays : 1;
+  statistics_.noise_closely = relative_noise(noise.closely, more);
+  statistics_.noise_plainly = relative_noise(noise.plainly, more);
   statistics_.unresolved = plan_.unresolved();
   statistics_.cells = map_->size();
   double sum = 0;

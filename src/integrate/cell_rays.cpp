@@ -88,6 +88,7 @@ void trace_chunk(const GatherWalks& walks, const CellMap* map, std::span<const C
       seen.hit = a.hit;
       seen.cell = cell;
     }
+    keep_one_of_each(w.close);
     if (!w.close.empty()) walks.light_up(w.close, g, w.counters);
     for (size_t i = 0; i < w.tasks.size(); ++i)
       emission[w.tasks[i]] +=

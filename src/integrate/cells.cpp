@@ -109,7 +109,8 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
       if (is_short || !look_up(a, s.voxels[i], bounce, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);
-    if (missed > 0) walks_.light_up(s.arrivals, s.gather, counters);
+    if (bounce > 0) keep_one_of_each(s.arrivals);
+    if (!s.arrivals.empty()) walks_.light_up(s.arrivals, s.gather, counters);
     for (size_t i = 0; i < rays; ++i)
       s.part.irradiance[i] += (s.gather.light.direct[i] + s.gather.light.indirect[i]) * pi_f;
     s.again.insert(s.again.end(), s.arrivals.begin(), s.arrivals.end());

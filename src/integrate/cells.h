@@ -16,8 +16,12 @@ namespace troffer {
 struct CellStatistics {
   uint64_t cells = 0, entries = 0, rays = 0;
   int rounds = 0, iterations = 0;
-  double size = 0;        // of a cell, metres
-  double typical = 0;     // luminance of indirect light in the picture
+  double size = 0;     // of a cell, metres
+  double typical = 0;  // luminance of indirect light in the picture
+  // What light gathered at the pilot's points is off by for the noise of cells, relative to it:
+  // root mean square, as draws_of_noise draws tell it; where rays look closely at narrow things,
+  // and where not. 0: there are no points.
+  double noise_closely = 0, noise_plainly = 0;
   double unresolved = 0;  // share of the light asked for that cells without a row would bring
   double bytes = 0;
   double seconds = 0;
@@ -64,6 +68,10 @@ class Cells {
 
   const CellStatistics& statistics() const { return statistics_; }
   const GatherWalks& walks() const { return walks_; }
+  // Of what points gather, as statistics() has it.
+  double noise_of_points() const {
+    return looks_closely_ ? statistics_.noise_closely : statistics_.noise_plainly;
+  }
   // For what the pilot asks for.
   const BrightPlaces& bright_places() const { return bright_; }
 

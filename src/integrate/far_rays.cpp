@@ -172,12 +172,14 @@ class Casting {
     std::array<Chain, 33> chains{};
     for (const FarRays::Term& t : run) {
       const uint32_t m = members_[t.member], index = d_.hits.indices[m];
+      const bool is_direct = d_.hits.is_direct[m] != 0;
       Rgb light;
       if (t.ray >= 0) {
         ++out_.shadow_rays[index];
-        if (s_.is_occluded[size_t(t.ray)] == 0) light = t.light * s_.factors[size_t(t.ray)];
+        const Rgb open = t.light * s_.factors[size_t(t.ray)];
+        out_.note_draw(is_direct, luminance(open));
+        if (s_.is_occluded[size_t(t.ray)] == 0) light = open;
       }
-      const bool is_direct = d_.hits.is_direct[m] != 0;
       if (!light.is_black()) out_.add(index, is_direct, light, 0);
       const float value = luminance(light);
       if (is_sun_) s_.arrived[t.member] += value / std::max(luminance(d_.hits.weights[m]), 1e-30f);

@@ -78,6 +78,27 @@ void set_out(const CellHit& from, const Vec3& wi, Walk& walk) {
   ++walk.scatterings;
 }
 
+void keep_one_of_each(std::vector<GatherArrival>& arrivals) {
+  size_t kept = 0;
+  for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
+    float all = 0;
+    while (end < arrivals.size() && arrivals[end].walk.index == arrivals[first].walk.index)
+      all += luminance(arrivals[end++].walk.throughput);
+    size_t chosen = first;
+    if (end - first > 1) {
+      if (!(all > 0)) continue;
+      float left = lobe_number(arrivals[first].walk) * all;
+      while (chosen + 1 < end && left >= luminance(arrivals[chosen].walk.throughput))
+        left -= luminance(arrivals[chosen++].walk.throughput);
+      Rgb& throughput = arrivals[chosen].walk.throughput;
+      if (!(luminance(throughput) > 0)) continue;  // by rounding
+      throughput *= all / luminance(throughput);
+    }
+    arrivals[kept++] = arrivals[chosen];
+  }
+  arrivals.resize(kept);
+}
+
 GatherWalks::GatherWalks(const PreparedScene& scene, std::shared_ptr<const MirrorImages> images)
     : scene_(scene),
       tree_(scene),

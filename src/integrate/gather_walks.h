@@ -106,6 +106,11 @@ CellHit cell_hit_of(const Vertex& v, const Bsdf& bsdf);
 // … and back, as a surface seen from straight above.
 Vertex vertex_of(const CellHit& hit);
 
+// Of arrivals side by side that one walk has split into (at either side of a surface that light
+// passes evenly) one is drawn, by what it carries, and stands for both: where walks go on again and
+// again they would become a tree.
+void keep_one_of_each(std::vector<GatherArrival>& arrivals);
+
 // Sends a walk on from a place, by cosine …
 void set_out(const CellHit& from, const Vec2& number, Walk& walk);
 // … or in a given direction; its density is that by cosine all the same.

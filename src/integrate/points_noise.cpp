@@ -10,8 +10,6 @@ namespace troffer {
 
 namespace {
 
-// Of what all cells are off by, each of which errs by itself.
-constexpr int draws_of_noise = 8;
 constexpr double most_times = 64;
 // Memory.
 constexpr double most_rays = 1 << 24;
@@ -68,11 +66,17 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
     const double rays = std::max(std::min(wanted, how.most_rays), how.rays);
     noise.gather_rays += rays;
     noise.by_gather += variance / rays;
-    noise.by_rows += mean_square(points, p, by_rows) / sqr(all);
-    noise.by_hits += mean_square(points, p, by_hits) / sqr(all);
+    const double of_rows = mean_square(points, p, by_rows),
+                 of_hits = mean_square(points, p, by_hits);
+    noise.by_rows += of_rows / sqr(all);
+    noise.by_hits += of_hits / sqr(all);
+    noise.rows_of_gathered += of_rows / sqr(sum / n);
+    noise.hits_of_gathered += of_hits / sqr(sum / n);
   }
   if (lit == 0) return noise;
-  for (double* v : {&noise.by_gather, &noise.by_rows, &noise.by_hits}) *v = std::max(*v / lit, 0.0);
+  for (double* v : {&noise.by_gather, &noise.by_rows, &noise.by_hits, &noise.rows_of_gathered,
+                    &noise.hits_of_gathered})
+    *v = std::max(*v / lit, 0.0);
   return noise;
 }
 
@@ -81,6 +85,10 @@ double times_as_many_rays(const PointsNoise& noise, double rays_of_rows) {
   if (!(rays_of_rows > 0) || !(noise.by_rows > 0) || !(others > 0)) return 1;
   const double times = std::sqrt(noise.gather_rays * noise.by_rows / (rays_of_rows * others));
   return std::max(std::min({times, most_times, most_rays / rays_of_rows}), 1.0);
+}
+
+double relative_noise(const PointsNoise& noise, double times) {
+  return std::sqrt(noise.rows_of_gathered / times + noise.hits_of_gathered);
 }
 
 }  // namespace troffer

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <string>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
+#include "render/rare_light.h"
 #include "render/sample_sets.h"
 
 namespace troffer {
@@ -34,8 +36,8 @@ struct Sum {
 };
 struct Sums {
   Sum direct, indirect;
-  double luminance_of_images = 0;  // RadianceBatch::images
-  double shared_error = 0;         // as RadianceBatch::drawn_error has it
+  double luminance_of_images = 0;            // RadianceBatch::images
+  double drawn_error = 0, shared_error = 0;  // as RadianceBatch has them
 };
 
 struct Worker {
@@ -43,7 +45,8 @@ struct Worker {
   MeasuringPlace place;
   SensorBatch sensors;  // of this point
   RadianceBatch out;
-  double shared_error = 0;  // of the point's mean
+  double drawn_error = 0, shared_error = 0;  // of the point's mean
+  float largest_draw = 0;                    // RadianceBatch::largest_draw, of all batches
   std::unique_ptr<IntegratorScratch> scratch;
   int samples_per_batch = largest_batch;
 };
@@ -76,6 +79,7 @@ std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, in
     w.out.reset(size_t(count));
     const CheckContext context(&w, size_t(count), name_of_sensor);
     integrator.irradiance(w.sensors, *w.scratch, w.out, counters);
+    w.largest_draw = std::max(w.largest_draw, w.out.largest_draw);
     for (size_t i = 0; i < size_t(count); ++i) {
       const Rgb e = w.out.direct[i] + w.out.indirect[i];
       if (!is_finite(e)) {
@@ -86,17 +90,27 @@ std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, in
       s.direct.add(w.out.direct[i]);
       s.indirect.add(w.out.indirect[i]);
       if (!w.out.images.empty()) s.luminance_of_images += double(luminance(w.out.images[i]));
-      if (!w.out.drawn_error.empty()) s.shared_error += double(w.out.drawn_error[i]);
+      if (!w.out.drawn_error.empty()) s.drawn_error += double(w.out.drawn_error[i]);
+      if (!w.out.shared_error.empty()) s.shared_error += double(w.out.shared_error[i]);
     }
   }
   return sums;
 }
 
-Measurement measurement_of(const SampleSets& sets, double lx_per_unit) {
+// least: of luminance, what it errs by at least.
+Measurement measurement_of(const SampleSets& sets, double lx_per_unit, double least) {
   const Vec3d& e = sets.irradiance();
   return {{float(e.x), float(e.y), float(e.z)},
           sets.luminance() * lx_per_unit,
-          sets.standard_error() * lx_per_unit};
+          std::max(sets.standard_error(), least) * lx_per_unit};
+}
+
+// What the mean of so many samples of direct light errs by at least where points of sources are
+// drawn: by two of them. Where none was hidden by chance, or none open, samples do not differ; but
+// up to three in as many samples are to be expected then (the 95 % bound of none seen), and where
+// few were, numbers of samples chosen by them would prefer those that met too few.
+double least_error_of_draws(const Worker& w, int samples) {
+  return 2 * double(w.largest_draw) * double(w.sensors.samples_per_direct) / samples;
 }
 
 PointLight measure_point(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
@@ -105,7 +119,8 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
   const int estimates = std::max(1, (plan.samples + sets - 1) / sets / plan.samples_per_estimate);
   const double weight = 1.0 / estimates;
   SampleSets all, direct, indirect, seldom, often;
-  w.shared_error = 0;
+  w.drawn_error = w.shared_error = 0;
+  w.largest_draw = 0;
   w.sensors.samples_per_direct = uint32_t(plan.samples_per_direct);
   for (const Sums& s : sums_of_sets(integrator, stream, sets, estimates, stop, w, counters)) {
     all.add((s.direct.irradiance + s.indirect.irradiance) * weight,
@@ -114,24 +129,74 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
     indirect.add(s.indirect.irradiance * weight, s.indirect.luminance * weight);
     seldom.add({}, (s.direct.luminance + s.luminance_of_images) * weight);
     often.add({}, (s.indirect.luminance - s.luminance_of_images) * weight);
+    w.drawn_error += s.drawn_error * (weight / sets);
     w.shared_error += s.shared_error * (weight / sets);
   }
-  return {measurement_of(all, plan.lx_per_unit), measurement_of(direct, plan.lx_per_unit),
-          measurement_of(indirect, plan.lx_per_unit), seldom.standard_error() * plan.lx_per_unit,
-          often.standard_error() * plan.lx_per_unit};
+  const double least = least_error_of_draws(w, sets * estimates);
+  const auto light_of = [&](const SampleSets& part, double error) {
+    return measurement_of(part, plan.lx_per_unit, error);
+  };
+  return {light_of(all, least),
+          light_of(direct, least),
+          light_of(indirect, 0),
+          light_of(seldom, least).standard_error,
+          light_of(often, 0).standard_error,
+          indirect.kurtosis(),
+          plan.samples};
 }
 
-// The same, and once more where the error is larger than the plan has it. The first samples only
-// say how many are taken then: were they used again, a sum that is small by chance, with a small
-// error, would stay, and one that is large would not.
-PointLight measure_to_error(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
-                            const StopFlag& stop, Worker& w, Counters& counters) {
-  const PointLight first = measure_point(integrator, stream, plan, stop, w, counters);
-  const PointPlan enough = enough_for(first, plan);
-  if (enough.samples == plan.samples && enough.samples_per_direct == plan.samples_per_direct)
-    return first;  // as planned, or nothing more is allowed
-  return measure_point(integrator, hash_of(stream, 1u), enough, stop, w, counters);
-}
+// Places of a list, by one worker of each thread.
+class Measuring {
+ public:
+  Measuring(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
+            std::span<const PointPlan> plans, const PointsRun& run, PointValues& found)
+      : integrator_(integrator),
+        places_(places),
+        plans_(plans),
+        run_(run),
+        found_(found),
+        workers_(size_t(thread_count(run.threads))) {}
+
+  const PointPlan& plan(size_t i) const { return plans_[plans_.size() > 1 ? i : 0]; }
+
+  // Each of `points` by its plan of `plans`; progress goes from `begin` to `end`.
+  void measure(const std::vector<size_t>& points, const std::vector<PointPlan>& plans,
+               uint64_t round, double begin, double end) {
+    double all = 0, done = 0;
+    for (const PointPlan& p : plans) all += p.samples;
+    std::mutex mutex;
+    parallel_for_slots(points.size(), run_.threads, [&](size_t k, size_t slot) {
+      if (run_.stop.load(std::memory_order_relaxed)) return;
+      const size_t i = points[k];
+      Worker& w = workers_[slot];
+      if (!w.scratch) w.scratch = integrator_.make_scratch();
+      w.place = places_[i];
+      w.sensors.offset = w.place.offset;
+      w.samples_per_batch = run_.samples_per_batch;
+      w.point = i;
+      const uint64_t stream = hash_of(run_.seed, i);
+      const PointLight light =
+          measure_point(integrator_, round == 0 ? stream : hash_of(stream, round), plans[k],
+                        run_.stop, w, found_.counters[i]);
+      if (run_.stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
+      found_.values[i] = light;
+      found_.drawn_errors[i] = w.drawn_error;
+      found_.shared_errors[i] = w.shared_error;
+      found_.is_measured[i] = 1;
+      const std::lock_guard lock(mutex);
+      done += plans[k].samples;
+      if (run_.progress) run_.progress(begin + (end - begin) * done / all);
+    });
+  }
+
+ private:
+  const Integrator& integrator_;
+  const std::vector<MeasuringPlace>& places_;
+  std::span<const PointPlan> plans_;
+  const PointsRun& run_;
+  PointValues& found_;
+  std::vector<Worker> workers_;
+};
 
 }  // namespace
 
@@ -145,31 +210,45 @@ int samples_per_batch(double rays_per_sample) {
   return int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 }
 
+// The first samples of a point only say how many are taken then: were they used again, a sum that
+// is small by chance, with a small error, would stay, and one that is large would not.
 PointValues measure_points(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
                            std::span<const PointPlan> plans, const PointsRun& run) {
+  constexpr double share_of_first = 0.25;  // of the time, about
   const size_t points = places.size();
   PointValues found{std::vector<PointLight>(points), std::vector<uint8_t>(points, 0),
-                    std::vector<double>(points, 0), std::vector<Counters>(points)};
-  std::vector<Worker> workers(size_t(thread_count(run.threads)));
-  std::mutex progress_mutex;
-  parallel_for_slots(points, run.threads, [&](size_t i, size_t slot) {
-    if (run.stop.load(std::memory_order_relaxed)) return;
-    Worker& w = workers[slot];
-    if (!w.scratch) w.scratch = integrator.make_scratch();
-    w.place = places[i];
-    w.sensors.offset = w.place.offset;
-    w.samples_per_batch = run.samples_per_batch;
-    w.point = i;
-    found.values[i] =
-        measure_to_error(integrator, hash_of(run.seed, i), plans[plans.size() > 1 ? i : 0],
-                         run.stop, w, found.counters[i]);
-    found.shared_errors[i] = w.shared_error;
-    if (run.stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
-    found.is_measured[i] = 1;
-    const std::lock_guard lock(progress_mutex);
-    ++found.done;
-    if (run.progress) run.progress(double(found.done) / double(points));
-  });
+                    std::vector<double>(points, 0), std::vector<double>(points, 0),
+                    std::vector<Counters>(points)};
+  Measuring measuring(integrator, places, plans, run, found);
+  std::vector<size_t> which(points);
+  std::iota(which.begin(), which.end(), size_t{0});
+  std::vector<PointPlan> own;
+  for (const size_t i : which) own.push_back(measuring.plan(i));
+  const bool are_all =
+      std::all_of(own.begin(), own.end(), [](const PointPlan& p) { return !(p.error > 0); });
+  const double after_first = are_all ? 1 : share_of_first;
+  measuring.measure(which, own, 0, 0, after_first);
+  if (run.stop.load()) return found;
+  tell_rare_light(found.values);
+  which.clear();
+  own.clear();
+  for (size_t i = 0; i < points; ++i) {
+    const PointPlan& plan = measuring.plan(i);
+    const PointPlan enough = enough_for(found.values[i], plan);
+    // as planned, or nothing more is allowed
+    if (enough.samples == plan.samples && enough.samples_per_direct == plan.samples_per_direct)
+      continue;
+    found.is_measured[i] = 0;
+    which.push_back(i);
+    own.push_back(enough);
+  }
+  if (which.empty() && after_first < 1 && run.progress) run.progress(1);
+  measuring.measure(which, own, 1, after_first, 1);
+  if (run.stop.load()) return found;
+  std::vector<PointLight> again;
+  for (const size_t i : which) again.push_back(found.values[i]);
+  tell_rare_light(again);
+  for (size_t k = 0; k < which.size(); ++k) found.values[which[k]] = again[k];
   return found;
 }
 

@@ -1,6 +1,7 @@
 // Points measured by one integrator: the samples that a plan wants, and what they bring.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -21,12 +22,14 @@ struct PointsRun {
 struct PointValues {
   std::vector<PointLight> values;
   std::vector<uint8_t> is_measured;
-  std::vector<double> shared_errors;  // of the luminance of irradiance: RadianceBatch::drawn_error
+  // Of the luminance of irradiance: RadianceBatch::drawn_error, and shared_error.
+  std::vector<double> drawn_errors, shared_errors;
   std::vector<Counters> counters;
-  size_t done = 0;
   bool is_cut_short = false;  // all are measured, but not all is done that was to be
 
-  bool is_complete() const { return done == values.size(); }
+  bool is_complete() const {
+    return std::all_of(is_measured.begin(), is_measured.end(), [](uint8_t m) { return m != 0; });
+  }
   Counters all_counters() const;
 };
 

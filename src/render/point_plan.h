@@ -12,6 +12,8 @@ struct PointLight {
   // Standard errors, lx, of what takes part in every so many-th sample alone (`direct`, and what
   // mirrors bring of it), and of the rest.
   double seldom_error = 0, often_error = 0;
+  double kurtosis = 3;  // SampleSets::kurtosis, of `indirect`
+  int samples = 0;      // that told it
 };
 
 struct PointPlan {

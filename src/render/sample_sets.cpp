@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/units.h"
+
 namespace troffer {
 
 // Cornish-Fisher expansion about the normal quantile; exact values for the first few.
@@ -19,9 +21,19 @@ double t_quantile_95(int n) {
 void SampleSets::add(const Vec3d& irradiance, double luminance) {
   ++sets_;
   irradiance_ += (irradiance - irradiance_) * (1.0 / sets_);
-  const double before = luminance - mean_;
-  mean_ += before / sets_;
-  squares_ += before * (luminance - mean_);
+  // Pébay, "Formulas for Robust, One-Pass Parallel Computation of Covariances and Arbitrary-Order
+  // Statistical Moments", Sandia report 2008-6212, Eq. 2.1.
+  const double n = sets_, before = luminance - mean_, step = before / n;
+  const double square = before * step * (n - 1);
+  mean_ += step;
+  fourths_ +=
+      square * sqr(step) * (n * n - 3 * n + 3) + 6 * sqr(step) * squares_ - 4 * step * cubes_;
+  cubes_ += square * step * (n - 2) - 3 * step * squares_;
+  squares_ += square;
+}
+
+double SampleSets::kurtosis() const {
+  return squares_ > 0 ? sets_ * fourths_ / sqr(squares_) : 3;
 }
 
 double SampleSets::standard_error() const {

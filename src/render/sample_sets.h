@@ -23,10 +23,15 @@ class SampleSets {
   // Of luminance(), such that 95 % of the intervals luminance() ± 1.96 standard errors hold the
   // true value; 0 of fewer than two sets.
   double standard_error() const;
+  // Fourth central moment of the sets' luminances over the square of the second: 3 of a normal
+  // distribution, up to as much as there are sets where one differs from all others. 3 where they
+  // do not differ.
+  double kurtosis() const;
 
  private:
   Vec3d irradiance_;
-  double mean_ = 0, squares_ = 0;
+  double mean_ = 0, squares_ = 0, cubes_ = 0,
+         fourths_ = 0;  // sums of powers of what sets differ by
   int sets_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/random.h"
@@ -230,4 +231,36 @@ TEST_CASE("rays that gather together see what each sees by itself") {
     CHECK(one.light.half_difference[0] == (is_followed(k) ? 0.125f : 0.0f));
     CHECK(double(one.light.distance[0]) == doctest::Approx(is_followed(k) ? 5 : 0));
   }
+}
+
+TEST_CASE("one of the arrivals that a walk has split into stands for all of them") {
+  std::array<double, 3> sums{};
+  double alone = 0;
+  constexpr uint32_t walks = 1 << 14;
+  for (uint32_t k = 0; k < walks; ++k) {
+    std::vector<GatherArrival> arrivals(5);
+    const std::array<float, 3> carried{0.2f, 0, 0.5f};
+    for (size_t i = 0; i < arrivals.size(); ++i) {
+      GatherArrival& a = arrivals[i];
+      a.walk.sample = k;
+      a.walk.index = i < 3 ? 4 : uint32_t(i) + 4;  // of three walks
+      a.walk.throughput = Rgb{i < 3 ? carried[i] : 0.3f};
+      a.length = float(i);
+    }
+    keep_one_of_each(arrivals);
+    REQUIRE(arrivals.size() == 3);
+    CHECK(arrivals[0].length < 3);
+    sums[size_t(arrivals[0].length)] += double(luminance(arrivals[0].walk.throughput)) / walks;
+    alone += double(luminance(arrivals[1].walk.throughput)) / walks;
+    CHECK(arrivals[1].walk.index == 7);
+    CHECK(arrivals[2].walk.index == 8);
+  }
+  CHECK(sums[0] == doctest::Approx(0.2).epsilon(0.01));
+  CHECK(sums[1] == 0);
+  CHECK(sums[2] == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(alone == doctest::Approx(0.3).epsilon(1e-5));
+  std::vector<GatherArrival> black(2);
+  for (GatherArrival& a : black) a.walk.throughput = Rgb{0};
+  keep_one_of_each(black);
+  CHECK(black.empty());
 }

@@ -164,3 +164,35 @@ TEST_CASE("light straight from sources is as good where it takes part in few of 
   CHECK(std::abs(few.illuminance_lx - usual.illuminance_lx) <
         4 * std::hypot(few.standard_error, usual.standard_error));
 }
+
+TEST_CASE("rays of cells among leaves that light passes do not branch at every leaf") {
+  Scene room = WindowRoom::make(0.5f);
+  Material m;
+  m.base_color.value = Rgb{0.3f};
+  m.diffuse_transmission.value = 1;
+  m.diffuse_transmission_color.value = Rgb{0.3f};
+  const uint32_t leaf = add_material(room, m);
+  Random random(3);
+  const auto about = [&](float middle) {
+    float sum = -2;
+    for (int k = 0; k < 4; ++k) sum += random.next_float();
+    return middle + 0.4f * sum;
+  };
+  for (int i = 0; i < 6000; ++i) {
+    const Vec3 c{about(i % 3 == 0 ? 1.5f : 4), about(i % 2 == 0 ? 1 : 3), about(1.2f)};
+    const Vec3 along = random_direction(random) * 0.05f, across = random_direction(random) * 0.02f;
+    add_quad(room, leaf, {c - along, c + across, c + along, c - across});
+  }
+  add_environment(room, Rgb{1});
+  const PreparedScene scene(std::move(room));
+  CellInput cells{{}, nullptr, 1, nullptr, runs_on, {}, {}};
+  cells.pilot.places.push_back({{2, 2, 0.1f}, {0, 0, 1}, {0, 0, 1}, 1e-5f});
+  cells.points = {4096, 4096, 0};
+  MethodSettings settings;
+  settings.threads = 2;
+  REQUIRE(make_integrator(scene, Method::certified, settings, nullptr, &cells));
+  CAPTURE(cells.statistics.rays);
+  CAPTURE(cells.statistics.entries);
+  // Either side of the leaf at which a ray ends.
+  CHECK(double(cells.statistics.entries) < 2 * double(cells.statistics.rays));
+}

@@ -1,0 +1,63 @@
+#include "render/rare_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "render/sample_sets.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double normal_kurtosis = 3;
+// By how much of themselves the variances of a list's points are taken to differ, squared.
+constexpr double variety = 0.25;
+
+double variance_of_sample(const PointLight& p) {
+  return sqr(p.indirect.standard_error) * p.samples;
+}
+
+// What is usual in a list.
+struct Usual {
+  double variance = 0;           // of one sample, lx²
+  double relative_variance = 0;  // … over the square of all light of its point
+  double kurtosis = normal_kurtosis;
+};
+
+Usual usual_of(const std::vector<PointLight>& points) {
+  Usual u;
+  double variance = 0, relative = 0, kurtosis = 0;
+  int lit = 0;
+  for (const PointLight& p : points) {
+    if (!(p.all.illuminance_lx > 0)) continue;
+    ++lit;
+    variance += variance_of_sample(p);
+    relative += variance_of_sample(p) / sqr(p.all.illuminance_lx);
+    kurtosis += p.kurtosis;
+  }
+  if (lit > 0) u = {variance / lit, relative / lit, kurtosis / lit};
+  return u;
+}
+
+}  // namespace
+
+// A variance that n sets tell is off by a share of itself whose square is (kurtosis - 1) / n, that
+// of normal sets left out, and points differ by their `variety`: the mean of own and usual,
+// weighted by one over these (empirical Bayes).
+void tell_rare_light(std::vector<PointLight>& points) {
+  const Usual usual = usual_of(points);
+  const double off = std::max(usual.kurtosis - normal_kurtosis, 0.0) / most_sets;
+  const double weight = off / (off + variety);
+  for (PointLight& p : points) {
+    if (p.samples <= 0) continue;
+    const double own = variance_of_sample(p);
+    const double of_list =
+        std::min(usual.variance, usual.relative_variance * sqr(p.all.illuminance_lx));
+    const double more = weight * std::max(of_list - own, 0.0) / p.samples;
+    for (double* e : {&p.all.standard_error, &p.indirect.standard_error, &p.often_error})
+      *e = std::sqrt(sqr(*e) + more);
+  }
+}
+
+}  // namespace troffer
