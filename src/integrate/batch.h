@@ -95,8 +95,8 @@ struct RadianceBatch {
   // Empty, or what has been added to `direct` and `known`, 0 in the mean over a pixel: to even out
   // what lamps send to it.
   std::vector<Rgb> evened;
-  // Luminance of `direct` that the weightiest of all points drawn of sources stands for, 0 where
-  // none are: samples that happen to find all of them open, or none, differ by nothing.
+  // Luminance of `direct` that the weightiest of all open points drawn of sources brought, 0 where
+  // none did: samples that happen to find all of them open differ by nothing.
   float largest_draw = 0;
   // Set by the caller and kept: luminance that is usual in the picture; 0: not known. What is far
   // below it may err by more (methods that keep an error).
@@ -143,7 +143,7 @@ struct RadianceBatch {
     (is_direct ? direct : indirect)[i] += light;
     if (is_direct && !direct_variance.empty()) direct_variance[i] += variance;
   }
-  // A point of a source is looked at that brings so much, or nothing.
+  // A point drawn of a source has brought so much.
   void note_draw(bool is_direct, float luminance) {
     if (is_direct) largest_draw = std::max(largest_draw, luminance);
   }

@@ -296,7 +296,7 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   };
   if (!add_direct(direct, lit)) return nullptr;
   CellLight light = solve();
-  const NoiseOfPoints noise = noise_of_points(direct, pilot, lit, light);
+  NoiseOfPoints noise = noise_of_points(direct, pilot, lit, light);
   const auto rays = double(rows_.ray_count());
   const double times = store_ == nullptr ? times_as_many_rays(noise.closely, rays) : 1;
   if (times >= enough_times_more) {
@@ -305,7 +305,10 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   }
   const double more = rays > 0 ? double(rows_.ray_count()) / rays : 1;
   statistics_.noise_closely = relative_noise(noise.closely, more);
-  statistics_.noise_plainly = relative_noise(noise.plainly, more);
+  // Narrow cells have got none of these rays.
+  const double narrow = noise.plainly.rows_of_gathered - noise.closely.rows_of_gathered;
+  noise.plainly.rows_of_gathered = noise.closely.rows_of_gathered / more + std::max(narrow, 0.0);
+  statistics_.noise_plainly = relative_noise(noise.plainly, 1);
   statistics_.unresolved = plan_.unresolved();
   statistics_.cells = map_->size();
   double sum = 0;

@@ -321,9 +321,11 @@ void resolve_draws(const PreparedScene& scene, const WaitingHits& hits, DrawnLig
     Rgb light = d.expected * -1.0f;
     if (d.ray >= 0) {
       d.light *= s.factors[size_t(d.ray)];
-      out.note_draw(hits.is_direct[d.hit] != 0, luminance(d.light));
       ++out.shadow_rays[index];
-      if (s.is_occluded[size_t(d.ray)] == 0) light += d.light;
+      if (s.is_occluded[size_t(d.ray)] == 0) {
+        light += d.light;
+        out.note_draw(hits.is_direct[d.hit] != 0, luminance(d.light));
+      }
     }
     if (!light.is_black()) out.add(index, hits.is_direct[d.hit] != 0, light, 0);
   }

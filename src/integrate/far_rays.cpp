@@ -176,9 +176,8 @@ class Casting {
       Rgb light;
       if (t.ray >= 0) {
         ++out_.shadow_rays[index];
-        const Rgb open = t.light * s_.factors[size_t(t.ray)];
-        out_.note_draw(is_direct, luminance(open));
-        if (s_.is_occluded[size_t(t.ray)] == 0) light = open;
+        if (s_.is_occluded[size_t(t.ray)] == 0) light = t.light * s_.factors[size_t(t.ray)];
+        out_.note_draw(is_direct, luminance(light));
       }
       if (!light.is_black()) out_.add(index, is_direct, light, 0);
       const float value = luminance(light);

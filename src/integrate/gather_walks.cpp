@@ -79,20 +79,21 @@ void set_out(const CellHit& from, const Vec3& wi, Walk& walk) {
 }
 
 void keep_one_of_each(std::vector<GatherArrival>& arrivals) {
+  const auto carried = [&](size_t i) { return luminance(arrivals[i].walk.throughput); };
   size_t kept = 0;
   for (size_t first = 0, end = 0; first < arrivals.size(); first = end) {
     float all = 0;
-    while (end < arrivals.size() && arrivals[end].walk.index == arrivals[first].walk.index)
-      all += luminance(arrivals[end++].walk.throughput);
+    const auto is_same = [&](const GatherArrival& a) {
+      return a.walk.index == arrivals[first].walk.index && a.length == arrivals[first].length;
+    };
+    while (end < arrivals.size() && is_same(arrivals[end])) all += carried(end++);
     size_t chosen = first;
     if (end - first > 1) {
-      if (!(all > 0)) continue;
+      if (all == 0) continue;
       float left = lobe_number(arrivals[first].walk) * all;
-      while (chosen + 1 < end && left >= luminance(arrivals[chosen].walk.throughput))
-        left -= luminance(arrivals[chosen++].walk.throughput);
-      Rgb& throughput = arrivals[chosen].walk.throughput;
-      if (!(luminance(throughput) > 0)) continue;  // by rounding
-      throughput *= all / luminance(throughput);
+      while (chosen + 1 < end && left >= carried(chosen)) left -= carried(chosen++);
+      while (chosen > first && carried(chosen) == 0) --chosen;  // by rounding
+      arrivals[chosen].walk.throughput *= all / carried(chosen);
     }
     arrivals[kept++] = arrivals[chosen];
   }

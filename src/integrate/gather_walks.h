@@ -106,9 +106,9 @@ CellHit cell_hit_of(const Vertex& v, const Bsdf& bsdf);
 // … and back, as a surface seen from straight above.
 Vertex vertex_of(const CellHit& hit);
 
-// Of arrivals side by side that one walk has split into (at either side of a surface that light
-// passes evenly) one is drawn, by what it carries, and stands for both: where walks go on again and
-// again they would become a tree.
+// Of arrivals side by side that one walk has split into where it met a surface that light passes
+// evenly, at either side of it, one is drawn, by what it carries, and stands for both: where walks
+// go on again and again they would become a tree.
 void keep_one_of_each(std::vector<GatherArrival>& arrivals);
 
 // Sends a walk on from a place, by cosine …

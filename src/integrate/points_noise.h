@@ -50,7 +50,7 @@ struct PointsNoise {
 };
 
 // Of what all cells are off by, each of which errs by itself: as many draws tell the variances.
-constexpr int draws_of_noise = 8;
+constexpr int draws_of_noise = 16;
 
 // direct: luminance of irradiance straight from sources at each point, by which it is known how
 // much its other light matters; light: of cells. Gather rays are taken to be independent and drawn

@@ -16,8 +16,6 @@ namespace {
 constexpr int paths_of_sample = 4;
 constexpr double most_times_audit = 16;
 constexpr double much_more = 2;  // than another error
-// What is aimed at is a quarter of what is asked for (measure.cpp): points within that are well.
-constexpr double asked_for = 4;
 // Where an audit finds what it would by chance in one list of ten, so many times as many paths look
 // again.
 constexpr double quantile_of_doubt = 1.2816;
@@ -29,7 +27,7 @@ bool are_worth_paths(const std::vector<PointLight>& by_cells, const std::vector<
                      double aim) {
   const double told = relative_error(by_cells, &PointLight::all);
   const double by_paths = relative_error(few, &PointLight::indirect) / std::sqrt(most_times_audit);
-  return aim > 0 && told > asked_for * aim && told > much_more * by_paths;
+  return aim > 0 && told > aim / share_of_error && told > much_more * by_paths;
 }
 
 // Light straight from sources is known already, and takes part in one sample of each set.

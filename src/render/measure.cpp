@@ -18,8 +18,6 @@ namespace troffer {
 
 namespace {
 
-// Points whose usual samples err by more than this share of the allowed error get more of them.
-constexpr double share_of_error = 0.25;
 // What streams of random numbers are for, besides the points themselves.
 enum class Round : uint64_t { audit = 0, by_paths = 1, forecast = 2 };
 

@@ -97,18 +97,18 @@ std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, in
   return sums;
 }
 
-// least: of luminance, what it errs by at least.
-Measurement measurement_of(const SampleSets& sets, double lx_per_unit, double least) {
+// more: what its luminance errs by besides what sets tell.
+Measurement measurement_of(const SampleSets& sets, double lx_per_unit, double more = 0) {
   const Vec3d& e = sets.irradiance();
   return {{float(e.x), float(e.y), float(e.z)},
           sets.luminance() * lx_per_unit,
-          std::max(sets.standard_error(), least) * lx_per_unit};
+          std::hypot(sets.standard_error(), more) * lx_per_unit};
 }
 
 // What the mean of so many samples of direct light errs by at least where points of sources are
-// drawn: by two of them. Where none was hidden by chance, or none open, samples do not differ; but
-// up to three in as many samples are to be expected then (the 95 % bound of none seen), and where
-// few were, numbers of samples chosen by them would prefer those that met too few.
+// drawn: by two of them. Where none was hidden by chance, samples do not differ; but up to three in
+// as many samples are to be expected then (the 95 % bound of none seen), and where few were,
+// numbers of samples chosen by them would prefer those that met too few.
 double least_error_of_draws(const Worker& w, int samples) {
   return 2 * double(w.largest_draw) * double(w.sensors.samples_per_direct) / samples;
 }
@@ -132,17 +132,16 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
     w.drawn_error += s.drawn_error * (weight / sets);
     w.shared_error += s.shared_error * (weight / sets);
   }
-  const double least = least_error_of_draws(w, sets * estimates);
-  const auto light_of = [&](const SampleSets& part, double error) {
-    return measurement_of(part, plan.lx_per_unit, error);
-  };
-  return {light_of(all, least),
-          light_of(direct, least),
-          light_of(indirect, 0),
-          light_of(seldom, least).standard_error,
-          light_of(often, 0).standard_error,
-          indirect.kurtosis(),
-          plan.samples};
+  const double lx = plan.lx_per_unit, least = least_error_of_draws(w, sets * estimates);
+  const double more = std::sqrt(std::max(sqr(least) - sqr(direct.standard_error()), 0.0));
+  PointLight light{measurement_of(all, lx, more), measurement_of(direct, lx, more),
+                   measurement_of(indirect, lx)};
+  light.seldom_error = seldom.standard_error() * lx;
+  light.often_error = often.standard_error() * lx;
+  light.least_error = least * lx;
+  light.kurtosis = indirect.kurtosis();
+  light.samples = plan.samples;
+  return light;
 }
 
 // Places of a list, by one worker of each thread.
@@ -228,8 +227,7 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
       std::all_of(own.begin(), own.end(), [](const PointPlan& p) { return !(p.error > 0); });
   const double after_first = are_all ? 1 : share_of_first;
   measuring.measure(which, own, 0, 0, after_first);
-  if (run.stop.load()) return found;
-  tell_rare_light(found.values);
+  tell_rare_light(found.values, which);
   which.clear();
   own.clear();
   for (size_t i = 0; i < points; ++i) {
@@ -244,11 +242,7 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
   }
   if (which.empty() && after_first < 1 && run.progress) run.progress(1);
   measuring.measure(which, own, 1, after_first, 1);
-  if (run.stop.load()) return found;
-  std::vector<PointLight> again;
-  for (const size_t i : which) again.push_back(found.values[i]);
-  tell_rare_light(again);
-  for (size_t k = 0; k < which.size(); ++k) found.values[which[k]] = again[k];
+  tell_rare_light(found.values, which);
   return found;
 }
 

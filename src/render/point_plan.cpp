@@ -31,8 +31,8 @@ PointPlan enough_for(const PointLight& found, PointPlan plan) {
     return plan;
   }
   const double seldom = found.seldom_error, often = found.often_error;
-  const int directs =
-      plan.samples / plan.samples_per_direct * int(times(seldom * (seldom + often) / sqr(aim)));
+  const double of_direct = std::max(seldom * (seldom + often) / sqr(aim), found.least_error / aim);
+  const int directs = plan.samples / plan.samples_per_direct * int(times(of_direct));
   plan.samples = std::max(plan.samples * int(times(often * (seldom + often) / sqr(aim))), directs);
   plan.samples_per_direct = plan.samples / directs;
   return plan;

@@ -12,9 +12,13 @@ struct PointLight {
   // Standard errors, lx, of what takes part in every so many-th sample alone (`direct`, and what
   // mirrors bring of it), and of the rest.
   double seldom_error = 0, often_error = 0;
-  double kurtosis = 3;  // SampleSets::kurtosis, of `indirect`
-  int samples = 0;      // that told it
+  double least_error = 0;  // of `direct`, lx, by points drawn of sources: falls as samples grow
+  double kurtosis = 3;     // SampleSets::kurtosis, of `indirect`
+  int samples = 0;         // that told it
 };
+
+// Points whose usual samples err by more than this share of the allowed error get more of them.
+constexpr double share_of_error = 0.25;
 
 struct PointPlan {
   int samples;

@@ -45,12 +45,13 @@ Usual usual_of(const std::vector<PointLight>& points) {
 // A variance that n sets tell is off by a share of itself whose square is (kurtosis - 1) / n, that
 // of normal sets left out, and points differ by their `variety`: the mean of own and usual,
 // weighted by one over these (empirical Bayes).
-void tell_rare_light(std::vector<PointLight>& points) {
+void tell_rare_light(std::vector<PointLight>& points, const std::vector<size_t>& which) {
   const Usual usual = usual_of(points);
   const double off = std::max(usual.kurtosis - normal_kurtosis, 0.0) / most_sets;
   const double weight = off / (off + variety);
-  for (PointLight& p : points) {
-    if (p.samples <= 0) continue;
+  for (const size_t i : which) {
+    PointLight& p = points[i];
+    if (p.samples <= 0) continue;  // a stop came before
     const double own = variance_of_sample(p);
     const double of_list =
         std::min(usual.variance, usual.relative_variance * sqr(p.all.illuminance_lx));

@@ -245,12 +245,13 @@ TEST_CASE("one of the arrivals that a walk has split into stands for all of them
       a.walk.sample = k;
       a.walk.index = i < 3 ? 4 : uint32_t(i) + 4;  // of three walks
       a.walk.throughput = Rgb{i < 3 ? carried[i] : 0.3f};
-      a.length = float(i);
+      a.length = 2;
+      a.distance = float(i);
     }
     keep_one_of_each(arrivals);
     REQUIRE(arrivals.size() == 3);
-    CHECK(arrivals[0].length < 3);
-    sums[size_t(arrivals[0].length)] += double(luminance(arrivals[0].walk.throughput)) / walks;
+    CHECK(arrivals[0].distance < 3);
+    sums[size_t(arrivals[0].distance)] += double(luminance(arrivals[0].walk.throughput)) / walks;
     alone += double(luminance(arrivals[1].walk.throughput)) / walks;
     CHECK(arrivals[1].walk.index == 7);
     CHECK(arrivals[2].walk.index == 8);
@@ -259,6 +260,11 @@ TEST_CASE("one of the arrivals that a walk has split into stands for all of them
   CHECK(sums[1] == 0);
   CHECK(sums[2] == doctest::Approx(0.5).epsilon(0.01));
   CHECK(alone == doctest::Approx(0.3).epsilon(1e-5));
+  // What the walk has met elsewhere is none of it.
+  std::vector<GatherArrival> apart(2);
+  apart[1].length = 1;
+  keep_one_of_each(apart);
+  CHECK(apart.size() == 2);
   std::vector<GatherArrival> black(2);
   for (GatherArrival& a : black) a.walk.throughput = Rgb{0};
   keep_one_of_each(black);

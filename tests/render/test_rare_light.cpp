@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "base/random.h"
 #include "render/sample_sets.h"
@@ -41,6 +42,12 @@ PointLight point(Random& random, double lx, double noise, double rare, double me
   return p;
 }
 
+std::vector<size_t> all_of(const std::vector<PointLight>& points) {
+  std::vector<size_t> which(points.size());
+  std::iota(which.begin(), which.end(), size_t{0});
+  return which;
+}
+
 double share_that_holds(const std::vector<PointLight>& points, double lx) {
   int inside = 0;
   for (const PointLight& p : points)
@@ -75,7 +82,14 @@ TEST_CASE("points that missed rare light are told what others of the list have m
   std::vector<PointLight> points;
   for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, 0.001, 0.02, 1.5));
   CHECK(share_that_holds(points, 100) < 0.8);
-  tell_rare_light(points);
+  // One of them, by what all have met.
+  std::vector<PointLight> few = points;
+  size_t quiet = 0;
+  while (few[quiet].all.standard_error > 0.1) ++quiet;
+  tell_rare_light(few, {quiet});
+  CHECK(few[quiet].all.standard_error > 0.5);
+  CHECK(few[quiet + 1].all.standard_error == points[quiet + 1].all.standard_error);
+  tell_rare_light(points, all_of(points));
   CHECK(share_that_holds(points, 100) > 0.95);
   for (const PointLight& p : points) {
     CHECK(p.indirect.standard_error == doctest::Approx(p.all.standard_error));
@@ -88,12 +102,12 @@ TEST_CASE("points whose sets are as normal keep their errors, and so does one by
   std::vector<PointLight> points;
   for (int i = 0; i < 300; ++i) points.push_back(point(random, 100, i % 2 == 0 ? 0.01 : 0.1, 0, 0));
   const std::vector<PointLight> before = points;
-  tell_rare_light(points);
+  tell_rare_light(points, all_of(points));
   for (size_t i = 0; i < points.size(); ++i)
     CHECK(points[i].all.standard_error <= before[i].all.standard_error * 1.1);
   std::vector<PointLight> one{point(random, 100, 0.001, 0.02, 1)};
   const double own = one[0].all.standard_error;
-  tell_rare_light(one);
+  tell_rare_light(one, all_of(one));
   CHECK(one[0].all.standard_error == doctest::Approx(own));
 }
 
@@ -104,7 +118,7 @@ TEST_CASE(
   for (int i = 0; i < 100; ++i) points.push_back(point(random, 1e-3, 0.01, 0.9, 1));
   for (int i = 0; i < 100; ++i) points.push_back(point(random, 100, 0.01, 0, 0));
   const std::vector<PointLight> before = points;
-  tell_rare_light(points);
+  tell_rare_light(points, all_of(points));
   for (size_t i = 0; i < 100; ++i) CHECK(points[i].all.standard_error < 3e-3);
   for (size_t i = 100; i < 200; ++i)
     CHECK(points[i].all.standard_error < 1.2 * before[i].all.standard_error);
