@@ -30,8 +30,8 @@ class SampleSets {
 
  private:
   Vec3d irradiance_;
-  double mean_ = 0, squares_ = 0, cubes_ = 0,
-         fourths_ = 0;  // sums of powers of what sets differ by
+  double mean_ = 0;
+  double squares_ = 0, cubes_ = 0, fourths_ = 0;  // sums of powers of what sets differ from it by
   int sets_ = 0;
 };
 
