@@ -128,16 +128,30 @@ std::vector<float> CellRows::differences(const std::vector<Rgb>& e, int threads)
   return own;
 }
 
-std::vector<std::vector<float>> CellRows::noise_draws(const std::vector<float>& own, int draws,
-                                                      int threads) const {
+// All draws at a time: that of one takes as long, by the time that its cells take to be found.
+std::vector<NoiseDraws> CellRows::noise_draws(const std::vector<float>& by_rows,
+                                              const std::vector<float>& by_hits,
+                                              int threads) const {
   const Packed rows = packed();
-  std::vector<std::vector<float>> all(static_cast<size_t>(draws), own);
-  for (uint64_t k = 0; k < all.size(); ++k) {
-    for (size_t i = 0; i < own.size(); ++i)
-      if ((hash_of(k, i) & 1) != 0) all[k][i] = -own[i];
-    spread(rows, all[k], threads);
+  std::vector<NoiseDraws> source(by_rows.size()), draws, next(by_rows.size());
+  by_cells(source.size(), threads, [&](size_t i) {
+    uint64_t signs = hash_of(i, uint64_t{0x6472'6177});
+    for (float& d : source[i]) {
+      d = ((signs & 1) != 0 ? by_rows[i] : -by_rows[i]) +
+          ((signs & 2) != 0 ? by_hits[i] : -by_hits[i]);
+      signs >>= 2;
+    }
+  });
+  static_assert(2 * draws_of_noise <= 64);
+  draws = source;
+  for (int bounce = 0; bounce < bounces_of_noise; ++bounce) {
+    by_cells(source.size(), threads, [&](size_t i) {
+      next[i] = source[i];
+      for (const RowEntry& k : rows.of(i)) add_draws(next[i], luminance(k.weight), draws[k.cell]);
+    });
+    draws.swap(next);
   }
-  return all;
+  return draws;
 }
 
 // What is off in one cell is off in those that see it: d = s + W d, to the first few bounces.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/rgb.h"
+#include "cells/noise_draws.h"
 
 namespace troffer {
 
@@ -65,10 +66,11 @@ class CellRows {
   // What each cell is off by, by the choice of its own rays: half the difference of two halves of
   // them, as one draw. e: light of cells.
   std::vector<float> differences(const std::vector<Rgb>& e, int threads) const;
-  // Draws of what cells are off by, by way of others too, where each by itself is off by `own`,
-  // either way.
-  std::vector<std::vector<float>> noise_draws(const std::vector<float>& own, int draws,
-                                              int threads) const;
+  // Draws of what each cell is off by, by way of others too, where each by itself is off by both of
+  // these, either way, each by a sign of its own: differences(), and half the difference of two
+  // halves of `direct`.
+  std::vector<NoiseDraws> noise_draws(const std::vector<float>& by_rows,
+                                      const std::vector<float>& by_hits, int threads) const;
 
  private:
   enum class Half { first, second };

@@ -7,6 +7,7 @@
 
 #include "base/rgb.h"
 #include "base/vec.h"
+#include "cells/noise_draws.h"
 #include "integrate/shadow_record.h"
 #include "trace/ray.h"
 
@@ -98,6 +99,9 @@ struct RadianceBatch {
   // Luminance of `direct` that the weightiest of all open points drawn of sources brought, 0 where
   // none did: samples that happen to find all of them open differ by nothing.
   float largest_draw = 0;
+  // Draws of what the luminance of `indirect`, summed over all, is off by and no number of samples
+  // brings down; 0 where the method knows nothing of it.
+  NoiseDraws noise{};
   // Set by the caller and kept: luminance that is usual in the picture; 0: not known. What is far
   // below it may err by more (methods that keep an error).
   float typical = 0;
@@ -131,6 +135,7 @@ struct RadianceBatch {
     known.clear();
     evened.clear();
     largest_draw = 0;
+    noise = {};
   }
   // For methods that tell the variance: light along viewing ray i, and what its luminance's is.
   void tell_shared_error() {

@@ -28,7 +28,7 @@ constexpr int most_rounds = 12;
 constexpr size_t tasks_at_a_time = 1 << 14;
 // Points for which so many times as many rays are worth it, or more, get them.
 constexpr double enough_times_more = 1.5;
-constexpr size_t further_tasks_at_a_time = 1 << 17;
+constexpr size_t refining_tasks_at_a_time = 1 << 16;
 
 using Clock = std::chrono::steady_clock;
 
@@ -68,11 +68,8 @@ class Builder {
   bool run_and_go_on(std::vector<CellTask> tasks, double most_cells,
                      const std::function<void(double)>& progress);
   bool refine(double times);
-  struct NoiseOfPoints {
-    PointsNoise closely, plainly;  // looked at, narrow cells
-  };
-  NoiseOfPoints noise_of_points(const DirectLight& direct, const CellPilot& pilot,
-                                const CellDirectLight& lit, const CellLight& light);
+  double rays_for_points(const DirectLight& direct, const CellPilot& pilot,
+                         const CellDirectLight& lit, const CellLight& light);
 
   const PreparedScene& scene_;
   GatherWalks walks_;
@@ -157,7 +154,7 @@ std::span<const CellHit> Builder::hits_of(const CellTask& task) const {
   const std::span<const CellHit> hits = map_->hits(task.cell);
   if (hits.size() < 2) return hits;
   const size_t half = hits.size() / 2;
-  return is_second_half(task) ? hits.subspan(half) : hits.first(half);
+  return task.is_second_half ? hits.subspan(half) : hits.first(half);
 }
 
 // New cells where there were none, and the rows.
@@ -171,7 +168,7 @@ void Builder::note(const std::vector<CellTask>& tasks, CellsSeen& seen) {
       if (c.cell == no_cell) c.cell = map_->add(c.hit, c.distance);
       entries.push_back({c.cell, c.weight});
     }
-    rows_.add({tasks[t].cell, tasks[t].count, 0, is_second_half(tasks[t]), seen.emission[t]},
+    rows_.add({tasks[t].cell, tasks[t].count, 0, tasks[t].is_second_half, seen.emission[t]},
               entries);
   }
   TROFFER_CHECK(at == seen.seen.size());
@@ -218,24 +215,22 @@ bool Builder::make_rows(const std::function<void(double)>& progress) {
 
 // So many times as many rays as there are. Not of narrow cells: gather rays pass them on.
 bool Builder::refine(double times) {
-  const double first = plan_.rays_that_matter(map_->frozen());
-  std::vector<CellTask> tasks =
-      plan_.further_tasks(times * double(rows_.ray_count()) / first - 1, map_->frozen());
+  std::vector<CellTask> tasks = plan_.refining_tasks(times * double(rows_.ray_count()));
   std::erase_if(tasks, [&](const CellTask& t) { return map_->is_narrow(t.cell); });
-  for (size_t begin = 0; begin < tasks.size(); begin += further_tasks_at_a_time) {
+  for (size_t begin = 0; begin < tasks.size(); begin += refining_tasks_at_a_time) {
     if (map_->size() > RowPlan::most_cells) break;
-    const size_t end = std::min(begin + further_tasks_at_a_time, tasks.size());
+    const size_t end = std::min(begin + refining_tasks_at_a_time, tasks.size());
     if (!run({tasks.begin() + std::ptrdiff_t(begin), tasks.begin() + std::ptrdiff_t(end)}))
       return false;
   }
   return run_and_go_on(plan_.first_tasks(), std::numeric_limits<double>::infinity(), nullptr);
 }
 
-// What cells' noise makes of points' errors.
-Builder::NoiseOfPoints Builder::noise_of_points(const DirectLight& direct, const CellPilot& pilot,
-                                                const CellDirectLight& lit,
-                                                const CellLight& light) {
-  if (options_.points.most_rays <= 0) return {};
+// How many times the rays that there are: for what points err by the noise of cells, but for narrow
+// ones, which their rays pass.
+double Builder::rays_for_points(const DirectLight& direct, const CellPilot& pilot,
+                                const CellDirectLight& lit, const CellLight& light) {
+  if (options_.points.most_rays <= 0 || store_ != nullptr) return 1;
   PointsSeen points{asking_.rays, {}, asking_.end};
   for (const PilotHit& h : asking_.seen) points.seen.push_back({h.cell, h.weight});
   std::vector<float> straight;
@@ -243,19 +238,11 @@ Builder::NoiseOfPoints Builder::noise_of_points(const DirectLight& direct, const
        direct_light_at(pilot.places, walks_, direct, options_.threads, stop_, counters_))
     straight.push_back(luminance(e));
   CellsOff off{rows_.differences(light.irradiance, options_.threads), lit.half_difference};
-  const auto noise_of = [&] {
-    return noise_at_points(points, straight, rows_, light.irradiance, off, options_.points,
-                           options_.threads);
-  };
-  NoiseOfPoints noise{{}, noise_of()};
-  bool are_narrow = false;
-  for (uint32_t c = 0; c < map_->size(); ++c) {
-    if (!map_->is_narrow(c)) continue;
-    off.by_rows[c] = off.by_hits[c] = 0;
-    are_narrow = true;
-  }
-  noise.closely = are_narrow ? noise_of() : noise.plainly;
-  return noise;
+  for (uint32_t c = 0; c < map_->size(); ++c)
+    if (map_->is_narrow(c)) off.by_rows[c] = off.by_hits[c] = 0;
+  const PointsNoise noise = noise_at_points(points, straight, rows_, light.irradiance, off,
+                                            options_.points, options_.threads);
+  return times_as_many_rays(noise, double(rows_.ray_count()));
 }
 
 // Light straight from sources, where it is not kept, or there yet; false once stopped.
@@ -296,19 +283,15 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   };
   if (!add_direct(direct, lit)) return nullptr;
   CellLight light = solve();
-  NoiseOfPoints noise = noise_of_points(direct, pilot, lit, light);
-  const auto rays = double(rows_.ray_count());
-  const double times = store_ == nullptr ? times_as_many_rays(noise.closely, rays) : 1;
+  const double times = rays_for_points(direct, pilot, lit, light);
   if (times >= enough_times_more) {
     if (!refine(times) || !add_direct(direct, lit)) return nullptr;
     light = solve();
   }
-  const double more = rays > 0 ? double(rows_.ray_count()) / rays : 1;
-  statistics_.noise_closely = relative_noise(noise.closely, more);
-  // Narrow cells have got none of these rays.
-  const double narrow = noise.plainly.rows_of_gathered - noise.closely.rows_of_gathered;
-  noise.plainly.rows_of_gathered = noise.closely.rows_of_gathered / more + std::max(narrow, 0.0);
-  statistics_.noise_plainly = relative_noise(noise.plainly, 1);
+  std::vector<NoiseDraws> noise;
+  if (options_.points.most_rays > 0)
+    noise = rows_.noise_draws(rows_.differences(light.irradiance, options_.threads),
+                              lit.half_difference, options_.threads);
   statistics_.unresolved = plan_.unresolved();
   statistics_.cells = map_->size();
   double sum = 0;
@@ -319,14 +302,15 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   statistics_.rays = rows_.ray_count();
   statistics_.iterations = light.iterations;
   statistics_.size = double(map_->size_of_cells());
-  statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry);
+  statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry) +
+                      double(noise.size() * sizeof(NoiseDraws));
   BrightPlaces bright(scene_.tracer, std::move(asking_.seen), light.irradiance,
                       map_->size_of_cells());
   keep(lit);
   statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit.irradiance),
                                  std::move(light.irradiance), std::move(light.half_difference),
-                                 statistics_, direct.images(), std::move(bright));
+                                 std::move(noise), statistics_, direct.images(), std::move(bright));
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ struct CellTask {
   uint64_t stream = 0;
   float weight = 1;
   std::span<const CellHit> from;
+  // Which half of the cell's rays these are of. Either half goes from its own half of the cell's
+  // hits, so that what halves differ by tells of the choice of hits as well.
+  bool is_second_half = false;
 };
 
 // What one of them sees.

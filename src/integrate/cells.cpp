@@ -28,6 +28,7 @@ void GatheredLight::reset(size_t rays) {
   irradiance.assign(rays, Rgb{0});
   half_difference.assign(rays, 0);
   distance.assign(rays, 0);
+  noise = {};
 }
 
 bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
@@ -60,7 +61,9 @@ bool Cells::look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScr
     return true;
   }
   s.part.irradiance[ray] += a.walk.throughput * irradiance_[cell];
-  s.part.half_difference[ray] += luminance(a.walk.throughput) * half_difference_[cell];
+  const float weight = luminance(a.walk.throughput);
+  s.part.half_difference[ray] += weight * half_difference_[cell];
+  if (!noise_.empty()) add_draws(s.light.noise, weight, noise_[cell]);
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cells/cell_map.h"
+#include "cells/noise_draws.h"
 #include "integrate/bright_places.h"
 #include "integrate/gather_walks.h"
 
@@ -16,12 +17,8 @@ namespace troffer {
 struct CellStatistics {
   uint64_t cells = 0, entries = 0, rays = 0;
   int rounds = 0, iterations = 0;
-  double size = 0;     // of a cell, metres
-  double typical = 0;  // luminance of indirect light in the picture
-  // What light gathered at the pilot's points is off by for the noise of cells, relative to it:
-  // root mean square, as draws_of_noise draws tell it; where rays look closely at narrow things,
-  // and where not. 0: there are no points.
-  double noise_closely = 0, noise_plainly = 0;
+  double size = 0;        // of a cell, metres
+  double typical = 0;     // luminance of indirect light in the picture
   double unresolved = 0;  // share of the light asked for that cells without a row would bring
   double bytes = 0;
   double seconds = 0;
@@ -32,6 +29,7 @@ struct GatheredLight {
   std::vector<Rgb> irradiance;         // of each ray: π × radiance
   std::vector<float> half_difference;  // by the noise of cells: luminance (CellLight)
   std::vector<float> distance;  // to the first surface that is matte or black, all the way; 0: none
+  NoiseDraws noise{};           // of the sum of all rays; 0: none are known
 
   void reset(size_t rays);
 };
@@ -56,22 +54,21 @@ class Cells {
  public:
   Cells(const PreparedScene& scene, std::shared_ptr<const CellMap> map, std::vector<Rgb> direct,
         std::vector<Rgb> irradiance, std::vector<float> half_difference,
-        const CellStatistics& statistics, std::shared_ptr<const MirrorImages> images,
-        BrightPlaces bright)
+        std::vector<NoiseDraws> noise, const CellStatistics& statistics,
+        std::shared_ptr<const MirrorImages> images, BrightPlaces bright)
       : map_(std::move(map)),
         direct_(std::move(direct)),
         irradiance_(std::move(irradiance)),
         half_difference_(std::move(half_difference)),
+        noise_(std::move(noise)),
         statistics_(statistics),
         bright_(std::move(bright)),
         walks_(scene, std::move(images)) {}
 
   const CellStatistics& statistics() const { return statistics_; }
   const GatherWalks& walks() const { return walks_; }
-  // Of what points gather, as statistics() has it.
-  double noise_of_points() const {
-    return looks_closely_ ? statistics_.noise_closely : statistics_.noise_plainly;
-  }
+  // Whether what gather() brings comes with draws of what it is off by.
+  bool tells_noise() const { return !noise_.empty(); }
   // For what the pilot asks for.
   const BrightPlaces& bright_places() const { return bright_; }
 
@@ -98,6 +95,7 @@ class Cells {
   std::shared_ptr<const CellMap> map_;
   std::vector<Rgb> direct_, irradiance_;
   std::vector<float> half_difference_;
+  std::vector<NoiseDraws> noise_;  // empty: not known
   CellStatistics statistics_;
   BrightPlaces bright_;
   bool looks_closely_ = false;

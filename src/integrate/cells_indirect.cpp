@@ -222,15 +222,8 @@ void CellsIndirect::gather(const SensorBatch& sensors, IndirectLightScratch& scr
     if (!walk.throughput.is_black()) s.cells.walks.push_back(walk);
   }
   cells_->gather(sensors.size(), s.cells, counters);
-  out.tell_shared_error();
-  const double noise = cells_->noise_of_points();
-  for (uint32_t i = 0; i < sensors.size(); ++i) {
-    out.indirect[i] += s.cells.light.irradiance[i];
-    if (noise > 0)
-      out.shared_error[i] += float(noise) * luminance(s.cells.light.irradiance[i]);
-    else
-      out.drawn_error[i] += s.cells.light.half_difference[i];
-  }
+  for (uint32_t i = 0; i < sensors.size(); ++i) out.indirect[i] += s.cells.light.irradiance[i];
+  out.noise = s.cells.light.noise;
 }
 
 }  // namespace troffer

@@ -14,28 +14,26 @@ constexpr double most_times = 64;
 // Memory.
 constexpr double most_rays = 1 << 24;
 
-using Draws = std::vector<std::vector<float>>;
-
 // Of one set.
 std::span<const PointRay> rays_of(const PointsSeen& points, size_t set) {
   const size_t begin = set == 0 ? 0 : points.end[set - 1];
   return std::span(points.seen).subspan(begin, points.end[set] - begin);
 }
 
-double sum_of(std::span<const PointRay> seen, const std::vector<float>& off) {
-  double sum = 0;
-  for (const PointRay& r : seen) sum += double(r.weight) * double(off[r.cell]);
+NoiseDraws sum_of(std::span<const PointRay> seen, const std::vector<NoiseDraws>& off) {
+  NoiseDraws sum{};
+  for (const PointRay& r : seen) add_draws(sum, r.weight, off[r.cell]);
   return sum;
 }
 
 // The mean square of what a point is off by. By what one set of rays sees, times what the other
 // does: few rays that see one cell each are off by more than the point, which has many.
-double mean_square(const PointsSeen& points, size_t p, const Draws& draws) {
-  const auto first = rays_of(points, PointsSeen::sets * p),
-             second = rays_of(points, PointsSeen::sets * p + 1);
+double mean_square(const PointsSeen& points, size_t p, const std::vector<NoiseDraws>& off) {
+  const NoiseDraws first = sum_of(rays_of(points, PointsSeen::sets * p), off),
+                   second = sum_of(rays_of(points, PointsSeen::sets * p + 1), off);
   double sum = 0;
-  for (const std::vector<float>& off : draws) sum += sum_of(first, off) * sum_of(second, off);
-  return sum / (sqr(double(points.rays)) * double(draws.size()));
+  for (size_t k = 0; k < first.size(); ++k) sum += double(first[k]) * double(second[k]);
+  return sum / (sqr(double(points.rays)) * draws_of_noise);
 }
 
 }  // namespace
@@ -47,8 +45,9 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
   PointsNoise noise;
   if (points.rays == 0) return noise;
   const double n = PointsSeen::sets * points.rays;
-  const Draws by_rows = rows.noise_draws(off.by_rows, draws_of_noise, threads),
-              by_hits = rows.noise_draws(off.by_hits, draws_of_noise, threads);
+  const std::vector<float> none(light.size(), 0);
+  const std::vector<NoiseDraws> by_rows = rows.noise_draws(off.by_rows, none, threads),
+                                by_hits = rows.noise_draws(none, off.by_hits, threads);
   int lit = 0;
   for (size_t p = 0; p < direct.size(); ++p) {
     double sum = 0, squares = 0;
@@ -66,17 +65,11 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
     const double rays = std::max(std::min(wanted, how.most_rays), how.rays);
     noise.gather_rays += rays;
     noise.by_gather += variance / rays;
-    const double of_rows = mean_square(points, p, by_rows),
-                 of_hits = mean_square(points, p, by_hits);
-    noise.by_rows += of_rows / sqr(all);
-    noise.by_hits += of_hits / sqr(all);
-    noise.rows_of_gathered += of_rows / sqr(sum / n);
-    noise.hits_of_gathered += of_hits / sqr(sum / n);
+    noise.by_rows += mean_square(points, p, by_rows) / sqr(all);
+    noise.by_hits += mean_square(points, p, by_hits) / sqr(all);
   }
   if (lit == 0) return noise;
-  for (double* v : {&noise.by_gather, &noise.by_rows, &noise.by_hits, &noise.rows_of_gathered,
-                    &noise.hits_of_gathered})
-    *v = std::max(*v / lit, 0.0);
+  for (double* v : {&noise.by_gather, &noise.by_rows, &noise.by_hits}) *v = std::max(*v / lit, 0.0);
   return noise;
 }
 
@@ -85,10 +78,6 @@ double times_as_many_rays(const PointsNoise& noise, double rays_of_rows) {
   if (!(rays_of_rows > 0) || !(noise.by_rows > 0) || !(others > 0)) return 1;
   const double times = std::sqrt(noise.gather_rays * noise.by_rows / (rays_of_rows * others));
   return std::max(std::min({times, most_times, most_rays / rays_of_rows}), 1.0);
-}
-
-double relative_noise(const PointsNoise& noise, double times) {
-  return std::sqrt(noise.rows_of_gathered / times + noise.hits_of_gathered);
 }
 
 }  // namespace troffer

@@ -45,12 +45,7 @@ struct PointsNoise {
   double by_rows = 0, by_hits = 0;  // as CellsOff has it
   double by_gather = 0;             // by gather rays …
   double gather_rays = 0;           // … of all points
-  // The first two over the square of the gathered light alone.
-  double rows_of_gathered = 0, hits_of_gathered = 0;
 };
-
-// Of what all cells are off by, each of which errs by itself: as many draws tell the variances.
-constexpr int draws_of_noise = 16;
 
 // direct: luminance of irradiance straight from sources at each point, by which it is known how
 // much its other light matters; light: of cells. Gather rays are taken to be independent and drawn
@@ -64,8 +59,5 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
 // G gather rays, V of the variance by the R rays of rows, and U of it by all else, time times
 // variance, (G + R') (U + V R / R'), is least for R'² = G V R / U.
 double times_as_many_rays(const PointsNoise& noise, double rays_of_rows);
-
-// What gathered light is off by, relative to it, once cells have so many times the rays.
-double relative_noise(const PointsNoise& noise, double times_as_many_rays);
 
 }  // namespace troffer

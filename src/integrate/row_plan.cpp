@@ -18,7 +18,9 @@ constexpr double pilots_of_ray = 0.1, worth_by_error = 1.5;
 constexpr double most_coarseness = 4;
 constexpr uint32_t most_rays_of_row = 4096;  // for as many further rays as first ones
 constexpr double most_unresolved = 1e-5;     // of the light asked for, for an error of .01 or less
-constexpr double enough_of_wanted = 1.5;     // further rays that a cell has: no more then
+constexpr uint32_t rays_of_refining_task = 16;
+constexpr double most_refined = 1 << 18;  // rays of one row
+constexpr double enough_of_wanted = 1.5;  // further rays that a cell has: no more then
 // By how many bounces importance is brought on where further rays are shared out, and where rows
 // seem to be complete; and at a look at which cells lack them: what one look leaves the next takes
 // up.
@@ -28,10 +30,6 @@ constexpr int bounces_of_importance = 24, bounces_of_look = 6;
 
 double coarseness(double error, double fine) {
   return std::clamp(error / fine, 1.0, most_coarseness);
-}
-
-bool is_second_half(const CellTask& task) {
-  return task.first / rays_of_step % 2 == 1;
 }
 
 void RowPlan::ask(uint32_t cell, float light) {
@@ -50,7 +48,13 @@ void RowPlan::look(int bounces) {
 }
 
 CellTask RowPlan::task_of(uint32_t cell, uint32_t first, uint32_t count) const {
-  return {cell, first, count, hash_of(seed_, cell, uint64_t{0x726f'7773}), 1, {}};
+  return {cell,
+          first,
+          count,
+          hash_of(seed_, cell, uint64_t{0x726f'7773}),
+          1,
+          {},
+          first / rays_of_step % 2 == 1};
 }
 
 // Cells without a row, the most important first, but for those that hardly matter.
@@ -138,6 +142,29 @@ std::vector<CellTask> RowPlan::further_tasks(double times, size_t frozen) {
     if (wanted < enough_of_wanted * had) continue;
     for (uint32_t step = had; step < uint32_t(wanted + 0.5); ++step)
       tasks.push_back(task_of(c, rays_of_row + step * rays_of_step, rays_of_step));
+  }
+  return tasks;
+}
+
+std::vector<CellTask> RowPlan::refining_tasks(double rays) {
+  look(bounces_of_importance);
+  const std::vector<float>& y = importance_;
+  const double all = std::accumulate(y.begin(), y.end(), 0.0);
+  std::vector<CellTask> tasks;
+  for (uint32_t c = 0; all > 0 && c < y.size(); ++c) {
+    if (!rows_.has_row(c)) continue;
+    const double wanted = std::min(rays * double(y[c]) / all, most_refined);
+    if (wanted < enough_of_wanted * rows_.rays(c)) continue;
+    const auto half = uint32_t((wanted - rows_.rays(c)) / 2 + 0.5);
+    for (const bool is_second : {false, true})
+      for (uint32_t first = 0; first < half; first += rays_of_refining_task)
+        tasks.push_back({c,
+                         first,
+                         std::min(half - first, rays_of_refining_task),
+                         hash_of(seed_, c, is_second ? 1u : 0u, uint64_t{0x7265'6669}),
+                         1,
+                         {},
+                         is_second});
   }
   return tasks;
 }

@@ -12,10 +12,6 @@ namespace troffer {
 // How many times what suits a fine error is asked for this one: 1 to 4.
 double coarseness(double error, double fine);
 
-// Whether a cell's rays, as of one task, are of the second half of them: either half goes from its
-// own half of the cell's hits, so that what halves differ by tells of the choice of hits as well.
-bool is_second_half(const CellTask& task);
-
 class RowPlan {
  public:
   static constexpr size_t pilot_rays = 1 << 17;  // about so many ask
@@ -40,8 +36,11 @@ class RowPlan {
   // have had already: `times` as many in all as the first ones, about. frozen: how many cells were
   // kept from other views.
   std::vector<CellTask> further_tasks(double times, size_t frozen);
-  // How many first rays those have.
-  double rays_that_matter(size_t frozen) const;
+  // Of cells that matter to points, until there are so many rays in all, in proportion to what is
+  // asked of them, or as many as they have. Halves of them have numbers of their own, so that what
+  // they differ by tells what their mean is off by: that of one well spread sequence is off by
+  // less, but nobody can say by how much.
+  std::vector<CellTask> refining_tasks(double rays);
   uint32_t first_rays(uint32_t cell) const;
 
   const std::vector<float>& asked() const { return asked_; }  // per cell
@@ -51,6 +50,8 @@ class RowPlan {
   double unresolved() const { return unresolved_; }
 
  private:
+  // How many first rays those have that matter.
+  double rays_that_matter(size_t frozen) const;
   void look(int bounces);
   CellTask task_of(uint32_t cell, uint32_t first, uint32_t count) const;
   std::vector<uint32_t> cells_to_resolve(int bounces);

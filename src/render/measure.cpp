@@ -6,7 +6,6 @@
 
 #include "base/random.h"
 #include "base/units.h"
-#include "integrate/points_noise.h"
 #include "render/audit.h"
 #include "render/measured_points.h"
 #include "render/measuring_places.h"
@@ -21,34 +20,14 @@ namespace {
 // What streams of random numbers are for, besides the points themselves.
 enum class Round : uint64_t { audit = 0, by_paths = 1, forecast = 2 };
 
-void add_error(double error, PointLight& v) {
-  for (Measurement* m : {&v.all, &v.indirect})
-    m->standard_error = std::hypot(m->standard_error, error);
-}
-
 // What the method knows of errors that no spread of its samples shows, as standard errors that so
-// many draws tell …
-void add_shared_errors(const std::vector<double>& of_luminance, double lx_per_unit,
-                       std::vector<PointLight>& values) {
+// many draws tell.
+void add_noise(const std::vector<double>& of_luminance, double lx_per_unit,
+               std::vector<PointLight>& values) {
   const double of_draws = t_quantile_95(draws_of_noise) / 1.959964;
   for (size_t i = 0; i < values.size(); ++i)
-    add_error(of_luminance[i] * lx_per_unit * of_draws, values[i]);
-}
-
-// … or by half the difference between two halves of what it has learnt, one draw of that error.
-// Relative to the light that was reflected before it is much the same at all points.
-void add_drawn_errors(const std::vector<double>& of_luminance, double lx_per_unit,
-                      std::vector<PointLight>& values) {
-  double squares = 0;
-  int points = 0;
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i].indirect.illuminance_lx > 0)) continue;
-    squares += sqr(of_luminance[i] * lx_per_unit / values[i].indirect.illuminance_lx);
-    ++points;
-  }
-  if (!(squares > 0)) return;
-  const double relative = std::sqrt(squares / points) * t_quantile_95(points) / 1.959964;
-  for (PointLight& v : values) add_error(relative * v.indirect.illuminance_lx, v);
+    for (Measurement* m : {&values[i].all, &values[i].indirect})
+      m->standard_error = std::hypot(m->standard_error, of_luminance[i] * lx_per_unit * of_draws);
 }
 
 MeasureResult nothing_measured(size_t points) {
@@ -169,8 +148,7 @@ class PointsMeasuring {
     PointValues found =
         measure_points(*integrator, places_, plan_,
                        {options_.seed, options_.threads, samples_of_batch_, progress_, stop_});
-    add_drawn_errors(found.drawn_errors, plan_.lx_per_unit, found.values);
-    add_shared_errors(found.shared_errors, plan_.lx_per_unit, found.values);
+    add_noise(found.noise, plan_.lx_per_unit, found.values);
     return found;
   }
   PointValues measured_by_paths(const ProgressCallback& progress) {

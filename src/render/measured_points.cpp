@@ -36,8 +36,7 @@ struct Sum {
 };
 struct Sums {
   Sum direct, indirect;
-  double luminance_of_images = 0;            // RadianceBatch::images
-  double drawn_error = 0, shared_error = 0;  // as RadianceBatch has them
+  double luminance_of_images = 0;  // RadianceBatch::images
 };
 
 struct Worker {
@@ -45,8 +44,8 @@ struct Worker {
   MeasuringPlace place;
   SensorBatch sensors;  // of this point
   RadianceBatch out;
-  double drawn_error = 0, shared_error = 0;  // of the point's mean
-  float largest_draw = 0;                    // RadianceBatch::largest_draw, of all batches
+  float largest_draw = 0;  // RadianceBatch::largest_draw, of all batches
+  NoiseDraws noise{};      // RadianceBatch::noise, likewise
   std::unique_ptr<IntegratorScratch> scratch;
   int samples_per_batch = largest_batch;
 };
@@ -80,6 +79,7 @@ std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, in
     const CheckContext context(&w, size_t(count), name_of_sensor);
     integrator.irradiance(w.sensors, *w.scratch, w.out, counters);
     w.largest_draw = std::max(w.largest_draw, w.out.largest_draw);
+    add_draws(w.noise, 1, w.out.noise);
     for (size_t i = 0; i < size_t(count); ++i) {
       const Rgb e = w.out.direct[i] + w.out.indirect[i];
       if (!is_finite(e)) {
@@ -90,8 +90,6 @@ std::vector<Sums> sums_of_sets(const Integrator& integrator, uint64_t stream, in
       s.direct.add(w.out.direct[i]);
       s.indirect.add(w.out.indirect[i]);
       if (!w.out.images.empty()) s.luminance_of_images += double(luminance(w.out.images[i]));
-      if (!w.out.drawn_error.empty()) s.drawn_error += double(w.out.drawn_error[i]);
-      if (!w.out.shared_error.empty()) s.shared_error += double(w.out.shared_error[i]);
     }
   }
   return sums;
@@ -113,14 +111,21 @@ double least_error_of_draws(const Worker& w, int samples) {
   return 2 * double(w.largest_draw) * double(w.sensors.samples_per_direct) / samples;
 }
 
+// What the mean of so many samples is off by for what all of them share, as draws tell.
+double error_by_noise(const NoiseDraws& noise, int samples) {
+  double squares = 0;
+  for (const float d : noise) squares += sqr(double(d));
+  return std::sqrt(squares / draws_of_noise) / samples;
+}
+
 PointLight measure_point(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
-                         const StopFlag& stop, Worker& w, Counters& counters) {
+                         const StopFlag& stop, Worker& w, Counters& counters, double& noise) {
   const int sets = std::min(most_sets, plan.samples);
   const int estimates = std::max(1, (plan.samples + sets - 1) / sets / plan.samples_per_estimate);
   const double weight = 1.0 / estimates;
   SampleSets all, direct, indirect, seldom, often;
-  w.drawn_error = w.shared_error = 0;
   w.largest_draw = 0;
+  w.noise = {};
   w.sensors.samples_per_direct = uint32_t(plan.samples_per_direct);
   for (const Sums& s : sums_of_sets(integrator, stream, sets, estimates, stop, w, counters)) {
     all.add((s.direct.irradiance + s.indirect.irradiance) * weight,
@@ -129,8 +134,6 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
     indirect.add(s.indirect.irradiance * weight, s.indirect.luminance * weight);
     seldom.add({}, (s.direct.luminance + s.luminance_of_images) * weight);
     often.add({}, (s.indirect.luminance - s.luminance_of_images) * weight);
-    w.drawn_error += s.drawn_error * (weight / sets);
-    w.shared_error += s.shared_error * (weight / sets);
   }
   const double lx = plan.lx_per_unit, least = least_error_of_draws(w, sets * estimates);
   const double more = std::sqrt(std::max(sqr(least) - sqr(direct.standard_error()), 0.0));
@@ -141,6 +144,7 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
   light.least_error = least * lx;
   light.kurtosis = indirect.kurtosis();
   light.samples = plan.samples;
+  noise = error_by_noise(w.noise, sets * estimates);
   return light;
 }
 
@@ -174,13 +178,13 @@ class Measuring {
       w.samples_per_batch = run_.samples_per_batch;
       w.point = i;
       const uint64_t stream = hash_of(run_.seed, i);
+      double noise = 0;
       const PointLight light =
           measure_point(integrator_, round == 0 ? stream : hash_of(stream, round), plans[k],
-                        run_.stop, w, found_.counters[i]);
+                        run_.stop, w, found_.counters[i], noise);
       if (run_.stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
       found_.values[i] = light;
-      found_.drawn_errors[i] = w.drawn_error;
-      found_.shared_errors[i] = w.shared_error;
+      found_.noise[i] = noise;
       found_.is_measured[i] = 1;
       const std::lock_guard lock(mutex);
       done += plans[k].samples;
@@ -216,8 +220,7 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
   constexpr double share_of_first = 0.25;  // of the time, about
   const size_t points = places.size();
   PointValues found{std::vector<PointLight>(points), std::vector<uint8_t>(points, 0),
-                    std::vector<double>(points, 0), std::vector<double>(points, 0),
-                    std::vector<Counters>(points)};
+                    std::vector<double>(points, 0), std::vector<Counters>(points)};
   Measuring measuring(integrator, places, plans, run, found);
   std::vector<size_t> which(points);
   std::iota(which.begin(), which.end(), size_t{0});

@@ -22,8 +22,7 @@ struct PointsRun {
 struct PointValues {
   std::vector<PointLight> values;
   std::vector<uint8_t> is_measured;
-  // Of the luminance of irradiance: RadianceBatch::drawn_error, and shared_error.
-  std::vector<double> drawn_errors, shared_errors;
+  std::vector<double> noise;  // standard errors of luminance of irradiance: RadianceBatch::noise
   std::vector<Counters> counters;
   bool is_cut_short = false;  // all are measured, but not all is done that was to be
 

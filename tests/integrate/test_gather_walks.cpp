@@ -198,7 +198,7 @@ TEST_CASE("rays that gather together see what each sees by itself") {
     }
   std::vector<Rgb> direct(map->size()), irradiance;
   for (size_t c = 0; c < map->size(); ++c) irradiance.push_back(Rgb{1 + float(c)});
-  const Cells cells(scene, map, direct, irradiance, std::vector<float>(map->size(), 0.25f), {},
+  const Cells cells(scene, map, direct, irradiance, std::vector<float>(map->size(), 0.25f), {}, {},
                     nullptr, {});
   constexpr uint32_t rays = 1000;
   const auto walk_of = [&](uint32_t k) {

@@ -119,20 +119,3 @@ TEST_CASE("cells get as many rays as leave the least variance for the time") {
   CHECK(times_as_many_rays({1, 1e-9, 1e-9, 1e12}, 1e6) * 1e6 < 2e7);
   CHECK(times_as_many_rays({1, 1e-9, 1e-9, 1e12}, 1e9) == 1);
 }
-
-TEST_CASE("noise of gathered light is over that light, and falls with rays but for that of hits") {
-  Random random(8);
-  std::vector<Rgb> light;
-  const CellRows rows = cells_of_chance(random, light);
-  // Three times as much light straight from sources.
-  const PointsNoise noise = noise_at_points(
-      points_that_see_all(20, 512, 4), std::vector<float>(20, 3), rows, light,
-      {rows.differences(light, 1), std::vector<float>(cells, 0.1f)}, {64, 64, 0}, 1);
-  CHECK(noise.rows_of_gathered == doctest::Approx(16 * noise.by_rows).epsilon(0.05));
-  CHECK(noise.hits_of_gathered == doctest::Approx(16 * noise.by_hits).epsilon(0.05));
-  const double once = relative_noise(noise, 1), more = relative_noise(noise, 100);
-  CHECK(once * once ==
-        doctest::Approx(noise.rows_of_gathered + noise.hits_of_gathered).epsilon(1e-6));
-  CHECK(more * more ==
-        doctest::Approx(noise.rows_of_gathered / 100 + noise.hits_of_gathered).epsilon(1e-6));
-}

@@ -46,12 +46,16 @@ class List {
   }
 
   std::vector<double> by_paths(int samples) const {
-    return measured(*make_integrator(scene_, Method::path, settings_, nullptr, nullptr),
-                    {.samples = samples, .samples_per_estimate = 1}, 5);
+    return lx_of(measured(*make_integrator(scene_, Method::path, settings_, nullptr, nullptr),
+                          {.samples = samples, .samples_per_estimate = 1}, 5));
   }
   // gathering: most_rays 0: cells know nothing of points. rays: of rows.
   std::vector<double> by_cells(int samples, const GatheringPoints& gathering, uint64_t seed,
                                uint64_t* rays = nullptr) const {
+    return lx_of(values_by_cells(samples, gathering, seed, rays));
+  }
+  PointValues values_by_cells(int samples, const GatheringPoints& gathering, uint64_t seed,
+                              uint64_t* rays = nullptr) const {
     CellInput cells{{}, nullptr, seed, nullptr, runs_on, {}, {}};
     for (const MeasuringPlace& p : places_)
       cells.pilot.places.push_back({p.position, p.normal, p.normal, p.offset});
@@ -63,10 +67,11 @@ class List {
   }
 
  private:
-  std::vector<double> measured(const Integrator& integrator, const PointPlan& plan,
-                               uint64_t seed) const {
-    const PointValues found = measure_points(integrator, places_, plan,
-                                             {seed, 2, samples_per_batch(1000), nullptr, runs_on});
+  PointValues measured(const Integrator& integrator, const PointPlan& plan, uint64_t seed) const {
+    return measure_points(integrator, places_, plan,
+                          {seed, 2, samples_per_batch(1000), nullptr, runs_on});
+  }
+  static std::vector<double> lx_of(const PointValues& found) {
     std::vector<double> lx;
     for (const PointLight& p : found.values) lx.push_back(p.all.illuminance_lx);
     return lx;
@@ -123,6 +128,46 @@ TEST_CASE("cells for many points that are measured well have more rays, and less
             .by_cells(samples, {samples, 32 * samples, 0.0025}, 1));
   CHECK(rays > 3 * usual);
   CHECK(now < 0.6 * before);
+}
+
+// By few rays of cells, and by many.
+TEST_CASE("what cells are off by is told, point by point") {
+  const PreparedScene scene(room_behind_a_partition());
+  std::vector<MeasuringPoint> points = points_behind_the_partition(6);
+  // Just below the gap: cells that are far brighter than others.
+  points.push_back({{2.4, 2, 2.7}, {1, 0, 0}});
+  const List list(scene, points);
+  constexpr int samples = 1 << 13, seeds = 10;
+  for (const int times : {1, 32}) {
+    CAPTURE(times);
+    std::vector<PointValues> found;
+    for (uint64_t seed = 0; seed < seeds; ++seed)
+      found.push_back(list.values_by_cells(
+          samples, {double(samples), double(times * samples), times > 1 ? 0.0025 : 0}, seed));
+    double made = 0, told = 0, by_samples = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+      double sum = 0, squares = 0, noise = 0, spread = 0;
+      for (const PointValues& f : found) {
+        const double e = f.values[i].all.illuminance_lx;
+        sum += e;
+        squares += e * e;
+        noise += std::pow(f.noise[i], 2);
+        spread += std::pow(f.values[i].all.standard_error, 2);
+      }
+      const double mean = sum / seeds;
+      made += (squares - sum * mean) / (seeds - 1) / (mean * mean);
+      told += (noise + spread) / seeds / (mean * mean);
+      by_samples += spread / seeds / (mean * mean);
+    }
+    CAPTURE(std::sqrt(made / double(points.size())));
+    CAPTURE(std::sqrt(told / double(points.size())));
+    CHECK(by_samples < 0.5 * told);
+    CHECK(std::sqrt(told / made) > 0.7);
+    CHECK(std::sqrt(told / made) < 1.6);
+  }
+  const GatheringPoints gathering{samples, samples, 0};
+  CHECK(list.values_by_cells(samples, gathering, 3).noise ==
+        List(scene, points, 3).values_by_cells(samples, gathering, 3).noise);
 }
 
 TEST_CASE("light straight from sources is as good where it takes part in few of many samples") {
