@@ -24,7 +24,7 @@ constexpr float most_of_narrow = 1.2f, known_width = 0.05f;
 // leaves of a tree would be a list each voxel.
 constexpr int most_in_voxel = 12;
 // How often a cell is halved.
-constexpr uint32_t most_halvings = 6;
+constexpr int32_t most_halvings = 6;
 
 // The axis along which a normal points most, and which way. Weights keep surfaces at 45° from being
 // torn by rounding.
@@ -40,10 +40,10 @@ int64_t voxel_of(float x, float size) {
   return int64_t(std::floor(double(x) / double(size) + shift));
 }
 
-uint64_t key_of(const CellHit& h, float size, uint32_t level) {
-  const uint64_t key =
-      hash_of(uint64_t(voxel_of(h.position.x, size)), uint64_t(voxel_of(h.position.y, size)),
-              uint64_t(voxel_of(h.position.z, size)), face_of(h.normal) + 8 * level);
+uint64_t key_of(const CellHit& h, float size, int32_t level) {
+  const uint64_t key = hash_of(
+      uint64_t(voxel_of(h.position.x, size)), uint64_t(voxel_of(h.position.y, size)),
+      uint64_t(voxel_of(h.position.z, size)), face_of(h.normal) + 8 * uint64_t(int64_t(level)));
   return key == 0 ? 1 : key;  // 0: an empty slot
 }
 
@@ -126,7 +126,7 @@ CellMap::Found CellMap::search(uint32_t first, const CellHit& hit) const {
 }
 
 uint64_t CellMap::expect_voxel(const CellHit& hit, float distance) const {
-  const uint32_t level = first_level(distance);
+  const int32_t level = first_level(distance);
   const uint64_t key = key_of(hit, size_at(level), level);
   prefetch_line(&slots_[first_slot(key)]);
   return key;
@@ -138,12 +138,12 @@ void CellMap::expect_cell(uint64_t voxel) const {
 }
 
 uint32_t CellMap::find(const CellHit& hit, float distance) const {
-  const uint32_t level = first_level(distance);
+  const int32_t level = first_level(distance);
   return find(hit, distance, key_of(hit, size_at(level), level));
 }
 
 uint32_t CellMap::find(const CellHit& hit, float distance, uint64_t voxel) const {
-  for (uint32_t level = first_level(distance);;) {
+  for (int32_t level = first_level(distance);;) {
     const Slot& slot = slots_[slot_of(voxel)];
     if (slot.first == no_cell) return no_cell;
     const uint32_t cell = search(slot.first, hit).cell;
@@ -168,7 +168,7 @@ void CellMap::keep(const CellHit& hit, bool is_asked, Hits& h) {
 }
 
 uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
-  uint32_t level = first_level(distance);
+  int32_t level = first_level(distance);
   uint32_t cell = add_at(hit, level, is_asked);
   while (anchors_[cell].is_halved && level < most_halvings) cell = add_at(hit, ++level, is_asked);
   if (cell >= frozen_) keep(hit, is_asked, hits_[cell]);
@@ -176,7 +176,7 @@ uint32_t CellMap::add(const CellHit& hit, float distance, bool is_asked) {
 }
 
 // The cell of one level there, or what was halved.
-uint32_t CellMap::add_at(const CellHit& hit, uint32_t level, bool is_asked) {
+uint32_t CellMap::add_at(const CellHit& hit, int32_t level, bool is_asked) {
   const uint64_t key = key_of(hit, size_at(level), level);
   Slot& slot = slots_[slot_of(key)];
   Found found;
@@ -192,7 +192,7 @@ uint32_t CellMap::add_at(const CellHit& hit, uint32_t level, bool is_asked) {
   return cell;
 }
 
-uint32_t CellMap::make(const CellHit& hit, uint32_t level, bool is_asked) {
+uint32_t CellMap::make(const CellHit& hit, int32_t level, bool is_asked) {
   Anchor a;
   a.position = hit.position;
   a.normal = hit.horizon;

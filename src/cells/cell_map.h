@@ -1,10 +1,11 @@
 // Cells: small parts of surfaces, made where rays hit, that share one value of irradiance.
 //
-// A hit belongs to the cell of its voxel (of the scene's cell size, or half of it where the ray
-// came from near), of the side of space that its normal points to, and, among several of the same
-// voxel, to the first that it is compatible with: in one plane with it or on one curved surface,
-// and, where something stands in the voxel, seen from it. So neither the two sides of a thin wall
-// share a cell, nor the boards of a shelf, nor two rooms that stand on one floor.
+// A hit belongs to the cell of its voxel (of the scene's cell size, half of it where the ray came
+// from near, or twice as large and more where it came from far away), of the side of space that its
+// normal points to, and, among several of the same voxel, to the first that it is compatible with:
+// in one plane with it or on one curved surface, and, where something stands in the voxel, seen
+// from it. So neither the two sides of a thin wall share a cell, nor the boards of a shelf, nor two
+// rooms that stand on one floor.
 //
 // Where light straight from sources nearby differs much within a voxel (a lamp close to a wall),
 // there are cells of half its size in place of one, and of half that, and so on.
@@ -95,6 +96,12 @@ class CellMap {
   }
 
  private:
+  // Rays that are so many sizes long see cells that are twice as wide, of twice as many four times.
+  // Of interiors in which most rays go from wall to wall they are those of 4 times the usual
+  // length.
+  static constexpr float sizes_of_far = 64;
+  static constexpr int32_t most_doublings = 12;
+
   friend struct CellMapParts;  // cell_store.cpp: to and from bytes
 
   struct Anchor {
@@ -125,11 +132,19 @@ class CellMap {
   bool sees(const Anchor& a, const CellHit& hit) const;
   bool is_divided(const CellHit& hit, const CellOutline& outline, float size) const;
   bool ends_both_ways(const Vec3& position, const Vec3& normal, float size) const;
-  // Light from near by is that of half cells.
-  uint32_t first_level(float distance) const { return distance < near() ? 1 : 0; }
-  float size_at(uint32_t level) const { return std::ldexp(size_, -int(level)); }
-  uint32_t make(const CellHit& hit, uint32_t level, bool is_asked);
-  uint32_t add_at(const CellHit& hit, uint32_t level, bool is_asked);
+  // Voxels of level k are 2^-k times as wide. Light from near by is that of half cells. Where most
+  // of what is asked for is in a gap of a few centimetres, cells are some millimetres wide, but a
+  // room around it is not to be millions of them.
+  int32_t first_level(float distance) const {
+    if (distance < near()) return 1;
+    int32_t level = 0;
+    for (float far = sizes_of_far * size_; distance >= far && level > -most_doublings; far *= 2)
+      --level;
+    return level;
+  }
+  float size_at(int32_t level) const { return std::ldexp(size_, -level); }
+  uint32_t make(const CellHit& hit, int32_t level, bool is_asked);
+  uint32_t add_at(const CellHit& hit, int32_t level, bool is_asked);
   void keep(const CellHit& hit, bool is_asked, Hits& hits);
   void grow();
 

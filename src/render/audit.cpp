@@ -17,7 +17,7 @@ constexpr int paths_of_sample = 4;
 constexpr double most_times_audit = 16;
 constexpr double much_more = 2;  // than another error
 // Where an audit finds what it would by chance in one list of ten, so many times as many paths look
-// again.
+// again: few paths may all miss a bright caustic that cells have met, and then seem to be certain.
 constexpr double quantile_of_doubt = 1.2816;
 constexpr int times_in_doubt = 4;
 
@@ -83,6 +83,7 @@ std::optional<AuditFinding> audit(const Integrator& paths,
     of_cells.push_back(by_cells[i].indirect);
   }
   PointsRun round = run;
+  bool is_doubted = false;  // much, at the first look
   for (const bool is_last : {false, true}) {
     PointValues few =
         measure_points(paths, at, audit_plan(plan, is_last ? times_in_doubt : 1), round);
@@ -93,12 +94,11 @@ std::optional<AuditFinding> audit(const Integrator& paths,
       few.values[k].all = by_cells[f.points[k]].all;
     }
     f.bias = relative_bias(of_cells, f.by_paths);
-    f.is_slight = is_last;
+    f.is_slight = is_last && !is_doubted;
     if (!is_last) f.is_worth_paths = are_worth_paths(by_cells, few.values, plan.error);
-    // What is far from clear decides by itself, and so does what cannot be trusted anyway.
-    if (f.is_worth_paths || f.bias > 0 ||
-        relative_bias(of_cells, f.by_paths, quantile_of_doubt) == 0)
-      break;
+    is_doubted = f.bias > 0;
+    // What cannot be trusted anyway needs no second look.
+    if (f.is_worth_paths || relative_bias(of_cells, f.by_paths, quantile_of_doubt) == 0) break;
     round.seed = hash_of(run.seed, 1u);
   }
   return f;

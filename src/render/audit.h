@@ -26,7 +26,7 @@ std::vector<size_t> few_of(size_t points);
 
 struct AuditFinding {
   double bias = 0;         // relative_bias() of light that was reflected before
-  bool is_slight = false;  // the bias: so many more paths had to look for it
+  bool is_slight = false;  // the bias: only so many more paths have found it
   bool is_worth_paths =
       false;  // points err by more than is asked for, and paths would by much less
   // That light by paths, and whose it is.

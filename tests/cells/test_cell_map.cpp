@@ -49,6 +49,35 @@ TEST_CASE("hits in one voxel share a cell, those of another side, plane or dista
   CHECK(map.find(on_floor(0.3f, 0.2f), 5) == cell);
 }
 
+TEST_CASE("what comes from far away comes from larger cells, the same to whoever is as far") {
+  Scene s;
+  add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  const Tracer tracer(s);
+  constexpr float size = 0.01f;
+  CellMap map(tracer, size);
+  size_t before = 0;
+  std::vector<size_t> cells;
+  for (const float sizes : {2.0f, 4.0f, 60.0f, 70.0f, 120.0f, 140.0f, 300.0f, 1e30f}) {
+    Random here(6);
+    for (int i = 0; i < 20000; ++i) {
+      const CellHit hit = on_floor(here.next_float(), here.next_float());
+      const uint32_t cell = map.add(hit, sizes * size);
+      CHECK(map.find(hit, sizes * size) == cell);
+    }
+    cells.push_back(map.size() - before);
+    before = map.size();
+  }
+  const auto about = [](double n) { return doctest::Approx(n).epsilon(0.06); };
+  CHECK(double(cells[1]) == about(8647));  // of 10 000 that many are met by 20 000 at random
+  CHECK(cells[0] > cells[1]);
+  CHECK(cells[2] == 0);
+  CHECK(double(cells[3]) == about(2601));
+  CHECK(cells[4] == 0);
+  CHECK(double(cells[5]) == about(676));
+  CHECK(double(cells[6]) == about(169));
+  CHECK(cells[7] == 1);
+}
+
 TEST_CASE("where light is uneven there are halves of cells, and halves of them, up to a limit") {
   Scene s;
   add_quad(s, add_diffuse(s, Rgb{0.5f}), {Vec3{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});

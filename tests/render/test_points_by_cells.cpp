@@ -170,6 +170,42 @@ TEST_CASE("what cells are off by is told, point by point") {
         List(scene, points, 3).values_by_cells(samples, gathering, 3).noise);
 }
 
+// In a room with lamps of 60 cm that hang 5 cm below the ceiling, over louvres of 5 cm.
+TEST_CASE("points in the gap behind a luminaire get the light that comes in at its edges") {
+  Scene room = WindowRoom::make(0.7f, false);
+  const uint32_t grey = add_diffuse(room, Rgb{0.7f});
+  constexpr float x = 2, y = 2, r = 0.3f, z = WindowRoom::Z;
+  const uint32_t lamp = add_quad(room, grey,
+                                 {Vec3{x - r, y - r, z - 0.05f},
+                                  {x - r, y + r, z - 0.05f},
+                                  {x + r, y + r, z - 0.05f},
+                                  {x + r, y - r, z - 0.05f}});
+  make_light(room, lamp, Rgb{15});
+  for (int k = 0; k <= 20; ++k) {
+    const float t = r * (float(k) / 10 - 1), low = z - 0.2f, high = z - 0.15f;
+    add_quad(
+        room, grey,
+        {Vec3{x + t, y - r, low}, {x + t, y + r, low}, {x + t, y + r, high}, {x + t, y - r, high}});
+    add_quad(
+        room, grey,
+        {Vec3{x - r, y + t, low}, {x + r, y + t, low}, {x + r, y + t, high}, {x - r, y + t, high}});
+  }
+  const PreparedScene scene(std::move(room));
+  std::vector<MeasuringPoint> points;
+  for (const double off : {0.0, 0.12, -0.2})
+    for (const double below : {0.015, 0.03})
+      points.push_back({{double(x) + off, double(y) - 0.25, double(z) - below}, {0, 0, -1}});
+  const size_t in_gap = points.size();
+  for (int i = 0; i < 8; ++i) points.push_back({{0.5 + 0.5 * i, 1 + 0.2 * i, 0.8}, {0, 0, 1}});
+  const List list(scene, points);
+  constexpr int samples = 1 << 16;
+  const std::vector<double> paths = list.by_paths(samples),
+                            cells = list.by_cells(samples, {samples, samples, 0}, 1);
+  double ratio = 0;
+  for (size_t i = 0; i < in_gap; ++i) ratio += cells[i] / paths[i] / double(in_gap);
+  CHECK(ratio == doctest::Approx(1).epsilon(0.012));
+}
+
 TEST_CASE("light straight from sources is as good where it takes part in few of many samples") {
   Scene room = WindowRoom::make(0.5f);
   const uint32_t grey = add_diffuse(room, Rgb{0.6f});
