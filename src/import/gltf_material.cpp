@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/units.h"
 #include "import/gltf_texture.h"
 #include "import/uri.h"

@@ -7,6 +7,7 @@
 #include "import/file.h"
 #include "import/mitsuba_daylight.h"
 #include "import/mitsuba_values.h"
+#include "import/texture_loader.h"
 
 namespace troffer {
 
