@@ -75,8 +75,7 @@ CellRows::RowSum CellRows::sum_of(size_t cell, const std::vector<Rgb>& e, Half h
     if (p.is_second_half != (half == Half::second)) continue;
     sum.emitted += p.emission;
     sum.rays += p.rays;
-    const RowEntry* k = &entries_[first_entry_[order_[o]]];
-    for (uint32_t t = 0; t < p.entries; ++t) sum.reflected += k[t].weight * e[k[t].cell];
+    for (const RowEntry& k : entries(order_[o])) sum.reflected += k.weight * e[k.cell];
   }
   return sum;
 }
