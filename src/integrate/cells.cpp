@@ -12,9 +12,10 @@ namespace {
 
 // Of rays that find no cell, or one that is too near, one after the other.
 constexpr int most_bounces = 16;
-// … or are shorter than a cell is wide: in a gap of 5 cm behind a luminaire nearly all of them, one
-// after the other; by fewer of them light there was 1 to 4 % too dark (docs/cells.md).
-constexpr int short_bounces = 8;
+// … or are shorter than a cell is wide; to measured points so many: in a gap of 5 cm behind a
+// luminaire nearly all rays are short, one after the other, and by fewer of them light there was 1
+// to 4 % too dark. In pictures that costs more time than it is worth (docs/cells.md).
+constexpr int short_bounces = 4, most_short = 8;
 // Rays that are followed at a time: few enough for what is known of them to stay in the caches.
 constexpr size_t rays_of_part = 256;
 // Whether looking closely is worth it: places and rays of each that tell, and how many times what
@@ -109,8 +110,9 @@ void Cells::gather_part(size_t rays, CellsScratch& s, Counters& counters) const 
       float& distance = s.part.distance[a.walk.index];
       if (bounce == 0 && (distance == 0 || a.length < distance)) distance = a.length;
       // The mean of a cell wider than the ray is long is not what the ray sees.
-      const float short_ray = (bounce == 0 ? 0.25f : 1.0f) * map_->near();
-      const bool is_short = a.distance < short_ray && bounce < short_bounces;
+      const float short_ray = (bounce > 0 && tells_noise() ? 1.0f : 0.25f) * map_->near();
+      const bool is_short =
+          a.distance < short_ray && bounce < (tells_noise() ? most_short : short_bounces);
       if (is_short || !look_up(a, s.voxels[i], bounce, s)) s.arrivals[missed++] = a;
     }
     s.arrivals.resize(missed);
