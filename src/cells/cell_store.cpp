@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 5, "file of cells"};
+constexpr OwnFile cell_file{{'t', 'r', 'o', 'f', 'f', 'C', 'e', 'l'}, 6, "file of cells"};
 constexpr uint32_t most_rays = 1 << 16;  // of one part of a row
 constexpr uint32_t divided_flag = 1, halved_flag = 2;
 

@@ -6,7 +6,9 @@
 
 namespace troffer {
 
-// So many draws tell what light that cells bring varies by, as well as so many measurements would.
+// So many draws tell what light that many cells bring varies by, as well as so many measurements
+// would; where one cell brings nearly all, they are one measurement, for what it is off by is known
+// by one difference of halves.
 constexpr int draws_of_noise = 16;
 
 // Luminance of irradiance, or of sums of it: linear in light, so that draws of a sum are the sums

@@ -1,6 +1,7 @@
 #include "integrate/cells.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -65,7 +66,7 @@ bool Cells::look_up(const GatherArrival& a, uint64_t voxel, int bounce, CellsScr
   s.part.irradiance[ray] += a.walk.throughput * irradiance_[cell];
   const float weight = luminance(a.walk.throughput);
   s.part.half_difference[ray] += weight * half_difference_[cell];
-  if (!noise_.empty()) add_draws(s.light.noise, weight, noise_[cell]);
+  if (!noise_.empty() && std::isfinite(weight)) add_draws(s.light.noise, weight, noise_[cell]);
   return true;
 }
 
