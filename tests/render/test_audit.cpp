@@ -2,7 +2,9 @@
 // what is biased.
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <cmath>
+#include <memory>
 
 #include "base/random.h"
 #include "render/audit.h"
@@ -50,7 +52,56 @@ MeasureOptions by_cells(int threads) {
   return o;
 }
 
+// Paths that find light of 1, each within a tenth, and are off by so much at the first look at
+// so many sensors in all, and by so much after.
+class TwoLooks final : public Integrator {
+ public:
+  TwoLooks(double at_first, double then, uint64_t first_sensors)
+      : at_first_(at_first), then_(then), first_sensors_(first_sensors) {}
+  std::unique_ptr<IntegratorScratch> make_scratch() const override {
+    return std::make_unique<IntegratorScratch>();
+  }
+  void radiance(const ViewingRays&, IntegratorScratch&, RadianceBatch&, Counters&) const override {}
+  void irradiance(const SensorBatch& sensors, IntegratorScratch&, RadianceBatch& out,
+                  Counters&) const override {
+    for (size_t i = 0; i < sensors.size(); ++i) {
+      Random random(hash_of(sensors.streams[i], sensors.samples[i]));
+      const double off = seen_++ < first_sensors_ ? at_first_ : then_;
+      out.indirect[i] = Rgb{float(1 + off + 0.1 * normal(random))};
+    }
+  }
+  uint64_t seen() const { return seen_; }
+
+ private:
+  double at_first_, then_;
+  uint64_t first_sensors_;
+  mutable std::atomic<uint64_t> seen_{0};
+};
+
 }  // namespace
+
+TEST_CASE("audit: what is found at the first look is looked at once more, which decides") {
+  constexpr size_t points = 32;
+  constexpr int samples = 64;
+  constexpr uint64_t first = points * samples * 4, both = first + points * samples * 16;
+  const std::vector<MeasuringPlace> places(points);
+  std::vector<PointLight> by_cells(points);
+  for (PointLight& p : by_cells)
+    p.all = p.indirect = {Rgb{0}, 1, 0.002};
+  const PointPlan plan{.samples = samples, .samples_per_estimate = 1};
+  const auto found = [&](double at_first, double then, uint64_t sensors) {
+    const TwoLooks paths(at_first, then, first);
+    const auto finding = audit(paths, places, by_cells, plan, {5, 2, 4096, nullptr, never_stopped});
+    REQUIRE(finding);
+    CHECK(paths.seen() == sensors);
+    return *finding;
+  };
+  CHECK(found(0, 0.1, first).bias == 0);  // nothing is doubted
+  const AuditFinding cleared = found(0.1, 0, both), confirmed = found(0.1, 0.1, both);
+  CHECK(cleared.bias == 0);
+  CHECK(confirmed.bias == doctest::Approx(0.1).epsilon(0.05));
+  CHECK(!confirmed.is_slight);
+}
 
 TEST_CASE("audit: lists that agree are found fault with once in a hundred times") {
   Random random(4);
