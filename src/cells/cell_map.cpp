@@ -153,6 +153,14 @@ uint32_t CellMap::find(const CellHit& hit, float distance, uint64_t voxel) const
   }
 }
 
+uint32_t CellMap::find_from_afar(const CellHit& hit) const {
+  uint32_t cell = find(hit, near());
+  float distance = sizes_of_far * size_;
+  for (int32_t k = 0; cell == no_cell && k < most_doublings; ++k, distance *= 2)
+    cell = find(hit, distance);
+  return cell;
+}
+
 void CellMap::keep(const CellHit& hit, bool is_asked, Hits& h) {
   if (h.count < hits_per_cell) {
     h.hits[h.count++] = hit;

@@ -61,6 +61,8 @@ class CellMap {
   // The cell of what a ray of this length has hit, or no_cell. Any number of threads may call it
   // while nothing is added.
   uint32_t find(const CellHit& hit, float distance) const;
+  // The finest one there of those seen from no nearer than near(), or no_cell.
+  uint32_t find_from_afar(const CellHit& hit) const;
   // Asks for the memory that find() will read, in two steps, so that it is there when many others
   // have been asked for meanwhile: of which voxel, and of what is in that. The voxel's key is for
   // find(), too, of the same hit and distance.
@@ -97,8 +99,8 @@ class CellMap {
 
  private:
   // Rays that are so many sizes long see cells that are twice as wide, of twice as many four times.
-  // Of interiors in which most rays go from wall to wall they are those of 4 times the usual
-  // length.
+  // Of interiors in which most rays go from wall to wall they are those of some 4 times the usual
+  // length, or more where a coarse picture has larger cells.
   static constexpr float sizes_of_far = 64;
   static constexpr int32_t most_doublings = 12;
 

@@ -210,7 +210,7 @@ bool Builder::run_and_go_on(std::vector<CellTask> tasks, double most_cells,
 bool Builder::make_rows(const std::function<void(double)>& progress) {
   const double most = options_.most_cells;
   return double(map_->size()) <= most && run_and_go_on(plan_.first_tasks(), most, progress) &&
-         run_and_go_on(plan_.further_tasks(1, map_->frozen()), most, progress);
+         run_and_go_on(plan_.further_tasks(map_->frozen()), most, progress);
 }
 
 // So many times as many rays as there are. Not of narrow cells: gather rays pass them on.

@@ -45,7 +45,7 @@ bool Cells::indirect_at(const CellHit& hit, float distance, Rgb& irradiance,
 }
 
 CellLightAt Cells::light_at(const CellHit& hit) const {
-  const uint32_t cell = map_->find(hit, map_->near());
+  const uint32_t cell = map_->find_from_afar(hit);
   if (cell == no_cell) return {};
   return {direct_[cell], irradiance_[cell] - direct_[cell]};
 }

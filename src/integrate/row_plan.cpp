@@ -16,7 +16,7 @@ constexpr uint32_t rays_of_step = 8;  // further rays come in so many
 // `fine_error`; for others by this power of the error.
 constexpr double pilots_of_ray = 0.1, worth_by_error = 1.5;
 constexpr double most_coarseness = 4;
-constexpr uint32_t most_rays_of_row = 4096;  // for as many further rays as first ones
+constexpr uint32_t most_rays_of_row = 4096;  // further ones
 constexpr double most_unresolved = 1e-5;     // of the light asked for, for an error of .01 or less
 constexpr uint32_t rays_of_refining_task = 16;
 constexpr double most_refined = 1 << 18;  // rays of one row
@@ -124,14 +124,14 @@ double RowPlan::rays_that_matter(size_t frozen) const {
   return rays;
 }
 
-std::vector<CellTask> RowPlan::further_tasks(double times, size_t frozen) {
+std::vector<CellTask> RowPlan::further_tasks(size_t frozen) {
   look(bounces_of_importance);
   const std::vector<float>& y = importance_;
   const double all = std::accumulate(y.begin(), y.end(), 0.0);
   std::vector<CellTask> tasks;
   if (!(all > 0)) return tasks;
-  const double steps = times * rays_that_matter(frozen) / rays_of_step;
-  const double most = times * double(most_rays_of_row) / rays_of_step;
+  const double steps = rays_that_matter(frozen) / rays_of_step;
+  const double most = double(most_rays_of_row) / rays_of_step;
   for (uint32_t c = 0; c < y.size(); ++c) {
     if (!rows_.has_row(c)) continue;
     const double wanted = std::min(steps * double(y[c]) / all, most);

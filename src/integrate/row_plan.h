@@ -33,9 +33,9 @@ class RowPlan {
   // have rays for; none where all that matters has them, or cells are too many.
   std::vector<CellTask> first_tasks();
   // Further rays of the cells that matter, in proportion to what is asked of them, less what they
-  // have had already: `times` as many in all as the first ones, about. frozen: how many cells were
-  // kept from other views.
-  std::vector<CellTask> further_tasks(double times, size_t frozen);
+  // have had already: as many in all as the first ones, about. frozen: how many cells were kept
+  // from other views.
+  std::vector<CellTask> further_tasks(size_t frozen);
   // Of cells that matter to points, until there are so many rays in all, in proportion to what is
   // asked of them, or as many as they have. Halves of them have numbers of their own, so that what
   // they differ by tells what their mean is off by: that of one well spread sequence is off by

@@ -64,6 +64,8 @@ TEST_CASE("what comes from far away comes from larger cells, the same to whoever
       const uint32_t cell = map.add(hit, sizes * size);
       CHECK(map.find(hit, sizes * size) == cell);
     }
+    // From near by, these are no help; else the finest.
+    CHECK((map.find_from_afar(on_floor(0.5f, 0.5f)) == no_cell) == (sizes == 2.0f));
     cells.push_back(map.size() - before);
     before = map.size();
   }
@@ -76,6 +78,10 @@ TEST_CASE("what comes from far away comes from larger cells, the same to whoever
   CHECK(double(cells[5]) == about(676));
   CHECK(double(cells[6]) == about(169));
   CHECK(cells[7] == 1);
+  CellMap far(tracer, size);
+  const uint32_t only = far.add(on_floor(0.5f, 0.5f), 200 * size);
+  CHECK(far.find(on_floor(0.5f, 0.5f), far.near()) == no_cell);
+  CHECK(far.find_from_afar(on_floor(0.5f, 0.5f)) == only);
 }
 
 TEST_CASE("where light is uneven there are halves of cells, and halves of them, up to a limit") {
