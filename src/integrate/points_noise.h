@@ -16,6 +16,7 @@ namespace troffer {
 struct GatheringPoints {
   double rays = 0, most_rays = 0;  // of each point: these, or as many as bring it to …
   double error = 0;                // … this, of all its light; 0: so many rays do
+  double other_rays = 0;           // that are asked for anyway, of all points: an audit's
 };
 
 // What one ray of a point saw.
@@ -40,11 +41,13 @@ struct CellsOff {
   std::vector<float> by_hits;  // by the choice of hits at which it is lit
 };
 
-// Variances over the square of all light that a point gets, means over points.
+// Variances, means over points, each by the mean of one over the squares of all light that the
+// point gets and of the list's mean.
 struct PointsNoise {
   double by_rows = 0, by_hits = 0;  // as CellsOff has it
   double by_gather = 0;             // by gather rays …
   double gather_rays = 0;           // … of all points
+  double other_rays = 0;            // GatheringPoints::other_rays
 };
 
 // direct: luminance of irradiance straight from sources at each point, by which it is known how
@@ -56,8 +59,8 @@ PointsNoise noise_at_points(const PointsSeen& points, const std::vector<float>& 
 
 // How many times as many rays cells are worth as they have, where that is more: 1 or more. A ray of
 // a cell and one of a point take as long; the time for all is to be least for the same error. With
-// G gather rays, V of the variance by the R rays of rows, and U of it by all else, time times
-// variance, (G + R') (U + V R / R'), is least for R'² = G V R / U.
+// G rays of points, others included, V of the variance by the R rays of rows, and U of it by all
+// else, time times variance, (G + R') (U + V R / R'), is least for R'² = G V R / U.
 double times_as_many_rays(const PointsNoise& noise, double rays_of_rows);
 
 }  // namespace troffer

@@ -108,6 +108,7 @@ PointPlan plan_by_paths(PointPlan plan) {
   if (!(plan.error > 0)) return audit_plan(plan);
   plan.samples *= paths_of_sample;
   plan.samples_per_direct *= paths_of_sample;
+  plan.first_times = plan.least_times = 1;
   plan.most_times = most_times_audit;
   return plan;
 }

@@ -17,17 +17,19 @@ namespace troffer {
 
 namespace {
 
+// That these take as long as, about: a sample of a point by cells, and a cell's making.
+constexpr double rays_of_sample = 4, rays_of_cell = 200;
+
 // What streams of random numbers are for, besides the points themselves.
 enum class Round : uint64_t { audit = 0, by_paths = 1, forecast = 2 };
 
 // What the method knows of errors that no spread of its samples shows, as standard errors that so
 // many draws tell.
-void add_noise(const std::vector<double>& of_luminance, double lx_per_unit,
-               std::vector<PointLight>& values) {
+void add_shared_errors(std::vector<PointLight>& values) {
   const double of_draws = t_quantile_95(draws_of_noise) / 1.959964;
-  for (size_t i = 0; i < values.size(); ++i)
-    for (Measurement* m : {&values[i].all, &values[i].indirect})
-      m->standard_error = std::hypot(m->standard_error, of_luminance[i] * lx_per_unit * of_draws);
+  for (PointLight& v : values)
+    for (Measurement* m : {&v.all, &v.indirect})
+      m->standard_error = std::hypot(m->standard_error, v.shared_error * of_draws);
 }
 
 MeasureResult nothing_measured(size_t points) {
@@ -72,13 +74,15 @@ PointPlan plan_of(const MeasureOptions& options, const Scene& scene) {
   if (row.measures_to_error && options.spp == 0) {
     plan.error = share_of_error * options.error;
     plan.samples_per_direct = row.measuring_samples_per_direct;
+    plan.first_times = 0.5;
+    plan.least_times = 2;
   }
   return plan;
 }
 
 GatheringPoints gathering_by(const PointPlan& plan) {
   const double most_times = plan.error > 0 ? plan.most_times : 1;
-  return {double(plan.samples), plan.samples * most_times, plan.error};
+  return {plan.samples * plan.least_times, plan.samples * most_times, plan.error};
 }
 
 // A list that is measured, by whatever suits it.
@@ -111,6 +115,7 @@ class PointsMeasuring {
       if (forecast->plans.size() == places_.size()) plans_ = forecast->plans;
       if (forecast->is_for_paths()) return measured_by_paths(progress_);
       cells.most_cells = forecast->most_cells();
+      cells.points.other_rays = rays_of_audit_ = forecast->rays_of_audit;
     }
     PointValues found = measured_by_method(&cells);
     if (stop_.load()) {
@@ -145,10 +150,13 @@ class PointsMeasuring {
     const std::unique_ptr<Integrator> integrator =
         make_integrator(scene_, options_.method, settings_, preparation_, cells);
     if (!integrator) return {};
-    PointValues found =
-        measure_points(*integrator, places_, plan_,
-                       {options_.seed, options_.threads, samples_of_batch_, progress_, stop_});
-    add_noise(found.noise, plan_.lx_per_unit, found.values);
+    double spare_rays = rays_of_audit_;
+    if (cells != nullptr && options_.cells == nullptr)
+      spare_rays += rays_of_cell * double(cells->statistics.cells);
+    PointValues found = measure_points(*integrator, places_, plan_,
+                                       {options_.seed, options_.threads, samples_of_batch_,
+                                        progress_, stop_, spare_rays / rays_of_sample});
+    add_shared_errors(found.values);
     return found;
   }
   PointValues measured_by_paths(const ProgressCallback& progress) {
@@ -187,6 +195,7 @@ class PointsMeasuring {
   PointPlan plan_;
   std::vector<PointPlan> plans_{plan_by_paths(plan_)};  // by paths
   int samples_of_batch_;
+  double rays_of_audit_ = 0;
   std::unique_ptr<Integrator> by_paths_;
   const ProgressCallback& progress_;
   const StopFlag& stop_;

@@ -119,7 +119,7 @@ double error_by_noise(const NoiseDraws& noise, int samples) {
 }
 
 PointLight measure_point(const Integrator& integrator, uint64_t stream, const PointPlan& plan,
-                         const StopFlag& stop, Worker& w, Counters& counters, double& noise) {
+                         const StopFlag& stop, Worker& w, Counters& counters) {
   const int sets = std::min(most_sets, plan.samples);
   const int estimates = std::max(1, (plan.samples + sets - 1) / sets / plan.samples_per_estimate);
   const double weight = 1.0 / estimates;
@@ -144,7 +144,7 @@ PointLight measure_point(const Integrator& integrator, uint64_t stream, const Po
   light.least_error = least * lx;
   light.kurtosis = indirect.kurtosis();
   light.samples = plan.samples;
-  noise = error_by_noise(w.noise, sets * estimates);
+  light.shared_error = error_by_noise(w.noise, sets * estimates) * lx;
   return light;
 }
 
@@ -178,13 +178,11 @@ class Measuring {
       w.samples_per_batch = run_.samples_per_batch;
       w.point = i;
       const uint64_t stream = hash_of(run_.seed, i);
-      double noise = 0;
       const PointLight light =
           measure_point(integrator_, round == 0 ? stream : hash_of(stream, round), plans[k],
-                        run_.stop, w, found_.counters[i], noise);
+                        run_.stop, w, found_.counters[i]);
       if (run_.stop.load(std::memory_order_relaxed)) return;  // its sums may have been cut short
       found_.values[i] = light;
-      found_.noise[i] = noise;
       found_.is_measured[i] = 1;
       const std::lock_guard lock(mutex);
       done += plans[k].samples;
@@ -220,31 +218,33 @@ PointValues measure_points(const Integrator& integrator, const std::vector<Measu
   constexpr double share_of_first = 0.25;  // of the time, about
   const size_t points = places.size();
   PointValues found{std::vector<PointLight>(points), std::vector<uint8_t>(points, 0),
-                    std::vector<double>(points, 0), std::vector<Counters>(points)};
+                    std::vector<Counters>(points)};
   Measuring measuring(integrator, places, plans, run, found);
   std::vector<size_t> which(points);
   std::iota(which.begin(), which.end(), size_t{0});
-  std::vector<PointPlan> own;
-  for (const size_t i : which) own.push_back(measuring.plan(i));
+  std::vector<PointPlan> own, first, more;
+  for (const size_t i : which) {
+    own.push_back(measuring.plan(i));
+    first.push_back(first_of(own.back()));
+  }
   const bool are_all =
       std::all_of(own.begin(), own.end(), [](const PointPlan& p) { return !(p.error > 0); });
   const double after_first = are_all ? 1 : share_of_first;
-  measuring.measure(which, own, 0, 0, after_first);
+  measuring.measure(which, first, 0, 0, after_first);
   tell_rare_light(found.values, which);
   which.clear();
-  own.clear();
+  const std::vector<PointPlan> enough = enough_for(found.values, own, run.spare_samples);
   for (size_t i = 0; i < points; ++i) {
-    const PointPlan& plan = measuring.plan(i);
-    const PointPlan enough = enough_for(found.values[i], plan);
     // as planned, or nothing more is allowed
-    if (enough.samples == plan.samples && enough.samples_per_direct == plan.samples_per_direct)
+    if (enough[i].samples == first[i].samples &&
+        enough[i].samples_per_direct == first[i].samples_per_direct)
       continue;
     found.is_measured[i] = 0;
     which.push_back(i);
-    own.push_back(enough);
+    more.push_back(enough[i]);
   }
   if (which.empty() && after_first < 1 && run.progress) run.progress(1);
-  measuring.measure(which, own, 1, after_first, 1);
+  measuring.measure(which, more, 1, after_first, 1);
   tell_rare_light(found.values, which);
   return found;
 }

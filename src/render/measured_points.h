@@ -17,12 +17,12 @@ struct PointsRun {
   int samples_per_batch = 0;
   ProgressCallback progress;  // may be empty
   const StopFlag& stop;
+  double spare_samples = 0;  // samples_wanted()
 };
 
 struct PointValues {
   std::vector<PointLight> values;
   std::vector<uint8_t> is_measured;
-  std::vector<double> noise;  // standard errors of luminance of irradiance: RadianceBatch::noise
   std::vector<Counters> counters;
   bool is_cut_short = false;  // all are measured, but not all is done that was to be
 

@@ -3,39 +3,198 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/units.h"
 
 namespace troffer {
 
 namespace {
 
-double aim_of(const PointLight& found, const PointPlan& plan) {
-  return plan.error * found.all.illuminance_lx;
+// One of a point's two parts, with errors times the root of the point's weight, over the aim: all
+// of a list together are to be 1 in the mean square over points.
+struct Part {
+  double error = 0;  // falls with the root of the number of samples
+  double least = 0;  // falls with their number
+  double samples = 0, most_times = 1;
+  double times = 1;  // as many samples, at least
+
+  double variance(double t) const { return std::max(sqr(error) / t, sqr(least / t)); }
+  // How many times as many samples, where a sample may bring so much.
+  double times_by(double log_of_scale) const {
+    if (!(error > 0)) return times;
+    const double wanted = std::round(log_of_scale + std::log2(error / std::sqrt(samples)));
+    return std::clamp(std::exp2(std::min(wanted, 64.0)), times, most_times);
+  }
+};
+
+struct PlannedPoint {
+  Part often, seldom;  // seldom: of no error where direct light takes part in all samples
+  double variance_of_most = 0, shared_variance = 0;
+};
+
+double times_up(double wanted, double most) {
+  return std::exp2(std::ceil(std::log2(std::clamp(wanted, 1.0, most))));
+}
+
+bool is_for_more(const PointLight& found, const PointPlan& plan) {
+  return plan.error > 0 && found.all.illuminance_lx > 0 &&
+         std::isfinite(found.all.standard_error) && found.all.standard_error > 0;
+}
+
+// As many samples as no point goes without.
+void ask_for_least(const PointLight& found, const PointPlan& plan, double lx, PlannedPoint& p) {
+  const double aim = most_of_one_point * plan.error * found.all.illuminance_lx / lx;
+  Part &often = p.often, &seldom = p.seldom;
+  seldom.times = times_up(seldom.least / aim, seldom.most_times);
+  const double both = often.error + seldom.error;
+  if (sqr(often.error) + sqr(seldom.error) <= sqr(plan.tolerance * aim)) return;
+  often.times = times_up(often.error * both / sqr(aim), often.most_times);
+  seldom.times =
+      std::max(seldom.times, times_up(seldom.error * both / sqr(aim), seldom.most_times));
+}
+
+PlannedPoint planned(const PointLight& found, const PointPlan& plan, double mean_lx) {
+  const double own_lx = found.all.illuminance_lx;
+  const double lx = plan.error / std::sqrt(0.5 / sqr(own_lx) + 0.5 / sqr(mean_lx));  // that is 1
+  PlannedPoint p;
+  p.often.samples = plan.samples;
+  p.seldom.samples = double(plan.samples) / plan.samples_per_direct;
+  for (Part* part : {&p.often, &p.seldom}) part->most_times = std::max(plan.most_times, 1.0);
+  if (plan.samples_per_direct > 1) {
+    p.often.error = found.often_error / lx;
+    p.seldom.error = found.seldom_error / lx;
+    p.seldom.least = found.least_error / lx;
+  } else {
+    p.often.error = found.all.standard_error / lx;
+  }
+  p.shared_variance = sqr(found.shared_error / lx);
+  ask_for_least(found, plan, lx, p);
+  for (const Part* part : {&p.often, &p.seldom})
+    p.variance_of_most += part->variance(part->most_times);
+  return p;
+}
+
+// All points, by scales of how many samples they get; their logarithms.
+constexpr double least_of_scale = -100;
+
+class PlannedList {
+ public:
+  void add(const PlannedPoint& p) { points_.push_back(p); }
+  const std::vector<PlannedPoint>& points() const { return points_; }
+
+  // What all are to err by; where samples are bounded, what can be.
+  double variance_allowed(double of_point) const {
+    double sum = 0;
+    for (const PlannedPoint& p : points_) sum += std::max(of_point, p.variance_of_most);
+    return sum;
+  }
+  // The scale by which they err by no more than that.
+  double scale_for(double allowed) const {
+    return least_scale([&](double scale) { return variance(scale) <= allowed; });
+  }
+  // That by which so many samples are taken, but no larger than what makes them err by what all
+  // samples share.
+  double scale_by(double samples_in_all) const {
+    double shared = 0;
+    for (const PlannedPoint& p : points_) shared += std::max(p.shared_variance, p.variance_of_most);
+    return least_scale([&](double scale) {
+      return samples(scale) >= samples_in_all || variance(scale) <= shared;
+    });
+  }
+  double variance(double log_of_scale) const {
+    double sum = 0;
+    for (const PlannedPoint& p : points_)
+      for (const Part* part : {&p.often, &p.seldom})
+        sum += part->variance(part->times_by(log_of_scale));
+    return sum;
+  }
+
+ private:
+  double samples(double log_of_scale) const {
+    double sum = 0;
+    for (const PlannedPoint& p : points_)
+      for (const Part* part : {&p.often, &p.seldom})
+        sum += part->samples * part->times_by(log_of_scale);
+    return sum;
+  }
+  // By which something holds that does so for all larger ones.
+  template <typename Condition>
+  static double least_scale(const Condition& holds) {
+    double low = least_of_scale, high = -least_of_scale;
+    while (high - low > 1e-3) {
+      const double middle = 0.5 * (low + high);
+      (holds(middle) ? high : low) = middle;
+    }
+    return high;
+  }
+
+  std::vector<PlannedPoint> points_;
+};
+
+double mean_light(std::span<const PointLight> points) {
+  double sum = 0;
+  int lit = 0;
+  for (const PointLight& p : points) {
+    if (!(p.all.illuminance_lx > 0) || !std::isfinite(p.all.illuminance_lx)) continue;
+    sum += p.all.illuminance_lx;
+    ++lit;
+  }
+  return lit > 0 ? sum / lit : 0;
 }
 
 }  // namespace
 
-bool is_as_planned(const PointLight& found, const PointPlan& plan) {
-  const double aim = aim_of(found, plan);
-  return !(aim > 0) || found.all.standard_error <= plan.tolerance * aim;
+std::vector<SamplesWanted> samples_wanted(std::span<const PointLight> found,
+                                          std::span<const PointPlan> plans, double spare) {
+  TROFFER_CHECK(found.size() == plans.size());
+  const double mean = mean_light(found);
+  std::vector<SamplesWanted> wanted;
+  std::vector<size_t> which;
+  PlannedList list;
+  double tolerance = 1;
+  for (size_t i = 0; i < found.size(); ++i) {
+    const PointPlan& plan = plans[i];
+    wanted.push_back({double(plan.samples), double(plan.samples) / plan.samples_per_direct});
+    if (!is_for_more(found[i], plan)) continue;
+    which.push_back(i);
+    list.add(planned(found[i], plan, mean));
+    tolerance = std::max(tolerance, plan.tolerance);
+  }
+  const bool is_well = list.variance(least_of_scale) <= list.variance_allowed(sqr(tolerance));
+  double scale = is_well ? least_of_scale : list.scale_for(list.variance_allowed(1));
+  if (spare > 0) scale = std::max(scale, list.scale_by(spare));
+  for (size_t k = 0; k < which.size(); ++k) {
+    const PlannedPoint& p = list.points()[k];
+    const PointPlan& plan = plans[which[k]];
+    SamplesWanted& w = wanted[which[k]];
+    w.all *= p.often.times_by(scale);
+    w.direct *= (plan.samples_per_direct > 1 ? p.seldom : p.often).times_by(scale);
+  }
+  return wanted;
 }
 
-PointPlan enough_for(const PointLight& found, PointPlan plan) {
-  if (is_as_planned(found, plan)) return plan;
-  const double aim = aim_of(found, plan);
-  const auto times = [&](double wanted) {
-    return std::exp2(std::ceil(std::log2(std::clamp(wanted, 1.0, plan.most_times))));
-  };
-  if (plan.samples_per_direct <= 1) {
-    plan.samples = int(double(plan.samples) * times(sqr(found.all.standard_error / aim)));
-    return plan;
-  }
-  const double seldom = found.seldom_error, often = found.often_error;
-  const double of_direct = std::max(seldom * (seldom + often) / sqr(aim), found.least_error / aim);
-  const int directs = plan.samples / plan.samples_per_direct * int(times(of_direct));
-  plan.samples = std::max(plan.samples * int(times(often * (seldom + often) / sqr(aim))), directs);
-  plan.samples_per_direct = plan.samples / directs;
+PointPlan first_of(PointPlan plan) {
+  if (!(plan.error > 0)) return plan;
+  const double times = plan.first_times;
+  plan.samples = int(plan.samples * times);
+  plan.samples_per_direct = std::max(int(plan.samples_per_direct * times), 1);
+  plan.most_times /= times;
   return plan;
+}
+
+std::vector<PointPlan> enough_for(std::span<const PointLight> found, std::vector<PointPlan> plans,
+                                  double spare) {
+  std::vector<PointPlan> first;
+  for (const PointPlan& p : plans) first.push_back(first_of(p));
+  const std::vector<SamplesWanted> wanted = samples_wanted(found, first, spare);
+  for (size_t i = 0; i < plans.size(); ++i) {
+    PointPlan& p = plans[i];
+    if (!(p.error > 0)) continue;
+    const double directs = std::max(wanted[i].direct, double(p.samples / p.samples_per_direct));
+    p.samples = int(std::max({wanted[i].all, directs, p.samples * p.least_times}));
+    if (p.samples_per_direct > 1) p.samples_per_direct = int(p.samples / directs);
+  }
+  return plans;
 }
 
 }  // namespace troffer

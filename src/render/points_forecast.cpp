@@ -20,12 +20,18 @@ constexpr double rays_of_point = 4e4;
 // and halls, 180 to 360 for each cell.
 constexpr double rays_of_cells = 7e6, rays_of_cell = 200;
 
-// As many as bring the error down to what is aimed at, were they allowed.
-double samples_wanted(const PointLight& found, const PointPlan& plan) {
-  // Where so few find no light, it may be that hardly any would.
-  if (!(found.all.illuminance_lx > 0)) return std::numeric_limits<double>::infinity();
-  const double aim = plan.error * found.all.illuminance_lx;
-  return aim > 0 ? plan.samples * sqr(found.often_error / aim) : 0;
+// Of each point, as many as bring the errors down to what is aimed at, were they allowed.
+std::vector<double> samples_at_will(const std::vector<PointLight>& found,
+                                    std::vector<PointPlan> plans) {
+  constexpr double at_will = 1e12;
+  for (PointPlan& p : plans) p.most_times = at_will;
+  const std::vector<SamplesWanted> wanted = samples_wanted(found, plans);
+  std::vector<double> samples;
+  for (size_t i = 0; i < found.size(); ++i)
+    // Where so few find no light, it may be that hardly any would.
+    samples.push_back(found[i].all.illuminance_lx > 0 ? wanted[i].all
+                                                      : std::numeric_limits<double>::infinity());
+  return samples;
 }
 
 }  // namespace
@@ -52,15 +58,18 @@ std::optional<PointsForecast> forecast_points(const Integrator& paths,
   if (!few.is_complete()) return std::nullopt;
   look.error = plan.error;
   look.most_times = plan.most_times * plan.samples / look.samples;
+  const std::vector<PointPlan> looks(few.values.size(), look),
+      enough_for_all = enough_for(few.values, looks);
+  const std::vector<double> at_will = samples_at_will(few.values, looks);
   PointsForecast f;
-  for (const PointLight& p : few.values) {
-    const PointPlan enough = enough_for(p, look);
+  for (size_t i = 0; i < few.values.size(); ++i) {
+    const PointPlan& enough = enough_for_all[i];
     PointPlan& own = f.plans.emplace_back(plan);
     own.samples = std::max(enough.samples, plan.samples);
     own.samples_per_direct = own.samples / (enough.samples / enough.samples_per_direct);
     own.most_times = std::max(plan.most_times * plan.samples / own.samples, 1.0);
     own.tolerance = tolerance;
-    f.samples += std::max(samples_wanted(p, look), double(own.samples)) / double(few.values.size());
+    f.samples += std::max(at_will[i], double(own.samples)) / double(few.values.size());
   }
   const double samples = double(look.samples) * double(few.values.size());
   // A ray to the next surface, and one from there to a light.
@@ -68,8 +77,8 @@ std::optional<PointsForecast> forecast_points(const Integrator& paths,
   const auto points = double(places.size());
   f.rays = rays_of_sample * f.samples * points;
   // The audit takes as many paths of a point as a plan by paths begins with.
-  f.rays_for_cells =
-      f.rays - rays_of_point * points - rays_of_sample * plan.samples * double(at.size());
+  f.rays_of_audit = rays_of_sample * plan.samples * double(at.size());
+  f.rays_for_cells = f.rays - rays_of_point * points - f.rays_of_audit;
   return f;
 }
 

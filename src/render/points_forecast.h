@@ -16,6 +16,7 @@ struct PointsForecast {
   std::vector<PointPlan> plans;  // of the points that were looked at: all of a short list
   double samples = 0;            // of a point, on average, as many as the error wants
   double rays = 0;               // of all kinds, for all points
+  double rays_of_audit = 0;      // that points by cells take besides
   // What else the list would take that much for: cells' making, in rays. Negative: paths take less
   // than points by cells do even if cells cost nothing.
   double rays_for_cells = 0;
