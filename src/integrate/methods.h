@@ -133,7 +133,7 @@ struct MethodRow {
   bool is_same_in_crops = true;
   int refinement = 1;                  // most viewing rays of a pixel, in --spp, by default
   int usual_measuring_samples = 4096;  // per measuring point
-  // … and where their error is above a quarter of MethodSettings::error, as many as that wants.
+  // … or as many as a quarter of MethodSettings::error wants.
   bool measures_to_error = false;
   int rays_of_measuring_sample = 1;  // one estimate stands for so many of these samples
   // Light straight from sources, which errs by far less, takes part in every so many-th of them,
