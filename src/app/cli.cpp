@@ -207,7 +207,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
   s->add_option("--method", c.method, "How light is computed: " + Method::names())
       ->capture_default_str();
-  s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256]")
+  s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256; certified: by --error]")
       ->check(CLI::Range(2, 1 << 26));
   s->add_option(
       "--solution", c.solution,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #if defined(__linux__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
@@ -43,11 +44,20 @@ size_t bytes_to_reserve(size_t page) {
 
 // Has the heap grow by so much, and not shrink.
 bool grow_heap(size_t bytes) {
-  if (mallopt(M_TRIM_THRESHOLD, INT32_MAX) == 0 || mallopt(M_MMAP_THRESHOLD, INT32_MAX) == 0)
-    return false;
-  void* volatile const taken = std::malloc(bytes);  // volatile: or the pair of calls is left out
-  std::free(taken);
-  return taken != nullptr && mallopt(M_MMAP_THRESHOLD, largest_in_heap) != 0;
+  constexpr int usual_maps = 65536;
+  if (mallopt(M_MMAP_THRESHOLD, largest_in_heap) == 0 || mallopt(M_MMAP_MAX, 0) == 0) return false;
+  void* volatile const taken =
+      mallopt(M_TRIM_THRESHOLD, INT32_MAX) != 0 ? std::malloc(bytes) : nullptr;
+  std::free(taken);  // volatile: or the pair of calls is left out
+  mallopt(M_MMAP_MAX, usual_maps);
+  return taken != nullptr;
+}
+
+// Then what is reserved counts as if it were used.
+bool is_reserving_dear() {
+  std::ifstream file("/proc/sys/vm/overcommit_memory");
+  int mode = 0;
+  return !(file >> mode) || mode == 2;
 }
 
 }  // namespace
@@ -55,6 +65,8 @@ bool grow_heap(size_t bytes) {
 void use_large_pages() {
   const size_t page = size_t(std::max(sysconf(_SC_PAGESIZE), 4096L));
   const auto begin = reinterpret_cast<uintptr_t>(sbrk(0));
+  // With pages of 64 KiB large ones have 512 MiB.
+  if (page != 4096 || is_reserving_dear()) return;
   if (!grow_heap(bytes_to_reserve(page))) return;
   if (std::thread::hardware_concurrency() <= most_threads_of_heap) mallopt(M_ARENA_MAX, 1);
   const uintptr_t first = (begin + page - 1) / page * page;

@@ -14,11 +14,11 @@ namespace {
 // of a list together are to be 1 in the mean square over points.
 struct Part {
   double error = 0;  // falls with the root of the number of samples
-  double least = 0;  // falls with their number
+  double least = 0;  // falls with their number; asked of each point by itself
   double samples = 0, most_times = 1;
   double times = 1;  // as many samples, at least
 
-  double variance(double t) const { return std::max(sqr(error) / t, sqr(least / t)); }
+  double variance(double t) const { return sqr(error) / t; }
   // How many times as many samples, where a sample may bring so much.
   double times_by(double log_of_scale) const {
     if (!(error > 0)) return times;
@@ -33,7 +33,7 @@ struct PlannedPoint {
 };
 
 double times_up(double wanted, double most) {
-  return std::exp2(std::ceil(std::log2(std::clamp(wanted, 1.0, most))));
+  return std::min(std::exp2(std::ceil(std::log2(std::clamp(wanted, 1.0, most)))), most);
 }
 
 bool is_for_more(const PointLight& found, const PointPlan& plan) {
@@ -43,9 +43,10 @@ bool is_for_more(const PointLight& found, const PointPlan& plan) {
 
 // As many samples as no point goes without.
 void ask_for_least(const PointLight& found, const PointPlan& plan, double lx, PlannedPoint& p) {
-  const double aim = most_of_one_point * plan.error * found.all.illuminance_lx / lx;
+  const double own = plan.error * found.all.illuminance_lx / lx, aim = most_of_one_point * own;
   Part &often = p.often, &seldom = p.seldom;
-  seldom.times = times_up(seldom.least / aim, seldom.most_times);
+  if (seldom.least > plan.tolerance * own)
+    seldom.times = times_up(seldom.least / own, seldom.most_times);
   const double both = often.error + seldom.error;
   if (sqr(often.error) + sqr(seldom.error) <= sqr(plan.tolerance * aim)) return;
   often.times = times_up(often.error * both / sqr(aim), often.most_times);
@@ -76,6 +77,11 @@ PlannedPoint planned(const PointLight& found, const PointPlan& plan, double mean
 
 // All points, by scales of how many samples they get; their logarithms.
 constexpr double least_of_scale = -100;
+// What as many samples as are allowed leave of a point's variance, and a little more: or parts that
+// hardly err were to have as many as those that do.
+double nearly_most(const PlannedPoint& p) {
+  return p.variance_of_most + 0.1 * std::min(p.variance_of_most, 1.0);
+}
 
 class PlannedList {
  public:
@@ -85,7 +91,7 @@ class PlannedList {
   // What all are to err by; where samples are bounded, what can be.
   double variance_allowed(double of_point) const {
     double sum = 0;
-    for (const PlannedPoint& p : points_) sum += std::max(of_point, p.variance_of_most);
+    for (const PlannedPoint& p : points_) sum += std::max(of_point, nearly_most(p));
     return sum;
   }
   // The scale by which they err by no more than that.
@@ -96,7 +102,7 @@ class PlannedList {
   // samples share.
   double scale_by(double samples_in_all) const {
     double shared = 0;
-    for (const PlannedPoint& p : points_) shared += std::max(p.shared_variance, p.variance_of_most);
+    for (const PlannedPoint& p : points_) shared += std::max(p.shared_variance, nearly_most(p));
     return least_scale([&](double scale) {
       return samples(scale) >= samples_in_all || variance(scale) <= shared;
     });

@@ -48,12 +48,12 @@ struct SamplesWanted {
 // As many samples of each point as bring the errors of a list down to what its plans, by which
 // `found` was measured, aim at. An error counts by the mean of its squares over the point's own
 // light and over the list's mean: all points together are to err by no more than the aim, and no
-// point by more than twice that of its own light. Of all numbers of samples that are enough, these
-// are the least: n in proportion to the standard deviation of a sample times the root of its weight
-// (Neyman's allocation), of either part of the light, as far as plans allow, and not fewer than
-// before. All are powers of two times those of the plans. Points without light keep their plans.
-// spare: so many samples, of all points, are taken anyway, beside something that takes far longer,
-// or as many as bring errors down to what all samples share.
+// point by more than about twice that of its own light, so far as samples tell. Of all numbers of
+// samples that are enough, these are about the least: n in proportion to the standard deviation of
+// a sample times the root of its weight (Neyman's allocation), of either part of the light, as far
+// as plans allow, and not fewer than before. All are powers of two times those of the plans. Points
+// without light keep their plans. spare: so many samples, of all points, are taken anyway, beside
+// something that takes far longer, or as many as bring errors down to what all samples share.
 std::vector<SamplesWanted> samples_wanted(std::span<const PointLight> found,
                                           std::span<const PointPlan> plans, double spare = 0);
 

@@ -23,7 +23,7 @@ constexpr double rays_of_cells = 7e6, rays_of_cell = 200;
 // Of each point, as many as bring the errors down to what is aimed at, were they allowed.
 std::vector<double> samples_at_will(const std::vector<PointLight>& found,
                                     std::vector<PointPlan> plans) {
-  constexpr double at_will = 1e12;
+  constexpr double at_will = 0x1p40;
   for (PointPlan& p : plans) p.most_times = at_will;
   const std::vector<SamplesWanted> wanted = samples_wanted(found, plans);
   std::vector<double> samples;

@@ -194,3 +194,23 @@ TEST_CASE("spare samples are taken where they still tell more than all of them s
   for (PointLight& p : l) p.shared_error = 1;
   CHECK(samples_in_all(enough_for(l, plans, 1e9)) == had);
 }
+
+TEST_CASE("few draws that were all open want more of themselves alone") {
+  PointPlan plan{4096, 1, 32, 0.0025};
+  plan.first_times = 0.5;
+  plan.least_times = 2;
+  PointLight p = of_errors(100, 0, 0.05);
+  p.least_error = 0.45;
+  const PointPlan alone = enough_for_one(p, plan);
+  CHECK(alone.samples == 2 * 4096);
+  CHECK(alone.samples / alone.samples_per_direct == 256);
+  std::vector<PointLight> l(50, of_errors(100, 0.03, 0.3));
+  const int without = enough_for(l, std::vector<PointPlan>(50, plan))[0].samples;
+  l.insert(l.end(), 50, p);
+  CHECK(enough_for(l, std::vector<PointPlan>(100, plan))[0].samples <= without);
+  // As many as the plan allows do not bring the rest to the aim: no reason for as many draws.
+  plan.error = 0.00025;
+  const PointPlan most = enough_for_one(of_errors(100, 0.02, 0.5), plan);
+  CHECK(most.samples == 128 * 4096);
+  CHECK(most.samples / most.samples_per_direct <= 4096);
+}
