@@ -17,8 +17,8 @@ namespace troffer {
 
 namespace {
 
-// That these take as long as, about: a sample of a point by cells, and a cell's making.
-constexpr double rays_of_sample = 4, rays_of_cell = 200;
+// That a sample of a point by cells takes as long as, about.
+constexpr double rays_of_sample = 4;
 
 // What streams of random numbers are for, besides the points themselves.
 enum class Round : uint64_t { audit = 0, by_paths = 1, forecast = 2 };
@@ -152,7 +152,7 @@ class PointsMeasuring {
     if (!integrator) return {};
     double spare_rays = rays_of_audit_;
     if (cells != nullptr && options_.cells == nullptr)
-      spare_rays += rays_of_cell * double(cells->statistics.cells);
+      spare_rays += rays_of_made_cell * double(cells->statistics.cells);
     PointValues found = measure_points(*integrator, places_, plan_,
                                        {options_.seed, options_.threads, samples_of_batch_,
                                         progress_, stop_, spare_rays / rays_of_sample});

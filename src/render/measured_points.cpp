@@ -211,8 +211,9 @@ int samples_per_batch(double rays_per_sample) {
   return int(std::clamp(most_rays_per_batch / rays_per_sample, 1.0, double(largest_batch)));
 }
 
-// The first samples of a point only say how many are taken then: were they used again, a sum that
-// is small by chance, with a small error, would stay, and one that is large would not.
+// The first samples of a point by cells only say how many are taken then: were they used again, a
+// sum that is small by chance, with a small error, would stay, and one that is large would not. By
+// paths, where the first are many already, that is taken into the bargain.
 PointValues measure_points(const Integrator& integrator, const std::vector<MeasuringPlace>& places,
                            std::span<const PointPlan> plans, const PointsRun& run) {
   constexpr double share_of_first = 0.25;  // of the time, about

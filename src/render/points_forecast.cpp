@@ -17,8 +17,8 @@ constexpr double tolerance = 1.5;
 // About the least that a point by cells takes, in rays of paths, besides its audit.
 constexpr double rays_of_point = 4e4;
 // … and what their making takes in a scene of which nothing is known: 3 to 20 million in four rooms
-// and halls, 180 to 360 for each cell.
-constexpr double rays_of_cells = 7e6, rays_of_cell = 200;
+// and halls, 180 to 360 for each cell (rays_of_made_cell).
+constexpr double rays_of_cells = 7e6;
 
 // Of each point, as many as bring the errors down to what is aimed at, were they allowed.
 std::vector<double> samples_at_will(const std::vector<PointLight>& found,
@@ -41,7 +41,7 @@ bool PointsForecast::is_for_paths() const {
 }
 
 double PointsForecast::most_cells() const {
-  return rays_for_cells / rays_of_cell;
+  return rays_for_cells / rays_of_made_cell;
 }
 
 std::optional<PointsForecast> forecast_points(const Integrator& paths,

@@ -12,6 +12,9 @@
 
 namespace troffer {
 
+// That a cell's making takes as long as, about.
+constexpr double rays_of_made_cell = 200;
+
 struct PointsForecast {
   std::vector<PointPlan> plans;  // of the points that were looked at: all of a short list
   double samples = 0;            // of a point, on average, as many as the error wants
