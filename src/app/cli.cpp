@@ -132,7 +132,6 @@ void add_camera(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   r->add_option("--camera", c.camera, "Camera by name [the first]");
   r->add_option("--eye", c.eye, "Camera position x,y,z, in place of the scene's camera");
   r->add_option("--target", c.target, "Point x,y,z that --eye looks at");
-  r->add_option("--up", c.up, "Upward direction x,y,z [0,1,0; pbrt and z-up scenes: 0,0,1]");
   r->add_option("--fov", c.fov_deg, "Field of view of --eye over the shorter side, degrees")
       ->check(CLI::Range(0.1, 179.0))
       ->capture_default_str();

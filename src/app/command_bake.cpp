@@ -104,7 +104,8 @@ int run_bake(const BakeCommand& c, BakeOptions options) {
   std::vector<OutputReservation> reserved = reserve_outputs({c.output}, "");
   reserve_cells(c.solution, options.light.method, options.light.indirect, reserved);
   const ThreadLimit limit(c.threads);
-  const PreparedScene scene(as_meshes(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet)));
+  UpUse up;
+  const PreparedScene scene(as_meshes(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up)));
   const StopFlag& stop = install_stop_handlers();
   const std::unique_ptr<Preparation> preparation =
       prepare_method(scene, options.light.method, options.light.kj92, options.light.indirect,

@@ -7,6 +7,7 @@
 #include "app/luminaire_info.h"
 #include "app/printable.h"
 #include "app/process.h"
+#include "app/up_json.h"
 #include "base/box.h"
 #include "base/error.h"
 #include "import/import.h"
@@ -38,7 +39,7 @@ size_t texture_bytes(const Scene& scene) {
   return bytes;
 }
 
-Json info_json(const Scene& scene) {
+Json info_json(const Scene& scene, const UpDecision& up) {
   size_t light_triangles = 0;
   for (const Mesh& m : scene.meshes)
     for (const int32_t e : m.lights) light_triangles += e >= 0;
@@ -65,6 +66,7 @@ Json info_json(const Scene& scene) {
   else
     j["bounds"] = {{box.lower.x, box.lower.y, box.lower.z},
                    {box.upper.x, box.upper.y, box.upper.z}};
+  j["up"] = up_json(up);
   j["warnings"] = Json::array();
   for (const Warning& w : scene.warnings.entries())
     j["warnings"].push_back({{"text", w.text}, {"count", w.count}});
@@ -88,7 +90,7 @@ Json info_json(const Scene& scene) {
   return j;
 }
 
-void print_text(const Scene& scene, const Json& j) {
+void print_text(const Scene& scene, const Json& j, const UpDecision& up) {
   fmt::print("scene      {}\n", printable(scene.file));
   for (const char* key : {"triangles", "meshes", "materials", "textures", "spheres", "disks"})
     fmt::print("{:<10} {}\n", key, j[key].get<size_t>());
@@ -106,6 +108,7 @@ void print_text(const Scene& scene, const Json& j) {
     fmt::print("bounds     {:.{}g} {:.{}g} {:.{}g}  to  {:.{}g} {:.{}g} {:.{}g}\n", box.lower.x,
                digits, box.lower.y, digits, box.lower.z, digits, box.upper.x, digits, box.upper.y,
                digits, box.upper.z, digits);
+  fmt::print("up         {}, {}\n", name_of_up(up.up), up.reason);
   fmt::print("cameras    {}\n", scene.cameras.size());
   for (const Camera& c : scene.cameras) {
     fmt::print("  {}", printable(c.name));
@@ -137,12 +140,14 @@ int run_info(const InfoCommand& command) {
   if (!command.polar.empty()) throw UsageError("--polar goes with an .ies or .ldt file");
   Scene scene = import_scene(command.scene.file, command.scene.options);
   if (scene.lights.empty()) scene.warnings.add("the scene has no light");
-  const Json j = info_json(scene);
+  const UpDecision up = up_of(command.scene, scene);
+  if (!up.doubt.empty()) scene.warnings.add(up.doubt);
+  const Json j = info_json(scene, up);
   if (command.is_json)
     // A file may hold any bytes in its names; what is not UTF-8 is replaced.
     fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
   else
-    print_text(scene, j);
+    print_text(scene, j, up);
   return exit_done;
 }
 

@@ -30,7 +30,8 @@ int run_measure(const MeasureCommand& c) {
   reserve_cells(c.solution, options.method, options.indirect, reserved);
   const std::vector<MeasuringPoint> points = read_points(c.points);
   const ThreadLimit limit(c.threads);
-  const PreparedScene scene(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet));
+  UpUse up;
+  const PreparedScene scene(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up));
 
   const StopFlag& stop = install_stop_handlers();
   const std::unique_ptr<Preparation> preparation =

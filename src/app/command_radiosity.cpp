@@ -11,6 +11,7 @@
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "app/up_json.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/atomic_file.h"
@@ -111,7 +112,7 @@ struct RadiositySeconds {
 };
 
 std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
-                            const RadiositySeconds& t) {
+                            const RadiositySeconds& t, const UpDecision& up) {
   const RadiositySolution& s = r.solution;
   const EnergyBalance& b = s.balance;
   nlohmann::ordered_json j;
@@ -133,6 +134,7 @@ std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
   j["solution_mb"] = double(s.memory_bytes()) * 1e-6;
   j["peak_memory_mb"] = peak_memory_mb();
   j["seed"] = c.options.seed;
+  j["up"] = up_json(up);
   j["is_complete"] = s.is_complete;
   j["end"] = end_name(s.end);
   return j.dump(2) + "\n";
@@ -180,7 +182,8 @@ int run_radiosity(const RadiosityCommand& c) {
   const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   RadiositySeconds seconds;
   const ThreadLimit limit(c.threads);
-  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
+  UpUse up;
+  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   const PreparedScene scene(std::move(imported));
@@ -200,7 +203,7 @@ int run_radiosity(const RadiosityCommand& c) {
   for (const std::string& path : c.outputs) write_output(path, scene, s);
   seconds.write = seconds_since(mark);
   seconds.total = seconds_since(start);
-  if (!c.stats.empty()) write_file(c.stats, statistics_json(c, result, seconds));
+  if (!c.stats.empty()) write_file(c.stats, statistics_json(c, result, seconds, up.decision));
   if (!c.is_quiet) {
     print_summary(result);
     for (const std::string& w : radiosity_warnings(s)) fmt::print(stderr, "warning: {}\n", w);

@@ -13,6 +13,7 @@
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "app/up_json.h"
 #include "base/crew.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -20,19 +21,14 @@
 #include "render/camera.h"
 #include "render/framing.h"
 #include "render/preview.h"
-#include "scene/orientation.h"
+#include "scene/names.h"
 
 namespace troffer {
 
 namespace {
 
-Vec3 up_of(const Scene& scene, const RenderCommand& c) {
-  return c.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.up, "--up"));
-}
-
 // Nothing where the scene has no camera and none is described.
-std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c) {
-  const Vec3 up = up_of(scene, c);
+std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c, const Vec3& up) {
   if (!c.eye.empty() || !c.target.empty()) {
     if (c.eye.empty() || c.target.empty()) throw UsageError("--eye and --target go together");
     if (!c.camera.empty()) throw UsageError("--camera and --eye exclude each other");
@@ -44,15 +40,14 @@ std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c) 
   if (!c.camera.empty()) {
     for (const Camera& camera : scene.cameras)
       if (camera.name == c.camera) return camera;
-    throw UsageError("no camera is named '" + c.camera + "' (troffer info lists them)");
+    throw UsageError(no_camera_named(scene, c.camera));
   }
   if (!scene.cameras.empty()) return scene.cameras.front();
   return std::nullopt;
 }
 
 // For a scene without camera.
-Camera place_camera(const PreparedScene& scene, const RenderCommand& c) {
-  const Vec3 up = up_of(scene.scene, c);
+Camera place_camera(const PreparedScene& scene, const RenderCommand& c, const Vec3& up) {
   if (!c.is_quiet)
     fmt::print(
         stderr,
@@ -82,7 +77,7 @@ const char* name_of(RenderEnd end) {
 }
 
 std::string statistics_json(const RenderCommand& c, const RenderResult& result, const Seconds& t,
-                            double total) {
+                            double total, const UpDecision& up) {
   const RenderStatistics& s = result.statistics;
   const Counters& n = s.counters;
   nlohmann::ordered_json j;
@@ -129,6 +124,7 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result, 
   j["spp"] = c.options.spp;
   j["max_spp"] = most_viewing_rays(c.options).in_pixel;
   j["seed"] = c.options.seed;
+  j["up"] = up_json(up);
   j["is_complete"] = result.is_complete;
   j["ended_by"] = name_of(result.end);
   j["told_error"] = s.told_error;
@@ -259,27 +255,28 @@ int run_render(RenderCommand c) {
   const std::vector<OutputReservation> reserved = check_and_reserve(c);
 
   Seconds seconds;
-  c.daylight.up = c.up;
   const ThreadLimit limit(c.options.threads);
   Camera camera;
   PreviewFiles files(c, camera);
   Preview preview([&](const Image& picture) { files.write(picture); });
   const auto show_sight = [&](const Scene& shapes, bool has_images) {
-    const std::optional<Camera> chosen = choose_camera(shapes, c);
+    const Vec3 up_seen = up_of(c.scene, shapes).up;
+    const std::optional<Camera> chosen = choose_camera(shapes, c, up_seen);
     if (!chosen && !(bounds(shapes).diagonal() > 0)) return;
-    camera = chosen ? *chosen : default_camera(shapes, up_of(shapes, c));
+    camera = chosen ? *chosen : default_camera(shapes, up_seen);
     preview.sight(shapes, camera, c.options, has_images);
   };
   ShowShapes show_shapes;
   if (c.has_preview) show_shapes = [&](const Scene& shapes) { show_sight(shapes, true); };
-  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, show_shapes);
+  UpUse up{!c.eye.empty(), {}};
+  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up, show_shapes);
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   if (c.has_preview) show_sight(imported, false);
-  const std::optional<Camera> chosen = choose_camera(imported, c);
+  const std::optional<Camera> chosen = choose_camera(imported, c, up.decision.up);
   if (chosen) camera = *chosen;
   const PreparedScene scene(std::move(imported));
-  if (!chosen) camera = place_camera(scene, c);
+  if (!chosen) camera = place_camera(scene, c, up.decision.up);
   seconds.build = seconds_since(mark);
 
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
@@ -305,7 +302,7 @@ int run_render(RenderCommand c) {
     keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())
-    write_file(c.stats, statistics_json(c, result, seconds, seconds_since(start)));
+    write_file(c.stats, statistics_json(c, result, seconds, seconds_since(start), up.decision));
   return tell(result, c, seconds_since(start));
 }
 

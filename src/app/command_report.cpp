@@ -21,7 +21,7 @@
 #include "render/framing.h"
 #include "report/report.h"
 #include "report/sha256.h"
-#include "scene/orientation.h"
+#include "scene/names.h"
 
 namespace troffer {
 
@@ -74,7 +74,8 @@ Scene overcast_scene(const ReportCommand& c) {
   sky.sky = fmt::format("overcast,{}", overcast_lx);
   sky.sun = sky.at = sky.weather = sky.date = sky.environment = "";
   sky.turbidity = 0;
-  const Scene scene = with_daylight_apart(load_scene(c.scene, {}, &sky, true));
+  UpUse same;
+  const Scene scene = with_daylight_apart(load_scene(c.scene, {}, &sky, true, same));
   std::vector<std::string> names;
   for (const Light& e : scene.lights)
     if (e.kind == LightKind::sky) names.push_back(e.name);
@@ -87,8 +88,7 @@ std::vector<Camera> named_cameras(const Scene& scene, const std::vector<std::str
   for (const std::string& name : names) {
     const auto at = std::find_if(scene.cameras.begin(), scene.cameras.end(),
                                  [&](const Camera& e) { return e.name == name; });
-    if (at == scene.cameras.end())
-      throw UsageError("no camera is named '" + name + "' (troffer info lists them)");
+    if (at == scene.cameras.end()) throw UsageError(no_camera_named(scene, name));
     chosen.push_back(*at);
   }
   return chosen;
@@ -138,7 +138,8 @@ std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& sc
   return power;
 }
 
-ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& read) {
+ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& read,
+                   const UpDecision& up) {
   ReportInfo info;
   info.scene = c.scene.file;
   info.title = c.title.empty() ? fs::path(c.scene.file).filename().string() : c.title;
@@ -151,7 +152,8 @@ ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& 
                    {"Allowed error of a picture's pixel", fmt::format("{}", c.picture_error)},
                    {"Seed", std::to_string(c.seed)},
                    {"Profile", c.profile},
-                   {"Maintenance factor", fmt::format("{}", c.maintenance)}};
+                   {"Maintenance factor", fmt::format("{}", c.maintenance)},
+                   {"Upward direction", fmt::format("{}, {}", name_of_up(up.up), up.reason)}};
   info.inputs = hashes_of(c, read);
   for (const Warning& w : scene.warnings.entries())
     info.warnings.push_back(w.count > 1 ? fmt::format("{} ({} times)", w.text, w.count) : w.text);
@@ -186,15 +188,15 @@ int run_report(const ReportCommand& c) {
   check_method(parse_method(c.method), Indirect::automatic, "");
   assessment_options(c, {0, 0, 1});  // mistakes are told before any work
   const ThreadLimit limit(c.threads);
-  const Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
-  const Vec3 up =
-      c.daylight.up.empty() ? guess_up(scene) : Vec3(parse_vector(c.daylight.up, "--up"));
+  UpUse use{true, {}};
+  const Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, use);
+  const Vec3 up = use.decision.up;
   report.options = assessment_options(c, up);
   const std::vector<PowerRequest> stated = power_of_files(c, scene, up);
   report.options.power.insert(report.options.power.begin(), stated.begin(), stated.end());
   if (c.daylight_factor != "off") report.options.overcast = [&] { return overcast_scene(c); };
   named_cameras(scene, c.cameras);
-  report.info = info_of(c, scene, read);
+  report.info = info_of(c, scene, read, use.decision);
   const ReportFolder folder(c.output);
   const std::vector<OutputReservation> reserved = reserve_outputs(
       {folder.file("report.html"), folder.file("report.json")}, folder.file("points.csv"));

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/sun_position.h"
-#include "scene/orientation.h"
+#include "scene/names.h"
 #include "view/view.h"
 
 namespace troffer {
@@ -22,23 +22,7 @@ Camera camera_named(const Scene& scene, const std::string& name) {
   for (const Camera& camera : scene.cameras)
     if (name.empty() || camera.name == name) return camera;
   if (name.empty()) return {};
-  throw UsageError("no camera is named '" + name + "' (troffer info lists them)");
-}
-
-// The direction that walks and turns take as upward: as asked; or the axis nearest to the camera's.
-Vec3 up_of(const Scene& scene, const Camera& camera, const std::string& asked) {
-  if (!asked.empty()) {
-    const Vec3 up(parse_vector(asked, "--up"));
-    if (!(length(up) > 0)) throw UsageError("--up has no length");
-    return normalize(up);
-  }
-  if (scene.cameras.empty()) return guess_up(scene);
-  size_t axis = 0;
-  for (const size_t a : {size_t(1), size_t(2)})
-    if (std::abs(camera.up[a]) > std::abs(camera.up[axis])) axis = a;
-  Vec3 up;
-  up[axis] = camera.up[axis] < 0 ? -1.0f : 1.0f;
-  return up;
+  throw UsageError(no_camera_named(scene, name));
 }
 
 // "LATITUDE,LONGITUDE,TIME" before and after its second comma.
@@ -92,9 +76,10 @@ int run_view(const ViewCommand& c) {
   settings.file = c.scene.file;
   read_size(c.size, settings);
   const ThreadLimit limit(c.threads);
-  Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet);
+  UpUse up{true, {}};
+  Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);
   settings.camera = camera_named(scene, c.camera);
-  settings.up = up_of(scene, settings.camera, c.daylight.up);
+  settings.up = normalize(up.decision.up);
   const PlaceOfTime at = split_at(c.daylight.at);
   if (!at.time.empty()) {
     settings.time = at.time;
@@ -102,7 +87,8 @@ int run_view(const ViewCommand& c) {
       parse_time(time, "time");
       DaylightOptions daylight = c.daylight;
       daylight.at = at.place + time;
-      return load_scene(c.scene, c.lights, &daylight, true);
+      UpUse same;
+      return load_scene(c.scene, c.lights, &daylight, true, same);
     };
   }
   ViewStart start;

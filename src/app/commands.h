@@ -32,6 +32,7 @@ constexpr int exit_interrupted = 130;
 struct SceneChoice {
   std::string file;
   ImportOptions options;
+  std::string up;  // parse_up()'s, or empty: decide_up()'s
 };
 void add_scene_choice(CLI::App& app, SceneChoice& choice);  // its options
 
@@ -48,7 +49,7 @@ struct RenderCommand {
   std::string tone_map = "filmic";
   std::vector<std::string> selected_lights;  // kj92: empty: all may be sampled
   std::string solution;                      // kj92, certified: file, or empty
-  std::string eye, target, up;               // "x,y,z"; override the camera
+  std::string eye, target;                   // "x,y,z"; override the camera
   float fov_deg = 60;
   LastingOptions lasting;
   bool has_preview = false;  // outputs are written while the work is under way too
@@ -159,11 +160,23 @@ int check_and_bake(const CLI::App& command_line, BakeCommand command);
 // Gets a scene without its images, where it has some, before it is read with them.
 using ShowShapes = std::function<void(const Scene& scene)>;
 
+// Which way is up, for a command that loads a scene.
+struct UpUse {
+  bool is_needed = false;  // by the command itself, not by its lights alone
+  UpDecision decision;     // set by load_scene()
+};
+
 // The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
 // emitting (all if empty), warnings printed to standard error unless is_quiet.
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
-                 const DaylightOptions* daylight, bool is_quiet,
+                 const DaylightOptions* daylight, bool is_quiet, UpUse& up,
                  const ShowShapes& show_shapes = {});
+
+// What --up says, or the scene shows; `scene` as it was read.
+UpDecision up_of(const SceneChoice& choice, const Scene& scene);
+// A line on standard error that says what was decided, unless the user or the format says it, or a
+// warning does.
+void tell_up(const UpDecision& decision);
 
 // "certified", "kj92", "fixed" and "path"; UsageError for others.
 Method parse_method(const std::string& name);

@@ -58,8 +58,6 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
       .add_option("--light-radius", o.light_radius,
                   "Makes points and spots spheres of this radius, in metres: soft shadows")
       ->check(CLI::Range(1e-6, 1e6));
-  if (command.get_option_no_throw("--up") == nullptr)
-    command.add_option("--up", o.up, "Upward direction x,y,z, for what comes from the sky");
 }
 
 }  // namespace troffer

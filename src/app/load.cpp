@@ -23,6 +23,9 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
   app.add_option("--time", choice.options.time, "glTF: seconds into the animation [at rest]")
       ->check(CLI::Range(-1e9, 1e9));
   app.add_option("--animation", choice.options.animation, "glTF: animation by name [the first]");
+  app.add_option("--up", choice.up,
+                 "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance: z; others: by "
+                 "cameras, names and what stands on what]");
 }
 
 namespace {
@@ -36,22 +39,7 @@ Scene import_shown(const SceneChoice& choice, ImageUse images, bool is_quiet) {
   return import_scene(choice.file, options);
 }
 
-}  // namespace
-
-Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
-                 const DaylightOptions* daylight, bool is_quiet, const ShowShapes& show_shapes) {
-  Scene scene = import_shown(choice, show_shapes ? ImageUse::left_out : ImageUse::read, is_quiet);
-  if (scene.left_out_image_bytes.value_or(0) > 0) {
-    show_shapes(scene);
-    scene = Scene();  // not twice in memory
-    scene = import_shown(choice, ImageUse::read, is_quiet);
-  }
-  scene.left_out_image_bytes.reset();
-  if (daylight != nullptr) add_daylight(scene, *daylight);
-  if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
-  if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
-  scene = with_joined_lights(std::move(scene));
-  if (is_quiet) return scene;
+void tell_warnings(const Scene& scene) {
   constexpr size_t most_lines = 20;
   const auto& entries = scene.warnings.entries();
   for (size_t i = 0; i < entries.size() && i < most_lines; ++i) {
@@ -62,7 +50,44 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
   if (entries.size() > most_lines)
     fmt::print(stderr, "warning: {} more kinds (troffer info lists them)\n",
                entries.size() - most_lines);
+}
+
+}  // namespace
+
+Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
+                 const DaylightOptions* daylight, bool is_quiet, UpUse& up,
+                 const ShowShapes& show_shapes) {
+  if (!choice.up.empty()) parse_up(choice.up);  // a mistake is told before any work
+  Scene scene = import_shown(choice, show_shapes ? ImageUse::left_out : ImageUse::read, is_quiet);
+  if (scene.left_out_image_bytes.value_or(0) > 0) {
+    show_shapes(scene);
+    scene = Scene();  // not twice in memory
+    scene = import_shown(choice, ImageUse::read, is_quiet);
+  }
+  scene.left_out_image_bytes.reset();
+  up.decision = up_of(choice, scene);
+  const size_t lights_in_file = scene.lights.size();
+  if (daylight != nullptr) add_daylight(scene, *daylight, up.decision);
+  const bool has_new_light = scene.lights.size() > lights_in_file;
+  const bool is_up_used =
+      up.is_needed || (daylight != nullptr && (has_new_light || depends_on_up(*daylight)));
+  if (up.is_needed && !up.decision.doubt.empty()) scene.warnings.add(up.decision.doubt);
+  if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
+  if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
+  scene = with_joined_lights(std::move(scene));
+  if (is_quiet) return scene;
+  tell_warnings(scene);
+  if (is_up_used) tell_up(up.decision);
   return scene;
+}
+
+UpDecision up_of(const SceneChoice& choice, const Scene& scene) {
+  return choice.up.empty() ? decide_up(scene) : asked_up(parse_up(choice.up));
+}
+
+void tell_up(const UpDecision& decision) {
+  if (decision.basis == UpBasis::evidence && decision.doubt.empty())
+    fmt::print(stderr, "note: {} (--up chooses another direction)\n", describe(decision));
 }
 
 Method parse_method(const std::string& name) {

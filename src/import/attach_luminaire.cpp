@@ -10,6 +10,7 @@
 #include "import/emissive.h"
 #include "import/mesh_clean.h"
 #include "scene/mesh_in_world.h"
+#include "scene/names.h"
 
 namespace troffer {
 
@@ -89,7 +90,7 @@ void attach_to_meshes(Scene& scene, const std::string& node, const Luminaire& lu
   const bool is_known =
       !o.meshes.empty() || std::any_of(scene.lights.begin(), scene.lights.end(),
                                        [&](const Light& e) { return e.name == node; });
-  if (!is_known) throw UsageError("--luminaire: nothing is named '" + node + "'");
+  if (!is_known) throw UsageError("--luminaire: " + no_node_named(scene, node));
   if (!(length(o.area_vector) >= least_flatness * o.area) || !(o.area > 0))
     throw UsageError("--luminaire: '" + node + "' is neither a flat surface nor a point");
   const Vec3d axis = normalize(o.area_vector);

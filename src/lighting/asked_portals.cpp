@@ -8,7 +8,9 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/suggestion.h"
 #include "lighting/option_text.h"
+#include "scene/names.h"
 #include "scene/portal_corners.h"
 
 namespace troffer {
@@ -43,7 +45,8 @@ Corners parse_portal(const Scene& scene, const std::string& text, bool& is_name)
     const auto corners = rectangle_of_meshes(scene, text);
     if (!corners)
       throw UsageError("--portal: '" + text +
-                       "' is neither twelve numbers nor the name of a flat rectangle");
+                       "' is neither twelve numbers nor the name of a flat rectangle" +
+                       did_you_mean(text, node_names(scene)));
     return *corners;
   }
   std::vector<Vec3d> p;

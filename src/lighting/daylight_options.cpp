@@ -18,7 +18,6 @@
 #include "lighting/luminaire_list.h"
 #include "lighting/option_text.h"
 #include "lighting/weather.h"
-#include "scene/orientation.h"
 
 namespace troffer {
 
@@ -214,7 +213,33 @@ Vec3d parse_vector(const std::string& text, const char* option) {
   return v;
 }
 
+Vec3 parse_up(const std::string& text) {
+  const bool has_sign = !text.empty() && (text[0] == '-' || text[0] == '+');
+  const std::string axis = has_sign ? text.substr(1) : text;
+  if (axis.size() == 1 && axis[0] >= 'x' && axis[0] <= 'z') {
+    Vec3 up{0};
+    up[size_t(axis[0] - 'x')] = text[0] == '-' ? -1.0f : 1.0f;
+    return up;
+  }
+  if (text.find(',') == std::string::npos)
+    throw UsageError(
+        fmt::format("--up: cannot read '{}': write an axis, such as z or -y, or x,y,z", text));
+  const Vec3 up(parse_vector(text, "--up"));
+  if (!(length(up) > 0)) throw UsageError("--up has no length");
+  return up;
+}
+
+bool depends_on_up(const DaylightOptions& o) {
+  return (!o.sky.empty() && o.sky != "none") || !o.sun.empty() || !o.at.empty() ||
+         !o.weather.empty() || !o.environment.empty() || !o.luminaires.empty() ||
+         !o.luminaire_list.empty();
+}
+
 void add_daylight(Scene& scene, const DaylightOptions& o) {
+  add_daylight(scene, o, o.up.empty() ? decide_up(scene) : asked_up(parse_up(o.up)));
+}
+
+void add_daylight(Scene& scene, const DaylightOptions& o, const UpDecision& up) {
   // The command line's ranges let what is no number pass.
   for (const double v :
        {o.north_deg, o.ground, o.environment_rotation_deg, o.light_radius, o.turbidity})
@@ -222,9 +247,8 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
       throw UsageError(
           "--north, --ground, --environment-rotation, --light-radius and --turbidity: not a "
           "number");
-  const Vec3 up = o.up.empty() ? guess_up(scene) : Vec3(parse_vector(o.up, "--up"));
-  if (!(length(up) > 0)) throw UsageError("--up has no length");
-  const Compass compass = make_compass(up, o.north_deg, is_mirrored(scene));
+  const Compass compass = make_compass(up.up, o.north_deg, is_mirrored(scene));
+  bool is_up_used = depends_on_up(o);
   attach_luminaires(scene, o.luminaires, Vec3(-compass.up));
   if (!o.luminaire_list.empty()) add_luminaire_list(scene, o.luminaire_list, Vec3(-compass.up));
   if (o.light_radius > 0) give_radius(scene, o.light_radius);
@@ -255,7 +279,9 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
     scene.warnings.add(
         "the scene has no light: an even sky of 10000 lx lights it (--sky chooses another, --sky "
         "none keeps it dark)");
+    is_up_used = true;
   }
+  if (is_up_used && !up.doubt.empty()) scene.warnings.add(up.doubt);
   add_portals(scene, o.portals);
   warn_of_unused(scene, o);
 }

@@ -172,7 +172,7 @@ void bind_parts(SceneClass& scene) {
           "add_sky",
           [](ScriptScene& s, const std::string& kind, const std::optional<double>& lux,
              const std::optional<std::pair<double, double>>& sun, double north, double ground) {
-            s.add_sky(sky_request(kind, lux, sun, ground), guess_up(s.scene()), north);
+            s.add_sky(sky_request(kind, lux, sun, ground), decide_up(s.scene()).up, north);
           },
           py::arg("kind") = "overcast", py::kw_only(), py::arg("lux") = py::none(),
           py::arg("sun") = py::none(), py::arg("north") = 0.0, py::arg("ground") = 0.2,
@@ -248,7 +248,7 @@ void bind_scene(py::module_& m) {
              const std::array<double, 3>& target, const std::optional<std::array<double, 3>>& up,
              double fov) {
             return look_at(Vec3(vec(eye) - s.scene().origin), Vec3(vec(target) - s.scene().origin),
-                           up ? Vec3(vec(*up)) : guess_up(s.scene()),
+                           up ? Vec3(vec(*up)) : decide_up(s.scene()).up,
                            in_range(fov, 0.01, 179, "fov"));
           },
           py::arg("eye"), py::arg("target"), py::kw_only(), py::arg("up") = py::none(),

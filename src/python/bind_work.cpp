@@ -181,7 +181,7 @@ std::unique_ptr<MeasureResult> measure_scene(ScriptScene& s, const Points& array
   MeasureOptions options;
   common.set(options);
   options.spp = common.spp;
-  const std::vector<MeasuringPoint> points = measuring_points(array, guess_up(s.scene()));
+  const std::vector<MeasuringPoint> points = measuring_points(array, decide_up(s.scene()).up);
   auto result = std::make_unique<MeasureResult>();
   run_for_python(progress, [&](const StopFlag& stop, std::atomic<double>& fraction) {
     const std::shared_ptr<const PreparedScene> scene = s.prepared();

@@ -108,7 +108,7 @@ Camera ScriptScene::camera(const std::string& name) {
   for (const Camera& c : scene_.cameras)
     if (name.empty() || c.name == name) return c;
   if (!name.empty()) throw UsageError("no camera is named '" + name + "'");
-  return framing_camera(*prepared(), guess_up(scene_));
+  return framing_camera(*prepared(), decide_up(scene_).up);
 }
 
 std::shared_ptr<const PreparedScene> ScriptScene::prepared() {

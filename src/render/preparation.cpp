@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "render/radiosity.h"
+#include "scene/names.h"
 
 namespace troffer {
 
@@ -48,8 +49,7 @@ std::vector<uint32_t> lights_named(const Scene& scene, const std::vector<std::st
         lights.push_back(e);
         is_found = true;
       }
-    if (!is_found)
-      throw UsageError("there is no light named '" + name + "' (troffer info lists them)");
+    if (!is_found) throw UsageError(no_light_named(scene, name));
   }
   return lights;
 }

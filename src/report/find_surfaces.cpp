@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "report/flat_faces.h"
+#include "scene/names.h"
 #include "trace/surface.h"
 
 namespace troffer {
@@ -206,7 +207,7 @@ namespace {
 void add_node(const PreparedScene& scene, const Vec3d& up, const SurfaceRequest& r,
               std::vector<AssessedSurface>& out) {
   if (!has_node(scene.scene, r.node))
-    throw UsageError("--surface: nothing is named '" + r.node + "'");
+    throw UsageError("--surface: " + no_node_named(scene.scene, r.node));
   Vec3d n = up;
   std::vector<FlatFace> faces = flat_faces(scene.scene, n, &r.node);
   if (faces.empty()) {

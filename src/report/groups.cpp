@@ -4,8 +4,10 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/suggestion.h"
 #include "base/units.h"
 #include "render/source_info.h"
+#include "scene/names.h"
 
 namespace troffer {
 
@@ -50,7 +52,9 @@ std::vector<LightGroup> single_luminaires(const Scene& scene,
       g.watts = r.watts;
       is_used = true;
     }
-    if (!is_used) throw UsageError("--power: no luminaire is named '" + r.name + "'");
+    if (!is_used)
+      throw UsageError("--power: no luminaire is named '" + r.name + "'" +
+                       did_you_mean(r.name, light_names(scene)));
   }
   return groups;
 }

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "scene/names.h"
 
 namespace troffer {
 
@@ -64,7 +65,7 @@ Scene with_only_lights(Scene scene, const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (std::none_of(scene.lights.begin(), scene.lights.end(),
                      [&](const Light& e) { return e.name == name; }))
-      throw UsageError("no light is named '" + name + "' (troffer info lists them)");
+      throw UsageError(no_light_named(scene, name));
 
   std::vector<int32_t> renumbered(scene.lights.size(), no_light);
   std::vector<Light> kept;

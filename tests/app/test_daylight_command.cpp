@@ -162,7 +162,7 @@ TEST_CASE("options of daylight that make no sense are told") {
       {"--sun", "0,30", "--turbidity", "nan"},
       {"--environment", "a,-2"},
       {"--up", "0,0,0"},
-      {"--up", "x"},
+      {"--up", "w"},
       {"--sun", "1,2", "--at", "10,20,2026-06-21T12:00Z"},
   };
   for (const auto& options : bad) {
