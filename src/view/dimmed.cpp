@@ -45,12 +45,16 @@ Image dimmed_picture(const LayerBoard& board, const DimmerSettings& settings) {
     return image;
   }
   Image sum;
+  uint64_t view = 0;
   for (size_t i = 0; i < settings.size(); ++i) {
     const auto layer = board.get("dimmer" + std::to_string(i));
-    if (!layer || layer->view != whole->view)
+    if (!layer || (i > 0 && layer->view != view))
       throw UsageError("the pictures by single luminaires are not there yet");
     const Image& from = layer->image;
-    if (i == 0) sum = Image(from.width, from.height);
+    if (i == 0) {
+      sum = Image(from.width, from.height);
+      view = layer->view;
+    }
     if (from.width != sum.width || from.height != sum.height)
       throw UsageError("the pictures by single luminaires are not all there yet");
     for (size_t k = 0; k < sum.pixels.size(); ++k) sum.pixels[k] += from.pixels[k] * settings[i];

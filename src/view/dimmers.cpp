@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/source_info.h"
+#include "scene/scaled_lights.h"
 
 namespace troffer {
 
@@ -76,10 +77,29 @@ std::shared_ptr<const PreparedScene> Lighting::dimmer(size_t number) {
   const std::lock_guard lock(mutex_);
   std::shared_ptr<const PreparedScene>& one = by_dimmer_[number];
   if (!one && dimmers_.size() == 1) one = all;
-  if (!one)
-    one = std::make_shared<const PreparedScene>(
-        with_only_lights(Scene(all->scene), dimmers_[number].lights));
+  if (!one) {
+    DimmerSettings alone(dimmers_.size(), Rgb{0});
+    alone[number] = Rgb{1};
+    one = scaled(all, alone);
+  }
   return one;
+}
+
+std::shared_ptr<const PreparedScene> Lighting::dimmed(const DimmerSettings& settings) {
+  return scaled(whole(), settings);
+}
+
+std::shared_ptr<const PreparedScene> Lighting::scaled(
+    const std::shared_ptr<const PreparedScene>& all, const DimmerSettings& settings) const {
+  std::vector<Rgb> factors;
+  for (const Light& light : all->scene.lights) {
+    const auto has_light = [&](const Dimmer& d) {
+      return std::find(d.lights.begin(), d.lights.end(), light.name) != d.lights.end();
+    };
+    const auto at = std::find_if(dimmers_.begin(), dimmers_.end(), has_light);
+    factors.push_back(settings[size_t(at - dimmers_.begin())]);
+  }
+  return std::make_shared<const PreparedScene>(with_scaled_lights(all->scene, factors), all);
 }
 
 }  // namespace troffer

@@ -1,6 +1,7 @@
-// The luminaires of a scene that can be dimmed one by one, and the scene by the light of one alone.
+// The luminaires of a scene that can be dimmed one by one, and the scene under any setting of them.
 //
-// Light is linear: a picture by all of them is the sum of pictures by each.
+// Light is linear: the picture under all luminaires is the sum of the pictures under each. All
+// scenes here share one tracer, because they differ only in what their lights emit.
 #pragma once
 
 #include <functional>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/rgb.h"
 #include "integrate/prepared_scene.h"
 
 namespace troffer {
@@ -19,14 +21,17 @@ struct Dimmer {
   double power = 0;                 // as SourceInfo
 };
 
-// One for every name of lights, in order of appearance; of more than `most` the weakest share one,
-// the last. Copies of the scene are made for each, so scenes of many triangles get fewer.
+// One factor per dimmer and channel: brightness times colour.
+using DimmerSettings = std::vector<Rgb>;
+
+// One dimmer for every name of lights, in order of appearance. Beyond `most`, the weakest share the
+// last one. Each dimmer takes a copy of the scene's arrays, so large scenes get fewer.
 std::vector<Dimmer> dimmers_of(const Scene& scene, size_t most);
 
 constexpr size_t most_dimmers = 16;
 
-// A scene with all its light, and by each dimmer alone; each is made when it is first asked for, by
-// any thread.
+// A scene with all its light, under each dimmer alone, and under given settings. The first two are
+// made on first request and kept. Every function may be called from any thread.
 class Lighting {
  public:
   explicit Lighting(Scene scene);
@@ -40,10 +45,15 @@ class Lighting {
 
   std::shared_ptr<const PreparedScene> whole();
   std::shared_ptr<const PreparedScene> dimmer(size_t number);
+  // One factor per dimmer; not kept.
+  std::shared_ptr<const PreparedScene> dimmed(const DimmerSettings& settings);
   // Calls look(scene) where whole() has not been made yet, which then waits.
   void before_preparing(const std::function<void(const Scene&)>& look);
 
  private:
+  std::shared_ptr<const PreparedScene> scaled(const std::shared_ptr<const PreparedScene>& all,
+                                              const DimmerSettings& settings) const;
+
   std::unique_ptr<Scene> scene_;
   const std::vector<Dimmer> dimmers_;
   const bool is_photometric_;

@@ -57,6 +57,7 @@ uint64_t Painter::show(const ViewRequest& request) {
   orders_.asked = Clock::now();
   // The first picture of the view under way is nearly there: it is worth more than nothing.
   if (orders_.may_cancel) cancel_ = true;
+  orders_.has_dimmers = false;
   ++orders_.number;
   changed_.notify_all();
   return ++orders_.view;
@@ -65,7 +66,10 @@ uint64_t Painter::show(const ViewRequest& request) {
 void Painter::set_extras(const ViewExtras& extras) {
   const std::lock_guard lock(mutex_);
   if (orders_.extras == extras) return;
+  const bool is_sum = orders_.has_dimmers && orders_.extras.is_dimmed() && extras.is_dimmed() &&
+                      orders_.extras.second == extras.second;
   orders_.extras = extras;
+  if (is_sum) return;  // other settings, and the page has all the layers that it adds up
   if (orders_.may_cancel) cancel_ = true;
   ++orders_.number;
   changed_.notify_all();
@@ -117,26 +121,28 @@ void Painter::paint(const Orders& orders) {
   view_ = orders.view;
   begun_ = orders.asked;
   lighting_ = orders.request.lighting;
-  tell("first picture", 0);
+  tell("Drawing a first picture", 0);
   sight(orders);
   add_works(orders);
+  const bool is_dimmed = orders.extras.is_dimmed();
   const size_t dimmers = orders.request.lighting->dimmers().size();
   for (Work& w : works_) {
-    const bool is_whole = w.layer == "whole";
-    if (w.has_first || w.next > 0 || (!is_whole && !(orders.extras.wants_dimmers && w.dimmer >= 0)))
-      continue;
-    look(orders, w, is_whole ? 1 : dimmers);
+    const bool is_wanted = w.dimmer >= 0 || w.layer == "dimmed" ? is_dimmed
+                           : w.layer == "whole"                 ? !is_dimmed
+                                                                : false;
+    if (is_wanted && !w.has_first && w.next == 0) look(orders, w, w.dimmer >= 0 ? dimmers : 1);
   }
   {
     const std::lock_guard lock(mutex_);
     orders_.may_cancel = true;
+    if (is_dimmed && !cancel_ && orders_.view == orders.view) orders_.has_dimmers = true;
     if (orders_.number != orders.number) cancel_ = true;
   }
   go_through(orders);
   if (!cancel_) tell("done", 1);
 }
 
-// That are not there yet.
+// Adds the works that the orders ask for and that are not there yet, in the order of their looks.
 void Painter::add_works(const Orders& orders) {
   Lighting& lighting = *orders.request.lighting;
   const auto add = [&](const std::string& layer, int dimmer, const Method& method) {
@@ -150,6 +156,14 @@ void Painter::add_works(const Orders& orders) {
     work.passes = passes_to(method, options_.error);
     works_.push_back(std::move(work));
   };
+  std::erase_if(works_, [](const Work& w) { return w.layer == "dimmed"; });
+  if (orders.extras.is_dimmed()) {
+    Work dimmed;
+    dimmed.layer = "dimmed";
+    dimmed.method = options_.method;
+    dimmed.dimmed = lighting.dimmed(orders.extras.settings);
+    works_.insert(works_.begin(), std::move(dimmed));
+  }
   add("whole", -1, options_.method);
   const int count = int(lighting.dimmers().size());
   for (int i = 0; count > 1 && i < count; ++i)
@@ -199,10 +213,11 @@ void Painter::look(const Orders& orders, Work& work, size_t of) {
       [&](const Image& image) {
         if (!work.has_first && of == 1) learn_pace(Clock::now() - start);
         work.has_first = true;
-        put(work, image, orders.view, 0);
+        put(orders, work, image, 0);
       },
       pace);
-  const PreparedScene& scene = *kept(work).scene;
+  const std::shared_ptr<const PreparedScene> prepared = scene_of(work);
+  const PreparedScene& scene = *prepared;
   const RenderOptions options = options_of(r, work, Pass());
   check_options(scene, r.camera, options);
   preview.look(scene, r.camera, options, cancel_);
@@ -219,7 +234,7 @@ void Painter::learn_pace(std::chrono::duration<double> taken) {
 
 // Pass by pass: of what is shown first, and of each layer's coarse ones first.
 void Painter::go_through(const Orders& orders) {
-  const bool wants_dimmers = orders.extras.wants_dimmers;
+  const bool wants_dimmers = orders.extras.is_dimmed();
   constexpr size_t coarse_passes = 2;
   const auto rank = [&](const Work& w) {
     const int lateness = w.dimmer >= 0 ? (wants_dimmers ? 0 : 3) : w.layer == "second" ? 2 : 1;
@@ -241,8 +256,7 @@ void Painter::go_through(const Orders& orders) {
 void Painter::pass(const Orders& orders, Work& work) {
   const ViewRequest& r = orders.request;
   const Pass& pass = work.passes[work.next];
-  const std::string stage =
-      fmt::format("{}: pass {} of {}", work.layer, work.next + 1, work.passes.size());
+  const std::string stage = stage_of(work);
   tell(stage, 0);
   Kept& k = kept(work);
   if (!k.preparation)
@@ -254,7 +268,7 @@ void Painter::pass(const Orders& orders, Work& work) {
   o.cells = &cells;
   PreviewPace pace;
   pace.interval = 0.5;
-  Preview preview([&](const Image& image) { put(work, image, orders.view, 0); }, pace);
+  Preview preview([&](const Image& image) { put(orders, work, image, 0); }, pace);
   // Tiles of the first picture of full size are shown as they come; of later ones only the mean is
   // better than what is there.
   const bool is_shown = work.next > 0 && work.passes[work.next - 1].shrink > pass.shrink;
@@ -270,18 +284,21 @@ void Painter::pass(const Orders& orders, Work& work) {
   if (!k.traced && k.cells.map) k.traced = k.scene;
   const Image* error = layer_named(result, "error");
   work.mean.add(result.layers[0].image, error != nullptr ? *error : Image(), pass.weight);
-  put(work, work.mean.mean(), orders.view, work.mean.relative_error());
+  put(orders, work, work.mean.mean(), work.mean.relative_error());
   if (work.layer != "whole") return;
   board_.put("error", work.mean.error(), orders.view, 0);
   if (const Image* albedo = layer_named(result, "albedo"))
     board_.put("albedo", *albedo, orders.view, 0);
 }
 
+std::shared_ptr<const PreparedScene> Painter::scene_of(const Work& work) {
+  if (work.dimmed) return work.dimmed;
+  return work.dimmer >= 0 ? lighting_->dimmer(size_t(work.dimmer)) : lighting_->whole();
+}
+
 // Cells and their rows stay when only light changes; what lights them is computed anew.
 Painter::Kept& Painter::kept(const Work& work) {
-  Lighting& lighting = *lighting_;
-  const std::shared_ptr<const PreparedScene> scene =
-      work.dimmer >= 0 ? lighting.dimmer(size_t(work.dimmer)) : lighting.whole();
+  const std::shared_ptr<const PreparedScene> scene = scene_of(work);
   const std::string name =
       work.layer == "second" ? "second " + std::string(work.method.row().name) : work.layer;
   Kept& k = kept_[name];
@@ -300,18 +317,29 @@ Painter::Kept& Painter::kept(const Work& work) {
   return k;
 }
 
-void Painter::put(const Work& work, const Image& image, uint64_t view, double error) {
-  board_.put(work.layer, image, view, error);
-  if (work.layer != "whole") return;
-  {
+void Painter::put(const Orders& orders, const Work& work, const Image& image, double error) {
+  board_.put(work.layer, image, orders.view, error);
+  const bool is_whole = work.layer == "whole";
+  if (is_whole || work.layer == "dimmed") {
     const std::lock_guard lock(mutex_);
     PaintingState& s = orders_.state;
     if (s.seconds_to_first == 0)
       s.seconds_to_first = std::chrono::duration<double>(Clock::now() - begun_).count();
     orders_.may_cancel = true;
-    if (orders_.view != view) cancel_ = true;
+    if (orders_.number != orders.number) cancel_ = true;
   }
-  if (shown_) shown_(image);
+  if (is_whole && shown_) shown_(image);
+}
+
+// For the page's status line.
+std::string Painter::stage_of(const Work& work) const {
+  const std::string pass = fmt::format("step {} of {}", work.next + 1, work.passes.size());
+  if (work.dimmer >= 0)
+    return fmt::format("Rendering {} by itself, {}", lighting_->dimmers()[size_t(work.dimmer)].name,
+                       pass);
+  if (work.layer == "second")
+    return fmt::format("Rendering by {}, {}", work.method.row().name, pass);
+  return "Refining, " + pass;
 }
 
 void Painter::tell(const std::string& stage, double progress) {

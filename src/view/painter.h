@@ -6,8 +6,11 @@
 //
 // Layers that are put up: "whole", all light; "albedo" of what is seen first, and "error", the
 // standard error of the luminance, once the method tells of them; "dimmer0" … by one dimmer alone,
-// and "second", by another method. Their names say what they are of; their `view` of which camera.
-// Layers by dimmers are made once the picture is done, coarse ones, unless they are wanted at once.
+// "dimmed" by all as they are set, and "second", by another method. Their names say what they are
+// of; their `view` of which camera.
+// While a dimmer is set, "dimmed" is the first picture after every move and every change of
+// settings, and the dimmers' own layers come before "whole": once they are there, the page adds
+// them up by itself. Otherwise coarse layers by dimmers are made once "whole" is done.
 #pragma once
 
 #include <atomic>
@@ -36,11 +39,12 @@ struct ViewRequest {
   Camera camera;
   ImageSize size{};
 };
-// Changes that leave what has been made of a view as it is.
+// Requests that keep the layers of a view.
 struct ViewExtras {
-  bool wants_dimmers = false;    // before anything else, and as fine
+  DimmerSettings settings;       // one factor per dimmer; empty: no dimmer is set
   std::optional<Method> second;  // shown beside
   bool operator==(const ViewExtras&) const = default;
+  bool is_dimmed() const { return settings.size() > 1; }
 };
 
 struct PaintingState {
@@ -82,6 +86,7 @@ class Painter {
   struct Work {
     std::string layer;
     int dimmer = -1;  // by its light alone; -1: all light
+    std::shared_ptr<const PreparedScene> dimmed;  // "dimmed" alone has a scene of its own
     Method method = Method::certified;
     std::vector<Pass> passes;
     size_t next = 0;  // of these
@@ -95,6 +100,7 @@ class Painter {
     uint64_t view = 0, number = 0;  // the number grows with every order, the view with its request
     Clock::time_point asked;        // the view
     bool is_ending = false, may_cancel = false;
+    bool has_dimmers = false;  // every dimmer has a layer of this view: the page can add them up
     PaintingState state;
   };
 
@@ -106,9 +112,11 @@ class Painter {
   void learn_pace(std::chrono::duration<double> taken);
   void go_through(const Orders& orders);
   void pass(const Orders& orders, Work& work);
+  std::shared_ptr<const PreparedScene> scene_of(const Work& work);
   Kept& kept(const Work& work);
   RenderOptions options_of(const ViewRequest& r, const Work& work, const Pass& pass) const;
-  void put(const Work& work, const Image& image, uint64_t view, double error);
+  void put(const Orders& orders, const Work& work, const Image& image, double error);
+  std::string stage_of(const Work& work) const;
   void tell(const std::string& stage, double progress);
 
   LayerBoard& board_;

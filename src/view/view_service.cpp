@@ -131,7 +131,7 @@ HttpResponse ViewService::state() const {
             {"method", std::string(settings_.options.method.row().name)},
             {"error_asked", settings_.options.error},
             {"second", extras.second ? std::string(extras.second->row().name) : ""},
-            {"wants_dimmers", extras.wants_dimmers},
+            {"is_dimmed", extras.is_dimmed()},
             {"is_photometric", lighting_->is_photometric()},
             {"time", settings_.time},
             {"has_time", settings_.relit != nullptr},
@@ -226,9 +226,11 @@ void ViewService::move(const std::string& body) {
   const json j = parse_object(body);
   const ViewRequest now = painter_.request();
   Camera base = now.camera;
-  if (j.contains("name"))
-    for (const Camera& c : lighting_->cameras())
-      if (j["name"] == c.name) base = c;
+  if (j.contains("index")) {
+    const std::vector<Camera>& cameras = lighting_->cameras();
+    const double index = number_in(j, "index", 0, double(cameras.size()) - 1);
+    base = cameras[size_t(index)];
+  }
   ImageSize size = now.size;
   if (j.contains("width")) {
     constexpr double most = 4096;
@@ -240,7 +242,9 @@ void ViewService::move(const std::string& body) {
 void ViewService::change_extras(const std::string& body) {
   const json j = parse_object(body);
   ViewExtras extras;
-  extras.wants_dimmers = j.value("wants_dimmers", json(false)) == json(true);
+  const json dimmers = j.value("dimmers", json(""));
+  if (dimmers.is_string() && !dimmers.get<std::string>().empty())
+    extras.settings = parse_dimmers(dimmers.get<std::string>(), lighting_->dimmers().size());
   const json second = j.value("second", json(""));
   if (second.is_string() && !second.get<std::string>().empty()) {
     extras.second = Method::find(second.get<std::string>());
@@ -284,7 +288,7 @@ HttpResponse ViewService::pick(const std::string& body) {
   const json j = parse_object(body);
   std::string name;
   const MeasuringPoint p = point_at(number_in(j, "x", 0, 1), number_in(j, "y", 0, 1), &name);
-  return begin_measuring({lighting_, {p}, painter_.extras().wants_dimmers}, {{"name", name}});
+  return begin_measuring({lighting_, {p}, painter_.extras().is_dimmed()}, {{"name", name}});
 }
 
 HttpResponse ViewService::grid(const std::string& body) {
@@ -297,7 +301,7 @@ HttpResponse ViewService::grid(const std::string& body) {
   const MeasuringGrid g =
       grid_between(first, second.position, settings_.up, int(number_in(j, "along", 1, 1000)));
   return begin_measuring(
-      {lighting_, g.points, painter_.extras().wants_dimmers},
+      {lighting_, g.points, painter_.extras().is_dimmed()},
       {{"columns", g.columns}, {"rows", g.rows}, {"width", g.width}, {"depth", g.depth}});
 }
 
@@ -306,7 +310,7 @@ HttpResponse ViewService::measure_again(const std::string& body) {
   const json j = parse_object(body);
   const auto a = desk_.answer(uint64_t(number_in(j, "number", 0, 1e15)));
   if (!a) throw UsageError("nothing was measured under that number");
-  return begin_measuring({lighting_, a->task.points, painter_.extras().wants_dimmers},
+  return begin_measuring({lighting_, a->task.points, painter_.extras().is_dimmed()},
                          json::object());
 }
 

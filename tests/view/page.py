@@ -154,7 +154,48 @@ def check_false_colours(page):
     page.set("levels", "1, 2, 3, 5, 8, 12, 20")
     page.set("lines", True)
     assert sum(page.js("app.lines").values()) > 20
+    # Without levels of the user's own: some that suit the scale, whatever that is.
+    page.set("levels", "")
+    for most in ("0.5", "5", "20"):
+        page.set("most", most)
+        levels = sorted(float(v) for v in page.js("Object.keys(app.lines)"))
+        assert 5 <= len(levels) <= 8 and levels[-1] <= float(most) < 2 * levels[-1], (most, levels)
+    page.set("most", "")
+    assert sum(page.js("app.lines").values()) > 20
+    page.set("lines", False)
     page.set("show", "picture")
+    # Lightness (CIE L*) rises evenly along the palette.
+    lightness = page.js("""colours.map((c) => { const l = luminanceOf(...c.map((v) => {
+      const s = v / 255; return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4; }));
+      return 116 * Math.cbrt(l) - 16; })""")
+    steps = [b - a for a, b in zip(lightness[::32], lightness[32::32])]
+    assert min(steps) > 0.5 * (lightness[-1] - lightness[0]) / 8, steps
+    # Labels never overlap.
+    assert page.js("""(() => { const l = new LabelBoard(document.getElementById('overlay').getContext('2d'));
+      return [l.place('100', 50, 50, '#fff'), l.place('100', 55, 52, '#fff'), l.place('100', 50, 70, '#fff')]; })()""") \
+        == [True, False, True]
+
+
+def check_pinch(page):
+    """Two fingers that part bring the camera nearer; one that stays down does not turn it."""
+    before = page.state()
+    page.js("""(() => { const o = document.getElementById('overlay'), r = o.getBoundingClientRect();
+      o.setPointerCapture = () => {};
+      const send = (type, id, x, y) => o.dispatchEvent(new PointerEvent(type, {pointerId: id, pointerType: 'touch',
+        clientX: r.left + x * r.width, clientY: r.top + y * r.height, bubbles: true}));
+      send('pointerdown', 1, 0.4, 0.5); send('pointerdown', 2, 0.6, 0.5);
+      send('pointermove', 1, 0.35, 0.5); send('pointermove', 2, 0.65, 0.5);
+      send('pointerup', 2, 0.65, 0.5); send('pointermove', 1, 0.1, 0.2); send('pointerup', 1, 0.1, 0.2); })()""")
+    page.wait("app.state.view > arguments[0]", before["view"])
+    page.wait_done()
+    after = page.state()
+    step = [b - a for a, b in zip(before["camera"]["eye"], after["camera"]["eye"])]
+    forward = before["camera"]["forward"]
+    assert sum(a * b for a, b in zip(step, forward)) > 0.01, step
+    assert all(abs(a - b) < 1e-5 for a, b in zip(forward, after["camera"]["forward"]))
+    assert page.js("app.pinch === null && app.drag === null")
+    page.set("camera", "0")
+    page.wait_done()
 
 
 def check_measuring(page):
@@ -172,6 +213,15 @@ def check_measuring(page):
     page.wait("measurements.all.length === 2 && measurements.all[1].rows")
     text = page.js("document.getElementById('measured').innerText")
     assert "uniformity" in text, text
+    # A dense grid shows what fits, and any value under the pointer.
+    page.set("along", "40")
+    page.drag([0.35, 0.85], [0.6, 0.95])
+    page.wait("measurements.all.length === 3 && measurements.all[2].rows")
+    page.js("drawOverlay()")
+    count = page.js("measurements.all[2].points.length")
+    assert 0 < page.js("measurements.shown") < count, (page.js("measurements.shown"), count)
+    page.js("measurements.remove(measurements.all[2])")
+    page.set("along", "3")
     page.tool("orbit")
     return lx
 
@@ -182,8 +232,17 @@ def check_dimmers(page, lx):
     page.set("stops", "0")
     page.wait_done()
     bright = page.mean()
+    page.set("show", "illuminance")
+    scale = page.js("app.map.most")
+    page.set("show", "picture")
+    began = time.time()
     page.browser.find_elements(By.CSS_SELECTOR, ".dimmer input[type=checkbox]")[0].click()
     page.wait("currentPicture() !== null")
+    print(f"first effect of a dimmer after {time.time() - began:.2f} s")
+    # The scale stays, so that a room whose main lamp goes off looks darker.
+    page.set("show", "illuminance")
+    assert page.js("app.map.most") == scale, (page.js("app.map.most"), scale)
+    page.set("show", "picture")
     page.wait("measurements.values(measurements.all[0]) !== null")
     assert page.mean() < 0.9 * bright, (page.mean(), bright)
     less = page.js("measurements.values(measurements.all[0])[0][0]")
@@ -198,6 +257,17 @@ def check_dimmers(page, lx):
     assert page.mean() < dark
     state = page.state()
     assert state["view"] == view and state["layers"] == versions
+    # A walk keeps the settings from its first picture on.
+    page.tool("walk")
+    page.browser.find_element(By.ID, "overlay").send_keys("w")
+    page.wait("app.state.view > arguments[0] && app.state.layers.dimmed.view === app.state.view", view)
+    page.wait("app.layers.dimmed.version === app.state.layers.dimmed.version")
+    assert page.mean() < 0.9 * bright, (page.mean(), bright)
+    page.wait_done()
+    assert page.mean() < 0.9 * bright, (page.mean(), bright)
+    page.tool("orbit")
+    page.set("camera", "0")
+    page.wait_done()
     # All on again: the picture of all light.
     for e in page.browser.find_elements(By.CSS_SELECTOR, ".dimmer input[type=checkbox]")[:1]:
         e.click()
@@ -237,6 +307,10 @@ def check_time(program, browser):
     page.wait_done()
     assert page.mean() > 5
     assert page.end() == 130
+    # The page says that the program is gone, how to start it again, and offers nothing else.
+    page.wait("!document.getElementById('ended').hidden")
+    assert "troffer view" in page.js("document.getElementById('again').textContent")
+    assert page.js("document.querySelector('aside').inert && document.getElementById('overlay').inert")
 
 
 def main():
@@ -244,15 +318,16 @@ def main():
     try:
         page = Page(sys.argv[1], [os.path.join(root, "scenes/kj92room/kj92room.gltf"), "--size", "160x120",
                                   "--error", "0.1", "--quiet"], browser)
-        check_looking(page)
-        check_false_colours(page)
-        lx = check_measuring(page)
-        check_dimmers(page, lx)
-        check_split(page)
-        check_saving(page)
+        lx = None
+        for check in (check_looking, check_false_colours, check_pinch, check_measuring, check_dimmers,
+                      check_split, check_saving):
+            print(check.__name__, flush=True)
+            lx = (check(page, lx) if check is check_dimmers else check(page)) or lx
         check_no_complaints(browser)
         page.js("document.getElementById('close').click()")
         assert page.process.wait(patience) == 0
+        page.wait("!document.getElementById('ended').hidden")
+        page.screenshot("ended")
         browser.get("about:blank")
         browser.get_log("browser")
         check_time(sys.argv[1], browser)

@@ -77,7 +77,7 @@ TEST_CASE("layers by single luminaires add up to the picture by all, after any m
     view = painter.show(request);
   }
   wait_until([&] { return painter.state().view == view && painter.state().stage == "done"; });
-  painter.set_extras({true, Method::path});
+  painter.set_extras({{Rgb{1}, Rgb{0.5f}}, Method::path});
   wait_until([&] {
     const auto l = board.get("second");
     return painter.state().stage == "done" && l && l->error > 0;
@@ -104,6 +104,47 @@ TEST_CASE("layers by single luminaires add up to the picture by all, after any m
   const Image own = render(*lighting->whole(), request.camera, o, nullptr, never).layers[0].image;
   CHECK(rms_difference(whole, own) < 0.06);
   CHECK(mean_of(whole) == doctest::Approx(mean_of(own)).epsilon(0.01));
+}
+
+TEST_CASE("under set dimmers the first picture after a move shows the settings") {
+  const auto lighting = std::make_shared<Lighting>(room());
+  LayerBoard board;
+  Painter painter(board, options(), nullptr);
+  ViewRequest request = request_of(lighting);
+  painter.show(request);
+  wait_until([&] { return painter.state().stage == "done"; });
+  painter.set_extras({{Rgb{1}, Rgb{0}}, std::nullopt});
+  wait_until([&] { return board.get("dimmed") != nullptr; });
+  wait_until([&] { return painter.state().stage == "done"; });
+  const double expected = mean_of(dimmed_picture(board, {Rgb{1}, Rgb{0}}));
+  CHECK(expected < 0.8 * mean_of(board.get("whole")->image));
+  CHECK(mean_of(board.get("dimmed")->image) == doctest::Approx(expected).epsilon(0.1));
+  // Other settings of a view whose layers are there: the page adds them up, nothing is rendered.
+  const uint64_t version = board.get("dimmed")->version;
+  painter.set_extras({{Rgb{1}, Rgb{0.5f}}, std::nullopt});
+  request.camera.position.x += 0.1f;
+  const uint64_t view = painter.show(request);
+  wait_until([&] { return board.get("dimmed")->view == view; });
+  CHECK(board.get("dimmed")->version > version);
+  wait_until([&] { return painter.state().view == view && painter.state().stage == "done"; });
+  CHECK(mean_of(board.get("dimmed")->image) ==
+        doctest::Approx(mean_of(dimmed_picture(board, {Rgb{1}, Rgb{0.5f}}))).epsilon(0.1));
+}
+
+TEST_CASE("a scene under dimmers, which shares the tracer, renders as one of its own") {
+  const auto lighting = std::make_shared<Lighting>(room());
+  const auto shared = lighting->dimmed({Rgb{0.5f, 0.25f, 1}, Rgb{0}});
+  Scene own = room();
+  own.lights[0].radiance = own.lights[0].radiance * Rgb{0.5f, 0.25f, 1};
+  own.lights[1].radiance = Rgb{0};
+  RenderOptions o = options();
+  o.width = 24;
+  o.height = 18;
+  const StopFlag never = false;
+  const Camera camera = request_of(lighting).camera;
+  const Image a = render(*shared, camera, o, nullptr, never).layers[0].image;
+  const Image b = render(PreparedScene(std::move(own)), camera, o, nullptr, never).layers[0].image;
+  CHECK(a.pixels == b.pixels);
 }
 
 TEST_CASE("light from elsewhere, on the cells that are kept: the picture is that of a new start") {

@@ -19,7 +19,7 @@ class RoomCamera {
     this.worldUp = unit(worldUp);
     const middle = bounds ? scaled(add(bounds[0], bounds[1]), 0.5) : add(this.eye, this.forward);
     const size = bounds ? lengthOf(add(bounds[1], bounds[0], -1)) : 1;
-    // What one turns about: before the eye, as far as the room's middle.
+    // Distance of the pivot for orbits: as far ahead as the middle of the room.
     this.reach = Math.max(dot(add(middle, this.eye, -1), this.forward), 0.05 * size);
     this.size = size;
   }
@@ -69,6 +69,6 @@ class RoomCamera {
     return [(x - x0) / (x1 - x0), (y1 - y) / (y1 - y0)];
   }
   message() {
-    return {eye: this.eye, forward: this.forward, up: this.up, half_extent: this.half_extent, name: this.name};
+    return {eye: this.eye, forward: this.forward, up: this.up, half_extent: this.half_extent};
   }
 }

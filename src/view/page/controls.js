@@ -1,18 +1,26 @@
 // Luminaires and the time of day: what the panel is made of, and what it sends.
 'use strict';
 
+// Shows a change at once where the layers are there. The program gets the newest settings, one
+// message at a time: it needs them for the first picture after a move.
 async function onDimmer() {
-  const wants = areDimmed() && app.dimmers.length > 1;
-  if (wants !== app.wantsDimmers) {
-    app.wantsDimmers = wants;
-    await sendExtras();
-  }
-  if (wants && measurements.needsDimmers(app.dimmers.length))
-    await measurements.again((m) => m.rows && m.rows.length !== app.dimmers.length);
-  await fetchLayers(app.state);
   draw();
   drawMeasured();
   updateLinks();
+  app.areSettingsPending = true;
+  if (app.isSendingSettings) return;
+  app.isSendingSettings = true;
+  try {
+    while (app.areSettingsPending) {
+      app.areSettingsPending = false;
+      await sendExtras();
+    }
+    if (areDimmed() && app.dimmers.length > 1 && measurements.needsDimmers(app.dimmers.length))
+      await measurements.again((m) => m.rows && m.rows.length !== app.dimmers.length);
+    if (await fetchLayers(app.state)) draw();
+  } finally {
+    app.isSendingSettings = false;
+  }
 }
 
 function makeDimmers(state) {
@@ -28,7 +36,7 @@ function makeDimmers(state) {
     const change = () => {
       d.isOn = on.checked;
       d.level = Number(level.value);
-      // Of equal luminance, whatever the colour.
+      // A colour keeps the luminance.
       const c = [1, 3, 5].map((k) => (parseInt(colour.value.slice(k, k + 2), 16) / 255) ** 2.2);
       const l = luminanceOf(...c);
       d.colour = colour.value === '#ffffff' || !(l > 0) ? [1, 1, 1] : c.map((v) => v / l);

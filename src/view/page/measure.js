@@ -69,34 +69,39 @@ class Measurements {
   text(item) {
     if (item.failure) return item.failure;
     const values = this.values(item);
-    if (!values) return '…';
+    if (!values) return 'measuring …';
     const lx = values.map((v) => v[0]), mean = lx.reduce((a, b) => a + b, 0) / lx.length;
     if (item.kind === 'point') return `${lxText(lx[0])} ± ${values[0][1].toPrecision(2)} lx`;
     const least = Math.min(...lx);
-    return `mean ${lxText(mean)} lx, least ${lxText(least)}, uniformity ${(mean > 0 ? least / mean : 0).toFixed(2)}`;
+    return `mean ${lxText(mean)} lx, minimum ${lxText(least)}, uniformity ${(mean > 0 ? least / mean : 0).toFixed(2)}`;
   }
-  draw(g, toScreen) {
-    g.font = '11px system-ui, "DejaVu Sans", sans-serif';
-    g.textAlign = 'center';
+  // Marks at all points, and as many values as there is room for. The value next to the pointer, in
+  // shares of the canvas, comes first: so every value of a dense grid can be read.
+  draw(g, toScreen, labels, pointed) {
+    const marks = [];
     for (const item of this.all) {
-      const values = this.values(item), few = item.points.length <= 150;
+      const values = this.values(item);
       item.points.forEach((point, i) => {
         const at = toScreen(point);
         if (!at) return;
+        const isPoint = item.kind === 'point';
+        marks.push({at, isPoint, text: !values ? '' :
+          lxText(values[i][0]) + (isPoint ? ` ± ${values[i][1].toPrecision(2)} lx` : '')});
         g.fillStyle = '#ffd166';
         g.strokeStyle = '#000';
         g.lineWidth = 2;
         g.beginPath();
-        g.arc(at[0], at[1], item.kind === 'point' ? 4 : 2, 0, 7);
+        g.arc(at[0], at[1], isPoint ? 4 : 2, 0, 7);
         g.stroke();
         g.fill();
-        if (!values || !few) return;
-        const text = lxText(values[i][0]) + (item.kind === 'point' ? ` ± ${values[i][1].toPrecision(2)} lx` : '');
-        g.lineWidth = 3;
-        g.strokeText(text, at[0], at[1] - 6);
-        g.fillText(text, at[0], at[1] - 6);
       });
     }
+    const reach = 14, away = (m) => Math.hypot(m.at[0] - pointed[0] * g.canvas.width, m.at[1] - pointed[1] * g.canvas.height);
+    const rank = (m) => (pointed && away(m) < reach ? 0 : m.isPoint ? 1 : 2);
+    g.strokeStyle = '#000';
+    g.lineWidth = 3;
+    marks.sort((a, b) => rank(a) - rank(b));
+    this.shown = marks.filter((m) => m.text && labels.place(m.text, m.at[0], m.at[1] - 6, '#ffd166')).length;
   }
 }
 

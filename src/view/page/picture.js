@@ -115,13 +115,12 @@ function drawPicture(picture, stops, isFilmic, pixels, from, to) {
     }
 }
 
-// From dark blue over cyan, green and yellow to red, white above.
-const colourStops = [[0, 20, 16, 70], [0.18, 30, 60, 190], [0.36, 20, 170, 200], [0.54, 60, 190, 80],
-  [0.72, 240, 220, 50], [0.88, 240, 110, 30], [1, 190, 20, 40]];
+// The report's palette: its lightness (CIE L*) rises evenly, so equal steps of value look equal.
+const colourNodes = [[38, 20, 84], [52, 70, 140], [36, 117, 142], [42, 157, 120], [122, 192, 74], [214, 214, 40],
+  [252, 246, 178]];
 const colours = Array.from({length: 257}, (_, n) => {
-  const t = n / 256, k = Math.max(1, colourStops.findIndex((s) => s[0] >= t));
-  const [a, b] = [colourStops[k - 1], colourStops[k]], u = (t - a[0]) / (b[0] - a[0]);
-  return [1, 2, 3].map((c) => Math.round(a[c] + u * (b[c] - a[c])));
+  const at = n / 256 * (colourNodes.length - 1), k = Math.min(Math.floor(at), colourNodes.length - 2);
+  return [0, 1, 2].map((c) => Math.round(colourNodes[k][c] + (at - k) * (colourNodes[k + 1][c] - colourNodes[k][c])));
 });
 // From 0 to `most`, or over three decades below it.
 function positionOf(value, most, isLog) {
@@ -150,9 +149,11 @@ function drawLegend(canvas, most, isLog, unit) {
   g.fillStyle = '#e4e6ea';
   g.font = '11px system-ui, "DejaVu Sans", sans-serif';
   g.textAlign = 'center';
-  for (let k = 0; k <= 3; ++k) {
-    const v = isLog ? most * 10 ** (k - 3) : most * k / 3;
-    g.fillText(`${Number(v.toPrecision(3))}`, 20 + bar * k / 3, 31);
+  // `most` is 1, 2 or 5 times a power of ten unless the user chose it: fifths or quarters are round.
+  const parts = isLog ? 3 : Number(most.toPrecision(1)) / 10 ** Math.floor(Math.log10(most)) === 2 ? 4 : 5;
+  for (let k = 0; k <= parts; ++k) {
+    const v = isLog ? most * 10 ** (k - 3) : most * k / parts;
+    g.fillText(`${Number(v.toPrecision(3))}`, 20 + bar * k / parts, 31);
   }
   g.fillText(unit, width / 2, 43);
 }

@@ -4,7 +4,7 @@
 const $ = (id) => document.getElementById(id);
 const app = {
   state: null, camera: null, layers: {}, pictureShown: null, isSending: false, isMovePending: false,
-  movedAt: 0, dimmers: [], isFirst: true, drag: null, failures: 0,
+  movedAt: 0, dimmers: [], isFirst: true, drag: null, pinch: null, pointed: null, failures: 0, scales: {},
 };
 window.app = app;
 
@@ -23,35 +23,52 @@ const factors = () => app.dimmers.map((d) => d.isOn ? d.colour.map((c) => c * d.
 const areDimmed = () => factors().some((f) => f.some((v) => v !== 1));
 const measurements = new Measurements(post, getJson, factors, () => { drawMeasured(); drawOverlay(); });
 
-// Of all light as it is set; null where it is not known yet.
+// The picture as the dimmers are set; null while it is not known. The sum of the dimmers' own layers
+// is finer than the layer "dimmed", which is there sooner after a move.
 function currentPicture() {
-  const {whole} = app.layers;
-  if (!whole) return null;
-  if (!areDimmed()) return whole;
-  if (app.dimmers.length === 1) return sumOf([whole], factors());
+  const {whole, dimmed} = app.layers;
+  if (!areDimmed()) return whole ?? null;
+  if (app.dimmers.length === 1) return whole ? sumOf([whole], factors()) : null;
   const views = app.state.layers, all = app.dimmers.map((_, i) => app.layers[`dimmer${i}`]);
   const first = all[0];
   const isThere = all.every((l, i) => l && l.width === first.width && l.height === first.height &&
-    views[`dimmer${i}`].view === views.dimmer0.view);
-  return isThere ? sumOf(all, factors()) : null;
+    views[`dimmer${i}`]?.view === views.dimmer0.view);
+  if (isThere && !(views.dimmed?.view > views.dimmer0.view)) return sumOf(all, factors());
+  return dimmed ?? null;
 }
+
+// Whether a layer shows what the camera sees now. After a move the first pictures have no layers of
+// reflectance and error, and those of another view would give wrong figures.
+const isOfView = (name) => app.state.layers[name]?.view === app.state.view;
 
 const scaleOf = () => (app.state.is_photometric ? 1 : 179);
 const unitOf = (kind) => ({illuminance: 'lx', luminance: 'cd/m²', error: '%'})[kind];
 
-// As what is beside it, up to the same value.
-function drawSide(picture, kind, pixels, from, to, mostBeside) {
-  if (kind === 'picture') {
+function drawSide(picture, kind, pixels, from, to) {
+  const lacks = {illuminance: 'albedo', error: 'error'}[kind];
+  if (kind === 'picture' || (lacks && !isOfView(lacks))) {
     drawPicture(picture, Number($('stops').value), $('filmic').checked, pixels, from, to);
     return null;
   }
   const map = valuesOf(kind, picture, app.layers.albedo, app.layers.error, scaleOf());
-  const most = kind !== $('show').value ? roundUp(quantile(map.values, 0.98)) : mostBeside ?? mostOf(map);
+  const most = mostOf(kind, map);
   drawValues(map, most, $('log').checked, pixels, from, to);
-  return {map, most};
+  return {map, most, kind};
 }
-const mostOf = (map) => Number($('most').value) > 0 ? Number($('most').value)
-  : roundUp(quantile(map.values, 0.98));
+
+// The upper end of the scale: the user's, or a round value that 2 % of the pixels exceed while all
+// luminaires are on. It stays until the user asks for a new one, so that a dimmed room looks dimmer.
+function mostOf(kind, map) {
+  const asked = Number($('most').value);
+  if (kind === $('show').value && asked > 0) return asked;
+  const kept = app.scales[kind];
+  if (kept && kept.isFine) return kept.most;
+  const isWhole = !areDimmed() || kind === 'error';
+  const source = isWhole ? map : valuesOf(kind, app.layers.whole, app.layers.albedo, null, scaleOf());
+  const most = roundUp(quantile(source.values, 0.98));
+  app.scales[kind] = {most, isFine: app.state.layers.whole?.error > 0};
+  return most;
+}
 
 function draw() {
   const picture = currentPicture() ?? app.pictureShown;
@@ -70,11 +87,13 @@ function draw() {
   app.besideText = '';
   if (split < width) {
     const isError = beside === 'error', second = isError ? picture : fitted(app.layers.second, width, height);
-    const side = second && drawSide(second, isError ? 'error' : kind, image.data, split, width, app.map?.most);
-    app.besideText = isError ? `standard error, to ${side.most} %` : second ? `by ${beside}` : `${beside}: to come`;
+    const side = second && drawSide(second, isError ? 'error' : kind, image.data, split, width);
+    app.besideText = isError ? (side ? `estimated error, up to ${side.most} %` : 'estimated error: not known yet')
+      : second ? `by ${beside}` : `${beside}: not ready yet`;
   }
   g.putImageData(image, 0, 0);
   if (app.map) drawLegend($('legend'), app.map.most, $('log').checked, unitOf(kind));
+  $('scale-note').textContent = kind !== 'picture' && !app.map ? 'The values follow when the picture has been refined.' : '';
   drawOverlay();
 }
 
@@ -106,7 +125,13 @@ function drawOverlay() {
   g.clearRect(0, 0, canvas.width, canvas.height);
   if (!app.camera) return;
   const aspect = app.state.size[0] / app.state.size[1];
-  if ($('lines').checked && app.map && $('show').value !== 'picture') drawLines(g, canvas);
+  const toScreen = (p) => {
+    const at = app.camera.project(p.slice(0, 3), aspect);
+    return at && [at[0] * canvas.width, at[1] * canvas.height];
+  };
+  const labels = new LabelBoard(g);
+  measurements.draw(g, toScreen, labels, app.pointed);
+  if ($('lines').checked && app.map) drawLines(g, canvas, labels);
   if ($('beside').value) {
     const x = canvas.width * $('split-at').value / 1000;
     g.fillStyle = '#ffd166';
@@ -118,10 +143,6 @@ function drawOverlay() {
     g.strokeText(app.besideText, x + 8, 18);
     g.fillText(app.besideText, x + 8, 18);
   }
-  measurements.draw(g, (p) => {
-    const at = app.camera.project(p.slice(0, 3), aspect);
-    return at && [at[0] * canvas.width, at[1] * canvas.height];
-  });
   if (app.drag?.tool === 'grid' && app.drag.to) {
     const [a, b] = [app.drag.from, app.drag.to];
     g.strokeStyle = '#ffd166';
@@ -131,17 +152,17 @@ function drawOverlay() {
   }
 }
 
-function drawLines(g, canvas) {
+// A line's label stands where there is room, nearest to the middle of its segments.
+function drawLines(g, canvas, labels) {
   const block = Math.max(1, Math.round(app.map.map.width / 160)), map = smoothed(app.map.map, block);
   const [sx, sy] = [block * canvas.width / app.map.map.width, block * canvas.height / app.map.map.height];
-  g.font = '11px system-ui, "DejaVu Sans", sans-serif';
   app.lines = {};
-  // Of what is left of the split.
+  // Only the part left of the split shows this map.
   g.save();
   g.beginPath();
   g.rect(0, 0, $('beside').value ? canvas.width * $('split-at').value / 1000 : canvas.width, canvas.height);
   g.clip();
-  for (const level of $('levels').value.split(/[,;\s]+/).map(Number).filter((v) => v > 0)) {
+  for (const level of levelsOf($('levels').value, app.map.most)) {
     const segments = linesAt(map, level);
     app.lines[level] = segments.length;
     for (const [style, width] of [['#000a', 3], ['#fff', 1.2]]) {
@@ -154,13 +175,13 @@ function drawLines(g, canvas) {
       }
       g.stroke();
     }
-    if (!segments.length) continue;
-    const [x, y] = segments[Math.floor(segments.length / 2)];
-    g.fillStyle = '#fff';
+    const middle = Math.floor(segments.length / 2);
     g.strokeStyle = '#000';
     g.lineWidth = 3;
-    g.strokeText(level, x * sx, y * sy);
-    g.fillText(level, x * sx, y * sy);
+    for (let k = 0; k < segments.length; ++k) {
+      const n = (middle + (k % 2 ? -(k + 1) / 2 : k / 2) + segments.length) % segments.length;
+      if (labels.place(`${level}`, segments[n][0] * sx, segments[n][1] * sy + 4, '#fff')) break;
+    }
   }
   g.restore();
 }
@@ -178,6 +199,7 @@ function drawMeasured() {
     const gone = document.createElement('button');
     gone.textContent = '×';
     gone.title = 'Remove';
+    gone.setAttribute('aria-label', `Remove ${item.label}`);
     gone.onclick = () => measurements.remove(item);
     row.append(name, csv, gone);
     return row;
@@ -197,11 +219,11 @@ function setStops(stops) {
   $('stops-value').textContent = `${Number($('stops').value).toFixed(1)}`;
 }
 
-// Layers that have changed since; whether any has.
+// Fetches the layers that have changed. True if any has.
 async function fetchLayers(state) {
   const wanted = ['whole', 'albedo', 'error'];
   if ($('beside').value && $('beside').value !== 'error') wanted.push('second');
-  if (areDimmed()) state.dimmers.forEach((_, i) => wanted.push(`dimmer${i}`));
+  if (areDimmed()) wanted.push('dimmed', ...state.dimmers.map((_, i) => `dimmer${i}`));
   let hasChanged = false;
   for (const name of wanted) {
     const now = state.layers[name];
@@ -214,15 +236,26 @@ async function fetchLayers(state) {
   return hasChanged;
 }
 
-function tell(state) {
+function showStatus(state) {
   const error = state.layers.whole?.error;
-  const parts = [state.failure || state.stage];
+  const parts = [state.failure ? `There is no picture: ${state.failure}` : state.stage === 'done' ? 'Finished' : state.stage];
   if (state.progress > 0 && state.progress < 1) parts.push(`${Math.round(100 * state.progress)} %`);
-  if (error > 0) parts.push(`error ${(100 * error).toPrecision(2)} %`);
-  if (state.seconds_to_first > 0) parts.push(`first picture after ${Math.round(1000 * state.seconds_to_first)} ms`);
+  if (error > 0 && !areDimmed()) parts.push(`estimated error ${(100 * error).toPrecision(2)} %`);
   $('status').textContent = parts.join(' · ');
   $('dimmers-note').textContent = areDimmed() && app.dimmers.length > 1 && !currentPicture()
-    ? 'pictures by each luminaire are being made' : '';
+    ? 'The picture under these settings is being made.' : '';
+}
+
+// The program is gone: says so, says how to start it again, and leaves no control that does nothing.
+function showEnd() {
+  app.hasEnded = true;
+  const file = app.state?.file ?? 'SCENE';
+  $('status').textContent = 'troffer view has ended.';
+  $('again').textContent = `troffer view ${/[^\w./-]/.test(file) ? `'${file}'` : file}`;
+  $('ended').hidden = false;
+  document.querySelector('aside').inert = true;
+  $('overlay').inert = true;
+  document.body.classList.add('has-ended');
 }
 
 async function tick() {
@@ -235,15 +268,15 @@ async function tick() {
     if (app.laidOut !== `${w}x${h}`) { app.laidOut = `${w}x${h}`; layOut(); }
     if (await fetchLayers(state)) draw();
     if (await measurements.poll()) wait = 200;
-    tell(state);
+    showStatus(state);
     if (state.stage !== 'done') wait = Math.min(wait, 250);
     if (state.seconds_to_first === 0 || performance.now() - app.movedAt < 1500) wait = 25;
     app.failures = 0;
   } catch (error) {
-    $('status').textContent = ++app.failures > 2 ? 'troffer view has ended' : String(error.message);
-    if (app.failures > 20) return;
+    if (++app.failures > 2) showEnd();
+    else $('status').textContent = String(error.message);
   }
-  setTimeout(tick, wait);
+  if (!app.hasEnded) setTimeout(tick, wait);
 }
 
 // One message at a time is under way; the newest place is sent after it.
@@ -260,12 +293,11 @@ async function sendCamera(extra) {
   app.isSending = false;
 }
 
-const sendExtras = () => {
+async function sendExtras() {
   const beside = $('beside').value;
   app.movedAt = performance.now();
-  return post('extras', {wants_dimmers: areDimmed() && app.dimmers.length > 1,
-    second: beside === 'error' ? '' : beside});
-};
+  await post('extras', {dimmers: app.dimmers.length > 1 ? dimmersText() : '', second: beside === 'error' ? '' : beside});
+}
 
 function begin(state) {
   document.title = `${state.file.split('/').pop()} – troffer view`;
@@ -276,87 +308,17 @@ function begin(state) {
   const cameras = state.cameras.length ? state.cameras : [state.camera];
   $('camera').replaceChildren(...cameras.map((c, i) => new Option(c.name || `camera ${i + 1}`, i)));
   $('camera').onchange = () => {
-    app.camera = new RoomCamera(cameras[$('camera').value], state.up, state.bounds);
-    sendCamera();
+    const index = Number($('camera').value);
+    app.camera = new RoomCamera(cameras[index], state.up, state.bounds);
+    sendCamera(state.cameras.length ? {index} : {});
   };
   makeDimmers(state);
   makeTime(state);
   updateLinks();
 }
 
-const tool = () => document.querySelector('input[name=tool]:checked').value;
-const hints = {
-  orbit: 'Drag to turn about the room, wheel to come nearer, shift and drag to move.',
-  walk: 'Drag to look around; W A S D to walk, Q and E for down and up.',
-  point: 'Click where illuminance is to be measured.',
-  grid: 'Drag from one corner of a rectangle on a surface to the other.',
-};
-function placeOf(event) {
-  const r = $('overlay').getBoundingClientRect();
-  return [(event.clientX - r.left) / r.width, (event.clientY - r.top) / r.height]
-    .map((v) => Math.max(0, Math.min(1, v)));
-}
-
-function onMove(event) {
-  const {drag} = app;
-  if (!drag) return;
-  const at = placeOf(event), [dx, dy] = [at[0] - drag.at[0], at[1] - drag.at[1]];
-  drag.at = at;
-  if (drag.tool === 'grid') {
-    drag.to = at;
-    drawOverlay();
-    return;
-  }
-  if (drag.tool === 'point') return;
-  if (event.shiftKey) app.camera.walk(-dx * app.camera.reach, dy * app.camera.reach, 0);
-  else if (drag.tool === 'orbit') app.camera.orbit(-4 * dx, 2.5 * dy);
-  else app.camera.turn(-1.5 * dx, 1.2 * dy);
-  sendCamera();
-}
-
-async function onUp(event) {
-  const {drag} = app, at = placeOf(event);
-  app.drag = null;
-  if (!drag) return;
-  try {
-    if (drag.tool === 'point') await measurements.pick(...at);
-    if (drag.tool === 'grid') await measurements.grid(drag.from, at, Number($('along').value) || 8, Number($('above').value) || 0);
-  } catch (error) { say(error.message); }
-  drawOverlay();
-}
-
-const steps = {w: [0, 0, 1], s: [0, 0, -1], a: [-1, 0, 0], d: [1, 0, 0], q: [0, -1, 0], e: [0, 1, 0],
-  ArrowUp: [0, 0, 1], ArrowDown: [0, 0, -1], ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0]};
-function onKey(event) {
-  const step = steps[event.key];
-  if (!step || !app.camera || event.ctrlKey || event.metaKey) return;
-  event.preventDefault();
-  app.camera.walk(...scaled(step, (event.shiftKey ? 0.05 : 0.02) * app.camera.size));
-  sendCamera();
-}
-
 function listen() {
-  const overlay = $('overlay');
-  overlay.onpointerdown = (event) => {
-    if (!app.camera) return;
-    overlay.setPointerCapture(event.pointerId);
-    app.drag = {tool: tool(), from: placeOf(event), at: placeOf(event)};
-  };
-  overlay.onpointermove = onMove;
-  overlay.onpointerup = onUp;
-  overlay.onkeydown = onKey;
-  overlay.addEventListener('wheel', (event) => {
-    event.preventDefault();
-    if (!app.camera) return;
-    app.camera.dolly(-Math.sign(event.deltaY) * 0.1);
-    sendCamera();
-  }, {passive: false});
-  for (const radio of document.querySelectorAll('input[name=tool]'))
-    radio.onchange = () => {
-      say(hints[tool()]);
-      overlay.classList.toggle('picking', tool() === 'point' || tool() === 'grid');
-    };
-  say(hints.orbit);
+  listenToPointers();
   $('stops').oninput = () => { setStops(Number($('stops').value)); updateLinks(); draw(); };
   $('auto').onclick = () => { if (app.pictureShown) setStops(autoStops(app.pictureShown)); updateLinks(); draw(); };
   $('filmic').onchange = () => { updateLinks(); draw(); };
@@ -368,13 +330,14 @@ function listen() {
     draw();
   };
   for (const id of ['most', 'log', 'lines', 'levels']) $(id).onchange = draw;
+  $('fit').onclick = () => { $('most').value = ''; app.scales = {}; draw(); };
   $('beside').onchange = async () => {
     $('split-at').hidden = !$('beside').value;
     try { await sendExtras(); } catch (error) { say(error.message); }
     draw();
   };
   $('split-at').oninput = draw;
-  $('close').onclick = async () => { await post('close'); $('status').textContent = 'troffer view has ended'; };
+  $('close').onclick = async () => { await post('close'); showEnd(); };
   window.onresize = layOut;
 }
 
