@@ -59,6 +59,7 @@ std::string luminaire_info(const std::string& path, bool is_json, const std::str
   j["luminaire"] = l.description;
   j["lumens"] = lumens;
   j["lamp_lumens"] = l.lamp_lumens;
+  j["is_absolute"] = l.is_absolute;
   j["watts"] = l.watts;
   j["efficacy"] = l.watts > 0 ? lumens / l.watts : 0.0;
   j["largest_candela"] = largest_intensity(l.web);
@@ -71,11 +72,16 @@ std::string luminaire_info(const std::string& path, bool is_json, const std::str
   for (const Warning& w : warnings.entries()) j["warnings"].push_back(w.text);
   if (is_json)
     return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  const std::string lamps = l.lamp_lumens > 0 ? fmt::format("lamps {:.5g} lm", l.lamp_lumens)
+                                              : std::string("no lumens of lamps are stated");
+  const std::string power =
+      l.watts > 0 ? fmt::format("{:.4g} W, {:.4g} lm/W", l.watts, j["efficacy"].get<double>())
+                  : std::string("not stated");
   std::string text = fmt::format(
-      "luminaire  {}\nflux       {:.5g} lm (lamps {:.5g} lm)\npower      {:.4g} W, {:.4g} lm/W\n"
+      "luminaire  {}\nflux       {:.5g} lm ({})\npower      {}\n"
       "intensity  {:.5g} cd at most\nbeam       {:.1f} x {:.1f} degrees (half), {:.1f} x {:.1f} "
       "(a tenth)\nopening    {:.3g} (C0) x {:.3g} (C90) x {:.3g} m{}\n",
-      printable(l.description), lumens, l.lamp_lumens, l.watts, j["efficacy"].get<double>(),
+      printable(l.description), lumens, l.is_absolute ? "absolute photometry" : lamps, power,
       largest_intensity(l.web), j["beam_angle"][0].get<double>(), j["beam_angle"][1].get<double>(),
       j["field_angle"][0].get<double>(), j["field_angle"][1].get<double>(), size.x, size.y, size.z,
       j["is_round"].get<bool>() ? ", round" : "");

@@ -27,9 +27,10 @@ struct Luminaire {
   // Luminous intensities, cd.
   LightWeb web;
   std::string description;
-  double lamp_lumens = 0;   // stated; 0 where the file states none (absolute photometry)
-  double output_ratio = 0;  // … what share of them leaves the luminaire; 0: the file states none
-  double watts = 0;
+  double lamp_lumens = 0;    // stated; 0 where the file states none (absolute photometry)
+  double output_ratio = 0;   // … what share of them leaves the luminaire; 0: the file states none
+  bool is_absolute = false;  // photometry that says so: -1 lumens, or lamps, in the file
+  double watts = 0;          // 0: the file states none
   LuminousOpening opening;
   TiltFactors tilt;
 };
@@ -37,8 +38,8 @@ struct Luminaire {
 // By ending: .ldt is EULUMDAT, all else LM-63. Repeats planes that symmetry leaves out. Factors of
 // a file that LM-63's TILT names are read from beside it.
 // Warnings: what is odd but has a meaning (decimal commas, planes that do not close, negative
-// intensities, angles that descend, factors of 0). InputError with line and column: what has none,
-// and files of more than 4 Mi values or 64 MiB.
+// intensities, angles that descend or leave out a pole, factors of 0). InputError with line and
+// column: what has none, and files of more than 4 Mi values or 64 MiB.
 Luminaire read_luminaire(const std::string& path, WarningLog& warnings);
 // The same of LM-63 text that is no file; `name` stands for its path in messages.
 Luminaire read_luminaire_text(const std::string& name, std::string_view text, WarningLog& warnings);

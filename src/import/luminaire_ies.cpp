@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "import/file.h"
+#include "import/luminaire_angles.h"
 #include "import/luminaire_formats.h"
 
 namespace troffer {
@@ -58,26 +61,35 @@ TiltFactors read_tilt_file(const std::string& path, const std::string& folder,
 }
 
 struct Labels {
-  bool is_before_2002 = true;  // by the file's first line
+  int edition = 0;  // year, by the file's first line; 0: it names none
   std::string description;
 };
 
-// LM-63-2002, -02, -2019, -19; not -1995.
-bool has_before_2002(std::string_view first_line) {
-  const size_t at = first_line.find("LM-63-");
-  if (at == first_line.npos) return true;
-  std::string_view year = first_line.substr(at + 6, 4);
-  year = year.substr(0, year.find_first_not_of("0123456789"));
-  const bool is_short = year.size() == 2 && year < "86";
-  return !is_short && !(year.size() == 4 && year >= "2002");
+// The year of "IESNA91", "IESNA:LM-63-1995", "IESNA:LM-63-02" and "IES:LM-63-2019"; 0 for other
+// lines. The first edition is of 1986, so two digits below 86 belong to this century.
+int edition_of(std::string_view first_line) {
+  const std::string line = upper_case(first_line);
+  const size_t label = line.find("LM-63-"), old = line.find("IESNA91");
+  if (label == line.npos) return old == line.npos ? 0 : 1991;
+  const size_t first = label + 6,
+               end = std::min(line.find_first_not_of("0123456789", first), line.size());
+  const std::string year = line.substr(first, std::min<size_t>(end - first, 5));
+  if (year.size() == 4) return std::atoi(year.c_str());
+  if (year.size() != 2) return 0;
+  const int short_year = std::atoi(year.c_str());
+  return short_year + (short_year < 86 ? 2000 : 1900);
 }
 
 // Up to the line TILT=, whose value is returned; what stands before it is text for people.
 std::string_view read_labels(PhotometricText& text, Labels& labels) {
   std::string_view line;
   constexpr size_t most_labels = 10'000;
+  bool is_first = true;
   for (size_t n = 0; text.next_line(line) && n <= most_labels; ++n) {
-    if (n == 0) labels.is_before_2002 = has_before_2002(line);
+    if (is_first && !line.empty()) {
+      labels.edition = edition_of(line);
+      is_first = false;
+    }
     if (std::string_view tilt; take_tilt(line, tilt)) return tilt;
     for (const char* label : {"[LUMINAIRE]", "[LUMCAT]"})
       if (line.starts_with(label) && labels.description.empty())
@@ -94,7 +106,37 @@ struct Header {
   bool has_zero_factor = false;
 };
 
-Header read_header(PhotometricText& text, Luminaire& l, bool is_before_2002) {
+// LM-63-2019's file generation types are 1 and five binary digits behind the point.
+bool is_generation_type(double v) {
+  const double digits = std::round((v - 1) * 1e5);
+  if (std::abs((v - 1) * 1e5 - digits) > 1e-3 || digits < 0 || digits > 11'111) return false;
+  for (int rest = int(digits); rest > 0; rest /= 10)
+    if (rest % 10 > 1) return false;
+  return true;
+}
+
+// The number between ballast factor and watts: a factor until 1991 (ballast-lamp photometric
+// factor), reserved in 1995 and 2002, and a code in 2019 (file generation type). Returns what
+// intensities are multiplied by.
+double take_ballast_lamp_factor(PhotometricText& text, int edition, const std::string& path,
+                                WarningLog& warnings) {
+  const double v = text.number("ballast-lamp factor", 0, 1e6);
+  if (edition >= 2019) {
+    if (v != 0 && !is_generation_type(v))
+      warnings.add(fmt::format(
+          "{}: {:.6g} is no file generation type of LM-63-2019; it does not multiply intensities",
+          path, v));
+    return 1;
+  }
+  if (v != 1 && v != 0 && edition >= 1995)
+    warnings.add(fmt::format(
+        "{}: its ballast-lamp factor {:.6g} multiplies intensities (reserved in LM-63-{})", path, v,
+        edition));
+  return v > 0 ? v : 1;
+}
+
+Header read_header(PhotometricText& text, Luminaire& l, int edition, const std::string& path,
+                   WarningLog& warnings) {
   Header h;
   const auto take_factor = [&](const char* name, double most) {
     const double factor = text.number(name, 0, most);
@@ -104,6 +146,7 @@ Header read_header(PhotometricText& text, Luminaire& l, bool is_before_2002) {
   const int lamps = text.integer("number of lamps", 0, 1'000'000);
   const double lumens = text.number("lumens per lamp", -1, most_lumens);
   if (lumens > 0) l.lamp_lumens = lumens * lamps;
+  l.is_absolute = lumens < 0;
   h.factor = take_factor("multiplier", 1e9);
   h.heights = size_t(text.integer("number of vertical angles", 2, 100'000));
   h.turns = size_t(text.integer("number of horizontal angles", 1, 100'000));
@@ -113,10 +156,9 @@ Header read_header(PhotometricText& text, Luminaire& l, bool is_before_2002) {
   const double width = text.number("width", -most_metres, most_metres) * unit;
   const double length = text.number("length", -most_metres, most_metres) * unit;
   const double height = text.number("height", -most_metres, most_metres) * unit;
-  l.opening = ies_opening(width, length, height, is_before_2002);
+  l.opening = ies_opening(width, length, height, edition < 2002);
   h.factor *= take_factor("ballast factor", 1e6);
-  const double future = text.number("ballast-lamp factor", 0, 1e6);
-  if (future > 0) h.factor *= future;
+  h.factor *= take_ballast_lamp_factor(text, edition, path, warnings);
   l.watts = text.number("watts", 0, 1e9);
   return h;
 }
@@ -130,10 +172,6 @@ void warn_of_more(PhotometricText& text, const std::string& path, WarningLog& wa
       return;
     }
 }
-
-}  // namespace
-
-namespace {
 
 // Angles that descend are turned round, their intensities with them: told.
 void make_ascend(Planes& planes, const std::string& path, WarningLog& warnings) {
@@ -156,19 +194,30 @@ void make_ascend(Planes& planes, const std::string& path, WarningLog& warnings) 
   warnings.add(path + ": its angles descend");
 }
 
+// Angles within [least, most] once their ends are where they are meant to be.
+std::vector<double> read_angles(PhotometricText& text, size_t count, const char* what, double least,
+                                double most, const std::string& path, WarningLog& warnings) {
+  const std::string one = fmt::format("{} angle", what), all = one + "s";
+  std::vector<double> angles;
+  for (size_t i = 0; i < count; ++i)
+    angles.push_back(text.number(one.c_str(), least - angle_slack_deg, most + angle_slack_deg));
+  check_monotonic(angles, text, all.c_str());
+  snap_ends(angles, all.c_str(), path, warnings);
+  for (const double a : angles)
+    if (a < least || a > most)
+      text.fail(fmt::format("{}: {} does not lie between {} and {}", one, a, least, most));
+  return angles;
+}
+
 Planes read_planes(PhotometricText& text, const Header& h, const std::string& path,
                    WarningLog& warnings) {
   const bool is_round = h.type == 1;  // type C; 2: B, 3: A
   const double most_turn = is_round ? 360 : 90;
   Planes planes;
-  for (size_t i = 0; i < h.heights; ++i)
-    planes.heights_deg.push_back(
-        text.number("vertical angle", is_round ? 0 : -90, is_round ? 180 : 90));
-  check_monotonic(planes.heights_deg, text, "vertical angles");
-  for (size_t i = 0; i < h.turns; ++i)
-    planes.turns_deg.push_back(
-        text.number("horizontal angle", -std::min(most_turn, 180.0), most_turn));
-  check_monotonic(planes.turns_deg, text, "horizontal angles");
+  planes.heights_deg = read_angles(text, h.heights, "vertical", is_round ? 0 : -90,
+                                   is_round ? 180 : 90, path, warnings);
+  planes.turns_deg = read_angles(text, h.turns, "horizontal", -std::min(most_turn, 180.0),
+                                 most_turn, path, warnings);
   for (size_t i = 0; i < h.heights * h.turns; ++i)
     planes.candela.push_back(h.factor * text.number("intensity", -most_candela, most_candela));
   make_ascend(planes, path, warnings);
@@ -186,11 +235,15 @@ Luminaire read_text(const std::string& path, PhotometricText& text, const std::s
     l.tilt = read_tilt(text);
   else if (tilt_name != "NONE" && !tilt.empty())
     l.tilt = read_tilt_file(path, folder, tilt, warnings);
-  const Header h = read_header(text, l, labels.is_before_2002);
+  const Header h = read_header(text, l, labels.edition, path, warnings);
   Planes planes = read_planes(text, h, path, warnings);
   if (h.has_zero_factor) warnings.add(path + ": factors of 0 count as 1");
   clean_intensities(planes, text, path, warnings);
   warn_of_more(text, path, warnings);
+  if (h.type == 1)
+    reach_poles(planes, path, warnings);
+  else
+    reach_beam(planes, path, warnings);
   l.web = h.type == 1
               ? unfold_planes(planes, path, warnings)
               : unfold_beam(planes, h.type == 2 ? WebPole::right : WebPole::up, path, warnings);

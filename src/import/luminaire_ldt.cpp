@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "import/luminaire_angles.h"
 #include "import/luminaire_formats.h"
 
 namespace troffer {
@@ -37,6 +38,25 @@ LuminousOpening read_opening(PhotometricText& text) {
   return eulumdat_opening(length, width, sides);
 }
 
+// Without intensities.
+Planes read_angles(PhotometricText& text, int symmetry, size_t turn_count, size_t heights,
+                   const std::string& path, WarningLog& warnings) {
+  Planes planes;
+  std::vector<double> turns;
+  for (size_t i = 0; i < turn_count; ++i)
+    turns.push_back(text.number_of_line("C angle", -angle_slack_deg, 360 + angle_slack_deg));
+  for (size_t i = 0; i < heights; ++i)
+    planes.heights_deg.push_back(
+        text.number_of_line("gamma angle", -angle_slack_deg, 180 + angle_slack_deg));
+  check_ascending(planes.heights_deg, text, "gamma angles");
+  snap_ends(planes.heights_deg, "gamma angles", path, warnings);
+  if (planes.heights_deg.front() < 0 || planes.heights_deg.back() > 180)
+    text.fail("gamma angles lie between 0 and 180");
+  planes.turns_deg = planes_present(symmetry, turns, text);
+  snap_ends(planes.turns_deg, "C-planes", path, warnings);
+  return planes;
+}
+
 }  // namespace
 
 Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& warnings) {
@@ -66,7 +86,9 @@ Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& 
   text.number_of_line("tilt", -1e6, 1e6);
   const int sets = text.integer_of_line("number of sets of lamps", 0, 1000);
   for (int i = 0; i < sets; ++i) {
-    skip(2);
+    skip(1);
+    if (i == 0) l.is_absolute = line.starts_with('-');  // number of lamps
+    skip(1);
     const double lumens = text.number_of_line("lumens", -1e12, most_lumens);
     skip(2);
     const double watts = text.number_of_line("watts", -1e9, 1e9);
@@ -76,19 +98,14 @@ Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& 
     }
   }
   for (int i = 0; i < 10; ++i) text.number_of_line("utilisation", -1e6, 1e6);
-  Planes planes;
-  std::vector<double> turns;
-  for (size_t i = 0; i < turn_count; ++i) turns.push_back(text.number_of_line("C angle", 0, 360));
-  for (size_t i = 0; i < heights; ++i)
-    planes.heights_deg.push_back(text.number_of_line("gamma angle", 0, 180));
-  check_ascending(planes.heights_deg, text, "gamma angles");
-  planes.turns_deg = planes_present(symmetry, turns, text);
+  Planes planes = read_angles(text, symmetry, turn_count, heights, path, warnings);
   if (!(l.lamp_lumens > 0)) text.fail("no lumens are stated, by which intensities per 1000 count");
   const double factor = l.lamp_lumens / 1000 * (conversion > 0 ? conversion : 1);
   for (size_t i = 0; i < heights * planes.turns_deg.size(); ++i)
     planes.candela.push_back(factor *
                              text.number_of_line("intensity", -most_candela, most_candela));
   clean_intensities(planes, text, path, warnings);
+  reach_poles(planes, path, warnings);
   l.web = unfold_planes(planes, path, warnings);
   return l;
 }
