@@ -1,9 +1,8 @@
 #include "base/sun_position.h"
 
 #include <cmath>
-#include <cstdio>
 
-#include "base/error.h"
+#include "base/time_text.h"
 #include "base/units.h"
 
 namespace troffer {
@@ -66,12 +65,6 @@ double refraction_deg(double altitude_deg) {
   return 1.02 / 60 / std::tan(rad_from_deg(angle));
 }
 
-int days_of(int year, int month) {
-  static constexpr int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  const bool is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-  return days[month - 1] + (month == 2 && is_leap ? 1 : 0);
-}
-
 }  // namespace
 
 double julian_day(int year, int month, int day, double hour) {
@@ -104,30 +97,17 @@ SunPosition sun_position(double latitude_deg, double longitude_deg, double julia
 }
 
 double parse_time(const std::string& text, const std::string& option) {
-  int year = 0, month = 0, day = 0, hour = 0, minute = 0, used = 0, more = 0;
-  double second = 0;
-  bool is_fine = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d%n", &year, &month, &day, &hour,
-                             &minute, &used) == 5;
-  std::string zone = is_fine ? text.substr(size_t(used)) : "";
-  if (is_fine && std::sscanf(zone.c_str(), ":%2lf%n", &second, &more) == 1)
-    zone = zone.substr(size_t(more));
-  double offset_hours = 0;
-  if (is_fine && zone != "Z" && zone != "z") {
-    char sign = 0;
-    int h = 0, m = 0, end = 0;
-    is_fine = std::sscanf(zone.c_str(), "%c%2d:%2d%n", &sign, &h, &m, &end) == 3 &&
-              size_t(end) == zone.size() && (sign == '+' || sign == '-') && h >= 0 && h <= 14 &&
-              m >= 0 && m < 60;
-    offset_hours = (sign == '-' ? -1 : 1) * (h + m / 60.0);
-  }
-  // 24:00 is the end of a day, and 60 a leap second.
-  is_fine = is_fine && year >= 1900 && year <= 2200 && month >= 1 && month <= 12 && day >= 1 &&
-            day <= days_of(year, month) && hour >= 0 && minute >= 0 && minute <= 59 &&
-            (hour < 24 || (hour == 24 && minute == 0 && second == 0)) && second >= 0 && second < 61;
-  if (!is_fine)
-    throw UsageError(option + ": cannot read '" + text +
-                     "' as a time such as 2026-06-21T12:00+02:00 or 2026-06-21T10:00Z");
-  return julian_day(year, month, day, hour + minute / 60.0 + second / 3600 - offset_hours);
+  TimeText t(text, option, "2026-06-21T12:00+02:00, or 2026-06-21T10:00Z");
+  const int year = t.number("the year", 4, 1900, 2200);
+  t.expect('-', "the month");
+  const int month = t.number("the month", 2, 1, 12);
+  t.expect('-', "the day");
+  const int day = t.number("the day", 2, 1, days_of_month(year, month));
+  t.expect_time();
+  const TimeOfDay time = t.time_of_day(true);
+  const double zone = t.zone_hours();
+  if (!t.is_at_end()) t.fail("'" + std::string(t.rest()) + "' follows the time zone");
+  return julian_day(year, month, day, time.hour + time.minute / 60.0 + time.second / 3600 - zone);
 }
 
 }  // namespace troffer

@@ -22,8 +22,8 @@ double julian_day(int year, int month, int day, double hour);
 // examples that tests/base/test_sun_position.cpp has.
 SunPosition sun_position(double latitude_deg, double longitude_deg, double julian_day_ut);
 
-// "2026-06-21T12:00+02:00", "…T12:00:30Z" -> Julian day. UsageError, which begins with `option`,
-// for what is no such time or lies outside 1900 to 2200.
+// "2026-06-21T12:00+02:00", "…T12:00:30Z", "… 12:00+0200" -> Julian day. UsageError, which begins
+// with `option` and names the part that is wrong, for other texts and years outside 1900 to 2200.
 double parse_time(const std::string& text, const std::string& option);
 
 }  // namespace troffer

@@ -44,11 +44,49 @@ TEST_CASE("times as ISO 8601 writes them") {
   CHECK(parse_time("2026-06-21T12:00:30-05:30", "--at") ==
         doctest::Approx(julian_day(2026, 6, 21, 17.5 + 30 / 3600.0)));
   CHECK(parse_time("2024-02-29T24:00Z", "--at") == julian_day(2024, 3, 1, 0));
+  for (const char* same : {"2026-06-21 12:00+02:00", "2026-06-21T12:00+0200", "2026-06-21T12:00+02",
+                           "2026-06-21t12:00:00.0 +02:00", " 2026-06-21  12:00 +0200 ",
+                           "2026-06-21T10:00 z", "2026-6-21T12:00+2", "2026-06-21T15:30+0530",
+                           "2026-06-21T07:00\xe2\x88\x92"
+                           "03:00"}) {
+    CAPTURE(same);
+    CHECK(parse_time(same, "--at") == doctest::Approx(julian_day(2026, 6, 21, 10)).epsilon(1e-12));
+  }
   for (const char* bad :
        {"", "2026-06-21", "2026-06-21T12:00", "2026-13-21T12:00Z", "2026-06-21T12:00+",
         "2026-06-21T25:00Z", "2026-06-21T12:60Z", "1026-06-21T12:00Z", "2026-06-21T12:00Zx", "noon",
         "2026-02-29T12:00Z", "2100-02-29T12:00Z", "2026-06-21T24:01Z"}) {
     CAPTURE(bad);
     CHECK_THROWS_AS(parse_time(bad, "--at"), UsageError);
+  }
+}
+
+TEST_CASE("a time that cannot be read names the part that is wrong") {
+  for (const auto& [text, part] :
+       {std::pair<const char*, const char*>{"2026-13-21T12:00Z", "the month 13"},
+        {"2026-06-31T12:00Z", "the day 31 does not lie between 1 and 30"},
+        {"2026-02-29T12:00Z", "the day 29 does not lie between 1 and 28"},
+        {"1776-07-04T12:00Z", "the year 1776"},
+        {"2026-06-21", "the time of day is missing"},
+        {"2026-06-21T12", "the minute is missing"},
+        {"2026-06-21T12:60Z", "the minute 60"},
+        {"2026-06-21T25:00Z", "the hour 25"},
+        {"2026-06-21T24:30Z", "a day ends at 24:00"},
+        {"2026-06-21T12:00", "the time zone is missing"},
+        {"2026-06-21T12:00CET", "the time zone is Z"},
+        {"2026-06-21T12:00+15", "the time zone's hour 15"},
+        {"2026-06-21T12:00Zulu", "'ulu' follows the time zone"},
+        {"21.06.2026 12:00Z", "the year 21"},
+        {"noon", "the year: a number expected"}}) {
+    CAPTURE(text);
+    try {
+      parse_time(text, "--at");
+      FAIL("was read");
+    } catch (const UsageError& error) {
+      const std::string message = error.what();
+      CAPTURE(message);
+      CHECK(message.starts_with("--at: "));
+      CHECK(message.find(part) != message.npos);
+    }
   }
 }
