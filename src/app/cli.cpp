@@ -202,7 +202,15 @@ void add_compare(CLI::App& app, CompareCommand& c) {
 void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
   CLI::App* s = app.add_subcommand("measure", "Measure irradiance and illuminance at points");
   add_scene_choice(*s, c.scene);
-  s->add_option("--points", c.points, "CSV file with header x,y,z,nx,ny,nz")->required();
+  s->add_option("--points", c.points, "CSV file with columns x,y,z,nx,ny,nz");
+  s->add_option(
+       "--grid", c.grid.grids,
+       "NODE[,HEIGHT[,SPACING]]: points over the upward surface of this part of the scene, "
+       "in metres [on it, EN 12464-1's]; may be repeated")
+      ->allow_extra_args(false);
+  s->add_option("--border", c.grid.border, "--grid: strip along the rim without points, in metres")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
   s->add_option("--method", c.method, "How light is computed: " + Method::names())
       ->capture_default_str();
@@ -220,6 +228,7 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
       ->capture_default_str();
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
+  c.daylight.invents_sky = false;  // no value rests on light that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");

@@ -106,6 +106,7 @@ int run_bake(const BakeCommand& c, BakeOptions options) {
   const ThreadLimit limit(c.threads);
   UpUse up;
   const PreparedScene scene(as_meshes(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up)));
+  warn_of_misplaced(scene, c.is_quiet);
   const StopFlag& stop = install_stop_handlers();
   const std::unique_ptr<Preparation> preparation =
       prepare_method(scene, options.light.method, options.light.kj92, options.light.indirect,
@@ -181,6 +182,7 @@ void add_bake(CLI::App& app, BakeCommand& c) {
                 "radiosity made");
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
+  c.daylight.invents_sky = false;  // lightmaps hold measured values
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings, no figures");

@@ -8,11 +8,28 @@
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "base/error.h"
 #include "base/parallel.h"
 #include "image/atomic_file.h"
-#include "render/measurements_csv.h"
+#include "render/placement.h"
 
 namespace troffer {
+
+namespace {
+
+// Where points stand as they cannot be meant to.
+void tell_of_points(const PreparedScene& scene, const std::vector<MeasuringPoint>& points,
+                    const MeasureResult& result) {
+  if (!result.in_surfaces.empty())
+    fmt::print(stderr,
+               "warning: {} of {} points (the first is number {}) stand exactly in a surface that "
+               "is not theirs; measured just before its front\n",
+               result.in_surfaces.size(), points.size(), result.in_surfaces.front() + 1);
+  for (const std::string& text : misplaced_points(scene, points, result))
+    fmt::print(stderr, "warning: {}\n", text);
+}
+
+}  // namespace
 
 int run_measure(const MeasureCommand& c) {
   MeasureOptions options;
@@ -28,10 +45,15 @@ int run_measure(const MeasureCommand& c) {
     fmt::print(stderr, "warning: --method {} measures direct light only\n", c.method);
   std::vector<OutputReservation> reserved = reserve_outputs({}, c.output);
   reserve_cells(c.solution, options.method, options.indirect, reserved);
-  const std::vector<MeasuringPoint> points = read_points(c.points);
+  if (c.points.empty() && c.grid.grids.empty())
+    throw UsageError("measure: give --points FILE.csv or --grid NODE");
+  PointList list = c.points.empty() ? PointList{} : read_points(c.points);
   const ThreadLimit limit(c.threads);
-  UpUse up;
+  UpUse up{!c.grid.grids.empty(), {}};
   const PreparedScene scene(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up));
+  warn_of_misplaced(scene, c.is_quiet);
+  add_grids(scene, c.grid, up.decision.up, list);
+  const std::vector<MeasuringPoint>& points = list.points;
 
   const StopFlag& stop = install_stop_handlers();
   const std::unique_ptr<Preparation> preparation =
@@ -50,13 +72,9 @@ int run_measure(const MeasureCommand& c) {
   if (!c.is_quiet && result.counters.nan_samples > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as 0\n",
                result.counters.nan_samples);
-  if (!c.is_quiet && !result.in_surfaces.empty())
-    fmt::print(stderr,
-               "warning: {} of {} points (the first is number {}) stand exactly in a surface that "
-               "is not theirs; measured just before its front\n",
-               result.in_surfaces.size(), points.size(), result.in_surfaces.front() + 1);
+  if (!c.is_quiet) tell_of_points(scene, points, result);
   if (result.is_complete) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
-  const std::string csv = measurements_csv(points, result);
+  const std::string csv = measurements_csv(list, result);
   if (c.output.empty())
     std::fputs(csv.c_str(), stdout);
   else

@@ -276,6 +276,7 @@ int run_render(RenderCommand c) {
   const std::optional<Camera> chosen = choose_camera(imported, c, up.decision.up);
   if (chosen) camera = *chosen;
   const PreparedScene scene(std::move(imported));
+  warn_of_misplaced(scene, c.is_quiet);
   if (!chosen) camera = place_camera(scene, c, up.decision.up);
   seconds.build = seconds_since(mark);
 

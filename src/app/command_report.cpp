@@ -8,17 +8,21 @@
 #include <filesystem>
 
 #include "app/outputs.h"
+#include "app/printable.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/wildcard.h"
 #include "image/atomic_file.h"
 #include "image/read_image.h"
 #include "import/file.h"
 #include "lighting/attached_luminaires.h"
+#include "lighting/dimming.h"
 #include "lighting/luminaire_list.h"
 #include "render/camera.h"
 #include "render/framing.h"
+#include "render/placement.h"
 #include "report/report.h"
 #include "report/sha256.h"
 #include "scene/names.h"
@@ -74,6 +78,7 @@ Scene overcast_scene(const ReportCommand& c) {
   sky.sky = fmt::format("overcast,{}", overcast_lx);
   sky.sun = sky.at = sky.weather = sky.date = sky.environment = "";
   sky.turbidity = 0;
+  sky.dims.clear();  // the sky is whole, and luminaires do not shine
   UpUse same;
   const Scene scene = with_daylight_apart(load_scene(c.scene, {}, &sky, true, same));
   std::vector<std::string> names;
@@ -128,7 +133,7 @@ std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& sc
   std::vector<PowerRequest> power;
   const auto add = [&](const std::string& name, double watts) {
     const bool is_lit = std::any_of(scene.lights.begin(), scene.lights.end(),
-                                    [&](const Light& e) { return e.name == name; });
+                                    [&](const Light& e) { return fits_wildcard(e.name, name); });
     if (is_lit && watts > 0) power.push_back({name, watts});
   };
   for (const auto& [node, watts] : watts_of_luminaires(c.daylight.luminaires)) add(node, watts);
@@ -136,6 +141,21 @@ std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& sc
   const std::vector<double> listed = watts_of_luminaire_list(c.daylight.luminaire_list, -up);
   for (size_t i = 0; i < listed.size(); ++i) add("luminaire" + std::to_string(i), listed[i]);
   return power;
+}
+
+// What is said of the power of lights that --dim changes holds for them undimmed: says it again, by
+// name, dimmed.
+void dim_power(const ReportCommand& c, const Scene& scene, std::vector<PowerRequest>& power) {
+  if (c.daylight.dims.empty()) return;
+  std::vector<PowerRequest> dimmed;
+  for (const std::string& name : daylight_and_luminaires(scene).second) {
+    const auto last = std::find_if(power.rbegin(), power.rend(), [&](const PowerRequest& r) {
+      return fits_wildcard(name, r.name);
+    });
+    if (last != power.rend())
+      dimmed.push_back({name, last->watts * dimming_of(name, c.daylight.dims)});
+  }
+  power.insert(power.end(), dimmed.begin(), dimmed.end());
 }
 
 ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& read,
@@ -175,6 +195,13 @@ void write_report(const Report& report, const ReportFolder& folder) {
   write_file(folder.file("report.html"), report_page(report));
 }
 
+// On the page too, as all that a reader of the figures must know.
+void note_misplaced(Scene& scene, bool is_quiet) {
+  const PreparedScene prepared{Scene(scene)};
+  warn_of_misplaced(prepared, is_quiet);
+  for (const std::string& text : misplaced_luminaires(prepared)) scene.warnings.add(text);
+}
+
 int tell_interrupted() {
   fmt::print(stderr, "interrupted: no report was written\n");
   return exit_interrupted;
@@ -189,11 +216,17 @@ int run_report(const ReportCommand& c) {
   assessment_options(c, {0, 0, 1});  // mistakes are told before any work
   const ThreadLimit limit(c.threads);
   UpUse use{true, {}};
-  const Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, use);
+  Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, use);
+  note_misplaced(scene, c.is_quiet);
   const Vec3 up = use.decision.up;
   report.options = assessment_options(c, up);
+  for (const std::string& note : report.options.notes) {
+    if (!c.is_quiet) fmt::print(stderr, "warning: {}\n", printable(note));
+    scene.warnings.add(note);
+  }
   const std::vector<PowerRequest> stated = power_of_files(c, scene, up);
   report.options.power.insert(report.options.power.begin(), stated.begin(), stated.end());
+  dim_power(c, scene, report.options.power);
   if (c.daylight_factor != "off") report.options.overcast = [&] { return overcast_scene(c); };
   named_cameras(scene, c.cameras);
   report.info = info_of(c, scene, read, use.decision);

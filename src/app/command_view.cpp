@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -78,6 +79,13 @@ int run_view(const ViewCommand& c) {
   const ThreadLimit limit(c.threads);
   UpUse up{true, {}};
   Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);
+  const auto& warnings = scene.warnings.entries();
+  if (std::any_of(warnings.begin(), warnings.end(),
+                  [](const Warning& w) { return w.text == invented_sky; })) {
+    settings.notice =
+        "The scene has no light. An even sky of 10 000 lx, which it does not have, lights this "
+        "picture: its values say nothing about the scene. --sky none keeps it dark.";
+  }
   settings.camera = camera_named(scene, c.camera);
   settings.up = normalize(up.decision.up);
   const PlaceOfTime at = split_at(c.daylight.at);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/grid_points.h"
 #include "app/lasting_options.h"
 #include "import/import_options.h"
 #include "lighting/daylight_options.h"
@@ -76,7 +77,8 @@ int run_compare(const CompareCommand& command);
 
 struct MeasureCommand {
   SceneChoice scene;
-  std::string points, output;
+  std::string points, output;  // points: a file, or empty
+  GridChoice grid;
   std::string method = "certified";
   std::vector<std::string> lights;
   DaylightOptions daylight;
@@ -177,6 +179,8 @@ UpDecision up_of(const SceneChoice& choice, const Scene& scene);
 // A line on standard error that says what was decided, unless the user or the format says it, or a
 // warning does.
 void tell_up(const UpDecision& decision);
+// Warns, unless is_quiet, of luminaires that hang outside of the room or within something.
+void warn_of_misplaced(const PreparedScene& scene, bool is_quiet);
 
 // "certified", "kj92", "fixed" and "path"; UsageError for others.
 Method parse_method(const std::string& name);

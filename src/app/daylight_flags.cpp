@@ -4,6 +4,29 @@
 
 namespace troffer {
 
+namespace {
+
+void add_luminaire_options(CLI::App& command, DaylightOptions& o) {
+  command
+      .add_option(
+          "--luminaire", o.luminaires,
+          "NODE=FILE[,LUMENS[,KELVIN]]: a flat surface, a point or a spot shines as an .ies "
+          "or .ldt file says, in the colour of a black body; NODE* stands for all that begin so; "
+          "may be repeated")
+      ->allow_extra_args(false);
+  command.add_option(
+      "--luminaires", o.luminaire_list,
+      "LIST.csv of luminaires to add: file,x,y,z[,dx,dy,dz][,rotation][,dimming][,lumens]"
+      "[,kelvin]");
+  command
+      .add_option("--dim", o.dims,
+                  "NAME=F: this light sends F times as much (and takes F times the power); NAME* "
+                  "stands for all that begin so; may be repeated")
+      ->allow_extra_args(false);
+}
+
+}  // namespace
+
 void add_daylight_options(CLI::App& command, DaylightOptions& o) {
   command.add_option("--sky", o.sky,
                      "Light of a sky: even, overcast, clear, cie:1 to cie:15 [,LUX of a horizontal "
@@ -46,14 +69,7 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
                   "four corners x,y,z, … counterclockwise seen from where it arrives, or the name "
                   "of a part of the scene whose front faces there; may be repeated")
       ->allow_extra_args(false);
-  command
-      .add_option(
-          "--luminaire", o.luminaires,
-          "NODE=FILE[,LUMENS[,KELVIN]]: a flat surface, a point or a spot shines as an .ies "
-          "or .ldt file says, in the colour of a black body; may be repeated")
-      ->allow_extra_args(false);
-  command.add_option("--luminaires", o.luminaire_list,
-                     "LIST.csv of luminaires to add: file,x,y,z[,dx,dy,dz[,rotation[,dimming]]]");
+  add_luminaire_options(command, o);
   command
       .add_option("--light-radius", o.light_radius,
                   "Makes points and spots spheres of this radius, in metres: soft shadows")

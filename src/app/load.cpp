@@ -11,6 +11,8 @@
 #include "app/progress.h"
 #include "base/error.h"
 #include "import/import.h"
+#include "lighting/dimming.h"
+#include "render/placement.h"
 #include "scene/joined_lights.h"
 
 namespace troffer {
@@ -26,6 +28,10 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
   app.add_option("--up", choice.up,
                  "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance: z; others: by "
                  "cameras, names and what stands on what]");
+  app.add_option("--emission-scale", choice.options.emission_scale,
+                 "Factor on what surfaces of the file emit, such as 683 for Blender's emission")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
 }
 
 namespace {
@@ -72,8 +78,9 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
   const bool is_up_used =
       up.is_needed || (daylight != nullptr && (has_new_light || depends_on_up(*daylight)));
   if (up.is_needed && !up.decision.doubt.empty()) scene.warnings.add(up.decision.doubt);
-  if (scene.lights.empty()) scene.warnings.add("there is no light: nothing will be seen");
+  if (!shines(scene)) scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
+  if (daylight != nullptr) check_light(scene, *daylight, lights);
   scene = with_joined_lights(std::move(scene));
   if (is_quiet) return scene;
   tell_warnings(scene);
@@ -88,6 +95,12 @@ UpDecision up_of(const SceneChoice& choice, const Scene& scene) {
 void tell_up(const UpDecision& decision) {
   if (decision.basis == UpBasis::evidence && decision.doubt.empty())
     fmt::print(stderr, "note: {} (--up chooses another direction)\n", describe(decision));
+}
+
+void warn_of_misplaced(const PreparedScene& scene, bool is_quiet) {
+  if (is_quiet) return;
+  for (const std::string& text : misplaced_luminaires(scene))
+    fmt::print(stderr, "warning: {}\n", printable(text));
 }
 
 Method parse_method(const std::string& name) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <initializer_list>
 
+#include "app/surface_list.h"
 #include "import/file.h"
 #include "import/gltf_json.h"
 
@@ -108,6 +109,7 @@ void for_each_of(const JsonNode& root, const char* key,
 }  // namespace
 
 void read_report_file(const std::string& path, AssessmentOptions& options) {
+  if (lower_case_ending(path) == "csv") return read_surface_list(path, options);
   const JsonDocument document(path, read_text_file(path, uint64_t(16) << 20),
                               JsonLimits{32, 100'000});
   const JsonNode root = document.root();

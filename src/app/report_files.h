@@ -1,4 +1,4 @@
-// JSON files that say what `report` assesses (docs/report.md).
+// Files that say what `report` assesses (docs/report.md): JSON, or tables of surfaces.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace troffer {
 
-// Adds a file's surfaces, observers and profiles (these in place of ones of the same id).
+// Adds a file's surfaces, observers and profiles (these in place of ones of the same id). A .csv is
+// a list of surfaces (app/surface_list.h).
 // InputError with line and column.
 void read_report_file(const std::string& path, AssessmentOptions& options);
 

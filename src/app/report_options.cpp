@@ -74,8 +74,9 @@ void add_what(CLI::App& s, ReportCommand& c) {
   s.add_option("--surface", c.surfaces,
                "NODE[:PROFILE]: assess this part of the scene; may be repeated [desks and floors]")
       ->allow_extra_args(false);
-  s.add_option("--surfaces", c.surface_files,
-               "JSON file of surfaces, observers and profiles; may be repeated")
+  s.add_option(
+       "--surfaces", c.surface_files,
+       "JSON file of surfaces, observers and profiles, or .csv of surfaces; may be repeated")
       ->allow_extra_args(false);
   s.add_option("--profile", c.profile, "Task of desks and work planes, such as office-writing")
       ->capture_default_str();
@@ -134,6 +135,7 @@ void add_report(CLI::App& app, ReportCommand& c) {
   add_how(*s, c);
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
+  c.daylight.invents_sky = false;  // no verdict rests on light that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");

@@ -157,6 +157,7 @@ double horizontal_integral(const SkyShape& shape, double sun_zenith_rad) {
 PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_zenith_rad,
                    double sun_distance_au) {
   const double z = sun_zenith_rad, z3 = 1.041 * z * z * z;
+  // Infinite without diffuse light: as clear as the model goes.
   const double clearness =
       std::clamp((1 + direct_normal / diffuse_horizontal + z3) / (1 + z3), 1.0, 12.0);
   const double extraterrestrial = solar_constant / (sun_distance_au * sun_distance_au);

@@ -36,8 +36,8 @@ struct PerezSky {
   double direct_lx = 0;   // on a plane that faces the sun
 };
 // Sky and sun by the irradiances of all wavelengths [2, 3], W/m²: direct on a plane that faces the
-// sun, diffuse (> 0) on a horizontal one. The sun's zenith angle is under pi/2. Air holds 2 cm of
-// water. Clearness and brightness outside the model's range are moved to its ends.
+// sun, diffuse on a horizontal one, not both 0. The sun's zenith angle is under pi/2. Air holds 2
+// cm of water. Clearness and brightness outside the model's range are moved to its ends.
 PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_zenith_rad,
                    double sun_distance_au);
 

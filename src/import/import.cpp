@@ -10,6 +10,7 @@
 #include "import/ply_scene.h"
 #include "import/radiance.h"
 #include "import/stl.h"
+#include "import/surface_emission.h"
 #include "import/thin_glass.h"
 
 namespace troffer {
@@ -46,6 +47,8 @@ Scene import_scene(const std::string& path, const ImportOptions& options) {
   Scene scene = import_file(path, options);
   settle_instances(scene);
   replace_thin_glass(scene);
+  scale_surface_emission(scene, options.emission_scale);
+  warn_of_weak_surfaces(scene);
   return scene;
 }
 

@@ -15,6 +15,8 @@ struct ImportOptions {
   std::optional<std::string> animation;  // by name; none: the first
   TellProgress progress;                 // of the file; for .obj .ply .stl
   ImageUse images = ImageUse::read;
+  // Factor on what surfaces emit, but for measured luminaires (import/surface_emission.h).
+  double emission_scale = 1;
 
   bool is_any() const { return variant || time || animation; }
 };

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/wildcard.h"
 #include "import/attach_luminaire.h"
 #include "import/spectra.h"
 #include "light/web.h"
@@ -64,6 +65,58 @@ LuminaireOption parse_luminaire(const std::string& text) {
   return o;
 }
 
+// Parts of the scene that `pattern` stands for, each once: its lights, or, where no light fits,
+// surfaces.
+struct FittingNodes {
+  std::vector<std::string> names;
+  bool are_lights = false;
+};
+
+FittingNodes nodes_fitting(const Scene& scene, const std::string& pattern) {
+  FittingNodes nodes;
+  std::set<std::string> known;
+  const auto take = [&](const std::string& name) {
+    if (fits_wildcard(name, pattern) && known.insert(name).second) nodes.names.push_back(name);
+  };
+  for (const Light& e : scene.lights) take(e.name);
+  nodes.are_lights = !nodes.names.empty();
+  if (nodes.are_lights) return nodes;
+  for (const Mesh& m : scene.meshes) take(m.name);
+  for (const Instance& i : scene.instances) take(i.name);
+  return nodes;
+}
+
+bool is_named(const Scene& scene, const std::string& name) {
+  const auto has_name = [&](const auto& part) { return part.name == name; };
+  return std::any_of(scene.lights.begin(), scene.lights.end(), has_name) ||
+         std::any_of(scene.meshes.begin(), scene.meshes.end(), has_name) ||
+         std::any_of(scene.instances.begin(), scene.instances.end(), has_name);
+}
+
+// Among surfaces that fit a wildcard those that cannot be an opening are left as they are, if any
+// can.
+void attach_to_all(Scene& scene, const std::string& pattern, const Luminaire& luminaire,
+                   const Rgb& scale, const Vec3& down) {
+  const FittingNodes nodes = nodes_fitting(scene, pattern);
+  if (nodes.names.empty())
+    throw UsageError("--luminaire: no name fits '" + pattern + "' (troffer info lists lights)");
+  size_t attached = 0;
+  std::string problem;
+  for (const std::string& name : nodes.names) {
+    try {
+      attach_luminaire(scene, name, luminaire, scale, down);
+      ++attached;
+    } catch (const UsageError& error) {
+      if (nodes.are_lights) throw;
+      problem = error.what();
+    }
+  }
+  if (attached == 0) throw UsageError(problem);
+  if (attached < nodes.names.size())
+    scene.warnings.add(fmt::format("{} ('{}' fits {} more, which are left as they are)", problem,
+                                   pattern, nodes.names.size() - attached));
+}
+
 }  // namespace
 
 Luminaire read_and_check_luminaire(const std::string& path, WarningLog& warnings) {
@@ -96,8 +149,11 @@ void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires,
     if (!nodes.insert(o.node).second)
       scene.warnings.add("--luminaire: '" + o.node + "' is given twice; the last file counts");
     const Luminaire luminaire = read_and_check_luminaire(o.file, scene.warnings);
-    attach_luminaire(scene, o.node, luminaire,
-                     luminaire_scale(scene, luminaire, o.file, o.lumens, o.kelvin), down);
+    const Rgb scale = luminaire_scale(scene, luminaire, o.file, o.lumens, o.kelvin);
+    if (o.node.find('*') == std::string::npos || is_named(scene, o.node))
+      attach_luminaire(scene, o.node, luminaire, scale, down);
+    else
+      attach_to_all(scene, o.node, luminaire, scale, down);
   }
 }
 

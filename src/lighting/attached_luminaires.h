@@ -20,12 +20,13 @@ Luminaire read_and_check_luminaire(const std::string& path, WarningLog& warnings
 Rgb luminaire_scale(const Scene& scene, const Luminaire& luminaire, const std::string& name,
                     double lumens, double kelvin);
 
-// Each "NODE=FILE[,LUMENS[,KELVIN]]". UsageError for what cannot be read so and for nodes that
-// cannot shine so; InputError for files.
+// Each "NODE=FILE[,LUMENS[,KELVIN]]"; a NODE with '*' stands for all lights that it fits, or, where
+// no light does, surfaces (base/wildcard.h). UsageError for what cannot be read so and for nodes
+// that cannot shine so; InputError for files.
 void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down);
 
-// Of each such option the node and what its luminaire takes by the file, W: 0 where that states
-// nothing.
+// The node of each such option (it may hold '*'), and what its luminaire takes by the file, W: 0
+// where that states nothing.
 std::vector<std::pair<std::string, double>> watts_of_luminaires(
     const std::vector<std::string>& luminaires);
 

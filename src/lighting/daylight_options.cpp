@@ -15,6 +15,7 @@
 #include "import/light_radius.h"
 #include "lighting/asked_portals.h"
 #include "lighting/attached_luminaires.h"
+#include "lighting/dimming.h"
 #include "lighting/luminaire_list.h"
 #include "lighting/option_text.h"
 #include "lighting/weather.h"
@@ -55,7 +56,8 @@ SkyRequest parse_sky(const std::string& text) {
   SkyRequest r;
   if (name[0] == "perez" && name.size() == 2) {
     const auto v = numbers(split_text(text.substr(6), ','), 0, 2, 2, "--sky", text, expected);
-    if (!(v[0] >= 0 && v[0] <= 2000 && v[1] > 0 && v[1] <= 2000)) fail("--sky", text, expected);
+    if (!(v[0] >= 0 && v[0] <= 2000 && v[1] >= 0 && v[1] <= 2000 && v[0] + v[1] > 0))
+      fail("--sky", text, expected);
     r.kind = SkyKind::perez;
     r.direct_normal = v[0];
     r.diffuse_horizontal = v[1];
@@ -82,13 +84,30 @@ struct PlaceAndTime {
   double latitude_deg = 0, longitude_deg = 0, julian_day_ut = 0;
 };
 
+// A coordinate within ±most, of degrees.
+double parse_degrees(const std::string& part, const char* what, double most,
+                     const std::string& text) {
+  const size_t first = part.find_first_not_of(' '), last = part.find_last_not_of(' ');
+  const auto v =
+      first == part.npos ? std::nullopt : parse_number(part.substr(first, last - first + 1));
+  if (!v)
+    throw UsageError(fmt::format("--at: '{}': the {} '{}' is not a number", text, what, part));
+  if (std::abs(*v) > most)
+    throw UsageError(fmt::format("--at: '{}': the {} {} does not lie between -{} and {} degrees",
+                                 text, what, *v, most, most));
+  return *v;
+}
+
 PlaceAndTime parse_at(const std::string& text) {
-  static constexpr const char* expected = "LATITUDE,LONGITUDE,TIME";
   const std::vector<std::string> parts = split_text(text, ',');
-  if (parts.size() != 3) fail("--at", text, expected);
-  const auto v = numbers({parts[0], parts[1]}, 0, 2, 2, "--at", text, expected);
-  if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360) fail("--at", text, expected);
-  return {v[0], v[1], parse_time(parts[2], "--at")};
+  if (parts.size() != 3)
+    throw UsageError(fmt::format(
+        "--at: '{}' has {} part{} between commas, not three: LATITUDE,LONGITUDE,TIME, such as "
+        "48.2,16.4,2026-06-21T12:00+02:00",
+        text, parts.size(), parts.size() == 1 ? "" : "s"));
+  const double latitude = parse_degrees(parts[0], "latitude", 90, text);
+  const double longitude = parse_degrees(parts[1], "longitude", 360, text);
+  return {latitude, longitude, parse_time(parts[2], "--at")};
 }
 
 std::optional<SunRequest> parse_sun(const DaylightOptions& o) {
@@ -129,8 +148,20 @@ void add_weather(Scene& scene, const DaylightOptions& o, const Compass& compass)
     weather = read_weather(o.weather, at.julian_day_ut);
     p = sun_position(at.latitude_deg, at.longitude_deg, at.julian_day_ut);
   }
-  if (!(weather.diffuse_horizontal > 0) || !(p.altitude_deg > 0)) {
-    scene.warnings.add("--weather: no light comes from the sky at that hour");
+  if (!(p.altitude_deg > 0)) {
+    scene.warnings.add(
+        fmt::format("--weather: the sun is {:.2f} degrees below the horizon: neither it nor the "
+                    "sky gives light",
+                    -p.altitude_deg));
+    return;
+  }
+  if (!(weather.diffuse_horizontal > 0 || weather.direct_normal > 0)) {
+    scene.warnings.add(
+        weather.global_horizontal > 0
+            ? fmt::format("--weather: that hour has {:.5g} W/m2 on the ground, but neither direct "
+                          "nor diffuse light: it stays dark",
+                          weather.global_horizontal)
+            : std::string("--weather: no light comes from sky and sun at that hour"));
     return;
   }
   SkyRequest request;
@@ -199,6 +230,10 @@ void warn_of_unused(Scene& scene, const DaylightOptions& o) {
 
 }  // namespace
 
+const char* const invented_sky =
+    "the scene has no light: an even sky of 10000 lx lights it (--sky chooses another, --sky none "
+    "keeps it dark)";
+
 Vec3d parse_vector(const std::string& text, const char* option) {
   Vec3d v;
   const char* p = text.c_str();
@@ -252,7 +287,7 @@ void add_daylight(Scene& scene, const DaylightOptions& o, const UpDecision& up) 
   attach_luminaires(scene, o.luminaires, Vec3(-compass.up));
   if (!o.luminaire_list.empty()) add_luminaire_list(scene, o.luminaire_list, Vec3(-compass.up));
   if (o.light_radius > 0) give_radius(scene, o.light_radius);
-  const bool had_light = !scene.lights.empty();
+  const bool had_light = shines(scene);
   if (!o.environment.empty()) {
     const size_t comma = o.environment.rfind(',');
     const auto scale =
@@ -272,18 +307,35 @@ void add_daylight(Scene& scene, const DaylightOptions& o, const UpDecision& up) 
     add_weather(scene, o, compass);
   } else if ((is_asked && o.sky != "none") || !o.sun.empty() || !o.at.empty()) {
     add_asked_sky(scene, o, compass);
-  } else if (!had_light && o.environment.empty() && o.sky != "none" && !bounds(scene).is_empty()) {
+  } else if (!had_light && o.invents_sky && o.environment.empty() && o.sky != "none" &&
+             !bounds(scene).is_empty()) {
     SkyRequest even;
     even.ground_reflectance = o.ground;
     add_sky(scene, even, compass);
-    scene.warnings.add(
-        "the scene has no light: an even sky of 10000 lx lights it (--sky chooses another, --sky "
-        "none keeps it dark)");
+    scene.warnings.add(invented_sky);
     is_up_used = true;
   }
   if (is_up_used && !up.doubt.empty()) scene.warnings.add(up.doubt);
   add_portals(scene, o.portals);
+  dim_lights(scene, o.dims);
   warn_of_unused(scene, o);
+}
+
+void check_light(const Scene& scene, const DaylightOptions& o,
+                 const std::vector<std::string>& lights) {
+  if (o.invents_sky || shines(scene) || (o.asks_for_sky() && lights.empty()) || o.sky == "none")
+    return;
+  const char* const why = !o.dims.empty()   ? "; --dim leaves no light"
+                          : !lights.empty() ? "; --light leaves no light"
+                          : !o.luminaire_list.empty()
+                              ? "; the luminaires of the list are dimmed to 0"
+                          : scene.lights.empty() ? ", or only lights of strength 0"
+                                                 : "; its lights have strength 0";
+  throw InputError(scene.file, 0, 0,
+                   fmt::format("no light shines in it{}: give lamps a strength, add luminaires "
+                               "(--luminaire, --luminaires) or daylight (--sky, --sun, --at, "
+                               "--weather), or ask for darkness (--sky none)",
+                               why));
 }
 
 }  // namespace troffer

@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 11> columns{
     "file", "x", "y", "z", "dx", "dy", "dz", "rotation", "dimming", "lumens", "kelvin"};
 constexpr size_t needed_columns = 4, most_rows = 100'000;
 constexpr double shortest = 1e-9;  // of a direction: squares of much less lose digits
+constexpr double most_number = 1e9;
 
 struct Row {
   std::string file;
@@ -34,74 +35,57 @@ struct Row {
   double lumens = 0, kelvin = 0;  // 0: the file's; white
 };
 
-// Per field of the table, which of `columns` it is.
-std::vector<size_t> read_header(const CsvTable& table, const std::string& path) {
+// Per column the field of the table that holds it.
+std::vector<size_t> read_header(const CsvReader& table, const std::string& path) {
   static constexpr const char* expected =
-      "the header must be file,x,y,z[,dx,dy,dz][,rotation][,dimming][,lumens][,kelvin], in any "
-      "order";
-  std::vector<size_t> which;
-  std::array<int, columns.size()> times{};
-  for (const std::string& name : table.header.fields) {
-    const auto at = size_t(std::find(columns.begin(), columns.end(), name) - columns.begin());
-    which.push_back(at);
-    if (name.empty()) continue;
-    if (at == columns.size())
-      throw InputError(path, table.header.line, 1,
-                       fmt::format("column '{}' is not known; {}", name.substr(0, 40), expected));
-    ++times[at];
-  }
-  const bool has_direction = times[4] + times[5] + times[6] == 3;
-  const bool has_none = times[4] + times[5] + times[6] == 0;
-  for (size_t i = 0; i < columns.size(); ++i)
-    if (times[i] > 1 || (times[i] == 0 && i < needed_columns) || !(has_direction || has_none))
-      throw InputError(path, std::max(table.header.line, 1), 1, expected);
-  return which;
-}
-
-void check_range(double v, double least, double most, const std::string& path, int line,
-                 const char* what) {
-  if (!(v >= least && v <= most))
-    throw InputError(path, line, 1,
-                     fmt::format("{} must lie between {} and {}", what, least, most));
+      "the header file,x,y,z[,dx,dy,dz][,rotation][,dimming][,lumens][,kelvin]";
+  std::vector<size_t> where = table.columns(columns, needed_columns, expected);
+  const auto given = std::count_if(where.begin() + 4, where.begin() + 7,
+                                   [](size_t f) { return f != CsvReader::no_field; });
+  if (given != 0 && given != 3)
+    throw InputError(path, table.header().line, 1,
+                     std::string(expected) + " lacks a part of the direction dx,dy,dz");
+  return where;
 }
 
 // Fields that are empty, or left off at the end, are what the columns' absence means.
-Row parse_row(const CsvTable& table, const CsvRow& source, const std::vector<size_t>& which,
-              const std::string& path, const Vec3& down) {
+Row parse_row(const CsvReader& table, const CsvRow& source, const std::vector<size_t>& where,
+              const Vec3& down) {
   std::array<double, columns.size()> v{0, 0, 0, 0, double(down.x), double(down.y), double(down.z),
                                        0, 1, 0, 0};
   Row row;
   row.line = source.line;
-  if (source.fields.size() > which.size())
-    throw InputError(path, row.line, 1, fmt::format("{} columns expected", which.size()));
+  const size_t names = table.header().fields.size();
+  if (source.fields.size() > names)
+    table.fail(source, names, fmt::format("{} columns expected", names));
   std::array<bool, columns.size()> has{};
-  for (size_t i = 0; i < source.fields.size(); ++i) {
-    const std::string& field = source.fields[i];
-    if (field.empty() || which[i] == columns.size()) continue;
-    has[which[i]] = true;
-    if (which[i] == 0)
-      row.file = field;
-    else if (!read_csv_number(table, field, v[which[i]]))
-      throw InputError(
-          path, row.line, 1,
-          fmt::format("column '{}': '{}' is not a number", columns[which[i]], field.substr(0, 40)));
+  for (size_t i = 0; i < columns.size(); ++i) {
+    has[i] = where[i] < source.fields.size() && !source.fields[where[i]].empty();
+    if (!has[i] && i < needed_columns)
+      table.fail(source, where[i], fmt::format("column '{}' is missing", columns[i]));
+    if (!has[i]) continue;
+    if (i == 0)
+      row.file = source.fields[where[i]];
+    else
+      v[i] = table.number(source, where[i], columns[i], most_number);
   }
-  for (size_t i = 0; i < needed_columns; ++i)
-    if (!has[i])
-      throw InputError(path, row.line, 1, fmt::format("column '{}' is missing", columns[i]));
   if (has[4] != has[5] || has[5] != has[6])
-    throw InputError(path, row.line, 1, "a direction has three numbers");
+    table.fail(source, where[4], "a direction has three numbers");
   row.position = {v[1], v[2], v[3]};
   row.down = {v[4], v[5], v[6]};
   row.rotation_deg = v[7];
   row.dimming = v[8];
   row.lumens = v[9];
   row.kelvin = v[10];
-  if (!(length(row.down) >= shortest))
-    throw InputError(path, row.line, 1, "the direction has no length");
-  check_range(row.dimming, 0, 1e6, path, row.line, "dimming");
-  check_range(row.lumens, 0, 1e9, path, row.line, "lumens");
-  if (row.kelvin != 0) check_range(row.kelvin, 1000, 40'000, path, row.line, "kelvin");
+  if (!(length(row.down) >= shortest)) table.fail(source, where[4], "the direction has no length");
+  const auto check_range = [&](size_t column, double least, double most) {
+    if (!(v[column] >= least && v[column] <= most))
+      table.fail(source, where[column],
+                 fmt::format("{} must lie between {} and {}", columns[column], least, most));
+  };
+  check_range(8, 0, 1e6);
+  check_range(9, 0, 1e9);
+  if (row.kelvin != 0) check_range(10, 1000, 40'000);
   return row;
 }
 
@@ -114,13 +98,19 @@ Vec3d along_of(const Row& row) {
   return u * std::cos(turn) + v * std::sin(turn);
 }
 
-std::vector<Row> read_rows(const std::string& path, const Vec3& down) {
-  const CsvTable table = read_csv(read_text_file(path, uint64_t(64) << 20));
-  const std::vector<size_t> which = read_header(table, path);
-  if (table.rows.size() > most_rows)
-    throw InputError(path, table.rows[most_rows].line, 1, "too many luminaires");
+std::vector<Row> read_rows(const std::string& path, const Vec3& down, WarningLog& warnings) {
+  const std::string text = read_text_file(path, uint64_t(64) << 20);
+  CsvReader table(path, text);
+  const std::vector<size_t> where = read_header(table, path);
+  const std::vector<size_t> unused = table.other_columns(columns);
+  if (!unused.empty()) warnings.add(unused_columns_note(table, path, unused));
   std::vector<Row> rows;
-  for (const CsvRow& row : table.rows) rows.push_back(parse_row(table, row, which, path, down));
+  CsvRow row;
+  while (table.next(row)) {
+    if (rows.size() == most_rows) table.fail(row, 0, "too many luminaires");
+    rows.push_back(parse_row(table, row, where, down));
+  }
+  if (rows.empty()) warnings.add(path + ": lists no luminaire");
   return rows;
 }
 
@@ -145,7 +135,7 @@ void add_luminaire_list(Scene& scene, const std::string& path, const Vec3& down)
   };
   std::map<std::string, Known> known;
   size_t n = 0;
-  for (const Row& row : read_rows(path, down)) {
+  for (const Row& row : read_rows(path, down, scene.warnings)) {
     auto at = known.find(row.file);
     if (at == known.end()) {
       at = known.emplace(row.file, Known{read_listed(path, row, scene.warnings), 0}).first;
@@ -164,11 +154,11 @@ std::vector<double> watts_of_luminaire_list(const std::string& path, const Vec3&
   std::map<std::string, double> known;
   std::vector<double> watts;
   WarningLog ignored;  // told when the luminaires are added
-  for (const Row& row : read_rows(path, down)) {
+  for (const Row& row : read_rows(path, down, ignored)) {
     auto at = known.find(row.file);
     if (at == known.end())
       at = known.emplace(row.file, read_listed(path, row, ignored).watts).first;
-    watts.push_back(at->second);
+    watts.push_back(at->second * row.dimming);
   }
   return watts;
 }

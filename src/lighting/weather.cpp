@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
 #include "base/sun_position.h"
+#include "base/time_text.h"
 #include "import/file.h"
 #include "lighting/csv_table.h"
+#include "lighting/option_text.h"
 
 namespace troffer {
 
@@ -20,8 +21,11 @@ namespace {
 
 constexpr uint64_t max_file_bytes = uint64_t(64) << 20;
 // Columns of a row [1].
-constexpr size_t month = 1, day = 2, hour = 3, minute = 4, direct = 14, diffuse = 15;
+constexpr size_t month = 1, day = 2, hour = 3, minute = 4, global = 13, direct = 14, diffuse = 15;
 constexpr double missing = 9999;
+// Above what the sun sends beyond the atmosphere (1415 W/m² in January), with room for clouds'
+// edges.
+constexpr double most_irradiance = 2000;
 // Instruments' own error at night, in W/m²; what is less stands for nothing measured, as -999 does.
 constexpr double least_measured = -50;
 
@@ -43,22 +47,40 @@ double irradiance(const std::vector<std::string>& fields, size_t i, const std::s
   const double v = fields[i].empty() ? missing : number(fields, i, -1e9, 1e9, path, line);
   if (v >= missing || v < least_measured)
     throw InputError(path, line, 1, "the irradiances of this hour are missing");
+  if (v > most_irradiance)
+    throw InputError(path, line, 1,
+                     fmt::format("field {}: {:.6g} W/m2 are more than the sun sends", i + 1, v));
   return std::max(v, 0.0);
 }
 
 struct Date {
-  int month = 0, day = 0, hour = 0, minute = 0;
+  int month = 0, day = 0, hour = 0, minute = 0;  // 24:00 is the end of the day
 };
 
 Date parse_date(const std::string& text) {
+  TimeText t(text, "--date", "06-21T11:30, in the file's standard time");
+  const int first = t.number("the month", 4, 1, 9999);
+  if (first > 99) t.fail("no year belongs here: the file's rows have their own");
+  if (first > 12) t.fail("the month " + std::to_string(first) + " does not lie between 1 and 12");
   Date d;
-  int used = 0;
-  const bool is_read = std::sscanf(text.c_str(), "%2d-%2dT%2d:%2d%n", &d.month, &d.day, &d.hour,
-                                   &d.minute, &used) == 4;
-  if (!is_read || size_t(used) != text.size() || d.month < 1 || d.month > 12 || d.day < 1 ||
-      d.day > 31 || d.hour < 0 || d.hour > 23 || d.minute < 0 || d.minute > 59)
-    throw UsageError("--date: cannot read '" + text + "' as MM-DDTHH:MM");
+  d.month = first;
+  t.expect('-', "the day");
+  constexpr int leap_year = 2024;
+  d.day = t.number("the day", 2, 1, days_of_month(leap_year, d.month));
+  t.expect_time();
+  const TimeOfDay time = t.time_of_day(false);
+  d.hour = time.hour;
+  d.minute = time.minute;
+  if (!t.is_at_end()) t.fail("'" + std::string(t.rest()) + "' follows the minute");
   return d;
+}
+
+// The row of an hour that ends at 24:00 is the day's last.
+int row_hour(const Date& d) {
+  return std::min(d.hour + 1, 24);
+}
+int row_minute(const Date& d) {
+  return d.hour == 24 ? 59 : d.minute;
 }
 
 // Hours after midnight of the moment's day become day and time; of the Gregorian calendar.
@@ -112,13 +134,15 @@ Weather read_hour(const std::string& path, const Wanted& wanted_in) {
     // Hour 1 ends at 01:00.
     if (int(number(fields, month, 1, 12, path, line)) != wanted.month ||
         int(number(fields, day, 1, 31, path, line)) != wanted.day ||
-        int(number(fields, hour, 1, 24, path, line)) != wanted.hour + 1)
+        int(number(fields, hour, 1, 24, path, line)) != row_hour(wanted))
       continue;
     // Of several rows an hour each ends at its minute, the last at 60 or 0.
     if (rows_an_hour > 1) {
       const double ends_at = number(fields, minute, 0, 60, path, line);
-      if (ends_at > 0 && ends_at <= wanted.minute) continue;
+      if (ends_at > 0 && ends_at <= row_minute(wanted)) continue;
     }
+    const auto whole = parse_number(fields[global]);
+    weather.global_horizontal = whole && *whole > 0 && *whole < missing ? *whole : 0;
     weather.direct_normal = irradiance(fields, direct, path, line);
     weather.diffuse_horizontal = irradiance(fields, diffuse, path, line);
     const auto year = int(number(fields, 0, 1900, 2200, path, line));

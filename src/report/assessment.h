@@ -30,6 +30,7 @@ struct AssessmentOptions {
   // openings show the sky, or is_factor_forced.
   std::function<Scene()> overcast;
   bool is_factor_forced = false;
+  std::vector<std::string> notes;  // on the files that said so, for people
 };
 
 // The illuminance of a horizontal plane in the open, by which daylight factors count, lx.

@@ -25,6 +25,14 @@ GridShape grid_shape(double width, double height) {
   return is_width ? GridShape{along, across} : GridShape{across, along};
 }
 
+GridShape grid_of_spacing(double width, double height, double spacing) {
+  constexpr double slack = 1e-4, most = 1e6;
+  const auto cells = [&](double side) {
+    return int(std::clamp(std::ceil(side / spacing - slack), 1.0, most));
+  };
+  return {cells(width), cells(height)};
+}
+
 double border_zone(double width, double height) {
   return std::min(0.5, 0.15 * std::min(width, height));
 }

@@ -19,6 +19,9 @@ double largest_cell(double d);
 // and 2.
 GridShape grid_shape(double width, double height);
 
+// Cells whose sides are at most `spacing` metres long, as few as can be.
+GridShape grid_of_spacing(double width, double height, double spacing);
+
 // Of a room: how far off the walls points are measured, m: .5, or .15 of the shorter side where
 // that is less [1].
 double border_zone(double width, double height);

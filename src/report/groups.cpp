@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/suggestion.h"
 #include "base/units.h"
+#include "base/wildcard.h"
 #include "render/source_info.h"
 #include "scene/names.h"
 
@@ -19,11 +20,6 @@ std::string family_of(const std::string& name) {
   if (end == std::string::npos || end + 1 == name.size()) return name;
   const size_t letters = name.find_last_not_of(" ._-", end);
   return letters == std::string::npos ? name : name.substr(0, letters + 1);
-}
-
-bool fits(const PowerRequest& r, const std::string& name) {
-  return r.name.ends_with('*') ? name.starts_with(r.name.substr(0, r.name.size() - 1))
-                               : name == r.name;
 }
 
 std::vector<LightGroup> single_luminaires(const Scene& scene,
@@ -48,7 +44,7 @@ std::vector<LightGroup> single_luminaires(const Scene& scene,
   for (const PowerRequest& r : power) {
     bool is_used = false;
     for (LightGroup& g : groups) {
-      if (g.is_daylight || !fits(r, g.name)) continue;
+      if (g.is_daylight || !fits_wildcard(g.name, r.name)) continue;
       g.watts = r.watts;
       is_used = true;
     }

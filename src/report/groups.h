@@ -20,7 +20,7 @@ struct LightGroup {
   std::optional<double> watts;  // of all its luminaires; none: unknown
 };
 
-// "NODE=W", per luminaire; a name that ends in '*' stands for all that begin so.
+// "NODE=W", per luminaire; '*' in a name stands for any letters (base/wildcard.h).
 struct PowerRequest {
   std::string name;
   double watts = 0;

@@ -111,7 +111,7 @@ SurfaceGrid grid_of(const AssessedSurface& s) {
   SurfaceGrid g;
   const double inset = std::min(s.border, 0.45 * std::min(s.width, s.height));
   const Vec2d size{s.width - 2 * inset, s.height - 2 * inset};
-  g.shape = grid_shape(size.x, size.y);
+  g.shape = s.spacing > 0 ? grid_of_spacing(size.x, size.y, s.spacing) : grid_shape(size.x, size.y);
   g.first = {inset, inset};
   g.cell = {size.x / g.shape.columns, size.y / g.shape.rows};
   for (int row = 0; row < g.shape.rows; ++row)

@@ -28,6 +28,7 @@ struct AssessedSurface {
   std::vector<std::array<Vec2d, 2>> rim;        // edges that it ends at; empty: the rectangle's
   double area = 0;                              // m²
   double border = 0;                            // m off the rim, without points
+  double spacing = 0;                           // largest side of a cell, m; 0: by grid_shape()
   double height_of_eye = 1.2, above_floor = 0;  // m; of the surface over the floor it belongs to
 
   Vec3d normal() const { return cross(along, across); }

@@ -128,6 +128,7 @@ HttpResponse ViewService::state() const {
             {"seconds_to_first", s.seconds_to_first},
             {"failure", s.failure},
             {"file", settings_.file},
+            {"notice", settings_.notice},
             {"method", std::string(settings_.options.method.row().name)},
             {"error_asked", settings_.options.error},
             {"second", extras.second ? std::string(extras.second->row().name) : ""},

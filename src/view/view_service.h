@@ -21,6 +21,7 @@ struct ViewSettings {
   Vec3 up{0, 1, 0};
   RenderOptions options;  // method, indirect light, error, seed, threads
   std::string file;       // of the scene
+  std::string notice;     // what whoever looks must know; empty: nothing
   // The time of day that light from the sky is of, "2026-06-21T12:00+02:00"; empty: none is known.
   std::string time;
   // The scene at another time; may be null. May throw UsageError and InputError.

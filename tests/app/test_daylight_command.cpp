@@ -61,7 +61,7 @@ TEST_CASE("skies and suns bring to an open plain what is asked for") {
     double lx;
   };
   const Case cases[] = {
-      {{}, 10'000},
+      {{"--sky", "even"}, 10'000},
       {{"--sky", "even,500"}, 500},
       {{"--sky", "overcast"}, 10'000},
       {{"--sky", "cie:4,7000", "--sun", "90,40"}, 7000},
@@ -210,7 +210,7 @@ TEST_CASE("warnings tell of a hidden sun and of options without effect, and of n
   const std::string scene = folder.write("plain.obj", plain_obj),
                     points = folder.write("p.csv", one_point);
   const auto warnings = [&](std::vector<std::string> options) {
-    std::vector<std::string> words{"measure", scene, "--points", points};
+    std::vector<std::string> words{"measure", scene, "--points", points, "--up", "z"};
     words.insert(words.end(), options.begin(), options.end());
     const Finished f = run_program(folder, words);
     CHECK(f.status == 0);

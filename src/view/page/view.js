@@ -303,6 +303,8 @@ function begin(state) {
   document.title = `${state.file.split('/').pop()} – troffer view`;
   $('file').textContent = state.file.split('/').pop();
   $('file').title = state.file;
+  $('notice').textContent = state.notice;
+  $('notice').hidden = !state.notice;
   app.home = state.camera;
   app.camera = new RoomCamera(state.camera, state.up, state.bounds);
   const cameras = state.cameras.length ? state.cameras : [state.camera];
