@@ -22,20 +22,20 @@ constexpr double most_coordinate = 1e9, longest_side = 1e5, most_lift = 1e3;  //
 // Empty fields are as if their column was not there.
 struct Fields {
   std::array<std::string, first_number> texts;
-  std::array<double, columns.size()> numbers{};
-  std::array<bool, columns.size()> has{};
+  std::array<double, surface_columns.size()> numbers{};
+  std::array<bool, surface_columns.size()> has{};
 };
 
 Fields fields_of(const CsvReader& table, const CsvRow& row, const std::vector<size_t>& where) {
   Fields f;
   f.numbers[4] = -1;  // no border
-  for (size_t i = 0; i < columns.size(); ++i) {
+  for (size_t i = 0; i < surface_columns.size(); ++i) {
     f.has[i] = where[i] < row.fields.size() && !row.fields[where[i]].empty();
     if (!f.has[i]) continue;
     if (i < first_number)
       f.texts[i] = row.fields[where[i]].substr(0, 200);
     else
-      f.numbers[i] = table.number(row, where[i], columns[i], most_coordinate);
+      f.numbers[i] = table.number(row, where[i], surface_columns[i], most_coordinate);
   }
   return f;
 }
@@ -54,16 +54,16 @@ SurfaceRequest surface_of(const CsvReader& table, const CsvRow& row,
   if (f.has[4] && !(r.border >= 0 && r.border <= most_lift))
     table.fail(row, where[4], "border lies between 0 and 1000");
   size_t given = 0;
-  for (size_t i = first_of_rectangle; i < columns.size(); ++i) given += f.has[i] ? 1 : 0;
+  for (size_t i = first_of_rectangle; i < surface_columns.size(); ++i) given += f.has[i] ? 1 : 0;
   if (!r.node.empty()) {
     if (given > 0) table.fail(row, where[0], "a surface has a node or a rectangle, not both");
     return r;
   }
-  for (size_t i = first_of_rectangle; i < columns.size(); ++i)
+  for (size_t i = first_of_rectangle; i < surface_columns.size(); ++i)
     if (!f.has[i])
-      table.fail(
-          row, where[i],
-          fmt::format("neither a node nor a whole rectangle: column '{}' is missing", columns[i]));
+      table.fail(row, where[i],
+                 fmt::format("neither a node nor a whole rectangle: column '{}' is missing",
+                             surface_columns[i]));
   r.corner = {v[5], v[6], v[7]};
   r.side_a = {v[8], v[9], v[10]};
   r.side_b = {v[11], v[12], v[13]};
@@ -80,10 +80,10 @@ void read_surface_list(const std::string& path, AssessmentOptions& options) {
   const std::string text = read_text_file(path, uint64_t(16) << 20);
   CsvReader table(path, text);
   const std::vector<size_t> where =
-      table.columns(columns, 0, "the header node[,name][,profile][,lift][,border]");
+      table.columns(surface_columns, 0, "the header node[,name][,profile][,lift][,border]");
   if (where[0] == CsvReader::no_field && where[5] == CsvReader::no_field)
     throw InputError(path, table.header().line, 1, "the header has neither node nor x,y,z");
-  const std::vector<size_t> unused = table.other_columns(columns);
+  const std::vector<size_t> unused = table.other_columns(surface_columns);
   if (!unused.empty()) options.notes.push_back(unused_columns_note(table, path, unused));
   CsvRow row;
   size_t rows = 0;

@@ -13,7 +13,7 @@ constexpr double told_shift = 0.1;  // degrees; less is rounding
 constexpr double most_gap = 5;      // degrees; a usual step of photometric tables
 constexpr double least_gap = 1e-3;  // degrees; nearer angles are one in single precision
 // A gap of half of a step is one of a table by the middles of its zones.
-constexpr double half_step = 0.505;
+constexpr double zone_gap = 0.505;
 constexpr double told_share = 0.01;  // of the largest intensity
 
 double snapped(double angle, double neighbour) {
@@ -58,7 +58,7 @@ bool is_lit_at(const Planes& planes, size_t height) {
 // An angle above 0 whose table is to begin at 0.
 bool is_near_zero(const std::vector<double>& angles) {
   const double first = angles.front(), step = angles.size() > 1 ? angles[1] - first : 0;
-  return first > least_gap && first <= std::max(most_gap, half_step * step);
+  return first > least_gap && first <= std::max(most_gap, zone_gap * step);
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ void reach_poles(Planes& planes, const std::string& name, WarningLog& warnings) 
   const double first = heights.front(), from = first < 90 ? 0 : 90;
   const double step = heights[1] - first;
   if (first - from > least_gap) {
-    if (first - from <= std::max(most_gap, half_step * step)) {
+    if (first - from <= std::max(most_gap, zone_gap * step)) {
       warnings.add(fmt::format(
           "{}: vertical angles begin at {:.6g} degrees; the first intensities go on to {:.6g}",
           name, first, from));
@@ -93,7 +93,7 @@ void reach_poles(Planes& planes, const std::string& name, WarningLog& warnings) 
   }
   const double last = heights.back(), to = last <= 90 ? 90 : 180;
   if (!(to - last > least_gap)) return;
-  if (to - last <= half_step * (last - heights[heights.size() - 2])) {
+  if (to - last <= zone_gap * (last - heights[heights.size() - 2])) {
     warnings.add(fmt::format(
         "{}: vertical angles end at {:.6g} degrees; the last intensities go on to {:.6g}", name,
         last, to));

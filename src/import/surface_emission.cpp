@@ -13,7 +13,7 @@ namespace troffer {
 namespace {
 
 // m²; 0 for spheres and disks, which glTF does not have.
-double area_of(const Scene& scene, const Light& e) {
+double emitting_area(const Scene& scene, const Light& e) {
   if (e.kind != LightKind::polygon && e.kind != LightKind::mesh) return 0;
   const Mesh& mesh = scene.meshes[e.geometry];
   double area = 0;
@@ -45,7 +45,7 @@ void warn_of_weak_surfaces(Scene& scene) {
     if (e.kind == LightKind::point) lamps_lm += 4 * pi * strength;
     if (e.kind == LightKind::spot) lamps_lm += 2 * pi * (1 - double(e.cos_outer)) * strength;
     if (!has_surface(e.kind) || e.web != no_web || !(strength > 0)) continue;
-    const double own = area_of(scene, e);
+    const double own = emitting_area(scene, e);
     area += own;
     surfaces_lm += own * pi * strength * (e.is_two_sided ? 2 : 1);
     brightest = std::max(brightest, strength);

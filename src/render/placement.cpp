@@ -15,7 +15,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t looked_from = 64, rays_each = 32;
+constexpr size_t places_tried = 64, rays_of_place = 32;
 // Of the rays from a closed room's middle, most meet fronts, and few leave by openings. A room of
 // 5 x 4 x 2.7 m without its ceiling has .22 of them open.
 constexpr double least_fronts = 0.65, most_open = 0.12;
@@ -62,7 +62,7 @@ Outlook outlook(const PreparedScene& scene, const std::vector<Ray>& rays) {
   return o;
 }
 
-void add_rays(const Vec3& origin, size_t count, Random& random, std::vector<Ray>& rays) {
+void add_sphere_rays(const Vec3& origin, size_t count, Random& random, std::vector<Ray>& rays) {
   for (size_t k = 0; k < count; ++k) {
     Ray ray;
     ray.origin = origin;
@@ -95,9 +95,10 @@ Box closed_room(const PreparedScene& scene) {
   if (box.is_empty()) return {};
   Random random(1);
   std::vector<Ray> rays;
-  for (size_t i = 0; i < looked_from; ++i) {
+  for (size_t i = 0; i < places_tried; ++i) {
     const Vec3 share{random.next_float(), random.next_float(), random.next_float()};
-    add_rays(box.lower + box.extent() * (Vec3{0.15f} + share * 0.7f), rays_each, random, rays);
+    add_sphere_rays(box.lower + box.extent() * (Vec3{0.15f} + share * 0.7f), rays_of_place, random,
+                    rays);
   }
   const Outlook o = outlook(scene, rays);
   return o.share(o.fronts) > least_fronts && o.share(o.open) < most_open ? box : Box{};
@@ -119,7 +120,7 @@ struct Emission {
 
 void add_face_rays(const Vec3& place, const Vec3& normal, float off, Random& random,
                    Emission& emission) {
-  for (size_t k = 0; k < rays_each; ++k) {
+  for (size_t k = 0; k < rays_of_place; ++k) {
     Ray ray;
     ray.direction = sphere_from_square(random.next_vec2());
     if (dot(ray.direction, normal) < 0) ray.direction = -ray.direction;
@@ -138,12 +139,12 @@ Emission emission_of(const Scene& scene, const Light& e, Random& random) {
     case LightKind::point:
     case LightKind::spot:
       out.place = e.position;
-      add_rays(out.place, rays_each, random, out.rays);
+      add_sphere_rays(out.place, rays_of_place, random, out.rays);
       break;
     case LightKind::sphere: {
       const Sphere& s = scene.spheres[e.geometry];
       out.place = s.centre;
-      add_rays(out.place, rays_each, random, out.rays);
+      add_sphere_rays(out.place, rays_of_place, random, out.rays);
       for (Ray& ray : out.rays)
         ray.origin = s.centre + ray.direction * (s.radius + off_at(s.centre));
       break;
@@ -243,8 +244,8 @@ std::vector<std::string> misplaced_points(const PreparedScene& scene,
     const Vec3 normal = normalize(points[i].normal);
     Emission lit, front, back;
     add_face_rays(place, normal, off, random, lit);
-    add_rays(place + normal * off, rays_each, random, front.rays);
-    add_rays(place - normal * off, rays_each, random, back.rays);
+    add_sphere_rays(place + normal * off, rays_of_place, random, front.rays);
+    add_sphere_rays(place - normal * off, rays_of_place, random, back.rays);
     const Outlook o = outlook(scene, lit.rays), before = outlook(scene, front.rays),
                   behind = outlook(scene, back.rays);
     // A point on the inside of a wall that faces outward is not outside.
