@@ -14,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-constexpr std::array<std::string_view, 14> columns{
+constexpr std::array<std::string_view, 14> surface_columns{
     "node", "name", "profile", "lift", "border", "x", "y", "z", "ax", "ay", "az", "bx", "by", "bz"};
 constexpr size_t first_number = 3, first_of_rectangle = 5, most_rows = 1000;
 constexpr double most_coordinate = 1e9, longest_side = 1e5, most_lift = 1e3;  // m
