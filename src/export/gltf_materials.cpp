@@ -284,7 +284,7 @@ Json GltfMaterialWriter::surface(const Material& m) {
   }
   if (m.kind == MaterialKind::coated_diffuse)
     warnings_.add("coats over diffuse bases are written as glTF's, which differ a little");
-  out["extensions"]["KHR_materials_ior"] = {{"ior", m.ior >= 1 ? m.ior : 1.5f}};
+  out["extensions"]["KHR_materials_ior"] = {{"ior", m.ior >= 1 || m.ior == 0 ? m.ior : 1.5f}};
   const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
   if (is_mixed) add_diffuse_transmission(m, out);
   if (!is_mixed && (m.specular_color.texture >= 0 || m.specular_color.value != Rgb{1}))

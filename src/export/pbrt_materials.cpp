@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/coat.h"
@@ -173,9 +174,12 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
     return translucent_text(m, base);
   }
   if (m.specular.value <= 0) return "\"diffuse\"" + color("reflectance", m.base_color);
+  // An index of 0 stands for gloss that is the same at all angles.
+  const float even = std::sqrt(std::clamp(m.specular.value, 0.0f, 0.9f));
+  const float ior = m.ior > 0 ? m.ior : (1 + even) / (1 - even);
   // glTF's base reflects as if all that comes back to it met a white one.
-  const float f = mean_reflectance_inside(double(m.ior));
-  return fmt::format("\"coateddiffuse\" \"float eta\" {}", m.ior) +
+  const float f = mean_reflectance_inside(double(ior));
+  return fmt::format("\"coateddiffuse\" \"float eta\" {}", ior) +
          color("reflectance", m.base_color, [f](float v) { return from_white_base(v, f); }) +
          roughness(m, power);
 }

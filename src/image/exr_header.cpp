@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "image/float_size.h"
+
 namespace troffer {
 
 namespace {
@@ -117,6 +119,8 @@ void check_part(const EncodedImage& encoded, const PartHeader& part, bool is_til
   if (x1 < x0 || y1 < y0) encoded.fail("EXR with an empty data window");
   const auto width = uint64_t(int64_t(x1) - x0 + 1), height = uint64_t(int64_t(y1) - y0 + 1);
   encoded.check_size(width, height);
+  constexpr uint64_t most_channels = 4;
+  check_memory(width, height, most_channels * sizeof(float), encoded.bytes.size(), encoded.name);
   const auto check_buffer = [&](uint64_t pixels) {
     if (pixels > max_buffer_bytes / std::max<uint64_t>(*part.bytes_per_pixel, 1))
       encoded.fail("EXR needs buffers beyond the limit");

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "image/decode.h"
+#include "image/float_size.h"
 #include "image/rgbe.h"
 
 namespace troffer {
@@ -77,7 +78,9 @@ void read_resolution(HdrReader& reader) {
     (is_x ? reader.width : reader.height) = n;
     (is_x ? reader.is_x_falling : reader.is_y_falling) = is_falling;
   }
-  reader.encoded.check_size(reader.width, reader.height);
+  const EncodedImage& encoded = reader.encoded;
+  encoded.check_size(reader.width, reader.height);
+  check_memory(reader.width, reader.height, 3 * sizeof(float), encoded.bytes.size(), encoded.name);
 }
 
 // A scan line whose four components are coded apart, runs of up to 127 equal bytes [1].

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "image/decode.h"
+#include "image/float_size.h"
 
 namespace troffer {
 
@@ -116,6 +117,9 @@ bool read(PngHandles& handles, PngReader& reader) {
   const uint64_t width = png_get_image_width(png, info);
   const uint64_t height = png_get_image_height(png, info);
   reader.encoded.check_size(width, height);
+  if (png_get_bit_depth(png, info) == 16)
+    check_memory(width, height, png_get_channels(png, info) * sizeof(float),
+                 reader.encoded.bytes.size(), reader.encoded.name);
   if (png_get_rowbytes(png, info) * height / max_deflate_ratio > reader.encoded.bytes.size())
     png_error(png, "truncated file");
   note_colours(png, info, reader.raster.own);

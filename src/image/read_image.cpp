@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "image/float_size.h"
 
 namespace troffer {
 
@@ -32,8 +33,10 @@ std::vector<uint8_t> read_file_bytes(const std::string& path, size_t max_bytes) 
 }
 
 Image read_image(const std::string& path, size_t max_pixels) {
-  const Raster raster =
-      rec709_raster(linear_raster(decode_raster(read_file_bytes(path), path, max_pixels)), false);
+  const std::vector<uint8_t> bytes = read_file_bytes(path);
+  Raster decoded = decode_raster(bytes, path, max_pixels);
+  check_float_size(decoded, bytes.size(), path);
+  const Raster raster = rec709_raster(linear_raster(std::move(decoded)), false);
   Image image(raster.width, raster.height);
   const auto channels = size_t(raster.channels);
   const float* texel = raster.texels_float.data();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/float_size.h"
 #include "image/raster.h"
 #include "import/file.h"
 #include "scene/environment_lookup.h"
@@ -72,7 +73,9 @@ EnvironmentMap reduced(const EnvironmentMap& from, int by) {
 }  // namespace
 
 EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
-  Raster read = decode_raster(read_file(path, max_environment_bytes), path);
+  const std::vector<uint8_t> bytes = read_file(path, max_environment_bytes);
+  Raster read = decode_raster(bytes, path);
+  check_float_size(read, bytes.size(), path);
   if (obey_own_colours(read) == ColoursFound::broken) warnings.add(path + broken_colours);
   const Raster raster = rec709_raster(linear_raster(std::move(read)), false);
   EnvironmentMap map;

@@ -209,32 +209,4 @@ std::string lower_case_ending(const std::string& path) {
   return ending;
 }
 
-std::string path_beside(const std::string& folder, const std::string& name) {
-  const std::string bare = name.substr(name.find_last_of("/\\:") + 1);
-  const ConfinedPath path = confined_path(folder, bare);
-  std::error_code error;
-  return path.is_fine() && fs::is_regular_file(path.path, error) ? path.path : std::string();
-}
-
-ConfinedPath confined_path(const std::string& folder, std::string_view relative) {
-  if (relative.empty()) return {"", "it is empty"};
-  if (relative.find('\0') != std::string_view::npos) return {"", "it has a NUL character"};
-  const fs::path name{std::string(relative)};
-  if (name.is_absolute()) return {"", "absolute paths are not allowed"};
-  const char* const leaves = "it leads out of the scene's folder";
-  // By the letters first, so that "x/../../y" is refused whether or not x exists.
-  const fs::path plain = name.lexically_normal();
-  if (plain.empty() || *plain.begin() == "..") return {"", leaves};
-
-  std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder, error);
-  if (error) return {"", "the scene's folder cannot be resolved: " + error.message()};
-  const fs::path target = fs::weakly_canonical(root / name, error);
-  if (error) return {"", "it cannot be resolved: " + error.message()};
-  const auto [in_root, in_target] =
-      std::mismatch(root.begin(), root.end(), target.begin(), target.end());
-  if (in_root != root.end()) return {"", leaves};
-  return {(fs::path(folder) / name).string(), ""};
-}
-
 }  // namespace troffer

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/error.h"
 #include "import/emissive.h"
 #include "import/gltf_accessor.h"
 #include "import/gltf_animation.h"
@@ -53,7 +54,7 @@ class Importer {
     for (Affine& world : nodes_.world) world.translation -= scene_.origin;
     check_size();
     for (const GltfNode& node : nodes_.shown) add_node(node);
-    add_gltf_image_light(root_, buffers_, scene_);
+    or_left_out("an image-based light", "", [&] { add_gltf_image_light(root_, buffers_, scene_); });
     materials_.check_unused_images();
     if (scene_.meshes.empty() && scene_.instances.empty())
       scene_.warnings.add("the scene shows no triangles");
@@ -127,14 +128,31 @@ class Importer {
               " triangles, or more than " + std::to_string(max_placed_triangles) + " by instances");
   }
 
+  // Adds one light or camera; one that cannot be used is left out, with a warning that names it.
+  template <class Add>
+  void or_left_out(const char* kind, const std::string& name, const Add& add) {
+    try {
+      add();
+    } catch (const InputError& e) {
+      scene_.warnings.add(std::string(kind) + (name.empty() ? "" : " '" + printable(name) + "'") +
+                          " cannot be used and is left out: " + e.what());
+    }
+  }
+
   void add_node(const GltfNode& node) {
     const JsonNode json = node_json(node);
-    if (const auto camera = json.find("camera")) add_camera(json, *camera, node.world_from_node);
-    if (const auto light = json.extension(lights_extension))
-      add_light(json, light->member("light"), node.world_from_node);
-    if (const auto instance = json.extension("EXT_lights_ies"))
-      add_gltf_ies_light(root_, *instance, node.world_from_node, json.string_or("name", ""),
-                         buffers_, scene_);
+    const std::string own_name = json.string_or("name", "");
+    or_left_out("camera", own_name, [&] {
+      if (const auto camera = json.find("camera")) add_camera(json, *camera, node.world_from_node);
+    });
+    or_left_out("light", own_name, [&] {
+      if (const auto light = json.extension(lights_extension))
+        add_light(json, light->member("light"), node.world_from_node);
+    });
+    or_left_out("light", own_name, [&] {
+      if (const auto instance = json.extension("EXT_lights_ies"))
+        add_gltf_ies_light(root_, *instance, node.world_from_node, own_name, buffers_, scene_);
+    });
     const auto mesh = mesh_of(json);
     if (!mesh) return;
     const JsonNode mesh_json = root_.member("meshes").element(*mesh);

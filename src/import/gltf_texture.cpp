@@ -50,7 +50,8 @@ void read_transform(const JsonNode& transform, Texture& look) {
 int32_t load_file(const JsonNode& uri, const std::string& folder, const Texture& look,
                   TextureLoader& loader) {
   const std::string name = percent_decoded(uri.as_string()).value_or(uri.as_string());
-  const bool is_elsewhere = has_uri_scheme(uri.as_string());
+  const bool has_drive = name.size() > 1 && name[1] == ':';  // of a Windows path
+  const bool is_elsewhere = has_uri_scheme(uri.as_string()) && !has_drive;
   const ConfinedPath path = confined_path(folder, name);
   if (!is_elsewhere && path.is_fine()) return loader.from_file(path.path, look);
   const std::string beside = path_beside(folder, name);

@@ -9,7 +9,8 @@ namespace troffer {
 std::string path_of_uri(const JsonNode& uri, const std::string& folder) {
   const std::string& text = uri.as_string();
   const std::string quoted = "'" + printable(text) + "'";
-  if (has_uri_scheme(text))
+  const bool has_drive = text.size() > 1 && text[1] == ':';  // of a Windows path
+  if (has_uri_scheme(text) && !has_drive)
     uri.fail(quoted + ": only files in the scene's folder and data URIs are read");
   const auto name = percent_decoded(text);
   if (!name) uri.fail(quoted + ": a '%' is not followed by two hexadecimal digits");

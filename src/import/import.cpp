@@ -9,6 +9,7 @@
 #include "import/pbrt.h"
 #include "import/ply_scene.h"
 #include "import/radiance.h"
+#include "import/reference_notes.h"
 #include "import/stl.h"
 #include "import/surface_emission.h"
 #include "import/thin_glass.h"
@@ -44,7 +45,9 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
 }  // namespace
 
 Scene import_scene(const std::string& path, const ImportOptions& options) {
+  const ReferenceNotes references;
   Scene scene = import_file(path, options);
+  for (const std::string& note : references.notes()) scene.warnings.add(note);
   settle_instances(scene);
   replace_thin_glass(scene);
   scale_surface_emission(scene, options.emission_scale);

@@ -54,7 +54,7 @@ void give_radius(Scene& scene, double radius) {
       scene.warnings.add("--light-radius: lights that throw images stay points");
       continue;
     }
-    if (e.range > 0) scene.warnings.add("--light-radius: the range of lights is left aside");
+    if (e.range != 0) scene.warnings.add("--light-radius: the range of lights is left aside");
     e.range = 0;
     if (e.kind == LightKind::spot) {
       e.web = int32_t(scene.webs.size());

@@ -94,14 +94,25 @@ AnchoredMesh read_triangle_mesh(const PbrtParams& params, WarningLog& warnings) 
   return std::move(data.vertices);
 }
 
+// Subdivision takes about 200 bytes per triangle. A few bytes may not become gigabytes; large
+// control meshes may be cut as files do it, three times.
+constexpr uint64_t always_subdivided = 2'000'000, most_subdivided_ratio = 64;
+
 AnchoredMesh read_subdivision(const PbrtParams& params, WarningLog& warnings) {
   constexpr int most_levels = 12;
   VertexData data = read_vertices(params, 3, warnings);
   const int levels = params.get_int("levels", 3);
   params.ignore({"scheme"});
-  if (levels < 0 || levels > most_levels ||
-      data.indices.size() / 3 > (max_scene_triangles >> (2 * levels)))
-    fail_at(params.place, params.owner + ": too many levels, or less than none");
+  if (levels < 0 || levels > most_levels)
+    fail_at(params.place, params.owner + ": levels must be from 0 to " +
+                              std::to_string(most_levels) + ", not " + std::to_string(levels));
+  const uint64_t coarse = data.indices.size() / 3, fine = coarse << (2 * levels);
+  const uint64_t most =
+      std::min(max_scene_triangles, std::max(always_subdivided, coarse * most_subdivided_ratio));
+  if (fine > most)
+    fail_at(params.place, params.owner + ": " + std::to_string(levels) + " levels make " +
+                              std::to_string(fine) + " triangles of " + std::to_string(coarse) +
+                              "; at most " + std::to_string(most) + " are made");
   AnchoredMesh& control = data.vertices;
   for (size_t i = 0; i < data.indices.size(); i += 3)
     control.mesh.triangles.push_back({data.indices[i], data.indices[i + 1], data.indices[i + 2]});

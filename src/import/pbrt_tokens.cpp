@@ -154,7 +154,13 @@ std::string unescaped(std::string_view quoted) {
       case 'f':
         out += '\f';
         break;
-      default:  // \" \\ \' and, leniently, anything else stand for themselves
+      case '"':
+      case '\'':
+      case '\\':
+        out += c;
+        break;
+      default:  // no escape of pbrt's: part of a Windows path
+        out += '\\';
         out += c;
     }
   }

@@ -18,7 +18,10 @@ constexpr size_t max_open_files = 16;
 class RadianceReader {
  public:
   RadianceReader(const std::string& path, Scene& scene, PlacedBounds& bounds)
-      : path_(path), scene_(scene), materials_(scene), surfaces_(scene, bounds, materials_) {}
+      : path_(path),
+        scene_(scene),
+        materials_(scene, folder_of(path)),
+        surfaces_(scene, bounds, materials_) {}
   void read();
 
  private:
@@ -26,6 +29,7 @@ class RadianceReader {
   struct Shown {
     Affine world;
     std::string modifier;  // of all surfaces; "" = their own
+    bool is_inverted = false;
   };
 
   std::string path_;
@@ -40,8 +44,8 @@ class RadianceReader {
   void read_file(const std::string& path, const Shown& shown, const SourcePlace* from);
   void read_statement(RadianceText& text, const std::string& first, const Shown& shown);
   void run(const std::string& command, const Shown& shown, const SourcePlace& place);
-  void show_file(const std::string& name, const std::vector<Shown>& copies,
-                 const SourcePlace& place);
+  void show_files(const std::vector<std::string>& names, const std::vector<Shown>& copies,
+                  const SourcePlace& place);
   void show_box(const std::vector<std::string>& words, const std::vector<Shown>& copies,
                 const SourcePlace& place);
   void read_views();
@@ -74,7 +78,7 @@ void RadianceReader::read_file(const std::string& path, const Shown& shown,
   const std::shared_ptr<const std::string> kept = text;
   RadianceText words(top.file, *kept);
   while (true) {
-    const std::string word = words.word();
+    const std::string word = words.first_word();
     if (word.empty()) break;
     read_statement(words, word, shown);
   }
@@ -86,6 +90,7 @@ void RadianceReader::read_statement(RadianceText& text, const std::string& first
                                     const Shown& shown) {
   RadianceModifier p;
   p.place = text.place();
+  p.world = shown.world;
   for (const char c : first)
     if (static_cast<unsigned char>(c) < 32) p.place.fail("this is no text");
   if (first == "!") {
@@ -111,7 +116,7 @@ void RadianceReader::read_statement(RadianceText& text, const std::string& first
     return;
   }
   if (!shown.modifier.empty()) p.modifier = shown.modifier;
-  surfaces_.add(p, name, shown.world);
+  surfaces_.add(p, name, shown.is_inverted);
 }
 
 // genbox, xform and cat, and what xforms that follow in a pipe make of them. Nothing is executed.
@@ -132,17 +137,18 @@ void RadianceReader::run(const std::string& command, const Shown& shown, const S
     const bool is_first = i == 0;
     if (name == "xform") {
       const RadianceXform xform = parse_xform(words, place);
-      if (xform.file.empty() == is_first) place.fail("xform: a file expected at the beginning");
+      if (is_first && xform.files.empty()) place.fail("xform: a file expected");
+      if (!is_first && !xform.files.empty()) place.fail("xform: no files expected in a pipe");
       if (copies.size() * xform.copies.size() > 100'000) place.fail("xform: too many copies");
       std::vector<Shown> all;
       for (const Shown& outer : copies)
         for (const Affine& t : xform.copies)
-          all.push_back(
-              {outer.world * t, outer.modifier.empty() ? xform.modifier : outer.modifier});
+          all.push_back({outer.world * t, outer.modifier.empty() ? xform.modifier : outer.modifier,
+                         outer.is_inverted != xform.is_inverted});
       copies = std::move(all);
-      if (is_first) show_file(xform.file, copies, place);
-    } else if (is_first && name == "cat" && words.size() == 1) {
-      show_file(words[0], copies, place);
+      if (is_first) show_files(xform.files, copies, place);
+    } else if (is_first && name == "cat" && !words.empty()) {
+      show_files(words, copies, place);
     } else if (is_first && name == "genbox") {
       show_box(words, copies, place);
     } else {
@@ -153,11 +159,16 @@ void RadianceReader::run(const std::string& command, const Shown& shown, const S
   }
 }
 
-void RadianceReader::show_file(const std::string& name, const std::vector<Shown>& copies,
-                               const SourcePlace& place) {
-  const ConfinedPath path = confined_path(folder_of(path_), name);
-  if (!path.is_fine()) place.fail("cannot use '" + shortened(name) + "': " + path.problem);
-  for (const Shown& copy : copies) read_file(path.path, copy, &place);
+void RadianceReader::show_files(const std::vector<std::string>& names,
+                                const std::vector<Shown>& copies, const SourcePlace& place) {
+  std::vector<std::string> paths;
+  for (const std::string& name : names) {
+    const ConfinedPath path = confined_path(folder_of(path_), name);
+    if (!path.is_fine()) place.fail("cannot use '" + shortened(name) + "': " + path.problem);
+    paths.push_back(path.path);
+  }
+  for (const Shown& copy : copies)
+    for (const std::string& path : paths) read_file(path, copy, &place);
 }
 
 void RadianceReader::show_box(const std::vector<std::string>& words,
@@ -169,8 +180,9 @@ void RadianceReader::show_box(const std::vector<std::string>& words,
   p.place = place;
   for (const Shown& copy : copies) {
     p.modifier = copy.modifier.empty() ? box.modifier : copy.modifier;
+    p.world = copy.world;
     for (const std::vector<Vec3d>& polygon : box.polygons)
-      surfaces_.add_polygon(p, words[1], polygon, copy.world);
+      surfaces_.add_polygon(p, words[1], polygon, copy.is_inverted);
   }
 }
 

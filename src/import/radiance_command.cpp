@@ -84,7 +84,9 @@ void XformParser::option(const std::string& name) {
     out_.modifier = word();
   } else if (name == "-n") {
     word();
-  } else if (name != "-c" && name != "-e" && name != "-I" && name != "-l") {
+  } else if (name == "-I") {
+    out_.is_inverted = true;
+  } else if (name != "-c" && name != "-e") {
     place_.fail("xform: the option '" + shortened(name) + "' is not supported");
   }
 }
@@ -95,8 +97,7 @@ RadianceXform XformParser::parse() {
     if (next.starts_with('-') && next.size() > 1) {
       option(next);
     } else {
-      if (!out_.file.empty()) place_.fail("xform: one file expected");
-      out_.file = next;
+      out_.files.push_back(next);
     }
   }
   finish_part();

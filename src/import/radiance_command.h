@@ -15,7 +15,8 @@ namespace troffer {
 struct RadianceXform {
   std::vector<Affine> copies{Affine()};  // one, or all of its arrays
   std::string modifier;                  // -m: of all surfaces; "" = their own
-  std::string file;
+  bool is_inverted = false;              // -I: fronts and backs of surfaces change places
+  std::vector<std::string> files;
 };
 // `words` after "xform". InputError at `place`: unknown options, more than 100 000 copies.
 RadianceXform parse_xform(const std::vector<std::string>& words, const SourcePlace& place);

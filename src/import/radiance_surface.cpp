@@ -8,6 +8,7 @@
 #include "import/mesh_clean.h"
 #include "import/polygon.h"
 #include "import/radiance_sky.h"
+#include "import/radiance_spot.h"
 #include "import/tessellate.h"
 
 namespace troffer {
@@ -75,42 +76,19 @@ PlacedLook RadianceSurfaces::placed_look(const RadianceLook& look, const std::st
   return out;
 }
 
-// A spot of the surface's intensity along its normal, at its middle.
-void RadianceSurfaces::add_spot(const RadianceLook& look, const std::string& name,
-                                const std::vector<Vec3d>& corners, const Affine& world) {
-  Vec3d middle, area;
-  for (size_t i = 0; i < corners.size(); ++i) {
-    middle += world.point(corners[i]) / double(corners.size());
-    area += cross(world.vector(corners[i] - corners[0]),
-                  world.vector(corners[(i + 1) % corners.size()] - corners[0])) /
-            2;
-  }
-  Light e;
-  e.name = name;
-  e.kind = LightKind::spot;
-  e.radiance = look.emission * float(length(area));
-  e.position = Vec3(middle - scene_.origin);
-  e.direction = Vec3(normalize(world.vector(look.spot_axis)));
-  e.cos_outer = float(std::cos(rad_from_deg(look.spot_angle_deg / 2)));
-  e.cos_inner = std::max(e.cos_outer + 0.01f, std::nextafter(e.cos_outer, 2.0f));
-  scene_.warnings.add("\"spotlight\" is approximated: a spot without extent at its middle");
-  if (is_finite(e.position) && is_finite(e.direction) && is_finite(e.radiance))
-    scene_.lights.push_back(std::move(e));
-}
-
 void RadianceSurfaces::add_polygon(const RadianceModifier& p, const std::string& name,
-                                   std::vector<Vec3d> corners, const Affine& world) {
-  const RadianceLook look = materials_.look_of(p.modifier, p.place);
+                                   std::vector<Vec3d> corners, bool is_inverted) {
+  const RadianceLook look = materials_.even_look_of(p.modifier, p.place);
   if (!look.is_there) return;
   if (look.is_spot) {
-    add_spot(look, name, corners, world);
+    add_radiance_spot(look, name, extent_of_polygon(corners, p.world, is_inverted), scene_);
     return;
   }
   triangles_ += corners.size();
   if (triangles_ > max_scene_triangles)
     p.place.fail("the scene has more than 60 million triangles");
-  if (world.swaps_handedness()) std::reverse(corners.begin(), corners.end());
-  for (Vec3d& c : corners) c = world.point(c);
+  if (p.world.swaps_handedness() != is_inverted) std::reverse(corners.begin(), corners.end());
+  for (Vec3d& c : corners) c = p.world.point(c);
   std::vector<Vec3> points;
   for (const Vec3d& c : corners) points.emplace_back(c - corners[0]);
   std::vector<Triangle> triangles;
@@ -147,7 +125,7 @@ void RadianceSurfaces::finish() {
 }
 
 void RadianceSurfaces::add_cone(const RadianceModifier& p, const PlacedLook& look,
-                                const Affine& world) {
+                                bool is_inverted) {
   const bool is_straight = p.type == "cylinder" || p.type == "tube";
   need(p, is_straight ? 7 : 8);
   const Vec3d p0 = vector_at(p, 0), p1 = vector_at(p, 3);
@@ -156,45 +134,53 @@ void RadianceSurfaces::add_cone(const RadianceModifier& p, const PlacedLook& loo
   if (!(r0 >= 0 && r1 >= 0 && r0 + r1 > 0) || !(height > 0))
     p.place.fail(p.type + " without extent");
   const bool is_inward = p.type == "tube" || p.type == "cup";
-  placer_.add_mesh({mantle(height, r0, r1), {}}, world * frame(p0, p1 - p0), is_inward, look);
+  placer_.add_mesh({mantle(height, r0, r1), {}}, p.world * frame(p0, p1 - p0),
+                   is_inward != is_inverted, look);
 }
 
 void RadianceSurfaces::add_ring(const RadianceModifier& p, const PlacedLook& look,
-                                const Affine& world) {
+                                bool is_inverted) {
   need(p, 8);
   const Vec3d normal = vector_at(p, 3);
   const double a = p.arguments.reals[6], b = p.arguments.reals[7];
   const double inner = std::min(a, b), outer = std::max(a, b);
   if (!(length(normal) > 0) || !(inner >= 0) || !(outer > inner))
     p.place.fail("ring needs a normal and two different radii");
-  const Affine t = world * frame(vector_at(p, 0), normal);
+  const Affine t = p.world * frame(vector_at(p, 0), normal);
   if (inner == 0) {
-    placer_.add_disk(t, outer, false, look);
+    placer_.add_disk(t, outer, is_inverted, look);
     return;
   }
   Mesh mesh = tessellate_disk(0, outer, inner, 2 * pi);
   mesh.normals.clear();
   mesh.uvs.clear();
-  placer_.add_mesh({std::move(mesh), {}}, t, t.swaps_handedness(), look);
+  placer_.add_mesh({std::move(mesh), {}}, t, t.swaps_handedness() != is_inverted, look);
 }
 
-void RadianceSurfaces::add_source(const RadianceModifier& p, const RadianceLook& look,
-                                  const std::string& name, const Affine& world) {
+void RadianceSurfaces::add_source(const RadianceModifier& p, const std::string& name) {
   need(p, 4);
-  const Vec3d to = world.vector(vector_at(p, 0));
+  const RadianceLook look = materials_.look_of(p.modifier, p.place);
+  const Vec3d to = p.world.vector(vector_at(p, 0));
   const double angle = p.arguments.reals[3];
   if (!(length(to) > 0) || !(angle > 0 && angle <= 360))
     p.place.fail("source needs a direction and an angle up to 360");
-  if (look.emission.is_black()) return;
-  if (add_radiance_source(look, normalize(to), angle, world, name, scene_)) return;
+  if (!look.is_there || look.emission.is_black()) return;
+  RadiancePattern pattern = materials_.pattern_of(look);
+  RadiancePattern* const used = pattern.functions.empty() ? nullptr : &pattern;
+  if (look.is_spot)
+    scene_.warnings.add("\"spotlight\" on a source shines everywhere, not within its beam alone");
+  if (add_radiance_source(look, used, normalize(to), angle, name, scene_)) return;
   scene_.warnings.add("source '" + shortened(name) + "' cannot be used: left out");
 }
 
-void RadianceSurfaces::add(const RadianceModifier& p, const std::string& name,
-                           const Affine& world) {
+void RadianceSurfaces::add(const RadianceModifier& p, const std::string& name, bool is_inverted) {
   const std::string& type = p.type;
   if (type == "instance" || type == "mesh") {
     scene_.warnings.add("\"" + type + "\" names a binary file, which is not read: left out");
+    return;
+  }
+  if (type == "source") {
+    add_source(p, name);
     return;
   }
   if (type == "polygon") {
@@ -203,27 +189,26 @@ void RadianceSurfaces::add(const RadianceModifier& p, const std::string& name,
     std::vector<Vec3d> corners;
     corners.reserve(count / 3);
     for (size_t i = 0; i < count; i += 3) corners.push_back(vector_at(p, i));
-    add_polygon(p, name, std::move(corners), world);
+    add_polygon(p, name, std::move(corners), is_inverted);
     return;
   }
-  const RadianceLook look = materials_.look_of(p.modifier, p.place);
+  const RadianceLook look = materials_.even_look_of(p.modifier, p.place);
   if (!look.is_there) return;
-  if (type == "source") {
-    add_source(p, look, name, world);
+  if (look.is_spot) {
+    add_radiance_spot(look, name, extent_of_round(p, is_inverted), scene_);
     return;
   }
-  if (look.is_spot)
-    scene_.warnings.add("\"spotlight\" on a " + type + " shines to all sides of it");
   const PlacedLook placed = placed_look(look, name, p.place);
   if (type == "sphere" || type == "bubble") {
     need(p, 4);
     const double r = p.arguments.reals[3];
     if (r == 0) p.place.fail(type + " without radius");
-    placer_.add_sphere(world, vector_at(p, 0), std::abs(r), (type == "bubble") != (r < 0), placed);
+    const bool is_inward = ((type == "bubble") != (r < 0)) != is_inverted;
+    placer_.add_sphere(p.world, vector_at(p, 0), std::abs(r), is_inward, placed);
   } else if (type == "ring") {
-    add_ring(p, placed, world);
+    add_ring(p, placed, is_inverted);
   } else {
-    add_cone(p, placed, world);
+    add_cone(p, placed, is_inverted);
   }
 }
 

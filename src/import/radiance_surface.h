@@ -18,11 +18,11 @@ class RadianceSurfaces {
 
   static bool is_surface(const std::string& type);
 
-  // A primitive, moved by `world`. InputError at its place: arguments that cannot be used, too much
-  // geometry.
-  void add(const RadianceModifier& primitive, const std::string& name, const Affine& world);
+  // A primitive, moved by its `world`, its front turned to the other side where is_inverted.
+  // InputError at its place: arguments that cannot be used, too much geometry.
+  void add(const RadianceModifier& primitive, const std::string& name, bool is_inverted);
   void add_polygon(const RadianceModifier& primitive, const std::string& name,
-                   std::vector<Vec3d> corners, const Affine& world);
+                   std::vector<Vec3d> corners, bool is_inverted);
   // Polygons that do not emit are kept by material; this places them.
   void finish();
 
@@ -42,12 +42,9 @@ class RadianceSurfaces {
 
   PlacedLook placed_look(const RadianceLook& look, const std::string& name,
                          const SourcePlace& place) const;
-  void add_spot(const RadianceLook& look, const std::string& name,
-                const std::vector<Vec3d>& corners, const Affine& world);
-  void add_cone(const RadianceModifier& p, const PlacedLook& look, const Affine& world);
-  void add_ring(const RadianceModifier& p, const PlacedLook& look, const Affine& world);
-  void add_source(const RadianceModifier& p, const RadianceLook& look, const std::string& name,
-                  const Affine& world);
+  void add_cone(const RadianceModifier& p, const PlacedLook& look, bool is_inverted);
+  void add_ring(const RadianceModifier& p, const PlacedLook& look, bool is_inverted);
+  void add_source(const RadianceModifier& p, const std::string& name);
 };
 
 }  // namespace troffer

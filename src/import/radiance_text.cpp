@@ -71,11 +71,7 @@ std::string RadianceText::word() {
   line_of_word_ = line_;
   column_of_word_ = int(at_ - line_begin_) + 1;
   if (at_ >= text_.size()) return "";
-  if (text_[at_] == '!') {
-    ++at_;
-    return "!";
-  }
-  const char quote = text_[at_] == '"' ? '"' : '\0';
+  const char quote = text_[at_] == '"' || text_[at_] == '\'' ? text_[at_] : '\0';
   const size_t begin = quote != '\0' ? at_ + 1 : at_;
   size_t end = begin;
   while (end < text_.size() && (quote != '\0' ? text_[end] != quote && text_[end] != '\n'
@@ -84,6 +80,15 @@ std::string RadianceText::word() {
   at_ = end + (quote != '\0' && end < text_.size() && text_[end] == quote ? 1 : 0);
   if (end == begin) return " ";  // "": a word all the same
   return std::string(text_.substr(begin, end - begin));
+}
+
+std::string RadianceText::first_word() {
+  skip_blanks();
+  if (at_ >= text_.size() || text_[at_] != '!') return word();
+  line_of_word_ = line_;
+  column_of_word_ = int(at_ - line_begin_) + 1;
+  ++at_;
+  return "!";
 }
 
 std::string RadianceText::command() {

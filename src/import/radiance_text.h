@@ -18,18 +18,20 @@ struct RadianceArguments {
   std::vector<double> reals;
 };
 
-// Takes a file apart. Lines whose first word begins with '#' (up to their end) are comments, words
-// that begin with '!' are commands up to the end of their line, which a backslash continues.
+// Takes a file apart. '#' between words begins a comment up to the end of its line, '!' between
+// statements a command up to the end of its line, which a backslash continues.
 class RadianceText {
  public:
   // Both must outlive this.
   RadianceText(std::shared_ptr<const std::string> file, std::string_view text)
       : file_(std::move(file)), text_(text) {}
 
-  // The next word, of quotes freed; empty at the end of the file. Comments go by unless they hold a
-  // view ("-vp"), which is added to views().
+  // The next word, without its quotes (" or '); empty at the end of the file. Comments go by unless
+  // they hold a view ("-vp"), which is added to views().
   std::string word();
-  // What follows '!' up to the end of the line; call where word() has returned "!".
+  // The first word of a statement; "!" where a command begins.
+  std::string first_word();
+  // What follows '!' up to the end of the line; call where first_word() has returned "!".
   std::string command();
   RadianceArguments arguments();
   // A finite number.

@@ -14,6 +14,7 @@
 #include "base/units.h"
 #include "import/attach_luminaire.h"
 #include "import/file.h"
+#include "import/reference_notes.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/csv_table.h"
 
@@ -116,7 +117,9 @@ std::vector<Row> read_rows(const std::string& path, const Vec3& down, WarningLog
 
 // From the list's folder; what is wrong with its path is told of the list.
 Luminaire read_listed(const std::string& list, const Row& row, WarningLog& warnings) {
+  const ReferenceNotes references;
   const ConfinedPath file = confined_path(folder_of(list), row.file);
+  for (const std::string& note : references.notes()) warnings.add(note);
   std::error_code failure;
   const bool is_there = file.is_fine() && std::filesystem::exists(file.path, failure);
   if (!is_there)

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image/fixtures.h"
+#include "image/float_size.h"
 #include "image/raster.h"
 
 using namespace troffer;
@@ -247,4 +248,23 @@ TEST_CASE("linear_raster decodes colours and leaves alpha") {
   CHECK(linear.texels_float[0] == 1);
   CHECK(linear.texels_float[1] == doctest::Approx(0.21586));
   CHECK(linear.texels_float[3] == doctest::Approx(128.0 / 255));
+}
+
+// Floats take 12 bytes and more for each pixel, which runs of equal bytes hold in next to nothing.
+TEST_CASE("a few bytes do not become gigabytes") {
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+  CHECK(why_rejected(bytes_of(header + "-Y 8000 +X 8000\n"), default_max_pixels)
+            .find("picture of 8000x8000 would take 732 MB of memory, from a file of") == 0);
+  // 4096 x 4096 are always decoded: here the pixels are missing.
+  CHECK(
+      why_rejected(bytes_of(header + "-Y 4096 +X 4096\n"), default_max_pixels).find("would take") ==
+      std::string::npos);
+  Raster grey;
+  grey.width = grey.height = 8192;
+  grey.channels = 1;
+  CHECK_THROWS_WITH_AS(check_float_size(grey, 8000, "file"),
+                       doctest::Contains("would take 1024 MB of memory"), InputError);
+  CHECK_NOTHROW(check_float_size(grey, 20'000'000, "file"));
+  grey.width = grey.height = 4096;
+  CHECK_NOTHROW(check_float_size(grey, 8000, "file"));
 }

@@ -145,6 +145,13 @@ TEST_CASE("cameras: vertical field of view, aspect, orthographic size, names, no
   check_near(plan.up, {0, 0, -1});
   check_near(plan.right, {1, 0, 0});
   CHECK(scene.cameras[2].name == "door");
+  const Scene one = import_text(gltf_text(
+      "'cameras':[{'type':'perspective','perspective':{'yfov':-1,'znear':0.1}},{'type':"
+      "'perspective','perspective':{'yfov':1,'znear':0.1}}],'nodes':[{'camera':0,'name':'bad'},"
+      "{'camera':1,'name':'good'}]"));
+  REQUIRE(one.cameras.size() == 1);
+  CHECK(one.cameras[0].name == "good");
+  CHECK(has_warning(one, "camera 'bad' cannot be used and is left out"));
 }
 
 TEST_CASE("wrong hierarchies are refused") {

@@ -113,6 +113,9 @@ TEST_CASE("curves and subdivisions that cannot be are refused") {
             .find("normal") != std::string::npos);
   CHECK(reason_of("Shape \"loopsubdiv\" \"integer levels\" 13 " + octahedron).find("levels") !=
         std::string::npos);
+  // A few bytes must not become gigabytes: 8 triangles times 4^10.
+  CHECK(reason_of("Shape \"loopsubdiv\" \"integer levels\" 10 " + octahedron)
+            .find("10 levels make 8388608 triangles of 8; at most 2000000") != std::string::npos);
   CHECK(reason_of("Shape \"loopsubdiv\" \"integer levels\" -1 " + octahedron).find("levels") !=
         std::string::npos);
   // A point that stays a point, and points that all are one.
