@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/plain_numbers.h"
 #include "app/printable.h"
 #include "app/signals.h"
 #include "base/error.h"
@@ -295,6 +296,7 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   add_view(app, view);
   add_report(app, lighting);
   add_bake(app, light);
+  require_plain_numbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

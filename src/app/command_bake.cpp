@@ -8,11 +8,14 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/printable.h"
+#include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "app/unfinished.h"
 #include "bake/bake.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -100,12 +103,26 @@ void tell(const BakeResult& result, const std::vector<Warning>& lost) {
              f.mean_lx > 0 ? 100 * f.error_lx / f.mean_lx : 0.0);
 }
 
+void guard_files(const BakeCommand& c, const BakeOptions& options, OutputGuard& guard) {
+  guard.add_inputs(c.scene, c.daylight);
+  guard.add_output("-o", c.output);
+  if (needs_cells(options.light.method, options.light.indirect))
+    guard.add_output("--solution", c.solution);
+  else
+    guard.add_input("--solution", c.solution);
+}
+
 int run_bake(const BakeCommand& c, BakeOptions options) {
+  const Clock::time_point start = Clock::now();
+  OutputGuard guard;
+  guard_files(c, options, guard);
   std::vector<OutputReservation> reserved = reserve_outputs({c.output}, "");
   reserve_cells(c.solution, options.light.method, options.light.indirect, reserved);
   const ThreadLimit limit(c.threads);
   UpUse up;
-  const PreparedScene scene(as_meshes(load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up)));
+  Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);
+  guard.check_files_read();
+  const PreparedScene scene(as_meshes(std::move(imported)));
   warn_of_misplaced(scene, c.is_quiet);
   const StopFlag& stop = install_stop_handlers();
   const std::unique_ptr<Preparation> preparation =
@@ -122,14 +139,20 @@ int run_bake(const BakeCommand& c, BakeOptions options) {
       result = bake(
           scene, options, [&](double f) { bar.update(f); }, stop);
   }
+  keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   if (!result.is_complete) {
-    fmt::print(stderr, "interrupted: wrote nothing\n");
+    Unfinished left;
+    left.note(c.output, "");
+    fmt::print(stderr, "interrupted: {}\n", left.text());
     return exit_interrupted;
   }
-  keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   write_pages(c, result);
   const std::vector<Warning> lost = export_scene(std::move(result.scene), c.output, &result.baked);
-  if (!c.is_quiet) tell(result, lost);
+  if (c.is_quiet) return exit_done;
+  tell(result, lost);
+  std::fflush(stdout);
+  tell_done({c.output}, seconds_since(start),
+            result.figures.mean_lx > 0 ? result.figures.error_lx / result.figures.mean_lx : 0);
   return exit_done;
 }
 

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/output_guard.h"
+#include "app/signals.h"
 #include "compare/compare.h"
 #include "compare/maps.h"
 #include "image/read_image.h"
@@ -13,9 +15,15 @@ namespace troffer {
 int run_compare(const CompareCommand& command) {
   for (const std::string& path : {command.map, command.difference})
     if (!path.empty()) image_format(path);
+  OutputGuard guard;
+  guard.add_input("the image", command.image);
+  guard.add_input("the reference", command.reference);
+  guard.add_output("--map", command.map);
+  guard.add_output("--difference", command.difference);
   const Image image = read_image(command.image), reference = read_image(command.reference);
   const Comparison c = compare_images(image, reference, command.image);
-  WriteOptions plain;  // maps are colours, not light: no tone map
+  install_stop_handlers();  // maps are written together
+  WriteOptions plain;       // maps are colours, not light: no tone map
   plain.display.tone_map = ToneMap::none;
   if (!command.map.empty()) write_image(command.map, flip_map(image, reference), plain);
   if (!command.difference.empty())

@@ -4,7 +4,9 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/output_guard.h"
 #include "app/printable.h"
+#include "app/signals.h"
 #include "base/error.h"
 #include "export/export_scene.h"
 #include "import/import.h"
@@ -20,7 +22,12 @@ void add_convert(CLI::App& app, ConvertCommand& c) {
 
 int run_convert(const ConvertCommand& command) {
   check_scene_format(command.output);
+  OutputGuard guard;
+  guard.add_input("the scene", command.scene.file);
+  guard.add_output("the output", command.output);
   const Scene scene = import_scene(command.scene.file, command.scene.options);
+  guard.check_files_read();
+  install_stop_handlers();  // the files belong together: a signal waits until all are there
   const std::vector<Warning> lost = export_scene(scene, command.output);
   if (command.is_quiet) return exit_done;
   const auto tell = [](const Warning& w) {

@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/luminaire_info.h"
+#include "app/output_guard.h"
 #include "app/printable.h"
 #include "app/process.h"
 #include "app/up_json.h"
@@ -134,6 +135,9 @@ void print_text(const Scene& scene, const Json& j, const UpDecision& up) {
 
 int run_info(const InfoCommand& command) {
   if (is_luminaire(command.scene.file)) {
+    OutputGuard guard;
+    guard.add_input("the luminaire", command.scene.file);
+    guard.add_output("--polar", command.polar);
     fmt::print("{}", luminaire_info(command.scene.file, command.is_json, command.polar));
     return exit_done;
   }

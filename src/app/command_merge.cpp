@@ -4,9 +4,11 @@
 #include <algorithm>
 
 #include "app/commands.h"
+#include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/part_note.h"
 #include "app/picture_files.h"
+#include "app/signals.h"
 #include "base/error.h"
 #include "image/layered_image.h"
 
@@ -122,8 +124,12 @@ void add_merge(CLI::App& app, MergeCommand& c) {
 
 int run_merge(const MergeCommand& c) {
   image_format(c.output);  // a wrong ending: usage error
+  OutputGuard guard;
+  for (const std::string& part : c.parts) guard.add_input("the part", part);
+  guard.add_output("the output", c.output);
   const std::vector<OutputReservation> reserved = reserve_outputs({c.output}, {});
   const Joined all = join(c);
+  install_stop_handlers();  // what is joined is written
   // Written as the command would have that renders all of it.
   RenderCommand whole;
   whole.outputs = {c.output};

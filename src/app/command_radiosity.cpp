@@ -6,11 +6,13 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "app/unfinished.h"
 #include "app/up_json.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -27,9 +29,6 @@ namespace {
 // All that can be told before any work is done.
 void check_command(const RadiosityCommand& c) {
   check(c.options);
-  for (size_t i = 0; i < c.outputs.size(); ++i)
-    for (size_t k = 0; k < i; ++k)
-      if (c.outputs[i] == c.outputs[k]) throw UsageError("-o names " + c.outputs[i] + " twice");
   for (const std::string& path : c.outputs) {
     const std::string ending = lower_case_ending(path);
     // a slip, likely: nobody would look for a solution in these
@@ -51,7 +50,9 @@ int make_cell_files(const RadiosityCommand& c, const PreparedScene& scene, const
         scene, error, c.options.seed, c.threads, [&](double f) { bar.update(f); }, stop);
   }
   if (!store.map) {
-    fmt::print(stderr, "interrupted: wrote nothing\n");
+    Unfinished left;
+    for (const std::string& path : c.outputs) left.note(path, "");
+    fmt::print(stderr, "interrupted: {}\n", left.text());
     return exit_interrupted;
   }
   for (const std::string& path : c.outputs) keep_cells(scene, &store, path, c.is_quiet);
@@ -140,6 +141,22 @@ std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
   return j.dump(2) + "\n";
 }
 
+// A solution that was interrupted can be looked at; --solution refuses it. Returns the exit status.
+int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
+                     const RadiosityResult& result, const RadiositySeconds& seconds) {
+  const RadiositySolution& s = result.solution;
+  Unfinished left;
+  for (const std::string& path : c.outputs)
+    if (s.shots > 0)
+      write_output(left.place(path), scene, s);
+    else
+      left.note(path, "");
+  if (!c.stats.empty()) write_file(left.place(c.stats), statistics_json(c, result, seconds));
+  fmt::print(stderr, "interrupted after {} shots: {}{}\n", s.shots, left.text(),
+             s.shots > 0 ? "; render does not take an unfinished solution" : "");
+  return exit_interrupted;
+}
+
 }  // namespace
 
 void add_radiosity(CLI::App& app, RadiosityCommand& c) {
@@ -179,11 +196,16 @@ void add_radiosity(CLI::App& app, RadiosityCommand& c) {
 int run_radiosity(const RadiosityCommand& c) {
   const Clock::time_point start = Clock::now();
   check_command(c);
+  OutputGuard guard;
+  guard.add_inputs(c.scene, c.daylight);
+  guard.add_outputs("-o", c.outputs);
+  guard.add_output("--stats", c.stats);
   const std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   RadiositySeconds seconds;
   const ThreadLimit limit(c.threads);
   UpUse up;
   Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);
+  guard.check_files_read();
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   const PreparedScene scene(std::move(imported));
@@ -200,17 +222,19 @@ int run_radiosity(const RadiosityCommand& c) {
   }
   const RadiositySolution& s = result.solution;
   mark = Clock::now();
+  const bool is_interrupted = s.end == RadiosityEnd::stopped;
+  if (is_interrupted) return leave_unfinished(c, scene, result, seconds);
   for (const std::string& path : c.outputs) write_output(path, scene, s);
   seconds.write = seconds_since(mark);
   seconds.total = seconds_since(start);
   if (!c.stats.empty()) write_file(c.stats, statistics_json(c, result, seconds, up.decision));
   if (!c.is_quiet) {
     print_summary(result);
+    std::fflush(stdout);
     for (const std::string& w : radiosity_warnings(s)) fmt::print(stderr, "warning: {}\n", w);
-  }
-  if (stop && !s.is_complete) {
-    fmt::print(stderr, "interrupted: wrote the solution after {} shots\n", s.shots);
-    return exit_interrupted;
+    std::vector<std::string> files = c.outputs;
+    if (!c.stats.empty()) files.push_back(c.stats);
+    tell_done(files, seconds.total, std::nullopt);
   }
   return exit_done;
 }

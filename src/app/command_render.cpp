@@ -7,12 +7,14 @@
 
 #include "app/commands.h"
 #include "app/lasting_run.h"
+#include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/picture_files.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/solution_file.h"
+#include "app/unfinished.h"
 #include "app/up_json.h"
 #include "base/crew.h"
 #include "base/error.h"
@@ -130,16 +132,32 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result, 
   j["told_error"] = s.told_error;
   j["share_done"] = s.share_done;
   j["gaps_filled"] = s.gaps_filled;
+  j["unsampled"] = s.unsampled;
   return j.dump(2) + "\n";
 }
 
+// Refuses files that would be overwritten by mistake.
+void guard_files(const RenderCommand& c, OutputGuard& guard) {
+  guard.add_inputs(c.scene, c.daylight);
+  guard.add_outputs("-o", c.outputs);
+  guard.add_output("--stats", c.stats);
+  guard.add_output("--checkpoint", c.lasting.checkpoint);
+  const bool keeps_cells = needs_cells(c.options.method, c.options.indirect);
+  if (keeps_cells && c.options.parts == 1)
+    guard.add_output("--solution", c.solution);
+  else
+    guard.add_input("--solution", c.solution);
+}
+
 // What can be said of the command before any work is done; the files that it will write.
-std::vector<OutputReservation> check_and_reserve(RenderCommand& c) {
+std::vector<OutputReservation> check_and_reserve(RenderCommand& c,
+                                                 std::optional<OutputGuard>& guard) {
   c.options.method = parse_method(c.method);
   c.options.indirect = indirect_with(c.solution, c.options.method, c.options.indirect);
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
   if (c.options.crew != nullptr && !c.options.crew->leads()) return {};
+  guard_files(c, guard.emplace());
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   // Shares leave the cells as they are for each other.
   if (c.options.parts == 1)
@@ -180,15 +198,33 @@ Rendered prepare_and_render(const PreparedScene& scene, const Camera& camera, Re
   return made;
 }
 
+// Prints how an interrupted rendering ended.
+void tell_interrupted(const RenderStatistics& s, const Unfinished& left) {
+  const size_t pixels = size_t(s.width) * size_t(s.height);
+  std::string missing;
+  if (s.unsampled == pixels)
+    missing = " before the first pixel was finished";
+  else if (s.unsampled > 0)
+    missing = fmt::format(" ({} of {} pixels are {})", s.unsampled, pixels,
+                          s.shows_preview ? "the preview's" : "black, as they have no sample yet");
+  fmt::print(stderr, "interrupted{}: {}\n", missing, left.text());
+}
+
+void tell_written(const RenderCommand& c, double total, double error) {
+  std::vector<std::string> files = c.outputs;
+  if (!c.stats.empty()) files.push_back(c.stats);
+  tell_done(files, total, error);
+}
+
 // What is to be said of it in the end, and the exit status.
-int tell(const RenderResult& result, const RenderCommand& c, double total) {
+int tell(const RenderResult& result, const RenderCommand& c, double total, const Unfinished& left) {
   const RenderStatistics& s = result.statistics;
   const uint64_t bad = s.counters.nan_samples;
   if (!c.is_quiet && bad > 0)
     fmt::print(stderr, "warning: {} samples were not finite and count as black\n", bad);
   switch (result.end) {
     case RenderEnd::stopped:
-      fmt::print(stderr, "interrupted: wrote what was finished\n");
+      tell_interrupted(s, left);
       return exit_interrupted;
     case RenderEnd::out_of_time:
       fmt::print(stderr,
@@ -207,13 +243,15 @@ int tell(const RenderResult& result, const RenderCommand& c, double total) {
                    "warning: the error told of the picture is {:.3g}, more than --error-limit: "
                    "--max-spp, --spp and --error ask for more\n",
                    s.told_error);
+      if (!c.is_quiet) tell_written(c, total, s.told_error);
   }
   return exit_done;
 }
 
-// Once the picture is there.
+// Once the picture is there. What a stop has left of it replaces no other file, and is not written
+// at all where it shows nothing, or where a checkpoint and an earlier unfinished picture keep more.
 void write_outputs(const RenderCommand& c, const RenderResult& result, const Camera& camera,
-                   const LastingRun& lasting, PreviewFiles& files) {
+                   const LastingRun& lasting, PreviewFiles& files, Unfinished& left) {
   WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet);
   write.note = lasting.note(result, camera);
   write.is_safe = !c.lasting.checkpoint.empty();  // before that goes
@@ -221,9 +259,20 @@ void write_outputs(const RenderCommand& c, const RenderResult& result, const Cam
     const ImageSize whole = image_size(camera, c.options.width, c.options.height);
     write.window = {result.window[0], result.window[1], whole.width, whole.height};
   }
+  const RenderStatistics& s = result.statistics;
+  const bool is_unfinished = result.end == RenderEnd::stopped;
+  const bool is_blank =
+      is_unfinished && !s.shows_preview && s.unsampled == result.layers[0].image.pixels.size();
   for (const std::string& path : c.outputs) {
-    write_image(path, result.layers, write);
-    files.is_replaced(path);
+    std::string place = path;
+    if (is_blank)
+      place.clear();
+    else if (is_unfinished)
+      place = files.take_place(path, !c.lasting.checkpoint.empty());
+    if (is_unfinished) left.note(path, place);
+    if (place.empty()) continue;
+    write_image(place, result.layers, write);
+    if (!is_unfinished) files.is_finished(path);
   }
 }
 
@@ -236,6 +285,13 @@ void join(RenderCommand& c, Crew& crew) {
   c.stats.clear();
   c.lasting.checkpoint.clear();
   c.lasting.time_limit = 0;
+}
+
+// --select.
+void restrict_selection(const Scene& scene, RenderCommand& c) {
+  if (c.selected_lights.empty()) return;
+  c.options.kj92.selection.is_restricted = true;
+  c.options.kj92.selection.only = lights_named(scene, c.selected_lights);
 }
 
 const StopFlag& stop_flag_of(Crew* crew) {
@@ -252,7 +308,8 @@ int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
   Crew* crew = c.options.crew;
   if (crew != nullptr) join(c, *crew);
-  const std::vector<OutputReservation> reserved = check_and_reserve(c);
+  std::optional<OutputGuard> guard;
+  const std::vector<OutputReservation> reserved = check_and_reserve(c, guard);
 
   Seconds seconds;
   const ThreadLimit limit(c.options.threads);
@@ -260,6 +317,7 @@ int run_render(RenderCommand c) {
   PreviewFiles files(c, camera);
   Preview preview([&](const Image& picture) { files.write(picture); });
   const auto show_sight = [&](const Scene& shapes, bool has_images) {
+    if (guard) guard->check_files_read();
     const Vec3 up_seen = up_of(c.scene, shapes).up;
     const std::optional<Camera> chosen = choose_camera(shapes, c, up_seen);
     if (!chosen && !(bounds(shapes).diagonal() > 0)) return;
@@ -270,6 +328,7 @@ int run_render(RenderCommand c) {
   if (c.has_preview) show_shapes = [&](const Scene& shapes) { show_sight(shapes, true); };
   UpUse up{!c.eye.empty(), {}};
   Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up, show_shapes);
+  if (guard) guard->check_files_read();
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   if (c.has_preview) show_sight(imported, false);
@@ -282,10 +341,7 @@ int run_render(RenderCommand c) {
 
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
 
-  if (!c.selected_lights.empty()) {
-    c.options.kj92.selection.is_restricted = true;
-    c.options.kj92.selection.only = lights_named(scene.scene, c.selected_lights);
-  }
+  restrict_selection(scene.scene, c);
   LastingRun lasting(c, start, stop_flag_of(crew));
   lasting.begin(scene.scene, camera);
   const StopFlag& stop = lasting.stop();
@@ -297,14 +353,15 @@ int run_render(RenderCommand c) {
   const auto [result, cells] = prepare_and_render(scene, camera, c, stop, seconds);
   if (crew != nullptr && !crew->leads()) return exit_done;
   mark = Clock::now();
-  write_outputs(c, result, camera, lasting, files);
+  Unfinished left;
+  write_outputs(c, result, camera, lasting, files, left);
   lasting.finish(result);
-  if (result.is_complete && c.options.parts == 1)
-    keep_cells(scene, cells.get(), c.solution, c.is_quiet);
+  if (c.options.parts == 1) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())
-    write_file(c.stats, statistics_json(c, result, seconds, seconds_since(start), up.decision));
-  return tell(result, c, seconds_since(start));
+    write_file(result.end == RenderEnd::stopped ? left.place(c.stats) : c.stats,
+               statistics_json(c, result, seconds, seconds_since(start), up.decision));
+  return tell(result, c, seconds_since(start), left);
 }
 
 }  // namespace troffer

@@ -7,10 +7,13 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/printable.h"
+#include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
+#include "app/unfinished.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/wildcard.h"
@@ -202,21 +205,39 @@ void note_misplaced(Scene& scene, bool is_quiet) {
   for (const std::string& text : misplaced_luminaires(prepared)) scene.warnings.add(text);
 }
 
-int tell_interrupted() {
-  fmt::print(stderr, "interrupted: no report was written\n");
+// The names that every report has; there are as many pictures as cameras.
+void guard_files(const ReportCommand& c, OutputGuard& guard) {
+  guard.add_inputs(c.scene, c.daylight);
+  for (const std::string& file : c.surface_files) guard.add_input("--surfaces", file);
+  const auto add = [&](const std::string& name) {
+    guard.add_output("-o:", (fs::path(c.output) / name).string());
+  };
+  for (const char* name : {"report.html", "report.json", "points.csv"}) add(name);
+  const size_t pictures = std::max<size_t>(c.cameras.size(), 1);
+  for (size_t i = 1; i <= pictures && c.pictures == "on"; ++i)
+    for (const char* name : {"luminance", "picture"}) add(fmt::format("{}{}.png", name, i));
+}
+
+int tell_interrupted(const ReportFolder& folder) {
+  Unfinished left;
+  left.note(folder.file("report.html"), "");
+  fmt::print(stderr, "interrupted: {}\n", left.text());
   return exit_interrupted;
 }
 
 }  // namespace
 
 int run_report(const ReportCommand& c) {
-  const FilesRead read;
+  const Clock::time_point start = Clock::now();
+  OutputGuard guard;
+  guard_files(c, guard);
   Report report;
   check_method(parse_method(c.method), Indirect::automatic, "");
   assessment_options(c, {0, 0, 1});  // mistakes are told before any work
   const ThreadLimit limit(c.threads);
   UpUse use{true, {}};
   Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, use);
+  guard.check_files_read();
   note_misplaced(scene, c.is_quiet);
   const Vec3 up = use.decision.up;
   report.options = assessment_options(c, up);
@@ -229,7 +250,7 @@ int run_report(const ReportCommand& c) {
   dim_power(c, scene, report.options.power);
   if (c.daylight_factor != "off") report.options.overcast = [&] { return overcast_scene(c); };
   named_cameras(scene, c.cameras);
-  report.info = info_of(c, scene, read, use.decision);
+  report.info = info_of(c, scene, guard.files_read(), use.decision);
   const ReportFolder folder(c.output);
   const std::vector<OutputReservation> reserved = reserve_outputs(
       {folder.file("report.html"), folder.file("report.json")}, folder.file("points.csv"));
@@ -239,10 +260,13 @@ int run_report(const ReportCommand& c) {
     report.assessment = assess(
         scene, report.options, [&](double f) { bar.update(f); }, stop);
   }
-  if (!report.assessment.is_complete) return tell_interrupted();
+  if (!report.assessment.is_complete) return tell_interrupted(folder);
   if (c.pictures == "on" && !add_pictures(PreparedScene(Scene(scene)), c, up, stop, report))
-    return tell_interrupted();
+    return tell_interrupted(folder);
   write_report(report, folder);
+  if (!c.is_quiet)
+    tell_done({folder.file("report.html"), folder.file("report.json"), folder.file("points.csv")},
+              seconds_since(start), std::nullopt);
   return exit_done;
 }
 

@@ -2,8 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -12,6 +15,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/sun_position.h"
+#include "import/kept_files.h"
 #include "scene/names.h"
 #include "view/view.h"
 
@@ -39,9 +43,13 @@ PlaceOfTime split_at(const std::string& text) {
 void read_size(const std::string& text, ViewSettings& settings) {
   if (text.empty()) return;
   constexpr int most = 4096;
-  char after = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &settings.width, &settings.height, &after) != 2 ||
-      settings.width < 1 || settings.height < 1 || settings.width > most || settings.height > most)
+  const char* const end = text.data() + text.size();
+  const auto [middle, error] = std::from_chars(text.data(), end, settings.width);
+  const bool has_x = error == std::errc() && middle != end && *middle == 'x';
+  const auto height = has_x ? std::from_chars(middle + 1, end, settings.height)
+                            : std::from_chars_result{middle, std::errc::invalid_argument};
+  if (height.ec != std::errc() || height.ptr != end || settings.width < 1 || settings.height < 1 ||
+      settings.width > most || settings.height > most)
     throw UsageError("--size: '" + text + "' is not WxH with sides of up to 4096");
 }
 
@@ -77,8 +85,16 @@ int run_view(const ViewCommand& c) {
   settings.file = c.scene.file;
   read_size(c.size, settings);
   const ThreadLimit limit(c.threads);
+  const PlaceOfTime at = split_at(c.daylight.at);
+  // Another time of day lights the scene that was read, whatever becomes of its files.
+  SceneChoice choice = c.scene;
+  std::optional<KeptFiles> kept;
+  if (!at.time.empty()) {
+    choice.scene = std::make_shared<const Scene>(read_scene(choice, c.is_quiet));
+    kept.emplace();
+  }
   UpUse up{true, {}};
-  Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);
+  Scene scene = load_scene(choice, c.lights, &c.daylight, c.is_quiet, up);
   const auto& warnings = scene.warnings.entries();
   if (std::any_of(warnings.begin(), warnings.end(),
                   [](const Warning& w) { return w.text == invented_sky; })) {
@@ -88,15 +104,14 @@ int run_view(const ViewCommand& c) {
   }
   settings.camera = camera_named(scene, c.camera);
   settings.up = normalize(up.decision.up);
-  const PlaceOfTime at = split_at(c.daylight.at);
   if (!at.time.empty()) {
     settings.time = at.time;
-    settings.relit = [&c, at](const std::string& time) {
+    settings.relit = [&c, at, choice](const std::string& time) {
       parse_time(time, "time");
       DaylightOptions daylight = c.daylight;
       daylight.at = at.place + time;
       UpUse same;
-      return load_scene(c.scene, c.lights, &daylight, true, same);
+      return load_scene(choice, c.lights, &daylight, true, same);
     };
   }
   ViewStart start;

@@ -33,7 +33,8 @@ constexpr int exit_interrupted = 130;
 struct SceneChoice {
   std::string file;
   ImportOptions options;
-  std::string up;  // parse_up()'s, or empty: decide_up()'s
+  std::string up;                      // parse_up()'s, or empty: decide_up()'s
+  std::shared_ptr<const Scene> scene;  // as it was read before; null: it is to be read
 };
 void add_scene_choice(CLI::App& app, SceneChoice& choice);  // its options
 
@@ -167,6 +168,9 @@ struct UpUse {
   bool is_needed = false;  // by the command itself, not by its lights alone
   UpDecision decision;     // set by load_scene()
 };
+
+// The scene as its file has it, with a progress bar.
+Scene read_scene(const SceneChoice& choice, bool is_quiet);
 
 // The scene of a command: imported, with the light of `daylight` (null: as it is), only `lights`
 // emitting (all if empty), warnings printed to standard error unless is_quiet.

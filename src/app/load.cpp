@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/printable.h"
@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "import/import.h"
 #include "lighting/dimming.h"
+#include "lighting/option_text.h"
 #include "render/placement.h"
 #include "scene/joined_lights.h"
 
@@ -37,6 +38,7 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
 namespace {
 
 Scene import_shown(const SceneChoice& choice, ImageUse images, bool is_quiet) {
+  if (choice.scene) return *choice.scene;
   const std::string name = std::filesystem::path(choice.file).filename().string();
   ProgressBar bar("reading " + printable(name), is_quiet);
   ImportOptions options = choice.options;
@@ -59,6 +61,10 @@ void tell_warnings(const Scene& scene) {
 }
 
 }  // namespace
+
+Scene read_scene(const SceneChoice& choice, bool is_quiet) {
+  return import_shown(choice, ImageUse::read, is_quiet);
+}
 
 Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& lights,
                  const DaylightOptions* daylight, bool is_quiet, UpUse& up,
@@ -119,9 +125,8 @@ Indirect parse_indirect(const std::string& name) {
 void check_exposure(const std::string& text) {
   if (text.empty() || text == "auto") return;
   constexpr double most = 60;
-  char* end = nullptr;
-  const double stops = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !(std::abs(stops) <= most))
+  const std::optional<double> stops = parse_number(text);
+  if (!stops || !(std::abs(*stops) <= most))
     throw UsageError("--exposure: '" + text + "' is neither auto nor stops between -60 and 60");
 }
 

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "app/printable.h"
+#include "app/unfinished.h"
 #include "image/exposure.h"
 #include "image/output_target.h"
 #include "render/camera.h"
@@ -50,20 +52,44 @@ WriteOptions write_options(const RenderCommand& c, const Camera& camera, const I
   return write;
 }
 
+std::string PreviewFiles::file_for(const std::string& output) {
+  for (const Shown& s : shown_)
+    if (s.output == output) return s.file;
+  const std::string file = place_for_unfinished(output);
+  if (file != output && !command_.is_quiet)
+    fmt::print(stderr, "{} stays until the picture is done: previews go to {}\n", printable(output),
+               printable(file));
+  shown_.push_back({output, file});
+  return file;
+}
+
 void PreviewFiles::write(const Image& picture) {
   WriteOptions options = write_options(command_, camera_, picture, true);
   options.threads = 1;  // of a loop over tiles, whose other threads go on
-  for (const std::string& path : command_.outputs) {
-    if (output_target(path).kind != OutputTarget::Kind::file) continue;
-    write_image(path, picture, options);
-    if (std::find(written_.begin(), written_.end(), path) == written_.end())
-      written_.push_back(path);
-  }
+  for (const std::string& path : command_.outputs)
+    if (output_target(path).kind == OutputTarget::Kind::file)
+      write_image(file_for(path), picture, options);
+}
+
+void PreviewFiles::is_finished(const std::string& path) {
+  std::error_code ignored;  // a preview too many does no harm
+  for (const Shown& s : shown_)
+    if (s.output == path && s.file != path) std::filesystem::remove(s.file, ignored);
+  std::erase_if(shown_, [&](const Shown& s) { return s.output == path; });
+}
+
+std::string PreviewFiles::take_place(const std::string& path, bool is_kept) {
+  const auto at =
+      std::find_if(shown_.begin(), shown_.end(), [&](const Shown& s) { return s.output == path; });
+  if (at == shown_.end()) return place_for_unfinished(path, is_kept);
+  const std::string file = at->file;
+  shown_.erase(at);
+  return file;
 }
 
 PreviewFiles::~PreviewFiles() {
   std::error_code ignored;  // there is another failure to tell
-  for (const std::string& path : written_) std::filesystem::remove(path, ignored);
+  for (const Shown& s : shown_) std::filesystem::remove(s.file, ignored);
 }
 
 }  // namespace troffer

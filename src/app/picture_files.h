@@ -14,8 +14,8 @@ namespace troffer {
 WriteOptions write_options(const RenderCommand& command, const Camera& camera, const Image& picture,
                            bool is_quiet);
 
-// Pictures that take the place of the command's outputs before these are there. What a failure
-// leaves of them is removed.
+// Pictures that take the place of the command's outputs before these are there. A file that stood
+// there before stays, and its previews go beside it. What a failure leaves of previews is removed.
 class PreviewFiles {
  public:
   // Both must outlive this.
@@ -28,13 +28,21 @@ class PreviewFiles {
   // Writes the outputs that are plain files; what takes what is written as it comes (pipes,
   // devices) gets the last picture alone.
   void write(const Image& picture);
-  // This output itself has been written.
-  void is_replaced(const std::string& path) { std::erase(written_, path); }
+  // The output `path` itself has been written: a preview beside it goes.
+  void is_finished(const std::string& path);
+  // Where an unfinished picture for the output `path` goes: to its preview, or else by
+  // place_for_unfinished(). It is no preview any more.
+  std::string take_place(const std::string& path, bool is_kept);
 
  private:
+  struct Shown {
+    std::string output, file;
+  };
+  std::string file_for(const std::string& output);
+
   const RenderCommand& command_;
   const Camera& camera_;
-  std::vector<std::string> written_;
+  std::vector<Shown> shown_;
 };
 
 }  // namespace troffer

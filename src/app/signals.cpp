@@ -14,16 +14,19 @@ namespace {
 StopFlag stop_requested = false;
 static_assert(StopFlag::is_always_lock_free);
 
-[[noreturn]] void end_at_once() {
+// `text` is a literal: a handler may do no more than write it.
+template <size_t size>
+[[noreturn]] void end_at_once(const char (&text)[size]) {
   remove_temporary_files();
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, size - 1);
   _exit(130);
 }
 
 extern "C" void on_stop_signal(int) {
-  if (stop_requested.exchange(true)) end_at_once();
+  if (stop_requested.exchange(true)) end_at_once("interrupted again: ended at once\n");
 }
 extern "C" void on_early_signal(int) {
-  end_at_once();
+  end_at_once("interrupted: nothing was written\n");
 }
 
 void handle_stop_signals(void (*handler)(int)) {

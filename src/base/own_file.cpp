@@ -27,6 +27,7 @@ uint64_t hash_of_parts(std::span<const uint8_t> header, std::span<const uint8_t>
 void check_kind(const OwnFile& kind, std::span<const uint8_t> bytes, size_t header_size,
                 const std::string& file) {
   const std::string name = kind.name;
+  if (bytes.empty()) throw InputError(file, 0, 0, "is empty: no " + name);
   if (!kind.is_of(bytes)) throw InputError(file, 0, 0, "not a " + name);
   if (bytes.size() < header_size) throw InputError(file, 0, 0, name + " is cut short");
   uint32_t version = 0;

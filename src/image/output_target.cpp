@@ -61,6 +61,19 @@ int descriptor_behind(std::string path) {
   return -1;
 }
 
+// The name at the end of a chain of links that leads to nothing yet: what is written becomes that
+// file, and the links stay.
+std::string end_of_links(std::string path, const std::string& named) {
+  constexpr int longest_chain = 40;
+  for (int i = 0; i < longest_chain; ++i) {
+    struct stat info {};
+    if (lstat(path.c_str(), &info) != 0 || !S_ISLNK(info.st_mode)) return path;
+    path = link_target(path);
+    if (path.empty()) fail_to_write(named, "its link cannot be read");
+  }
+  fail_to_write(named, ELOOP);
+}
+
 void wait_a_little() {
   const timespec time{0, 20'000'000};
   nanosleep(&time, nullptr);
@@ -117,8 +130,12 @@ OutputTarget output_target(const std::string& path) {
   }
   struct stat info {};
   OutputTarget target{Kind::file, path, -1};
-  if (lstat(path.c_str(), &info) == 0 && S_ISLNK(info.st_mode))
-    if (std::string real = real_path(path); !real.empty()) target.path = std::move(real);
+  if (lstat(path.c_str(), &info) == 0 && S_ISLNK(info.st_mode)) {
+    if (std::string real = real_path(path); !real.empty())
+      target.path = std::move(real);
+    else if (stat(path.c_str(), &info) != 0)  // else a pipe of another process, in /proc
+      target.path = end_of_links(path, path);
+  }
   if (target.path.back() == '/') fail_to_write(path, EISDIR);
   if (stat(target.path.c_str(), &info) != 0) return target;
   if (S_ISDIR(info.st_mode)) fail_to_write(path, EISDIR);

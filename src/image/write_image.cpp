@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "image/atomic_file.h"
 #include "image/encode.h"
+#include "image/output_target.h"
 #include "image/rgbe.h"
 
 namespace troffer {
@@ -59,6 +60,15 @@ std::vector<uint8_t> encode(ImageFormat format, std::span<const Layer> layers,
   return encode_png(layers[0].image, options.display, options.threads);
 }
 
+// A pipe, a device, or an open file of this process: its name need not say a format.
+bool takes_any_format(const std::string& path) {
+  try {
+    return output_target(path).kind != OutputTarget::Kind::file;
+  } catch (const EnvironmentError&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 ImageFormat image_format(const std::string& path) {
@@ -69,6 +79,7 @@ ImageFormat image_format(const std::string& path) {
   if (ending == "hdr") return ImageFormat::hdr;
   if (ending == "pfm") return ImageFormat::pfm;
   if (ending == "png") return ImageFormat::png;
+  if (takes_any_format(path)) return ImageFormat::exr;
   throw UsageError("unknown picture format: " + path + " (use .exr, .hdr, .pfm or .png)");
 }
 

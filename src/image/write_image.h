@@ -13,7 +13,8 @@ namespace troffer {
 
 enum class ImageFormat { exr, hdr, pfm, png };
 
-// The format that a path's ending stands for, in any case of letters; UsageError for others.
+// The format that a path's ending stands for, in any case of letters; EXR for pipes, devices and
+// /dev/stdout with another ending or none. UsageError for other files.
 ImageFormat image_format(const std::string& path);
 
 // Where a cropped picture lies in the whole one; full_width = 0 means that it is the whole.

@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "import/kept_files.h"
 
 namespace troffer {
 
@@ -63,6 +64,7 @@ uint64_t allowed_size(const std::string& path, uint64_t max_bytes) {
 
 template <class Bytes>
 Bytes read_whole(const std::string& path, uint64_t max_bytes, ReadFor purpose) {
+  if (const KeptFiles::Bytes kept = KeptFiles::find(path)) return Bytes(kept->begin(), kept->end());
   const uint64_t size = allowed_size(path, max_bytes);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
@@ -73,6 +75,7 @@ Bytes read_whole(const std::string& path, uint64_t max_bytes, ReadFor purpose) {
   // A file that shrank since is cut short here and found out by its parser.
   if (in.bad()) throw InputError(path, 0, 0, "cannot be read");
   bytes.resize(size_t(in.gcount()));
+  KeptFiles::keep(path, bytes.data(), bytes.size());
   return bytes;
 }
 

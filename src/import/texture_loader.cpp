@@ -145,6 +145,7 @@ int32_t TextureLoader::add(const std::string& key, const Texture& look, const So
   if (same != by_request_.end()) return same->second;
   if (scene_.left_out_image_bytes) {
     if (!was_asked_for(key)) *scene_.left_out_image_bytes += source.size();
+    if (!source.file.empty()) FilesRead::note(source.file);
     return constant(key, look);
   }
 

@@ -1,14 +1,21 @@
 #include "lighting/option_text.h"
 
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
+#include <string_view>
+#include <system_error>
 
 namespace troffer {
 
 std::optional<double> parse_number(const std::string& text) {
-  char* end = nullptr;
-  const double v = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(v)) return std::nullopt;
+  const size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  if (first == std::string::npos) return std::nullopt;
+  std::string_view number = std::string_view(text).substr(first, last + 1 - first);
+  if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.remove_prefix(1);
+  double v = 0;
+  const char* const end = number.data() + number.size();
+  const auto [stop, error] = std::from_chars(number.data(), end, v);
+  if (error != std::errc() || stop != end || !std::isfinite(v)) return std::nullopt;
   return v;
 }
 

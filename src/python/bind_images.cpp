@@ -1,5 +1,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <filesystem>
 
 #include "base/error.h"
 #include "compare/compare.h"
@@ -57,17 +61,23 @@ py::array array_of(Image&& made) {
 
 }  // namespace
 
+double checked_exposure(double stops) {
+  constexpr double most = 60;
+  if (!(std::abs(stops) <= most)) throw UsageError("exposure lies between -60 and 60 stops");
+  return stops;
+}
+
 void bind_images(py::module_& m) {
   m.def("compare", &compare_arrays, py::arg("image"), py::arg("reference"),
         "How far a picture is from a reference, both (height, width, 3): a dict of mean_image, "
         "mean_reference, average_difference (of 8-bit sRGB values), rmse, relative_rmse, flip.");
   m.def(
       "read_image",
-      [](const std::string& path) {
+      [](const std::filesystem::path& path) {
         Image image;
         {
           const py::gil_scoped_release unlocked;
-          image = read_image(path);
+          image = read_image(path.string());
         }
         return array_of(std::move(image));
       },
@@ -76,10 +86,10 @@ void bind_images(py::module_& m) {
       "decoded from sRGB.");
   m.def(
       "write_image",
-      [](const std::string& path, const Pixels& pixels, double exposure, bool is_filmic) {
+      [](const std::filesystem::path& path, const Pixels& pixels, double exposure, bool is_filmic) {
         WriteOptions options;
-        options.display = {exposure, is_filmic ? ToneMap::filmic : ToneMap::none};
-        write_image(path, image_of(pixels), options);
+        options.display = {checked_exposure(exposure), is_filmic ? ToneMap::filmic : ToneMap::none};
+        write_image(path.string(), image_of(pixels), options);
       },
       py::arg("path"), py::arg("pixels"), py::kw_only(), py::arg("exposure") = 0.0,
       py::arg("filmic") = false,

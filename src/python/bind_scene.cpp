@@ -1,7 +1,9 @@
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "base/error.h"
@@ -257,16 +259,18 @@ void bind_scene(py::module_& m) {
           "picture's shorter side.");
   m.def(
       "load",
-      [](const std::string& file, const std::optional<std::string>& variant,
+      [](const std::filesystem::path& file, const std::optional<std::string>& variant,
          const std::optional<double>& time, const std::optional<std::string>& animation) {
         const py::gil_scoped_release unlocked;
         return std::make_shared<ScriptScene>(
-            file, ImportOptions{
-                      .variant = variant, .time = time, .animation = animation, .progress = {}});
+            file.string(),
+            ImportOptions{
+                .variant = variant, .time = time, .animation = animation, .progress = {}});
       },
       py::arg("file"), py::kw_only(), py::arg("variant") = py::none(), py::arg("time") = py::none(),
       py::arg("animation") = py::none(),
-      "Loads .gltf .glb .pbrt .obj .stl .ply .xml (Mitsuba) or .rad. variant: of glTF's materials; "
+      "Loads a scene from a path (str or os.PathLike): .gltf .glb .pbrt .obj .stl .ply .xml "
+      "(Mitsuba) or .rad. variant: of glTF's materials; "
       "time: "
       "seconds into the animation. Raises InputError.");
 }

@@ -1,7 +1,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -47,12 +49,13 @@ std::vector<std::string> layer_names(const RenderResult& r) {
   return names;
 }
 
-void save(const RenderResult& r, const std::string& path, std::optional<double> exposure,
+void save(const RenderResult& r, const std::filesystem::path& path, std::optional<double> exposure,
           bool is_filmic) {
   WriteOptions options;
-  const double stops = exposure ? *exposure : brightness(r.layers[0].image).auto_stops;
+  const double stops =
+      exposure ? checked_exposure(*exposure) : brightness(r.layers[0].image).auto_stops;
   options.display = {stops, is_filmic ? ToneMap::filmic : ToneMap::none};
-  write_image(path, r.layers, options);
+  write_image(path.string(), r.layers, options);
 }
 
 void bind_picture(py::module_& m) {
@@ -100,7 +103,8 @@ struct Common {
     if (!i) throw UsageError("indirect is 'auto', 'none', 'radiosity' or 'cells'");
     if (!(error > 0 && error <= 1)) throw UsageError("error lies above 0, and not above 1");
     if (spp < 0 || spp > (1 << 24)) throw UsageError("spp lies between 0 and 16777216");
-    if (depth < -1 || threads < 0) throw UsageError("depth and threads are not negative");
+    if (depth < -1) throw UsageError("depth is not negative, or -1 for no limit");
+    if (threads < 0 || threads > 4096) throw UsageError("threads lies between 0 and 4096");
     options.method = *m;
     options.indirect = *i;
     options.error = error;
@@ -126,7 +130,10 @@ struct PictureRequest {
     RenderOptions o;
     common.set(o);
     if (common.spp > 0) o.spp = common.spp;
-    if (width < 0 || height < 0 || max_spp < 0) throw UsageError("sizes are not negative");
+    constexpr int largest = 65536;
+    if (width < 0 || height < 0 || width > largest || height > largest)
+      throw UsageError("width and height lie between 0 and 65536");
+    if (max_spp < 0 || max_spp > (1 << 20)) throw UsageError("max_spp lies between 0 and 1048576");
     o.width = width;
     o.height = height;
     o.max_spp = max_spp;
@@ -143,8 +150,10 @@ std::unique_ptr<RenderResult> render_scene(ScriptScene& s, const py::object& cam
   std::optional<Camera> given;
   if (camera.is_none() || py::isinstance<py::str>(camera))
     name = camera.is_none() ? "" : camera.cast<std::string>();
-  else
+  else if (py::isinstance<Camera>(camera))
     given = camera.cast<Camera>();
+  else
+    throw py::type_error("camera: a name, a Camera or None");
   auto result = std::make_unique<RenderResult>();
   run_for_python(progress, [&](const StopFlag& stop, std::atomic<double>& fraction) {
     const Camera seen_from = name ? s.camera(*name) : *given;
@@ -247,7 +256,9 @@ void bind_work(py::module_& m) {
       py::arg("aovs") = std::vector<std::string>{}, py::arg("depth") = -1, py::arg("threads") = 0,
       py::arg("seed") = 0, py::arg("progress") = py::none(),
       "Renders what a camera (a name, or a Camera) sees, as `troffer render` does. width, height: "
-      "pixels, by the camera where 0; error: what a pixel may be off, relative; aovs: layers "
+      "pixels, by the camera where 0 (of one alone, the other follows from the camera's "
+      "proportions); "
+      "error: what a pixel may be off, relative; aovs: layers "
       "besides the picture ('albedo' 'normal' 'depth' 'position' 'direct' 'indirect' 'error' ...); "
       "progress: called with the fraction done, from this thread. Other threads run meanwhile; "
       "Ctrl-C raises KeyboardInterrupt.");

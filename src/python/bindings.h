@@ -20,6 +20,9 @@ void bind_work(pybind11::module_& m);
 // compare(), read_image(), write_image().
 void bind_images(pybind11::module_& m);
 
+// Stops of exposure; UsageError where it is not between -60 and 60.
+double checked_exposure(double stops);
+
 // Runs work(stop, fraction) without the interpreter's lock, on another thread; this one handles
 // signals (Ctrl-C raises KeyboardInterrupt) and calls progress(fraction), which may be None, with
 // the lock. What either raises stops the work and is raised once it has ended.

@@ -227,6 +227,11 @@ RadiositySolution load_solution(std::span<const uint8_t> bytes, const std::strin
                                 const Scene& scene, const Tracer& tracer, const BsdfTables& tables,
                                 const RadiosityOptions* options, int threads) {
   const Header h = header_of(bytes, file);
+  if (h.end == uint32_t(RadiosityEnd::stopped))
+    throw InputError(file, 0, 0,
+                     fmt::format("radiosity solution was interrupted after {} shots: let troffer "
+                                 "radiosity make it to the end",
+                                 h.shots));
   if (h.scene_key != radiosity_scene_key(scene))
     throw InputError(file, 0, 0, "radiosity solution belongs to another scene: compute it anew");
   if (options != nullptr) {

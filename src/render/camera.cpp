@@ -67,12 +67,31 @@ bool ViewingCamera::raster_of(const Vec3& p, Vec2& raster) const {
   return true;
 }
 
-ImageSize image_size(const Camera& camera, int asked_width, int asked_height) {
-  if (asked_width > 0 && asked_height > 0) return {asked_width, asked_height};
+namespace {
+
+ImageSize own_size(const Camera& camera) {
   if (camera.width > 0 && camera.height > 0) return {camera.width, camera.height};
   constexpr int lines = 768;
   const float aspect = camera.aspect > 0 ? std::clamp(camera.aspect, 0.1f, 10.0f) : 4.0f / 3.0f;
   return {std::max(1, int(std::lround(float(lines) * aspect))), lines};
+}
+
+// A side of so many pixels, times a ratio.
+int other_side(int side, double ratio) {
+  constexpr double largest = 1 << 20;  // pictures of so many pixels are refused
+  return int(std::lround(std::clamp(side * ratio, 1.0, largest)));
+}
+
+}  // namespace
+
+ImageSize image_size(const Camera& camera, int asked_width, int asked_height) {
+  if (asked_width > 0 && asked_height > 0) return {asked_width, asked_height};
+  const ImageSize own = own_size(camera);
+  if (asked_width > 0)
+    return {asked_width, other_side(asked_width, double(own.height) / own.width)};
+  if (asked_height > 0)
+    return {other_side(asked_height, double(own.width) / own.height), asked_height};
+  return own;
 }
 
 Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov_deg) {

@@ -41,8 +41,8 @@ class ViewingCamera {
   int longer_side_;
 };
 
-// Image size for a camera: what was asked for; else what the file says; else 768 lines at the
-// file's aspect ratio (4:3 without one). 0 = not asked for.
+// Image size for a camera: what was asked for (0: not; of one side, the other by the proportions of
+// what follows); else what the file says; else 768 lines at its aspect ratio (4:3 without one).
 struct ImageSize {
   int width, height;
 };

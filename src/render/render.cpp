@@ -12,6 +12,7 @@
 #include "render/checkpoint.h"
 #include "render/film.h"
 #include "render/gap_filler.h"
+#include "render/preview.h"
 #include "render/rendering.h"
 #include "render/tile.h"
 
@@ -106,6 +107,7 @@ class Picture {
  private:
   void render(const Preparation* preparation, RenderResult& result);
   void finish(Film& film, RenderResult& result);
+  void show_preview_in_gaps(const Film& film, RenderResult& result) const;
   void keep_beginning() const;
 
   const PreparedScene& scene_;
@@ -143,6 +145,7 @@ RenderResult Picture::make() {
     finish(film, result);
     result.layers = film.layers();
     for (Layer& l : result.layers) l.image = part_of(l.image, plan_.region, window);
+    show_preview_in_gaps(film, result);
   }
   result.is_complete = result.end == RenderEnd::complete || result.end == RenderEnd::good_enough;
   result.statistics.render_seconds =
@@ -162,6 +165,22 @@ void Picture::finish(Film& film, RenderResult& result) {
   if (result.end != RenderEnd::stopped || !filler_ || !options_.deadline->is_over()) return;
   result.statistics.gaps_filled = filler_->fill(film, plan_.window, *options_.deadline);
   if (!options_.deadline->parent().load()) result.end = RenderEnd::out_of_time;
+}
+
+// Where a stop was requested, pixels without a sample take the preview.
+void Picture::show_preview_in_gaps(const Film& film, RenderResult& result) const {
+  if (result.end != RenderEnd::stopped) return;
+  Image& picture = result.layers[0].image;
+  const Image* preview = options_.preview != nullptr ? &options_.preview->picture() : nullptr;
+  RenderStatistics& statistics = result.statistics;
+  statistics.shows_preview =
+      preview != nullptr && preview->width == picture.width && preview->height == picture.height;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      if (film.estimate(plan_.window.x0 + x, plan_.window.y0 + y).samples > 0) continue;
+      ++statistics.unsampled;
+      if (statistics.shows_preview) picture.at(x, y) = preview->at(x, y);
+    }
 }
 
 // Leaves the result without layers where it was stopped before there was anything to show.
@@ -195,6 +214,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
   statistics.share_done = rendering.share_done();
   finish(rendering.film(), result);
   result.layers = rendering.layers();
+  show_preview_in_gaps(rendering.film(), result);
   statistics.counters = rendering.counters();
   statistics.viewing_errors = rendering.viewing_errors();
   statistics.told_error = rendering.told_error();

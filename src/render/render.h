@@ -75,9 +75,9 @@ struct RenderOptions {
 };
 
 // The most viewing rays that a pixel may get; that pixels of a tile may get in the mean, so that
-// what glitters here and there is refined, and all that glitters takes no longer; that a pixel is taken to
-// get where textures are filtered. All are max_spp where it was given, else as many as the method
-// takes by itself (MethodRow::refinement).
+// what glitters here and there is refined, and all that glitters takes no longer; that a pixel is
+// taken to get where textures are filtered. All are max_spp where it was given, else as many as the
+// method takes by itself (MethodRow::refinement).
 struct MostViewingRays {
   int in_pixel = 0, in_mean = 0, usual = 0;
 };
@@ -107,6 +107,8 @@ struct RenderStatistics {
   double told_error = 0;
   double share_done = 0;          // of the work, by tiles
   size_t gaps_filled = 0;         // pixels that are paths alone, for want of time
+  size_t unsampled = 0;           // pixels without a sample, where a stop was requested
+  bool shows_preview = false;     // these show RenderOptions::preview; else they are black
   double preprocess_seconds = 0;  // of the preparation, whoever made it
   double render_seconds = 0;      // of what came after
   CellStatistics cells;           // none where the method makes none
@@ -118,8 +120,8 @@ struct RenderStatistics {
 enum class RenderEnd { complete, good_enough, out_of_time, stopped };
 
 // layers[0] is the picture; then the AOVs in the order asked for. Where a stop was requested, or
-// time was over, is_complete is false and every pixel is the mean of the samples it has (black
-// without any: only where a stop was requested).
+// time was over, is_complete is false and every pixel is the mean of the samples it has (without
+// any, which happens only where a stop was requested, the preview, or black).
 struct RenderResult {
   std::vector<Layer> layers;
   RenderStatistics statistics;

@@ -5,6 +5,9 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <strings.h>
+
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -56,6 +59,7 @@ MHD_Result send(MHD_Connection* c, const HttpResponse& r) {
   add("Cache-Control", "no-store");
   add("X-Content-Type-Options", "nosniff");
   add("Referrer-Policy", "no-referrer");
+  if (r.status == 405) add("Allow", "GET, HEAD, POST");
   add("Cross-Origin-Resource-Policy", "same-origin");
   add("Content-Security-Policy",
       "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
@@ -65,6 +69,35 @@ MHD_Result send(MHD_Connection* c, const HttpResponse& r) {
   const MHD_Result result = MHD_queue_response(c, unsigned(r.status), response);
   MHD_destroy_response(response);
   return result;
+}
+
+// libmicrohttpd keeps arguments in the memory of the connection, before anybody is asked. Where
+// that is full it cannot even say so, and would wait until the connection times out: an address of
+// too many is refused here, and the connection ends.
+void refuse_many_arguments(MHD_Connection* c, std::string_view uri) {
+  constexpr std::ptrdiff_t most_arguments = 64;
+  if (std::count(uri.begin(), uri.end(), '&') < most_arguments) return;
+  const MHD_ConnectionInfo* info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
+  if (info == nullptr) return;
+  constexpr std::string_view answer =
+      "HTTP/1.1 414 URI Too Long\r\nConnection: close\r\nContent-Type: text/plain\r\n"
+      "Content-Length: 19\r\n\r\ntoo many arguments\n";
+  [[maybe_unused]] const ssize_t sent =
+      ::send(info->connect_fd, answer.data(), answer.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  shutdown(info->connect_fd, SHUT_RDWR);
+}
+
+// Whether it is told in two ways where the body ends.
+bool has_two_lengths(MHD_Connection* c) {
+  int lengths = 0;
+  const auto count = [](void* into, MHD_ValueKind, const char* name, const char*) {
+    if (strcasecmp(name, MHD_HTTP_HEADER_CONTENT_LENGTH) == 0 ||
+        strcasecmp(name, MHD_HTTP_HEADER_TRANSFER_ENCODING) == 0)
+      ++*static_cast<int*>(into);
+    return MHD_YES;
+  };
+  MHD_get_connection_values(c, MHD_HEADER_KIND, count, &lengths);
+  return lengths > 1;
 }
 
 HttpResponse refusal(int status, const char* text) {
@@ -126,7 +159,10 @@ HttpResponse HttpServer::Parts::check(MHD_Connection* c, const char* url, std::s
       !is_same_token(path.substr(1, end - 1), token))
     return refusal(404, "nothing here");
   e.request.is_post = method == MHD_HTTP_METHOD_POST;
-  if (!e.request.is_post && method != MHD_HTTP_METHOD_GET) return refusal(405, "GET or POST");
+  // The answer to HEAD is that to GET, without its body: libmicrohttpd sees to that.
+  if (!e.request.is_post && method != MHD_HTTP_METHOD_GET && method != MHD_HTTP_METHOD_HEAD)
+    return refusal(405, "GET, HEAD or POST");
+  if (has_two_lengths(c)) return refusal(400, "the length is told twice");
   const std::string_view length = header(c, MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (!length.empty() && std::strtoull(length.data(), nullptr, 10) > limits.body_bytes)
     return refusal(413, "too large");
@@ -212,13 +248,19 @@ HttpServer::HttpServer(uint16_t port, std::string token, Handle handle, const Ht
     const MHD_ConnectionInfo* info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
     if (info != nullptr) parts.connections[c] = {info->connect_fd, Clock::now(), false};
   };
+  using TakeAddress = void* (*)(void*, const char*, MHD_Connection*);
+  const TakeAddress on_address = [](void*, const char* uri, MHD_Connection* c) -> void* {
+    refuse_many_arguments(c, uri);
+    return nullptr;  // no exchange yet
+  };
   constexpr unsigned idle_seconds = 20;
   p.daemon = MHD_start_daemon(
       MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_AUTO, port, nullptr, nullptr, on_request, &p,
       MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT, limits.connections,
       MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.head_bytes, MHD_OPTION_CONNECTION_TIMEOUT,
       idle_seconds, MHD_OPTION_NOTIFY_COMPLETED, on_completed, &p, MHD_OPTION_NOTIFY_CONNECTION,
-      on_connection, &p, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+      on_connection, &p, MHD_OPTION_URI_LOG_CALLBACK, on_address, nullptr,
+      MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
   if (p.daemon == nullptr)
     throw EnvironmentError("cannot listen on 127.0.0.1" +
                            (port > 0 ? ":" + std::to_string(port) : "") + ": " +

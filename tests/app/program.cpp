@@ -61,9 +61,17 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+std::string Finished::remarks() const {
+  if (status != 0 || err.empty()) return err;
+  const size_t before = err.rfind('\n', err.size() - 2);
+  const size_t last = before == err.npos ? 0 : before + 1;
+  const bool tells_end = err.compare(last, 6, "wrote ") == 0 || err.compare(last, 5, "done ") == 0;
+  return tells_end ? err.substr(0, last) : err;
+}
+
 std::vector<std::string> Finished::error_lines() const {
   std::vector<std::string> lines;
-  std::istringstream in(err);
+  std::istringstream in(remarks());
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
 }
@@ -111,6 +119,10 @@ double Running::processor_seconds() const {
   timespec t{};
   if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &t) != 0) return 0;
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+std::string Running::output() const {
+  return read_file(out_);
 }
 
 void Running::let_work(double seconds) const {

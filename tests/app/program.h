@@ -31,7 +31,9 @@ struct Finished {
   std::string out, err;
   double processor_seconds = 0;                  // in all
   double seconds_after_signal = 0;               // of those, the ones after the last send()
-  std::vector<std::string> error_lines() const;  // err by lines
+  std::vector<std::string> error_lines() const;  // err by lines, as remarks()
+  // err without the line in the end that tells the files, the time and the error.
+  std::string remarks() const;
 };
 
 // A program under way; its standard output and error go to files. Times are the processor's, so
@@ -47,6 +49,7 @@ class Running {
   // Waits until it has worked for so many seconds, or has ended.
   void let_work(double seconds) const;
   double processor_seconds() const;
+  std::string output() const;  // what it has written to standard output so far
   void send(int signal);
   Finished wait();
 

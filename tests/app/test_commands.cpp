@@ -25,7 +25,7 @@ Finished run_well(const Folder& folder, const std::vector<std::string>& argument
   Finished f = run_program(folder, arguments);
   CAPTURE(f.err);
   CHECK(f.status == 0);
-  CHECK(f.err.empty());
+  CHECK(f.remarks().empty());
   return f;
 }
 
@@ -378,13 +378,13 @@ TEST_CASE("options that the method does not use are named in a warning") {
         run_program(folder, {"render", scene, "-o", folder.path("o.pfm"), "--size", "16x12",
                              "--spp", "1", "--selection", "off", "--indirect", indirect});
     CHECK(f.status == 0);
-    CHECK(f.err == (indirect == "radiosity"
-                        ? ""
-                        : "warning: --selection goes with --indirect radiosity; "
-                          "certified does not use it with another\n"));
+    CHECK(f.remarks() == (indirect == "radiosity"
+                              ? ""
+                              : "warning: --selection goes with --indirect radiosity; "
+                                "certified does not use it with another\n"));
   }
   const Finished f = run_program(
       folder, {"measure", scene, "--points", points, "--depth", "2", "-o", folder.path("o.csv")});
   CHECK(f.status == 0);
-  CHECK(f.err == "warning: --depth belongs to --method path; certified does not use it\n");
+  CHECK(f.remarks() == "warning: --depth belongs to --method path; certified does not use it\n");
 }

@@ -54,7 +54,7 @@ TEST_CASE("kj92: every option is understood") {
     CAPTURE(first);
     CAPTURE(f.err);
     CHECK(f.status == 0);
-    CHECK(f.err.empty());
+    CHECK(f.remarks().empty());
     const Image image = read_image(folder.path("o.exr"));
     CHECK(image.width == 16);
     double sum = 0;

@@ -1,8 +1,10 @@
-// The bar that tells how far a long command is: on a terminal, and nowhere else.
+// How far a long command is: a bar on a terminal, lines elsewhere.
 #include <doctest/doctest.h>
 #include <pty.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <string>
 #include <thread>
@@ -67,4 +69,53 @@ TEST_CASE("progress tells what is done, how far it is, the memory and the time l
   CHECK(text.find("left") != std::string::npos);
   CHECK(text.ends_with("\r\033[K|"));  // and takes it away at the end
   CHECK(drawn_at(.25, true) == "|");
+}
+
+TEST_CASE("a bar fits its terminal: it shrinks, then time and memory go, then all but percent") {
+  const PhaseState state{.25, 30, 120};
+  const auto drawn = [&](int columns) { return progress_bar("reading hall.obj", state, columns); };
+  CHECK(drawn(120) ==
+        "reading hall.obj [########........................]  25 %  120 MB  1:30 min left");
+  for (int columns = 1; columns <= 200; ++columns) {
+    CAPTURE(columns);
+    CHECK(drawn(columns).size() < size_t(columns));
+  }
+  CHECK(drawn(60) == "reading hall.obj [###...........]  25 %  120 MB  1:30 min left");
+  CHECK(drawn(50) == "reading hall.obj [##......]  25 %  1:30 min left");
+  CHECK(drawn(40) == "reading hall.obj [###..........]  25 %");
+  CHECK(drawn(25) == "reading hall.obj  25 %");
+  CHECK(drawn(12) == " 25 %");
+  CHECK(drawn(3).empty());
+  // Letters count, not bytes.
+  CHECK(progress_bar("\xc3\xbc\xc3\xbc", {1, 1, 1}, 10) == "\xc3\xbc\xc3\xbc 100 %");
+}
+
+TEST_CASE("elsewhere than on a terminal there is a line for a phase that lasts, and no more") {
+  int ends[2] = {-1, -1};
+  REQUIRE(pipe(ends) == 0);
+  std::fflush(stderr);
+  const int saved = dup(STDERR_FILENO);
+  dup2(ends[1], STDERR_FILENO);
+  {
+    ProgressBar brief("reading", false), quiet("quiet", true), lasting("render", false);
+    brief.update(.5);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+    for (int i = 0; i < 100; ++i) {
+      quiet.update(.5);
+      lasting.update(.5);
+    }
+  }
+  tell_done({"a.exr", "s.json"}, 2.1, .0123);
+  dup2(saved, STDERR_FILENO);
+  for (const int file : {saved, ends[1]}) close(file);
+  char text[512];
+  const ssize_t n = read(ends[0], text, sizeof text);
+  close(ends[0]);
+  REQUIRE(n > 0);
+  const std::string all(text, size_t(n));
+  CAPTURE(all);
+  CHECK(all.rfind("render: 50 % after 2 s, ", 0) == 0);
+  CHECK(all.find(" MB, 2 s left\nwrote a.exr and s.json in 2.1 s, estimated error 1.2 %\n") !=
+        std::string::npos);
+  CHECK(std::count(all.begin(), all.end(), '\n') == 2);
 }

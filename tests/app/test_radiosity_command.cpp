@@ -121,9 +121,18 @@ TEST_CASE("radiosity stops at a signal, and what it has is written and whole") {
   CAPTURE(f.err);
   CHECK(f.status == 130);
   CHECK(f.seconds_after_signal < 10);
-  CHECK(f.err.find("interrupted: wrote the solution after") != std::string::npos);
+  CHECK(f.err.rfind("interrupted after ", 0) == 0);
+  CHECK(f.err.find(" shots: wrote " + folder.path("a.trad") + ", ") != std::string::npos);
   CHECK(folder.names() == std::vector<std::string>{"a.glb", "a.trad", "room.pbrt", "s.json"});
-  CHECK(refusal(scene, folder.path("a.trad"), nullptr).empty());
+  CHECK(refusal(scene, folder.path("a.trad"), nullptr).find("was interrupted after") !=
+        std::string::npos);
+  for (const char* method : {"kj92", "certified"}) {
+    const Finished refused =
+        run_program(folder, {"render", scene, "-o", folder.path("o.exr"), "--method", method,
+                             "--solution", folder.path("a.trad")});
+    CHECK(refused.status == 1);
+    CHECK(refused.err.find("was interrupted after") != std::string::npos);
+  }
   CHECK(triangle_count(import_scene(folder.path("a.glb"))) > 1000);
   CHECK(troffer::test::read_file(folder.path("s.json")).find("\"is_complete\": false") !=
         std::string::npos);

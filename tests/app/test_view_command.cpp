@@ -2,6 +2,11 @@
 #include <doctest/doctest.h>
 #include <signal.h>
 
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "../view/client.h"
 #include "program.h"
 
 using namespace troffer::test;
@@ -21,6 +26,57 @@ TEST_CASE("view tells its address, and a signal ends it") {
     CHECK(f.out.size() > 32 + 20);
   }
   CHECK(folder.names() == std::vector<std::string>{"room.pbrt"});
+}
+
+namespace {
+
+// Asks a view for another time of day; returns the answer's status.
+int ask_for_time(const std::string& address, const std::string& time) {
+  const std::string scheme = "http://";
+  const size_t slash = address.find('/', scheme.size());
+  const std::string host = address.substr(scheme.size(), slash - scheme.size());
+  const std::string body = "{\"time\":\"" + time + "\"}";
+  const Client client(uint16_t(std::stoi(host.substr(host.find(':') + 1))));
+  REQUIRE(client.is_connected());
+  client.send("POST " + address.substr(slash) + "time HTTP/1.1\r\nHost: " + host +
+              "\r\nConnection: close\r\nContent-Length: " + std::to_string(body.size()) +
+              "\r\n\r\n" + body);
+  return status_of(client.rest());
+}
+
+// Where the page is, once the program says it.
+std::string address_of(const Running& program) {
+  for (int i = 0; i < 6000; ++i) {
+    const std::string out = program.output();
+    if (out.ends_with('\n')) return out.substr(0, out.size() - 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("another time of day lights the scene that was read, though its files are gone") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
+  folder.write("image.pfm", "PF\n2 1\n-1.0\n" + std::string(24, '\0'));
+  const std::string list = folder.write("list.csv", "file,x,y,z\nlamp.ies,0,0,1\n");
+  folder.write("lamp.ies",
+               "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 10\n0 90\n0\n100 50\n");
+  Running program(folder, {"view", scene, "--at", "48.2,16.4,2026-06-21T12:00+02:00", "--threads",
+                           "1", "--environment", folder.path("image.pfm"), "--luminaires", list});
+  const std::string address = address_of(program);
+  CAPTURE(program.output());
+  REQUIRE(!address.empty());
+  CHECK(ask_for_time(address, "2026-06-21T13:00+02:00") == 200);
+  for (const char* name : {"room.pbrt", "image.pfm", "list.csv", "lamp.ies"})
+    std::filesystem::remove(folder.path(name));
+  CHECK(ask_for_time(address, "2026-06-21T15:00+02:00") == 200);
+  folder.write("room.pbrt", "WorldBegin\nShape");
+  CHECK(ask_for_time(address, "2026-06-21T16:00+02:00") == 200);
+  CHECK(ask_for_time(address, "2026-06-21") == 400);
+  program.send(SIGTERM);
+  CHECK(program.wait().status == 130);
 }
 
 TEST_CASE("view refuses what it cannot show, before any page is there") {

@@ -50,6 +50,66 @@ class Loading(unittest.TestCase):
             scene.measure('points')
 
 
+class Arguments(unittest.TestCase):
+    def test_one_side_keeps_the_proportions(self):
+        scene = load()
+        own = scene.render(method='path', spp=1, width=0).pixels.shape
+        wide = scene.render(method='path', spp=1, width=16).pixels.shape
+        high = scene.render(method='path', spp=1, height=np.int64(30)).pixels.shape
+        self.assertEqual(wide[:2], (round(16 * own[0] / own[1]), 16))
+        self.assertEqual(high[:2], (30, round(30 * own[1] / own[0])))
+        seen = scene.look_at((1, 1, 1), (2, 1.5, 2))
+        self.assertEqual(scene.render(seen, method='path', spp=1, width=16).pixels.shape,
+                         (12, 16, 3))
+
+    def test_paths_of_any_kind(self):
+        class Named:
+            def __init__(self, path):
+                self.path = path
+
+            def __fspath__(self):
+                return str(self.path)
+
+        picture = troffer.load(ROOM).render(**FAST)
+        with tempfile.TemporaryDirectory() as folder:
+            for i, kind in enumerate((str, pathlib.Path, os.fsencode, Named)):
+                a, b = (pathlib.Path(folder) / f'{name}{i}.pfm' for name in 'ab')
+                picture.save(kind(a))
+                troffer.write_image(kind(b), picture.pixels)
+                np.testing.assert_array_equal(troffer.read_image(kind(a)),
+                                              troffer.read_image(kind(b)))
+            with self.assertRaises(ValueError):
+                picture.save(pathlib.Path(folder))
+        for wrong in (None, 3, object()):
+            with self.assertRaises(TypeError):
+                troffer.load(wrong)
+
+    def test_odd_values(self):
+        scene = load()
+        picture = scene.render(**FAST)
+        for wrong in (dict(seed=-1), dict(seed=1.5), dict(seed=1 << 64), dict(width='16'),
+                      dict(width=16.5), dict(width=None), dict(spp=True + 0.5), dict(aovs='normal'),
+                      dict(camera=3), dict(camera=ROOM), dict(witdh=16), dict(method=None),
+                      dict(threads=1 << 40)):
+            with self.assertRaises(TypeError, msg=str(wrong)):
+                scene.render(**wrong)
+        for wrong in (dict(width=-1), dict(width=65537), dict(width=65536, height=65536),
+                      dict(error=np.nan), dict(error=np.float32(2)), dict(spp=-1),
+                      dict(threads=-1), dict(threads=5000), dict(depth=-2), dict(max_spp=-1)):
+            with self.assertRaises(ValueError, msg=str(wrong)):
+                scene.render(**wrong)
+        with self.assertRaises(TypeError):
+            scene.render(None, 16)  # sizes are named
+        for wrong in (np.nan, np.inf, 1e9):
+            with self.assertRaises(ValueError):
+                picture.save('never.png', exposure=wrong)
+            with self.assertRaises(ValueError):
+                troffer.write_image('never.png', picture.pixels, exposure=wrong)
+        same = dict(FAST, width=np.int32(48), spp=np.uint8(4), seed=np.int64(0))
+        np.testing.assert_array_equal(scene.render(error=np.float32(.01), **same).pixels,
+                                      scene.render(error=float(np.float32(.01)), **FAST).pixels)
+
+
 class Pictures(unittest.TestCase):
     def test_is_that_of_any_number_of_threads(self):
         scene = load()

@@ -147,8 +147,14 @@ TEST_CASE("image size: asked for, else the file's, else by aspect") {
   c.height = 200;
   CHECK(image_size(c, 64, 48).width == 64);
   CHECK(image_size(c, 0, 0).height == 200);
+  // One side alone keeps the proportions.
+  CHECK(image_size(c, 64, 0).height == 40);
+  CHECK(image_size(c, 0, 50).width == 80);
+  CHECK(image_size(c, 1, 0).height == 1);
+  CHECK(image_size(c, 1 << 30, 0).height == 1 << 20);
   c.width = c.height = 0;
   CHECK(image_size(c, 0, 0).width == 1024);
+  CHECK(image_size(c, 16, 0).height == 12);
   c.aspect = 2;
   CHECK(image_size(c, 0, 0).width == 2 * image_size(c, 0, 0).height);
   c.aspect = 1e30f;

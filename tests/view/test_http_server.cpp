@@ -1,6 +1,7 @@
 // Requests that no honest browser sends are refused, and cost nothing.
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -120,6 +121,35 @@ TEST_CASE("bodies and heads have bounds, methods are two") {
     CHECK(status_of(s.ask(method + " /" + token + "/state")) == 405);
   CHECK(s.calls == 1);
   CHECK(status_of(s.ask("GET /" + token + "/state")) == 200);
+}
+
+TEST_CASE("an address of too many arguments is refused at once, and holds no connection") {
+  HttpLimits limits;
+  limits.connections = 4;
+  Server s(limits);
+  for (const int count : {64, 65, 500, 2000, 8000})
+    for (const std::string argument : {"a", "a=1", "=", "%00=%ff"}) {
+      std::string path = "/" + token + "/state?" + argument;
+      for (int i = 1; i < count; ++i) path += "&" + argument;
+      const auto begun = std::chrono::steady_clock::now();
+      const int status = status_of(s.ask("GET " + path));
+      CHECK(status == (count == 64 ? 200 : 414));
+      CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(5));
+    }
+  CHECK(status_of(s.ask("GET /" + token + "/state")) == 200);
+}
+
+TEST_CASE("HEAD is answered as GET is, without a body; a length that is told twice is refused") {
+  Server s;
+  const std::string answer = s.ask("HEAD /" + token + "/state");
+  CHECK(status_of(answer) == 200);
+  CHECK(answer.find("Content-Length: 11") != answer.npos);
+  CHECK(body_of(answer).empty());
+  const std::string post = "POST /" + token + "/camera";
+  CHECK(status_of(s.ask(post, "Content-Length: 3\r\nContent-Length: 4\r\n", "abcd")) == 400);
+  CHECK(status_of(s.ask(post, "Content-Length: 3\r\nTransfer-Encoding: chunked\r\n",
+                        "0\r\n\r\n")) == 400);
+  CHECK(s.calls == 1);
 }
 
 TEST_CASE("what is no HTTP ends the connection, and the next is answered") {
