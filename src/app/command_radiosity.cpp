@@ -143,7 +143,8 @@ std::string statistics_json(const RadiosityCommand& c, const RadiosityResult& r,
 
 // A solution that was interrupted can be looked at; --solution refuses it. Returns the exit status.
 int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
-                     const RadiosityResult& result, const RadiositySeconds& seconds) {
+                     const RadiosityResult& result, const RadiositySeconds& seconds,
+                     const UpDecision& up) {
   const RadiositySolution& s = result.solution;
   Unfinished left;
   for (const std::string& path : c.outputs)
@@ -151,7 +152,7 @@ int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
       write_output(left.place(path), scene, s);
     else
       left.note(path, "");
-  if (!c.stats.empty()) write_file(left.place(c.stats), statistics_json(c, result, seconds));
+  if (!c.stats.empty()) write_file(left.place(c.stats), statistics_json(c, result, seconds, up));
   fmt::print(stderr, "interrupted after {} shots: {}{}\n", s.shots, left.text(),
              s.shots > 0 ? "; render does not take an unfinished solution" : "");
   return exit_interrupted;
@@ -223,7 +224,7 @@ int run_radiosity(const RadiosityCommand& c) {
   const RadiositySolution& s = result.solution;
   mark = Clock::now();
   const bool is_interrupted = s.end == RadiosityEnd::stopped;
-  if (is_interrupted) return leave_unfinished(c, scene, result, seconds);
+  if (is_interrupted) return leave_unfinished(c, scene, result, seconds, up.decision);
   for (const std::string& path : c.outputs) write_output(path, scene, s);
   seconds.write = seconds_since(mark);
   seconds.total = seconds_since(start);

@@ -252,17 +252,17 @@ int tell(const RenderResult& result, const RenderCommand& c, double total, const
 // at all where it shows nothing, or where a checkpoint and an earlier unfinished picture keep more.
 void write_outputs(const RenderCommand& c, const RenderResult& result, const Camera& camera,
                    const LastingRun& lasting, PreviewFiles& files, Unfinished& left) {
-  WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet);
+  const RenderStatistics& s = result.statistics;
+  const bool is_unfinished = result.end == RenderEnd::stopped;
+  const bool is_blank =
+      is_unfinished && !s.shows_preview && s.unsampled == result.layers[0].image.pixels.size();
+  WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet || is_blank);
   write.note = lasting.note(result, camera);
   write.is_safe = !c.lasting.checkpoint.empty();  // before that goes
   if (c.options.parts > 1) {
     const ImageSize whole = image_size(camera, c.options.width, c.options.height);
     write.window = {result.window[0], result.window[1], whole.width, whole.height};
   }
-  const RenderStatistics& s = result.statistics;
-  const bool is_unfinished = result.end == RenderEnd::stopped;
-  const bool is_blank =
-      is_unfinished && !s.shows_preview && s.unsampled == result.layers[0].image.pixels.size();
   for (const std::string& path : c.outputs) {
     std::string place = path;
     if (is_blank)

@@ -87,7 +87,7 @@ void OutputGuard::check_files_read() const {
   for (const std::string& path : read_.paths()) {
     const auto identity = identity_of_input(path);
     if (!identity) continue;
-    for (const Named& o : outputs_) check(o, {"what the scene reads,", path, *identity});
+    for (const Named& o : outputs_) check(o, {"a file of the scene", path, *identity});
   }
 }
 

@@ -80,9 +80,9 @@ TEST_CASE("a bar fits its terminal: it shrinks, then time and memory go, then al
     CAPTURE(columns);
     CHECK(drawn(columns).size() < size_t(columns));
   }
-  CHECK(drawn(60) == "reading hall.obj [###...........]  25 %  120 MB  1:30 min left");
-  CHECK(drawn(50) == "reading hall.obj [##......]  25 %  1:30 min left");
-  CHECK(drawn(40) == "reading hall.obj [###..........]  25 %");
+  CHECK(drawn(60) == "reading hall.obj [##.........]  25 %  120 MB  1:30 min left");
+  CHECK(drawn(50) == "reading hall.obj [##.......]  25 %  1:30 min left");
+  CHECK(drawn(40) == "reading hall.obj [###...........]  25 %");
   CHECK(drawn(25) == "reading hall.obj  25 %");
   CHECK(drawn(12) == " 25 %");
   CHECK(drawn(3).empty());
@@ -114,8 +114,8 @@ TEST_CASE("elsewhere than on a terminal there is a line for a phase that lasts, 
   REQUIRE(n > 0);
   const std::string all(text, size_t(n));
   CAPTURE(all);
-  CHECK(all.rfind("render: 50 % after 2 s, ", 0) == 0);
-  CHECK(all.find(" MB, 2 s left\nwrote a.exr and s.json in 2.1 s, estimated error 1.2 %\n") !=
+  CHECK(all.rfind("render: 50 % after ", 0) == 0);
+  CHECK(all.find(" s left\nwrote a.exr and s.json in 2.1 s, estimated error 1.2 %\n") !=
         std::string::npos);
   CHECK(std::count(all.begin(), all.end(), '\n') == 2);
 }
