@@ -29,12 +29,16 @@ if(Python_Interpreter_FOUND)
   add_custom_command(OUTPUT ${_manual}/troffer.1
     COMMAND ${Python_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/manual.py $<TARGET_FILE:troffer>
       ${PROJECT_VERSION} ${_manual}
-    DEPENDS troffer ${CMAKE_SOURCE_DIR}/tools/manual.py VERBATIM)
+    DEPENDS troffer ${CMAKE_SOURCE_DIR}/tools/manual.py ${CMAKE_SOURCE_DIR}/tools/completion.py
+      ${CMAKE_SOURCE_DIR}/tools/program_help.py VERBATIM)
   add_custom_target(manual ALL DEPENDS ${_manual}/troffer.1)
   install(DIRECTORY ${_manual}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
     FILES_MATCHING PATTERN "*.1")
   install(FILES ${_manual}/troffer.bash RENAME troffer
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${_manual}/_troffer DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${_manual}/troffer.fish
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 if(TROFFER_MPI)
   install(TARGETS troffer-mpi COMPONENT mpi)  # a package of its own: nobody else needs MPI

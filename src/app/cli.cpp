@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -11,15 +10,23 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/option_help.h"
+#include "app/option_values.h"
 #include "app/plain_numbers.h"
 #include "app/printable.h"
 #include "app/signals.h"
+#include "app/usage_errors.h"
 #include "base/error.h"
+#include "base/suggestion.h"
 #include "render/aov_rows.h"
 
 namespace troffer {
 
 namespace {
+
+constexpr const char* solution_help =
+    "certified: keep the cells in this file and continue from them; certified and kj92: take the "
+    "radiosity that troffer radiosity wrote";
 
 // Values as typed; turned into options after parsing, where errors become UsageError.
 struct RawOptions {
@@ -30,7 +37,7 @@ struct RawOptions {
 };
 
 std::vector<int> integers(const std::string& text, char separator, size_t count,
-                          const std::string& option) {
+                          const std::string& option, const std::string& form) {
   std::vector<int> values;
   const char* p = text.data();
   const char* end = p + text.size();
@@ -43,7 +50,8 @@ std::vector<int> integers(const std::string& text, char separator, size_t count,
     if (p == end) break;
     if (*p++ != separator) break;
   }
-  if (values.size() != count || p != end) throw UsageError(option + ": cannot read '" + text + "'");
+  if (values.size() != count || p != end)
+    throw UsageError(option + ": '" + printable(text) + "' is not " + form);
   return values;
 }
 
@@ -59,7 +67,7 @@ void apply_shadow_rays(int asked, RenderOptions& o) {
 
 void apply(const RawOptions& raw, RenderOptions& o) {
   if (!raw.size.empty()) {
-    const auto v = integers(raw.size, 'x', 2, "--size");
+    const auto v = integers(raw.size, 'x', 2, "--size", "WIDTHxHEIGHT in pixels, such as 640x480");
     constexpr int largest = 65536;
     if (v[0] < 1 || v[1] < 1 || v[0] > largest || v[1] > largest)
       throw UsageError("--size: each side must lie between 1 and 65536");
@@ -69,7 +77,8 @@ void apply(const RawOptions& raw, RenderOptions& o) {
     o.height = v[1];
   }
   if (!raw.crop.empty()) {
-    const auto v = integers(raw.crop, ',', 4, "--crop");
+    const auto v =
+        integers(raw.crop, ',', 4, "--crop", "X0,Y0,X1,Y1 in pixels, such as 0,0,320,240");
     o.has_crop = true;
     std::copy(v.begin(), v.end(), o.crop.begin());
   }
@@ -87,116 +96,119 @@ void apply(const RawOptions& raw, RenderOptions& o) {
 void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   TreeSamplingOptions& sampling = c.options.kj92.sampling;
   BintreeOptions& tree = sampling.tree;
-  const CLI::Range change(0.0f, 1.0f);
+  const CLI::Validator change = number_between(0, 1);
   r->add_option("--variance", tree.allowed_variance,
-                "kj92: allowed standard error, of the unoccluded light; 0: --most-rays everywhere")
-      ->check(CLI::Range(0.0f, 1000.0f))
+                "Allowed standard error of a viewing ray, relative to the unoccluded light; 0: "
+                "--most-rays everywhere")
+      ->check(number_between(0, 1000))
       ->capture_default_str();
-  r->add_option("--most-rays", tree.most_rays, "kj92: most shadow rays per source and viewing ray")
-      ->check(CLI::Range(1, 1 << 16))
+  r->add_option("--most-rays", tree.most_rays, "Most shadow rays per source and viewing ray")
+      ->check(whole_number_between(1, 1 << 16))
       ->capture_default_str();
   r->add_option("--mean-change", tree.mean_change,
-                "kj92: also stop where the mean changes by less; 0: never")
+                "Also stop where the mean changes by less than this; 0: never")
       ->check(change)
       ->capture_default_str();
   r->add_option("--level-difference", tree.level_difference,
-                "kj92: levels by which neighbouring cells of a source may differ")
-      ->check(CLI::Range(0, 24))
+                "Levels by which neighbouring cells of a source may differ")
+      ->check(whole_number_between(0, 24))
       ->capture_default_str();
   r->add_option("--probe-rays", sampling.probe_rays,
-                "kj92: rays to strong sources that seem hidden or open")
-      ->check(CLI::Range(1, 1 << 10))
+                "Rays to strong sources that seem wholly hidden or wholly visible")
+      ->check(whole_number_between(1, 1 << 10))
       ->capture_default_str();
-  r->add_option("--coherence", raw.coherence, "kj92: reuse of sampling patterns, on or off")
-      ->check(CLI::IsMember({"on", "off"}))
+  r->add_option("--coherence", raw.coherence,
+                "Reuse the sampling pattern of the viewing ray before")
+      ->check(one_of({"on", "off"}))
       ->capture_default_str();
   r->add_flag("--ratio", sampling.uses_ratio,
-              "kj92: trees give the visible share of the exact unoccluded light");
+              "Multiply the sampled visible share by the exact unoccluded light");
   r->add_option("--selection", raw.selection,
-                "kj92: choose sources by the preprocessing, on or off (all emitters, everywhere); "
-                "certified --indirect radiosity: bright patches as sources, on or off")
-      ->check(CLI::IsMember({"on", "off"}))
+                "kj92: the radiosity solution selects the sources; off: all emitters, everywhere. "
+                "certified with --indirect radiosity: bright patches are sources")
+      ->check(one_of({"on", "off"}))
       ->capture_default_str();
-  r->add_option("--select", c.selected_lights,
-                "kj92: only these sources may be sampled; all others stay in the general light")
+  r->add_option(
+       "--select", c.selected_lights,
+       "Only these sources may be sampled; the light of all others counts as general light")
       ->delimiter(',')
       ->allow_extra_args(false);
-  r->add_option(
-      "--solution", c.solution,
-      "certified: keep cells in this file, and go on from them; kj92: what troffer radiosity made");
+  r->add_option("--solution", c.solution, solution_help);
 }
 
 // What is seen, at what size.
 void add_camera(CLI::App* r, RenderCommand& c, RawOptions& raw) {
-  r->add_option("--size", raw.size, "Image size WxH in pixels [by the scene]");
-  r->add_option("--crop", raw.crop, "Window X0,Y0,X1,Y1 of the image, in pixels");
-  r->add_option("--camera", c.camera, "Camera by name [the first]");
-  r->add_option("--eye", c.eye, "Camera position x,y,z, in place of the scene's camera");
-  r->add_option("--target", c.target, "Point x,y,z that --eye looks at");
-  r->add_option("--fov", c.fov_deg, "Field of view of --eye over the shorter side, degrees")
-      ->check(CLI::Range(0.1, 179.0))
+  r->add_option("--size", raw.size, "Image size in pixels [the scene's]");
+  r->add_option(
+      "--crop", raw.crop,
+      "Only this window of the image, in pixels from the top left; X1 and Y1 are outside");
+  r->add_option("--camera", c.camera, "Camera by its name in troffer info [the first]");
+  r->add_option("--eye", c.eye, "Position of the camera, instead of the scene's cameras");
+  r->add_option("--target", c.target, "Point that --eye looks at");
+  r->add_option("--fov", c.fov_deg,
+                "Field of view of --eye in degrees, over the picture's shorter side")
+      ->check(number_between(0.1, 179))
       ->capture_default_str();
 }
 
 void add_render(CLI::App& app, RenderCommand& c, RawOptions& raw) {
-  CLI::App* r = app.add_subcommand("render", "Render an image of a scene");
+  CLI::App* r = app.add_subcommand("render", "Render a picture of a scene");
   add_scene_choice(*r, c.scene);
-  r->add_option("-o,--output", c.outputs, "Image: .exr .hdr .pfm .png; may be repeated")
+  r->add_option("-o,--output", c.outputs, "Picture to write: .exr .hdr .pfm .png; may be repeated")
       ->required()
       ->allow_extra_args(false);
   r->add_flag("--preview", c.has_preview,
-              "Write -o at once too, coarse, and then again and again as the picture is made");
-  r->add_option("--method", c.method, "How light is computed: " + Method::names())
-      ->capture_default_str();
-  r->add_option("--spp", c.options.spp, "Viewing rays per pixel, before refinement")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
-  r->add_option("--max-spp", c.options.max_spp,
-                "certified, kj92: refine where pixels differ, up to so many viewing rays; "
-                "as --spp: nowhere [certified: 512 times --spp, and 256 times in the mean of 8 x 8 "
-                "pixels, with --indirect none 256 and 128, with radiosity 4; kj92: as --spp]")
-      ->check(CLI::Range(1, 1 << 20));
-  r->add_option("--shadow-rays", raw.shadow_rays,
-                "fixed: shadow rays per source and viewing ray [64]; kj92: initial ones [8]")
-      ->check(CLI::Range(0, 1 << 20));
-  add_kj92(r, c, raw);
-  r->add_option("--error", c.options.error,
-                "certified: standard error asked of a pixel, of the light that it gets")
-      ->check(CLI::Range(1e-6, 1.0))
+              "Write -o at once, coarse, and again every few seconds while the picture improves");
+  add_method(*r, c.method);
+  r->add_option("--spp", c.options.spp,
+                "Viewing rays per pixel, before refinement; powers of two are stratified best")
+      ->check(whole_number_between(1, 1 << 20))
       ->capture_default_str();
   r->add_option(
-       "--indirect", raw.indirect,
-       "auto; cells: gathered (certified); radiosity: interpolated (certified, kj92); none: only "
-       "light straight from sources")
+       "--max-spp", c.options.max_spp,
+       "Most viewing rays of a pixel where neighbouring pixels differ [certified: 512 times "
+       "--spp, and 256 times in the mean of 8 x 8 pixels; with --indirect none 256 and "
+       "128, with radiosity 4; other methods: --spp]")
+      ->check(whole_number_between(1, 1 << 20));
+  r->add_option("--shadow-rays", raw.shadow_rays,
+                "Shadow rays per source and viewing ray [64]; kj92: the initial ones [8], 0 "
+                "samples no source")
+      ->check(whole_number_between(0, 1 << 20));
+  add_kj92(r, c, raw);
+  r->add_option("--error", c.options.error,
+                "certified: allowed standard error of a pixel, relative to its light")
+      ->check(number_between(1e-6, 1))
       ->capture_default_str();
-  r->add_option("--depth", c.options.depth, "path: most bounces (0 emission, 1 direct light)")
-      ->check(CLI::Range(0, 1 << 20));
+  add_indirect(*r, raw.indirect);
+  r->add_option("--depth", c.options.depth,
+                "Most bounces: 0 shows emission alone, 1 adds direct light [no limit]")
+      ->check(whole_number_between(0, 1 << 20));
   add_camera(r, c, raw);
   add_light_choice(*r, c.lights);
   add_threads(*r, c.options.threads);
   add_seed(*r, c.options.seed);
-  r->add_option("--aov", raw.aovs, "Further layers for .exr: " + aov_names())
+  r->add_option("--aov", raw.aovs, "Further layers, for .exr files")
       ->delimiter(',')
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->check(one_of(split_at(aov_names(), ',')));
   r->add_option(
       "--exposure", c.exposure,
-      "For .png: stops, or auto [0; auto where the picture would come out nearly black or "
-      "white]");
-  r->add_option("--tone-map", c.tone_map, "filmic or none, for .png")
-      ->check(CLI::IsMember({"filmic", "none"}))
+      "For .png: stops, or auto [0; auto where the picture would be nearly black or white]");
+  r->add_option("--tone-map", c.tone_map, "Tone curve, for .png")
+      ->check(one_of({"filmic", "none"}))
       ->capture_default_str();
   add_daylight_options(*r, c.daylight);
   add_lasting_options(*r, c.lasting);
-  r->add_option("--stats", c.stats, "Write counts and times to this JSON file");
-  r->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
+  r->add_option("--stats", c.stats, "JSON file for counts, times and settings");
+  r->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
 }
 
 void add_compare(CLI::App& app, CompareCommand& c) {
-  CLI::App* s = app.add_subcommand("compare", "Compare an image with a reference");
-  s->add_option("image", c.image, "Image: .exr .hdr .pfm .png .jpg")->required();
+  CLI::App* s = app.add_subcommand("compare", "Compare a picture with a reference");
+  s->add_option("image", c.image, "Picture: .exr .hdr .pfm .png .jpg")->required();
   s->add_option("reference", c.reference, "Reference of the same size")->required();
-  s->add_option("--map", c.map, "Write the FLIP error map to this image file");
-  s->add_option("--difference", c.difference, "Write the absolute difference to this image file");
+  s->add_option("--map", c.map, "Picture file for the FLIP error map");
+  s->add_option("--difference", c.difference, "Picture file for the absolute difference");
   s->add_flag("--json", c.is_json, "Print JSON");
 }
 
@@ -209,48 +221,41 @@ void add_measure(CLI::App& app, MeasureCommand& c, RawOptions& raw) {
        "NODE[,HEIGHT[,SPACING]]: points over the upward surface of this part of the scene, "
        "in metres [on it, EN 12464-1's]; may be repeated")
       ->allow_extra_args(false);
-  s->add_option("--border", c.grid.border, "--grid: strip along the rim without points, in metres")
-      ->check(CLI::Range(0.0, 1000.0))
+  s->add_option("--border", c.grid.border,
+                "Strip along the rim of --grid without points, in metres")
+      ->check(number_between(0, 1000))
       ->capture_default_str();
   s->add_option("-o,--output", c.output, "CSV file [standard output]");
-  s->add_option("--method", c.method, "How light is computed: " + Method::names())
-      ->capture_default_str();
+  add_method(*s, c.method);
   s->add_option("--spp", c.spp, "Samples per point [4096; kj92: 256; certified: by --error]")
-      ->check(CLI::Range(2, 1 << 26));
-  s->add_option(
-      "--solution", c.solution,
-      "certified: keep cells in this file, and go on from them; kj92: what troffer radiosity made");
-  s->add_option("--error", c.error, "certified: allowed standard error of a point's light")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(whole_number_between(2, 1 << 26));
+  s->add_option("--solution", c.solution, solution_help);
+  s->add_option("--error", c.error,
+                "certified: allowed standard error of a point, relative to its light")
+      ->check(number_between(1e-6, 1))
       ->capture_default_str();
-  s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")
-      ->check(CLI::Range(0, 1 << 20));
-  s->add_option("--indirect", raw.indirect, "auto, or none: direct light only")
-      ->capture_default_str();
+  s->add_option("--depth", c.depth, "Most bounces: 1 is direct light alone [no limit]")
+      ->check(whole_number_between(0, 1 << 20));
+  add_indirect(*s, raw.indirect);
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
   c.daylight.invents_sky = false;  // no value rests on light that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
-  s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
+  s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
 }
 
 void add_info(CLI::App& app, InfoCommand& c) {
-  CLI::App* s = app.add_subcommand("info", "Tell what a scene file holds");
+  CLI::App* s = app.add_subcommand("info", "List what a scene or luminaire file holds");
   add_scene_choice(*s, c.scene);
-  s->add_option("--polar", c.polar, "Of an .ies or .ldt: draw its polar curves, .svg or .png");
+  s->add_option("--polar", c.polar,
+                "File for the polar curves of an .ies or .ldt file: .svg or .png");
   s->add_flag("--json", c.is_json, "Print JSON");
 }
 
 // The options of the command `app` are read.
 int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& raw) {
-  // CLI::Range lets NaN pass.
-  if (!std::isfinite(render.fov_deg)) throw UsageError("--fov: not a number");
-  if (!std::isfinite(render.options.error)) throw UsageError("--error: not a number");
   check_exposure(render.exposure);
-  const BintreeOptions& tree = render.options.kj92.sampling.tree;
-  if (!std::isfinite(tree.allowed_variance)) throw UsageError("--variance: not a number");
-  if (!std::isfinite(tree.mean_change)) throw UsageError("--mean-change: not a number");
   apply(raw, render.options);
   if (render.method != "kj92" && raw.shadow_rays == 0)
     throw UsageError("--shadow-rays 0 belongs to --method kj92");
@@ -263,7 +268,6 @@ int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& 
 }
 
 int check_and_run(const CLI::App& app, MeasureCommand& measure, const RawOptions& raw) {
-  if (!std::isfinite(measure.error)) throw UsageError("--error: not a number");
   measure.indirect = parse_indirect(raw.indirect);
   const Method method = parse_method(measure.method);
   warn_of_unused_options(app, method, indirect_with(measure.solution, method, measure.indirect),
@@ -271,8 +275,38 @@ int check_and_run(const CLI::App& app, MeasureCommand& measure, const RawOptions
   return run_measure(measure);
 }
 
+// `troffer help`, `troffer help COMMAND` and, for tools, `troffer help --json`.
+std::string asked_help(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 3) return commands_help(app);
+  if (argv[2] == std::string("--json")) return help_json(app);
+  for (const CLI::App* c : app.get_subcommands({}))
+    if (c->get_name() == argv[2]) return command_help(*c);
+  throw UsageError(no_command(app, argv[2]));
+}
+
+// The exit status where that was all: help or version. UsageError for mistakes.
+std::optional<int> parse_or_help(CLI::App& app, int argc, const char* const* argv, bool leads) {
+  if (argc < 2) {
+    if (leads) std::fputs(commands_help(app).c_str(), stderr);
+    return exit_usage;
+  }
+  if (argv[1] == std::string("help")) {
+    const std::string text = asked_help(app, argc, argv);
+    if (leads) std::fputs(text.c_str(), stdout);
+    return exit_done;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0) throw UsageError(usage_message(app, argc, argv, e));
+    if (leads) app.exit(e);  // --help, --version
+    return exit_done;
+  }
+  return std::nullopt;
+}
+
 int parse_and_run(int argc, const char* const* argv, Crew* crew) {
-  CLI::App app{"troffer lights rooms: images and lighting figures of interiors."};
+  CLI::App app{"troffer renders rooms and measures their light."};
   app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
   app.require_subcommand(1);
   RenderCommand render;
@@ -297,15 +331,9 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   add_report(app, lighting);
   add_bake(app, light);
   require_plain_numbers(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) {  // --help, --version
-      if (crew == nullptr || crew->leads()) app.exit(e);
-      return exit_done;
-    }
-    throw UsageError(e.what());
-  }
+  set_help(app);
+  const bool leads = crew == nullptr || crew->leads();
+  if (const std::optional<int> status = parse_or_help(app, argc, argv, leads)) return *status;
   render.options.crew = crew;
   if (app.got_subcommand("render"))
     return check_and_run(*app.get_subcommand("render"), render, render_raw);
@@ -321,10 +349,7 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
     return run_report(lighting);
   }
   if (app.got_subcommand("bake")) return check_and_bake(*app.get_subcommand("bake"), light);
-  if (app.got_subcommand("merge")) {
-    check_exposure(merge.exposure);
-    return run_merge(merge);
-  }
+  if (app.got_subcommand("merge")) return run_merge(merge);
   return run_info(info);
 }
 

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/option_values.h"
 #include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/printable.h"
@@ -158,57 +159,57 @@ int run_bake(const BakeCommand& c, BakeOptions options) {
 
 void add_texel_options(CLI::App* s, BakeCommand& c) {
   s->add_option("--texels-per-metre", c.texels_per_metre,
-                "Texels along a metre of surface [as many as fill one page of --resolution]")
-      ->check(CLI::Range(1e-3, 1e4));
-  s->add_option("--resolution", c.resolution, "Texels along the side of the one page")
-      ->check(CLI::Range(16, 16384))
+                "Texels per metre of surface [as many as fill one page of --resolution]")
+      ->check(number_between(1e-3, 1e4));
+  s->add_option("--resolution", c.resolution, "Texels along the side of a single page")
+      ->check(whole_number_between(16, 16384))
       ->capture_default_str();
   s->add_option("--max-size", c.largest_page,
-                "Texels along the side of the largest page; what does not fit goes on further ones")
-      ->check(CLI::Range(64, 16384))
+                "Texels along the side of the largest page; the rest goes on further pages")
+      ->check(whole_number_between(64, 16384))
       ->capture_default_str();
   s->add_option("--gutter", c.gutter, "Texels around each chart that repeat its edge")
-      ->check(CLI::Range(1, 64))
+      ->check(whole_number_between(1, 64))
       ->capture_default_str();
 }
 
 }  // namespace
 
 void add_bake(CLI::App& app, BakeCommand& c) {
-  CLI::App* s = app.add_subcommand("bake", "Keep a scene's light in lightmaps, for engines");
+  CLI::App* s = app.add_subcommand("bake", "Compute lightmaps for game engines and the web");
   add_scene_choice(*s, c.scene);
-  s->add_option("-o,--output", c.output, "Scene with its light: .gltf or .glb")->required();
+  s->add_option("-o,--output", c.output, "Scene to write, with its light: .gltf or .glb")
+      ->required();
   add_texel_options(s, c);
   s->add_flag("--vertex-colours,--vertex-colors", c.has_vertex_colors,
-              "Light in colours of vertices, by which unlit base colours are multiplied");
-  s->add_flag("--unlit", c.is_unlit, "Surfaces as they look, for viewers without lights");
-  s->add_flag("--emissive", c.is_emissive, "Black surfaces that emit what they send, in cd/m2");
-  s->add_option("--exposure", c.exposure, "--unlit, --vertex-colours: stops, or auto")
+              "Light as vertex colours, which multiply unlit base colours");
+  s->add_flag("--unlit", c.is_unlit, "Unlit surfaces that look lit, for viewers without lights");
+  s->add_flag("--emissive", c.is_emissive, "Black surfaces that emit their light, in cd/m2");
+  s->add_option("--exposure", c.exposure, "For --unlit and --vertex-colours: stops, or auto")
       ->capture_default_str();
-  s->add_option("--hdr", c.hdr, "Irradiance in lx beside the scene: exr, hdr or none")
-      ->check(CLI::IsMember({"exr", "hdr", "none"}))
+  s->add_option("--hdr", c.hdr, "Format of the irradiance in lx, written beside the scene")
+      ->check(one_of({"exr", "hdr", "none"}))
       ->capture_default_str();
   s->add_option("--spp", c.spp, "Samples per texel, or vertex")
-      ->check(CLI::Range(4, 1 << 14))
+      ->check(whole_number_between(4, 1 << 14))
       ->capture_default_str();
-  s->add_option("--method", c.method, "How light is computed: " + Method::names())
+  add_method(*s, c.method);
+  s->add_option("--error", c.error, "certified: allowed standard error of direct light")
+      ->check(number_between(1e-6, 1))
       ->capture_default_str();
-  s->add_option("--error", c.error, "certified: standard error asked of light from sources")
-      ->check(CLI::Range(1e-6, 1.0))
-      ->capture_default_str();
-  s->add_option("--indirect", c.indirect, "auto, or none: direct light only")
-      ->capture_default_str();
-  s->add_option("--depth", c.depth, "path: most bounces (1 direct light)")
-      ->check(CLI::Range(0, 1 << 20));
-  s->add_option("--solution", c.solution,
-                "certified: keep cells in this file, and go on from them; kj92: what troffer "
-                "radiosity made");
+  add_indirect(*s, c.indirect);
+  s->add_option("--depth", c.depth, "Most bounces: 1 is direct light alone [no limit]")
+      ->check(whole_number_between(0, 1 << 20));
+  s->add_option(
+      "--solution", c.solution,
+      "certified: keep the cells in this file and continue from them; certified and kj92: "
+      "take the radiosity that troffer radiosity wrote");
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
   c.daylight.invents_sky = false;  // lightmaps hold measured values
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
-  s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings, no figures");
+  s->add_flag("--quiet", c.is_quiet, "No progress bar, notes, warnings or figures");
 }
 
 int check_and_bake(const CLI::App& command_line, BakeCommand command) {

@@ -16,8 +16,8 @@ namespace troffer {
 void add_convert(CLI::App& app, ConvertCommand& c) {
   CLI::App* s = app.add_subcommand("convert", "Write a scene in another format");
   add_scene_choice(*s, c.scene);
-  s->add_option("output", c.output, "file to write: .pbrt, .gltf or .glb")->required();
-  s->add_flag("--quiet", c.is_quiet, "no warnings");
+  s->add_option("output", c.output, "File to write: .pbrt, .gltf or .glb")->required();
+  s->add_flag("--quiet", c.is_quiet, "No warnings");
 }
 
 int run_convert(const ConvertCommand& command) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/commands.h"
+#include "app/option_values.h"
 #include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/part_note.h"
@@ -112,17 +113,18 @@ Joined join(const MergeCommand& c) {
 }  // namespace
 
 void add_merge(CLI::App& app, MergeCommand& c) {
-  CLI::App* s = app.add_subcommand("merge", "Join the parts of a picture (render --part)");
-  s->add_option("output", c.output, "Image: .exr .hdr .pfm .png")->required();
+  CLI::App* s = app.add_subcommand("merge", "Join the parts of a picture that render --part made");
+  s->add_option("output", c.output, "Picture to write: .exr .hdr .pfm .png")->required();
   s->add_option("parts", c.parts, "All parts, in any order: .exr")->required();
   s->add_option("--exposure", c.exposure, "For .png: stops, or auto [as render]");
-  s->add_option("--tone-map", c.tone_map, "filmic or none, for .png")
-      ->check(CLI::IsMember({"filmic", "none"}))
+  s->add_option("--tone-map", c.tone_map, "Tone curve, for .png")
+      ->check(one_of({"filmic", "none"}))
       ->capture_default_str();
   s->add_flag("--quiet", c.is_quiet, "No warnings");
 }
 
 int run_merge(const MergeCommand& c) {
+  check_exposure(c.exposure);
   image_format(c.output);  // a wrong ending: usage error
   OutputGuard guard;
   for (const std::string& part : c.parts) guard.add_input("the part", part);

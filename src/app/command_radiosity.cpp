@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/option_values.h"
 #include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/process.h"
@@ -161,37 +162,37 @@ int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
 }  // namespace
 
 void add_radiosity(CLI::App& app, RadiosityCommand& c) {
-  CLI::App* s = app.add_subcommand("radiosity", "Spread light over a scene's surfaces, coarsely");
+  CLI::App* s = app.add_subcommand("radiosity", "Compute the radiosity of a scene's surfaces");
   add_scene_choice(*s, c.scene);
   s->add_option("-o,--output", c.outputs,
-                ".gltf, .glb: mesh and light to look at; any other ending (.trad): the solution, "
-                "for render --solution; may be repeated")
+                ".gltf, .glb: mesh and light to look at; any other ending, such as .trad: the "
+                "solution, for --solution; may be repeated")
       ->required()
       ->allow_extra_args(false);
   s->add_flag("--cells", c.makes_cells,
-              "Cells for --method certified instead, of all surfaces: for render and measure "
-              "--solution");
+              "Cells of all surfaces for --method certified instead: for --solution of render and "
+              "measure");
   s->add_option("--element-size", c.options.meshing.element_size,
                 "Longest edge of an element, metres [by the scene]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_zero());
   s->add_option("--patch-size", c.options.meshing.patch_size,
                 "Longest edge of a patch, metres [by the element size]")
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_zero());
   s->add_option("--stored", c.options.stored_per_point,
-                "Sources whose light is kept apart, per sample point")
-      ->check(CLI::Range(0u, max_stored))
+                "Sources whose light is stored separately, per sample point")
+      ->check(whole_number_between(0, max_stored))
       ->capture_default_str();
   s->add_option("--unshot", c.options.unshot_fraction,
-                "Stop when less is unshot than this fraction of the light that comes straight from "
-                "lights to diffuse surfaces")
-      ->check(CLI::Range(1e-6, 1.0))
+                "Stop when the unshot power is less than this share of the direct light on diffuse "
+                "surfaces")
+      ->check(number_between(1e-6, 1))
       ->capture_default_str();
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
   add_threads(*s, c.threads);
   add_seed(*s, c.options.seed);
-  s->add_option("--stats", c.stats, "Write counts and times to this JSON file");
-  s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings, no summary");
+  s->add_option("--stats", c.stats, "JSON file for counts, times and settings");
+  s->add_flag("--quiet", c.is_quiet, "No progress bar, notes, warnings or summary");
 }
 
 int run_radiosity(const RadiosityCommand& c) {

@@ -10,6 +10,7 @@
 #include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/picture_files.h"
+#include "app/printable.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
@@ -28,6 +29,26 @@
 namespace troffer {
 
 namespace {
+
+// InputError where no picture can show anything: no surface, and no light at infinity.
+void check_visible(const Scene& scene) {
+  const auto is_seen = [](const Light& e) {
+    return e.kind == LightKind::environment || e.kind == LightKind::sky || e.kind == LightKind::sun;
+  };
+  if (bounds(scene).is_empty() && std::none_of(scene.lights.begin(), scene.lights.end(), is_seen))
+    throw InputError(scene.file, 0, 0, "has nothing to show: no surface, sky or image");
+}
+
+// Layers are for .exr alone.
+void warn_of_layers(const RenderCommand& c) {
+  const auto holds_layers = [](const std::string& path) {
+    return image_format(path) == ImageFormat::exr;
+  };
+  if (!c.is_quiet && !c.options.aovs.empty() &&
+      std::none_of(c.outputs.begin(), c.outputs.end(), holds_layers))
+    fmt::print(stderr, "warning: --aov: {} cannot hold layers; write an .exr file too\n",
+               printable(c.outputs.front()));
+}
 
 // Nothing where the scene has no camera and none is described.
 std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c, const Vec3& up) {
@@ -310,6 +331,7 @@ int run_render(RenderCommand c) {
   if (crew != nullptr) join(c, *crew);
   std::optional<OutputGuard> guard;
   const std::vector<OutputReservation> reserved = check_and_reserve(c, guard);
+  warn_of_layers(c);
 
   Seconds seconds;
   const ThreadLimit limit(c.options.threads);
@@ -332,6 +354,7 @@ int run_render(RenderCommand c) {
   seconds.import = seconds_since(start);
   Clock::time_point mark = Clock::now();
   if (c.has_preview) show_sight(imported, false);
+  check_visible(imported);
   const std::optional<Camera> chosen = choose_camera(imported, c, up.decision.up);
   if (chosen) camera = *chosen;
   const PreparedScene scene(std::move(imported));

@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/option_values.h"
 #include "app/signals.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -50,7 +51,8 @@ void read_size(const std::string& text, ViewSettings& settings) {
                             : std::from_chars_result{middle, std::errc::invalid_argument};
   if (height.ec != std::errc() || height.ptr != end || settings.width < 1 || settings.height < 1 ||
       settings.width > most || settings.height > most)
-    throw UsageError("--size: '" + text + "' is not WxH with sides of up to 4096");
+    throw UsageError("--size: '" + text +
+                     "' is not WIDTHxHEIGHT with sides of up to 4096, such as 640x480");
 }
 
 }  // namespace
@@ -58,18 +60,18 @@ void read_size(const std::string& text, ViewSettings& settings) {
 void add_view(CLI::App& app, ViewCommand& c) {
   CLI::App* s = app.add_subcommand("view", "Look at a scene and measure in it, in a browser");
   add_scene_choice(*s, c.scene);
-  s->add_option("--port", c.port, "Of the page's address on this machine [any that is free]")
-      ->check(CLI::Range(1, 65535));
-  s->add_option("--size", c.size, "Of the picture, WxH in pixels [about 640x480]");
-  s->add_option("--camera", c.camera, "Camera to begin with, by name [the first]");
-  s->add_option("--method", c.method, "How light is computed: " + Method::names())
-      ->capture_default_str();
-  s->add_option("--error", c.error, "Standard error at which a picture is done")
-      ->check(CLI::Range(1e-3, 1.0))
+  s->add_option("--port", c.port, "Port of the page's address on this machine [any free one]")
+      ->check(whole_number_between(1, 65535));
+  s->add_option("--size", c.size, "Picture size in pixels [about 640x480]");
+  s->add_option("--camera", c.camera,
+                "Camera to start from, by its name in troffer info [the first]");
+  add_method(*s, c.method);
+  s->add_option("--error", c.error, "Standard error at which a picture is finished")
+      ->check(number_between(1e-3, 1))
       ->capture_default_str();
   add_light_choice(*s, c.lights);
   add_daylight_options(*s, c.daylight);
-  s->add_option("--tev", c.tev, "HOST:PORT of a tev that is to show the pictures too");
+  s->add_option("--tev", c.tev, "Address of a tev image viewer that shows the pictures too");
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
   s->add_flag("--quiet", c.is_quiet, "No warnings");

@@ -11,6 +11,8 @@ class App;
 
 namespace troffer {
 
+void add_method(CLI::App& command, std::string& method);
+void add_indirect(CLI::App& command, std::string& indirect);
 void add_light_choice(CLI::App& command, std::vector<std::string>& lights);
 void add_threads(CLI::App& command, int& threads);
 void add_seed(CLI::App& command, uint64_t& seed);

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/option_values.h"
+
 namespace troffer {
 
 namespace {
@@ -38,21 +40,20 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
                      "The sun by LATITUDE,LONGITUDE,TIME, such as "
                      "48.2,16.4,2026-06-21T12:00+02:00");
   command
-      .add_option("--turbidity", o.turbidity,
-                  "Linke's turbidity of a clear sky: how much light it and the sun bring")
-      ->check(CLI::Range(1.0, 10.0));
+      .add_option("--turbidity", o.turbidity, "Linke turbidity of a clear sky; more dims the sun")
+      ->check(number_between(1, 10));
   command.add_option("--weather", o.weather,
                      "Sky and sun of an hour of a weather file (.epw), by Perez' model and --date "
                      "or --at");
   command.add_option("--date", o.date, "Of --weather: MM-DDTHH:MM, in the file's standard time");
   command
       .add_option("--north", o.north_deg,
-                  "Where north lies: degrees clockwise, seen from above, from -z; +y where z is "
-                  "up")
-      ->check(CLI::Range(-360.0, 360.0))
+                  "Direction of north: degrees clockwise, seen from above, from -z (from +y where "
+                  "z is up)")
+      ->check(number_between(-360, 360))
       ->capture_default_str();
   command.add_option("--ground", o.ground, "Reflectance of the ground below a sky")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(number_between(0, 1))
       ->capture_default_str();
   command.add_option(
       "--environment", o.environment,
@@ -60,20 +61,21 @@ void add_daylight_options(CLI::App& command, DaylightOptions& o) {
       "height, or square and equal-area");
   command
       .add_option("--environment-rotation", o.environment_rotation_deg,
-                  "Turns it clockwise, seen from above, in degrees")
-      ->check(CLI::Range(-360.0, 360.0))
+                  "Turns --environment clockwise, seen from above, in degrees")
+      ->check(number_between(-360, 360))
       ->capture_default_str();
   command
       .add_option("--portal", o.portals,
-                  "The rectangle that light of the sky, the sun and images comes through alone: "
-                  "four corners x,y,z, … counterclockwise seen from where it arrives, or the name "
-                  "of a part of the scene whose front faces there; may be repeated")
+                  "Rectangle through which all light from outside enters: four corners x,y,z,…, "
+                  "counterclockwise seen from inside, or the name of a part of the scene whose "
+                  "front faces inside; may be repeated")
       ->allow_extra_args(false);
   add_luminaire_options(command, o);
   command
-      .add_option("--light-radius", o.light_radius,
-                  "Makes points and spots spheres of this radius, in metres: soft shadows")
-      ->check(CLI::Range(1e-6, 1e6));
+      .add_option(
+          "--light-radius", o.light_radius,
+          "Radius in metres that turns point and spot lights into spheres, for soft shadows")
+      ->check(number_between(1e-6, 1e6));
 }
 
 }  // namespace troffer

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/commands.h"
+#include "app/option_values.h"
 #include "base/error.h"
 #include "image/write_image.h"
 
@@ -30,21 +31,21 @@ void parse_part(const std::string& text, RenderOptions& options) {
 }  // namespace
 
 void add_lasting_options(CLI::App& app, LastingOptions& o) {
-  const CLI::Range seconds(0.001, 1e9);
+  const CLI::Validator seconds = number_between(0.001, 1e9);
   app.add_option("--time-limit", o.time_limit,
-                 "End after so many seconds, with the picture as far as it got")
+                 "Stop after this many seconds and write the picture as it is")
       ->check(seconds);
-  app.add_option("--error-limit", o.error_limit,
-                 "End when the picture's told error, relative to its light, is at most this")
-      ->check(CLI::Range(1e-6, 10.0));
+  app.add_option(
+         "--error-limit", o.error_limit,
+         "Stop when the estimated error of the picture, relative to its light, is at most this")
+      ->check(number_between(1e-6, 10));
   app.add_option("--checkpoint", o.checkpoint,
-                 "Keep in this file what is done, every minute and when stopped");
-  app.add_option("--checkpoint-interval", o.checkpoint_interval, "Seconds between these")
+                 "File that keeps the work done, every minute and when interrupted");
+  app.add_option("--checkpoint-interval", o.checkpoint_interval, "Seconds between checkpoints")
       ->check(seconds)
       ->capture_default_str();
-  app.add_flag("--resume", o.is_resumed, "Go on from --checkpoint, where there is one");
-  app.add_option("--part", o.part,
-                 "Only the K-th of N shares of the picture, K/N; troffer merge joins them");
+  app.add_flag("--resume", o.is_resumed, "Continue from --checkpoint, if the file exists");
+  app.add_option("--part", o.part, "Only share K of N of the picture; troffer merge joins them");
 }
 
 void apply_lasting_options(RenderCommand& c, bool has_spp) {

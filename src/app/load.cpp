@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/commands.h"
+#include "app/option_values.h"
 #include "app/printable.h"
 #include "app/progress.h"
 #include "base/error.h"
@@ -21,17 +22,19 @@ namespace troffer {
 void add_scene_choice(CLI::App& app, SceneChoice& choice) {
   app.add_option("scene", choice.file, "Scene: .gltf .glb .pbrt .obj .ply .stl .xml .rad")
       ->required();
-  app.add_option("--variant", choice.options.variant,
-                 "glTF: materials of the variant of this name");
-  app.add_option("--time", choice.options.time, "glTF: seconds into the animation [at rest]")
-      ->check(CLI::Range(-1e9, 1e9));
-  app.add_option("--animation", choice.options.animation, "glTF: animation by name [the first]");
-  app.add_option("--up", choice.up,
-                 "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance: z; others: by "
-                 "cameras, names and what stands on what]");
+  app.add_option("--variant", choice.options.variant, "glTF: name of the material variant");
+  app.add_option("--time", choice.options.time,
+                 "glTF: moment of the animation, in seconds [at rest]")
+      ->check(number_between(-1e9, 1e9));
+  app.add_option("--animation", choice.options.animation,
+                 "glTF: name of the animation [the first]");
+  app.add_option(
+      "--up", choice.up,
+      "Upward direction: x, y, z, -y … or X,Y,Z [glTF: y; Radiance: z; others: by cameras, "
+      "names and objects that stand on others]");
   app.add_option("--emission-scale", choice.options.emission_scale,
-                 "Factor on what surfaces of the file emit, such as 683 for Blender's emission")
-      ->check(CLI::Range(0.0, 1e9))
+                 "Factor on the emission of the file's surfaces, such as 683 for Blender's")
+      ->check(number_between(0, 1e9))
       ->capture_default_str();
 }
 
@@ -84,6 +87,8 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
   const bool is_up_used =
       up.is_needed || (daylight != nullptr && (has_new_light || depends_on_up(*daylight)));
   if (up.is_needed && !up.decision.doubt.empty()) scene.warnings.add(up.decision.doubt);
+  if (bounds(scene).is_empty() && scene.lights.empty())
+    throw InputError(choice.file, 0, 0, "is empty: it has neither surfaces nor lights");
   if (!shines(scene)) scene.warnings.add("there is no light: nothing will be seen");
   if (!lights.empty()) scene = with_only_lights(std::move(scene), lights);
   if (daylight != nullptr) check_light(scene, *daylight, lights);
@@ -111,8 +116,7 @@ void warn_of_misplaced(const PreparedScene& scene, bool is_quiet) {
 
 Method parse_method(const std::string& name) {
   const std::optional<Method> method = Method::find(name);
-  if (!method)
-    throw UsageError("--method: there is no method '" + name + "', but " + Method::names());
+  if (!method) throw UsageError("--method: there is no '" + name + "', but " + Method::names());
   return *method;
 }
 

@@ -10,8 +10,10 @@
 #include "app/command_report.h"
 #include "app/common_options.h"
 #include "app/daylight_flags.h"
+#include "app/option_values.h"
 #include "app/report_files.h"
 #include "base/error.h"
+#include "base/suggestion.h"
 
 namespace troffer {
 
@@ -65,14 +67,12 @@ std::string in_quotes(const std::string& word) {
 }
 
 CLI::Option* add_switch(CLI::App& s, const char* name, std::string& value, const char* text) {
-  return s.add_option(name, value, text)
-      ->check(CLI::IsMember({"on", "off"}))
-      ->capture_default_str();
+  return s.add_option(name, value, text)->check(one_of({"on", "off"}))->capture_default_str();
 }
 
 void add_what(CLI::App& s, ReportCommand& c) {
   s.add_option("--surface", c.surfaces,
-               "NODE[:PROFILE]: assess this part of the scene; may be repeated [desks and floors]")
+               "Part of the scene to assess, and its task; may be repeated [desks and floors]")
       ->allow_extra_args(false);
   s.add_option(
        "--surfaces", c.surface_files,
@@ -81,56 +81,58 @@ void add_what(CLI::App& s, ReportCommand& c) {
   s.add_option("--profile", c.profile, "Task of desks and work planes, such as office-writing")
       ->capture_default_str();
   s.add_option("--maintenance", c.maintenance, "Maintenance factor of electric light")
-      ->check(CLI::Range(0.01, 1.0))
+      ->check(number_between(0.01, 1))
       ->capture_default_str();
   s.add_option("--work-plane", c.work_plane,
                "Height of work planes over floors without desks, in metres")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(number_between(0, 10))
       ->capture_default_str();
   s.add_option("--power", c.power,
-               "NODE=WATTS of a luminaire; NODE* stands for all that begin so; may be repeated")
+               "Watts of a luminaire; NODE* stands for all whose names begin so; may be repeated")
       ->allow_extra_args(false);
-  s.add_option("--observer", c.observers,
-               "X,Y,Z,DX,DY,DZ: an eye for glare, and where it looks; may be repeated [by itself]")
+  s.add_option(
+       "--observer", c.observers,
+       "Eye position and viewing direction for glare; may be repeated [chosen automatically]")
       ->allow_extra_args(false);
   s.add_option("--daylight-factor", c.daylight_factor,
-               "auto (where openings show the sky), on or off")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
+               "Daylight factors; auto: where openings show the sky")
+      ->check(one_of({"auto", "on", "off"}))
       ->capture_default_str();
-  add_switch(s, "--contributions", c.contributions, "Each luminaire's own part: on or off");
-  add_switch(s, "--cylindrical", c.cylindrical, "Cylindrical illuminance: on or off");
+  add_switch(s, "--contributions", c.contributions, "Each luminaire's share of the illuminance");
+  add_switch(s, "--cylindrical", c.cylindrical, "Cylindrical illuminance");
 }
 
 void add_how(CLI::App& s, ReportCommand& c) {
-  add_switch(s, "--pictures", c.pictures, "Luminances as pictures: on or off");
+  add_switch(s, "--pictures", c.pictures, "Pictures of luminances");
   s.add_option("--camera", c.cameras, "Camera of a picture; may be repeated [the first]")
       ->allow_extra_args(false);
   s.add_option("--width", c.width, "Width of pictures in pixels")
-      ->check(CLI::Range(16, 4096))
+      ->check(whole_number_between(16, 4096))
       ->capture_default_str();
-  s.add_option("--picture-error", c.picture_error, "--error of pictures")
-      ->check(CLI::Range(1e-4, 1.0))
+  s.add_option("--picture-error", c.picture_error,
+               "Allowed standard error of a pixel, relative to its light")
+      ->check(number_between(1e-4, 1))
       ->capture_default_str();
-  s.add_option("--method", c.method, "How light is computed: " + Method::names())
-      ->capture_default_str();
+  add_method(s, c.method);
   s.add_option("--spp", c.spp, "Samples per point")
-      ->check(CLI::Range(2, 1 << 26))
+      ->check(whole_number_between(2, 1 << 26))
       ->capture_default_str();
-  s.add_option("--error", c.error, "certified: allowed standard error of a point's light")
-      ->check(CLI::Range(1e-6, 1.0))
+  s.add_option("--error", c.error,
+               "certified: allowed standard error of a point, relative to its light")
+      ->check(number_between(1e-6, 1))
       ->capture_default_str();
 }
 
 }  // namespace
 
 void add_report(CLI::App& app, ReportCommand& c) {
-  CLI::App* s =
-      app.add_subcommand("report", "Assess the lighting of a scene: one page, with tables");
+  CLI::App* s = app.add_subcommand(
+      "report", "Assess the lighting of a scene by EN 12464-1, as a page to print");
   add_scene_choice(*s, c.scene);
   s->add_option("-o,--output", c.output, "Folder for report.html, report.json, points.csv")
       ->required();
   s->add_option("--title", c.title, "Title [the scene's file]");
-  s->add_option("--dated", c.date, "A date to be told, as text");
+  s->add_option("--dated", c.date, "Date shown in the report, as text");
   add_what(*s, c);
   add_how(*s, c);
   add_light_choice(*s, c.lights);
@@ -138,7 +140,7 @@ void add_report(CLI::App& app, ReportCommand& c) {
   c.daylight.invents_sky = false;  // no verdict rests on light that nobody asked for
   add_threads(*s, c.threads);
   add_seed(*s, c.seed);
-  s->add_flag("--quiet", c.is_quiet, "No progress bar, no warnings");
+  s->add_flag("--quiet", c.is_quiet, "No progress bar, notes or warnings");
 }
 
 AssessmentOptions assessment_options(const ReportCommand& c, const Vec3& up) {
@@ -161,8 +163,12 @@ AssessmentOptions assessment_options(const ReportCommand& c, const Vec3& up) {
   for (const std::string& s : c.surfaces) o.surfaces.push_back(parse_surface(s, o.profiles));
   for (const std::string& p : c.power) o.power.push_back(parse_power(p));
   for (const std::string& e : c.observers) o.observers.push_back(parse_observer(e));
-  if (find_profile(o.profiles, o.profile) == nullptr)
-    throw UsageError("--profile: there is no '" + o.profile + "', but " + profile_ids(o.profiles));
+  if (find_profile(o.profiles, o.profile) == nullptr) {
+    std::vector<std::string> ids;
+    for (const Profile& p : o.profiles) ids.push_back(p.id);
+    throw UsageError("--profile: there is no '" + o.profile + "'" + did_you_mean(o.profile, ids) +
+                     " (" + profile_ids(o.profiles) + ")");
+  }
   return o;
 }
 

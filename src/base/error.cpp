@@ -9,6 +9,7 @@ namespace {
 
 std::string located(const std::string& file, int line, int column, const std::string& what) {
   if (file.empty()) return what;
+  if (line < 0) return file + ": " + what;  // a missing file has no lines
   // What is wrong with a file as a whole is reported at its beginning: the place is always there.
   const bool has_place = line > 0;
   return file + ":" + std::to_string(has_place ? line : 1) + ":" +

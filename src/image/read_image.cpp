@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/similar_file.h"
 #include "image/float_size.h"
 
 namespace troffer {
@@ -15,6 +16,8 @@ std::vector<uint8_t> read_file_bytes(const std::string& path, size_t max_bytes) 
   const auto fail = [&](const std::string& what) { throw InputError(path, 0, 0, what); };
   const auto close = [](std::FILE* f) { std::fclose(f); };
   const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
+  if (!file && errno == ENOENT)
+    throw InputError(path, -1, -1, "cannot open: no such file" + did_you_mean_file(path));
   if (!file) fail("cannot open: " + std::generic_category().message(errno));
   std::vector<uint8_t> bytes;
   constexpr size_t block = size_t(1) << 18;

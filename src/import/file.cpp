@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/similar_file.h"
 #include "import/kept_files.h"
 
 namespace troffer {
@@ -148,7 +149,8 @@ Bytes unpacked(const std::string& path, Bytes packed, uint64_t max_bytes) {
 uint64_t size_of_file(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw InputError(path, 0, 0, "no such file");
+  if (status.type() == fs::file_type::not_found)
+    throw InputError(path, -1, -1, "no such file" + did_you_mean_file(path));
   if (error) throw InputError(path, 0, 0, "cannot be read: " + error.message());
   if (status.type() == fs::file_type::directory)
     throw InputError(path, 0, 0, "is a folder, not a file");

@@ -188,8 +188,8 @@ uint64_t JsonNode::as_integer(uint64_t max) const {
 uint32_t JsonNode::as_index(size_t count, const char* things) const {
   const uint64_t i = as_integer(~uint64_t(0));
   if (i >= count || i > 0xffffffffu)
-    fail("names " + std::string(things) + " " + std::to_string(i) + ", but there are only " +
-         std::to_string(count));
+    fail("names " + std::string(things) + " " + std::to_string(i) + ", but " +
+         (count == 0 ? "the file has none" : "there are only " + std::to_string(count)));
   return uint32_t(i);
 }
 
