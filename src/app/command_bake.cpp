@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -62,22 +63,26 @@ BakeOptions options_of(const BakeCommand& c) {
 }
 
 // The pages' irradiance, in lx, beside the scene.
-void write_pages(const BakeCommand& c, BakeResult& result) {
-  if (c.hdr == "none" || result.irradiance.empty()) return;
-  OutputFolder files(c.output);
+// Returns their names and what the scene's file calls them.
+std::map<std::string, std::string> write_pages(const BakeCommand& c, BakeResult& result,
+                                               OutputFolder& files) {
+  std::map<std::string, std::string> written;
+  if (c.hdr == "none" || result.irradiance.empty()) return written;
   std::string names;
   for (size_t i = 0; i < result.irradiance.size(); ++i) {
     const std::string name = fmt::format("light{}.{}", i, c.hdr);
     if (c.hdr == "exr") {
       const std::vector<Layer> layers{{"", {"R", "G", "B"}, std::move(result.irradiance[i])},
                                       {"error", {"V"}, std::move(result.error[i])}};
-      files.write(name, encode_exr(layers, {}, "irradiance in lx, its standard error"));
+      written[name] =
+          files.write(name, encode_exr(layers, {}, "irradiance in lx, its standard error"));
     } else {
-      files.write(name, encode_hdr(result.irradiance[i]));
+      written[name] = files.write(name, encode_hdr(result.irradiance[i]));
     }
-    names += fmt::format("{}\"{}\"", i > 0 ? "," : "", files.relative(name));
+    names += fmt::format("{}\"{}\"", i > 0 ? "," : "", written[name]);
   }
   result.baked.notes.emplace_back("irradiance_lx", "[" + names + "]");
+  return written;
 }
 
 void tell(const BakeResult& result, const std::vector<Warning>& lost) {
@@ -120,7 +125,7 @@ int run_bake(const BakeCommand& c, BakeOptions options) {
   std::vector<OutputReservation> reserved = reserve_outputs({c.output}, "");
   reserve_cells(c.solution, options.light.method, options.light.indirect, reserved);
   const ThreadLimit limit(c.threads);
-  UpUse up;
+  UpUse up{true, {}};
   Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);
   guard.check_files_read();
   const PreparedScene scene(as_meshes(std::move(imported)));
@@ -147,8 +152,11 @@ int run_bake(const BakeCommand& c, BakeOptions options) {
     fmt::print(stderr, "interrupted: {}\n", left.text());
     return exit_interrupted;
   }
-  write_pages(c, result);
-  const std::vector<Warning> lost = export_scene(std::move(result.scene), c.output, &result.baked);
+  OutputFolder files(c.output);
+  const std::map<std::string, std::string> pages = write_pages(c, result, files);
+  const std::vector<Warning> lost =
+      export_scene(std::move(result.scene), c.output, &result.baked, up.decision.up, &files);
+  for (const auto& [name, reference] : pages) files.link(name, reference);
   if (c.is_quiet) return exit_done;
   tell(result, lost);
   std::fflush(stdout);

@@ -7,6 +7,7 @@
 #include "app/signals.h"
 #include "compare/compare.h"
 #include "compare/maps.h"
+#include "image/output_set.h"
 #include "image/read_image.h"
 #include "image/write_image.h"
 
@@ -25,9 +26,15 @@ int run_compare(const CompareCommand& command) {
   install_stop_handlers();  // maps are written together
   WriteOptions plain;       // maps are colours, not light: no tone map
   plain.display.tone_map = ToneMap::none;
-  if (!command.map.empty()) write_image(command.map, flip_map(image, reference), plain);
+  OutputSet maps;
+  const auto add = [&](const std::string& path, Image map) {
+    const Layer layer{"", {"R", "G", "B"}, std::move(map)};
+    maps.add(path, std::span(&layer, 1), plain);
+  };
+  if (!command.map.empty()) add(command.map, flip_map(image, reference));
   if (!command.difference.empty())
-    write_image(command.difference, absolute_difference_map(image, reference), plain);
+    add(command.difference, absolute_difference_map(image, reference));
+  maps.commit();
 
   const std::pair<const char*, double> rows[] = {{"mean_image", c.mean_image},
                                                  {"mean_reference", c.mean_reference},

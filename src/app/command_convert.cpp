@@ -28,7 +28,8 @@ int run_convert(const ConvertCommand& command) {
   const Scene scene = import_scene(command.scene.file, command.scene.options);
   guard.check_files_read();
   install_stop_handlers();  // the files belong together: a signal waits until all are there
-  const std::vector<Warning> lost = export_scene(scene, command.output);
+  const UpDecision up = up_of(command.scene, scene);
+  const std::vector<Warning> lost = export_scene(scene, command.output, nullptr, up.up);
   if (command.is_quiet) return exit_done;
   const auto tell = [](const Warning& w) {
     fmt::print(stderr, "warning: {}", printable(w.text));
@@ -36,6 +37,10 @@ int run_convert(const ConvertCommand& command) {
     fmt::print(stderr, "\n");
   };
   for (const Warning& w : scene.warnings.entries()) tell(w);
+  if (!command.output.ends_with(".pbrt")) {
+    if (!up.doubt.empty()) tell({up.doubt});
+    tell_up(up);
+  }
   for (const Warning& w : lost) tell(w);
   return exit_done;
 }

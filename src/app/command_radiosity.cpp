@@ -17,7 +17,7 @@
 #include "app/up_json.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/atomic_file.h"
+#include "image/output_set.h"
 #include "import/file.h"
 #include "render/radiosity.h"
 #include "render/radiosity_gltf.h"
@@ -60,19 +60,12 @@ int make_cell_files(const RadiosityCommand& c, const PreparedScene& scene, const
   return exit_done;
 }
 
-void write_output(const std::string& path, const PreparedScene& scene,
-                  const RadiositySolution& solution) {
+std::vector<uint8_t> output_for(const std::string& path, const PreparedScene& scene,
+                                const RadiositySolution& solution) {
   const std::string ending = lower_case_ending(path);
-  std::vector<uint8_t> bytes;
-  if (ending == "gltf")
-    bytes = radiosity_gltf(scene.scene, solution, GltfContainer::text);
-  else if (ending == "glb")
-    bytes = radiosity_gltf(scene.scene, solution, GltfContainer::binary);
-  else
-    bytes = save_radiosity(scene, solution);
-  AtomicFile file(path);
-  file.write(bytes);
-  file.commit();
+  if (ending == "gltf") return radiosity_gltf(scene.scene, solution, GltfContainer::text);
+  if (ending == "glb") return radiosity_gltf(scene.scene, solution, GltfContainer::binary);
+  return save_radiosity(scene, solution);
 }
 
 double percent(double part, double whole) {
@@ -148,12 +141,14 @@ int leave_unfinished(const RadiosityCommand& c, const PreparedScene& scene,
                      const UpDecision& up) {
   const RadiositySolution& s = result.solution;
   Unfinished left;
+  OutputSet files;
   for (const std::string& path : c.outputs)
     if (s.shots > 0)
-      write_output(left.place(path), scene, s);
+      files.add(left.place(path), output_for(path, scene, s));
     else
       left.note(path, "");
-  if (!c.stats.empty()) write_file(left.place(c.stats), statistics_json(c, result, seconds, up));
+  if (!c.stats.empty()) files.add(left.place(c.stats), statistics_json(c, result, seconds, up));
+  files.commit();
   fmt::print(stderr, "interrupted after {} shots: {}{}\n", s.shots, left.text(),
              s.shots > 0 ? "; render does not take an unfinished solution" : "");
   return exit_interrupted;
@@ -224,19 +219,21 @@ int run_radiosity(const RadiosityCommand& c) {
   }
   const RadiositySolution& s = result.solution;
   mark = Clock::now();
-  const bool is_interrupted = s.end == RadiosityEnd::stopped;
-  if (is_interrupted) return leave_unfinished(c, scene, result, seconds, up.decision);
-  for (const std::string& path : c.outputs) write_output(path, scene, s);
+  if (s.end == RadiosityEnd::stopped)
+    return leave_unfinished(c, scene, result, seconds, up.decision);
+  OutputSet files;
+  for (const std::string& path : c.outputs) files.add(path, output_for(path, scene, s));
   seconds.write = seconds_since(mark);
   seconds.total = seconds_since(start);
-  if (!c.stats.empty()) write_file(c.stats, statistics_json(c, result, seconds, up.decision));
+  if (!c.stats.empty()) files.add(c.stats, statistics_json(c, result, seconds, up.decision));
+  files.commit();
   if (!c.is_quiet) {
     print_summary(result);
     std::fflush(stdout);
     for (const std::string& w : radiosity_warnings(s)) fmt::print(stderr, "warning: {}\n", w);
-    std::vector<std::string> files = c.outputs;
-    if (!c.stats.empty()) files.push_back(c.stats);
-    tell_done(files, seconds.total, std::nullopt);
+    std::vector<std::string> names = c.outputs;
+    if (!c.stats.empty()) names.push_back(c.stats);
+    tell_done(names, seconds.total, std::nullopt);
   }
   return exit_done;
 }

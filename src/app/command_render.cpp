@@ -20,7 +20,7 @@
 #include "base/crew.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/atomic_file.h"
+#include "image/output_set.h"
 #include "render/camera.h"
 #include "render/framing.h"
 #include "render/preview.h"
@@ -271,15 +271,14 @@ int tell(const RenderResult& result, const RenderCommand& c, double total, const
 
 // Once the picture is there. What a stop has left of it replaces no other file, and is not written
 // at all where it shows nothing, or where a checkpoint and an earlier unfinished picture keep more.
-void write_outputs(const RenderCommand& c, const RenderResult& result, const Camera& camera,
-                   const LastingRun& lasting, PreviewFiles& files, Unfinished& left) {
+void add_outputs(const RenderCommand& c, const RenderResult& result, const Camera& camera,
+                 const LastingRun& lasting, PreviewFiles& files, Unfinished& left, OutputSet& set) {
   const RenderStatistics& s = result.statistics;
   const bool is_unfinished = result.end == RenderEnd::stopped;
   const bool is_blank =
       is_unfinished && !s.shows_preview && s.unsampled == result.layers[0].image.pixels.size();
   WriteOptions write = write_options(c, camera, result.layers[0].image, c.is_quiet || is_blank);
   write.note = lasting.note(result, camera);
-  write.is_safe = !c.lasting.checkpoint.empty();  // before that goes
   if (c.options.parts > 1) {
     const ImageSize whole = image_size(camera, c.options.width, c.options.height);
     write.window = {result.window[0], result.window[1], whole.width, whole.height};
@@ -292,8 +291,7 @@ void write_outputs(const RenderCommand& c, const RenderResult& result, const Cam
       place = files.take_place(path, !c.lasting.checkpoint.empty());
     if (is_unfinished) left.note(path, place);
     if (place.empty()) continue;
-    write_image(place, result.layers, write);
-    if (!is_unfinished) files.is_finished(path);
+    set.add(place, result.layers, write);
   }
 }
 
@@ -377,13 +375,17 @@ int run_render(RenderCommand c) {
   if (crew != nullptr && !crew->leads()) return exit_done;
   mark = Clock::now();
   Unfinished left;
-  write_outputs(c, result, camera, lasting, files, left);
-  lasting.finish(result);
-  if (c.options.parts == 1) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
+  OutputSet set;
+  add_outputs(c, result, camera, lasting, files, left, set);
   seconds.write = seconds_since(mark);
   if (!c.stats.empty())
-    write_file(result.end == RenderEnd::stopped ? left.place(c.stats) : c.stats,
-               statistics_json(c, result, seconds, seconds_since(start), up.decision));
+    set.add(result.end == RenderEnd::stopped ? left.place(c.stats) : c.stats,
+            statistics_json(c, result, seconds, seconds_since(start), up.decision));
+  set.commit(!c.lasting.checkpoint.empty());  // safe before the checkpoint goes
+  if (result.end != RenderEnd::stopped)
+    for (const std::string& path : c.outputs) files.is_finished(path);
+  lasting.finish(result);
+  if (c.options.parts == 1) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   return tell(result, c, seconds_since(start), left);
 }
 

@@ -17,7 +17,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/wildcard.h"
-#include "image/atomic_file.h"
+#include "image/output_set.h"
 #include "image/read_image.h"
 #include "import/file.h"
 #include "lighting/attached_luminaires.h"
@@ -183,19 +183,17 @@ ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& 
   return info;
 }
 
+// The page last: it is what people open.
 void write_report(const Report& report, const ReportFolder& folder) {
+  OutputSet files;
   for (size_t i = 0; i < report.pictures.size(); ++i) {
-    const auto write = [&](const char* name, const std::vector<uint8_t>& png) {
-      AtomicFile file(folder.file(fmt::format("{}{}.png", name, i + 1)));
-      file.write(png);
-      file.commit();
-    };
-    write("luminance", report.pictures[i].luminances);
-    write("picture", report.pictures[i].seen);
+    files.add(folder.file(fmt::format("luminance{}.png", i + 1)), report.pictures[i].luminances);
+    files.add(folder.file(fmt::format("picture{}.png", i + 1)), report.pictures[i].seen);
   }
-  write_file(folder.file("report.json"), report_json(report));
-  write_file(folder.file("points.csv"), report_points(report));
-  write_file(folder.file("report.html"), report_page(report));
+  files.add(folder.file("points.csv"), report_points(report));
+  files.add(folder.file("report.json"), report_json(report));
+  files.add(folder.file("report.html"), report_page(report));
+  files.commit();
 }
 
 // On the page too, as all that a reader of the figures must know.

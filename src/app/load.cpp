@@ -36,6 +36,8 @@ void add_scene_choice(CLI::App& app, SceneChoice& choice) {
                  "Factor on the emission of the file's surfaces, such as 683 for Blender's")
       ->check(number_between(0, 1e9))
       ->capture_default_str();
+  app.add_flag("--baked", choice.options.shows_baked,
+               "glTF: show the light that troffer bake wrote, in place of computing it");
 }
 
 namespace {

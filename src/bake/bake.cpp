@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/cut_off.h"
 #include "bake/page.h"
 #include "bake/sent_light.h"
 #include "bake/sides.h"
@@ -59,9 +60,12 @@ class Baking {
   BakeResult result_;
 
   SiteSettings site_settings() const {
-    return {options_.samples, options_.light.threads, options_.light.seed};
+    return {options_.samples, options_.light.threads, options_.light.seed, false,
+            options_.light.indirect != Indirect::none && options_.light.depth != 0 &&
+                options_.light.depth != 1};
   }
-  std::vector<SiteLight> light(const Integrator& integrator, const SiteList& sites);
+  std::vector<SiteLight> light(const Integrator& integrator, const SiteList& sites,
+                               const SiteSettings& settings);
   void add_texels(const BakedSurfaces& surfaces, const TexelSites& sites,
                   const std::vector<SiteLight>& light);
   void add_irradiance(const TexelSites& sites, const std::vector<SiteLight>& light);
@@ -77,12 +81,13 @@ class Baking {
 };
 
 // Light, in lx.
-std::vector<SiteLight> Baking::light(const Integrator& integrator, const SiteList& sites) {
+std::vector<SiteLight> Baking::light(const Integrator& integrator, const SiteList& sites,
+                                     const SiteSettings& settings) {
   const auto tell = [&](double f) {
     if (progress_) progress_(share_of_sides + (1 - share_of_sides) * f);
   };
   std::vector<SiteLight> light =
-      light_sites(scene_, integrator, sites, site_settings(), tell, stop_, result_.counters);
+      light_sites(scene_, integrator, sites, settings, tell, stop_, result_.counters);
   for (SiteLight& l : light) {
     l.irradiance = l.irradiance * lx_per_unit_;
     l.error *= lx_per_unit_;
@@ -288,15 +293,18 @@ BakeResult Baking::run() {
   result_.baked.instances.resize(surfaces.scene.instances.size());
   if (options_.shading == BakedShading::vertex_colors) {
     const VertexSites sites(surfaces);
-    const std::vector<SiteLight> found = light(*integrator, sites);
+    const std::vector<SiteLight> found = light(*integrator, sites, site_settings());
     if (stop_.load(std::memory_order_relaxed)) return {};
     add_vertices(surfaces, sites, found);
     count(surfaces, found);
   } else {
     result_.atlas = make_atlas(surfaces, options_.atlas);
     const TexelSites sites(surfaces, result_.atlas);
-    const std::vector<SiteLight> found = light(*integrator, sites);
+    SiteSettings settings = site_settings();
+    settings.are_texels = true;
+    std::vector<SiteLight> found = light(*integrator, sites, settings);
     if (stop_.load(std::memory_order_relaxed)) return {};
+    if (settings.is_all_light) forget_cut_off_texels(scene_, sites, result_.atlas, found);
     add_texels(surfaces, sites, found);
     count(surfaces, found);
   }

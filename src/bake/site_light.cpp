@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "bake/cut_off.h"
 #include "base/error.h"
 #include "base/frame.h"
 #include "base/random.h"
@@ -132,43 +133,62 @@ struct Sum {
   int samples = 0;
   Rgb mean() const { return samples > 0 ? light / float(samples) : Rgb{0}; }
 };
-// Before bodies and within them, by set.
-struct SiteSums {
-  std::array<Sum, most_sets_of_site> open, within;
+
+struct Sample {
+  LitPlace place;
+  Rgb light{0};
+  int set = 0;
+  bool is_within = false;
+};
+struct SiteSamples {
+  std::vector<Sample> all;
   bool has_area = false;
 };
 
-SiteLight light_of(const SiteSums& s) {
-  if (!s.has_area) return {};
+// Backs alone do not make a body: a room may have all its walls turned outward. So samples within
+// one count unless they are dark beside the others.
+void leave_out_within(std::vector<Sample>& samples) {
   Sum open, within;
-  for (int k = 0; k < most_sets_of_site; ++k) {
-    open.light += s.open[size_t(k)].light;
-    open.samples += s.open[size_t(k)].samples;
-    within.light += s.within[size_t(k)].light;
-    within.samples += s.within[size_t(k)].samples;
+  for (const Sample& s : samples) {
+    Sum& sum = s.is_within ? within : open;
+    sum.light += s.light;
+    ++sum.samples;
   }
-  SiteLight out;
-  // Backs alone do not make a body: a room may have all its walls turned outward.
   const float before = luminance(open.mean()), behind = luminance(within.mean());
-  const bool is_left_out = within.samples > 0 && behind <= most_within * before;
-  const bool is_all_within = open.samples == 0 && !(behind > 0);
-  out.is_known = !is_all_within;
-  SampleSets sets;
-  Rgb sum{0};
-  int samples = 0, used = 0;
-  for (size_t k = 0; k < size_t(most_sets_of_site); ++k) {
-    Sum of_set = s.open[k];
-    if (!is_left_out) {
-      of_set.light += s.within[k].light;
-      of_set.samples += s.within[k].samples;
-    }
-    if (of_set.samples == 0) continue;
-    ++used;
-    sets.add({}, double(luminance(of_set.mean())));
-    sum += of_set.light;
-    samples += of_set.samples;
+  if (within.samples > 0 && behind <= most_within * before)
+    std::erase_if(samples, [](const Sample& s) { return s.is_within; });
+}
+
+SiteLight light_of(SiteSamples& site) {
+  std::vector<Sample>& samples = site.all;
+  if (!site.has_area) return {};
+  leave_out_within(samples);
+  SiteLight out;
+  std::array<Sum, most_sets_of_site> of_set;
+  Sum all;
+  bool is_open = false;
+  const Sample* brightest = samples.empty() ? nullptr : samples.data();
+  for (const Sample& s : samples) {
+    of_set[size_t(s.set)].light += s.light;
+    ++of_set[size_t(s.set)].samples;
+    all.light += s.light;
+    ++all.samples;
+    is_open = is_open || !s.is_within;
+    if (s.place.light > brightest->place.light) brightest = &s;
   }
-  if (samples > 0) out.irradiance = sum / float(samples);
+  out.is_known = is_open || luminance(all.light) > 0;
+  if (brightest) {
+    out.place = brightest->place.position;
+    out.normal = brightest->place.normal;
+  }
+  out.irradiance = all.mean();
+  SampleSets sets;
+  int used = 0;
+  for (const Sum& sum : of_set) {
+    if (sum.samples == 0) continue;
+    ++used;
+    sets.add({}, double(luminance(sum.mean())));
+  }
   // Errors of many sites are taken together, so without what Student's t makes of a single one's.
   if (used > 1) out.error = float(sets.standard_error() * 1.959964 / t_quantile_95(used - 1));
   return out;
@@ -203,11 +223,14 @@ class Lighting {
   void light(size_t block, Worker& w, std::vector<SiteLight>& out, Counters& counters) const {
     w.first = block * sites_of_block(settings_.samples);
     const size_t end = std::min(w.first + sites_of_block(settings_.samples), sites_.size());
-    std::vector<SiteSums> sums(end - w.first);
+    std::vector<SiteSamples> samples(end - w.first);
     const int sets = std::min(most_sets_of_site, std::max(1, settings_.samples));
     for (int k = 0; k < sets; ++k)
-      add_set(k, (settings_.samples + sets - 1) / sets, end, w, sums, counters);
-    for (size_t i = 0; i < sums.size(); ++i) out[w.first + i] = light_of(sums[i]);
+      add_set(k, (settings_.samples + sets - 1) / sets, end, w, samples, counters);
+    for (size_t i = 0; i < samples.size(); ++i) {
+      if (settings_.are_texels) leave_out_cut_off(samples[i].all);
+      out[w.first + i] = light_of(samples[i]);
+    }
   }
 
  private:
@@ -217,15 +240,30 @@ class Lighting {
   const SiteSettings& settings_;
   const Box bounds_;
 
+  void leave_out_cut_off(std::vector<Sample>& samples) const {
+    if (samples.empty()) return;
+    std::vector<LitPlace> places;
+    for (const Sample& s : samples) places.push_back(s.place);
+    const float offset = offset_of_point(places[0].position, bounds_);
+    const std::vector<uint8_t> is_cut_off = cut_off_samples(scene_, places, offset);
+    size_t kept = 0;
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const bool counts =
+          !is_cut_off[i] || !(settings_.is_all_light || is_enclosed(scene_, places[i], offset));
+      if (counts) samples[kept++] = samples[i];
+    }
+    samples.resize(kept);
+  }
+
   void place_sensors(int set, int samples, size_t end, Worker& w,
-                     std::vector<SiteSums>& sums) const {
+                     std::vector<SiteSamples>& out) const {
     w.places.clear();
     w.sites.clear();
     w.sensors = {};
     for (size_t site = w.first; site < end; ++site) {
       w.pieces.take(sites_, site);
       if (w.pieces.is_empty()) continue;
-      sums[site - w.first].has_area = true;
+      out[site - w.first].has_area = true;
       const uint64_t stream = hash_of(settings_.seed, of_sites, site, uint64_t(set));
       for (uint32_t i = 0; i < uint32_t(samples); ++i) {
         const SobolGroup random(stream, purpose_camera, i);
@@ -241,9 +279,9 @@ class Lighting {
     }
   }
 
-  void add_set(int set, int samples, size_t end, Worker& w, std::vector<SiteSums>& sums,
+  void add_set(int set, int samples, size_t end, Worker& w, std::vector<SiteSamples>& out,
                Counters& counters) const {
-    place_sensors(set, samples, end, w, sums);
+    place_sensors(set, samples, end, w, out);
     if (w.places.empty()) return;
     const std::vector<uint8_t> is_within =
         within_bodies(scene_, w.places, w.sensors.offset,
@@ -252,14 +290,13 @@ class Lighting {
     const CheckContext context(&w, w.places.size(), name_of_sensor);
     integrator_.irradiance(w.sensors, *w.scratch, w.out, counters);
     for (size_t i = 0; i < w.places.size(); ++i) {
-      const Rgb e = w.out.direct[i] + w.out.indirect[i];
-      SiteSums& s = sums[w.sites[i]];
-      Sum& sum = (is_within[i] ? s.within : s.open)[size_t(set)];
-      ++sum.samples;
-      if (is_finite(e))
-        sum.light += e;
-      else
+      Rgb e = w.out.direct[i] + w.out.indirect[i];
+      if (!is_finite(e)) {
+        e = Rgb{0};
         ++counters.nan_samples;
+      }
+      out[w.sites[i]].all.push_back(
+          {{w.places[i].position, w.places[i].normal, luminance(e)}, e, set, is_within[i] != 0});
     }
   }
 };

@@ -39,12 +39,18 @@ struct SiteLight {
   Rgb irradiance;         // W/m², or lx per channel where the scene is photometric
   float error = 0;        // standard error of its luminance
   bool is_known = false;  // false: without area, or all within another body
+  Vec3 place, normal;     // of the brightest sample that counts
 };
 
 struct SiteSettings {
   int samples = 64;  // of a site
   int threads = 0;
   uint64_t seed = 0;
+  // Sites are small: dark samples that something keeps apart from lit ones (cut_off.h) do not
+  // count.
+  bool are_texels = false;
+  // All light is asked for, so that what is dark lies where no light comes to by any way.
+  bool is_all_light = true;
 };
 
 // One for each site; empty once `stop` is set. The values do not depend on threads.

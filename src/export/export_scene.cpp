@@ -1,12 +1,16 @@
 #include "export/export_scene.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "base/error.h"
 #include "base/units.h"
 #include "export/gltf_writer.h"
 #include "export/pbrt_writer.h"
+#include "export/vertex_colors.h"
 #include "light/web.h"
+#include "scene/orientation.h"
+#include "scene/projected_image.h"
 
 namespace troffer {
 
@@ -35,6 +39,57 @@ size_t make_even(Scene& scene) {
   return count;
 }
 
+// Mean over all directions of what a light's image multiplies its intensity by.
+Rgb mean_of_image(const Scene& scene, const Light& e) {
+  if (e.texture >= 0) return projected_flux(scene, e) / float(4 * pi);
+  const EnvironmentMap& map = scene.environments[size_t(e.environment)];
+  Rgb sum;
+  double weights = 0;
+  for (int y = 0; y < map.height; ++y) {
+    const double weight = map.projection == SphereMap::equal_area
+                              ? 1
+                              : std::sin(pi * (double(y) + 0.5) / double(map.height));
+    for (int x = 0; x < map.width; ++x)
+      sum += map.texels[size_t(y) * size_t(map.width) + size_t(x)] * float(weight);
+    weights += weight * double(map.width);
+  }
+  return sum / float(weights);
+}
+
+// glTF's lights throw no pictures; returns how many there were.
+size_t drop_images_of_lights(Scene& scene) {
+  size_t count = 0;
+  for (Light& e : scene.lights) {
+    if (e.kind != LightKind::point || (e.environment < 0 && e.texture < 0)) continue;
+    e.radiance *= mean_of_image(scene, e);
+    e.environment = no_environment;
+    e.texture = no_texture;
+    ++count;
+  }
+  return count;
+}
+
+std::vector<Warning> write_scene(Scene scene, const std::string& path, const BakedLight* baked,
+                                 const std::optional<Vec3>& up, OutputFolder& files) {
+  check_scene_format(path);
+  const size_t measured = make_even(scene);
+  const bool is_pbrt = ending_of(path) == ".pbrt";
+  const size_t pictures = is_pbrt ? 0 : drop_images_of_lights(scene);
+  WarningLog changed;
+  flatten_second_sets(scene, !is_pbrt, changed);
+  flatten_round_shapes(scene);
+  std::vector<Warning> lost =
+      is_pbrt ? write_pbrt(scene, files)
+              : write_gltf(scene, up ? *up : decide_up(scene).up, path, files, baked);
+  for (const Warning& w : changed.entries()) lost.push_back(w);
+  if (pictures > 0)
+    lost.push_back(
+        {"lights that throw an image are written as even ones of the same flux", pictures});
+  if (measured > 0)
+    lost.push_back({"measured luminaires are written as even sources of the same flux", measured});
+  return lost;
+}
+
 }  // namespace
 
 void check_scene_format(const std::string& path) {
@@ -43,14 +98,11 @@ void check_scene_format(const std::string& path) {
     throw UsageError("cannot write " + path + ": its name should end in .pbrt, .gltf or .glb");
 }
 
-std::vector<Warning> export_scene(Scene scene, const std::string& path, const BakedLight* baked) {
-  check_scene_format(path);
-  const size_t measured = make_even(scene);
-  std::vector<Warning> lost =
-      ending_of(path) == ".pbrt" ? write_pbrt(scene, path) : write_gltf(scene, path, baked);
-  if (measured > 0)
-    lost.push_back({"measured luminaires are written as even sources of the same flux", measured});
-  return lost;
+std::vector<Warning> export_scene(Scene scene, const std::string& path, const BakedLight* baked,
+                                  const std::optional<Vec3>& up, OutputFolder* files) {
+  if (files) return write_scene(std::move(scene), path, baked, up, *files);
+  OutputFolder own(path);
+  return write_scene(std::move(scene), path, baked, up, own);
 }
 
 }  // namespace troffer

@@ -43,6 +43,14 @@ size_t GltfBuffer::add(const std::vector<Vec3>& values, bool has_bounds) {
   return index;
 }
 
+size_t GltfBuffer::add(const std::vector<Vec3>& colors, const std::vector<float>& alphas) {
+  std::vector<float> values;
+  values.reserve(4 * colors.size());
+  for (size_t i = 0; i < colors.size(); ++i)
+    values.insert(values.end(), {colors[i].x, colors[i].y, colors[i].z, alphas[i]});
+  return add_accessor(bytes_of(values), float_component, "VEC4", colors.size());
+}
+
 size_t GltfBuffer::add(const std::vector<Vec2>& values) {
   return add_accessor(bytes_of(values), float_component, "VEC2", values.size());
 }

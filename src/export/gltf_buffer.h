@@ -18,6 +18,7 @@ class GltfBuffer {
   size_t add_view(std::span<const uint8_t> bytes);
   // Index of an accessor of vectors or of indices.
   size_t add(const std::vector<Vec3>& values, bool has_bounds);
+  size_t add(const std::vector<Vec3>& colors, const std::vector<float>& alphas);
   size_t add(const std::vector<Vec2>& values);
   size_t add(const std::vector<Triangle>& triangles);
 

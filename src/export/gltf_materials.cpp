@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/coat.h"
+#include "export/vertex_colors.h"
 
 namespace troffer {
 
@@ -36,8 +37,28 @@ Rgb normal_reflectance(const Material& m) {
 
 }  // namespace
 
-Json GltfMaterialWriter::reference(size_t texture, const Texture& look) const {
-  Json out{{"index", texture}};
+std::optional<Texture> GltfMaterialWriter::look_of_all(std::span<const int32_t> textures) {
+  const auto common = common_look(scene_, textures, mesh_uvs_, material_);
+  if (!common) return std::nullopt;
+  if (common->is_resampled)
+    warnings_.add("images that lie differently and that glTF wants in one are resampled");
+  Texture look = common->look;
+  if (look.wrap_u != WrapMode::black && look.wrap_v != WrapMode::black) return look;
+  warnings_.add("images that are black beyond their edges are written with their edges drawn out");
+  return look;
+}
+
+Json GltfMaterialWriter::texture(const std::string& key, const Texture& look,
+                                 const std::function<BakedImage(const Texture&)>& bake) {
+  const std::string whole = fmt::format(
+      "{} at {} {} {} {} {} {} {} {} {} {} {}", key, look.width, look.height, look.uv_scale.x,
+      look.uv_scale.y, look.uv_offset.x, look.uv_offset.y, look.uv_rotation_rad, int(look.mapping),
+      int(look.wrap_u), int(look.wrap_v), look.is_filtered);
+  const auto found = texture_by_key_.find(whole);
+  const size_t index =
+      found != texture_by_key_.end() ? found->second : add_texture(png_of(bake(look)), look, "");
+  texture_by_key_[whole] = index;
+  Json out{{"index", index}};
   if (look.mapping == TextureMapping::second_uv) out["texCoord"] = 1;
   Json t = Json::object();
   if (look.uv_scale.x != 1 || look.uv_scale.y != 1) t["scale"] = {look.uv_scale.x, look.uv_scale.y};
@@ -48,69 +69,68 @@ Json GltfMaterialWriter::reference(size_t texture, const Texture& look) const {
   return out;
 }
 
-size_t GltfMaterialWriter::texture(const std::string& key, const BakedImage& image,
-                                   const Texture& look) {
-  const auto found = texture_by_key_.find(key);
-  if (found != texture_by_key_.end()) return found->second;
-  images_.push_back({{"bufferView", buffer_.add_view(png_of(image))}, {"mimeType", "image/png"}});
+size_t GltfMaterialWriter::add_texture(std::vector<uint8_t> png, const Texture& look,
+                                       const std::string& name) {
+  images_.push_back({{"bufferView", buffer_.add_view(png)}, {"mimeType", "image/png"}});
+  if (!name.empty()) images_.back()["name"] = name;
   const int filter = look.is_filtered ? 9729 : 9728;
   samplers_.push_back({{"magFilter", filter},
                        {"minFilter", filter},
                        {"wrapS", wrap_code(look.wrap_u)},
                        {"wrapT", wrap_code(look.wrap_v)}});
   textures_.push_back({{"source", images_.size() - 1}, {"sampler", samplers_.size() - 1}});
-  return texture_by_key_[key] = textures_.size() - 1;
+  return textures_.size() - 1;
+}
+
+// How alpha counts, and its factor; what of it lies in an image is add_base()'s.
+void GltfMaterialWriter::add_alpha(const Material& m, Json& out) {
+  if (!m.is_alpha_masked) return;
+  out["alphaMode"] = m.is_alpha_blended ? "BLEND" : "MASK";
+  if (!m.is_alpha_blended) out["alphaCutoff"] = m.alpha_cutoff;
 }
 
 // Base colour, and with it alpha.
 void GltfMaterialWriter::add_base(const Material& m, Json& out) {
   // All that `out` gets itself before a reference into it is held: it moves what it has.
   out["pbrMetallicRoughness"] = Json();
-  if (m.is_alpha_masked) {
-    out["alphaMode"] = "MASK";
-    out["alphaCutoff"] = m.alpha_cutoff;
-  }
+  add_alpha(m, out);
   Json& pbr = out["pbrMetallicRoughness"];
   ColorInput base = m.base_color;
   if (m.kind == MaterialKind::conductor && !m.is_reflectance)
     base = {normal_reflectance(m) * m.specular_color.value, m.specular_color.texture};
-  const Texture* look = image_of(scene_, base.texture);
-  const Texture* alpha = m.is_alpha_masked ? image_of(scene_, m.alpha.texture) : nullptr;
   ColorChange change;
   if (m.kind == MaterialKind::coated_diffuse)
     change = [f = mean_reflectance_inside(double(m.ior))](float v) {
       return as_of_white_base(v, f);
     };
-  float factor = 1;
-  if (m.is_alpha_masked) {
-    const bool is_same = alpha && alpha == look && m.alpha.channel == 3;
-    factor = alpha ? m.alpha.value : evaluate(scene_.textures, m.alpha, Vec2{0, 0});
-    if (alpha && !is_same) {
-      // Numbers that cut holes become the alpha of the colour's image, by the holes' own (u,v).
-      BakedImage colors = baked_color(scene_, {base.value, no_texture}, true, change);
-      const BakedImage holes = baked_number(scene_, {1, m.alpha.texture, m.alpha.channel}, 1);
-      if (look) warnings_.add("colours under alpha masks of another image are written even");
-      const std::vector<float> one = colors.texels_float;
-      colors.width = holes.width;
-      colors.height = holes.height;
-      colors.texels_float.clear();
-      for (const float a : holes.texels_float)
-        colors.texels_float.insert(colors.texels_float.end(), {one[0], one[1], one[2], a});
-      const std::string key =
-          fmt::format("holes {} {} {}", m.alpha.texture, m.alpha.channel, m.name);
-      pbr["baseColorTexture"] = reference(texture(key, colors, *alpha), *alpha);
-      pbr["baseColorFactor"] = {1, 1, 1, std::min(factor, 1.0f)};
-      return;
-    }
+  const bool has_alpha_image = m.is_alpha_masked && has_image(scene_, m.alpha.texture);
+  const float alpha = !m.is_alpha_masked ? 1
+                      : has_alpha_image  ? m.alpha.value
+                                         : evaluate(scene_.textures, m.alpha, Vec2{0, 0});
+  const bool has_color_image = has_image(scene_, base.texture);
+  if (!has_color_image) {
+    base.value = clamp01(color_at(scene_, base, {0, 0}, change));
+    base.texture = no_texture;
+    change = {};
   }
-  const Rgb even = look ? Rgb{1} : clamp01(color_at(scene_, base, {0, 0}, change));
-  pbr["baseColorFactor"] = {even.r, even.g, even.b, std::clamp(factor, 0.0f, 1.0f)};
+  // The value stays a factor where it can be one.
+  const bool is_factor = !change && max_component(base.value) <= 1;
+  const Rgb factor = is_factor ? base.value : Rgb{1};
+  if (is_factor) base.value = Rgb{1};
+  pbr["baseColorFactor"] = {factor.r, factor.g, factor.b, std::clamp(alpha, 0.0f, 1.0f)};
+  const auto look =
+      look_of_all(std::array{base.texture, has_alpha_image ? m.alpha.texture : no_texture});
   if (!look) return;
-  const Rgb v = base.value;
-  const std::string key = fmt::format("color {} {} {} {} {} {}", base.texture, v.r, v.g, v.b,
-                                      alpha != nullptr, change ? change(0.5f) : 0.0f);
-  pbr["baseColorTexture"] =
-      reference(texture(key, baked_color(scene_, base, alpha != nullptr, change), *look), *look);
+  const std::string key = fmt::format(
+      "color {} {} {} {} {}{}", base.texture, base.value.r, base.value.g, base.value.b,
+      change ? fmt::format("{} ", change(0.5f)) : "",
+      has_alpha_image ? fmt::format("alpha {} {}", m.alpha.texture, m.alpha.channel) : "");
+  pbr["baseColorTexture"] = texture(key, *look, [&](const Texture& t) {
+    BakedImage image = baked_color(scene_, base, t, has_alpha_image ? &m.alpha : nullptr, change);
+    if (image.scale > 1) warnings_.add("colours of surfaces above 1 are written as 1");
+    image.scale = 1;
+    return image;
+  });
 }
 
 void GltfMaterialWriter::add_roughness(const Material& m, Json& pbr) {
@@ -122,148 +142,33 @@ void GltfMaterialWriter::add_roughness(const Material& m, Json& pbr) {
     rough.value *= std::pow(m.coat_ior, power > 0 ? 0.5f / power : 1.0f);
   FloatInput metal = is_mixed ? m.metallic : FloatInput{0, no_texture, 0};
   if (m.kind == MaterialKind::conductor) metal.value = 1;
-  const Texture* rough_image = image_of(scene_, m.roughness.texture);
-  const Texture* metal_image = image_of(scene_, metal.texture);
-  const Texture* look = rough_image ? rough_image : metal_image;
-  if (look) {
-    const std::string key =
-        fmt::format("rough {} {} {} {} metal {} {} {}", m.roughness.texture, m.roughness.channel,
-                    m.roughness.value, power, metal.texture, metal.channel, metal.value);
-    pbr["metallicRoughnessTexture"] =
-        reference(texture(key, baked_pair(scene_, m.roughness, power, metal), *look), *look);
-    return;
-  }
-  pbr["roughnessFactor"] =
-      std::pow(std::clamp(evaluate(scene_.textures, m.roughness, Vec2{0, 0}), 0.0f, 1.0f), power);
-  pbr["metallicFactor"] = std::clamp(evaluate(scene_.textures, metal, Vec2{0, 0}), 0.0f, 1.0f);
-}
-
-void GltfMaterialWriter::add_glass(const Material& m, Json& out) {
-  const bool is_glass = m.kind == MaterialKind::dielectric;
-  const float share = is_glass ? 1 : m.transmission.value;
-  if (share <= 0) return;
-  if (!is_glass && m.transmission.texture >= 0)
-    warnings_.add("textures of transmission are written as one value");
-  out["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", share}};
-  if (m.is_thin) {
-    if (!m.absorption.is_black()) warnings_.add("what sheets of glass absorb is not written");
-    return;
-  }
-  Json& volume = out["extensions"]["KHR_materials_volume"];
-  volume["thicknessFactor"] = 1;
-  if (m.absorption.is_black()) return;
-  // What is left after the way on which the strongest colour falls to 1/e.
-  const float most = max_component(m.absorption);
-  volume["attenuationDistance"] = 1 / most;
-  volume["attenuationColor"] = {std::exp(-m.absorption.r / most), std::exp(-m.absorption.g / most),
-                                std::exp(-m.absorption.b / most)};
-}
-
-// Sheen and grain, where they are even.
-void GltfMaterialWriter::add_cloth_and_grain(const Material& m, Json& out) {
-  if (m.sheen_color.texture >= 0 || m.sheen_roughness.texture >= 0 || m.anisotropy.texture >= 0)
-    warnings_.add("textures of sheen and of gloss with a grain are written as one value");
-  if (!m.sheen_color.value.is_black())
-    out["extensions"]["KHR_materials_sheen"] = {{"sheenColorFactor", list(m.sheen_color.value)},
-                                                {"sheenRoughnessFactor", m.sheen_roughness.value}};
-  if (m.anisotropy.value > 0)
-    out["extensions"]["KHR_materials_anisotropy"] = {
-        {"anisotropyStrength", m.anisotropy.value},
-        {"anisotropyRotation", m.anisotropy_rotation_rad}};
-}
-
-// Factor and texture; an image of one number holds it in every channel.
-void GltfMaterialWriter::add_number(const FloatInput& input, float power, const std::string& name,
-                                    Json& extension) {
-  const Texture* look = image_of(scene_, input.texture);
+  const auto look = look_of_all(std::array{rough.texture, metal.texture});
   if (!look) {
-    const float value = std::clamp(evaluate(scene_.textures, input, Vec2{0, 0}), 0.0f, 1.0f);
-    extension[name + "Factor"] = std::pow(value, power);
+    pbr["roughnessFactor"] =
+        std::pow(std::clamp(evaluate(scene_.textures, rough, Vec2{0, 0}), 0.0f, 1.0f), power);
+    pbr["metallicFactor"] = std::clamp(evaluate(scene_.textures, metal, Vec2{0, 0}), 0.0f, 1.0f);
     return;
   }
   const std::string key =
-      fmt::format("number {} {} {} {}", input.texture, input.channel, input.value, power);
-  extension[name + "Factor"] = 1;
-  extension[name + "Texture"] =
-      reference(texture(key, baked_number(scene_, input, power), *look), *look);
+      fmt::format("rough {} {} {} {} metal {} {} {}", rough.texture, rough.channel, rough.value,
+                  power, metal.texture, metal.channel, metal.value);
+  pbr["metallicRoughnessTexture"] = texture(
+      key, *look, [&](const Texture& t) { return baked_pair(scene_, rough, power, metal, t); });
 }
 
-void GltfMaterialWriter::add_clear_coat(const Material& m, Json& out) {
-  if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse) return;
-  if (m.kind == MaterialKind::coated_diffuse || std::abs(m.coat_ior - 1.5f) > 0.01f)
-    warnings_.add("clear coats are written as glTF's, of index 1.5");
-  Json coat = Json::object();
-  add_number(m.coat, 1, "clearcoat", coat);
-  add_number(m.coat_roughness, power_for_gltf(m.roughness_meaning), "clearcoatRoughness", coat);
-  const bool leans = !m.has_coat_normal && m.normal_texture >= 0;
-  const int32_t normal = leans ? m.normal_texture : m.coat_normal_texture;
-  if (const Texture* look = image_of(scene_, normal)) {
-    const std::string key = fmt::format("raw {}", normal);
-    coat["clearcoatNormalTexture"] =
-        reference(texture(key, baked_raw(scene_, uint32_t(normal)), *look), *look);
-    const float scale = leans ? m.normal_scale : m.coat_normal_scale;
-    if (scale != 1) coat["clearcoatNormalTexture"]["scale"] = scale;
-  }
-  out["extensions"]["KHR_materials_clearcoat"] = coat;
-}
-
-void GltfMaterialWriter::add_film(const Material& m, Json& out) {
-  if (m.iridescence.value <= 0 || m.kind != MaterialKind::metallic_roughness) return;
-  Json film = Json::object();
-  add_number(m.iridescence, 1, "iridescence", film);
-  film["iridescenceIor"] = m.film_ior;
-  film["iridescenceThicknessMinimum"] = m.film_thinnest_nm;
-  film["iridescenceThicknessMaximum"] = m.film_thickest_nm;
-  Json thickness = Json::object();
-  add_number(m.film_thickness, 1, "iridescenceThickness", thickness);
-  if (thickness.contains("iridescenceThicknessTexture"))
-    film["iridescenceThicknessTexture"] = thickness["iridescenceThicknessTexture"];
-  else
-    film["iridescenceThicknessMaximum"] =
-        lerp(m.film_thinnest_nm, m.film_thickest_nm,
-             thickness["iridescenceThicknessFactor"].get<float>());
-  out["extensions"]["KHR_materials_iridescence"] = film;
-}
-
-// KHR_materials_diffuse_transmission: the base is what does not come through.
-void GltfMaterialWriter::add_diffuse_transmission(const Material& m, Json& out) {
-  if (m.diffuse_transmission.value <= 0) return;
-  if (m.diffuse_transmission.texture >= 0 || m.diffuse_transmission_color.texture >= 0)
-    warnings_.add("textures of diffuse transmission are written as one value");
-  const float share =
-      std::clamp(evaluate(scene_.textures, m.diffuse_transmission, Vec2{0, 0}), 0.0f, 1.0f);
-  Rgb color = clamp01(evaluate(scene_.textures, m.diffuse_transmission_color, Vec2{0, 0}));
-  float factor = share;
-  if (m.kind == MaterialKind::diffuse) {
-    const float back = max_component(clamp01(evaluate(scene_.textures, m.base_color, Vec2{0, 0})));
-    const float most = share * max_component(color);
-    if (!(most > 0)) return;
-    factor = most / std::max(most + back, 1.0f);
-    color = clamp01(color * (share / factor));
-    Json& pbr = out["pbrMetallicRoughness"];
-    if (pbr.contains("baseColorTexture"))
-      warnings_.add("textures of what lets light through are written darker than they are");
-    for (size_t k = 0; k < 3 && factor < 1; ++k)
-      pbr["baseColorFactor"][k] =
-          std::min(pbr["baseColorFactor"][k].get<float>() / (1 - factor), 1.0f);
-  }
-  out["extensions"]["KHR_materials_diffuse_transmission"] = {
-      {"diffuseTransmissionFactor", factor}, {"diffuseTransmissionColorFactor", list(color)}};
+void GltfMaterialWriter::add_normal(int32_t normal, float scale, const char* name, Json& out) {
+  const auto look = look_of_all(std::array{normal});
+  if (!look) return;
+  out[name] = texture(fmt::format("raw {}", normal), *look,
+                      [&](const Texture& t) { return baked_raw(scene_, uint32_t(normal), t); });
+  if (scale != 1) out[name]["scale"] = scale;
 }
 
 Json GltfMaterialWriter::surface(const Material& m) {
   Json out;
   if (!m.name.empty()) out["name"] = m.name;
   add_base(m, out);
-  if (m.normal_texture >= 0) {
-    const Texture* look = image_of(scene_, m.normal_texture);
-    if (look) {
-      const std::string key = fmt::format("raw {}", m.normal_texture);
-      out["normalTexture"] =
-          reference(texture(key, baked_raw(scene_, uint32_t(m.normal_texture)), *look), *look);
-      if (m.normal_scale != 1) out["normalTexture"]["scale"] = m.normal_scale;
-    }
-  }
+  add_normal(m.normal_texture, m.normal_scale, "normalTexture", out);
   Json& pbr = out["pbrMetallicRoughness"];
   if (m.kind == MaterialKind::diffuse) {  // without specular reflection: Lambert's model
     pbr["metallicFactor"] = 0;
@@ -285,31 +190,20 @@ Json GltfMaterialWriter::surface(const Material& m) {
   if (m.kind == MaterialKind::coated_diffuse)
     warnings_.add("coats over diffuse bases are written as glTF's, which differ a little");
   out["extensions"]["KHR_materials_ior"] = {{"ior", m.ior >= 1 || m.ior == 0 ? m.ior : 1.5f}};
-  const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
-  if (is_mixed) add_diffuse_transmission(m, out);
-  if (!is_mixed && (m.specular_color.texture >= 0 || m.specular_color.value != Rgb{1}))
-    warnings_.add("factors on what coats and glass reflect are written as glTF's, which differ");
-  if (m.specular.texture >= 0 || m.specular_color.texture >= 0)
-    warnings_.add("textures of specular reflection are written as one value");
-  if (m.specular.value != 1 || m.specular_color.value != Rgb{1} || m.specular.texture >= 0)
-    out["extensions"]["KHR_materials_specular"] = {
-        {"specularFactor", m.specular.value},
-        {"specularColorFactor", list(m.specular_color.value)}};
+  if (m.kind == MaterialKind::metallic_roughness) add_diffuse_transmission(m, out);
+  add_specular(m, out);
   add_glass(m, out);
   return out;
 }
 
 void GltfMaterialWriter::add_emission(const Light& light, Rgb radiance, Json& out) {
-  const Texture* look = image_of(scene_, light.texture);
   double strength = double(max_component(radiance)) * unit_;
   Rgb color = radiance / std::max(max_component(radiance), 1e-30f);
-  if (look) {
-    const BakedImage image = baked_color(scene_, {color, light.texture}, false);
+  if (const auto look = look_of_all(std::array{light.texture})) {
+    const BakedImage image = baked_color(scene_, {Rgb{1}, light.texture}, *look, nullptr);
     strength *= double(image.scale);
-    const std::string key =
-        fmt::format("emission {} {} {} {}", light.texture, color.r, color.g, color.b);
-    out["emissiveTexture"] = reference(texture(key, image, *look), *look);
-    color = Rgb{1};
+    out["emissiveTexture"] = texture(fmt::format("emission {}", light.texture), *look,
+                                     [&](const Texture&) { return image; });
   }
   out["emissiveFactor"] = list(color);
   out["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
@@ -321,16 +215,13 @@ size_t GltfMaterialWriter::page_texture(int32_t page) {
   const std::string key = fmt::format("baked {}", page);
   const auto found = texture_by_key_.find(key);
   if (found != texture_by_key_.end()) return found->second;
-  images_.push_back({{"bufferView", buffer_.add_view(baked_->pages[size_t(page)])},
-                     {"mimeType", "image/png"},
-                     {"name", fmt::format("light{}", page)}});
-  samplers_.push_back(
-      {{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33071}});
-  textures_.push_back({{"source", images_.size() - 1}, {"sampler", samplers_.size() - 1}});
-  return texture_by_key_[key] = textures_.size() - 1;
+  Texture look;
+  look.wrap_u = look.wrap_v = WrapMode::clamp;
+  return texture_by_key_[key] =
+             add_texture(baked_->pages[size_t(page)], look, fmt::format("light{}", page));
 }
 
-void GltfMaterialWriter::add_baked(const Material& m, const BakedPlace& place, Json& out) {
+void GltfMaterialWriter::add_baked(const Material& m, const GltfPlace& place, Json& out) {
   Json texture;
   if (place.page >= 0) texture = {{"index", page_texture(place.page)}, {"texCoord", place.set}};
   if (baked_->shading == BakedShading::lightmap) {
@@ -362,17 +253,20 @@ void GltfMaterialWriter::add_baked(const Material& m, const BakedPlace& place, J
 }
 
 size_t GltfMaterialWriter::index_of(uint32_t material, const Light* light, Rgb radiance,
-                                    const BakedPlace& place) {
+                                    const GltfPlace& place) {
   std::string emission;
   if (light)
     emission = fmt::format("{} {} {} {} {}", radiance.r, radiance.g, radiance.b, light->texture,
                            light->is_two_sided);
   if (place.is_baked())
-    emission += fmt::format("baked {} {} {}", place.page, place.set, place.has_colors);
+    emission += fmt::format("baked {} {} {}", place.page, place.set, place.has_light_colors);
+  emission += fmt::format(" colours {}", place.vertex_colors);
   const auto key = std::pair{material, emission};
   const auto found = made_.find(key);
   if (found != made_.end()) return found->second;
-  const Material& m = scene_.materials[material];
+  material_ = material;
+  Material m = scene_.materials[material];
+  if (place.vertex_colors != no_texture) m = without_vertex_colors(scene_, m, place.vertex_colors);
   Json out = surface(m);
   if (light)
     add_emission(*light, radiance, out);

@@ -11,12 +11,13 @@
 
 namespace troffer {
 
-// Where a surface finds its baked light.
-struct BakedPlace {
-  int32_t page = -1;        // of BakedLight::pages
-  int set = 1;              // of texture coordinates
-  bool has_colors = false;  // of vertices
-  bool is_baked() const { return page >= 0 || has_colors; }
+// What a mesh itself adds to its material.
+struct GltfPlace {
+  int32_t page = -1;                   // of BakedLight::pages
+  int set = 1;                         // of the page's texture coordinates
+  bool has_light_colors = false;       // baked into colours of vertices
+  int32_t vertex_colors = no_texture;  // factor that the mesh's COLOR_0 stands for
+  bool is_baked() const { return page >= 0 || has_light_colors; }
 };
 
 class GltfMaterialWriter {
@@ -26,11 +27,16 @@ class GltfMaterialWriter {
   // All must outlive this. `unit`: cd/m² per the scene's radiance. baked: may be null.
   GltfMaterialWriter(const Scene& scene, GltfBuffer& buffer, double unit, const BakedLight* baked,
                      WarningLog& warnings)
-      : scene_(scene), buffer_(buffer), unit_(unit), baked_(baked), warnings_(warnings) {}
+      : scene_(scene),
+        buffer_(buffer),
+        unit_(unit),
+        baked_(baked),
+        warnings_(warnings),
+        mesh_uvs_(scene) {}
 
-  // Index of the material with the emission of a light (null: none), of that radiance, and the
-  // light that is baked there.
-  size_t index_of(uint32_t material, const Light* light, Rgb radiance, const BakedPlace& place);
+  // Index of the material with the emission of a light (null: none), of that radiance, as it is on
+  // a mesh of that place.
+  size_t index_of(uint32_t material, const Light* light, Rgb radiance, const GltfPlace& place);
 
   // Adds "materials", "textures", "images", "samplers" to a file.
   void finish(Json& file) const;
@@ -41,6 +47,8 @@ class GltfMaterialWriter {
   double unit_;
   const BakedLight* baked_;
   WarningLog& warnings_;
+  MaterialUvs mesh_uvs_;
+  uint32_t material_ = 0;  // that is being written
   std::map<std::pair<uint32_t, std::string>, size_t> made_;
   std::map<std::string, size_t> texture_by_key_;
   Json materials_ = Json::array(), textures_ = Json::array(), images_ = Json::array(),
@@ -48,18 +56,32 @@ class GltfMaterialWriter {
 
   Json surface(const Material& m);
   void add_base(const Material& m, Json& out);
+  void add_alpha(const Material& m, Json& out);
   void add_roughness(const Material& m, Json& pbr);
+  void add_emission(const Light& light, Rgb radiance, Json& out);
+  void add_normal(int32_t texture, float scale, const char* name, Json& out);
+  void add_baked(const Material& m, const GltfPlace& place, Json& out);
+
+  // Extensions: gltf_extensions.cpp.
   void add_glass(const Material& m, Json& out);
+  void add_specular(const Material& m, Json& out);
   void add_cloth_and_grain(const Material& m, Json& out);
-  void add_number(const FloatInput& input, float power, const std::string& name, Json& extension);
   void add_clear_coat(const Material& m, Json& out);
   void add_film(const Material& m, Json& out);
   void add_diffuse_transmission(const Material& m, Json& out);
-  void add_emission(const Light& light, Rgb radiance, Json& out);
-  size_t texture(const std::string& key, const BakedImage& image, const Texture& look);
+
+  // The name's factor and texture. is_alpha: the number is read from the fourth channel.
+  void add_number(const FloatInput& input, float power, const std::string& name, bool is_alpha,
+                  Json& extension);
+  void add_color(const ColorInput& input, const std::string& name, Json& extension);
+
+  // A look for all images in these textures; none where there are none.
+  std::optional<Texture> look_of_all(std::span<const int32_t> textures);
+  // A reference to the texture of that key and look, made by `bake` where it is new.
+  Json texture(const std::string& key, const Texture& look,
+               const std::function<BakedImage(const Texture&)>& bake);
+  size_t add_texture(std::vector<uint8_t> png, const Texture& look, const std::string& name);
   size_t page_texture(int32_t page);
-  void add_baked(const Material& m, const BakedPlace& place, Json& out);
-  Json reference(size_t texture, const Texture& look) const;
 };
 
 }  // namespace troffer

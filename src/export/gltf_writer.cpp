@@ -10,9 +10,9 @@
 #include "base/frame.h"
 #include "base/units.h"
 #include "export/gltf_materials.h"
-#include "export/output_folder.h"
 #include "export/scene_parts.h"
-#include "image/atomic_file.h"
+#include "export/vertex_colors.h"
+#include "scene/turn_to_y.h"
 
 namespace troffer {
 
@@ -24,15 +24,17 @@ constexpr uint64_t max_bytes = 0xfffffff0u;
 
 class GltfWriter {
  public:
-  GltfWriter(const Scene& scene, const BakedLight* baked)
+  GltfWriter(const Scene& scene, const Vec3& up, const BakedLight* baked)
       : scene_(scene),
+        up_(up),
         baked_(baked),
         unit_(scene.is_photometric ? 1 : luminous_efficacy),
         materials_(scene, buffer_, unit_, baked, warnings_) {}
-  std::vector<Warning> write(const std::string& path);
+  std::vector<Warning> write(const std::string& path, OutputFolder& files);
 
  private:
   const Scene& scene_;
+  const Vec3 up_;
   const BakedLight* baked_;  // may be null
   double unit_;              // cd/m² per the scene's radiance
   WarningLog warnings_;
@@ -42,16 +44,24 @@ class GltfWriter {
        lights_ = Json::array();
 
   void add_part(const ScenePart& part, Rgb radiance);
-  Json primitive_of(const Mesh& mesh);
-  void add_mesh(Json primitive, const Mesh& mesh, const Light* light, Rgb radiance,
-                const BakedSurface* baked);
+  // What all that wear a mesh share.
+  struct Primitive {
+    Json json;
+    uint32_t material = 0;
+    int sets = 0;  // of texture coordinates
+    int32_t vertex_colors = no_texture;
+    std::vector<TextureValue> colors;  // of vertices
+  };
+  Primitive primitive_of(Mesh mesh, const Light* light);
+  void add_colors(const Primitive& p, const BakedSurface* baked, Json& attributes);
+  void add_mesh(Primitive primitive, const Light* light, Rgb radiance, const BakedSurface* baked);
   void add_instances();
   void add_node(const std::string& name, Json node);
   void add_light(const Light& e);
   void add_camera(const Camera& c);
   Json file();
-  void write_glb(const std::string& path, Json json);
-  void write_text(const std::string& path, Json json);
+  void write_glb(const std::string& path, OutputFolder& files, Json json);
+  void write_text(OutputFolder& files, Json json);
 };
 
 // From scene's origin; columns are the images of the axes.
@@ -65,36 +75,67 @@ void GltfWriter::add_node(const std::string& name, Json node) {
   nodes_.push_back(std::move(node));
 }
 
-// What all that wear a mesh share.
-Json GltfWriter::primitive_of(const Mesh& m) {
+// The mesh with colours of its vertices in place of the image that holds them.
+GltfWriter::Primitive GltfWriter::primitive_of(Mesh m, const Light* light) {
+  Primitive out;
+  out.vertex_colors = vertex_color_texture(scene_, m);
+  if (out.vertex_colors != no_texture) {
+    out.colors = colors_of_vertices(scene_, m, out.vertex_colors);
+    const Material rest =
+        without_vertex_colors(scene_, scene_.materials[m.material], out.vertex_colors);
+    if (!uses_uv_set(scene_, rest, light, true)) m.uvs_2.clear();
+    if (!uses_uv_set(scene_, rest, light, false) && m.uvs_2.empty()) m.uvs.clear();
+  }
   Json attributes{{"POSITION", buffer_.add(m.positions, true)}};
   if (!m.normals.empty()) attributes["NORMAL"] = buffer_.add(m.normals, false);
   if (!m.uvs.empty()) attributes["TEXCOORD_0"] = buffer_.add(m.uvs);
   if (!m.uvs_2.empty()) attributes["TEXCOORD_1"] = buffer_.add(m.uvs_2);
   const size_t indices = buffer_.add(m.triangles);
-  return {{"attributes", attributes}, {"indices", indices}};
+  out.json = {{"attributes", attributes}, {"indices", indices}};
+  out.material = m.material;
+  out.sets = m.uvs_2.empty() ? (m.uvs.empty() ? 0 : 1) : 2;
+  return out;
 }
 
-void GltfWriter::add_mesh(Json primitive, const Mesh& m, const Light* light, Rgb radiance,
+// Colours of vertices times light that is baked into them; pages of pictures hold them already.
+void GltfWriter::add_colors(const Primitive& p, const BakedSurface* baked, Json& attributes) {
+  const bool has_light = baked && !baked->colors.empty();
+  const bool is_in_page = baked && baked->page >= 0 && baked_->shading == BakedShading::unlit;
+  if ((p.colors.empty() || is_in_page) && !has_light) return;
+  const size_t n = p.colors.empty() ? baked->colors.size() : p.colors.size();
+  std::vector<Vec3> colors;
+  std::vector<float> alphas;
+  bool has_alpha = false;
+  for (size_t i = 0; i < n; ++i) {
+    const TextureValue own = p.colors.empty() ? TextureValue() : p.colors[i];
+    const Rgb c = has_light ? own.rgb * baked->colors[i] : own.rgb;
+    colors.emplace_back(c.r, c.g, c.b);
+    alphas.push_back(own.alpha);
+    has_alpha = has_alpha || own.alpha < 1;
+  }
+  attributes["COLOR_0"] = has_alpha ? buffer_.add(colors, alphas) : buffer_.add(colors, false);
+}
+
+void GltfWriter::add_mesh(Primitive primitive, const Light* light, Rgb radiance,
                           const BakedSurface* baked) {
   if (baked && !baked->is_baked()) baked = nullptr;
-  BakedPlace place;
+  GltfPlace place;
+  place.vertex_colors = primitive.vertex_colors;
+  Json& attributes = primitive.json["attributes"];
   if (baked && baked->page >= 0) {
-    Json& attributes = primitive["attributes"];
     const size_t uvs = buffer_.add(baked->uvs);
     // Sets are numbered without gaps: a mesh that has none gets this one twice.
-    if (m.uvs.empty()) attributes["TEXCOORD_0"] = uvs;
-    place = {baked->page, m.uvs_2.empty() ? 1 : 2};
+    if (primitive.sets == 0) attributes["TEXCOORD_0"] = uvs;
+    place.page = baked->page;
+    place.set = primitive.sets == 2 ? 2 : 1;
     attributes[place.set == 1 ? "TEXCOORD_1" : "TEXCOORD_2"] = uvs;
   } else if (baked) {
-    std::vector<Vec3> colors;
-    for (const Rgb& c : baked->colors) colors.emplace_back(c.r, c.g, c.b);
-    primitive["attributes"]["COLOR_0"] = buffer_.add(colors, false);
-    place.has_colors = true;
+    place.has_light_colors = true;
   }
-  primitive["material"] = materials_.index_of(m.material, light, radiance, place);
+  add_colors(primitive, baked, attributes);
+  primitive.json["material"] = materials_.index_of(primitive.material, light, radiance, place);
   Json mesh;
-  mesh["primitives"] = Json::array({std::move(primitive)});
+  mesh["primitives"] = Json::array({std::move(primitive.json)});
   meshes_.push_back(std::move(mesh));
 }
 
@@ -102,25 +143,24 @@ void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
   const Light* light = part.light >= 0 ? &scene_.lights[size_t(part.light)] : nullptr;
   const BakedSurface* baked =
       baked_ && part.number != no_mesh ? &baked_->meshes[part.number] : nullptr;
-  add_mesh(primitive_of(part.mesh), part.mesh, light, radiance, baked);
+  add_mesh(primitive_of(part.mesh, light), light, radiance, baked);
   add_node(light ? light->name : part.mesh.name, {{"mesh", meshes_.size() - 1}});
 }
 
 // A node each, which share their mesh; or, where light is baked for each, its data.
 void GltfWriter::add_instances() {
   const size_t first = meshes_.size();
-  std::vector<Json> shared;
+  std::vector<Primitive> shared;
   for (const Mesh& mesh : scene_.instanced_meshes) {
-    shared.push_back(primitive_of(mesh));
-    if (!baked_) add_mesh(shared.back(), mesh, nullptr, {}, nullptr);
+    shared.push_back(primitive_of(mesh, nullptr));
+    if (!baked_) add_mesh(shared.back(), nullptr, {}, nullptr);
   }
   for (const Instance& i : scene_.instances) {
     const Affine& m = i.world_from_mesh;
     size_t mesh = first + i.mesh;
     if (baked_) {
       const auto number = size_t(&i - scene_.instances.data());
-      add_mesh(shared[i.mesh], scene_.instanced_meshes[i.mesh], nullptr, {},
-               &baked_->instances[number]);
+      add_mesh(shared[i.mesh], nullptr, {}, &baked_->instances[number]);
       mesh = meshes_.size() - 1;
     }
     add_node(i.name, {{"mesh", mesh},
@@ -200,12 +240,19 @@ Json GltfWriter::file() {
   json["scene"] = 0;
   Json top = Json::array();
   for (size_t i = 0; i < nodes_.size(); ++i) top.push_back(i);
-  if (scene_.origin != Vec3d{}) {
-    // Far from the file's origin: one node that moves all.
+  const std::array<Vec3d, 3> turn = turn_to_y(up_);
+  const bool is_turned = turn[1] != Vec3d{0, 1, 0};
+  if (scene_.origin != Vec3d{} || is_turned) {
+    // One node that turns all so that y is up, and moves what lies far from the file's origin.
     const Vec3d& o = scene_.origin;
-    nodes_.push_back({{"translation", {o.x, o.y, o.z}}, {"children", top}});
+    const Vec3d at = turn[0] * o.x + turn[1] * o.y + turn[2] * o.z;
+    nodes_.push_back(is_turned ? Json{{"matrix", matrix(turn[0], turn[1], turn[2], at)}}
+                               : Json{{"translation", {o.x, o.y, o.z}}});
+    nodes_.back()["children"] = top;
     top = Json::array({nodes_.size() - 1});
   }
+  if (is_turned && !nodes_.empty())
+    warnings_.add("glTF's y is up, so the scene is turned: " + describe_turn(turn));
   json["scenes"] = Json::array({Json{{"nodes", top}}});
   for (const auto& [name, rows] : {std::pair<const char*, const Json&>{"nodes", nodes_},
                                    {"meshes", meshes_},
@@ -234,7 +281,7 @@ void append_number(std::string& to, uint32_t n) {
 }
 
 // [1] §4.4: a header, the JSON padded by blanks, the data padded by zeros.
-void GltfWriter::write_glb(const std::string& path, Json json) {
+void GltfWriter::write_glb(const std::string& path, OutputFolder& files, Json json) {
   std::vector<uint8_t> data = buffer_.bytes();
   data.resize((data.size() + 3) / 4 * 4);
   if (!data.empty()) json["buffers"] = Json::array({Json{{"byteLength", buffer_.bytes().size()}}});
@@ -252,28 +299,20 @@ void GltfWriter::write_glb(const std::string& path, Json json) {
     append_number(head, uint32_t(data.size()));
     head += std::string("BIN\0", 4);
   }
-  AtomicFile file(path);
-  file.write(head);
-  file.write(std::span<const uint8_t>(data));
-  file.commit();
+  std::vector<uint8_t> bytes(head.begin(), head.end());
+  bytes.insert(bytes.end(), data.begin(), data.end());
+  files.finish(bytes);
 }
 
-void GltfWriter::write_text(const std::string& path, Json json) {
+void GltfWriter::write_text(OutputFolder& files, Json json) {
   if (!buffer_.bytes().empty()) {
-    OutputFolder files(path);
-    files.write("data.bin", buffer_.bytes());
-    std::string uri;
-    for (const char c : files.relative("data.bin")) {
-      const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
-                            (c >= 'A' && c <= 'Z') || c == '/' || c == '_' || c == '.' || c == '-';
-      uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-    }
+    const std::string uri = uri_of(files.write("data.bin", buffer_.bytes()));
     json["buffers"] = Json::array({Json{{"uri", uri}, {"byteLength", buffer_.bytes().size()}}});
   }
-  write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  files.finish(json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::vector<Warning> GltfWriter::write(const std::string& path) {
+std::vector<Warning> GltfWriter::write(const std::string& path, OutputFolder& files) {
   if (!scene_.spheres.empty() || !scene_.disks.empty())
     warnings_.add("spheres and disks are written as triangles, sources with their power");
   const SceneParts parts = parts_of(scene_, true);
@@ -284,17 +323,17 @@ std::vector<Warning> GltfWriter::write(const std::string& path) {
   for (const Camera& c : scene_.cameras) add_camera(c);
   Json json = file();
   if (std::filesystem::path(path).extension() == ".glb")
-    write_glb(path, std::move(json));
+    write_glb(path, files, std::move(json));
   else
-    write_text(path, std::move(json));
+    write_text(files, std::move(json));
   return warnings_.entries();
 }
 
 }  // namespace
 
-std::vector<Warning> write_gltf(const Scene& scene, const std::string& path,
-                                const BakedLight* baked) {
-  return GltfWriter(scene, baked).write(path);
+std::vector<Warning> write_gltf(const Scene& scene, const Vec3& up, const std::string& path,
+                                OutputFolder& files, const BakedLight* baked) {
+  return GltfWriter(scene, up, baked).write(path, files);
 }
 
 }  // namespace troffer

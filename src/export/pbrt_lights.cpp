@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/units.h"
+#include "export/baked_image.h"
 #include "image/encode.h"
 #include "light/sky_light.h"
 
@@ -38,6 +40,10 @@ class Writer {
   std::string spot(const Light& e);
   std::string image(const Light& e, const Image& picture);
   std::string environment(const Light& e);
+  std::string point_light(const Light& e);
+  std::string goniometric(const Light& e);
+  std::string projection(const Light& e);
+  std::string placed(const std::array<Vec3, 3>& axes, const Light& e, const std::string& light);
   std::string sky(const Light& e);
 };
 
@@ -52,12 +58,12 @@ std::string Writer::spot(const Light& e) {
 }
 
 std::string Writer::image(const Light& e, const Image& picture) {
-  const std::string name = fmt::format("surroundings{}.pfm", images_++);
-  files_.write(name, encode_pfm(picture));
+  const std::string file =
+      files_.write(fmt::format("surroundings{}.pfm", images_++), encode_pfm(picture));
   const Rgb c = e.radiance;
   if (c.r != c.g || c.g != c.b) warnings_.add("tints of images of the surroundings are averaged");
-  return fmt::format("\"infinite\" \"string filename\" \"{}\" \"float scale\" {}",
-                     files_.relative(name), double(average(c)) * unit_);
+  return fmt::format("\"infinite\" \"string filename\" \"{}\" \"float scale\" {}", file,
+                     double(average(c)) * unit_);
 }
 
 std::string Writer::environment(const Light& e) {
@@ -70,6 +76,56 @@ std::string Writer::environment(const Light& e) {
         "an image of the surroundings is written by azimuth and height: troffer reads it, "
         "pbrt-v4 wants a square equal-area one");
   return image(e, picture);
+}
+
+// In a space whose axes are those, at the light.
+std::string Writer::placed(const std::array<Vec3, 3>& a, const Light& e, const std::string& light) {
+  const Vec3d at = Vec3d(e.position) + scene_.origin;
+  return fmt::format(
+      "# {}\nAttributeBegin\n  Transform [ {} {} {} 0 {} {} {} 0 {} {} {} 0 {} {} {} 1 ]\n  "
+      "LightSource {}\nAttributeEnd\n",
+      printable_comment(e.name), a[0].x, a[0].y, a[0].z, a[1].x, a[1].y, a[1].z, a[2].x, a[2].y,
+      a[2].z, at.x, at.y, at.z, light);
+}
+
+// pbrt's image has the light's y for its own z.
+std::string Writer::goniometric(const Light& e) {
+  const EnvironmentMap& map = scene_.environments[size_t(e.environment)];
+  Image picture(map.width, map.height);
+  picture.pixels = map.texels;
+  const std::string file =
+      files_.write(fmt::format("intensity{}.pfm", images_++), encode_pfm(picture));
+  return placed({e.axes[0], e.axes[2], e.axes[1]}, e,
+                "\"goniometric\"" + rgb("I", e) + fmt::format(" \"string filename\" \"{}\"", file));
+}
+
+// `fov` is that of the shorter side; the picture's top is towards the light's y.
+std::string Writer::projection(const Light& e) {
+  const Texture& t = scene_.textures[size_t(e.texture)];
+  const std::string file =
+      files_.write(fmt::format("slide{}.png", images_++),
+                   png_of(baked_color(scene_, {Rgb{1}, e.texture}, look_of(t), nullptr)));
+  const double aspect = double(t.width) / t.height;
+  const double half_x = 1 / (double(length(e.axes[0])) * std::max(aspect, 1.0)),
+               half_y = 1 / (double(length(e.axes[1])) * std::max(1 / aspect, 1.0));
+  if (std::abs(half_x - half_y) > 0.01 * half_x)
+    warnings_.add("a projector's picture keeps its own proportions in pbrt: it is thrown as wide");
+  return placed({normalize(e.axes[0]), -normalize(e.axes[1]), normalize(e.axes[2])}, e,
+                "\"projection\"" + rgb("I", e) +
+                    fmt::format(" \"float fov\" {} \"string filename\" \"{}\"",
+                                deg_from_rad(2 * std::atan(half_x)), file));
+}
+
+// Complete where it throws an image, else what follows LightSource.
+std::string Writer::point_light(const Light& e) {
+  if (e.environment >= 0 &&
+      scene_.environments[size_t(e.environment)].projection == SphereMap::equal_area)
+    return goniometric(e);
+  if (e.texture >= 0 && scene_.textures[size_t(e.texture)].kind == TextureKind::image)
+    return projection(e);
+  if (e.environment >= 0 || e.texture >= 0)
+    warnings_.add("an image by which a light shines is left out");
+  return "\"point\"" + rgb("I", e) + point("from", Vec3d(e.position) + scene_.origin);
 }
 
 // As an image of what the formula says, white.
@@ -94,7 +150,8 @@ std::string Writer::text(const Light& e) {
   std::string out;
   switch (e.kind) {
     case LightKind::point:
-      out = "\"point\"" + rgb("I", e) + point("from", Vec3d(e.position) + scene_.origin);
+      out = point_light(e);
+      if (out.starts_with("#")) return out;
       break;
     case LightKind::spot:
       out = spot(e);

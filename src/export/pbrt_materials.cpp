@@ -18,24 +18,17 @@ std::string rgb(const char* name, Rgb c) {
   return fmt::format(" \"rgb {}\" [ {} {} {} ]", name, c.r, c.g, c.b);
 }
 
-const char* wrap_name(WrapMode mode) {
-  return mode == WrapMode::clamp ? "clamp" : mode == WrapMode::black ? "black" : "repeat";
-}
-
-// Where (u,v) with v down is looked up, said with v up.
-std::string mapping(const Texture& t) {
-  const auto plus_zero = [](float v) { return v + 0.0f; };
-  return fmt::format(
-      " \"float uscale\" {} \"float vscale\" {} \"float udelta\" {} \"float vdelta\" {} \"string "
-      "wrap\" \"{}\" \"string filter\" \"{}\"",
-      t.uv_scale.x, plus_zero(-t.uv_scale.y), t.uv_offset.x, plus_zero(1 - t.uv_offset.y),
-      wrap_name(t.wrap_u), t.is_filtered ? "bilinear" : "point");
-}
-
 float power_for_pbrt(RoughnessMeaning meaning) {
   return meaning == RoughnessMeaning::alpha_is_square ? 2
          : meaning == RoughnessMeaning::alpha_is_sqrt ? 0.5f
                                                       : 1;
+}
+
+// What says which texels a look shows.
+std::string key_of(const Texture& t) {
+  return fmt::format(" {} {} {} {} {} {} {} {} {} {}", t.width, t.height, int(t.wrap_u),
+                     int(t.wrap_v), t.uv_scale.x, t.uv_scale.y, t.uv_offset.x, t.uv_offset.y,
+                     t.uv_rotation_rad, int(t.mapping));
 }
 
 // Of a metal of that reflectance seen from within a coat of that index: what pbrt, which tells a
@@ -48,46 +41,48 @@ float reflectance_in_air(float r, float index) {
 
 }  // namespace
 
-std::string PbrtMaterialWriter::texture_name(const std::string& key, const BakedImage& image,
-                                             const Texture* look, bool is_number) {
-  std::string& name = textures_[key];
-  if (name.empty()) name = image_texture(image, look, is_number);
-  return name;
+const PbrtUvs& PbrtMaterialWriter::begin(uint32_t material, const Light* light) {
+  const auto key = std::pair{material, light ? light->texture : no_texture};
+  auto found = uvs_.find(key);
+  if (found == uvs_.end())
+    found = uvs_.emplace(key, PbrtUvs(scene_, mesh_uvs_, material, light, warnings_)).first;
+  material_ = material;
+  placing_ = &found->second;
+  return *placing_;
 }
 
-std::string PbrtMaterialWriter::image_texture(const BakedImage& image, const Texture* look,
-                                              bool is_number) {
-  const std::string name = fmt::format("texture{}", images_++);
-  files_.write(name + ".png", png_of(image));
-  if (look && look->uv_rotation_rad != 0)
-    warnings_.add("pbrt cannot turn textures: their rotation is left out");
-  if (look && look->wrap_u != look->wrap_v)
-    warnings_.add("pbrt repeats or clamps textures along both axes alike: as along u");
-  if (look && look->wrap_u == WrapMode::mirror)
-    warnings_.add("pbrt cannot mirror textures: they are repeated");
+// The name of a texture that holds what `bake` makes by a look: PNG, or floats where values are
+// beyond it.
+template <class Bake>
+std::string PbrtMaterialWriter::texture(const std::string& key, const PbrtUvs::Placing& placing,
+                                        bool is_number, const Bake& bake) {
+  std::string& name = textures_[key + placing.parameters + key_of(placing.look)];
+  if (!name.empty()) return name;
+  name = fmt::format("texture{}", images_++);
+  const BakedImage image = bake(placing.look);
+  const bool has_floats = needs_floats(image);
+  const std::string file = files_.write(name + (has_floats ? ".pfm" : ".png"),
+                                        has_floats ? pfm_of(image) : png_of(image));
   definitions_ += fmt::format(
       "Texture \"{}\" \"{}\" \"imagemap\" \"string filename\" \"{}\" \"string encoding\" "
       "\"{}\"{}{}\n",
-      name, is_number ? "float" : "spectrum", files_.relative(name + ".png"),
-      image.is_srgb ? "sRGB" : "linear", look ? mapping(*look) : "",
-      image.scale != 1 ? fmt::format(" \"float scale\" {}", image.scale) : "");
+      name, is_number ? "float" : "spectrum", file,
+      image.is_srgb && !has_floats ? "sRGB" : "linear", placing.parameters,
+      image.scale != 1 && !has_floats ? fmt::format(" \"float scale\" {}", image.scale) : "");
   return name;
 }
 
 std::string PbrtMaterialWriter::color(const char* parameter, const ColorInput& input,
                                       const ColorChange& change) {
-  const Texture* look = image_of(scene_, input.texture);
-  if (!look) {
-    return rgb(parameter, clamp01(color_at(scene_, input, {0, 0}, change)));
-  }
+  const auto placing = placing_->placing(std::array{input.texture});
+  if (!placing) return rgb(parameter, clamp01(color_at(scene_, input, {0, 0}, change)));
   const Rgb v = input.value;
   const std::string key = fmt::format("color {} {} {} {} {}", input.texture, v.r, v.g, v.b,
                                       change ? change(0.5f) : 0.0f);
-  const std::string name =
-      textures_.contains(key)
-          ? textures_[key]
-          : texture_name(key, baked_color(scene_, input, false, change), look, false);
-  return fmt::format(" \"texture {}\" \"{}\"", parameter, name);
+  return fmt::format(" \"texture {}\" \"{}\"", parameter,
+                     texture(key, *placing, false, [&](const Texture& look) {
+                       return baked_color(scene_, input, look, nullptr, change);
+                     }));
 }
 
 // As the width of ggx itself.
@@ -96,17 +91,17 @@ std::string PbrtMaterialWriter::roughness(const Material& m, float power) {
 }
 
 std::string PbrtMaterialWriter::width(const char* parameter, const FloatInput& input, float power) {
-  const Texture* look = image_of(scene_, input.texture);
-  if (!look) {
+  const auto placing = placing_->placing(std::array{input.texture});
+  if (!placing) {
     const float r = std::pow(std::max(evaluate(scene_.textures, input, Vec2{0, 0}), 0.0f), power);
     return fmt::format(" \"float {}\" {}", parameter, r);
   }
   const std::string key =
       fmt::format("number {} {} {} {}", input.texture, input.channel, input.value, power);
-  const std::string name = textures_.contains(key)
-                               ? textures_[key]
-                               : texture_name(key, baked_number(scene_, input, power), look, true);
-  return fmt::format(" \"texture {}\" \"{}\"", parameter, name);
+  return fmt::format(" \"texture {}\" \"{}\"", parameter,
+                     texture(key, *placing, true, [&](const Texture& look) {
+                       return baked_number(scene_, input, look, power);
+                     }));
 }
 
 // Of a conductor; prefix: of the names of index and extinction.
@@ -224,47 +219,97 @@ std::string PbrtMaterialWriter::medium_text(const Material& m) {
          fmt::format("\nMediumInterface \"{}\" \"\"\n", name);
 }
 
-std::string PbrtMaterialWriter::use(uint32_t material) {
-  const Material& m = scene_.materials[material];
-  std::string text = "Material " + material_text(m);
-  if (m.normal_texture >= 0) {
-    const std::string name = fmt::format("normals{}", m.normal_texture);
-    std::string& file = textures_[name];
-    if (file.empty()) {
-      file = files_.relative(name + ".png");
-      files_.write(name + ".png", png_of(baked_raw(scene_, uint32_t(m.normal_texture))));
-    }
-    text += fmt::format(" \"string normalmap\" \"{}\"", file);
-  }
+// pbrt's map lies as its coordinates do; its y is normal × x (pbrt_uvs.h).
+std::string PbrtMaterialWriter::normal_map(const Material& m, bool is_turned) {
+  if (!placing_->has_normals()) return "";
+  const bool is_v_up = scene_.textures[size_t(m.normal_texture)].uv_scale.y < 0;
+  const Vec2 signs = placing_->normal_signs(is_turned, is_v_up);
+  const Vec2 factors{signs.x * m.normal_scale, signs.y * m.normal_scale};
+  const Texture& look = placing_->normal();
+  const std::string key =
+      fmt::format("normals {} {} {} ", m.normal_texture, factors.x, factors.y) + key_of(look);
+  std::string& file = textures_[key];
+  if (file.empty())
+    file = files_.write(fmt::format("normals{}.png", images_++),
+                        png_of(baked_normals(scene_, uint32_t(m.normal_texture), look, factors)));
+  return fmt::format(" \"string normalmap\" \"{}\"", file);
+}
+
+// Heights of an image, which pbrt shows as bumps too.
+std::string PbrtMaterialWriter::displacement(const Material& m) {
+  const auto placing = placing_->placing(std::array{m.bump.texture});
+  if (!placing) return "";
+  const std::string key =
+      fmt::format("heights {} {} {}", m.bump.texture, m.bump.channel, m.bump.value);
+  return fmt::format(" \"texture displacement\" \"{}\"",
+                     texture(key, *placing, true, [&](const Texture& look) {
+                       return baked_heights(scene_, m.bump, look);
+                     }));
+}
+
+std::string PbrtMaterialWriter::use(bool is_turned) {
+  const Material& m = scene_.materials[material_];
+  std::string text = "Material " + material_text(m) + normal_map(m, is_turned) + displacement(m);
   tell_what_is_left_out(scene_, m, false, warnings_);
   text = medium_text(m) + text;
-  alpha_of(material);  // its texture is defined before
+  alpha();  // its texture is defined before
   std::string out = std::move(definitions_);
   definitions_.clear();
   return out + text;
 }
 
-std::string PbrtMaterialWriter::alpha_of(uint32_t material) {
-  const Material& m = scene_.materials[material];
+bool PbrtMaterialWriter::is_nothing() const {
+  const Material& m = scene_.materials[material_];
+  return m.is_alpha_masked && !has_image(scene_, m.alpha.texture) &&
+         coverage(scene_.textures, m, Vec2{0, 0}) <= 0;
+}
+
+// pbrt's alpha is the share of rays that hit. A mask is written as what its cutoff leaves, finer
+// than its image, so that the edges of its holes stay.
+std::string PbrtMaterialWriter::alpha() {
+  constexpr int finer = 4, most_texels_across = 4096;
+  const Material& m = scene_.materials[material_];
   if (!m.is_alpha_masked) return "";
-  // pbrt's holes are where it is below 0.5 here.
-  FloatInput alpha = m.alpha;
-  if (m.alpha_cutoff > 0) alpha.value *= 0.5f / m.alpha_cutoff;
-  const Texture* look = image_of(scene_, alpha.texture);
-  if (!look) return fmt::format(" \"float alpha\" {}", alpha.value >= 0.5f ? 1 : 0);
+  auto placing = placing_->placing(std::array{m.alpha.texture});
+  if (!placing) {
+    const float share = coverage(scene_.textures, m, Vec2{0, 0});
+    return share < 1 ? fmt::format(" \"float alpha\" {}", share) : "";
+  }
+  const FloatInput& a = m.alpha;
+  if (m.is_alpha_blended) {
+    const std::string key = fmt::format("alpha {} {} {}", a.texture, a.channel, a.value);
+    return fmt::format(
+        " \"texture alpha\" \"{}\"", texture(key, *placing, true, [&](const Texture& look) {
+          return a.value <= 1 ? baked_heights(scene_, a, look) : baked_number(scene_, a, look, 1);
+        }));
+  }
   const std::string key =
-      fmt::format("number {} {} {} 1", alpha.texture, alpha.channel, alpha.value);
-  const std::string name = textures_.contains(key)
-                               ? textures_[key]
-                               : texture_name(key, baked_number(scene_, alpha, 1), look, true);
-  return fmt::format(" \"texture alpha\" \"{}\"", name);
+      fmt::format("holes {} {} {} {}", a.texture, a.channel, a.value, m.alpha_cutoff);
+  std::string parameters = placing->parameters;
+  if (const size_t at = parameters.find("\"bilinear\""); at != std::string::npos)
+    parameters.replace(at, 10, "\"point\"");
+  Texture look = placing->look;
+  const int times = std::clamp(
+      look.is_filtered ? most_texels_across / std::max(look.width, look.height) : 1, 1, finer);
+  look.width *= times;
+  look.height *= times;
+  return fmt::format(" \"texture alpha\" \"{}\"",
+                     texture(key, {look, parameters}, true,
+                             [&](const Texture& fine) { return baked_holes(scene_, m, fine); }));
 }
 
 std::pair<std::string, float> PbrtMaterialWriter::emission_image(const ColorInput& emission) {
-  const BakedImage image = baked_color(scene_, emission, false);
-  const std::string name = fmt::format("emission{}.png", images_++);
-  files_.write(name, png_of(image));
-  return {files_.relative(name), image.scale};
+  const Texture& look = placing_->emission();
+  const Rgb v = emission.value / std::max(max_component(emission.value), 1e-30f);
+  const std::string key =
+      fmt::format("emission {} {} {} {} ", emission.texture, v.r, v.g, v.b) + key_of(look);
+  const BakedImage image = baked_color(scene_, {v, emission.texture}, look, nullptr);
+  std::string& file = textures_[key];
+  const bool has_floats = needs_floats(image);
+  if (file.empty())
+    file = files_.write(fmt::format("emission{}.{}", images_++, has_floats ? "pfm" : "png"),
+                        has_floats ? pfm_of(image) : png_of(image));
+  return {file, (has_floats ? 1 : image.scale) * max_component(emission.value)};
 }
 
 }  // namespace troffer

@@ -7,6 +7,7 @@
 
 #include "export/baked_image.h"
 #include "export/output_folder.h"
+#include "export/pbrt_uvs.h"
 
 namespace troffer {
 
@@ -14,13 +15,19 @@ class PbrtMaterialWriter {
  public:
   // All must outlive this.
   PbrtMaterialWriter(const Scene& scene, OutputFolder& files, WarningLog& warnings)
-      : scene_(scene), files_(files), warnings_(warnings) {}
+      : scene_(scene), files_(files), warnings_(warnings), mesh_uvs_(scene) {}
 
-  // The directives that make what follows wear that material: its textures, where they are asked
-  // for the first time, and Material.
-  std::string use(uint32_t material);
-  // The parameter of a Shape that cuts its holes, or nothing.
-  std::string alpha_of(uint32_t material);
+  // What follows is about that material and the light on it (null: none). Returns the coordinates
+  // that its meshes are to be written with.
+  const PbrtUvs& begin(uint32_t material, const Light* light);
+
+  // The directives that make what follows wear the material: its textures, where they are asked
+  // for the first time, and Material. is_turned: PbrtUvs::is_turned() of all its triangles.
+  std::string use(bool is_turned);
+  // The parameter of a Shape that says what covers, or nothing.
+  std::string alpha();
+  // Whether its alpha leaves nothing there.
+  bool is_nothing() const;
   // File and factor of an emission's image.
   std::pair<std::string, float> emission_image(const ColorInput& emission);
 
@@ -28,6 +35,10 @@ class PbrtMaterialWriter {
   const Scene& scene_;
   OutputFolder& files_;
   WarningLog& warnings_;
+  MaterialUvs mesh_uvs_;
+  std::map<std::pair<uint32_t, int32_t>, PbrtUvs> uvs_;  // by material and texture of the light
+  uint32_t material_ = 0;                                // what begin() was called for
+  PbrtUvs* placing_ = nullptr;
   std::map<std::string, std::string> textures_;  // by what they hold -> name
   std::string definitions_;                      // of textures, not yet written
   size_t images_ = 0, media_ = 0;
@@ -41,9 +52,11 @@ class PbrtMaterialWriter {
   std::string width(const char* parameter, const FloatInput& input, float power);
   std::string metal_text(const Material& m, const std::string& prefix);
   std::string coated_metal_text(const Material& m);
-  std::string image_texture(const BakedImage& image, const Texture* look, bool is_number);
-  std::string texture_name(const std::string& key, const BakedImage& image, const Texture* look,
-                           bool is_number);
+  std::string normal_map(const Material& m, bool is_turned);
+  std::string displacement(const Material& m);
+  template <class Bake>
+  std::string texture(const std::string& key, const PbrtUvs::Placing& placing, bool is_number,
+                      const Bake& bake);
 };
 
 }  // namespace troffer

@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/frame.h"
 #include "base/units.h"
-#include "export/output_folder.h"
 #include "export/pbrt_lights.h"
 #include "export/pbrt_materials.h"
 #include "export/ply_writer.h"
 #include "export/scene_parts.h"
-#include "image/atomic_file.h"
 
 namespace troffer {
 
@@ -23,17 +22,17 @@ std::string numbers(const Vec3d& v) {
 
 class PbrtWriter {
  public:
-  PbrtWriter(const Scene& scene, const std::string& path)
+  PbrtWriter(const Scene& scene, OutputFolder& files)
       : scene_(scene),
-        files_(path),
+        files_(files),
         materials_(scene, files_, warnings_),
         unit_(scene.is_photometric ? 1 / luminous_efficacy : 1) {}
-  std::vector<Warning> write(const std::string& path);
+  std::vector<Warning> write();
 
  private:
   const Scene& scene_;
   WarningLog warnings_;
-  OutputFolder files_;
+  OutputFolder& files_;
   PbrtMaterialWriter materials_;
   double unit_;  // radiance in W/(m² sr) per the scene's unit
   std::string text_;
@@ -42,7 +41,9 @@ class PbrtWriter {
   void add_camera();
   void add_part(const ScenePart& part, Rgb radiance);
   void add_instances();
-  void add_emission(int32_t light, Rgb radiance);
+  void add_emission(const Light& light, Rgb radiance);
+  std::vector<std::pair<Mesh, bool>> sides_of(const Mesh& mesh, const PbrtUvs& uvs);
+  std::string shape_of(const Mesh& mesh, const PbrtUvs& uvs, const Vec3d& origin);
   void add_round();
 };
 
@@ -85,8 +86,7 @@ void PbrtWriter::add_camera() {
   text_ += "\n";
 }
 
-void PbrtWriter::add_emission(int32_t light, Rgb radiance) {
-  const Light& e = scene_.lights[size_t(light)];
+void PbrtWriter::add_emission(const Light& e, Rgb radiance) {
   text_ += fmt::format("  # {}\n  AreaLightSource \"diffuse\"", printable_comment(e.name));
   if (e.texture >= 0) {
     const auto [file, scale] = materials_.emission_image({radiance, e.texture});
@@ -99,29 +99,53 @@ void PbrtWriter::add_emission(int32_t light, Rgb radiance) {
   text_ += e.is_two_sided ? " \"bool twosided\" true\n" : "\n";
 }
 
+// Triangles whose (u,v) run clockwise, and the others, apart: pbrt's normal maps know no mirrored
+// coordinates.
+std::vector<std::pair<Mesh, bool>> PbrtWriter::sides_of(const Mesh& mesh, const PbrtUvs& uvs) {
+  std::array<std::vector<Triangle>, 2> triangles;
+  if (uvs.has_normals())
+    for (const Triangle& t : mesh.triangles) triangles[uvs.is_turned(mesh, t)].push_back(t);
+  std::vector<std::pair<Mesh, bool>> out;
+  if (triangles[0].empty() || triangles[1].empty())
+    out.emplace_back(mesh, !triangles[1].empty());
+  else
+    for (const bool is_turned : {false, true})
+      out.emplace_back(extracted(mesh, triangles[is_turned]), is_turned);
+  return out;
+}
+
+std::string PbrtWriter::shape_of(const Mesh& mesh, const PbrtUvs& uvs, const Vec3d& origin) {
+  const std::string file =
+      files_.write(fmt::format("mesh{}.ply", meshes_++), ply_of(mesh, uvs.of(mesh), origin));
+  return fmt::format("  Shape \"plymesh\" \"string filename\" \"{}\"{}\n", file,
+                     materials_.alpha());
+}
+
 void PbrtWriter::add_part(const ScenePart& part, Rgb radiance) {
-  const std::string name = fmt::format("mesh{}.ply", meshes_++);
-  files_.write(name, ply_of(part.mesh, scene_.origin));
-  const std::string use = materials_.use(part.mesh.material);
-  text_ += "AttributeBegin\n  " + use + "\n";
-  if (part.light >= 0) add_emission(part.light, radiance);
-  text_ += fmt::format("  Shape \"plymesh\" \"string filename\" \"{}\"{}\nAttributeEnd\n",
-                       files_.relative(name), materials_.alpha_of(part.mesh.material));
+  const Light* light = part.light >= 0 ? &scene_.lights[size_t(part.light)] : nullptr;
+  const PbrtUvs& uvs = materials_.begin(part.mesh.material, light);
+  if (materials_.is_nothing()) return;
+  for (const auto& [mesh, is_turned] : sides_of(part.mesh, uvs)) {
+    text_ += "AttributeBegin\n  " + materials_.use(is_turned) + "\n";
+    if (light) add_emission(*light, radiance);
+    text_ += shape_of(mesh, uvs, scene_.origin) + "AttributeEnd\n";
+  }
 }
 
 // Objects, and where they stand.
 void PbrtWriter::add_instances() {
   for (size_t i = 0; i < scene_.instanced_meshes.size(); ++i) {
-    const Mesh& mesh = scene_.instanced_meshes[i];
-    const std::string name = fmt::format("mesh{}.ply", meshes_++);
-    files_.write(name, ply_of(mesh, {}));
-    const std::string use = materials_.use(mesh.material);
-    text_ += fmt::format(
-        "ObjectBegin \"object{}\"\n  {}\n  Shape \"plymesh\" \"string filename\" \"{}\"{}\n"
-        "ObjectEnd\n",
-        i, use, files_.relative(name), materials_.alpha_of(mesh.material));
+    const Mesh& whole = scene_.instanced_meshes[i];
+    const PbrtUvs& uvs = materials_.begin(whole.material, nullptr);
+    if (materials_.is_nothing()) continue;
+    std::string shapes;
+    for (const auto& [mesh, is_turned] : sides_of(whole, uvs))
+      shapes += "  " + materials_.use(is_turned) + "\n" + shape_of(mesh, uvs, {});
+    text_ += fmt::format("ObjectBegin \"object{}\"\n{}ObjectEnd\n", i, shapes);
   }
   for (const Instance& i : scene_.instances) {
+    materials_.begin(scene_.instanced_meshes[i.mesh].material, nullptr);
+    if (materials_.is_nothing()) continue;
     const Affine& m = i.world_from_mesh;
     text_ += fmt::format(
         "AttributeBegin\n  ConcatTransform [ {} 0 {} 0 {} 0 {} 1 ]\n  ObjectInstance \"object{}\"\n"
@@ -132,28 +156,34 @@ void PbrtWriter::add_instances() {
 }
 
 void PbrtWriter::add_round() {
-  const auto begin = [&](uint32_t material, int32_t light) {
-    text_ += "AttributeBegin\n  " + materials_.use(material) + "\n";
-    if (light >= 0) add_emission(light, scene_.lights[size_t(light)].radiance);
+  const auto begins = [&](uint32_t material, int32_t light) {
+    const Light* e = light >= 0 ? &scene_.lights[size_t(light)] : nullptr;
+    materials_.begin(material, e);
+    if (materials_.is_nothing()) return false;
+    text_ += "AttributeBegin\n  " + materials_.use(false) + "\n";
+    if (e) add_emission(*e, e->radiance);
+    return true;
   };
   for (const Sphere& s : scene_.spheres) {
-    begin(s.material, s.light);
-    text_ += fmt::format("  Translate {}\n{}  Shape \"sphere\" \"float radius\" {}\nAttributeEnd\n",
-                         numbers(Vec3d(s.centre) + scene_.origin),
-                         s.is_inside_out ? "  ReverseOrientation\n" : "", s.radius);
+    if (!begins(s.material, s.light)) continue;
+    text_ +=
+        fmt::format("  Translate {}\n{}  Shape \"sphere\" \"float radius\" {}{}\nAttributeEnd\n",
+                    numbers(Vec3d(s.centre) + scene_.origin),
+                    s.is_inside_out ? "  ReverseOrientation\n" : "", s.radius, materials_.alpha());
   }
   for (const Disk& d : scene_.disks) {
-    begin(d.material, d.light);
+    if (!begins(d.material, d.light)) continue;
     const Framed f{Vec3d(d.normal)};
     const Vec3d at = Vec3d(d.centre) + scene_.origin;
     text_ += fmt::format(
         "  ConcatTransform [ {} 0 {} 0 {} 0 {} 1 ]\n  Shape \"disk\" \"float radius\" "
-        "{}\nAttributeEnd\n",
-        numbers(f.tangent), numbers(f.bitangent), numbers(f.normal), numbers(at), d.radius);
+        "{}{}\nAttributeEnd\n",
+        numbers(f.tangent), numbers(f.bitangent), numbers(f.normal), numbers(at), d.radius,
+        materials_.alpha());
   }
 }
 
-std::vector<Warning> PbrtWriter::write(const std::string& path) {
+std::vector<Warning> PbrtWriter::write() {
   text_ = "# written by troffer\n";
   add_camera();
   text_ += "WorldBegin\n";
@@ -163,14 +193,14 @@ std::vector<Warning> PbrtWriter::write(const std::string& path) {
     add_part(part, part.light >= 0 ? parts.radiances[size_t(part.light)] : Rgb{});
   add_instances();
   add_round();
-  write_file(path, text_);
+  files_.finish(text_);
   return warnings_.entries();
 }
 
 }  // namespace
 
-std::vector<Warning> write_pbrt(const Scene& scene, const std::string& path) {
-  return PbrtWriter(scene, path).write(path);
+std::vector<Warning> write_pbrt(const Scene& scene, OutputFolder& files) {
+  return PbrtWriter(scene, files).write();
 }
 
 }  // namespace troffer

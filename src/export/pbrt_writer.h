@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "export/output_folder.h"
 #include "scene/scene.h"
 
 namespace troffer {
 
-// Writes `path` and, beside it, a folder of its name with "_files" for meshes (PLY) and images.
+// Writes a scene's file, with meshes (PLY) and images in the folder beside it.
 // Returns what pbrt's format or materials cannot hold, in words. EnvironmentError: files that
 // cannot be written.
-std::vector<Warning> write_pbrt(const Scene& scene, const std::string& path);
+std::vector<Warning> write_pbrt(const Scene& scene, OutputFolder& files);
 
 }  // namespace troffer

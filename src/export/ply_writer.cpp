@@ -20,7 +20,7 @@ void append(std::vector<uint8_t>& to, const T& value) {
 
 }  // namespace
 
-std::vector<uint8_t> ply_of(const Mesh& mesh, const Vec3d& origin) {
+std::vector<uint8_t> ply_of(const Mesh& mesh, const std::vector<Vec2>& uvs, const Vec3d& origin) {
   const bool is_far = origin != Vec3d{};
   const char* const real = is_far ? "double" : "float";
   std::string head = fmt::format(
@@ -28,7 +28,7 @@ std::vector<uint8_t> ply_of(const Mesh& mesh, const Vec3d& origin) {
       "property {} z\n",
       mesh.positions.size(), real, real, real);
   if (!mesh.normals.empty()) head += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (!mesh.uvs.empty()) head += "property float u\nproperty float v\n";
+  if (!uvs.empty()) head += "property float u\nproperty float v\n";
   head += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                       mesh.triangles.size());
   std::vector<uint8_t> out(head.begin(), head.end());
@@ -38,7 +38,7 @@ std::vector<uint8_t> ply_of(const Mesh& mesh, const Vec3d& origin) {
     else
       append(out, mesh.positions[i]);
     if (!mesh.normals.empty()) append(out, mesh.normals[i]);
-    if (!mesh.uvs.empty()) append(out, mesh.uvs[i]);
+    if (!uvs.empty()) append(out, uvs[i]);
   }
   for (const Triangle& t : mesh.triangles) {
     append(out, uint8_t(3));

@@ -8,7 +8,7 @@
 
 namespace troffer {
 
-// Positions from `origin`, in doubles unless that is zero. (u,v) as they are.
-std::vector<uint8_t> ply_of(const Mesh& mesh, const Vec3d& origin);
+// Positions from `origin`, in doubles unless that is zero. uvs: empty, or per vertex.
+std::vector<uint8_t> ply_of(const Mesh& mesh, const std::vector<Vec2>& uvs, const Vec3d& origin);
 
 }  // namespace troffer

@@ -80,9 +80,21 @@ void AtomicFile::write(std::string_view text) {
   write_all(descriptor_, text.data(), text.size(), path_);
 }
 
+void AtomicFile::finish(bool to_disk) {
+  if (is_written_) return;
+  is_written_ = true;
+  if (to_disk && !temporary_.empty() && fsync(descriptor_) != 0) fail_to_write(path_, errno);
+  const int result = close(std::exchange(descriptor_, -1));
+  if (result != 0) fail_to_write(path_, errno);
+  if (temporary_.empty()) return;
+  // Held on, so that nobody takes it for abandoned.
+  descriptor_ = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) errno = 0;
+}
+
 void AtomicFile::commit_to_disk() {
-  if (!temporary_.empty() && fsync(descriptor_) != 0) fail_to_write(path_, errno);
   const bool is_file = !temporary_.empty();
+  finish(true);
   commit();
   if (!is_file) return;
   // The new name is in the folder. Not every file system can sync a folder, or needs to.
@@ -93,8 +105,8 @@ void AtomicFile::commit_to_disk() {
 }
 
 void AtomicFile::commit() {
-  const int result = close(std::exchange(descriptor_, -1));
-  if (result != 0) fail_to_write(path_, errno);
+  finish();
+  if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
   if (temporary_.empty()) return;
   if (std::rename(temporary_.c_str(), target_.path.c_str()) != 0) fail_to_write(path_, errno);
   temporary_.clear();

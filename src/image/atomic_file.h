@@ -27,6 +27,9 @@ class AtomicFile {
   void write(std::span<const uint8_t> bytes);
   void write(std::string_view text);
   void commit();
+  // The first half of commit(): all bytes are there, errors of writing have been told. to_disk: the
+  // disk has them. What follows can fail only as renaming does.
+  void finish(bool to_disk = false);
   // As commit(), once the disk has the bytes: whole even where the power fails.
   void commit_to_disk();
 
@@ -39,6 +42,7 @@ class AtomicFile {
   std::string temporary_;  // empty: none, the target is written directly
   TemporaryFile cleaner_;
   int descriptor_ = -1;
+  bool is_written_ = false;  // finish() was called
 };
 
 // Temporary files beside `path` that programs left which were killed: those of AtomicFile that

@@ -13,26 +13,24 @@ namespace troffer {
 namespace {
 
 // A signal handler reaches nothing but globals, and must not wait for a lock or allocate: fixed
-// slots, each of which one thread claims. Few files are written at a time; one that finds no slot
-// is only not looked after.
+// slots, each of which one thread claims. One that finds no slot is only not looked after. Paths
+// lie apart from states, so that those which are never used take no memory.
 enum class SlotState : int { free, claimed, full };
-struct Slot {
-  std::atomic<SlotState> state = SlotState::free;
-  char path[PATH_MAX] = {};
-};
+constexpr size_t most_slots = 1024;
 static_assert(std::atomic<SlotState>::is_always_lock_free);
-Slot slots[16];
+std::atomic<SlotState> states[most_slots];
+char paths[most_slots][PATH_MAX];
 std::atomic<bool> is_over = false;
 
 }  // namespace
 
 TemporaryFile::TemporaryFile(const std::string& path) {
-  if (path.size() >= sizeof(Slot::path)) return;
-  for (size_t i = 0; i < std::size(slots); ++i) {
+  if (path.size() >= PATH_MAX) return;
+  for (size_t i = 0; i < most_slots; ++i) {
     SlotState expected = SlotState::free;
-    if (!slots[i].state.compare_exchange_strong(expected, SlotState::claimed)) continue;
-    std::memcpy(slots[i].path, path.c_str(), path.size() + 1);
-    slots[i].state = SlotState::full;
+    if (!states[i].compare_exchange_strong(expected, SlotState::claimed)) continue;
+    std::memcpy(paths[i], path.c_str(), path.size() + 1);
+    states[i] = SlotState::full;
     slot_ = i;
     return;
   }
@@ -50,15 +48,15 @@ TemporaryFile& TemporaryFile::operator=(TemporaryFile&& other) noexcept {
 }
 
 void TemporaryFile::forget() noexcept {
-  if (slot_ != none) slots[slot_].state = SlotState::free;
+  if (slot_ != none) states[slot_] = SlotState::free;
   slot_ = none;
 }
 
 void remove_temporary_files() noexcept {
   const int error = errno;
   is_over = true;
-  for (const Slot& slot : slots)
-    if (slot.state == SlotState::full) unlink(slot.path);
+  for (size_t i = 0; i < most_slots; ++i)
+    if (states[i] == SlotState::full) unlink(paths[i]);
   errno = error;
 }
 

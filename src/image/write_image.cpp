@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "image/atomic_file.h"
 #include "image/encode.h"
+#include "image/output_set.h"
 #include "image/output_target.h"
 #include "image/rgbe.h"
 
@@ -118,8 +119,8 @@ std::vector<uint8_t> encode_pfm(const Image& image) {
   return out;
 }
 
-void write_image(const std::string& path, std::span<const Layer> layers,
-                 const WriteOptions& options) {
+std::vector<uint8_t> encode_image(const std::string& path, std::span<const Layer> layers,
+                                  const WriteOptions& options) {
   const ImageFormat format = image_format(path);
   TROFFER_CHECK(!layers.empty());
   for (const Layer& layer : layers) {
@@ -127,12 +128,18 @@ void write_image(const std::string& path, std::span<const Layer> layers,
     TROFFER_CHECK(layer.image.height == layers[0].image.height && layer.image.height > 0);
     TROFFER_CHECK(layer.channels.size() == 1 || layer.channels.size() == 3);
   }
-  AtomicFile file(path);
   try {
-    file.write(encode(format, layers, options));
+    return encode(format, layers, options);
   } catch (const std::bad_alloc&) {
     throw EnvironmentError("cannot write " + path + ": not enough memory");
   }
+}
+
+void write_image(const std::string& path, std::span<const Layer> layers,
+                 const WriteOptions& options) {
+  image_format(path);
+  AtomicFile file(path);
+  file.write(encode_image(path, layers, options));
   if (options.is_safe)
     file.commit_to_disk();
   else

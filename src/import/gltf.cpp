@@ -7,6 +7,7 @@
 #include "import/emissive.h"
 #include "import/gltf_accessor.h"
 #include "import/gltf_animation.h"
+#include "import/gltf_baked.h"
 #include "import/gltf_camera.h"
 #include "import/gltf_file.h"
 #include "import/gltf_ies.h"
@@ -42,8 +43,13 @@ class Importer {
         bounds_(bounds),
         buffers_(root, file),
         materials_(root_, buffers_, scene),
+        baked_(root_, buffers_, scene, options.shows_baked),
         painter_(scene),
-        instancer_(scene, bounds) {}
+        instancer_(scene, bounds) {
+    materials_.on_read = [this](const JsonNode& node, GltfMaterial& made, TextureLoader& loader) {
+      baked_.apply(node, made, loader);
+    };
+  }
 
   void run() {
     materials_.expect_images();
@@ -56,6 +62,7 @@ class Importer {
     for (const GltfNode& node : nodes_.shown) add_node(node);
     or_left_out("an image-based light", "", [&] { add_gltf_image_light(root_, buffers_, scene_); });
     materials_.check_unused_images();
+    baked_.finish();
     if (scene_.meshes.empty() && scene_.instances.empty())
       scene_.warnings.add("the scene shows no triangles");
   }
@@ -262,6 +269,7 @@ class Importer {
   PlacedBounds& bounds_;
   GltfBuffers buffers_;
   GltfMaterials materials_;
+  GltfBaked baked_;
   VertexPainter painter_;
   MeshInstancer instancer_;
   struct MeshUse {

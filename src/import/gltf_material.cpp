@@ -361,6 +361,7 @@ const GltfMaterial& GltfMaterials::get(std::optional<uint32_t> index) {
   GltfMaterial made;
   if (index) {
     made = Reader(*this, root_.member("materials").element(*index)).read();
+    if (on_read) on_read(root_.member("materials").element(*index), made, loader_);
   } else {
     Material material;
     material.kind = MaterialKind::metallic_roughness;

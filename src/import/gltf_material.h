@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ class GltfMaterials {
   // All arguments must outlive this object.
   GltfMaterials(const JsonNode& root, const GltfBuffers& buffers, Scene& scene)
       : root_(root), buffers_(buffers), scene_(scene), loader_(scene) {}
+
+  // Called with each material that has been read, before it is used.
+  std::function<void(const JsonNode&, GltfMaterial&, TextureLoader&)> on_read;
 
   // The material of that index in /materials, or the default material [1] §3.9.6.
   const GltfMaterial& get(std::optional<uint32_t> index);

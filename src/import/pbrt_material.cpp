@@ -219,6 +219,22 @@ Material PbrtMaterials::make(const PbrtMaterial& material) {
   return m;
 }
 
+uint32_t PbrtMaterials::with_turned_normals(uint32_t material) {
+  const auto found = turned_.find(material);
+  if (found != turned_.end()) return found->second;
+  Material copy = scene_.materials[material];
+  Texture map = scene_.textures[size_t(copy.normal_texture)];
+  const auto n = size_t(map.channels);
+  for (size_t i = 1; n >= 3 && i < map.texels8.size(); i += n)
+    map.texels8[i] = uint8_t(255 - map.texels8[i]);
+  for (size_t i = 1; n >= 3 && i < map.texels_float.size(); i += n)
+    map.texels_float[i] = 1 - map.texels_float[i];
+  copy.normal_texture = int32_t(scene_.textures.size());
+  scene_.textures.push_back(std::move(map));
+  scene_.materials.push_back(std::move(copy));
+  return turned_[material] = uint32_t(scene_.materials.size() - 1);
+}
+
 bool is_textured(const Material& m) {
   return has_textured_input(m) || m.normal_texture >= 0 || m.bump.texture >= 0 ||
          m.anisotropy.value > 0 || (m.is_alpha_masked && m.alpha.texture >= 0);

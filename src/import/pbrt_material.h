@@ -42,11 +42,15 @@ class PbrtMaterials {
   // metre.
   uint32_t index_of_copy(PbrtMaterial& material, const std::optional<FloatInput>& alpha,
                          Rgb absorption);
+  // The material for meshes whose (u,v) run clockwise. pbrt's y of a normal map is normal × x there
+  // too (its materials.h, NormalMap), the scene's runs up the image: green is turned round.
+  uint32_t with_turned_normals(uint32_t material);
   // What a medium absorbs per metre; nothing of those that are left out, with a warning.
   Rgb read_medium(const std::string& type, const PbrtParams& params);
 
  private:
   Scene& scene_;
+  std::map<uint32_t, uint32_t> turned_;  // by material
 
   Material make(const PbrtMaterial& material);
   // Of parameters whose names begin with `prefix`.

@@ -21,6 +21,17 @@ size_t cost_of(const Mesh& mesh) {
   return std::max(mesh.triangles.size(), mesh.positions.size() / 3);
 }
 
+// How many triangles have (u,v) that run clockwise on their front.
+size_t count_turned(const Mesh& mesh) {
+  if (mesh.uvs.empty()) return 0;
+  size_t n = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec2 a = mesh.uvs[t[1]] - mesh.uvs[t[0]], b = mesh.uvs[t[2]] - mesh.uvs[t[0]];
+    n += a.x * b.y - a.y * b.x < 0 ? 1 : 0;
+  }
+  return n;
+}
+
 // Mean luminance of an image, which pbrt divides a given power by.
 double mean_luminance(const Scene& scene, int32_t texture) {
   const Texture& t = scene.textures[size_t(texture)];
@@ -184,6 +195,18 @@ void PbrtPlacer::place_disk(const Placing& placing) {
   scene_.disks.push_back(disk);
 }
 
+void PbrtPlacer::set_normal_map(Mesh& mesh) {
+  const Material& m = scene_.materials[mesh.material];
+  if (m.normal_texture < 0 || scene_.textures[size_t(m.normal_texture)].kind != TextureKind::image)
+    return;
+  const size_t turned = count_turned(mesh), all = mesh.triangles.size();
+  if (turned > 0 && turned < all)
+    scene_.warnings.add(
+        "a normal map on triangles whose texture coordinates run both ways: its y is that of the "
+        "larger part");
+  if (2 * turned > all) mesh.material = materials_.with_turned_normals(mesh.material);
+}
+
 // Of one shape of an object; false: it is to be copied.
 bool PbrtPlacer::place_shared(const Placing& placing, const AnchoredMesh& local, bool is_quadric) {
   const PbrtShape& shape = placing.shape;
@@ -195,6 +218,7 @@ bool PbrtPlacer::place_shared(const Placing& placing, const AnchoredMesh& local,
     clean_mesh(mesh, scene_.warnings);
     mesh.material = material_of(placing);
     if (is_textured(scene_.materials[mesh.material])) add_default_uvs(mesh);
+    set_normal_map(mesh);
     return mesh;
   };
   if (!instancer_.place({&shape, material_of(placing), 0}, triangles,
@@ -225,6 +249,7 @@ void PbrtPlacer::place_mesh(const Placing& placing, const AnchoredMesh& local, b
   mesh.material = material_of(placing);
   const bool has_image = placing.is_emitting && !shape.light->image.empty();
   if (has_image || is_textured(scene_.materials[mesh.material])) add_default_uvs(mesh);
+  set_normal_map(mesh);
   const auto index = uint32_t(scene_.meshes.size());
   scene_.meshes.push_back(std::move(mesh));
   if (!placing.is_emitting) return;

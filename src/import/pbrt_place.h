@@ -47,6 +47,7 @@ class PbrtPlacer {
   void place_disk(const Placing& placing);
   void place_mesh(const Placing& placing, const AnchoredMesh& local, bool is_quadric);
   bool place_shared(const Placing& placing, const AnchoredMesh& local, bool is_quadric);
+  void set_normal_map(Mesh& mesh);
   static bool are_normals_turned(const Placing& placing, bool is_quadric);
   uint32_t material_of(const Placing& placing);
   bool needs_triangles(const Placing& placing);

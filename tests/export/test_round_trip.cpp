@@ -127,7 +127,9 @@ TEST_CASE("lights, cameras and materials survive in every format") {
   const Scene scene = import_scene(folder.write("in.pbrt", world));
   for (const std::string name : {"out.pbrt", "out.gltf", "out.glb"}) {
     CAPTURE(name);
-    const std::vector<Warning> lost = export_scene(scene, folder.path(name));
+    // y is said to be up, so that positions stay what they are.
+    const std::vector<Warning> lost =
+        export_scene(scene, folder.path(name), nullptr, Vec3{0, 1, 0});
     CHECK(has_warning(lost, "spheres and disks") == (name != "out.pbrt"));
     const Scene back = import_scene(folder.path(name));
     CHECK(back.warnings.entries().empty());
@@ -207,7 +209,7 @@ TEST_CASE("textures, masks and scenes far from the origin survive") {
   REQUIRE(scene.origin != Vec3d{});
   for (const std::string name : {"out.pbrt", "out.glb"}) {
     CAPTURE(name);
-    export_scene(scene, folder.path(name));
+    export_scene(scene, folder.path(name), nullptr, Vec3{0, 1, 0});
     const Scene back = import_scene(folder.path(name));
     CHECK(back.origin == scene.origin);
     REQUIRE(back.meshes.size() == 1);
@@ -413,7 +415,7 @@ TEST_CASE("instances stay instances in every format") {
   for (const std::string name : {"out.pbrt", "out.gltf", "out.glb"}) {
     CAPTURE(name);
     const std::string path = folder.path(name);
-    export_scene(scene, path);
+    export_scene(scene, path, nullptr, Vec3{0, 1, 0});
     const std::string text = name == "out.glb" ? std::string() : text_of(path);
     if (name == "out.pbrt") {
       CHECK(count_of(text, "ObjectInstance") == scene.instances.size());

@@ -1,0 +1,73 @@
+// Texture coordinates for pbrt, which has one set of them per mesh, with v up.
+//
+// pbrt looks up a normal map at (u, 1 - v), repeated, and an emission's image at (u, 1 - v),
+// clamped [1]; only "imagemap" textures have a scale and an offset, none has a rotation. So the
+// coordinates that are written are those of the image that cannot be moved, and other images are
+// placed by them.
+//
+// References: [1] pbrt-v4, materials.h (NormalMap), lights.h (DiffuseAreaLight::L), textures.h
+//   (ImageTextureBase), util/image.h (BilerpChannel).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "export/texture_look.h"
+
+namespace troffer {
+
+// Linear map of (u,v), and an offset.
+struct UvMap {
+  Vec2d along_u{1, 0}, along_v{0, 1}, offset;
+
+  Vec2d operator()(const Vec2& uv) const {
+    return along_u * double(uv.x) + along_v * double(uv.y) + offset;
+  }
+};
+
+class PbrtUvs {
+ public:
+  // For a material and the light on it (null: none). Warnings: what one set cannot hold.
+  PbrtUvs(const Scene& scene, const MaterialUvs& uvs, uint32_t material, const Light* light,
+          WarningLog& warnings);
+
+  // The coordinates of a mesh as they are written; empty where nothing looks at them and it has
+  // none.
+  std::vector<Vec2> of(const Mesh& mesh) const;
+  bool is_second() const { return is_second_; }
+  bool has_normals() const { return normal_.has_value(); }
+
+  // Looks of the images of normals and of emission, to be written so that no placing is left.
+  const Texture& normal() const { return *normal_; }
+  const Texture& emission() const { return *emission_; }
+  // Sign of the normal map's x and y in pbrt's tangent frame (x along u, y = normal × x).
+  // is_turned: on triangles whose (u,v) run clockwise.
+  Vec2 normal_signs(bool is_turned, bool is_v_up) const;
+  // Whether a triangle's (u,v), of the set that is written, run clockwise.
+  bool is_turned(const Mesh& mesh, const Triangle& t) const;
+
+  // An image texture's look, such that its placing can be said, and the parameters that say it.
+  struct Placing {
+    Texture look;
+    std::string parameters;
+  };
+  std::optional<Placing> placing(std::span<const int32_t> textures);
+
+ private:
+  const Scene& scene_;
+  const MaterialUvs& uvs_;
+  uint32_t material_;
+  WarningLog& warnings_;
+  bool is_second_ = false, is_used_ = false;
+  UvMap written_;                             // of a mesh's (u,v), of the set that is used
+  std::optional<Texture> normal_, emission_;  // looks
+
+  void choose_set(const std::vector<int32_t>& textures);
+  void place_fixed(const std::vector<int32_t>& others);
+  void lead(const Texture& look);
+  UvMap relative(const Texture& look) const;
+};
+
+}  // namespace troffer
