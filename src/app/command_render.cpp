@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -295,6 +296,19 @@ void add_outputs(const RenderCommand& c, const RenderResult& result, const Camer
   }
 }
 
+// Pictures and statistics replace older ones together.
+void write_files(const RenderCommand& c, const RenderResult& result, const Camera& camera,
+                 const LastingRun& lasting, PreviewFiles& files, Unfinished& left,
+                 const std::function<std::string()>& statistics) {
+  const bool is_unfinished = result.end == RenderEnd::stopped;
+  OutputSet set;
+  add_outputs(c, result, camera, lasting, files, left, set);
+  if (!c.stats.empty()) set.add(is_unfinished ? left.place(c.stats) : c.stats, statistics());
+  set.commit(!c.lasting.checkpoint.empty());  // safe before the checkpoint goes
+  if (is_unfinished) return;
+  for (const std::string& path : c.outputs) files.is_finished(path);
+}
+
 // What is seen of the picture, and kept, is the leading process's.
 void join(RenderCommand& c, Crew& crew) {
   if (c.options.threads == 0) c.options.threads = crew.usual_threads();
@@ -375,15 +389,10 @@ int run_render(RenderCommand c) {
   if (crew != nullptr && !crew->leads()) return exit_done;
   mark = Clock::now();
   Unfinished left;
-  OutputSet set;
-  add_outputs(c, result, camera, lasting, files, left, set);
-  seconds.write = seconds_since(mark);
-  if (!c.stats.empty())
-    set.add(result.end == RenderEnd::stopped ? left.place(c.stats) : c.stats,
-            statistics_json(c, result, seconds, seconds_since(start), up.decision));
-  set.commit(!c.lasting.checkpoint.empty());  // safe before the checkpoint goes
-  if (result.end != RenderEnd::stopped)
-    for (const std::string& path : c.outputs) files.is_finished(path);
+  write_files(c, result, camera, lasting, files, left, [&] {
+    seconds.write = seconds_since(mark);
+    return statistics_json(c, result, seconds, seconds_since(start), up.decision);
+  });
   lasting.finish(result);
   if (c.options.parts == 1) keep_cells(scene, cells.get(), c.solution, c.is_quiet);
   return tell(result, c, seconds_since(start), left);
