@@ -184,6 +184,42 @@ TEST_CASE("what emits as it was lit looks as the room did") {
   CHECK(off / sum < 0.06);
 }
 
+TEST_CASE("a lightmap is named when a file is read, and shown where it is asked for") {
+  const TempFolder folder;
+  const Scene scene = room();
+  written(scene, BakedShading::lightmap, folder.path("room.gltf"));
+  const Scene plain = import_scene(folder.path("room.gltf"));
+  REQUIRE(!plain.warnings.entries().empty());
+  CHECK(plain.warnings.entries()[0].text.find("MOZ_lightmap") != std::string::npos);
+  ImportOptions options;
+  options.shows_baked = true;
+  const Scene shown = import_scene(folder.path("room.gltf"), options);
+  CHECK(shown.warnings.entries().empty());
+  for (const Mesh& m : shown.meshes) {
+    CHECK(!m.lights.empty());
+    CHECK(shown.materials[m.material].kind == MaterialKind::diffuse);
+  }
+  // A wall's mean: what it sends is base colour × E / pi.
+  Camera c;
+  c.position = {0, 0, 1.2f};
+  c.forward = {1, 0, 0};
+  c.right = {0, -1, 0};
+  c.up = {0, 0, 1};
+  c.half_extent = 0.3f;
+  const auto mean = [&](Scene s, int depth, double scale) {
+    RenderOptions o;
+    o.method = Method::path;
+    o.depth = depth;
+    o.spp = depth == 0 ? 16 : 256;
+    o.width = o.height = 24;
+    const RenderResult r = render(PreparedScene(std::move(s)), c, o, {}, never_stop);
+    double sum = 0;
+    for (const Rgb& p : r.layers[0].image.pixels) sum += double(luminance(p)) * scale;
+    return sum / (24 * 24);
+  };
+  CHECK(mean(shown, 0, 1) == doctest::Approx(mean(scene, -1, luminous_efficacy)).epsilon(0.05));
+}
+
 TEST_CASE("unlit pictures and colours of vertices are written as their extensions have it") {
   const TempFolder folder;
   BakeResult r;

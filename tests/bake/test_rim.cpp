@@ -1,0 +1,92 @@
+// The foot of walls: a floor that reaches below them shows, in the lit room, what measure finds
+// there. Expected values: troffer measure --method path of the same scenes.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "bake/bake.h"
+#include "import/import.h"
+
+using namespace troffer;
+
+namespace {
+
+const StopFlag never_stop = false;
+
+BakeResult baked(Scene scene, int resolution, int samples) {
+  BakeOptions o;
+  o.atlas.resolution = resolution;
+  o.samples = samples;
+  o.light.threads = 2;
+  const PreparedScene prepared(as_meshes(std::move(scene)));
+  BakeResult r = bake(prepared, o, {}, never_stop);
+  REQUIRE(r.is_complete);
+  return r;
+}
+
+Scene room(const std::string& name) {
+  return import_scene(std::string(TROFFER_SOURCE_DIR "/tests/bake/rim/") + name);
+}
+
+// Bilinear.
+double light_at(const Image& image, const Vec2& uv) {
+  const double x = double(uv.x) * image.width - 0.5, y = double(uv.y) * image.height - 0.5;
+  const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
+  double sum = 0;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i)
+      sum += double(luminance(image.at(x0 + i, y0 + j))) * (i == 1 ? x - x0 : 1 - x + x0) *
+             (j == 1 ? y - y0 : 1 - y + y0);
+  return sum;
+}
+
+// What the lightmap shows at a place of the floor, which lies at y = 0; as seen from above.
+double light_on_floor(const BakeResult& r, double x, double z) {
+  const Vec3d at(x, 0, z);
+  for (size_t m = 0; m < r.scene.meshes.size(); ++m) {
+    const Mesh& mesh = r.scene.meshes[m];
+    const BakedSurface& surface = r.baked.meshes[m];
+    if (surface.page < 0 || mesh.name != "floor") continue;
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
+      const Vec3d n = cross(b - a, c - a);
+      if (n.y <= 0) continue;
+      const double u = dot(cross(b - at, c - at), n) / dot(n, n),
+                   v = dot(cross(c - at, a - at), n) / dot(n, n), w = 1 - u - v;
+      if (u < -1e-6 || v < -1e-6 || w < -1e-6) continue;
+      return light_at(r.irradiance[size_t(surface.page)], surface.uvs[t[0]] * float(u) +
+                                                              surface.uvs[t[1]] * float(v) +
+                                                              surface.uvs[t[2]] * float(w));
+    }
+  }
+  FAIL("no floor there");
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("a floor keeps its light at the foot of walls that reach the ceiling") {
+  for (const char* name : {"open-sheets.gltf", "closed-box.gltf"}) {
+    for (const int resolution : {128, 256}) {
+      CAPTURE(name);
+      CAPTURE(resolution);
+      const BakeResult r = baked(room(name), resolution, 32);
+      CHECK(light_on_floor(r, 3.895, 2) == doctest::Approx(458.6).epsilon(0.06));
+      CHECK(light_on_floor(r, 3.88, 2) == doctest::Approx(463.6).epsilon(0.06));
+    }
+  }
+}
+
+TEST_CASE("a wall that ends below the ceiling darkens nothing either") {
+  const BakeResult r = baked(room("free-standing.gltf"), 128, 32);
+  const double near = light_on_floor(r, 3.895, 2), far = light_on_floor(r, 3.7, 2);
+  CHECK(near > 0.8 * far);
+}
+
+TEST_CASE("with a wall without thickness the lit side keeps its light, the dark one stays dark") {
+  Scene scene = room("open-sheets.gltf");
+  std::erase_if(scene.meshes, [](const Mesh& m) { return m.name == "b"; });
+  const BakeResult r = baked(std::move(scene), 256, 32);
+  CHECK(light_on_floor(r, 3.88, 2) == doctest::Approx(463.6).epsilon(0.06));
+  CHECK(light_on_floor(r, 4.3, 2) < 5);
+}
