@@ -5,6 +5,7 @@
 
 #include "bsdf/choice.h"
 #include "bsdf/coated_glass.h"
+#include "bsdf/facet_lobe.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/gains.h"
 #include "bsdf/ggx.h"
@@ -89,10 +90,10 @@ BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is
   else if (b.clear.share > 0)
     s.reflected *= b.clear.kept(pass, s.reflected);
   if (b.is_grained)  // reflects alone
-    return {s.reflected * (ggx_distribution(m, b.widths) * ggx_visibility(wo, wi, b.widths) * wi.z),
+    return {s.reflected * (facet_density(b, m, wo, wi) * wi.z),
             ggx_pdf_reflected(wo, m, b.widths, ggx_bound(wo, b.widths))};
   const float share = is_transmission ? 1 - reflected : reflected;
-  const float f = ggx_distribution(m, b.alpha) * ggx_visibility(wo.z, wi.z, b.alpha) * wi.z;
+  const float f = facet_density(b, m, wo, wi) * wi.z;
   return {(is_transmission ? s.transmitted : s.reflected) * f,
           share * ggx_pdf_reflected(wo, m, b.alpha, bound_of(b, wo))};
 }
@@ -112,8 +113,8 @@ BsdfValue glossy_refracted(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
   if (!(denominator > 0)) return {};
   const float jacobian = -ci / denominator;  // normals per solid angle of wi
   // D G2 co |ci| / (wo.z |wi.z| denominator eta²) |wi.z|, with G2 = 4 wo.z |wi.z| visibility
-  const float f = ggx_distribution(h, b.alpha) * 4 * ggx_visibility(wo.z, -wi.z, b.alpha) * -wi.z *
-                  co * jacobian / (b.eta * b.eta);
+  const float f =
+      facet_density(b, h, wo, {wi.x, wi.y, -wi.z}) * 4 * -wi.z * co * jacobian / (b.eta * b.eta);
   return {s.transmitted * f, share * ggx_pdf_reflected(wo, h, b.alpha, 1) * 4 * co * jacobian};
 }
 

@@ -12,6 +12,8 @@
 // at most the energy on that comes in.
 //
 // Models, all with rgb inputs clamped to [0,1] (no surface makes energy):
+// - FacetModel: all that follows about lost energy holds for balanced facets. Those that scatter
+//   once (bsdf/facet_lobe.h) lose it, as Mitsuba defines them.
 // - Smooth (alpha < smooth_alpha) glossy lobes are delta lobes: absent from evaluate and pdf.
 // - Rough ones are GGX, height-correlated Smith. Energy lost between microfacets returns as a
 //   reciprocal diffuse lobe [1]: for conductors and glTF's metals scaled by the mean Fresnel
@@ -88,7 +90,8 @@ struct Bsdf {
   bool is_within = false;      // solid glass seen from inside: what covers it lies on the far side
   bool has_separable = false;  // the soft lobe, or any of the cosine-shaped ones below
 
-  bool is_grained = false;  // the glossy lobe has `widths`, else alpha all around
+  bool is_grained = false;                   // the glossy lobe has `widths`, else alpha all around
+  FacetModel facets = FacetModel::balanced;  // of the glossy lobe
 
   float alpha = 0;   // GGX width of the glossy lobe; grained: the geometric mean of both
   GgxWidths widths;  // in the frame whose x axis is the grain
@@ -119,7 +122,8 @@ struct Bsdf {
   float coat_f0 = 0, coat_f90 = 0;
 
   AlbedoRow one, grazing;  // GgxTables at this alpha
-  AlbedoRow coat_row;      // CoatTable
+  AlbedoRow coat_row;      // CoatTable, or what a RoughCoatTable does not let through
+  AlbedoRow coat_gloss;    // what the coat reflects as gloss
   AlbedoRow near, far;     // GlassTables for light on the viewer's side, on the far side
 };
 

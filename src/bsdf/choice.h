@@ -19,7 +19,7 @@ inline Rgb glossy_albedo(const Bsdf& b, float c) {
     return s.reflected + s.transmitted;
   }
   const CosineCoordinate at(c);
-  if (b.fresnel == Bsdf::Fresnel::coat) return b.coat_row.at(at) * b.reflected_share;
+  if (b.fresnel == Bsdf::Fresnel::coat) return b.coat_gloss.at(at) * b.reflected_share;
   // A film's colours at the angle of the mirror's direction stand for those of all facets.
   if (b.film.share > 0 && b.fresnel == Bsdf::Fresnel::schlick)
     return split_at(b, c).reflected * b.one.at(at);

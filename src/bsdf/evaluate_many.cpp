@@ -188,7 +188,8 @@ void evaluate_one_by_one(const Bsdf& b, const Vec3& wo, size_t n, const BsdfLane
 
 void evaluate_many(const Bsdf& b, const Vec3& wo, size_t n, const BsdfLanes& l) {
   if (b.has_transmission || b.glass_weight > 0 || b.is_grained || b.cover.share > 0 ||
-      b.clear.share > 0 || b.film.share > 0 || !is_product(b.soft) || b.reflected_share != Rgb{1})
+      b.clear.share > 0 || b.film.share > 0 || b.facets != FacetModel::balanced ||
+      !is_product(b.soft) || b.reflected_share != Rgb{1})
     return evaluate_one_by_one(b, wo, n, l);
   const bool is_anything = wo.z > 0 && !is_purely_delta(b);
   const LobeConstants c = is_anything ? lobe_constants(b, wo.z) : LobeConstants{};

@@ -12,7 +12,7 @@ namespace troffer {
 // Multiple scattering between conducting microfacets of mean reflectance f [1]: the geometric
 // series of reflections after the second, f² E / (1 - f (1 - E)). `weight` is the metal's share.
 void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight) {
-  if (b.is_smooth || weight == 0) return;
+  if (b.is_smooth || weight == 0 || b.facets != FacetModel::balanced) return;
   const bool is_clear = b.clear.share > 0 && !b.is_within;
   const GrainTable* grain = (b.is_grained || is_clear) && in.prepared.grain >= 0
                                 ? &in.tables.grain(in.prepared.grain)
@@ -39,7 +39,8 @@ void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight) {
 void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint) {
   const FilmGlassTable* film = film_glass_of(b, in);
   // Without a table a film's reflectance is not known in the mean: what is lost stays lost.
-  if (b.is_smooth || (b.film.share > 0 && !b.is_thin && !film)) return;
+  if (b.is_smooth || b.facets != FacetModel::balanced) return;
+  if (b.film.share > 0 && !b.is_thin && !film) return;
   b.near_mean = 1 - b.near.average;
   b.far_mean = 1 - b.far.average;
   if (b.clear.share > 0 || b.cover.share > 0) {

@@ -60,6 +60,7 @@ void set_roughness(Bsdf& b, const Inputs& in, bool can_have_grain = false) {
     set_grain(b, in, in.value(in.material.anisotropy));
   b.is_smooth = b.alpha < smooth_alpha;
   if (b.is_smooth) return;
+  if (in.material.kind != MaterialKind::metallic_roughness) b.facets = in.material.facets;
   b.one = in.tables.ggx().one.row(b.alpha);
   b.grazing = in.tables.ggx().grazing.row(b.alpha);
 }
@@ -170,12 +171,20 @@ void set_coated_diffuse(Bsdf& b, const Inputs& in) {
   float average = in.prepared.dielectric_average;
   b.coat = Bsdf::Coat::smooth_dielectric;
   if (!b.is_smooth) {
-    b.coat_row = in.tables.coat(in.prepared.coat).reflected.row(b.alpha);
     b.coat = Bsdf::Coat::dielectric;
+    if (in.prepared.rough_coat >= 0) {
+      const RoughCoatTable& table = in.tables.rough_coat(in.prepared.rough_coat);
+      b.coat_row = table.held_back_row();
+      b.coat_gloss = table.reflected_row();
+    } else {
+      b.coat_row = b.coat_gloss = in.tables.coat(in.prepared.coat).reflected.row(b.alpha);
+    }
     average = b.coat_row.average;
   }
   b.diffuse_mean = 1 - average;
-  const float from_below = 1 - b.diffuse_mean / (ior * ior);
+  const float from_below = in.prepared.rough_coat >= 0 && !b.is_smooth
+                               ? in.tables.rough_coat(in.prepared.rough_coat).reflected_inside
+                               : 1 - b.diffuse_mean / (ior * ior);
   const Rgb rho = in.base();
   b.diffuse = rho / ((Rgb{1} - rho * from_below) * (ior * ior));
   if (b.clear.share > 0) {

@@ -38,6 +38,10 @@ TableNeeds table_needs(const Material& m, float clear_ior) {
       break;
     case MaterialKind::coated_diffuse:
       n.has_coat = is_rough;
+      if (m.facets != FacetModel::balanced && m.roughness.texture < 0) {
+        const float alpha = alpha_of(safe01(m.roughness.value), m.roughness_meaning);
+        if (alpha >= smooth_alpha) n.single_coat_alpha = alpha;
+      }
       n.has_dielectric_average = true;
       break;
     case MaterialKind::conductor:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bsdf/facet_lobe.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/material_inputs.h"
 
@@ -62,6 +63,8 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
     needs_sheen |= needs.has_sheen;
     needs_film |= needs.has_film;
     if (needs.has_coat) p.coat = table_for(coats_, p.ior, max_iors);
+    if (needs.single_coat_alpha > 0)
+      p.rough_coat = rough_coat_for(m, needs.single_coat_alpha, p.ior);
     if (needs.has_clear_coat) p.clear_coat = table_for(coats_, p.clear_coat_ior, max_iors);
     if (needs.has_clear_inside)
       p.clear_inside = table_for(coats_, 1 / p.clear_coat_ior, 2 * max_iors);
@@ -92,6 +95,18 @@ void BsdfTables::set_rows(ClearCoat& clear, const PreparedMaterial& p) const {
   if (!(clear.share > 0) || clear.is_smooth) return;
   clear.row = coat(p.clear_coat).reflected.row(clear.alpha);
   if (clear.bend > 1) clear.inner = coat(p.clear_inside).reflected.row(clear.alpha);
+}
+
+// Past max_iors of them, the coat is balanced: -1.
+int32_t BsdfTables::rough_coat_for(const Material& m, float alpha, float ior) {
+  const FacetShape shape = shape_of(m.facets);
+  for (size_t i = 0; i < rough_coats_.size(); ++i)
+    if (rough_coats_[i].shape == shape && rough_coats_[i].alpha == alpha &&
+        rough_coats_[i].ior == ior)
+      return int32_t(i);
+  if (rough_coats_.size() >= max_iors) return -1;
+  rough_coats_.push_back(make_rough_coat_table(shape, alpha, ior));
+  return int32_t(rough_coats_.size() - 1);
 }
 
 // Those under clear coats ask the tables of these.

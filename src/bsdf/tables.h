@@ -11,6 +11,7 @@
 #include "bsdf/clear_coat.h"
 #include "bsdf/film_glass_table.h"
 #include "bsdf/grain_table.h"
+#include "bsdf/rough_coat_table.h"
 #include "bsdf/thin_film.h"
 #include "scene/scene.h"
 
@@ -25,6 +26,7 @@ struct PreparedMaterial {
   int32_t coat = -1, glass = -1;  // tables for this ior, where the material can need them
   int32_t grain = -1;  // for its two widths and its clear coat, where they are the same everywhere
   int32_t film_glass = -1;    // rough solid glass under a film, where both are the same everywhere
+  int32_t rough_coat = -1;    // a coat of one width whose facets scatter once
   int32_t clear_inside = -1;  // … seen from below
   int32_t clear_coat = -1;    // for the index of its clear coat, where that can be rough
   float clear_coat_ior = 1.5f;   // made safe
@@ -41,6 +43,7 @@ struct TableNeeds {
   bool has_dielectric_average = false, has_conductor_average = false;
   bool has_sheen = false;
   bool has_film = false;
+  float single_coat_alpha = 0;    // of a rough coat whose facets scatter once; 0: none, or not even
   float filmed_alpha = 0;         // of rough solid glass under a film; 0: none, or not even
   bool has_clear_coat = false;    // tables for the index of its clear coat
   bool has_clear_inside = false;  // … seen from below
@@ -68,6 +71,7 @@ class BsdfTables {
   const CoatTable& coat(int32_t i) const { return coats_[size_t(i)]; }
   const GlassTables& glass(int32_t i) const { return glasses_[size_t(i)]; }
   const GrainTable& grain(int32_t i) const { return grains_[size_t(i)]; }
+  const RoughCoatTable& rough_coat(int32_t i) const { return rough_coats_[size_t(i)]; }
   const FilmGlassTable& film_glass(int32_t i) const { return film_glasses_[size_t(i)]; }
   // The rows of a clear coat, by the material's tables.
   void set_rows(ClearCoat& clear, const PreparedMaterial& material) const;
@@ -84,11 +88,13 @@ class BsdfTables {
   std::vector<CoatTable> coats_;
   std::vector<GlassTables> glasses_;
   std::vector<GrainTable> grains_;
+  std::vector<RoughCoatTable> rough_coats_;
   std::vector<FilmGlassTable> film_glasses_;
   AlbedoTable sheen_;
   InterferenceTable interference_;
   std::array<float, reflectances> reflectance_average_{};
 
+  int32_t rough_coat_for(const Material& m, float alpha, float ior);
   void build_grain_tables(const std::vector<Material>& materials);
   void build_film_glass_tables(const std::vector<Material>& materials);
 };

@@ -182,6 +182,8 @@ void GltfWriter::add_light(const Light& e) {
                     "' is left out: glTF has none (see --sky, --environment)");
     return;
   }
+  if (!has_surface(e.kind) && e.texture >= 0)
+    warnings_.add("pictures that points and spots throw are left out: they shine evenly");
   Rgb radiance = e.radiance;
   if (e.kind == LightKind::sun) {
     radiance *= float(pi * sqr(std::sin(double(e.angular_radius))));

@@ -52,6 +52,8 @@ std::string Writer::spot(const Light& e) {
   const double inner = deg_from_rad(std::acos(std::min(1.0, double(e.cos_inner))));
   if (e.falloff == SpotFalloff::square)
     warnings_.add("pbrt's spots fade smoothly between their angles, not by the square");
+  if (e.falloff == SpotFalloff::linear)
+    warnings_.add("pbrt's spots fade smoothly between their angles, not linearly");
   const Vec3d from = Vec3d(e.position) + scene_.origin;
   return "\"spot\"" + rgb("I", e) + point("from", from) + point("to", from + Vec3d(e.direction)) +
          fmt::format(" \"float coneangle\" {} \"float conedeltaangle\" {}", outer, outer - inner);
@@ -148,6 +150,8 @@ std::string Writer::sky(const Light& e) {
 
 std::string Writer::text(const Light& e) {
   std::string out;
+  if (!has_surface(e.kind) && e.texture >= 0)
+    warnings_.add("pictures that points and spots throw are left out: they shine evenly");
   switch (e.kind) {
     case LightKind::point:
       out = point_light(e);

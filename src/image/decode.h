@@ -28,6 +28,7 @@ bool is_hdr(std::span<const uint8_t> bytes);
 bool is_pfm(std::span<const uint8_t> bytes);
 bool is_exr(std::span<const uint8_t> bytes);
 bool is_webp(std::span<const uint8_t> bytes);
+bool is_bmp(std::span<const uint8_t> bytes);
 bool is_tga(std::span<const uint8_t> bytes);  // by guess: to be asked last
 
 Raster decode_png(const EncodedImage& encoded);
@@ -36,6 +37,7 @@ Raster decode_hdr(const EncodedImage& encoded);
 Raster decode_pfm(const EncodedImage& encoded);
 Raster decode_exr(const EncodedImage& encoded);
 Raster decode_webp(const EncodedImage& encoded);
+Raster decode_bmp(const EncodedImage& encoded);
 Raster decode_tga(const EncodedImage& encoded);
 
 }  // namespace troffer

@@ -28,12 +28,14 @@ Raster decode_raster(std::span<const uint8_t> bytes, const std::string& name_for
     if (is_hdr(bytes)) return decode_hdr(encoded);
     if (is_pfm(bytes)) return decode_pfm(encoded);
     if (is_webp(bytes)) return decode_webp(encoded);
+    if (is_bmp(bytes)) return decode_bmp(encoded);
     if (is_tga(bytes)) return decode_tga(encoded);
   } catch (const std::bad_alloc&) {
     encoded.fail("not enough memory to decode this picture");
   }
-  encoded.fail(bytes.empty() ? "empty file"
-                             : "not a PNG, JPEG, WebP, TGA, Radiance HDR, PFM or OpenEXR picture");
+  encoded.fail(bytes.empty()
+                   ? "empty file"
+                   : "not a PNG, JPEG, WebP, BMP, TGA, Radiance HDR, PFM or OpenEXR picture");
 }
 
 Raster linear_raster(Raster raster) {

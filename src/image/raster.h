@@ -20,7 +20,7 @@ struct Raster {
   int width = 0, height = 0, channels = 0;
   std::vector<uint8_t> texels8;     // 8-bit files
   std::vector<float> texels_float;  // 16-bit PNG scaled to [0,1]; HDR, PFM and EXR as they are
-  bool is_srgb = false;             // colour channels are sRGB encoded (PNG, JPEG, WebP, TGA)
+  bool is_srgb = false;             // colour channels are sRGB encoded (PNG, JPEG, WebP, BMP, TGA)
   // Of EXR files that say so and have others than Rec. 709: what their colours are made of.
   std::optional<Primaries> primaries = std::nullopt;
   // What PNG and JPEG files say; the texels are as stored until obey_own_colours().
@@ -35,8 +35,8 @@ struct Raster {
 // The most pixels that readers decode unless told otherwise.
 constexpr size_t default_max_pixels = size_t(64) << 20;
 
-// Decodes PNG, JPEG, WebP, TGA, Radiance HDR, PFM or EXR, told apart by content. A file that is
-// broken, truncated, of another format or of more than `max_pixels` pixels throws
+// Decodes PNG, JPEG, WebP, BMP, TGA, Radiance HDR, PFM or EXR, told apart by content. A file that
+// is broken, truncated, of another format or of more than `max_pixels` pixels throws
 // InputError{name_for_errors, 0, 0, what}; the size is checked before memory is taken.
 //
 // PNG: all colour types, depths and interlacing; tRNS becomes alpha.
@@ -44,6 +44,9 @@ constexpr size_t default_max_pixels = size_t(64) << 20;
 //   data (junk between markers) is forgiven, missing data is not.
 // WebP: lossy and lossless, alpha; not animated. TGA: colour, grey and mapped, run lengths, 8 to 32
 //   bits, any origin; the fourth byte is alpha where the header says so.
+// BMP: 1 to 32 bits, mapped, bit fields and run lengths, either order of rows; alpha where the
+// header
+//   has a field for it.
 // HDR: RGBE and XYZE (converted to Rec. 709), old and new run lengths, every orientation of the
 //   resolution line; pixels are divided by the header's EXPOSURE values, as the format asks.
 // PFM: both endians, colour and grey.

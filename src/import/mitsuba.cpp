@@ -48,15 +48,20 @@ class MitsubaReader {
   std::map<std::pair<const MitsubaNode*, std::string>,
            std::shared_ptr<const std::optional<MitsubaShape>>>
       in_groups_;
+  std::map<const MitsubaNode*, std::unique_ptr<MitsubaAttributes>> attributes_;  // of shapes
   size_t lights_ = 0;
   int depth_ = 0;
 
   void read_element(const MitsubaNode& node);
+  void read_integrator(const MitsubaNode& node);
   void add_shape(const MitsubaNode& node, const Affine& parent, bool is_instance);
   void add_plain_shape(const MitsubaNode& node, const Affine& world, bool is_instance);
   void add_part(const MitsubaNode& node, const Affine& world, bool is_instance,
                 const Attached& with, const MitsubaObjPart* part);
   std::optional<uint32_t> material_of(const Attached& with, bool is_emitting);
+  MitsubaAttributes* attributes_of(const MitsubaNode& node, const MitsubaShape& shape,
+                                   const Attached& with);
+  bool shows_images(const MitsubaNode& node) const;
   void add_instance(const MitsubaNode& node, const Affine& parent);
   void add_children(const MitsubaNode& group, const Affine& parent, bool is_instance);
   Attached attached_to(const MitsubaNode& node);
@@ -74,16 +79,32 @@ void MitsubaReader::read_element(const MitsubaNode& node) {
     add_shape(node, Affine(), false);
   } else if (node.tag == "emitter") {
     // An area light that stands by itself waits for shapes that refer to it.
-    if (node.type != "area") add_mitsuba_light(node, tree_, scene_);
+    if (node.type != "area") add_mitsuba_light(node, tree_, textures_, scene_);
   } else if (node.tag == "sensor") {
     add_mitsuba_camera(node, tree_, scene_);
+  } else if (node.tag == "integrator") {
+    read_integrator(node);
   } else if (node.tag == "medium") {
     // Those of shapes are read where shapes name them.
-  } else if (node.tag != "bsdf" && node.tag != "texture" && node.tag != "integrator" &&
-             node.tag != "sampler" && node.tag != "film" && node.tag != "spectrum" &&
-             node.tag != "boolean" && node.tag != "ref" && node.tag != "rfilter") {
+  } else if (node.tag != "bsdf" && node.tag != "texture" && node.tag != "sampler" &&
+             node.tag != "film" && node.tag != "spectrum" && node.tag != "boolean" &&
+             node.tag != "ref" && node.tag != "rfilter") {
     scene_.warnings.add("<" + shortened(node.tag) + "> is not known: left out");
   }
+}
+
+// Options of the command line say how a picture is made; what changes its light is told.
+void MitsubaReader::read_integrator(const MitsubaNode& node) {
+  if (get_flag(node, "hide_emitters", false))
+    scene_.warnings.add("integrator: hide_emitters is not supported: sources are seen");
+  const double depth = get_number(node, "max_depth", node.type == "direct" ? 2 : -1);
+  if (depth > 0)
+    scene_.warnings.add(
+        "integrator: its depth is not obeyed: light goes on to the end; render "
+        "--method path --depth " +
+        std::to_string(int(std::min(depth, 1e6)) - 1) + " does the same");
+  for (const MitsubaNode* child : node.children)
+    if (child->tag == "integrator") read_integrator(*child);
 }
 
 // What a medium absorbs per metre; that it scatters is left out.
@@ -96,7 +117,7 @@ Rgb MitsubaReader::absorption_of(const MitsubaNode& medium) {
   const auto color = [&](const char* name, Rgb fallback) {
     const MitsubaNode* p = find_parameter(medium, name);
     if (!p || !is_color(tree_.resolved(*p))) return fallback;
-    return color_of(tree_.resolved(*p), tree_.folder(), scene_.warnings, false);
+    return color_of(tree_.resolved(*p), tree_.folder(), scene_.warnings, SpectrumUse::factor);
   };
   const float scale = float(get_number(medium, "scale", 1));
   const Rgb albedo = clamp01(color("albedo", Rgb{0.75f})), all = color("sigma_t", Rgb{1});
@@ -236,10 +257,19 @@ void MitsubaReader::add_part(const MitsubaNode& node, const Affine& world, bool 
   if (is_instance) in_groups_[key] = shape;
   PlacedLook look;
   look.place = node.place;
+  MitsubaAttributes* attributes = *shape ? attributes_of(node, **shape, with) : nullptr;
+  textures_.set_attributes(attributes);
   if (with.emitter && is_instance) scene_.warnings.add("emitters of instances do not emit");
   if (with.emitter && !is_instance) look.emission = emission_of(node, *with.emitter);
   const std::optional<uint32_t> material = material_of(with, look.emission.has_value());
+  textures_.set_attributes(nullptr);
   warn_of_unused(node, scene_.warnings);
+  if (attributes && attributes->uses() > 0) {
+    auto own = std::make_shared<std::optional<MitsubaShape>>(*shape);
+    attributes->finish((*own)->mesh.mesh);
+    shape = own;
+    if (is_instance) in_groups_[key] = shape;
+  }
   if (!material || !*shape) return;
   if (part && part->name.empty() && !with.bsdf)
     scene_.warnings.add("materials of an OBJ file that no bsdf is named after: grey");
@@ -248,13 +278,48 @@ void MitsubaReader::add_part(const MitsubaNode& node, const Affine& world, bool 
   place(**shape, world, look);
 }
 
+// Whether a bsdf or emitter has textures that are looked up by the shape's (u,v).
+bool MitsubaReader::shows_images(const MitsubaNode& given) const {
+  const MitsubaNode& node = tree_.resolved(given);
+  if (node.tag == "texture" && (node.type == "bitmap" || node.type == "checkerboard")) return true;
+  return std::any_of(node.children.begin(), node.children.end(), [&](const MitsubaNode* child) {
+    return (child->tag == "texture" || child->tag == "bsdf" || child->tag == "ref") &&
+           shows_images(*child);
+  });
+}
+
+// Of shapes from PLY files; null: others have none.
+MitsubaAttributes* MitsubaReader::attributes_of(const MitsubaNode& node, const MitsubaShape& shape,
+                                                const Attached& with) {
+  if (node.type != "ply") return nullptr;
+  std::unique_ptr<MitsubaAttributes>& a = attributes_[&node];
+  if (!a) {
+    const bool has_images =
+        (with.bsdf && shows_images(*with.bsdf)) || (with.emitter && shows_images(*with.emitter));
+    a = std::make_unique<MitsubaAttributes>(shapes_.file_path(node), shape.mesh.mesh, has_images,
+                                            scene_);
+  }
+  return a.get();
+}
+
 void MitsubaReader::place(const MitsubaShape& shape, const Affine& world, const PlacedLook& look) {
   if (shape.kind == MitsubaShapeKind::sphere) {
     placer_.add_sphere(world, shape.centre, shape.radius, shape.is_turned, look);
   } else if (shape.kind == MitsubaShapeKind::disk) {
+    if (placer_.needs_coordinates(look)) {
+      const bool is_mirrored = world.swaps_handedness();
+      placer_.add_mesh({mitsuba_disk(), {}}, world, shape.is_turned != is_mirrored, look);
+      return;
+    }
     placer_.add_disk(world, shape.radius, shape.is_turned, look);
   } else {
     const bool is_mirrored = shape.keeps_side && world.swaps_handedness();
+    if (shape.mesh.mesh.uvs.empty() && !look.shape && placer_.needs_coordinates(look)) {
+      AnchoredMesh with_uvs = shape.mesh;
+      add_corner_uvs(with_uvs.mesh);
+      placer_.add_mesh(with_uvs, world, shape.is_turned != is_mirrored, look);
+      return;
+    }
     placer_.add_mesh(shape.mesh, world, shape.is_turned != is_mirrored, look);
   }
 }

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/coat.h"
+#include "base/facets.h"
 #include "import/measured_bsdf.h"
 #include "import/mitsuba_values.h"
-#include "import/spectra.h"
 #include "import/two_widths.h"
 
 namespace troffer {
@@ -65,8 +65,10 @@ uint32_t MitsubaBsdfs::nothing_index() {
 
 std::optional<uint32_t> MitsubaBsdfs::index_of(const MitsubaNode& given) {
   const MitsubaNode& node = tree_.resolved(given);
-  const auto found = made_.find(&node);
-  if (found != made_.end()) return found->second;
+  for (const MitsubaAttributes* a :
+       {static_cast<const MitsubaAttributes*>(nullptr), textures_.attributes()})
+    if (const auto found = made_.find({&node, a}); found != made_.end()) return found->second;
+  const size_t uses = textures_.attribute_uses();
   std::optional<Material> m = convert(node);
   std::optional<uint32_t> index;
   if (m) {
@@ -74,7 +76,8 @@ std::optional<uint32_t> MitsubaBsdfs::index_of(const MitsubaNode& given) {
     index = uint32_t(scene_.materials.size());
     scene_.materials.push_back(std::move(*m));
   }
-  return made_[&node] = index;
+  const bool shows_attributes = textures_.attribute_uses() > uses;
+  return made_[{&node, shows_attributes ? textures_.attributes() : nullptr}] = index;
 }
 
 // The bsdf within another one: the first; nothing where it is null.
@@ -93,20 +96,20 @@ void MitsubaBsdfs::read_alpha(const MitsubaNode& node, Material& m) {
   if (find_parameter(node, "alpha_u") || find_parameter(node, "alpha_v")) {
     const FloatInput u = textures_.real(node, {"alpha_u"}, default_alpha);
     const FloatInput v = textures_.real(node, {"alpha_v"}, default_alpha);
-    m.roughness = u;
-    m.roughness.value = std::sqrt(u.value * v.value);
-    const bool is_grained = m.kind == MaterialKind::conductor && u.texture < 0 && v.texture < 0;
-    if (is_grained)
-      set_two_widths(m, u.value, v.value);
-    else if (u.value != v.value || u.texture != v.texture)
-      approximate(node, "different roughness along u and v as its geometric mean");
+    const bool is_metal = m.kind == MaterialKind::conductor;
+    if (!is_metal || !set_two_widths(scene_, m, u, v)) {
+      m.roughness = u;
+      m.roughness.value = std::sqrt(u.value * v.value);
+      if (u.value != v.value || u.texture != v.texture)
+        approximate(node, "different roughness along u and v as its geometric mean");
+    }
   } else {
     m.roughness = textures_.real(node, {"alpha"}, default_alpha);
   }
-  // Its widths mean nearly the same where it is small.
   const std::string distribution = get_text(node, "distribution", "beckmann");
-  if (distribution != "ggx")
-    approximate(node, "microfacets \"" + shortened(distribution) + "\" as ggx of the same width");
+  m.facets = distribution == "ggx" ? FacetModel::single_ggx : FacetModel::single_beckmann;
+  if (distribution != "ggx" && distribution != "beckmann")
+    approximate(node, "microfacets \"" + shortened(distribution) + "\" as Beckmann's");
   get_flag(node, "sample_visible", true);
 }
 
@@ -130,11 +133,14 @@ Material MitsubaBsdfs::conductor(const MitsubaNode& node) {
   const std::string name = get_text(node, "material", tree_.is_legacy() && !eta ? "Cu" : "none");
   const double outside =
       find_parameter(node, "ext_eta") ? index_of_refraction(node, "ext_eta", "air") : 1;
-  if (eta && k) {
-    m.eta = metal_index_of(tree_.resolved(*eta), tree_.folder());
-    m.k = metal_index_of(tree_.resolved(*k), tree_.folder());
-  } else if (const auto known = named_metal("metal-" + name + "-eta")) {
-    m.eta = *known;
+  if (eta || k) {
+    m.eta = eta ? metal_index_of(tree_.resolved(*eta), tree_.folder()) : Rgb{0};
+    m.k = k ? metal_index_of(tree_.resolved(*k), tree_.folder()) : Rgb{1};
+  } else if (const auto known = mitsuba_metal(name)) {
+    m.eta = known->eta;
+    m.k = known->k;
+  } else if (const auto other = named_metal("metal-" + name + "-eta")) {
+    m.eta = *other;
     m.k = *named_metal("metal-" + name + "-k");
   } else {
     // 0 + i: reflects everything.
@@ -167,7 +173,8 @@ Material MitsubaBsdfs::dielectric(const MitsubaNode& node) {
 // Light that the base scatters is tinted at each inner reflection only where `nonlinear`; else all
 // reflections are as of a white base: ρ / (1 - F) in place of ρ / (1 - ρF), with F the mean
 // reflectance of the coat from inside. Our coat is the former; ρ / (1 - F + ρF) makes it the
-// latter.
+// latter. A roughness that differs from place to place, which Mitsuba 3 does not know, takes
+// balanced facets.
 Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
   Material m;
   m.kind = MaterialKind::coated_diffuse;
@@ -176,8 +183,14 @@ Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
                 index_of_refraction(node, "ext_ior", "air"));
   m.base_color = textures_.color(node, {"diffuse_reflectance"}, Rgb{0.5f});
   m.specular_color = textures_.color(node, {"specular_reflectance"}, Rgb{1});
+  if (m.roughness.texture >= 0) m.facets = FacetModel::balanced;
+  const bool is_rough = m.facets != FacetModel::balanced && m.roughness.value > 0;
   if (!get_flag(node, "nonlinear", false) && m.ior > 1) {
-    const float f = mean_reflectance_inside(double(m.ior));
+    const FacetShape shape =
+        m.facets == FacetModel::single_beckmann ? FacetShape::beckmann : FacetShape::ggx;
+    const float f =
+        is_rough ? mean_rough_reflectance_inside(shape, double(m.roughness.value), double(m.ior))
+                 : mean_reflectance_inside(double(m.ior));
     if (is_texture(m.base_color))
       m.base_color.texture = textures_.with_brightened_texels(m.base_color.texture, f);
     else
@@ -220,16 +233,23 @@ std::optional<Material> MitsubaBsdfs::masked(const MitsubaNode& node) {
 // Of bumps the texture is heights in metres, times `scale`.
 std::optional<Material> MitsubaBsdfs::bumped(const MitsubaNode& node) {
   std::optional<Material> m = nested(node);
-  const double scale = get_number(node, "scale", 1);
+  const auto scale = float(get_number(node, "scale", 1));
+  get_flag(node, "use_shadowing_function", true);
+  get_flag(node, "flip_invalid_normals", true);
   if (!m) return m;
   for (const MitsubaNode* child : node.children) {
     if (tree_.resolved(*child).tag != "texture") continue;
     child->is_used = true;
-    const ColorInput image = textures_.raw(*child);
-    if (node.type == "normalmap")
-      m->normal_texture = image.texture;
-    else if (image.texture >= 0)
-      m->bump = {float(scale) * image.value.r, image.texture, 0};
+    if (node.type != "normalmap") {
+      const FloatInput heights = textures_.real(*child);
+      if (heights.texture >= 0) m->bump = {scale * heights.value, heights.texture, 0};
+      continue;
+    }
+    const ColorInput normals = textures_.vector(*child);
+    const bool is_upright = normals.value.r == 0.5f && normals.value.g == 0.5f;
+    m->normal_texture = normals.texture;
+    if (normals.texture < 0 && !is_upright)
+      approximate(node, "without its normal, which is the same everywhere");
   }
   return m;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "import/mitsuba_texture.h"
@@ -33,7 +34,8 @@ class MitsubaBsdfs {
   Scene& scene_;
   const MitsubaTree& tree_;
   MitsubaTextures& textures_;
-  std::map<const MitsubaNode*, std::optional<uint32_t>> made_;
+  // By bsdf and, where it shows attributes of a shape, by those.
+  std::map<std::pair<const MitsubaNode*, const MitsubaAttributes*>, std::optional<uint32_t>> made_;
   std::map<std::array<float, 4>, uint32_t> with_medium_;
   std::optional<uint32_t> grey_, black_, nothing_;
   int depth_ = 0;

@@ -6,6 +6,7 @@
 #include "import/environment_file.h"
 #include "import/file.h"
 #include "import/mitsuba_daylight.h"
+#include "import/mitsuba_sensor.h"
 #include "import/mitsuba_values.h"
 #include "import/texture_loader.h"
 
@@ -15,21 +16,28 @@ namespace {
 
 class MitsubaLightReader {
  public:
-  MitsubaLightReader(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene)
-      : node_(node), tree_(tree), scene_(scene), world_(get_transform(node, "to_world")) {}
+  MitsubaLightReader(const MitsubaNode& node, const MitsubaTree& tree, MitsubaTextures& textures,
+                     Scene& scene)
+      : node_(node),
+        tree_(tree),
+        textures_(textures),
+        scene_(scene),
+        world_(get_transform(node, "to_world")) {}
 
   void read();
 
  private:
   const MitsubaNode& node_;
   const MitsubaTree& tree_;
+  MitsubaTextures& textures_;
   Scene& scene_;
   Affine world_;
 
   Rgb color(const char* name, Rgb fallback) {
     const MitsubaNode* p = find_parameter(node_, name);
     if (!p) return fallback;
-    if (is_color(*p)) return color_of(*p, tree_.folder(), scene_.warnings, true);
+    const ColorInput c = textures_.emission(*p);
+    if (c.texture < 0) return c.value;
     scene_.warnings.add(label() + "its texture is not supported: even");
     return fallback;
   }
@@ -39,6 +47,9 @@ class MitsubaLightReader {
   bool set_axes(Light& e);
   void point();
   void spot();
+  void projector();
+  void throw_picture(Light& e, int32_t texture, double half_width, double half_height);
+  bool is_checkerboard(const MitsubaNode& texture) const;
   void directional();
   void envmap();
 };
@@ -71,7 +82,7 @@ void MitsubaLightReader::point() {
   if (is_finite(e.position)) add(std::move(e));
 }
 
-// Linear in the angle between beam_width and cutoff_angle; ours is smooth in its cosine.
+// Linear in the angle between beam_width and cutoff_angle. A texture spans the cone's outer circle.
 void MitsubaLightReader::spot() {
   Light e;
   e.kind = LightKind::spot;
@@ -81,13 +92,62 @@ void MitsubaLightReader::spot() {
     node_.place.fail("spot: 0 <= beam_width <= cutoff_angle <= 180 expected");
   e.cos_outer = float(std::cos(rad_from_deg(cutoff)));
   e.cos_inner = std::max(float(std::cos(rad_from_deg(beam))), std::nextafter(e.cos_outer, 2.0f));
+  if (e.cos_inner - e.cos_outer > 1e-5f) e.falloff = SpotFalloff::linear;
   e.radiance = color("intensity", Rgb{1});
   e.position = Vec3(world_.translation - scene_.origin);
-  if (find_parameter(node_, "texture"))
-    scene_.warnings.add(label() + "its texture is not supported: even");
-  if (beam < cutoff)
-    scene_.warnings.add(label() + "fades smoothly, not linearly, between its two angles");
+  if (const MitsubaNode* picture = find_parameter(node_, "texture")) {
+    const ColorInput c = textures_.color(*picture);
+    e.radiance *= c.value;
+    if (cutoff < 90)
+      throw_picture(e, c.texture, std::tan(rad_from_deg(cutoff)), std::tan(rad_from_deg(cutoff)));
+    else
+      scene_.warnings.add(label() + "its texture is not supported where it is 180 degrees wide");
+  }
   if (turn(e, world_.columns[2]) && is_finite(e.position)) add(std::move(e));
+}
+
+// A picture of that half width and height at a distance of 1, its first row at -y. Its axes are
+// those of to_world without its scale.
+void MitsubaLightReader::throw_picture(Light& e, int32_t texture, double half_width,
+                                       double half_height) {
+  if (texture < 0) return;
+  const Vec3d z = normalize(world_.columns[2]);
+  const Vec3d x = normalize(world_.columns[0] - z * dot(world_.columns[0], z));
+  const Vec3d y = cross(z, x) * (world_.swaps_handedness() ? -1 : 1);
+  if (!is_finite(x) || !is_finite(y) || !is_finite(z)) return;
+  e.texture = texture;
+  e.axes = {Vec3(x / half_width), Vec3(y / half_height), Vec3(z)};
+}
+
+// A camera turned round: what it would see on its image plane falls there, in proportion to the
+// picture on every plane across its axis. `irradiance` times pi at a distance of 1.
+void MitsubaLightReader::projector() {
+  Light e;
+  e.kind = LightKind::point;
+  e.lights_plane_evenly = true;
+  const MitsubaNode* given = find_parameter(node_, "irradiance");
+  ColorInput c = given ? textures_.emission(*given) : ColorInput{};
+  double aspect = 1;
+  if (c.texture < 0) {
+    Texture even;
+    even.name = "even light of a projector";
+    scene_.textures.push_back(std::move(even));
+    c.texture = int32_t(scene_.textures.size()) - 1;
+  } else if (const Texture& t = scene_.textures[size_t(c.texture)];
+             t.kind == TextureKind::image && t.width > 0 && t.height > 0) {
+    // A checkerboard has no resolution there.
+    if (!is_checkerboard(*given)) aspect = double(t.width) / t.height;
+  }
+  const double half_height = mitsuba_vertical_extent(node_, aspect);
+  e.radiance = c.value * float(pi * get_number(node_, "scale", 1));
+  e.position = Vec3(world_.translation - scene_.origin);
+  // The picture's left is at +x, its top at +y, as for cameras.
+  throw_picture(e, c.texture, -half_height * aspect, -half_height);
+  if (e.texture >= 0 && is_finite(e.position)) add(std::move(e));
+}
+
+bool MitsubaLightReader::is_checkerboard(const MitsubaNode& texture) const {
+  return tree_.resolved(texture).type == "checkerboard";
 }
 
 void MitsubaLightReader::directional() {
@@ -118,7 +178,7 @@ void MitsubaLightReader::envmap() {
   e.radiance = Rgb{float(get_number(node_, "scale", 1))};
   if (!(e.radiance.r >= 0)) node_.place.fail("scale must not be negative");
   const std::string file = get_text(node_, "filename", "");
-  const ConfinedPath path = confined_path(tree_.folder(), file);
+  const ConfinedPath path = tree_.file(file);
   std::string problem = path.problem;
   if (path.is_fine() && scene_.left_out_image_bytes) {
     *scene_.left_out_image_bytes += size_of_left_out(path.path);
@@ -147,6 +207,8 @@ void MitsubaLightReader::read() {
     point();
   } else if (type == "spot") {
     spot();
+  } else if (type == "projector") {
+    projector();
   } else if (type == "directional") {
     directional();
   } else if (type == "constant") {
@@ -167,8 +229,9 @@ void MitsubaLightReader::read() {
 
 }  // namespace
 
-void add_mitsuba_light(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene) {
-  MitsubaLightReader(node, tree, scene).read();
+void add_mitsuba_light(const MitsubaNode& node, const MitsubaTree& tree, MitsubaTextures& textures,
+                       Scene& scene) {
+  MitsubaLightReader(node, tree, textures, scene).read();
 }
 
 }  // namespace troffer

@@ -5,6 +5,7 @@
 //   Analytic Model for Daylight", SIGGRAPH 1999 (appendix A.2: luminance).
 #pragma once
 
+#include "import/mitsuba_texture.h"
 #include "import/mitsuba_tree.h"
 #include "scene/scene.h"
 
@@ -13,6 +14,7 @@ namespace troffer {
 // Appends the lights of an <emitter> that stands by itself to the scene, positions counted from its
 // origin. Those that are not supported are warnings that name them. InputError: parameters that
 // cannot be used.
-void add_mitsuba_light(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene);
+void add_mitsuba_light(const MitsubaNode& node, const MitsubaTree& tree, MitsubaTextures& textures,
+                       Scene& scene);
 
 }  // namespace troffer

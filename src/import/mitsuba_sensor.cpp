@@ -1,5 +1,6 @@
 #include "import/mitsuba_sensor.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.h"
@@ -64,31 +65,6 @@ double set_frame(const MitsubaNode& node, const Vec3d& origin, Camera& camera,
   return length(x);
 }
 
-// tan of half the vertical field of view.
-double vertical_extent(const MitsubaNode& node, const Film& film) {
-  const double aspect = double(film.width) / double(film.height);
-  std::string axis = get_text(node, "fov_axis", "x");
-  double extent = 0;
-  if (const MitsubaNode* focal = find_parameter(node, "focal_length")) {
-    std::string text = focal->attribute("value");
-    if (text.ends_with("mm")) text.resize(text.size() - 2);
-    const std::vector<double> mm = numbers_of(*focal, text);
-    if (mm.size() != 1 || !(mm[0] > 0)) focal->place.fail("focal_length must be positive");
-    extent = std::hypot(36.0, 24.0) / 2 / mm[0];
-    axis = "diagonal";
-  } else {
-    const double fov = get_number(node, "fov", 50);
-    if (!(fov > 0 && fov < 180)) node.place.fail("fov must lie between 0 and 180 degrees");
-    extent = std::tan(rad_from_deg(fov) / 2);
-  }
-  if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
-  if (axis == "larger") axis = aspect > 1 ? "x" : "y";
-  if (axis == "x") return extent / aspect;
-  if (axis == "y") return extent;
-  if (axis == "diagonal") return extent / std::hypot(1.0, aspect);
-  node.place.fail("fov_axis '" + shortened(axis) + "' is not known");
-}
-
 // The part of the image plane that the crop shows, moved by the principal point.
 void set_window(const MitsubaNode& node, const Film& film, Camera& camera) {
   const double dx = 2 * get_number(node, "principal_point_offset_x", 0);
@@ -106,9 +82,57 @@ void set_window(const MitsubaNode& node, const Film& film, Camera& camera) {
                           float(y(film.crop_y + film.crop_height)), float(y(film.crop_y))};
 }
 
+// Distances along the view; the defaults, .01 and 10 000, are left at no limit.
+void set_clip(const MitsubaNode& node, Camera& camera) {
+  camera.near_clip = float(get_number(node, "near_clip", 0));
+  camera.far_clip = float(get_number(node, "far_clip", 0));
+  const bool is_fine = camera.near_clip >= 0 && std::isfinite(camera.near_clip) &&
+                       std::isfinite(camera.far_clip) &&
+                       (camera.far_clip == 0 || camera.far_clip > camera.near_clip);
+  if (!is_fine) node.place.fail("0 < near_clip < far_clip expected");
+}
+
 }  // namespace
 
+// Without `fov` by a lens of `focal_length` on film of 36 x 24 mm, whose diagonals match.
+double mitsuba_vertical_extent(const MitsubaNode& node, double aspect) {
+  std::string axis = get_text(node, "fov_axis", "x");
+  std::transform(axis.begin(), axis.end(), axis.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  const MitsubaNode* fov = find_parameter(node, "fov");
+  const MitsubaNode* focal = find_parameter(node, "focal_length");
+  if (fov && focal) focal->place.fail("either fov or focal_length expected, not both");
+  double extent = 0;
+  if (fov) {
+    const double degrees = get_number(node, "fov", 0);
+    if (!(degrees > 0 && degrees < 180)) node.place.fail("fov must lie between 0 and 180 degrees");
+    extent = std::tan(rad_from_deg(degrees) / 2);
+  } else {
+    std::string text = focal ? focal->attribute("value") : "50mm";
+    if (text.ends_with("mm")) text.resize(text.size() - 2);
+    const std::vector<double> mm = numbers_of(focal ? *focal : node, text);
+    if (mm.size() != 1 || !(mm[0] > 0)) focal->place.fail("focal_length must be positive");
+    extent = std::hypot(36.0, 24.0) / 2 / mm[0];
+    axis = "diagonal";
+  }
+  if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
+  if (axis == "larger") axis = aspect > 1 ? "x" : "y";
+  if (axis == "x") return extent / aspect;
+  if (axis == "y") return extent;
+  if (axis == "diagonal") return extent / std::hypot(1.0, aspect);
+  node.place.fail("fov_axis '" + shortened(axis) + "' is not known");
+}
+
 void add_mitsuba_camera(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene) {
+  if (node.type == "batch") {
+    for (const MitsubaNode* child : node.children) {
+      const MitsubaNode& inner = tree.resolved(*child);
+      if (inner.tag != "sensor" || inner.type == "batch") continue;
+      child->is_used = true;
+      add_mitsuba_camera(inner, tree, scene);
+    }
+    return;
+  }
   Camera camera;
   camera.name = !node.id.empty()        ? node.id
                 : scene.cameras.empty() ? "camera"
@@ -124,7 +148,7 @@ void add_mitsuba_camera(const MitsubaNode& node, const MitsubaTree& tree, Scene&
     camera.kind = CameraKind::orthographic;
     camera.half_extent = float(scale * film.height / film.width);
   } else {
-    camera.half_extent = float(vertical_extent(node, film));
+    camera.half_extent = float(mitsuba_vertical_extent(node, double(film.width) / film.height));
     camera.lens_radius = float(get_number(node, "aperture_radius", 0));
     camera.focal_distance = float(get_number(node, "focus_distance", 1e6));
     if (camera.lens_radius < 0 || !(camera.focal_distance > 0))
@@ -133,8 +157,8 @@ void add_mitsuba_camera(const MitsubaNode& node, const MitsubaTree& tree, Scene&
   if (!(camera.half_extent > 0) || !std::isfinite(camera.half_extent))
     node.place.fail("the sensor sees nothing");
   set_window(node, film, camera);
-  for (const char* name : {"near_clip", "far_clip", "shutter_open", "shutter_close", "kc"})
-    find_parameter(node, name);
+  set_clip(node, camera);
+  for (const char* name : {"shutter_open", "shutter_close", "kc"}) find_parameter(node, name);
   for (const MitsubaNode* child : node.children)
     if (child->tag == "sampler" || child->tag == "ref") child->is_used = true;
   warn_of_unused(node, scene.warnings);

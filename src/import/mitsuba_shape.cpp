@@ -1,6 +1,7 @@
 #include "import/mitsuba_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/units.h"
@@ -15,7 +16,7 @@ namespace troffer {
 
 namespace {
 
-constexpr int cylinder_steps = 64;
+constexpr int cylinder_steps = 64, disk_steps = 128, disk_rings = 16;
 constexpr double flat_tolerance = 1e-6;
 
 // [-1,1]², front +z.
@@ -27,32 +28,37 @@ Mesh rectangle() {
   return m;
 }
 
-// [-1,1]³, front outside, each side with (u,v) from 0 to 1.
+// [-1,1]³, front outside, sides and (u,v) in Mitsuba's order: bit k of a corner's number is the
+// sign of axis k.
 Mesh cube() {
+  constexpr std::array<uint32_t, 24> corners{1, 5, 4, 0, 3, 2, 6, 7, 1, 3, 7, 5,
+                                             5, 7, 6, 4, 4, 6, 2, 0, 3, 1, 0, 2};
+  const std::array<Vec2, 4> uvs{Vec2{0, 1}, Vec2{1, 1}, Vec2{1, 0}, Vec2{0, 0}};
+  const auto sign = [](uint32_t corner, uint32_t bit) { return corner & bit ? 1.0f : -1.0f; };
   Mesh m;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    for (const float side : {-1.0f, 1.0f}) {
-      Vec3 n, u, v;
-      n[axis] = side;
-      u[(axis + 1) % 3] = side;
-      v[(axis + 2) % 3] = 1;
-      const auto first = uint32_t(m.positions.size());
-      for (const Vec2 c : {Vec2{-1, -1}, Vec2{1, -1}, Vec2{1, 1}, Vec2{-1, 1}}) {
-        m.positions.push_back(n + u * c.x + v * c.y);
-        m.uvs.push_back({(c.x + 1) / 2, (c.y + 1) / 2});
-      }
-      m.triangles.push_back({first, first + 1, first + 2});
-      m.triangles.push_back({first, first + 2, first + 3});
-    }
+  for (uint32_t v = 0; v < corners.size(); ++v) {
+    const uint32_t c = corners[v];
+    m.positions.emplace_back(sign(c, 1), sign(c, 2), sign(c, 4));
+    m.uvs.push_back(uvs[v % 4]);
+    if (v % 4 != 0) continue;
+    m.triangles.push_back({v, v + 1, v + 2});
+    m.triangles.push_back({v + 3, v, v + 2});
   }
   return m;
 }
 
-// The mantle between two points, without ends, front outside.
+// Axes across a cylinder's axis, from whose first one its azimuth counts [3].
+struct Across {
+  Vec3d x, y;
+};
+Across across(const Vec3d& n) {
+  const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
+}
+
+// The mantle between two points, without ends, front outside: u around, v along.
 Mesh cylinder(const Vec3d& p0, const Vec3d& p1, double radius) {
-  const Vec3d axis = normalize(p1 - p0);
-  const Vec3d other = std::abs(axis.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d x = normalize(cross(other, axis)), y = cross(axis, x);
+  const auto [x, y] = across(normalize(p1 - p0));
   Mesh m;
   for (int i = 0; i <= cylinder_steps; ++i) {
     const double phi = 2 * pi * (i % cylinder_steps) / cylinder_steps;
@@ -108,9 +114,31 @@ bool belongs_to(const std::string& material, const MitsubaObjPart& part) {
 
 }  // namespace
 
+// Rings of quads between lines of one azimuth. Those of the innermost ring are triangles.
+Mesh mitsuba_disk() {
+  Mesh m;
+  for (int j = 0; j <= disk_rings; ++j) {
+    for (int i = 0; i <= disk_steps; ++i) {
+      const double r = double(j) / disk_rings;
+      const double phi = 2 * pi * (i % disk_steps) / disk_steps;
+      m.positions.emplace_back(Vec3d{r * std::cos(phi), r * std::sin(phi), 0});
+      const float turn = j == 0 ? (float(i) + 0.5f) / disk_steps : float(i) / disk_steps;
+      m.uvs.push_back({float(r), turn});
+    }
+  }
+  const auto at = [](int i, int j) { return uint32_t(j * (disk_steps + 1) + i); };
+  for (int j = 0; j < disk_rings; ++j) {
+    for (int i = 0; i < disk_steps; ++i) {
+      if (j > 0) m.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
+      m.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
+    }
+  }
+  return m;
+}
+
 std::string MitsubaShapes::file_path(const MitsubaNode& node) {
   const std::string name = get_text(node, "filename", "");
-  const ConfinedPath path = confined_path(tree_.folder(), name);
+  const ConfinedPath path = tree_.file(name);
   if (!path.is_fine()) node.place.fail("cannot use '" + shortened(name) + "': " + path.problem);
   return path.path;
 }
@@ -161,8 +189,9 @@ AnchoredMesh MitsubaShapes::read_mesh_file(const MitsubaNode& node, const Mitsub
     for (Vec2& uv : out.mesh.uvs) uv.y = 1 - uv.y;
   if (has_face_normals) out.mesh.normals.clear();
   if (out.mesh.normals.empty() && !has_face_normals) add_smooth_normals(out.mesh);
-  for (const char* name : {"max_smooth_angle", "collapse", "srgb", "shape_index"})
-    find_parameter(node, name);
+  if (find_parameter(node, "max_smooth_angle"))
+    warnings_.add("shape \"" + shortened(node.type) + "\": 'max_smooth_angle' is not used");
+  for (const char* name : {"collapse", "srgb", "shape_index"}) find_parameter(node, name);
   return out;
 }
 

@@ -1,7 +1,8 @@
 // Mitsuba's shape plugins -> geometry, in spaces of their own.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Shapes"; [2] W. Jakob, "Mitsuba 0.6
-//   Documentation", §8.1 (Shapes).
+//   Documentation", §8.1 (Shapes). [3] T. Duff et al., "Building an Orthonormal Basis, Revisited",
+//   JCGT 6(1), 2017.
 #pragma once
 
 #include <memory>
@@ -26,6 +27,10 @@ struct MitsubaShape {
   bool keeps_side = false;
 };
 
+// The unit disk as triangles with Mitsuba's (u,v): distance from the middle, and azimuth over a
+// turn.
+Mesh mitsuba_disk();
+
 // Of an OBJ file what is of one material, told by its name as MitsubaNode::name has it; of no name
 // what is of none of `others`.
 struct MitsubaObjPart {
@@ -42,6 +47,8 @@ class MitsubaShapes {
   // it is not supported. InputError: parameters or files that cannot be used.
   // Of an OBJ file all of it, or that part.
   std::optional<MitsubaShape> read(const MitsubaNode& node, const MitsubaObjPart* part = nullptr);
+  // The file that a shape names. InputError: it may not be used.
+  std::string file_path(const MitsubaNode& node);
 
  private:
   const MitsubaTree& tree_;
@@ -52,7 +59,6 @@ class MitsubaShapes {
     std::vector<uint8_t> bytes;
   } last_file_;
 
-  std::string file_path(const MitsubaNode& node);
   // The OBJ file that was read last: its parts may be of many bsdfs.
   struct LastObj {
     std::string path;

@@ -1,9 +1,12 @@
 #include "import/mitsuba_texture.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/coat.h"
 #include "import/file.h"
+#include "import/mitsuba_transform.h"
 #include "import/mitsuba_values.h"
 
 namespace troffer {
@@ -32,8 +35,7 @@ MitsubaTextures::MitsubaTextures(Scene& scene, const MitsubaTree& tree)
     if (node.tag != "texture" || node.type != "bitmap") continue;
     for (const MitsubaNode* child : node.children)
       if (child->name == "filename")
-        if (const ConfinedPath path = confined_path(tree.folder(), child->attribute("value"));
-            path.is_fine())
+        if (const ConfinedPath path = tree.file(child->attribute("value")); path.is_fine())
           loader_.expect_file(path.path);
   }
 }
@@ -67,9 +69,9 @@ void MitsubaTextures::set_coordinates(const MitsubaNode& node, Texture& look) {
                         "\": its to_uv shears: shown turned and scaled alone");
 }
 
-int32_t MitsubaTextures::bitmap(const MitsubaNode& node, bool is_raw) {
+int32_t MitsubaTextures::bitmap(const MitsubaNode& node) {
   Texture look;
-  look.is_srgb = !is_raw && !get_flag(node, "raw", false);
+  look.is_srgb = !get_flag(node, "raw", false);
   if (const double gamma = get_number(node, "gamma", -1); gamma > 0 && gamma != 2.2) {
     if (gamma == 1) look.is_srgb = false;
     if (gamma != 1) scene_.warnings.add("texture \"bitmap\": its gamma is read as sRGB");
@@ -83,7 +85,7 @@ int32_t MitsubaTextures::bitmap(const MitsubaNode& node, bool is_raw) {
     find_parameter(node, name);
   const std::string file = get_text(node, "filename", "");
   warn_of_unused(node, scene_.warnings);
-  const ConfinedPath path = confined_path(tree_.folder(), file);
+  const ConfinedPath path = tree_.file(file);
   return path.is_fine() ? loader_.from_file(path.path, look)
                         : loader_.missing(shortened(file), path.problem, look);
 }
@@ -91,15 +93,23 @@ int32_t MitsubaTextures::bitmap(const MitsubaNode& node, bool is_raw) {
 Rgb MitsubaTextures::plain(const MitsubaNode& node, std::string_view name, Rgb fallback) {
   const MitsubaNode* p = find_parameter(node, name);
   if (!p) return fallback;
-  if (is_color(*p)) return color_of(*p, tree_.folder(), scene_.warnings, false);
+  const MitsubaNode& given = tree_.resolved(*p);
+  if (is_color(given) && given.type.empty())
+    return color_of(given, tree_.folder(), scene_.warnings, use_);
+  if (given.tag == "texture" || given.tag == "spectrum") {
+    const ColorInput c = texture(given);
+    if (c.texture < 0) return c.value;
+  }
   scene_.warnings.add("texture \"" + shortened(node.type) +
                       "\": textures within it are shown as one colour");
   return fallback;
 }
 
-// Two by two squares on [0,1]², the first colour where both coordinates are in the same half.
+// Two by two squares on [0,1]², the first colour where both coordinates are in the same half; where
+// one number is asked for, in different halves: Mitsuba's two look-ups differ.
 ColorInput MitsubaTextures::checkerboard(const MitsubaNode& node) {
-  const Rgb a = plain(node, "color0", Rgb{0.4f}), b = plain(node, "color1", Rgb{0.2f});
+  Rgb a = plain(node, "color0", Rgb{0.4f}), b = plain(node, "color1", Rgb{0.2f});
+  if (is_number_ && !tree_.is_legacy()) std::swap(a, b);
   Texture t;
   t.name = node.id;
   t.kind = TextureKind::image;
@@ -112,32 +122,83 @@ ColorInput MitsubaTextures::checkerboard(const MitsubaNode& node) {
   return {Rgb{1}, append(std::move(t))};
 }
 
-ColorInput MitsubaTextures::scaled(const MitsubaNode& node, bool is_raw) {
+ColorInput MitsubaTextures::scaled(const MitsubaNode& node) {
   const Rgb factor = plain(node, "scale", Rgb{1});
   for (const MitsubaNode* child : node.children) {
     const MitsubaNode& inner = tree_.resolved(*child);
     if (inner.tag != "texture") continue;
     child->is_used = true;
-    ColorInput c = texture(inner, is_raw);
+    ColorInput c = texture(inner);
     c.value *= factor;
     return c;
   }
   return {factor * plain(node, "value", Rgb{1}), no_texture};
 }
 
-ColorInput MitsubaTextures::texture(const MitsubaNode& node, bool is_raw) {
+ColorInput MitsubaTextures::attribute(const MitsubaNode& node) {
+  const std::string name = get_text(node, "name", "");
+  const Rgb scale{float(get_number(node, "scale", 1))};
+  warn_of_unused(node, scene_.warnings);
+  if (attributes_)
+    if (const auto texture = attributes_->texture(name)) return {scale, *texture};
+  scene_.warnings.add("texture \"mesh_attribute\": the shape has no attribute '" + shortened(name) +
+                      "': black");
+  return {Rgb{0}, no_texture};
+}
+
+// Plugins of one colour: [1], "Spectra".
+std::optional<Rgb> MitsubaTextures::spectrum_plugin(const MitsubaNode& node) {
+  const std::string& type = node.type;
+  if (type == "uniform" || type == "srgb" || type == "constant" || type == "d65" ||
+      type == "rawconstant") {
+    Rgb c{1};
+    if (const auto v = type == "rawconstant" ? vector_value(node) : std::nullopt)
+      c = *v;
+    else
+      c = plain(node, "color", plain(node, "value", Rgb{1}));
+    return c * plain(node, "scale", Rgb{1});
+  }
+  if (type == "blackbody") {
+    for (const char* name : {"wavelength_min", "wavelength_max"}) find_parameter(node, name);
+    return blackbody_color(node, get_number(node, "temperature", 0));
+  }
+  if (type != "regular" && type != "irregular") return std::nullopt;
+  const auto list = [&](const char* name) {
+    const MitsubaNode* p = find_parameter(node, name);
+    return p ? numbers_of(*p, p->attribute("value")) : std::vector<double>();
+  };
+  const std::vector<double> values = list("values");
+  std::vector<double> at = list("wavelengths");
+  if (type == "regular") {
+    const double first = get_number(node, "wavelength_min", 360);
+    const double last = get_number(node, "wavelength_max", 830);
+    at.clear();
+    for (size_t i = 0; i < values.size(); ++i)
+      at.push_back(lerp(first, last, double(i) / double(std::max<size_t>(values.size(), 2) - 1)));
+  }
+  return mitsuba_color(spectrum_from_pairs(node, at, values), use_);
+}
+
+std::optional<Rgb> MitsubaTextures::vector_value(const MitsubaNode& node) {
+  const MitsubaNode* p = find_parameter(node, "value");
+  if (!p || (p->tag != "vector" && p->tag != "point")) return std::nullopt;
+  return Rgb(float(vector_attribute(*p, {}).x), float(vector_attribute(*p, {}).y),
+             float(vector_attribute(*p, {}).z));
+}
+
+ColorInput MitsubaTextures::texture(const MitsubaNode& node) {
   if (++depth_ > max_texture_depth) node.place.fail("textures contain each other too deeply");
   ColorInput out{unknown_color, no_texture};
   if (node.type == "bitmap") {
-    out = {Rgb{1}, bitmap(node, is_raw)};
+    out = {Rgb{1}, bitmap(node)};
   } else if (node.type == "checkerboard") {
     out = checkerboard(node);
   } else if (node.type == "scale") {
-    out = scaled(node, is_raw);
-  } else if (node.type == "uniform" || node.type == "srgb" || node.type == "constant" ||
-             node.type == "d65" || node.type == "rawconstant") {
-    out.value = plain(node, "color", plain(node, "value", Rgb{1}));
-    out.value *= plain(node, "scale", Rgb{1});
+    out = scaled(node);
+  } else if (node.type == "mesh_attribute") {
+    out = attribute(node);
+  } else if (const auto c = spectrum_plugin(node)) {
+    out.value = *c;
   } else {
     if (node.type == "gridtexture") out.value = plain(node, "color0", Rgb{0.2f});
     scene_.warnings.add("texture \"" + shortened(node.type) +
@@ -147,19 +208,19 @@ ColorInput MitsubaTextures::texture(const MitsubaNode& node, bool is_raw) {
   return out;
 }
 
-ColorInput MitsubaTextures::value(const MitsubaNode& given, bool is_emission, bool is_raw) {
+ColorInput MitsubaTextures::value(const MitsubaNode& given, SpectrumUse use, bool is_number) {
+  use_ = use;
+  is_number_ = is_number;
   const MitsubaNode& node = tree_.resolved(given);
-  if (node.tag == "texture" || node.tag == "spectrum") {
-    if (node.tag == "texture" || !node.type.empty()) return texture(node, is_raw);
-  }
-  return {color_of(node, tree_.folder(), scene_.warnings, is_emission), no_texture};
+  if (node.tag == "texture" || (node.tag == "spectrum" && !node.type.empty())) return texture(node);
+  return {color_of(node, tree_.folder(), scene_.warnings, use), no_texture};
 }
 
 ColorInput MitsubaTextures::color(const MitsubaNode& plugin,
                                   std::initializer_list<std::string_view> names, Rgb fallback) {
   const MitsubaNode* p = find_parameter(plugin, names);
   if (!p) return {fallback, no_texture};
-  ColorInput c = value(*p, false, false);
+  ColorInput c = value(*p, SpectrumUse::reflectance, false);
   if (c.texture < 0 && clamp01(c.value) != c.value) {
     scene_.warnings.add("bsdf \"" + shortened(plugin.type) + "\": '" + p->name +
                         "' above 1 is set to 1");
@@ -171,23 +232,64 @@ ColorInput MitsubaTextures::color(const MitsubaNode& plugin,
 FloatInput MitsubaTextures::real(const MitsubaNode& plugin,
                                  std::initializer_list<std::string_view> names, float fallback) {
   const MitsubaNode* p = find_parameter(plugin, names);
-  if (!p) return {fallback, no_texture, 0};
-  const ColorInput c = value(*p, false, true);
-  return {c.value.g, c.texture, 0};
+  return p ? real(*p) : FloatInput{fallback, no_texture, 0};
+}
+
+FloatInput MitsubaTextures::real(const MitsubaNode& parameter) {
+  const ColorInput c = value(parameter, SpectrumUse::factor, true);
+  const Rgb& v = c.value;
+  const float number = v.r == v.g && v.g == v.b ? v.r : luminance(v);
+  return {number, c.texture < 0 ? no_texture : with_grey_texels(c.texture), 0};
 }
 
 ColorInput MitsubaTextures::real_color(const MitsubaNode& plugin, std::string_view name) {
   const MitsubaNode* p = find_parameter(plugin, name);
-  return p ? value(*p, false, true) : ColorInput{Rgb{0}, no_texture};
+  return p ? value(*p, SpectrumUse::factor, false) : ColorInput{Rgb{0}, no_texture};
+}
+
+ColorInput MitsubaTextures::color(const MitsubaNode& parameter) {
+  return value(parameter, SpectrumUse::reflectance, false);
 }
 
 ColorInput MitsubaTextures::emission(const MitsubaNode& parameter) {
-  return value(parameter, true, false);
+  return value(parameter, SpectrumUse::emission, false);
 }
 
-ColorInput MitsubaTextures::raw(const MitsubaNode& given) {
-  const MitsubaNode& node = tree_.resolved(given);
-  return node.tag == "texture" ? texture(node, true) : ColorInput{Rgb{1}, no_texture};
+ColorInput MitsubaTextures::vector(const MitsubaNode& parameter) {
+  return value(parameter, SpectrumUse::factor, false);
+}
+
+// Where a number is asked for, colours count by their luminance.
+int32_t MitsubaTextures::with_grey_texels(int32_t index) {
+  const Texture& from = scene_.textures[size_t(index)];
+  if (from.kind != TextureKind::image || from.channels < 3) return index;
+  const auto known = grey_.find(index);
+  if (known != grey_.end()) return known->second;
+  const auto channels = size_t(from.channels);
+  Texture t = from;
+  t.channels = 1;
+  const size_t texels = size_t(t.width) * size_t(t.height);
+  const auto is_grey = [&](const auto& v) {
+    for (size_t i = 0; i < texels * channels; i += channels)
+      if (v[i] != v[i + 1] || v[i] != v[i + 2]) return false;
+    return true;
+  };
+  if (from.texels8.empty() ? is_grey(from.texels_float) : is_grey(from.texels8))
+    return grey_[index] = index;
+  std::vector<float> grey(texels);
+  for (size_t i = 0; i < texels; ++i) {
+    Rgb c;
+    for (size_t k = 0; k < 3; ++k) {
+      const size_t at = i * channels + k;
+      const float v = from.texels8.empty() ? from.texels_float[at] : float(from.texels8[at]) / 255;
+      c[k] = from.is_srgb && !from.texels8.empty() ? linear_from_srgb(v) : v;
+    }
+    grey[i] = luminance(c);
+  }
+  t.texels8.clear();
+  t.texels_float = std::move(grey);
+  t.is_srgb = false;
+  return grey_[index] = append(std::move(t));
 }
 
 int32_t MitsubaTextures::with_brightened_texels(int32_t index, float f) {

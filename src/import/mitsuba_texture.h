@@ -4,9 +4,13 @@
 //   Documentation", §8.4 (Textures).
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "import/mitsuba_attributes.h"
+#include "import/mitsuba_spectrum.h"
 #include "import/mitsuba_tree.h"
 #include "import/texture_loader.h"
 #include "scene/scene.h"
@@ -22,14 +26,24 @@ class MitsubaTextures {
   // warning that names it. InputError: values that cannot be used.
   ColorInput color(const MitsubaNode& plugin, std::initializer_list<std::string_view> names,
                    Rgb fallback);
+  // Of colours the luminance.
   FloatInput real(const MitsubaNode& plugin, std::initializer_list<std::string_view> names,
                   float fallback);
+  FloatInput real(const MitsubaNode& parameter);
   // A colour of any size, 0 where there is none.
   ColorInput real_color(const MitsubaNode& plugin, std::string_view name);
-  // Of an area light.
+  ColorInput color(const MitsubaNode& parameter);
+  // Of a source of light.
   ColorInput emission(const MitsubaNode& parameter);
-  // A texture of numbers, not colours (normal maps, heights): no_texture where it is not there.
-  ColorInput raw(const MitsubaNode& texture);
+  // Three numbers per place, as of a normal map.
+  ColorInput vector(const MitsubaNode& parameter);
+
+  // The shape whose attributes textures of type mesh_attribute show from now on; null: none, and
+  // they are one colour, with a warning.
+  void set_attributes(MitsubaAttributes* attributes) { attributes_ = attributes; }
+  const MitsubaAttributes* attributes() const { return attributes_; }
+  // Number of attributes shown of that shape.
+  size_t attribute_uses() const { return attributes_ ? attributes_->uses() : 0; }
 
   // A texture of which every value v of every channel is v / (1 - f + f v): Lambertian reflection
   // under a coat that is darker than Mitsuba's, made equal to it (mitsuba_bsdf.cpp).
@@ -41,11 +55,21 @@ class MitsubaTextures {
   TextureLoader loader_;
   int depth_ = 0;
 
-  ColorInput value(const MitsubaNode& node, bool is_emission, bool is_raw);
-  ColorInput texture(const MitsubaNode& node, bool is_raw);
-  int32_t bitmap(const MitsubaNode& node, bool is_raw);
+  // Of the parameter that is being read.
+  SpectrumUse use_ = SpectrumUse::reflectance;
+  bool is_number_ = false;
+  MitsubaAttributes* attributes_ = nullptr;
+  std::map<int32_t, int32_t> grey_;  // textures and those of their luminance
+
+  ColorInput value(const MitsubaNode& node, SpectrumUse use, bool is_number);
+  ColorInput texture(const MitsubaNode& node);
+  int32_t bitmap(const MitsubaNode& node);
   ColorInput checkerboard(const MitsubaNode& node);
-  ColorInput scaled(const MitsubaNode& node, bool is_raw);
+  ColorInput scaled(const MitsubaNode& node);
+  ColorInput attribute(const MitsubaNode& node);
+  std::optional<Rgb> spectrum_plugin(const MitsubaNode& node);
+  std::optional<Rgb> vector_value(const MitsubaNode& node);
+  int32_t with_grey_texels(int32_t texture);
   Rgb plain(const MitsubaNode& node, std::string_view name, Rgb fallback);
   void set_coordinates(const MitsubaNode& node, Texture& look);
   int32_t append(Texture texture);

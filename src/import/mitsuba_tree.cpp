@@ -1,7 +1,9 @@
 #include "import/mitsuba_tree.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <pugixml.hpp>
+#include <system_error>
 
 #include "import/file.h"
 #include "import/mitsuba_legacy.h"
@@ -85,6 +87,7 @@ class MitsubaTreeReader {
   void set_version(const pugi::xml_node& root);
   void add_children(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
   void add_child(const Open& open, const pugi::xml_node& from, MitsubaNode& to, size_t depth);
+  void add_path(const MitsubaNode& node);
   void include(const MitsubaNode& node, MitsubaNode& parent, size_t depth);
   void fill(const pugi::xml_node& from, MitsubaNode& node);
   std::string expanded(std::string_view text, const SourcePlace& place);
@@ -195,7 +198,7 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
       place.fail("alias of the unknown id '" + shortened(node.id) + "'");
     tree_.by_id_[node.attribute("as")] = found->second;
   } else if (node.tag == "path") {
-    warnings_.add("<path> is not used: files are looked up in the scene's folder");
+    add_path(node);
   } else {
     if (!node.id.empty() && node.tag != "ref" && !tree_.by_id_.emplace(node.id, &node).second) {
       warnings_.add("id '" + shortened(node.id) + "' is defined again: the later one counts");
@@ -207,9 +210,18 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
   }
 }
 
+void MitsubaTreeReader::add_path(const MitsubaNode& node) {
+  const std::string& name = node.attribute("value");
+  const ConfinedPath path = confined_path(tree_.folder(), name + "/x");
+  if (path.is_fine())
+    tree_.paths_.push_back(name);
+  else
+    warnings_.add("<path> '" + shortened(name) + "' is not used: " + path.problem);
+}
+
 void MitsubaTreeReader::include(const MitsubaNode& node, MitsubaNode& parent, size_t depth) {
   const std::string& name = node.attribute("filename");
-  const ConfinedPath path = confined_path(tree_.folder(), name);
+  const ConfinedPath path = tree_.file(name);
   if (!path.is_fine()) node.place.fail("cannot use '" + shortened(name) + "': " + path.problem);
   read_file_into(path.path, &node.place, parent, depth);
 }
@@ -244,6 +256,18 @@ std::string MitsubaTreeReader::expanded(std::string_view text, const SourcePlace
 
 MitsubaTree::MitsubaTree(const std::string& path, WarningLog& warnings) : folder_(folder_of(path)) {
   MitsubaTreeReader(*this, warnings).read_root(path);
+}
+
+ConfinedPath MitsubaTree::file(const std::string& name) const {
+  ConfinedPath beside = confined_path(folder_, name);
+  const auto exists = [](const ConfinedPath& path) {
+    std::error_code error;
+    return path.is_fine() && std::filesystem::exists(path.path, error);
+  };
+  if (paths_.empty() || exists(beside)) return beside;
+  for (const std::string& folder : paths_)
+    if (ConfinedPath path = confined_path(folder_, folder + "/" + name); exists(path)) return path;
+  return beside;
 }
 
 const MitsubaNode& MitsubaTree::resolved(const MitsubaNode& node) const {

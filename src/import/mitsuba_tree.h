@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "import/file.h"
 #include "import/source_place.h"
 
 namespace troffer {
@@ -42,6 +43,9 @@ class MitsubaTree {
   const std::deque<MitsubaNode>& all() const { return nodes_; }
   // Folder that files are looked up in.
   const std::string& folder() const { return folder_; }
+  // Where a file is that the scene names: in its folder, else in those of <path> within that, by
+  // their order. A file that is nowhere counts as in the scene's folder.
+  ConfinedPath file(const std::string& name) const;
   // Whether the file speaks Mitsuba 0.2 to 0.6, whose defaults differ here and there.
   bool is_legacy() const { return is_legacy_; }
   // The element that `node` refers to where it is a ref (InputError: an unknown id), else itself.
@@ -50,6 +54,7 @@ class MitsubaTree {
  private:
   friend class MitsubaTreeReader;
   std::string folder_;
+  std::vector<std::string> paths_;  // of <path>, from the folder
   bool is_legacy_ = false;
   std::deque<MitsubaNode> nodes_;
   std::map<std::string, const MitsubaNode*> by_id_;

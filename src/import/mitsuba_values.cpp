@@ -7,15 +7,12 @@
 
 #include "base/units.h"
 #include "import/file.h"
+#include "import/mitsuba_spectrum.h"
 #include "import/mitsuba_transform.h"
-#include "import/spectra.h"
 
 namespace troffer {
 
 namespace {
-
-// Linear sRGB of X = Y = Z = 1.
-constexpr Rgb equal_energy_white{1.2048f, 0.9484f, 0.9089f};
 
 bool is_separator(char c) {
   return c == ' ' || c == ',' || c == '\t' || c == '\n' || c == '\r' || c == ';';
@@ -92,40 +89,19 @@ std::optional<SampledSpectrum> sampled(const MitsubaNode& node, const std::strin
   std::string text = value_of(node);
   if (text.find(':') == std::string::npos) {
     if (!node.has("wavelengths")) return std::nullopt;
-    const std::vector<double> at = numbers_of(node, node.attribute("wavelengths"));
-    const std::vector<double> values = numbers_of(node, node.attribute("values"));
-    if (at.size() != values.size()) node.place.fail("as many values as wavelengths expected");
-    std::vector<double> pairs;
-    for (size_t i = 0; i < at.size(); ++i) pairs.insert(pairs.end(), {at[i], values[i]});
-    return spectrum_from_numbers(node, pairs);
+    return spectrum_from_pairs(node, numbers_of(node, node.attribute("wavelengths")),
+                               numbers_of(node, node.attribute("values")));
   }
   std::replace(text.begin(), text.end(), ':', ' ');
   return spectrum_from_numbers(node, numbers_of(node, text));
 }
 
-// Mean of a spectrum over the observer's luminance curve.
-float mean_luminance(const SampledSpectrum& spectrum) {
-  return luminance(reflectance_from_spectrum(spectrum) * equal_energy_white);
-}
-
-// Mean over the observer's luminance curve of Planck's law, W/(m² sr nm), and its colour.
 Rgb blackbody(const MitsubaNode& node) {
   const std::string& given = node.attribute("temperature");
   std::string text = given.empty() ? value_of(node) : given;
   if (!text.empty() && (text.back() == 'K' || text.back() == 'k')) text.pop_back();
-  const double kelvin = number_of(node, text);
-  if (!(kelvin >= 100 && kelvin <= 1e6))
-    node.place.fail("a temperature must lie between 100 and 1 000 000 K");
   const double scale = node.has("scale") ? number_of(node, node.attribute("scale")) : 1;
-  SampledSpectrum planck;
-  for (double nm = 360; nm <= 830; nm += 5) {
-    constexpr double first = 1.191042972e-16, second = 1.438776877e-2;  // 2 h c², h c / k
-    const double metres = nm * 1e-9;
-    planck.wavelengths_nm.push_back(nm);
-    planck.values.push_back(1e-9 * first /
-                            (std::pow(metres, 5) * std::expm1(second / metres / kelvin)));
-  }
-  return blackbody_emission(kelvin) * (float(scale) * mean_luminance(planck));
+  return blackbody_color(node, number_of(node, text)) * float(scale);
 }
 
 struct NamedIndex {
@@ -240,6 +216,20 @@ Affine get_transform(const MitsubaNode& plugin, std::string_view name) {
   return transform_of(*p);
 }
 
+Rgb blackbody_color(const MitsubaNode& node, double kelvin) {
+  if (!(kelvin >= 100 && kelvin <= 1e6))
+    node.place.fail("a temperature must lie between 100 and 1 000 000 K");
+  return mitsuba_blackbody(kelvin);
+}
+
+SampledSpectrum spectrum_from_pairs(const MitsubaNode& node, const std::vector<double>& at,
+                                    const std::vector<double>& values) {
+  if (at.size() != values.size()) node.place.fail("as many values as wavelengths expected");
+  std::vector<double> pairs;
+  for (size_t i = 0; i < at.size(); ++i) pairs.insert(pairs.end(), {at[i], values[i]});
+  return spectrum_from_numbers(node, pairs);
+}
+
 bool is_color(const MitsubaNode& node) {
   for (const char* tag : {"rgb", "srgb", "spectrum", "xyz", "blackbody", "float", "integer"})
     if (node.tag == tag) return true;
@@ -247,7 +237,7 @@ bool is_color(const MitsubaNode& node) {
 }
 
 Rgb color_of(const MitsubaNode& node, const std::string& folder, WarningLog& warnings,
-             bool is_emission) {
+             SpectrumUse use) {
   if (node.tag == "blackbody") return blackbody(node);
   const std::string& text = value_of(node);
   if (node.tag == "float" || node.tag == "integer")
@@ -270,15 +260,16 @@ Rgb color_of(const MitsubaNode& node, const std::string& folder, WarningLog& war
   }
   if (node.tag != "spectrum") fail_kind(node, "a colour");
   const auto spectrum = sampled(node, folder);
-  if (!spectrum) return not_negative(node, rgb_from_text(node, text), warnings);
-  if (!is_emission) return not_negative(node, reflectance_from_spectrum(*spectrum), warnings);
-  return not_negative(node, emission_from_spectrum(*spectrum) * mean_luminance(*spectrum),
-                      warnings);
+  if (spectrum) return mitsuba_color(*spectrum, use);
+  const Rgb c = rgb_from_text(node, text);
+  const bool is_uniform = c.r == c.g && c.g == c.b;
+  return not_negative(node, is_uniform ? mitsuba_color(double(c.r), use) : c, warnings);
 }
 
 Rgb metal_index_of(const MitsubaNode& node, const std::string& folder) {
   if (node.tag == "spectrum")
-    if (const auto spectrum = sampled(node, folder)) return conductor_from_spectrum(*spectrum);
+    if (const auto spectrum = sampled(node, folder))
+      return mitsuba_color(*spectrum, SpectrumUse::factor);
   const Rgb c = rgb_from_text(node, value_of(node));
   return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)};
 }

@@ -11,6 +11,7 @@
 
 #include "base/rgb.h"
 #include "base/transform.h"
+#include "import/mitsuba_spectrum.h"
 #include "import/mitsuba_tree.h"
 
 namespace troffer {
@@ -34,12 +35,15 @@ Affine get_transform(const MitsubaNode& plugin, std::string_view name);
 // Numbers separated by commas or blanks.
 std::vector<double> numbers_of(const MitsubaNode& node, const std::string& text);
 
-// What an <rgb>, <srgb>, <spectrum>, <xyz>, <blackbody> or number says, in linear sRGB. Of
-// reflectances and of radiances per wavelength, whose mean over the observer's curve is the
-// luminance, as in Mitsuba's own rgb modes. Not below 0. Files of spectra are looked up in
-// `folder`.
+// What an <rgb>, <srgb>, <spectrum>, <xyz>, <blackbody> or number says, in linear sRGB. Not below
+// 0. Files of spectra are looked up in `folder`.
 Rgb color_of(const MitsubaNode& node, const std::string& folder, WarningLog& warnings,
-             bool is_emission);
+             SpectrumUse use);
+// Emission of a black body. InputError at the node's place: a temperature that cannot be.
+Rgb blackbody_color(const MitsubaNode& node, double kelvin);
+// InputError: lists of different lengths, or wavelengths that do not ascend.
+SampledSpectrum spectrum_from_pairs(const MitsubaNode& node, const std::vector<double>& at,
+                                    const std::vector<double>& values);
 // Whether a parameter is such a colour rather than a texture or another plugin.
 bool is_color(const MitsubaNode& node);
 

@@ -36,6 +36,8 @@ class GeometryPlacer {
   // the material has textures.
   void add_sphere(const Affine& world_from_local, const Vec3d& centre, double radius,
                   bool is_turned, const PlacedLook& look);
+  // Whether that look depends on (u,v).
+  bool needs_coordinates(const PlacedLook& look) const;
   // About the origin; front: the side +z is taken to, or the other one. Triangles as for spheres.
   void add_disk(const Affine& world_from_local, double radius, bool is_turned,
                 const PlacedLook& look);
@@ -50,7 +52,6 @@ class GeometryPlacer {
   bool add_instance(const AnchoredMesh& local, const Affine& world_from_local, bool is_turned,
                     const PlacedLook& look);
   void spend(size_t triangles, const SourcePlace& place);
-  bool needs_coordinates(const PlacedLook& look) const;
   // Appends the light of a sphere or disk; no_light where it is dark.
   int32_t add_light(const PlacedLook& look, LightKind kind, size_t geometry);
 };

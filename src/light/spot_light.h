@@ -1,6 +1,7 @@
 // A point that shines within a cone, fading between two angles from its axis.
 // References: [1] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., §12.2.1.
 //   [2] Khronos, glTF extension KHR_lights_punctual ("Inner and Outer Cone Angles").
+//   [3] W. Jakob et al., "Mitsuba 3 documentation: Emitters" (spot).
 #pragma once
 
 #include <algorithm>
@@ -8,15 +9,20 @@
 
 #include "base/units.h"
 #include "light/no_surface.h"
+#include "scene/projected_image.h"
 
 namespace troffer {
 
 struct SpotLight : NoSurface {
   // Radiant intensity in a direction at this cosine from the axis, as a share of the largest: a
-  // smooth step in the cosine [1], or its square [2].
+  // smooth step in the cosine [1], its square [2], or linear in the angle [3].
   static float share(const Light& e, float cosine) {
     if (cosine >= e.cos_inner) return 1;
     if (cosine <= e.cos_outer) return 0;
+    if (e.falloff == SpotFalloff::linear) {
+      const float outer = std::acos(e.cos_outer), inner = std::acos(e.cos_inner);
+      return std::clamp((outer - std::acos(cosine)) / (outer - inner), 0.0f, 1.0f);
+    }
     const float t = (cosine - e.cos_outer) / (e.cos_inner - e.cos_outer);
     return e.falloff == SpotFalloff::square ? t * t : t * t * (3 - 2 * t);
   }
@@ -24,16 +30,22 @@ struct SpotLight : NoSurface {
   static void bound(const Scene&, const Light& e, const Box&, LightPrimitive& p) {
     set_point(p, e.position);
     p.mean_radiance = e.radiance;
-    // Between the cosines the smooth step has half of the light, since it is symmetric, and the
-    // square a third.
-    const float between = e.falloff == SpotFalloff::square ? 1.0f / 3 : 0.5f;
-    const float solid_angle =
-        2 * pi_f * ((1 - e.cos_inner) + between * (e.cos_inner - e.cos_outer));
-    p.power = solid_angle * luminance(e.radiance);
+    p.power = effective_solid_angle(e) * luminance(e.radiance);
     p.tree_power = 4 * pi_f * luminance(e.radiance);
     // Normals whose hemispheres hold the beam.
     p.cone_axis = e.direction;
     p.cos_cone = e.cos_outer >= 0 ? 1 : std::sqrt(std::max(0.0f, 1 - sqr(e.cos_outer)));
+  }
+  // Integral of share() over all directions, sr. Between the cosines the smooth step has half of
+  // the light, since it is symmetric, and the square a third. The linear one is integrated by
+  // parts: 1 - (sin outer - sin inner) / (outer - inner) for the whole cone, over 2 pi.
+  static float effective_solid_angle(const Light& e) {
+    if (e.falloff == SpotFalloff::linear) {
+      const float outer = std::acos(e.cos_outer), inner = std::acos(e.cos_inner);
+      return 2 * pi_f * (1 - (std::sin(outer) - std::sin(inner)) / (outer - inner));
+    }
+    const float between = e.falloff == SpotFalloff::square ? 1.0f / 3 : 0.5f;
+    return 2 * pi_f * ((1 - e.cos_inner) + between * (e.cos_inner - e.cos_outer));
   }
   static bool sample(const Scene& scene, const LightPrimitive& p, const Vec3& x, const Vec2& /*u*/,
                      LightSample& out) {
@@ -41,7 +53,10 @@ struct SpotLight : NoSurface {
     const Vec3 from_light = x - e.position;
     const float distance = length(from_light);
     if (!(distance > 0)) return false;
-    return sample_point(e, x, e.radiance * share(e, dot(from_light, e.direction) / distance), out);
+    Rgb intensity = e.radiance * share(e, dot(from_light, e.direction) / distance);
+    if (e.texture != no_texture && !intensity.is_black())
+      intensity *= projected(scene, e, in_own_axes(e, from_light));
+    return sample_point(e, x, intensity, out);
   }
 };
 

@@ -48,6 +48,9 @@ Ray ViewingCamera::ray(const Vec2& raster, const Vec2& lens) const {
   Ray r;
   r.origin = origin;
   r.direction = normalize(direction);
+  const float along = dot(r.direction, camera_.forward);
+  if (camera_.near_clip > 0) r.t_min = camera_.near_clip / along;
+  if (camera_.far_clip > 0) r.t_max = camera_.far_clip / along;
   return r;
 }
 

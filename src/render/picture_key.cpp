@@ -58,7 +58,8 @@ uint64_t hash_of_scene(const Scene& scene) {
 
 void add_camera(Hasher& h, const Camera& c) {
   h.add_all(int(c.kind), c.position, c.right, c.up, c.forward, c.half_extent, c.fov_is_vertical,
-            c.has_screen_window, c.lens_radius, c.focal_distance, c.width, c.height, c.aspect);
+            c.has_screen_window, c.lens_radius, c.focal_distance, c.near_clip, c.far_clip, c.width,
+            c.height, c.aspect);
   for (const float v : c.screen_window) h.add(v);
 }
 

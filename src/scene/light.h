@@ -41,7 +41,11 @@ struct SkyShape {
 };
 
 // How a spot fades between its angles, by t = 0 at the outer cosine to 1 at the inner one.
-enum class SpotFalloff : uint8_t { smooth_step /* 3t² - 2t³ */, square /* t² */ };
+enum class SpotFalloff : uint8_t {
+  smooth_step,  // 3t² - 2t³
+  square,       // t²
+  linear,       // by the angle itself, not its cosine: Mitsuba's
+};
 
 struct Light {
   std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
@@ -52,7 +56,9 @@ struct Light {
   Rgb radiance;
 
   // Kinds with a surface: it emits from the front, or from both sides where is_two_sided.
-  int32_t texture = no_texture;  // factor on radiance over the mesh's (u,v); mesh only
+  // Factor on radiance: of a mesh over its (u,v); of a point or a spot a picture that it throws
+  // (scene/projected_image.h).
+  int32_t texture = no_texture;
   bool is_two_sided = false;
   bool is_alpha_masked = false;     // mesh only: dark where its material's mask makes holes
   uint32_t geometry = 0;            // index into meshes, disks or spheres
@@ -70,6 +76,9 @@ struct Light {
   // spot: whole within the inner angle, none beyond the outer one, which is larger
   float cos_inner = 1, cos_outer = 0;
   SpotFalloff falloff = SpotFalloff::smooth_step;
+  // point with a texture: a plane across its axis gets light in proportion to the picture, so that
+  // the intensity at the angle a from the axis is over cos³ a (Mitsuba's projector)
+  bool lights_plane_evenly = false;
   float range = 0;  // point, spot: > 0: fades to nothing at that distance, m (light/point_light.h)
 
   int32_t environment = no_environment;  // environment: an image, of Scene::environments
@@ -95,7 +104,7 @@ inline bool is_delta(LightKind k) {
 // (which Mesh::lights says too): numbers, vectors and colours.
 template <class Visit>
 void for_each_value(const Light& e, const Visit& visit) {
-  visit(uint64_t(e.kind) | uint64_t(e.is_two_sided) << 8);
+  visit(uint64_t(e.kind) | uint64_t(e.is_two_sided) << 8 | uint64_t(e.lights_plane_evenly) << 9);
   visit(e.radiance);
   visit(uint64_t(e.texture));
   visit(uint64_t(e.geometry));

@@ -40,6 +40,14 @@ enum class RoughnessMeaning : uint8_t {
   alpha_is_square,  // alpha = roughness²: glTF
 };
 
+// Microfacets of rough gloss.
+enum class FacetModel : uint8_t {
+  balanced,         // GGX, shadowing and masking correlated by height; what is lost between facets
+                    // returns (bsdf/lost_light.cpp)
+  single_ggx,       // GGX, shadowing times masking; what is lost stays lost: Mitsuba's
+  single_beckmann,  // the same with Beckmann's distribution
+};
+
 // What a surface is to those who see its back.
 enum class BackFaces : uint8_t {
   shown,   // the same as its front
@@ -53,6 +61,7 @@ struct Material {
   ColorInput base_color{Rgb{0.5f}, no_texture};
   FloatInput roughness{0, no_texture, 0};
   RoughnessMeaning roughness_meaning = RoughnessMeaning::alpha;
+  FacetModel facets = FacetModel::balanced;  // of coated_diffuse, conductor and dielectric
   FloatInput metallic{0, no_texture, 2};
   // GGX is alpha + (1 - alpha) × this² wide along TexturePlace::grain, alpha across it: of
   // conductors and metallic_roughness. The grain lies so far counterclockwise from growing u,
@@ -126,7 +135,7 @@ void for_each_input(const Material& m, const Visit& visit) {
 template <class Visit>
 void for_each_value(const Material& m, const Visit& visit) {
   visit(uint64_t(m.kind));
-  visit(uint64_t(m.roughness_meaning));
+  visit(uint64_t(m.roughness_meaning) | uint64_t(m.facets) << 8);
   for_each_input(m, visit);
   visit(m.alpha);
   visit(m.anisotropy_rotation_rad);

@@ -82,6 +82,8 @@ struct Camera {
   std::array<float, 4> screen_window{-1, 1, -1, 1};  // pbrt: xmin xmax ymin ymax × half_extent
   float lens_radius = 0;                             // metres; 0 = pinhole
   float focal_distance = 1e6f;                       // metres along forward
+  // Metres along forward: what lies nearer or farther is not seen. 0: no limit.
+  float near_clip = 0, far_clip = 0;
   int width = 0, height = 0;  // image size the file asks for; 0 = it does not say
   float aspect = 0;           // width / height the file asks for; 0 = it does not say
 };

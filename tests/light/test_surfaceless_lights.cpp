@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "base/warp.h"
 #include "light/light.h"
+#include "light/spot_light.h"
 #include "support/chi_square.h"
 #include "support/light_scenes.h"
 #include "support/surfaceless_lights.h"
@@ -196,4 +197,28 @@ TEST_CASE("certificate shapes: flat, spheres that shine outwards, none") {
   REQUIRE(s.lights.size() == std::size(expected));
   for (size_t i = 0; i < s.lights.size(); ++i)
     CHECK(certificate_shape(s, s.lights[i]) == expected[i]);
+}
+
+// Radiant intensity at the angle a: (outer - a) / (outer - inner) between the two, and its integral
+// over all directions by the midpoint rule.
+TEST_CASE("a spot that fades linearly in the angle, as Mitsuba's") {
+  Scene s;
+  add_spot(s, lamp, {0, 0, -1}, float(std::cos(rad_from_deg(15.0))),
+           float(std::cos(rad_from_deg(40.0))), Rgb{1});
+  Light& e = s.lights[0];
+  e.falloff = SpotFalloff::linear;
+  const auto share = [&](double degrees) {
+    return double(SpotLight::share(e, float(std::cos(rad_from_deg(degrees)))));
+  };
+  CHECK(share(10) == 1);
+  CHECK(share(20) == doctest::Approx(0.8).epsilon(1e-4));
+  CHECK(share(27.5) == doctest::Approx(0.5).epsilon(1e-4));
+  CHECK(share(41) == 0);
+  constexpr int n = 20000;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const double a = pi / 2 * (i + 0.5) / n;
+    sum += double(SpotLight::share(e, float(std::cos(a)))) * std::sin(a) * 2 * pi * (pi / 2) / n;
+  }
+  CHECK(double(SpotLight::effective_solid_angle(e)) == doctest::Approx(sum).epsilon(1e-4));
 }
