@@ -68,8 +68,8 @@ TEST_CASE("a share of null is a share that light goes through") {
   scene = import_bsdf("<bsdf type='blendbsdf'>" + checks("weight") + diffuse(".6") +
                       "<bsdf type='null'/></bsdf>");
   CHECK(scene.warnings.total() == 0);
-  CHECK(is_cut_out(scene.textures, scene.materials.at(0), Vec2{0.2f, 0.2f}));
-  CHECK_FALSE(is_cut_out(scene.textures, scene.materials.at(0), Vec2{0.7f, 0.2f}));
+  CHECK_FALSE(is_cut_out(scene.textures, scene.materials.at(0), Vec2{0.2f, 0.2f}));
+  CHECK(is_cut_out(scene.textures, scene.materials.at(0), Vec2{0.7f, 0.2f}));
 }
 
 TEST_CASE("diffuse blends by textures are textures") {
@@ -77,8 +77,8 @@ TEST_CASE("diffuse blends by textures are textures") {
                                   diffuse(".8") + "</bsdf>");
   CHECK(scene.warnings.total() == 0);
   const ColorInput& c = scene.materials.at(0).base_color;
-  CHECK(evaluate(scene.textures, c, Vec2{0.2f, 0.2f}).r == doctest::Approx(0.8));
-  CHECK(evaluate(scene.textures, c, Vec2{0.7f, 0.2f}).r == doctest::Approx(0.2));
+  CHECK(evaluate(scene.textures, c, Vec2{0.2f, 0.2f}).r == doctest::Approx(0.2));
+  CHECK(evaluate(scene.textures, c, Vec2{0.7f, 0.2f}).r == doctest::Approx(0.8));
   const Scene half =
       import_bsdf("<bsdf type='blendbsdf'><float name='weight' value='.5'/>" + diffuse(".2") +
                   "<bsdf type='diffuse'>" + checks("reflectance") + "</bsdf></bsdf>");
