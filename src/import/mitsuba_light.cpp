@@ -1,6 +1,8 @@
 #include "import/mitsuba_light.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/units.h"
 #include "import/environment_file.h"
@@ -13,6 +15,31 @@
 namespace troffer {
 
 namespace {
+
+// The first and the last row lie on the poles in Mitsuba, half a row inside here: rows between
+// those of the file, so many more that little is blurred.
+EnvironmentMap from_pole_to_pole(EnvironmentMap map) {
+  constexpr size_t most_texels = size_t(1) << 23;
+  const int steps = map.height - 1;
+  if (steps < 1) return map;
+  const int finer = steps < 64 ? 16 : steps < 512 ? 4 : 2;
+  EnvironmentMap out;
+  out.name = map.name;
+  out.projection = map.projection;
+  out.width = map.width;
+  out.height = steps * finer;
+  if (size_t(out.width) * size_t(out.height) > most_texels) out.height = map.height;
+  out.texels.reserve(size_t(out.width) * size_t(out.height));
+  for (int y = 0; y < out.height; ++y) {
+    const double at = (y + 0.5) / out.height * steps;
+    const int above = std::min(int(at), steps - 1);
+    const auto share = float(at - above);
+    const Rgb* const row = map.texels.data() + size_t(above) * size_t(map.width);
+    for (int x = 0; x < map.width; ++x)
+      out.texels.push_back(row[x] * (1 - share) + row[x + map.width] * share);
+  }
+  return out;
+}
 
 class MitsubaLightReader {
  public:
@@ -188,7 +215,7 @@ void MitsubaLightReader::envmap() {
     try {
       EnvironmentMap map = read_environment(path.path, scene_.warnings);
       map.projection = SphereMap::lat_long;
-      scene_.environments.push_back(std::move(map));
+      scene_.environments.push_back(from_pole_to_pole(std::move(map)));
       e.environment = int32_t(scene_.environments.size()) - 1;
       add(std::move(e));
       return;

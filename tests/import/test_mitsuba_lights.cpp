@@ -55,6 +55,25 @@ TEST_CASE("spots fade linearly in the angle and throw pictures over their cone")
   CHECK(is_near(projected(s, e, {0.3f, -0.2f, 1}), {1, linear_from_srgb(188.0f / 255), 0}, 1e-4f));
 }
 
+// By [1] the radiance between two rows is linear in the polar angle, from pole to pole.
+TEST_CASE("the rows of an environment's image reach from pole to pole") {
+  const TempFolder folder;
+  std::string pfm = "Pf\n2 3\n-1.0\n";  // from the bottom up
+  for (const float v : {4.0f, 4.0f, 2.0f, 2.0f, 1.0f, 1.0f})
+    pfm.append(reinterpret_cast<const char*>(&v), sizeof v);
+  folder.write("t.pfm", pfm);
+  const Scene s = import_mitsuba(folder.write(
+      "a.xml",
+      scene_of("<emitter type='envmap'><string name='filename' value='t.pfm'/></emitter>")));
+  const EnvironmentMap& map = s.environments.at(0);
+  for (int y = 0; y < map.height; ++y) {
+    const double v = (y + 0.5) / map.height;
+    const double expected = v < 0.5 ? 1 + 2 * v : 2 + 4 * (v - 0.5);
+    CHECK(map.texels[size_t(y * map.width)].g == doctest::Approx(expected));
+  }
+  CHECK(map.height > 16);
+}
+
 // A plane across the beam at a distance of z gets pi × irradiance / z² everywhere in the picture
 // [1]: intensity pi irradiance / cos³, times cos / d² with d = z / cos.
 TEST_CASE("a projector lights planes across its beam evenly") {
