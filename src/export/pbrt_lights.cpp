@@ -104,6 +104,8 @@ std::string Writer::goniometric(const Light& e) {
 // `fov` is that of the shorter side; the picture's top is towards the light's y.
 std::string Writer::projection(const Light& e) {
   const Texture& t = scene_.textures[size_t(e.texture)];
+  if (e.lights_plane_evenly)
+    warnings_.add("pbrt's projected pictures are darker towards their rims than Mitsuba's");
   const std::string file =
       files_.write(fmt::format("slide{}.png", images_++),
                    png_of(baked_color(scene_, {Rgb{1}, e.texture}, look_of(t), nullptr)));
@@ -150,8 +152,8 @@ std::string Writer::sky(const Light& e) {
 
 std::string Writer::text(const Light& e) {
   std::string out;
-  if (!has_surface(e.kind) && e.texture >= 0)
-    warnings_.add("pictures that points and spots throw are left out: they shine evenly");
+  if (e.kind == LightKind::spot && e.texture >= 0)
+    warnings_.add("pictures that spots throw are left out: they shine evenly");
   switch (e.kind) {
     case LightKind::point:
       out = point_light(e);
