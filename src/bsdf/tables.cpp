@@ -49,6 +49,11 @@ int32_t grain_for(std::vector<GrainTable>& tables, const GgxWidths& a, const Cle
   return int32_t(tables.size() - 1);
 }
 
+// Whether alpha lets a share of the light straight through: shadow rays pass it as they do panes.
+bool is_blended(const Material& m) {
+  return m.is_alpha_masked && m.is_alpha_blended && (m.alpha.texture >= 0 || m.alpha.value < 1);
+}
+
 }  // namespace
 
 BsdfTables::BsdfTables(const std::vector<Material>& materials) {
@@ -57,7 +62,7 @@ BsdfTables::BsdfTables(const std::vector<Material>& materials) {
     PreparedMaterial p;
     p.ior = safe_ior(m.ior);
     p.clear_coat_ior = safe_ior(m.coat_ior);
-    p.is_pane = is_pane(m);
+    p.is_pane = is_pane(m) || is_blended(m);
     const TableNeeds needs = table_needs(m, p.clear_coat_ior);
     needs_ggx |= needs.has_ggx;
     needs_sheen |= needs.has_sheen;

@@ -6,8 +6,8 @@
 
 namespace troffer {
 
-Plane convolve_rows(const Plane& in, const Kernel& kernel, int threads) {
-  Plane out(in.width, in.height);
+PixelPlane convolve_rows(const PixelPlane& in, const Kernel& kernel, int threads) {
+  PixelPlane out(in.width, in.height);
   const int radius = int(kernel.size() / 2), width = in.width;
   parallel_for(size_t(in.height), threads, [&](size_t line) {
     const float* row = in.row(int(line));
@@ -24,8 +24,8 @@ Plane convolve_rows(const Plane& in, const Kernel& kernel, int threads) {
   return out;
 }
 
-Plane convolve_columns(const Plane& in, const Kernel& kernel, int threads) {
-  Plane out(in.width, in.height);
+PixelPlane convolve_columns(const PixelPlane& in, const Kernel& kernel, int threads) {
+  PixelPlane out(in.width, in.height);
   const int radius = int(kernel.size() / 2), width = in.width;
   parallel_for(size_t(in.height), threads, [&](size_t line) {
     float* sum = out.row(int(line));

@@ -7,12 +7,12 @@
 namespace troffer {
 
 // One float per pixel, row-major.
-struct Plane {
+struct PixelPlane {
   int width = 0, height = 0;
   std::vector<float> values;
 
-  Plane() = default;
-  Plane(int w, int h) : width(w), height(h), values(size_t(w) * size_t(h)) {}
+  PixelPlane() = default;
+  PixelPlane(int w, int h) : width(w), height(h), values(size_t(w) * size_t(h)) {}
   float* row(int y) { return values.data() + size_t(y) * size_t(width); }
   const float* row(int y) const { return values.data() + size_t(y) * size_t(width); }
 };
@@ -22,7 +22,7 @@ using Kernel = std::vector<float>;
 
 // out(x,y) = sum_i kernel[r + i] in(x + i, y), and the same along columns: kernels are not
 // mirrored. Pixels beyond the border repeat the border's.
-Plane convolve_rows(const Plane& in, const Kernel& kernel, int threads);
-Plane convolve_columns(const Plane& in, const Kernel& kernel, int threads);
+PixelPlane convolve_rows(const PixelPlane& in, const Kernel& kernel, int threads);
+PixelPlane convolve_columns(const PixelPlane& in, const Kernel& kernel, int threads);
 
 }  // namespace troffer

@@ -29,7 +29,7 @@ constexpr Sensitivity red_green{1, 0.0053, 0, 1e-5};
 constexpr Sensitivity blue_yellow{34.1, 0.04, 13.5, 0.025};
 constexpr double widest_b = 0.04;
 
-using Planes = std::array<Plane, 3>;
+using Planes = std::array<PixelPlane, 3>;
 
 // CIE XYZ of linear Rec. 709 (white D65), each component relative to that of white.
 Vec3 xyz_from_rgb(const Vec3& c) {
@@ -94,7 +94,7 @@ Kernel gaussian(double b, int radius, double pixels_per_degree) {
   return kernel;
 }
 
-Plane blur(const Plane& in, const Kernel& kernel, int threads) {
+PixelPlane blur(const PixelPlane& in, const Kernel& kernel, int threads) {
   return convolve_columns(convolve_rows(in, kernel, threads), kernel, threads);
 }
 
@@ -102,8 +102,8 @@ Plane blur(const Plane& in, const Kernel& kernel, int threads) {
 // Gaussians of a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees, cut to a square of three standard
 // deviations of the widest Gaussian and normalised there [1, spatial filtering]. Each Gaussian is
 // separable.
-Plane contrast_filter(const Plane& in, const Sensitivity& s, double pixels_per_degree,
-                      int threads) {
+PixelPlane contrast_filter(const PixelPlane& in, const Sensitivity& s, double pixels_per_degree,
+                           int threads) {
   const int radius = int(std::ceil(3 * std::sqrt(widest_b / (2 * pi * pi)) * pixels_per_degree));
   const auto kernel_and_mass = [&](double a, double b) {
     Kernel kernel = gaussian(b, radius, pixels_per_degree);
@@ -113,10 +113,10 @@ Plane contrast_filter(const Plane& in, const Sensitivity& s, double pixels_per_d
     return std::pair(kernel, a * std::sqrt(pi / b) * sum * sum);
   };
   const auto [kernel1, mass1] = kernel_and_mass(s.a1, s.b1);
-  Plane out = blur(in, kernel1, threads);
+  PixelPlane out = blur(in, kernel1, threads);
   if (s.a2 == 0) return out;
   const auto [kernel2, mass2] = kernel_and_mass(s.a2, s.b2);
-  const Plane other = blur(in, kernel2, threads);
+  const PixelPlane other = blur(in, kernel2, threads);
   const auto weight1 = float(mass1 / (mass1 + mass2)), weight2 = float(mass2 / (mass1 + mass2));
   for (size_t i = 0; i < out.values.size(); ++i)
     out.values[i] = weight1 * out.values[i] + weight2 * other.values[i];
@@ -126,7 +126,7 @@ Plane contrast_filter(const Plane& in, const Sensitivity& s, double pixels_per_d
 // Clamped linear colour -> YCxCz planes.
 Planes opponent_planes(const Image& image, int threads) {
   Planes planes;
-  planes.fill(Plane(image.width, image.height));
+  planes.fill(PixelPlane(image.width, image.height));
   parallel_for(size_t(image.height), threads, [&](size_t y) {
     for (size_t i = y * size_t(image.width); i < (y + 1) * size_t(image.width); ++i) {
       const Rgb p = image.pixels[i];
@@ -157,7 +157,7 @@ void perceived_colours(Planes& planes, double pixels_per_degree, int threads) {
 
 // Strengths of edges and of points (and lines): lengths of the first and of the second derivatives.
 struct Features {
-  Plane edges, points;
+  PixelPlane edges, points;
 };
 
 // Scales a kernel's positive weights to sum to 1 and its negative ones to -1 [1, feature pipeline].
@@ -168,10 +168,10 @@ void normalise_by_sign(Kernel& kernel) {
     if (v != 0) v /= v > 0 ? positive : negative;
 }
 
-Plane gradient_length(const Plane& lightness, const Kernel& derivative, const Kernel& smooth,
-                      int threads) {
-  Plane out = convolve_columns(convolve_rows(lightness, derivative, threads), smooth, threads);
-  const Plane vertical =
+PixelPlane gradient_length(const PixelPlane& lightness, const Kernel& derivative,
+                           const Kernel& smooth, int threads) {
+  PixelPlane out = convolve_columns(convolve_rows(lightness, derivative, threads), smooth, threads);
+  const PixelPlane vertical =
       convolve_columns(convolve_rows(lightness, smooth, threads), derivative, threads);
   for (size_t i = 0; i < out.values.size(); ++i)
     out.values[i] = std::sqrt(sqr(out.values[i]) + sqr(vertical.values[i]));
@@ -180,8 +180,9 @@ Plane gradient_length(const Plane& lightness, const Kernel& derivative, const Ke
 
 // Features of the achromatic plane, by derivatives of a Gaussian whose standard deviation is half
 // the width of a feature [1, feature pipeline].
-Features detect_features(const Plane& achromatic_plane, double pixels_per_degree, int threads) {
-  Plane lightness = achromatic_plane;
+Features detect_features(const PixelPlane& achromatic_plane, double pixels_per_degree,
+                         int threads) {
+  PixelPlane lightness = achromatic_plane;
   for (float& v : lightness.values) v = (v + 16) / 116;  // to [0,1]
   const double sigma = 0.5 * feature_width_deg * pixels_per_degree;
   const int radius = int(std::ceil(3 * sigma));

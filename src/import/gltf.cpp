@@ -213,7 +213,7 @@ class Importer {
     Mesh mesh = make_gltf_mesh(p, pose, material.uv_sets, scene_.warnings, bounds, &colors);
     mesh.name = name;
     mesh.material = material.material;
-    painter_.paint(mesh, colors, material.is_textured);
+    painter_.paint(mesh, colors, material.is_textured, material.is_blended);
     const bool is_empty = mesh.triangles.empty();
     const auto tell_missing = [&](int set) {
       scene_.warnings.add("textured meshes without TEXCOORD_" + std::to_string(set) +

@@ -268,9 +268,10 @@ class GltfMaterials::Reader {
     if (mode == "MASK") {
       material_.is_alpha_masked = true;
       material_.alpha_cutoff = float(node_.number_or("alphaCutoff", 0.5));
-    } else if (mode == "BLEND" && base_has_alpha()) {
-      material_.is_alpha_masked = material_.is_alpha_blended = true;
-    } else if (mode != "OPAQUE" && mode != "BLEND") {
+    } else if (mode == "BLEND") {
+      result_.is_blended = true;
+      material_.is_alpha_masked = material_.is_alpha_blended = base_has_alpha();
+    } else if (mode != "OPAQUE") {
       node_.member("alphaMode").fail("'" + printable(mode) + "' is no alpha mode");
     }
     if (material_.is_alpha_masked) material_.alpha.texture = material_.base_color.texture;

@@ -24,6 +24,7 @@ struct GltfMaterial {
   int32_t emission_texture = no_texture;
   bool is_two_sided = false;
   bool is_textured = false;
+  bool is_blended = false;  // its alphaMode is BLEND, which counts where vertices have alpha, too
   GltfUvSets uv_sets;
 };
 

@@ -41,6 +41,12 @@ TextureValue mean_over(const Mesh& mesh, const std::vector<TextureValue>& colors
           float(sum[3] / total)};
 }
 
+bool has_alpha(const Mesh& mesh, const std::vector<TextureValue>& colors) {
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(), [&](uint32_t v) { return unit(colors[v].alpha) < 1; });
+  });
+}
+
 // Vertices of its own for every triangle.
 void separate_triangles(Mesh& mesh) {
   std::vector<Vec3> positions, normals;
@@ -141,8 +147,23 @@ uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& c
   return uint32_t(scene_.materials.size() - 1);
 }
 
-void VertexPainter::paint(Mesh& mesh, const std::vector<TextureValue>& colors, bool needs_uvs) {
+// The material as it is where vertices have alpha and nothing else of it has.
+uint32_t VertexPainter::blended(uint32_t material) {
+  if (scene_.materials[material].is_alpha_masked) return material;
+  const auto [known, is_new] = blended_.emplace(material, uint32_t(scene_.materials.size()));
+  if (is_new) {
+    Material m = scene_.materials[material];
+    m.is_alpha_masked = m.is_alpha_blended = true;
+    m.alpha = {1, no_texture, 3};
+    scene_.materials.push_back(std::move(m));
+  }
+  return known->second;
+}
+
+void VertexPainter::paint(Mesh& mesh, const std::vector<TextureValue>& colors, bool needs_uvs,
+                          bool is_blended) {
   if (colors.empty() || colors.size() != mesh.positions.size() || mesh.triangles.empty()) return;
+  if (is_blended && has_alpha(mesh, colors)) mesh.material = blended(mesh.material);
   const TextureValue first = usable(colors[mesh.triangles[0][0]]);
   const bool is_one = std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](auto& t) {
     return std::all_of(t.begin(), t.end(),

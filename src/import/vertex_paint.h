@@ -21,15 +21,19 @@ class VertexPainter {
   explicit VertexPainter(Scene& scene) : scene_(scene) {}
 
   // Colours are linear, one per vertex, and count as factors within [0,1]; their alpha counts where
-  // the material has alpha. `needs_uvs`: an image beyond those of the material uses the mesh's.
-  void paint(Mesh& mesh, const std::vector<TextureValue>& colors, bool needs_uvs);
+  // the material has alpha, or is_blended. `needs_uvs`: an image beyond those of the material uses
+  // the mesh's.
+  void paint(Mesh& mesh, const std::vector<TextureValue>& colors, bool needs_uvs,
+             bool is_blended = false);
 
  private:
+  uint32_t blended(uint32_t material);
   uint32_t tinted(uint32_t material, const TextureValue& factor);
   uint32_t add_image(Mesh& mesh, const std::vector<TextureValue>& colors, bool with_uvs);
 
   Scene& scene_;
   std::map<std::pair<uint32_t, std::array<float, 4>>, uint32_t> tinted_;
+  std::map<uint32_t, uint32_t> blended_;  // by material, its copy with alpha
   uint64_t texels_ = 0;
 };
 

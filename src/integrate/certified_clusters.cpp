@@ -45,7 +45,8 @@ void CertifiedLights::illuminate_cluster(std::span<const uint32_t> members,
   const bool is_closed_off = std::all_of(members.begin(), members.end(),
                                          [&](uint32_t m) { return s.is_closed_off[m] != 0; });
   if (is_closed_off) count_closed_off(members, s, out, counters);
-  const bool has_far = !is_closed_off && is_proof_of_far_worth(members, s, out);
+  const bool has_far =
+      !is_closed_off && may_be_proved_far(members, s) && is_proof_of_far_worth(members, s, out);
   std::span<const float> seen;
   const bool are_all_drawn = budget.draws > 0 && budget.thrift > 1;
   const bool may_be_drawn = budget.draws > 0 && !groups_.are_many();

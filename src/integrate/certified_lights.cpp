@@ -20,6 +20,9 @@ constexpr uint32_t most_pieces = 256;
 // plane about a portal goes on for as many of them.
 constexpr float reach_of_diagonal = 0.1f;
 constexpr double reach_of_frame = 16;
+// Cells of lights at infinity stand at a finite distance: receivers within so many radii of the
+// scene see them in their true directions. Others, such as measuring points, get rays.
+constexpr float reach_of_far_cells = 256;
 
 }  // namespace
 
@@ -29,7 +32,7 @@ CertifiedLights::CertifiedLights(const PreparedScene& scene, const DrawingBudget
       competition_(scene, gloss_points),
       source_of_front_(scene.primitives.size(), -1),
       source_of_back_(scene.primitives.size(), -1),
-      far_{&scene.far_cells(), 0, nullptr, {}, {}, {}, false, {}, 0},
+      far_{&scene.far_cells(), 0, nullptr, {}, {}, {}, false, {}, 0, {}, 0},
       budget_(budget) {
   for (uint32_t e = 0; e < scene.scene.lights.size(); ++e)
     has_light_.push_back(add_light(scene, e));
@@ -161,6 +164,8 @@ void CertifiedLights::add_far_lights(const PreparedScene& scene) {
   far_.first_source = uint32_t(sources_.size());
   const Box everywhere = bounds(scene.scene);
   far_.frame_reach = reach_of_frame * double(everywhere.diagonal());
+  far_.centre = everywhere.is_empty() ? Vec3{} : everywhere.centre();
+  far_.reach = reach_of_far_cells * 0.5f * everywhere.diagonal();
   far_.frames.resize(scene.primitives.size());
   for (const uint32_t p : scene.primitives.at_infinity())
     if (const Portal* portal = scene.primitives[p].portal)
@@ -252,6 +257,13 @@ void CertifiedLights::count_closed_off(std::span<const uint32_t> members,
   counters.dark_certified += members.size() * far;
   for (const uint32_t m : members)
     if (s.hits.is_first[m] != 0) out.sources[s.hits.indices[m]] += Rgb{0, 0, float(far)};
+}
+
+bool CertifiedLights::may_be_proved_far(std::span<const uint32_t> members,
+                                        const CertifiedLightsScratch& s) const {
+  return std::all_of(members.begin(), members.end(), [&](uint32_t m) {
+    return length(s.hits.positions[m] - far_.centre) <= far_.reach;
+  });
 }
 
 namespace {

@@ -92,6 +92,7 @@ class CertifiedLights {
                         RadianceBatch& out, Counters& counters) const;
   bool is_proof_of_far_worth(std::span<const uint32_t> members, const CertifiedLightsScratch& s,
                              const RadianceBatch& out) const;
+  bool may_be_proved_far(std::span<const uint32_t> members, const CertifiedLightsScratch& s) const;
   void set_requests(CertifiedLightsScratch& s, bool has_far) const;
   void draw(std::span<const uint32_t> members, CertifiedLightsScratch& s, RadianceBatch& out,
             Counters& counters) const;
@@ -125,6 +126,8 @@ class CertifiedLights {
     // Of portals, what hides their lights beside them; by the primitives they belong to.
     std::vector<std::vector<FacetToAdd>> frames;
     double frame_reach = 0;  // metres by which they go on beyond their sides
+    Vec3 centre;             // of the scene, about which the cells stand
+    float reach = 0;         // metres from there within which their directions are exact
   } far_;
   DrawingBudget budget_;
   float reach_ = 1;  // metres by which hits of a cluster on a curved surface may lie apart

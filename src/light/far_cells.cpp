@@ -14,8 +14,8 @@ namespace troffer {
 
 namespace {
 
-// Half an edge of the cube, in radii of the scene.
-constexpr double cube_in_radii = 0x1p20;
+// Half an edge of the cube, in radii of the scene; 256 radii off, directions to it err by 2^-18.
+constexpr double cube_in_radii = 0x1p26;
 // A polynomial may be off by so much of the cell's mean radiance, or by so much of all the light's
 // integral over the cell.
 constexpr double fit_error = 1e-4, fit_error_of_all = 1e-5;

@@ -20,7 +20,7 @@ template <class Ask>
 decltype(auto) ask_kind(LightKind kind, const Ask& ask) {
   switch (kind) {
     case LightKind::point:
-      return ask(PointLight());
+      return ask(PointEmitter());
     case LightKind::spot:
       return ask(SpotLight());
     case LightKind::distant:

@@ -12,7 +12,7 @@
 
 namespace troffer {
 
-struct PointLight : NoSurface {
+struct PointEmitter : NoSurface {
   static void bound(const Scene& scene, const Light& e, const Box& /*bounds*/, LightPrimitive& p) {
     set_point(p, e.position);
     if (e.environment != no_environment || e.texture != no_texture) {

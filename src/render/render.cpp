@@ -121,6 +121,18 @@ class Picture {
   double seconds_per_gap_ = 0;
 };
 
+// Estimated error of the picture, relative to its mean: as Rendering::told_error().
+double told_error(const Film& film, const PixelRect& window) {
+  double squares = 0, sum = 0;
+  for (int y = window.y0; y < window.y1; ++y)
+    for (int x = window.x0; x < window.x1; ++x) {
+      squares += sqr(film.told_error(x, y));
+      sum += film.estimate(x, y).luminance;
+    }
+  const double pixels = double(window.width()) * window.height();
+  return sum > 0 ? std::sqrt(squares / pixels) * pixels / sum : 0;
+}
+
 RenderResult Picture::make() {
   RenderResult result;
   const PixelRect& window = plan_.window;
@@ -143,6 +155,7 @@ RenderResult Picture::make() {
     keep_beginning();
     Film film(plan_.region, options_.aovs, scene_.scene.origin);
     finish(film, result);
+    result.statistics.told_error = told_error(film, window);
     result.layers = film.layers();
     for (Layer& l : result.layers) l.image = part_of(l.image, plan_.region, window);
     show_preview_in_gaps(film, result);

@@ -158,8 +158,8 @@ bool measure_grids(const PreparedScene& scene, double factor, Work& work, Assess
 // Each group of luminaires alone. Where there is one, it is all.
 bool measure_groups(const Scene& scene, Work& work, Assessment& a) {
   const size_t luminaires = size_t(std::count_if(
-      a.groups.begin(), a.groups.end(), [](const LightGroup& g) { return !g.is_daylight; }));
-  for (const LightGroup& g : a.groups) {
+      a.groups.begin(), a.groups.end(), [](const ReportedLights& g) { return !g.is_daylight; }));
+  for (const ReportedLights& g : a.groups) {
     if (g.is_daylight) {
       for (SurfaceResult& s : a.surfaces) s.by_group.emplace_back();
       continue;
@@ -280,7 +280,7 @@ bool measure_all(const PreparedScene& whole, Work& work, Assessment& a) {
 PowerResult power_of(const Assessment& a) {
   PowerResult p;
   p.watts = 0;
-  for (const LightGroup& g : a.groups) {
+  for (const ReportedLights& g : a.groups) {
     if (g.is_daylight) continue;
     p.lumens += g.lumens;
     if (p.watts && g.watts)
@@ -311,7 +311,7 @@ Assessment assess(const Scene& imported, const AssessmentOptions& options,
   const PreparedScene scene(with_daylight_apart(imported));
   Assessment a;
   a.groups = light_groups(scene.scene, options.power, most_groups);
-  for (const LightGroup& g : a.groups) (g.is_daylight ? a.has_daylight : a.has_electric) = true;
+  for (const ReportedLights& g : a.groups) (g.is_daylight ? a.has_daylight : a.has_electric) = true;
   place_surfaces(scene, options, a);
   a.has_factor = wants_factor(scene, options, a);
   const size_t groups = a.has_electric && options.has_contributions ? a.groups.size() : 0;

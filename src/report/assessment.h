@@ -83,7 +83,7 @@ struct PowerResult {
 struct Assessment {
   std::vector<SurfaceResult> surfaces;
   std::vector<AssessedSurface> floors;
-  std::vector<LightGroup> groups;
+  std::vector<ReportedLights> groups;
   std::vector<CylinderResult> cylinders;
   std::vector<GlareResult> glares;
   std::vector<Check> checks;

@@ -22,18 +22,18 @@ std::string family_of(const std::string& name) {
   return letters == std::string::npos ? name : name.substr(0, letters + 1);
 }
 
-std::vector<LightGroup> single_luminaires(const Scene& scene,
-                                          const std::vector<PowerRequest>& power) {
+std::vector<ReportedLights> single_luminaires(const Scene& scene,
+                                              const std::vector<PowerRequest>& power) {
   const std::vector<SourceInfo> infos = source_infos(scene);
   const double lm = scene.is_photometric ? 1 : luminous_efficacy;
   std::map<std::string, size_t> number;
-  std::vector<LightGroup> groups;
+  std::vector<ReportedLights> groups;
   for (size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& e = scene.lights[i];
     const auto [at, is_new] = number.emplace(e.name, groups.size());
     if (is_new) {
       groups.emplace_back();
-      LightGroup& g = groups.back();
+      ReportedLights& g = groups.back();
       g.name = e.name;
       g.lights = {e.name};
       g.luminaires = 1;
@@ -43,7 +43,7 @@ std::vector<LightGroup> single_luminaires(const Scene& scene,
   }
   for (const PowerRequest& r : power) {
     bool is_used = false;
-    for (LightGroup& g : groups) {
+    for (ReportedLights& g : groups) {
       if (g.is_daylight || !fits_wildcard(g.name, r.name)) continue;
       g.watts = r.watts;
       is_used = true;
@@ -55,7 +55,7 @@ std::vector<LightGroup> single_luminaires(const Scene& scene,
   return groups;
 }
 
-void join(LightGroup& to, const LightGroup& g) {
+void join(ReportedLights& to, const ReportedLights& g) {
   const bool is_known = to.luminaires == 0 || to.watts.has_value();
   to.lights.insert(to.lights.end(), g.lights.begin(), g.lights.end());
   to.luminaires += g.luminaires;
@@ -67,10 +67,10 @@ void join(LightGroup& to, const LightGroup& g) {
     to.watts.reset();
 }
 
-std::vector<LightGroup> families(const std::vector<LightGroup>& singles) {
+std::vector<ReportedLights> families(const std::vector<ReportedLights>& singles) {
   std::map<std::string, size_t> number;
-  std::vector<LightGroup> groups;
-  for (const LightGroup& g : singles) {
+  std::vector<ReportedLights> groups;
+  for (const ReportedLights& g : singles) {
     const std::string name = g.is_daylight ? g.name : family_of(g.name);
     const auto [at, is_new] = number.emplace(name, groups.size());
     if (is_new) groups.push_back({name, {}, 0, false, 0, std::nullopt});
@@ -85,16 +85,17 @@ bool is_daylight(const Light& light) {
   return light.kind >= LightKind::distant;
 }
 
-std::vector<LightGroup> light_groups(const Scene& scene, const std::vector<PowerRequest>& power,
-                                     size_t most) {
-  std::vector<LightGroup> groups = single_luminaires(scene, power);
+std::vector<ReportedLights> light_groups(const Scene& scene, const std::vector<PowerRequest>& power,
+                                         size_t most) {
+  std::vector<ReportedLights> groups = single_luminaires(scene, power);
   if (groups.size() <= most) return groups;
   groups = families(groups);
-  std::vector<LightGroup> strong;
-  std::stable_sort(groups.begin(), groups.end(), [](const LightGroup& a, const LightGroup& b) {
-    return a.is_daylight != b.is_daylight ? a.is_daylight : a.lumens > b.lumens;
-  });
-  for (const LightGroup& g : groups) {
+  std::vector<ReportedLights> strong;
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const ReportedLights& a, const ReportedLights& b) {
+                     return a.is_daylight != b.is_daylight ? a.is_daylight : a.lumens > b.lumens;
+                   });
+  for (const ReportedLights& g : groups) {
     if (strong.size() < most)
       strong.push_back(g);
     else {

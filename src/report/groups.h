@@ -11,7 +11,7 @@
 
 namespace troffer {
 
-struct LightGroup {
+struct ReportedLights {
   std::string name;
   std::vector<std::string> lights;  // names, as Light::name
   size_t luminaires = 0;
@@ -33,8 +33,8 @@ bool is_daylight(const Light& light);
 // where there are more than `most` groups, and the weakest of those left beyond that are "others".
 // watts: as asked for; of several requests that fit, the last. UsageError for one that fits no
 // light.
-std::vector<LightGroup> light_groups(const Scene& scene, const std::vector<PowerRequest>& power,
-                                     size_t most);
+std::vector<ReportedLights> light_groups(const Scene& scene, const std::vector<PowerRequest>& power,
+                                         size_t most);
 
 // The scene, such that no name stands for a luminaire and for daylight both.
 Scene with_daylight_apart(Scene scene);

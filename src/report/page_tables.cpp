@@ -80,7 +80,7 @@ std::string summary_table(const SurfaceResult& s) {
 
 std::string contributions_table(const Assessment& a, const SurfaceResult& s) {
   const auto luminaires = std::count_if(a.groups.begin(), a.groups.end(),
-                                        [](const LightGroup& g) { return !g.is_daylight; });
+                                        [](const ReportedLights& g) { return !g.is_daylight; });
   if (s.by_group.empty() || luminaires < 2) return {};
   const Figure mean = mean_of(s.electric);
   HtmlTable t({"Luminaires", "Mean by them alone", "Share"});
@@ -135,7 +135,7 @@ std::string cylinder_table(const Assessment& a) {
 
 std::string luminaires_table(const Assessment& a) {
   HtmlTable t({"Luminaires", "Count", "Luminous flux", "Power", "Efficacy"});
-  for (const LightGroup& g : a.groups) {
+  for (const ReportedLights& g : a.groups) {
     if (g.is_daylight) {
       t.add({html_text(g.name), std::to_string(g.luminaires), "daylight", "–", "–"});
       continue;

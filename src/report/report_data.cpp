@@ -35,7 +35,7 @@ Json json_of(const GridSummary& s) {
           {"uniformity", json_of(s.uniformity)}};
 }
 
-Json json_of(const SurfaceResult& s, const std::vector<LightGroup>& groups) {
+Json json_of(const SurfaceResult& s, const std::vector<ReportedLights>& groups) {
   const AssessedSurface& a = s.surface;
   Json j{{"name", a.name},
          {"kind", name_of(a.kind)},
@@ -96,7 +96,7 @@ Json json_of(const Check& c) {
 
 Json lights_json(const Assessment& a) {
   Json j = Json::array();
-  for (const LightGroup& g : a.groups)
+  for (const ReportedLights& g : a.groups)
     j.push_back({{"name", g.name},
                  {"lights", g.lights},
                  {"count", g.luminaires},

@@ -23,8 +23,8 @@ float coverage_at(const HitTest& test, uint32_t primitive, float u, float v) {
   return coverage(test.scene->textures, test.scene->materials[test.mesh->material], uv);
 }
 
-// Uniform in [0,1), of a ray and a triangle: the same however often and in whatever company Embree
-// asks.
+// Uniform in [0,1), a hash of a ray and a triangle: the same however often and in whatever company
+// Embree asks. Rays must differ from sample to sample, so shadow rays never depend on it.
 float draw_of(const RTCFilterFunctionNArguments* args, unsigned i) {
   const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
   const auto pair = [&](float f, float g) { return bits(f) << 32 | bits(g); };
@@ -38,13 +38,22 @@ float draw_of(const RTCFilterFunctionNArguments* args, unsigned i) {
   return unit_float(uint32_t(hash >> 32));
 }
 
+float coverage_at(const HitTest& test, const RTCFilterFunctionNArguments* args, unsigned i) {
+  return coverage_at(test, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                     RTCHitN_v(args->hit, args->N, i));
+}
+
 // Whether the hit is in a hole, or the ray is one of those that go through.
 bool is_in_hole(const HitTest& test, const RTCFilterFunctionNArguments* args, unsigned i) {
   if (!test.has_holes) return false;
-  const float share =
-      coverage_at(test, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
-                  RTCHitN_v(args->hit, args->N, i));
+  const float share = coverage_at(test, args, i);
   return share <= 0 || (share < 1 && draw_of(args, i) >= share);
+}
+
+// Whether the hit is on a pane that lets light through there.
+bool is_passed(const HitTest& test, const RTCFilterFunctionNArguments* args, unsigned i) {
+  return test.is_pane_at(RTCHitN_primID(args->hit, args->N, i)) &&
+         (!test.hides_in_places || coverage_at(test, args, i) < 1);
 }
 
 bool is_from_behind(const RTCFilterFunctionNArguments* args, unsigned i) {
@@ -55,23 +64,33 @@ bool is_from_behind(const RTCFilterFunctionNArguments* args, unsigned i) {
          0;
 }
 
+bool is_skipped(const HitTest& test, const Context& context,
+                const RTCFilterFunctionNArguments* args, unsigned i) {
+  if (context.is_through) return test.has_holes && coverage_at(test, args, i) <= 0;
+  switch (context.meeting) {
+    case Meeting::all:
+      break;
+    case Meeting::no_panes:
+      if (is_passed(test, args, i)) return true;
+      break;
+    case Meeting::as_seen:
+      if (test.hides_backs && is_from_behind(args, i)) return true;
+      break;
+  }
+  return is_in_hole(test, args, i);
+}
+
 void closest_filter(const RTCFilterFunctionNArguments* args) {
   const auto& test = *static_cast<const HitTest*>(args->geometryUserPtr);
-  const Meeting meeting = reinterpret_cast<const Context*>(args->context)->meeting;
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] != -1) continue;
-    const bool is_skipped =
-        (meeting == Meeting::no_panes && test.is_pane_at(RTCHitN_primID(args->hit, args->N, i))) ||
-        (meeting == Meeting::as_seen && test.hides_backs && is_from_behind(args, i));
-    if (is_skipped || is_in_hole(test, args, i)) args->valid[i] = 0;
-  }
+  const Context& context = *reinterpret_cast<const Context*>(args->context);
+  for (unsigned i = 0; i < args->N; ++i)
+    if (args->valid[i] == -1 && is_skipped(test, context, args, i)) args->valid[i] = 0;
 }
 
 void occluded_filter(const RTCFilterFunctionNArguments* args) {
   const auto& test = *static_cast<const HitTest*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i)
-    if (args->valid[i] == -1 &&
-        (test.is_pane_at(RTCHitN_primID(args->hit, args->N, i)) || is_in_hole(test, args, i)))
+    if (args->valid[i] == -1 && (is_passed(test, args, i) || is_in_hole(test, args, i)))
       args->valid[i] = 0;
 }
 
@@ -169,7 +188,9 @@ RTCGeometry Tracer::Embree::make_mesh(const Scene& s, const Mesh& mesh, uint32_t
   const Material& m = s.materials[mesh.material];
   test.has_holes = m.is_alpha_masked;
   test.hides_backs = m.back_faces == BackFaces::unseen;
-  test.has_panes = !m.is_alpha_masked && glass != nullptr && glass->is_pane(mesh.material);
+  test.has_panes = glass != nullptr && glass->is_pane(mesh.material);
+  test.hides_in_places = test.has_panes && m.is_alpha_masked && m.alpha.texture >= 0;
+  if (test.has_panes) pane_triangles += mesh.triangles.size();
   set_filters(g, id);
   return g;
 }
@@ -276,8 +297,7 @@ Tracer::Embree::Embree(const Scene& s, const PaneGlass* glass) {
   size_t items = s.instances.size();
   for (const Mesh& mesh : s.meshes) items += mesh.triangles.size();
   commit(scene, items);
-  if (panes != nullptr) run_on_one_thread([&] { rtcJoinCommitScene(panes); });
-  throw_if_failed();
+  if (panes != nullptr) commit(panes, pane_triangles);
 }
 
 Tracer::Embree::~Embree() {

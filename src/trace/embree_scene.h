@@ -15,8 +15,12 @@ namespace troffer {
 struct Context {
   RTCIntersectContext embree;  // the first member: Embree knows the address of this
   Meeting meeting;
+  bool is_through = false;  // every pane is met, but for its holes: to ask what panes take
 
-  explicit Context(Meeting what) : meeting(what) { rtcInitIntersectContext(&embree); }
+  explicit Context(Meeting what, bool goes_through = false)
+      : meeting(what), is_through(goes_through) {
+    rtcInitIntersectContext(&embree);
+  }
 };
 
 // What of a geometry is not there for some rays, or has holes.
@@ -24,6 +28,7 @@ struct HitTest {
   const Scene* scene = nullptr;
   const Mesh* mesh = nullptr;  // null: spheres or disks
   bool has_holes = false, hides_backs = false, has_panes = false;
+  bool hides_in_places = false;  // panes are opaque where alpha is 1
   std::vector<uint8_t> is_pane;  // per primitive; empty: all are, where it has any
 
   bool is_pane_at(uint32_t primitive) const {
@@ -57,6 +62,7 @@ struct Tracer::Embree {
   EmbreeStatus status;
   std::vector<HitTest> tests;  // per mesh, of all spheres, of all disks, per instanced mesh
   InstanceNumbers instances;
+  size_t pane_triangles = 0;
   size_t packet_size = 8;  // of rays: 8, or 16 where Embree has these as they are
 
   // Throws EnvironmentError if memory runs out.

@@ -12,6 +12,17 @@
 
 namespace troffer {
 
+namespace {
+
+// A pane hides nothing, except where the texture of its alpha is 1.
+bool hides_something(const Scene& scene, const PaneGlass* glass, uint32_t material) {
+  const Material& m = scene.materials[material];
+  return glass == nullptr || !glass->is_pane(material) ||
+         (m.is_alpha_masked && m.alpha.texture >= 0);
+}
+
+}  // namespace
+
 void Occluders::join_and_add(const Mesh& mesh, std::vector<uint32_t>& facet_of) {
   const std::vector<uint32_t> welded = weld(mesh.positions);
   PolygonList triangles;
@@ -123,10 +134,9 @@ void Occluders::add_instances(const Scene& scene, const PaneGlass* glass) {
   std::vector<Vec3d> reaches;
   for (const Mesh& mesh : scene.instanced_meshes) {
     reaches.emplace_back(reach_of(mesh));
-    const bool is_pane = glass != nullptr && glass->is_pane(mesh.material);
     const bool is_masked = scene.materials[mesh.material].is_alpha_masked;
-    instanced_.spaces.emplace_back(is_pane && !is_masked ? nullptr
-                                                         : new Occluders(mesh, is_masked));
+    instanced_.spaces.emplace_back(
+        hides_something(scene, glass, mesh.material) ? new Occluders(mesh, is_masked) : nullptr);
   }
   uint64_t facets = facet_count();
   for (const Instance& i : scene.instances) {
@@ -161,11 +171,12 @@ Occluders::Occluders(const Scene& scene, const PaneGlass* glass) : facet_of_(sce
     return scene.materials[mesh.material].is_alpha_masked;
   };
   for (uint32_t i = 0; i < scene.meshes.size(); ++i)
-    if (const Mesh& mesh = scene.meshes[i]; !mesh.triangles.empty() && !is_masked(mesh) &&
-                                            !(glass != nullptr && glass->is_pane(mesh.material)))
+    if (const Mesh& mesh = scene.meshes[i];
+        !mesh.triangles.empty() && !is_masked(mesh) && hides_something(scene, glass, mesh.material))
       join_and_add(mesh, facet_of_[i]);
   for (const Mesh& mesh : scene.meshes)
-    if (!mesh.triangles.empty() && is_masked(mesh)) add_masked(mesh);
+    if (!mesh.triangles.empty() && is_masked(mesh) && hides_something(scene, glass, mesh.material))
+      add_masked(mesh);
   add_round(scene, glass);
   add_instances(scene, glass);
   build_tree();

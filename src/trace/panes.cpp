@@ -2,15 +2,62 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "trace/surface.h"
 
 namespace troffer {
 
+namespace {
+
+constexpr size_t most_simple_triangles = 8;  // of a pane that is simple
+
+// Places that are not simple, joined to so few boxes: one of them between two places is enough to
+// ask rays.
+constexpr size_t most_boxes = 64;
+
+// Halves the boxes along the axis on which their middles are spread the most, until each part is
+// one box.
+void join_boxes(std::span<Box> boxes, size_t parts, std::vector<Box>& out) {
+  if (boxes.empty()) return;
+  if (parts <= 1 || boxes.size() == 1) {
+    Box all;
+    for (const Box& b : boxes) all.grow(b);
+    out.push_back(all);
+    return;
+  }
+  Box middles;
+  for (const Box& b : boxes) middles.grow(b.centre());
+  const Vec3 e = middles.extent();
+  const size_t axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+  std::stable_sort(boxes.begin(), boxes.end(), [axis](const Box& a, const Box& b) {
+    return a.centre()[axis] < b.centre()[axis];
+  });
+  const size_t half = boxes.size() / 2;
+  join_boxes(boxes.first(half), parts / 2, out);
+  join_boxes(boxes.subspan(half), parts - parts / 2, out);
+}
+
+}  // namespace
+
 PanePlaces::PanePlaces(const Scene& scene, const PaneGlass& glass) {
+  std::vector<Box> not_simple, joined;
   for_each_mesh(scene, [&](uint32_t, const MeshInWorld& mesh) {
     if (!glass.is_pane(mesh.mesh().material) || mesh.size() == 0) return;
     Box box;
+    const Material& m = scene.materials[mesh.mesh().material];
+    const bool is_large = mesh.size() > most_simple_triangles;
+    // Leaves and copies may be very many.
+    if ((m.is_alpha_masked && (is_large || m.alpha.texture >= 0)) ||
+        (is_large && mesh.instance() != nullptr)) {
+      if (mesh.instance() != nullptr) {
+        box = mesh.instance()->bounds;
+      } else {
+        for (const Vec3& p : mesh.mesh().positions) box.grow(p);
+      }
+      not_simple.push_back(box);
+      return;
+    }
     Vec3 normal;
     float largest = 0;
     std::vector<Vec3> points;
@@ -42,6 +89,8 @@ PanePlaces::PanePlaces(const Scene& scene, const PaneGlass& glass) {
       box.grow(d.centre + Vec3{d.radius, d.radius, d.radius});
       add(box, d.normal, {d.centre});
     }
+  join_boxes(not_simple, most_boxes, joined);
+  for (const Box& box : joined) add(box, {}, {});
 }
 
 PanePlaces::Place& PanePlaces::add(const Box& bounds, const Vec3& normal,
@@ -63,12 +112,17 @@ PanePlaces::Place& PanePlaces::add(const Box& bounds, const Vec3& normal,
 // Flat and even, of few triangles, seen as it lies.
 void PanePlaces::make_simple(const Scene& scene, const MeshInWorld& in_world,
                              const PaneGlass& glass, Place& place) {
-  constexpr size_t most_triangles = 8;
   constexpr int steps = 1024;
   const Mesh& mesh = in_world.mesh();
-  if (!(length_squared(place.normal) > 0) || mesh.triangles.size() > most_triangles ||
-      !glass.is_even(mesh.material) || scene.materials[mesh.material].normal_texture >= 0)
+  const Material& material = scene.materials[mesh.material];
+  if (!(length_squared(place.normal) > 0) || mesh.triangles.size() > most_simple_triangles) return;
+  if (material.is_alpha_masked) {
+    if (material.alpha.texture >= 0) return;
+    for (size_t t = 0; t < in_world.size(); ++t) place.triangles.push_back(in_world.corners(t));
+    place.by_cosine.assign(2, Rgb{1 - coverage(scene.textures, material, Vec2{})});
     return;
+  }
+  if (!glass.is_even(mesh.material) || material.normal_texture >= 0) return;
   for (uint32_t v = 0; v < mesh.normals.size(); ++v) {
     const Vec3 n = in_world.normal(v);
     if (std::abs(dot(n, place.normal)) < 0.9999f * length(n)) return;

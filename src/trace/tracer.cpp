@@ -286,7 +286,7 @@ Rgb Tracer::transmittance(const Ray& ray) const {
   constexpr int most_panes = 256;
   Rgb left{1};
   if (!has_panes() || !is_traceable(ray)) return left;
-  Context context(Meeting::all);
+  Context context(Meeting::all, true);
   const float per_metre = 1 / length(ray.direction);
   Ray rest = ray;
   for (int i = 0; i < most_panes; ++i) {
