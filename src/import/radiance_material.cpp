@@ -23,7 +23,7 @@ bool is_pattern(const std::string& type) {
   return patterns.contains(type);
 }
 
-Rgb rgb_at(const std::vector<double>& v) {
+Rgb emission_of(const std::vector<double>& v) {
   return {float(std::max(v[0], 0.0)), float(std::max(v[1], 0.0)), float(std::max(v[2], 0.0))};
 }
 
@@ -168,7 +168,7 @@ bool RadianceMaterials::convert_emission(const RadianceModifier& m, RadianceLook
   const std::vector<double>& v = m.arguments.reals;
   if (m.type != "light" && m.type != "glow" && m.type != "spotlight" && m.type != "illum")
     return false;
-  look.emission = rgb_at(v);
+  look.emission = emission_of(v);
   if (m.type == "illum")
     scene_.warnings.add("\"illum\" is shown as a light: what is behind it is not seen");
   if (m.type == "glow" && v.size() > 3 && v[3] < 0) {
