@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
+#include "app/other_report.h"
 #include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/printable.h"
@@ -20,15 +22,18 @@
 #include "image/output_set.h"
 #include "image/read_image.h"
 #include "import/file.h"
+#include "import/luminaire.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/dimming.h"
 #include "lighting/luminaire_list.h"
 #include "render/camera.h"
 #include "render/framing.h"
 #include "render/placement.h"
+#include "report/plan_view.h"
 #include "report/report.h"
 #include "report/sha256.h"
 #include "scene/names.h"
+#include "scene/orientation.h"
 
 namespace troffer {
 
@@ -161,6 +166,21 @@ void dim_power(const ReportCommand& c, const Scene& scene, std::vector<PowerRequ
   power.insert(power.end(), dimmed.begin(), dimmed.end());
 }
 
+// By photometric file, what it says of its product.
+std::map<std::string, std::string> products_of(const Scene& scene) {
+  std::map<std::string, std::string> products;
+  for (const LightWeb& web : scene.webs) {
+    const std::string ending = lower_case_ending(web.name);
+    std::error_code error;
+    if ((ending != "ies" && ending != "ldt") || products.contains(web.name) ||
+        !fs::is_regular_file(web.name, error))
+      continue;
+    WarningLog ignored;  // told when the scene was loaded
+    products[web.name] = read_luminaire(web.name, ignored).description;
+  }
+  return products;
+}
+
 ReportInfo info_of(const ReportCommand& c, const Scene& scene, const FilesRead& read,
                    const UpDecision& up) {
   ReportInfo info;
@@ -190,6 +210,9 @@ void write_report(const Report& report, const ReportFolder& folder) {
     files.add(folder.file(fmt::format("luminance{}.png", i + 1)), report.pictures[i].luminances);
     files.add(folder.file(fmt::format("picture{}.png", i + 1)), report.pictures[i].seen);
   }
+  const std::vector<std::string> plans = report_plans(report);
+  for (size_t i = 0; i < plans.size(); ++i)
+    files.add(folder.file(i == 0 ? "plan.svg" : fmt::format("plan{}.svg", i + 1)), plans[i]);
   files.add(folder.file("points.csv"), report_points(report));
   files.add(folder.file("report.json"), report_json(report));
   files.add(folder.file("report.html"), report_page(report));
@@ -207,10 +230,11 @@ void note_misplaced(Scene& scene, bool is_quiet) {
 void guard_files(const ReportCommand& c, OutputGuard& guard) {
   guard.add_inputs(c.scene, c.daylight);
   for (const std::string& file : c.surface_files) guard.add_input("--surfaces", file);
+  guard.add_input("--compare", c.compare);
   const auto add = [&](const std::string& name) {
     guard.add_output("-o:", (fs::path(c.output) / name).string());
   };
-  for (const char* name : {"report.html", "report.json", "points.csv"}) add(name);
+  for (const char* name : {"report.html", "report.json", "points.csv", "plan.svg"}) add(name);
   const size_t pictures = std::max<size_t>(c.cameras.size(), 1);
   for (size_t i = 1; i <= pictures && c.pictures == "on"; ++i)
     for (const char* name : {"luminance", "picture"}) add(fmt::format("{}{}.png", name, i));
@@ -232,6 +256,7 @@ int run_report(const ReportCommand& c) {
   Report report;
   check_method(parse_method(c.method), Indirect::automatic, "");
   assessment_options(c, {0, 0, 1});  // mistakes are told before any work
+  if (!c.compare.empty()) report.other = read_other_report(c.compare);
   const ThreadLimit limit(c.threads);
   UpUse use{true, {}};
   Scene scene = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, use);
@@ -243,6 +268,8 @@ int run_report(const ReportCommand& c) {
     if (!c.is_quiet) fmt::print(stderr, "warning: {}\n", printable(note));
     scene.warnings.add(note);
   }
+  report.options.north = north_of(normalize(Vec3d(up)), c.daylight.north_deg, is_mirrored(scene));
+  report.options.products = products_of(scene);
   const std::vector<PowerRequest> stated = power_of_files(c, scene, up);
   report.options.power.insert(report.options.power.begin(), stated.begin(), stated.end());
   dim_power(c, scene, report.options.power);

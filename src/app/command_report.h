@@ -13,6 +13,7 @@ struct ReportCommand {
   SceneChoice scene;
   std::string output;  // folder
   std::string title, date;
+  std::string compare;  // another report's report.json; empty: none
   std::vector<std::string> lights;
   DaylightOptions daylight;
   std::vector<std::string> surfaces;       // NODE[:PROFILE]
@@ -25,7 +26,7 @@ struct ReportCommand {
   std::vector<std::string> cameras;
   std::string method = "certified";
   double error = 0.01, picture_error = 0.05;
-  int spp = 1024, width = 480, threads = 0;
+  int spp = 1024, width = 720, threads = 0;
   uint64_t seed = 0;
   bool is_quiet = false;
   std::string command_line;  // as typed

@@ -133,6 +133,8 @@ void add_report(CLI::App& app, ReportCommand& c) {
       ->required();
   s->add_option("--title", c.title, "Title [the scene's file]");
   s->add_option("--dated", c.date, "Date shown in the report, as text");
+  s->add_option("--compare", c.compare,
+                "report.json of another report: adds a comparison of both variants");
   add_what(*s, c);
   add_how(*s, c);
   add_light_choice(*s, c.lights);

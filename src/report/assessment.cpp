@@ -113,6 +113,13 @@ size_t take_cylinders(const std::vector<Figure>& figures, size_t at, const Work&
   return at;
 }
 
+// Samples of a luminaire that is seen: in proportion to those of points, so that more of these
+// decide about glare, too.
+int glare_samples(int spp) {
+  constexpr int least = 256, most = 1 << 16;
+  return std::clamp(spp / 4, least, most);
+}
+
 // all, direct: vertical illuminance at observers' eyes, initial.
 void take_glares(const PreparedScene& scene, const std::vector<Figure>& all,
                  const std::vector<Figure>& direct, const Work& work, Assessment& a) {
@@ -121,7 +128,9 @@ void take_glares(const PreparedScene& scene, const std::vector<Figure>& all,
     const Figure indirect{std::max(0.0, all[i].value - direct[i].value),
                           std::hypot(all[i].error, direct[i].error)};
     a.glares.push_back({work.observers[i].surface,
-                        glare_of(o, indirect, seen_luminaires(scene, o, work.options.up, i))});
+                        glare_of(o, indirect,
+                                 seen_luminaires(scene, o, work.options.up, i,
+                                                 glare_samples(work.options.measure.spp)))});
   }
 }
 
@@ -182,7 +191,7 @@ bool measure_groups(const Scene& scene, Work& work, Assessment& a) {
 // Points under what stands on a level surface say nothing of its light.
 void drop_covered(const PreparedScene& scene, const Vec3d& up, SurfaceResult& s,
                   std::vector<std::string>& notes) {
-  constexpr double level = 0.99;
+  constexpr double level = 0.9397;  // floors slope by up to 20 degrees
   if (dot(s.surface.normal(), up) < level) return;
   std::vector<Vec3d> points;
   for (const GridPoint& p : s.grid.points) points.push_back(p.position);
@@ -218,6 +227,7 @@ void place_surfaces(const PreparedScene& scene, const AssessmentOptions& o, Asse
       throw UsageError(fmt::format("the grids have more than {} points", most_points));
     SurfaceResult r{std::move(s), {}, {}, {}, {}, {}};
     r.grid = grid_of(r.surface);
+    if (r.surface.kind == SurfaceKind::floor) lift_onto_rugs(scene, o.up, r.grid.points);
     drop_covered(scene, o.up, r, a.notes);
     a.surfaces.push_back(std::move(r));
   }
@@ -225,6 +235,18 @@ void place_surfaces(const PreparedScene& scene, const AssessmentOptions& o, Asse
     throw UsageError(
         "no desk and no floor was found: --surface or --surfaces names what is to be "
         "assessed");
+}
+
+void note_unrated(Assessment& a) {
+  for (size_t i = 0; i < a.surfaces.size(); ++i) {
+    bool sees_any = false;
+    for (const GlareResult& g : a.glares)
+      sees_any = sees_any || (g.surface == i && !g.glare.luminaires.empty());
+    if (sees_any && worst_glare(a, i) == nullptr)
+      a.notes.push_back(a.surfaces[i].surface.name +
+                        ": glare could not be rated, since the background is too dark to be "
+                        "measured with this number of samples");
+  }
 }
 
 void place_eyes(const PreparedScene& scene, const AssessmentOptions& o, const Assessment& a,
@@ -277,7 +299,8 @@ bool measure_all(const PreparedScene& whole, Work& work, Assessment& a) {
   return measure_grids(overcast, 100 / overcast_lx, work, a, &SurfaceResult::factor);
 }
 
-PowerResult power_of(const Assessment& a) {
+// up: floor area is that of the plan, of sloping floors too.
+PowerResult power_of(const Assessment& a, const Vec3d& up) {
   PowerResult p;
   p.watts = 0;
   for (const ReportedLights& g : a.groups) {
@@ -288,7 +311,7 @@ PowerResult power_of(const Assessment& a) {
     else
       p.watts.reset();
   }
-  for (const AssessedSurface& f : a.floors) p.floor_area += f.area;
+  for (const AssessedSurface& f : a.floors) p.floor_area += f.area * dot(f.normal(), up);
   double area = 0;
   for (const SurfaceResult& s : a.surfaces) {
     if (s.surface.kind == SurfaceKind::floor || s.electric.empty()) continue;
@@ -317,9 +340,11 @@ Assessment assess(const Scene& imported, const AssessmentOptions& options,
   const size_t groups = a.has_electric && options.has_contributions ? a.groups.size() : 0;
   Work work{options, stop, Steps(3 + groups, progress), {}, {}};
   if (a.has_electric) place_eyes(scene, options, a, work);
+  a.luminaires = placed_luminaires(scene, options.power, options.products);
   a.is_complete = measure_all(scene, work, a);
   if (!a.is_complete) return a;
-  a.power = power_of(a);
+  a.power = power_of(a, options.up);
+  note_unrated(a);
   a.checks = checks_of(a, options.profiles, options.profile);
   return a;
 }

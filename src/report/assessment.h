@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "report/find_surfaces.h"
 #include "report/glare.h"
 #include "report/groups.h"
+#include "report/luminaire_parts.h"
 #include "report/profile.h"
 #include "report/statistics.h"
 
@@ -22,9 +24,11 @@ struct AssessmentOptions {
   std::vector<SurfaceRequest> surfaces;    // empty: found by themselves
   std::vector<Observer> observers;         // empty: found by themselves
   std::vector<PowerRequest> power;
-  Vec3d up{0, 0, 1};         // unit
-  double maintenance = 0.8;  // factor on electric light, but in UGR
-  double work_plane = 0.75;  // m above floors, where there are no desks
+  Vec3d up{0, 0, 1};                            // unit
+  Vec3d north{0, 1, 0};                         // unit, level
+  std::map<std::string, std::string> products;  // of photometric files: what they say of themselves
+  double maintenance = 0.8;                     // factor on electric light, but in UGR
+  double work_plane = 0.75;                     // m above floors, where there are no desks
   bool has_cylindrical = true, has_contributions = true;
   // The scene by an overcast sky of 10 000 lx alone; empty: no daylight factors. Asked for where
   // openings show the sky, or is_factor_forced.
@@ -84,6 +88,7 @@ struct Assessment {
   std::vector<SurfaceResult> surfaces;
   std::vector<AssessedSurface> floors;
   std::vector<ReportedLights> groups;
+  std::vector<PlacedLuminaire> luminaires;  // one by one
   std::vector<CylinderResult> cylinders;
   std::vector<GlareResult> glares;
   std::vector<Check> checks;

@@ -1,6 +1,7 @@
 #include "report/checks.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace troffer {
 
@@ -14,7 +15,9 @@ Check check(const std::string& subject, const Profile& p, const char* quantity, 
   return c;
 }
 
-void check_surface(const Assessment& a, size_t i, const Profile& p, std::vector<Check>& out) {
+// task: the profile whose UGR limit holds around it.
+void check_surface(const Assessment& a, size_t i, const Profile& p, const Profile* task,
+                   std::vector<Check>& out) {
   const SurfaceResult& s = a.surfaces[i];
   const GridSummary sums = summary_of(assessed_light(s));
   if (sums.has_values && p.illuminance_lx > 0)
@@ -22,8 +25,9 @@ void check_surface(const Assessment& a, size_t i, const Profile& p, std::vector<
   if (sums.has_values && p.uniformity > 0)
     out.push_back(check(s.surface.name, p, "U0", "", p.uniformity, sums.uniformity));
   const Glare* worst = worst_glare(a, i);
-  if (worst != nullptr && p.ugr_limit > 0)
-    out.push_back(check(s.surface.name, p, "UGR", "", p.ugr_limit, worst->ugr));
+  const Profile& limit = p.is_around_task && !(p.ugr_limit > 0) && task != nullptr ? *task : p;
+  if (worst != nullptr && limit.ugr_limit > 0)
+    out.push_back(check(s.surface.name, limit, "UGR", "", limit.ugr_limit, worst->ugr));
 }
 
 void check_cylinders(const Assessment& a, const Profile& p, std::vector<Check>& out) {
@@ -49,6 +53,14 @@ Verdict verdict_of(const Figure& value, double required, bool is_most) {
   return reserve >= 0 ? Verdict::pass : Verdict::fail;
 }
 
+std::optional<double> samples_to_decide(const Check& c, double samples) {
+  if (c.verdict != Verdict::open) return std::nullopt;
+  const double reserve = std::abs(c.required - c.value.value);
+  constexpr double most = 1e9;  // more than anyone waits for: the value is the requirement
+  const double factor = 2 * c.value.error / std::max(reserve, 1e-300);
+  return samples * factor * factor < most ? std::optional(samples * factor * factor) : std::nullopt;
+}
+
 const Glare* worst_glare(const Assessment& a, size_t surface) {
   const Glare* worst = nullptr;
   for (const GlareResult& g : a.glares)
@@ -61,10 +73,10 @@ const Glare* worst_glare(const Assessment& a, size_t surface) {
 std::vector<Check> checks_of(const Assessment& a, const std::vector<Profile>& profiles,
                              const std::string& profile) {
   std::vector<Check> checks;
-  for (size_t i = 0; i < a.surfaces.size(); ++i)
-    if (const Profile* p = find_profile(profiles, a.surfaces[i].surface.profile))
-      check_surface(a, i, *p, checks);
   const Profile* p = find_profile(profiles, profile);
+  for (size_t i = 0; i < a.surfaces.size(); ++i)
+    if (const Profile* own = find_profile(profiles, a.surfaces[i].surface.profile))
+      check_surface(a, i, *own, p, checks);
   if (p == nullptr) return checks;
   const Glare* worst = worst_glare(a, no_surface);
   if (worst != nullptr && p->ugr_limit > 0)

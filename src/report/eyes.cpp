@@ -19,11 +19,24 @@ void erase_covered(const PreparedScene& scene, const Vec3d& up, std::vector<T>& 
   std::erase_if(items, [&](const T&) { return is_covered[i++] != 0; });
 }
 
+// A place on the surface: the one that is wanted, or the grid point nearest to it. Rooms in the
+// shape of an L have no floor at the middle of some sides.
+Vec3d place_near(const AssessedSurface& s, const SurfaceGrid& grid, const Vec2d& wanted) {
+  const Vec3d place = s.place(wanted);
+  if (lies_on(s, wanted)) return place;
+  return std::min_element(grid.points.begin(), grid.points.end(),
+                          [&](const GridPoint& a, const GridPoint& b) {
+                            return length(a.position - place) < length(b.position - place);
+                          })
+      ->position;
+}
+
 void add_observers(const AssessedSurface& s, size_t number, const Vec3d& lift,
                    std::vector<PlacedObserver>& out) {
   const Vec2d middle{s.width / 2, s.height / 2};
+  const SurfaceGrid grid = grid_of(s);
   const auto add = [&](const Vec2d& at, const Vec3d& direction) {
-    out.push_back({number, {s.place(at) + lift, direction}});
+    out.push_back({number, {place_near(s, grid, at) + lift, direction}});
   };
   if (s.kind == SurfaceKind::floor || s.kind == SurfaceKind::work_plane) {
     const double x = std::min(s.border, middle.x), y = std::min(s.border, middle.y);
@@ -58,8 +71,7 @@ std::vector<EyePlace> eye_places(const PreparedScene& scene,
 std::vector<PlacedObserver> observers_of(const PreparedScene& scene,
                                          const std::vector<AssessedSurface>& surfaces,
                                          const Vec3d& up, const std::vector<double>& eye_heights) {
-  constexpr double level = 0.99;
-  constexpr size_t most = 96;
+  constexpr double level = 0.9397;  // floors slope by up to 20 degrees
   std::vector<PlacedObserver> observers;
   for (size_t i = 0; i < surfaces.size(); ++i) {
     const AssessedSurface& s = surfaces[i];
@@ -67,7 +79,6 @@ std::vector<PlacedObserver> observers_of(const PreparedScene& scene,
     add_observers(s, i, up * (eye_heights[i] - s.above_floor), observers);
   }
   erase_covered(scene, up, observers, [](const PlacedObserver& o) { return o.observer.position; });
-  if (observers.size() > most) observers.resize(most);
   return observers;
 }
 

@@ -24,9 +24,9 @@ struct PlacedObserver {
   Observer observer;
 };
 
-// For each level surface: over floors and work planes at the middles of the sides, looking across
-// [CIE 117]; over others at the middle, looking along both axes both ways. eye_heights: per
-// surface, m above the floor. None within bodies; at most 96.
+// Four for each level surface: over floors and work planes at the middles of the sides, or as near
+// to them as the floor reaches, looking across [CIE 117]; over others at the middle, looking along
+// both axes both ways. eye_heights: per surface, m above the floor. None within bodies.
 std::vector<PlacedObserver> observers_of(const PreparedScene& scene,
                                          const std::vector<AssessedSurface>& surfaces,
                                          const Vec3d& up, const std::vector<double>& eye_heights);

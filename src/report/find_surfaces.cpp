@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "base/warp.h"
+#include "report/above.h"
+#include "report/find_floors.h"
 #include "report/flat_faces.h"
+#include "report/plan_view.h"
 #include "scene/names.h"
 #include "trace/surface.h"
 
@@ -17,45 +19,12 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t most_surfaces = 24;
-constexpr double least_floor = 1.5, least_desk = 0.25, least_side = 0.35;  // m², m², m
-constexpr double headroom = 1.9, desk_room = 0.5;                          // m
-constexpr double desk_low = 0.6, desk_high = 0.95, tallest_desk = 1.4;     // m over the floor
+constexpr size_t most_surfaces = 64;
+constexpr double least_desk = 0.25, least_side = 0.35;                  // m², m
+constexpr double desk_room = 0.5;                                       // m
+constexpr double desk_low = 0.6, desk_high = 0.95, tallest_desk = 1.4;  // m over the floor
 
-Ray ray_from(const PreparedScene& scene, const Vec3d& point, const Vec3d& direction) {
-  const Vec3 p(point - scene.scene.origin);
-  const Vec3 reach = abs(p);
-  Ray ray;
-  ray.direction = Vec3(direction);
-  ray.origin =
-      p + ray.direction *
-              std::max(1e-5f, 4 * ray_offset(std::max(reach.x, std::max(reach.y, reach.z))));
-  return ray;
-}
-
-struct Above {
-  double height = 0;  // m; infinite: nothing is there
-  bool is_from_behind = false;
-};
-
-std::vector<Above> above(const PreparedScene& scene, const std::vector<Vec3d>& points,
-                         const Vec3d& up) {
-  std::vector<Ray> rays;
-  for (const Vec3d& p : points) rays.push_back(ray_from(scene, p, up));
-  std::vector<Hit> hits(rays.size());
-  scene.tracer.closest(rays, hits);
-  std::vector<Above> found(points.size());
-  for (size_t i = 0; i < rays.size(); ++i) {
-    found[i].height = std::numeric_limits<double>::infinity();
-    if (!hits[i].is_valid()) continue;
-    found[i].height = double(hits[i].t);
-    const Surface s = surface_at(scene.scene, rays[i], hits[i]);
-    found[i].is_from_behind = dot(s.geometric_normal, rays[i].direction) > 0;
-  }
-  return found;
-}
-
-std::vector<Vec3d> places_on(const AssessedSurface& s) {
+std::vector<Vec3d> grid_places(const AssessedSurface& s) {
   std::vector<Vec3d> places;
   const SurfaceGrid grid = grid_of(s);
   const size_t step = 1 + grid.points.size() / 64;
@@ -63,40 +32,13 @@ std::vector<Vec3d> places_on(const AssessedSurface& s) {
   return places;
 }
 
-struct Room {
-  double clear = 0, roofed = 0;  // shares of places: with so much room above; of them, with a roof
-};
-
-Room room_above(const PreparedScene& scene, const AssessedSurface& s, const Vec3d& up,
-                double height) {
-  const std::vector<Above> found = above(scene, places_on(s), up);
-  Room room;
-  for (const Above& a : found) {
-    const bool is_clear = a.height >= height && !a.is_from_behind;
-    room.clear += is_clear ? 1 : 0;
-    room.roofed += is_clear && std::isfinite(a.height) ? 1 : 0;
-  }
-  room.clear /= double(found.size());
-  room.roofed /= double(found.size());
-  return room;
-}
-
-// Whether the middle of a surface lies over another one, seen from above.
-bool lies_over(const AssessedSurface& s, const AssessedSurface& floor) {
-  const Vec3d from = s.place({s.width / 2, s.height / 2}) - floor.corner;
-  const double x = dot(from, floor.along), y = dot(from, floor.across);
-  return x >= 0 && y >= 0 && x <= floor.width && y <= floor.height;
-}
-
-// The highest of the floors that it lies over, at most so far below; its height over that, or 0.
-double height_over(const std::vector<AssessedSurface>& floors, const AssessedSurface& s,
-                   const Vec3d& up, double most) {
-  double nearest = 0;
-  for (const AssessedSurface& f : floors) {
-    const double h = dot(s.corner - f.corner, up);
-    if (h > 0.02 && h <= most && lies_over(s, f) && (nearest == 0 || h < nearest)) nearest = h;
-  }
-  return nearest;
+// The share of a surface's places with so much room above.
+double clear_share(const PreparedScene& scene, const AssessedSurface& s, const Vec3d& up,
+                   double height) {
+  double clear = 0;
+  const std::vector<Above> found = above(scene, grid_places(s), up);
+  for (const Above& a : found) clear += a.height >= height && !a.is_within ? 1 : 0;
+  return clear / double(found.size());
 }
 
 AssessedSurface surface_of(const FlatFace& face, const Vec3d& n, SurfaceKind kind,
@@ -106,51 +48,6 @@ AssessedSurface surface_of(const FlatFace& face, const Vec3d& n, SurfaceKind kin
   s.kind = kind;
   s.profile = profile;
   return s;
-}
-
-// Names that repeat, or are missing, get numbers.
-void number_names(std::vector<AssessedSurface>& surfaces) {
-  std::map<std::string, int> count, next;
-  for (AssessedSurface& s : surfaces) {
-    const bool is_named = !s.name.empty();
-    if (!is_named) s.name = name_of(s.kind);
-    ++count[s.name];
-  }
-  for (AssessedSurface& s : surfaces)
-    if (count[s.name] > 1) s.name += fmt::format(" {}", ++next[s.name]);
-}
-
-std::vector<AssessedSurface> find_floors(const PreparedScene& scene, std::vector<FlatFace> faces,
-                                         const Vec3d& up) {
-  std::erase_if(faces, [](const FlatFace& f) { return f.area < least_floor; });
-  std::stable_sort(faces.begin(), faces.end(),
-                   [](const FlatFace& a, const FlatFace& b) { return a.height < b.height; });
-  struct Candidate {
-    AssessedSurface surface;
-    Room room;
-  };
-  std::vector<Candidate> candidates;
-  bool has_roof = false;
-  for (const FlatFace& f : faces) {
-    Candidate c{surface_of(f, up, SurfaceKind::floor, "background"), {}};
-    if (std::min(c.surface.width, c.surface.height) < least_side) continue;
-    c.room = room_above(scene, c.surface, up, headroom);
-    has_roof = has_roof || c.room.roofed >= 0.5;
-    candidates.push_back(std::move(c));
-  }
-  std::vector<AssessedSurface> floors;
-  for (Candidate& c : candidates) {
-    if ((has_roof ? c.room.roofed : c.room.clear) < 0.5) continue;
-    const double h = height_over(floors, c.surface, up, tallest_desk);
-    if (h >= desk_low) continue;
-    c.surface.border = border_zone(c.surface.width, c.surface.height);
-    floors.push_back(std::move(c.surface));
-  }
-  std::stable_sort(
-      floors.begin(), floors.end(),
-      [](const AssessedSurface& a, const AssessedSurface& b) { return a.area > b.area; });
-  number_names(floors);
-  return floors;
 }
 
 std::vector<AssessedSurface> find_desks(const PreparedScene& scene,
@@ -164,19 +61,32 @@ std::vector<AssessedSurface> find_desks(const PreparedScene& scene,
     if (std::min(s.width, s.height) < least_side) continue;
     s.above_floor = height_over(floors, s, up, tallest_desk);
     if (s.above_floor < desk_low || s.above_floor > desk_high) continue;
-    if (room_above(scene, s, up, desk_room).clear < 0.5) continue;
+    if (clear_share(scene, s, up, desk_room) < 0.5) continue;
     desks.push_back(std::move(s));
   }
-  number_names(desks);
+  number_names(desks, up);
+  std::stable_sort(desks.begin(), desks.end(),
+                   [](const AssessedSurface& a, const AssessedSurface& b) {
+                     return natural_less(a.name, b.name);
+                   });
   return desks;
 }
 
+// Floors come last, and the room's own glare is judged from them: desks are left out first.
 void keep_most(FoundSurfaces& found) {
   if (found.surfaces.size() <= most_surfaces) return;
+  const auto is_desk = [](const AssessedSurface& s) {
+    return s.kind == SurfaceKind::desk || s.kind == SurfaceKind::given;
+  };
+  const auto last_desk = std::find_if_not(found.surfaces.begin(), found.surfaces.end(), is_desk);
+  const size_t excess = found.surfaces.size() - most_surfaces;
+  const auto desks = size_t(last_desk - found.surfaces.begin());
+  const size_t dropped = std::min(excess, desks - std::min<size_t>(desks, 1));
   found.notes.push_back(
-      fmt::format("{} surfaces were found; the first {} are assessed (--surface names others)",
+      fmt::format("{} surfaces were found; {} are assessed (--surface names others)",
                   found.surfaces.size(), most_surfaces));
-  found.surfaces.resize(most_surfaces);
+  found.surfaces.erase(last_desk - std::ptrdiff_t(dropped), last_desk);
+  found.surfaces.resize(std::min(found.surfaces.size(), most_surfaces));
 }
 
 }  // namespace
@@ -185,7 +95,7 @@ FoundSurfaces find_surfaces(const PreparedScene& scene, const Vec3d& up, const s
                             double work_plane) {
   FoundSurfaces found;
   const std::vector<FlatFace> faces = flat_faces(scene.scene, up, nullptr);
-  found.floors = find_floors(scene, faces, up);
+  found.floors = find_floors(scene, up);
   found.surfaces = find_desks(scene, faces, found.floors, up, profile);
   const bool has_desks = !found.surfaces.empty();
   for (AssessedSurface s : found.floors) {
@@ -205,7 +115,7 @@ FoundSurfaces find_surfaces(const PreparedScene& scene, const Vec3d& up, const s
 namespace {
 
 void add_node(const PreparedScene& scene, const Vec3d& up, const SurfaceRequest& r,
-              std::vector<AssessedSurface>& out) {
+              const std::vector<AssessedSurface>& floors, std::vector<AssessedSurface>& out) {
   if (!has_node(scene.scene, r.node))
     throw UsageError("--surface: " + no_node_named(scene.scene, r.node));
   Vec3d n = up;
@@ -216,11 +126,18 @@ void add_node(const PreparedScene& scene, const Vec3d& up, const SurfaceRequest&
   }
   if (faces.empty())
     throw UsageError("--surface: '" + r.node + "' is not flat and has no face that looks upward");
-  for (const FlatFace& f : faces) {
-    if (f.area < 0.1 * faces.front().area) break;
-    AssessedSurface s = surface_of(f, n, SurfaceKind::given, r.profile);
+  // A slab is assessed within its rooms, where it is a floor.
+  std::vector<AssessedSurface> surfaces = floors_of_node(floors, faces);
+  if (surfaces.empty())
+    for (const FlatFace& f : faces) {
+      if (f.area < 0.1 * faces.front().area) break;
+      surfaces.push_back(surface_of(f, n, SurfaceKind::given, r.profile));
+    }
+  for (AssessedSurface& s : surfaces) {
+    s.kind = SurfaceKind::given;
+    s.profile = r.profile;
     s.name = r.name.empty() ? r.node : r.name;
-    s.corner += n * r.lift;
+    s.corner += s.normal() * r.lift;
     s.border = std::max(r.border, 0.0);
     if (s.width > 0 && s.height > 0) out.push_back(std::move(s));
   }
@@ -253,19 +170,19 @@ FoundSurfaces asked_surfaces(const PreparedScene& scene, const Vec3d& up,
                              const std::vector<SurfaceRequest>& requests,
                              const std::string& profile) {
   FoundSurfaces found;
-  found.floors = find_floors(scene, flat_faces(scene.scene, up, nullptr), up);
+  found.floors = find_floors(scene, up);
   for (SurfaceRequest r : requests) {
     if (r.profile.empty()) r.profile = profile;
     if (r.node.empty())
       found.surfaces.push_back(rectangle(r));
     else
-      add_node(scene, up, r, found.surfaces);
+      add_node(scene, up, r, found.floors, found.surfaces);
   }
   for (AssessedSurface& s : found.surfaces) {
     constexpr double most = 30;
     s.above_floor = height_over(found.floors, s, up, most);
   }
-  number_names(found.surfaces);
+  number_names(found.surfaces, up);
   keep_most(found);
   return found;
 }
@@ -275,8 +192,28 @@ std::vector<uint8_t> covered_points(const PreparedScene& scene, const std::vecto
   constexpr double touching = 0.03;  // m: no photometer fits under it
   const std::vector<Above> found = above(scene, points, up);
   std::vector<uint8_t> is_covered;
-  for (const Above& a : found) is_covered.push_back(a.is_from_behind || a.height < touching);
+  for (const Above& a : found) is_covered.push_back(a.is_within || a.height < touching);
   return is_covered;
+}
+
+void lift_onto_rugs(const PreparedScene& scene, const Vec3d& up, std::vector<GridPoint>& points) {
+  std::vector<Ray> rays;
+  for (const GridPoint& p : points) rays.push_back(ray_from(scene, p.position + up * rug, -up));
+  std::vector<Hit> hits(rays.size());
+  scene.tracer.closest(rays, hits);
+  std::vector<Vec3d> tops;
+  std::vector<size_t> which;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    constexpr double least = 1e-3;  // m: the surface itself
+    if (!hits[i].is_valid() || !(double(hits[i].t) < rug - least)) continue;
+    const Surface s = surface_at(scene.scene, rays[i], hits[i]);
+    if (!(dot(Vec3d(s.geometric_normal), up) > 0.99)) continue;
+    which.push_back(i);
+    tops.push_back(Vec3d(s.position) + scene.scene.origin);
+  }
+  const std::vector<uint8_t> is_covered = covered_points(scene, tops, up);
+  for (size_t k = 0; k < which.size(); ++k)
+    if (is_covered[k] == 0) points[which[k]].position = tops[k];
 }
 
 bool sees_beyond(const PreparedScene& scene, const std::vector<Vec3d>& points, const Vec3d& up) {

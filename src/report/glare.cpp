@@ -4,14 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <unordered_map>
 
-#include "base/disjoint_sets.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "light/light.h"
-#include "report/groups.h"
+#include "report/luminaire_parts.h"
 #include "trace/surface.h"
 
 namespace troffer {
@@ -117,47 +114,15 @@ class Eye {
   float offset_ = 0;
 };
 
-using Pieces = std::vector<uint32_t>;
-
-int samples_of(size_t pieces) {
-  constexpr double each = 64;  // of a replicate
+// Samples along a side of each piece, for a replicate's share of all samples.
+int samples_of(size_t pieces, int samples) {
+  const double each = double(samples) / double(replicates);
   return std::max(1, int(std::sqrt(each / double(std::max<size_t>(pieces, 1)))));
 }
 
-// Those together that share a corner, to a tenth of a millimetre: lamps of one name may hang far
-// from each other, and faces of one lamp are one.
-std::vector<Pieces> connected(const LightPrimitives& all, const Pieces& pieces) {
-  DisjointSets sets(pieces.size());
-  std::unordered_map<uint64_t, uint32_t> first;
-  for (uint32_t i = 0; i < pieces.size(); ++i)
-    for (uint32_t k = 0; k < all[pieces[i]].vertex_count; ++k) {
-      const Vec3 p = all[pieces[i]].vertex(k) * 1e4f;
-      const uint64_t key =
-          hash_of(uint64_t(std::llround(p.x)), std::llround(p.y), std::llround(p.z));
-      const auto [at, is_new] = first.emplace(key, i);
-      if (!is_new) sets.join(at->second, i);
-    }
-  std::map<uint32_t, Pieces> parts;
-  for (uint32_t i = 0; i < pieces.size(); ++i) parts[sets.find(i)].push_back(pieces[i]);
-  std::vector<Pieces> list;
-  for (auto& [root, part] : parts) list.push_back(std::move(part));
-  return list;
-}
-
-std::map<std::string, Pieces> luminaires_of(const PreparedScene& scene) {
-  std::map<std::string, Pieces> luminaires;
-  for (uint32_t i = 0; i < scene.scene.lights.size(); ++i) {
-    const Light& e = scene.scene.lights[i];
-    if (is_daylight(e)) continue;
-    const LightPrimitives::Range range = scene.primitives.of_light(i);
-    for (uint32_t k = range.first; k < range.last; ++k) luminaires[e.name].push_back(k);
-  }
-  return luminaires;
-}
-
 // False where nothing of it is seen, or it does not count.
-bool see(const PreparedScene& scene, const Eye& eye, const Pieces& pieces, int side, uint64_t seed,
-         SeenLuminaire& l) {
+bool see(const PreparedScene& scene, const Eye& eye, const LightPieces& pieces, int side,
+         uint64_t seed, SeenLuminaire& l) {
   std::array<Sums, replicates> sums;
   Sums all;
   double mean = 0, squares = 0;
@@ -196,13 +161,14 @@ double position_index(const Vec3d& towards, const Vec3d& line_of_sight, const Ve
 }
 
 std::vector<SeenLuminaire> seen_luminaires(const PreparedScene& scene, const Observer& observer,
-                                           const Vec3d& up, uint64_t seed) {
+                                           const Vec3d& up, uint64_t seed, int samples) {
   const Eye eye(scene, observer, up);
   std::vector<SeenLuminaire> seen;
-  for (const auto& [name, pieces] : luminaires_of(scene)) {
-    const std::vector<Pieces> parts = connected(scene.primitives, pieces);
-    const int side = samples_of(pieces.size() / parts.size());
-    for (const Pieces& part : parts) {
+  for (const auto& [name, parts] : luminaire_parts(scene)) {
+    size_t pieces = 0;
+    for (const LightPieces& part : parts) pieces += part.size();
+    const int side = samples_of(pieces / std::max<size_t>(parts.size(), 1), samples);
+    for (const LightPieces& part : parts) {
       SeenLuminaire l;
       l.name = name;
       if (see(scene, eye, part, side, seed, l)) seen.push_back(std::move(l));

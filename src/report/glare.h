@@ -44,10 +44,10 @@ struct SeenLuminaire {
 };
 
 // The luminaires that an observer sees from there, the one that glares most first. What hides them
-// and glass before them are seen to by rays: 256 to a luminaire, or 4 to each of its pieces, if
-// that is more.
+// and glass before them are seen to by rays: `samples` to a luminaire, or 4 to each of its pieces,
+// if that is more.
 std::vector<SeenLuminaire> seen_luminaires(const PreparedScene& scene, const Observer& observer,
-                                           const Vec3d& up, uint64_t seed);
+                                           const Vec3d& up, uint64_t seed, int samples = 256);
 
 struct Glare {
   Observer observer;

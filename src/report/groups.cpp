@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "base/wildcard.h"
 #include "render/source_info.h"
+#include "report/plan_view.h"
 #include "scene/names.h"
 
 namespace troffer {
@@ -88,6 +89,10 @@ bool is_daylight(const Light& light) {
 std::vector<ReportedLights> light_groups(const Scene& scene, const std::vector<PowerRequest>& power,
                                          size_t most) {
   std::vector<ReportedLights> groups = single_luminaires(scene, power);
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const ReportedLights& a, const ReportedLights& b) {
+                     return natural_less(a.name, b.name);
+                   });
   if (groups.size() <= most) return groups;
   groups = families(groups);
   std::vector<ReportedLights> strong;

@@ -29,10 +29,10 @@ struct PowerRequest {
 // Skies, suns, images of the surroundings and distant lights.
 bool is_daylight(const Light& light);
 
-// One group per name; luminaires whose names differ in a number at their end alone are together
-// where there are more than `most` groups, and the weakest of those left beyond that are "others".
-// watts: as asked for; of several requests that fit, the last. UsageError for one that fits no
-// light.
+// One group per name, in natural order of names; luminaires whose names differ in a number at their
+// end alone are together where there are more than `most` groups, and the weakest of those left
+// beyond that are "others". watts: as asked for; of several requests that fit, the last. UsageError
+// for one that fits no light.
 std::vector<ReportedLights> light_groups(const Scene& scene, const std::vector<PowerRequest>& power,
                                          size_t most);
 

@@ -72,6 +72,26 @@ std::string html_text(std::string_view text) {
   return out;
 }
 
+std::string html_name(std::string_view text) {
+  constexpr size_t longest = 32;
+  std::string out;
+  size_t from = 0;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const bool is_last = i + 1 == text.size();
+    const bool is_start = is_last || (static_cast<unsigned char>(text[i + 1]) & 0xc0) != 0x80;
+    const bool is_mark = std::string_view("/\\_-.:").find(text[i]) != std::string_view::npos;
+    const bool is_long = i - from + 1 >= longest && is_start;
+    if (text[i] == ' ') {
+      out += html_text(text.substr(from, i + 1 - from));
+      from = i + 1;
+    } else if (!is_last && (is_mark || is_long)) {
+      out += html_text(text.substr(from, i + 1 - from)) + "<wbr>";
+      from = i + 1;
+    }
+  }
+  return out + html_text(text.substr(from));
+}
+
 std::string csv_field(std::string_view text) {
   std::string out = "\"";
   if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)

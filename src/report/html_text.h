@@ -13,6 +13,10 @@ namespace troffer {
 // turns the direction of text (U+202A–U+202E, U+2066–U+2069).
 std::string html_text(std::string_view text);
 
+// A name or a path for a table: html_text() with places where lines may break behind / \ _ - . :
+// and within pieces of more than 32 bytes without any.
+std::string html_name(std::string_view text);
+
 // A CSV field (RFC 4180), always in quotes; a text that spreadsheets would take for a formula
 // begins with an apostrophe.
 std::string csv_field(std::string_view text);

@@ -7,10 +7,10 @@
 
 namespace troffer {
 
-// A table: a head and rows of cells that are HTML already.
+// A table: a head and rows of cells that are HTML already. style: CSS classes.
 class HtmlTable {
  public:
-  explicit HtmlTable(const std::vector<std::string>& head);
+  explicit HtmlTable(const std::vector<std::string>& head, const std::string& style = {});
   void add(const std::vector<std::string>& cells, const std::string& row_class = {});
   std::string html() const { return html_ + "</tbody></table></div>\n"; }
 
@@ -19,13 +19,22 @@ class HtmlTable {
 };
 
 std::string figure_cell(const Figure& f);  // "412 ± 3"
-std::string checks_table(const Assessment& a, const std::vector<Profile>& profiles);
-std::string summary_table(const SurfaceResult& s);
-std::string contributions_table(const Assessment& a, const SurfaceResult& s);
+const char* verdict_mark(Verdict v);       // a word in its colour
+
+// One row per surface: maintained mean, uniformity, glare, verdict; further requirements below.
+std::string summary_matrix(const Report& r);
+// What is not decided, and how many samples would decide it; empty where all is.
+std::string undecided_list(const Report& r);
+std::string figures_table(const SurfaceResult& s);
+// Surfaces against luminaires: the mean by each alone.
+std::string contributions_table(const Assessment& a);
 std::string glare_table(const Assessment& a);
 std::string cylinder_table(const Assessment& a);
-std::string luminaires_table(const Assessment& a);
+std::string luminaires_table(const Assessment& a, const Vec3d& up,
+                             const std::vector<size_t>& types);
+std::string daylight_table(const Assessment& a);
 std::string power_table(const PowerResult& p);
+std::string bias_table(const Assessment& a);
 std::string info_tables(const ReportInfo& info);
 
 }  // namespace troffer

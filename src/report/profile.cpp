@@ -29,8 +29,9 @@ const std::vector<Profile>& standard_profiles() {
       {"store-room", "Store and stockrooms", 100, 25, 0.4, 60, 0, standing},
       {"assembly-medium", "Assembly work, medium", 500, 22, 0.6, 80, 0, standing},
       {"assembly-fine", "Assembly work, fine", 750, 19, 0.7, 80, 0, seated},
-      {"surrounding", "Immediate surroundings of a task of 500 lx", 300, 0, 0.4, 0, 0, seated},
-      {"background", "Background of tasks of 500 lx", 100, 0, 0.1, 0, 0, seated},
+      {"surrounding", "Immediate surroundings of a task of 500 lx", 300, 0, 0.4, 0, 0, seated,
+       true},
+      {"background", "Background of tasks of 500 lx", 100, 0, 0.1, 0, 0, seated, true},
       {"none", "No requirement", 0, 0, 0, 0, 0, seated},
   };
   return profiles;

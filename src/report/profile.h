@@ -16,6 +16,8 @@ struct Profile {
   int colour_rendering = 0;   // Ra that lamps should have: told, not tested
   double cylindrical_lx = 0;  // least mean at eye height; 0: none
   double eye_height = 1.2;    // m above the floor: 1.2 seated, 1.6 standing
+  // The area around a task, in the same room: observers there have the task's UGR limit.
+  bool is_around_task = false;
 };
 
 // The table that comes with the program.

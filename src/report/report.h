@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "report/assessment.h"
+#include "report/comparison.h"
 #include "report/pictures.h"
 
 namespace troffer {
@@ -33,7 +35,11 @@ struct Report {
   AssessmentOptions options;
   Assessment assessment;
   std::vector<ReportPicture> pictures;
+  std::optional<OtherReport> other;  // a variant to be compared with
 };
+
+// A plan of each storey, as SVG.
+std::vector<std::string> report_plans(const Report& report);
 
 // One HTML page without anything from elsewhere, for screens and paper (A4).
 std::string report_page(const Report& report);

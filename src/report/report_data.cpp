@@ -87,11 +87,17 @@ const char* name_of(Verdict v) {
   return v == Verdict::pass ? "pass" : v == Verdict::fail ? "fail" : "open";
 }
 
-Json json_of(const Check& c) {
-  return {{"subject", c.subject},      {"profile", c.profile},
-          {"quantity", c.quantity},    {"unit", c.unit},
-          {"required", c.required},    {"is_most", c.is_most},
-          {"value", json_of(c.value)}, {"verdict", name_of(c.verdict)}};
+Json json_of(const Check& c, double samples) {
+  const std::optional<double> needed = samples_to_decide(c, samples);
+  return {{"subject", c.subject},
+          {"profile", c.profile},
+          {"quantity", c.quantity},
+          {"unit", c.unit},
+          {"required", c.required},
+          {"is_most", c.is_most},
+          {"value", json_of(c.value)},
+          {"verdict", name_of(c.verdict)},
+          {"samples_to_decide", needed ? Json(std::ceil(*needed)) : Json()}};
 }
 
 Json lights_json(const Assessment& a) {
@@ -103,6 +109,20 @@ Json lights_json(const Assessment& a) {
                  {"is_daylight", g.is_daylight},
                  {"lumens", g.lumens},
                  {"watts", g.watts ? Json(*g.watts) : Json()}});
+  return j;
+}
+
+Json luminaires_json(const Assessment& a) {
+  Json j = Json::array();
+  for (const PlacedLuminaire& l : a.luminaires) {
+    j.push_back({{"name", l.name},
+                 {"product", l.product},
+                 {"position", json_of(l.position)},
+                 {"aim", length(l.aim) > 0 ? json_of(l.aim) : Json()},
+                 {"lumens", l.lumens},
+                 {"watts", l.watts ? Json(*l.watts) : Json()},
+                 {"largest_candela", l.curve.largest()}});
+  }
   return j;
 }
 
@@ -142,9 +162,11 @@ std::string report_json(const Report& report) {
   Json j;
   j["format"] = "troffer report 1";
   j["info"] = info_json(report.info);
+  j["north"] = json_of(report.options.north);
+  j["samples_per_point"] = report.options.measure.spp;
   j["maintenance_factor"] = report.options.maintenance;
   j["checks"] = Json::array();
-  for (const Check& c : a.checks) j["checks"].push_back(json_of(c));
+  for (const Check& c : a.checks) j["checks"].push_back(json_of(c, report.options.measure.spp));
   j["surfaces"] = Json::array();
   for (const SurfaceResult& s : a.surfaces) j["surfaces"].push_back(json_of(s, a.groups));
   j["cylindrical"] = Json::array();
@@ -157,6 +179,7 @@ std::string report_json(const Report& report) {
   j["glare"] = Json::array();
   for (const GlareResult& g : a.glares) j["glare"].push_back(json_of(a, g));
   j["lights"] = lights_json(a);
+  j["luminaires"] = luminaires_json(a);
   j["power"] = power_json(a.power);
   j["notes"] = a.notes;
   // Names may be no UTF-8.

@@ -1,41 +1,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "report/checks.h"
+#include "report/comparison.h"
 #include "report/grid_plot.h"
 #include "report/html_text.h"
+#include "report/page_style.h"
 #include "report/page_tables.h"
+#include "report/plan_plot.h"
+#include "report/polar_plot.h"
 #include "report/report.h"
 
 namespace troffer {
 
 namespace {
-
-constexpr const char* style = R"(
-:root{color-scheme:light}
-body{font:15px/1.45 system-ui,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;color:#1b1f24;background:#fff;
- max-width:60rem;margin:0 auto;padding:1.5rem}
-h1{font-size:1.7rem;margin:0 0 .2rem}h2{font-size:1.25rem;margin:2.2rem 0 .6rem;padding-top:.4rem;
- border-top:2px solid #1b1f24}h3{font-size:1.05rem;margin:1.4rem 0 .3rem}
-p{margin:.4rem 0 .8rem}.sub{color:#56606b}
-.table{overflow-x:auto}table{border-collapse:collapse;margin:.4rem 0 1rem;font-size:.9rem}
-th,td{text-align:left;padding:.25rem .7rem .25rem 0;border-bottom:1px solid #d5dae0;vertical-align:top}
-th{font-weight:600;color:#56606b}td{overflow-wrap:anywhere}
-.n{font-variant-numeric:tabular-nums;white-space:nowrap}
-.sum td{font-weight:600}.worst td{background:#fff6dd}
-.pass,.fail,.open{font-weight:600;padding:0 .4rem;border-radius:.2rem;white-space:nowrap}
-.pass{background:#d9f0dd;color:#0c5a21}.fail{background:#fbdcd8;color:#8a1409}.open{background:#fdeec2;color:#6a4a00}
-.result{font-size:1.05rem;margin:.8rem 0}
-figure{margin:.6rem 0 1.2rem}figcaption{font-size:.85rem;color:#56606b}
-svg{max-width:100%;height:auto}.pictures{display:flex;gap:.8rem;align-items:flex-start;flex-wrap:wrap}
-.pictures img{width:23.5rem;max-width:100%;height:auto}.pictures svg{flex:none}
-code{font-size:.82rem;overflow-wrap:anywhere}.notes li{margin:.15rem 0}
-@page{size:A4;margin:16mm 14mm}
-@media print{body{max-width:none;padding:0;font-size:10pt;-webkit-print-color-adjust:exact;
- print-color-adjust:exact}h2,h3,h2+p{break-after:avoid}
- section.surface,figure,tr{break-inside:avoid}.pictures{flex-wrap:nowrap}.pictures img{width:13rem}
- .table{overflow:visible}}
-)";
 
 std::string count_of(const Assessment& a, Verdict v, const char* name) {
   const auto n = std::count_if(a.checks.begin(), a.checks.end(),
@@ -49,61 +29,190 @@ std::string head(const Report& r) {
   const Assessment& a = r.assessment;
   std::string h = "<h1>" + html_text(r.info.title) + "</h1>\n<p class=\"sub\">Lighting report";
   if (!r.info.date.empty()) h += " · " + html_text(r.info.date);
-  h += " · " + html_text(r.info.scene) + "</p>\n<p class=\"result\">";
+  h += " · " + html_name(r.info.scene) + "</p>\n<p class=\"result\">";
   if (a.checks.empty())
     h += "No requirement applies.";
   else
     h += count_of(a, Verdict::pass, "requirements met") + count_of(a, Verdict::fail, "not met") +
-         count_of(a, Verdict::open, "too near to tell");
+         count_of(a, Verdict::open, "undecided");
   return h + "</p>\n";
 }
 
-std::string requirements(const Report& r) {
+// Colour rendering is a requirement on lamps, which no computation tests.
+std::string colour_rendering(const Report& r) {
+  int most = 0;
+  for (const SurfaceResult& s : r.assessment.surfaces)
+    if (const Profile* p = find_profile(r.options.profiles, s.surface.profile))
+      most = std::max(most, p->colour_rendering);
+  return most == 0 ? ""
+                   : fmt::format(
+                         "<p class=\"sub\">Lamps should have R<sub>a</sub> ≥ {}; colour "
+                         "rendering is not computed.</p>\n",
+                         most);
+}
+
+std::string summary(const Report& r) {
   const Assessment& a = r.assessment;
-  std::string h = "<h2>Requirements</h2>\n<p>";
+  std::string h = "<h2>Summary</h2>\n<p class=\"sub\">";
   if (a.has_electric)
     h += fmt::format(
-        "Of electric light, maintained: initial light times a maintenance factor of {:.2f}; UGR of "
-        "initial light.",
+        "Electric light. Illuminances are maintained values: initial light × {:.2f}. UGR is that "
+        "of initial light, from the worst place.",
         r.options.maintenance);
   else
-    h += "Of daylight: no luminaire shines.";
-  return h + " ± is one standard error.</p>\n" + checks_table(a, r.options.profiles);
+    h += "Daylight: no luminaire shines.";
+  return h + " ± is the uncertainty of the computation (see the appendix).</p>\n" +
+         summary_matrix(r) + colour_rendering(r) + undecided_list(r);
 }
 
-std::string facts_of(const AssessedSurface& s, const SurfaceGrid& g, const Profile* p) {
-  std::string f =
-      fmt::format("{}, {:.2f} × {:.2f} m, {:.2f} m²", name_of(s.kind), s.width, s.height, s.area);
-  if (s.above_floor > 0) f += fmt::format(", {:.2f} m above the floor", s.above_floor);
-  f += fmt::format("; {} points, cells of {:.2f} × {:.2f} m", g.points.size(), g.cell.x, g.cell.y);
-  if (s.border > 0) f += fmt::format(", {:.2f} m off the rim", s.border);
-  f += fmt::format("; x, y = 0 at ({:.2f}, {:.2f}, {:.2f})", s.corner.x + 0.0, s.corner.y + 0.0,
-                   s.corner.z + 0.0);
-  if (p == nullptr) return f;
-  f += ". Task: " + html_text(p->name);
-  if (p->colour_rendering > 0)
-    f += fmt::format(", which asks for R<sub>a</sub> ≥ {} (not computed)", p->colour_rendering);
-  return f;
+std::string figure(const std::string& drawing, const std::string& caption, const char* style = "") {
+  return fmt::format("<figure{}>", *style != '\0' ? fmt::format(" class=\"{}\"", style) : "") +
+         drawing + (caption.empty() ? "" : "<figcaption>" + caption + "</figcaption>") +
+         "</figure>\n";
 }
 
-std::string figure(const std::string& drawing, const std::string& caption) {
-  return "<figure>" + drawing + "<figcaption>" + caption + "</figcaption></figure>\n";
+std::string plans(const Report& r) {
+  const std::vector<std::string> drawings = report_plans(r);
+  std::string h = "<h2>Plan</h2>\n";
+  for (size_t i = 0; i < drawings.size(); ++i)
+    h += figure(drawings[i],
+                (drawings.size() > 1 ? fmt::format("Storey {}. ", i + 1) : std::string()) +
+                    "Floors within their walls, assessed surfaces (blue) and luminaires by their "
+                    "number in the list (yellow).");
+  return h;
 }
 
-std::string surface_section(const Report& r, const SurfaceResult& s) {
-  std::string h = "<section class=\"surface\"><h3>" + html_text(s.surface.name) +
-                  "</h3>\n<p class=\"sub\">" +
-                  facts_of(s.surface, s.grid, find_profile(r.options.profiles, s.surface.profile)) +
-                  ".</p>\n" + summary_table(s);
+// Without the sign of what rounds to zero.
+double near_zero(double v) {
+  return std::abs(v) < 0.005 ? 0 : v;
+}
+
+std::string facts_of(const AssessedSurface& s, const SurfaceGrid& g) {
+  std::string f = fmt::format("{:.2f} × {:.2f} m", s.width, s.height);
+  if (std::abs(s.area - s.width * s.height) > 0.005) f += fmt::format(", {:.2f} m²", s.area);
+  if (s.above_floor > 0) f += fmt::format(", {:.2f} m over the floor", s.above_floor);
+  f += fmt::format("; {} points", g.points.size());
+  if (s.border > 0) f += fmt::format(", {:.2f} m off the walls", s.border);
+  return f + fmt::format("; origin at {:.2f}, {:.2f}, {:.2f}", near_zero(s.corner.x),
+                         near_zero(s.corner.y), near_zero(s.corner.z));
+}
+
+// One scale of colours for each quantity.
+struct Scales {
+  PlotScale electric, daylight, factor;
+};
+
+Scales scales_of(const Assessment& a) {
+  Scales s;
+  for (const SurfaceResult& r : a.surfaces) {
+    widen(s.electric, r.electric);
+    widen(s.daylight, r.daylight);
+    widen(s.factor, r.factor);
+  }
+  return s;
+}
+
+std::string surface_section(const SurfaceResult& s, const Scales& scales) {
+  struct Drawing {
+    const std::vector<Figure>* values;
+    const PlotScale* scale;
+    const char* unit;
+    const char* caption;
+  };
+  std::vector<Drawing> drawings;
   if (!s.electric.empty())
-    h += figure(grid_plot(s.surface, s.grid, s.electric, "lx"),
-                "Electric light, maintained illuminance at the grid's points, and isolux lines.");
+    drawings.push_back({&s.electric, &scales.electric, "lx", "Electric light, maintained, lx"});
   if (!s.daylight.empty())
-    h += figure(grid_plot(s.surface, s.grid, s.daylight, "lx"), "Daylight, illuminance.");
-  if (!s.factor.empty())
-    h += figure(grid_plot(s.surface, s.grid, s.factor, "%"),
-                "Daylight factor under a CIE overcast sky.");
-  return h + contributions_table(r.assessment, s) + "</section>\n";
+    drawings.push_back({&s.daylight, &scales.daylight, "lx", "Daylight, lx"});
+  if (!s.factor.empty()) drawings.push_back({&s.factor, &scales.factor, "%", "Daylight factor, %"});
+  // A desk with one drawing takes half of the width; floors need all of it for their values.
+  const bool is_large =
+      s.surface.kind == SurfaceKind::floor || s.surface.kind == SurfaceKind::work_plane;
+  const bool is_wide = is_large || drawings.size() > 1;
+  const double width = is_wide && drawings.size() == 1 ? full_width : half_width;
+  std::string h = fmt::format("<section class=\"surface{}\"><h3>", is_wide ? " wide" : "") +
+                  html_name(s.surface.name) + "</h3>\n<p class=\"sub\">" +
+                  facts_of(s.surface, s.grid) + ".</p>\n" + figures_table(s);
+  if (drawings.size() > 1) h += "<div class=\"plots\">";
+  for (const Drawing& d : drawings)
+    h += figure(grid_plot(s.surface, s.grid, *d.values, d.unit, *d.scale, width),
+                drawings.size() > 1 ? d.caption : "");
+  if (drawings.size() > 1) h += "</div>";
+  return h + "</section>\n";
+}
+
+std::string surfaces(const Report& r) {
+  const Assessment& a = r.assessment;
+  const Scales scales = scales_of(a);
+  std::string h =
+      "<h2>Surfaces</h2>\n<p class=\"sub\">Values at the grid's points, and isolux lines. All "
+      "drawings of one quantity share its scale.</p>\n";
+  if (a.has_electric)
+    h += figure(scale_legend(scales.electric, "lx", full_width), "Electric light, maintained");
+  if (a.has_daylight) h += figure(scale_legend(scales.daylight, "lx", full_width), "Daylight");
+  if (a.has_factor) h += figure(scale_legend(scales.factor, "%", full_width), "Daylight factor");
+  h += "<div class=\"surfaces\">\n";
+  for (const SurfaceResult& s : a.surfaces) h += surface_section(s, scales);
+  h += "</div>\n";
+  const std::string parts = contributions_table(a);
+  if (!parts.empty())
+    h +=
+        "<h2>Contributions</h2>\n<p class=\"sub\">Mean maintained illuminance by each luminaire or "
+        "family alone, lx. Their sum and the mean of all together agree within their "
+        "uncertainty.</p>\n" +
+        parts;
+  return h;
+}
+
+// Luminaires that differ in nothing but their place have one type.
+std::vector<size_t> types_of(const std::vector<PlacedLuminaire>& all, std::vector<size_t>& firsts) {
+  const auto is_same = [](const PlacedLuminaire& a, const PlacedLuminaire& b) {
+    return a.product == b.product && a.watts == b.watts &&
+           std::abs(a.lumens - b.lumens) <= 0.005 * std::max(a.lumens, b.lumens);
+  };
+  std::vector<size_t> types;
+  for (size_t i = 0; i < all.size(); ++i) {
+    size_t t = 0;
+    while (t < firsts.size() && !is_same(all[firsts[t]], all[i])) ++t;
+    if (t == firsts.size()) firsts.push_back(i);
+    types.push_back(t);
+  }
+  return types;
+}
+
+std::string type_block(const Assessment& a, size_t type, size_t first,
+                       const std::vector<size_t>& types) {
+  constexpr double side = 150;
+  const PlacedLuminaire& l = a.luminaires[first];
+  const auto count = std::count(types.begin(), types.end(), type);
+  std::string text = fmt::format("<b>Type {}</b>: {}<br>{} × {} lm", char('A' + type % 26),
+                                 html_text(l.product), count, short_number(l.lumens));
+  if (l.watts)
+    text += fmt::format(", {} W", short_number(*l.watts));
+  else
+    text += ", power unknown";
+  if (l.watts && *l.watts > 0)
+    text += fmt::format("<br>{} lm/W", short_number(l.lumens / *l.watts));
+  text += fmt::format("<br>{} cd at most", short_number(l.curve.largest()));
+  return "<div class=\"type\">" + polar_plot(l.curve, l.product, side) + "<p>" + text +
+         "</p></div>\n";
+}
+
+std::string luminaires(const Report& r) {
+  const Assessment& a = r.assessment;
+  std::string h = "<h2>Luminaires and power</h2>\n";
+  if (!a.luminaires.empty()) {
+    constexpr size_t most = 12;
+    std::vector<size_t> firsts;
+    const std::vector<size_t> types = types_of(a.luminaires, firsts);
+    h += "<p class=\"sub\">Polar curves: C0–C180 solid, C90–C270 dashed, the aim downwards.</p>\n"
+         "<div class=\"types\">\n";
+    for (size_t t = 0; t < std::min(firsts.size(), most); ++t)
+      h += type_block(a, t, firsts[t], types);
+    h += "</div>\n" + luminaires_table(a, r.options.up, types);
+  }
+  h += daylight_table(a);
+  return a.has_electric ? h + power_table(a.power) : h;
 }
 
 std::string glare_section(const Assessment& a) {
@@ -114,48 +223,45 @@ std::string glare_section(const Assessment& a) {
     for (const SeenLuminaire& l : g.glare.luminaires) is_small = is_small || l.is_small;
   }
   std::string h =
-      "<h2>Glare</h2>\n<p>UGR after CIE 117, per observer; the worst of each surface is marked. "
-      "L<sub>b</sub> is the background luminance.</p>\n" +
+      "<h2>Glare</h2>\n<p class=\"sub\">UGR after CIE 117: the worst observer of each surface, and "
+      "the ratings of its others.</p>\n" +
       glare_table(a);
   if (is_large)
-    h += "<p>* A luminaire takes more than 0.1 sr of the view: the formula does not hold for "
-         "it.</p>\n";
+    h += "<p class=\"sub\">* A luminaire takes more than 0.1 sr of the view: the formula does not "
+         "hold for it.</p>\n";
   if (is_small)
-    h += "<p>Luminaires of which less than 0.005 m² are seen glare as if they were that large (CIE "
-         "147).</p>\n";
+    h += "<p class=\"sub\">Luminaires of which less than 0.005 m² are seen count as if they were "
+         "that large (CIE 147).</p>\n";
   return h;
 }
 
-std::string room_sections(const Report& r) {
-  const Assessment& a = r.assessment;
-  std::string h = glare_section(a);
-  if (!a.cylinders.empty())
-    h += fmt::format(
-             "<h2>Cylindrical illuminance</h2>\n<p>Maintained, at eye height, the mean over {} "
-             "vertical planes all around.</p>\n",
+std::string cylinders(const Assessment& a) {
+  if (a.cylinders.empty()) return {};
+  return fmt::format(
+             "<h2>Cylindrical illuminance</h2>\n<p class=\"sub\">Maintained, at eye height: the "
+             "mean over {} vertical planes all around.</p>\n",
              cylinder_planes) +
          cylinder_table(a);
-  h += "<h2>Luminaires and power</h2>\n" + luminaires_table(a);
-  if (a.has_electric) h += power_table(a.power);
-  return h;
 }
 
 std::string picture_section(const std::vector<ReportPicture>& pictures) {
   if (pictures.empty()) return {};
-  std::string h = "<h2>Luminances</h2>\n";
+  std::string h = "<h2>Pictures</h2>\n";
   for (const ReportPicture& p : pictures) {
     const auto image = [&](const std::vector<uint8_t>& png, const char* what) {
       return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", what, base64(png));
     };
-    h += figure(
-        "<div class=\"pictures\">" + image(p.luminances, "luminances as false colours") +
-            factor_legend(p.scale.least, p.scale.largest, "cd/m²") +
-            image(p.seen, "the room as it is seen") + "</div>",
-        fmt::format("Initial luminances{}{}; mean {} cd/m²{}.", p.name.empty() ? "" : ", camera ",
-                    html_text(p.name), short_number(p.mean),
-                    p.told_error > 0 ? fmt::format(", standard error of a pixel {:.1f} % of that",
-                                                   100 * p.told_error)
-                                     : ""));
+    const std::string camera = p.name.empty() ? "" : ", camera " + html_name(p.name);
+    h += figure(image(p.seen, "the room as it is seen"), "The room as it is seen" + camera + ".",
+                "picture") +
+         figure(
+             image(p.luminances, "luminances as false colours") +
+                 factor_legend(p.scale.least, p.scale.largest, "cd/m²", full_width),
+             fmt::format("Initial luminances{}; mean {} cd/m²{}.", camera, short_number(p.mean),
+                         p.told_error > 0 ? fmt::format(", uncertainty of a pixel {:.1f} % of that",
+                                                        100 * p.told_error)
+                                          : ""),
+             "picture");
   }
   return h;
 }
@@ -170,14 +276,26 @@ std::string list_of(const std::vector<std::string>& items) {
 std::string appendix(const Report& r) {
   std::vector<std::string> notes = r.assessment.notes;
   for (const std::string& w : r.info.warnings) notes.push_back("warning: " + w);
-  return "<h2>Appendix</h2>\n<p>Grids after EN 12464-1. The error of a mean is the mean of its "
-         "points' errors, an upper bound. The least of noisy values lies below the least of true "
-         "ones: the "
-         "bias of the least tells by how much, about. It is not taken off.</p>\n" +
-         list_of(notes) + info_tables(r.info);
+  return "<h2>Appendix</h2>\n" + list_of(notes) +
+         "<p class=\"sub\">Grids follow EN 12464-1. Floor area is that within the walls; furniture "
+         "counts as floor. ± is one standard error. A requirement is undecided where the value "
+         "lies within two standard errors of it. The error of a mean is the mean of its points' "
+         "errors, an upper bound. The minimum of noisy values lies below the minimum of exact "
+         "ones, "
+         "by about the bias below; figures are not corrected for it. All points are in points.csv, "
+         "all figures and observers in report.json.</p>\n" +
+         bias_table(r.assessment) + info_tables(r.info);
 }
 
 }  // namespace
+
+std::vector<std::string> report_plans(const Report& r) {
+  constexpr double most_height = 470;  // px: beside a summary of some ten rows on one page
+  std::vector<std::string> drawings;
+  for (const Storey& s : storeys_of(r.assessment, r.options.up))
+    drawings.push_back(plan_plot(r.assessment, s, r.options, full_width, most_height));
+  return drawings;
+}
 
 std::string report_page(const Report& r) {
   std::string h =
@@ -185,10 +303,12 @@ std::string report_page(const Report& r) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
       "style-src 'unsafe-inline'\">\n<title>" +
-      html_text(r.info.title) + "</title>\n<style>" + style + "</style></head><body>\n" + head(r) +
-      requirements(r) + "<h2>Surfaces</h2>\n";
-  for (const SurfaceResult& s : r.assessment.surfaces) h += surface_section(r, s);
-  return h + room_sections(r) + picture_section(r.pictures) + appendix(r) + "</body></html>\n";
+      html_text(r.info.title) + "</title>\n<style>" + page_style + "</style></head><body>\n";
+  h += head(r) + summary(r) + plans(r);
+  if (r.other) h += comparison_section(r, *r.other);
+  h += surfaces(r) + luminaires(r) + glare_section(r.assessment) + cylinders(r.assessment) +
+       picture_section(r.pictures) + appendix(r);
+  return h + "</body></html>\n";
 }
 
 }  // namespace troffer

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <type_traits>
 #include <utility>
+
+#include "base/units.h"
 
 namespace troffer {
 
@@ -26,10 +30,8 @@ double distance(const std::array<Vec2d, 2>& edge, const Vec2d& p) {
   return std::sqrt(dot(off, off));
 }
 
-bool is_on(const AssessedSurface& s, const Vec2d& p) {
-  if (!s.triangles.empty() && std::none_of(s.triangles.begin(), s.triangles.end(),
-                                           [&](const PlaneTriangle& t) { return is_inside(t, p); }))
-    return false;
+bool is_off_rim(const AssessedSurface& s, const Vec2d& p) {
+  if (!lies_on(s, p)) return false;
   constexpr double rounding = 1e-6;
   return std::all_of(s.rim.begin(), s.rim.end(), [&](const std::array<Vec2d, 2>& e) {
     return distance(e, p) >= s.border - rounding;
@@ -71,17 +73,26 @@ std::vector<std::array<Vec2d, 2>> rim_of(const std::vector<PlaneTriangle>& trian
   return rim;
 }
 
-// Along the longest edge of the rim, turned by quarters to lie nearest to the world's x (where that
-// is the normal, y).
+// The direction of most of the rim's length, turned by quarters to lie nearest to the world's x
+// (where that is the normal, y).
 Vec3d direction_of(const std::vector<std::array<Vec2d, 2>>& rim, const Vec3d& u, const Vec3d& n) {
-  double longest = 0;
-  Vec3d along = u;
+  constexpr double steps = 2 * pi / 0.002;              // of a turn: a tenth of a degree
+  std::map<int64_t, std::pair<double, Vec3d>> lengths;  // by direction, but for quarters
   for (const auto& e : rim) {
     const Vec2d way = e[1] - e[0];
     const double l = std::sqrt(dot(way, way));
-    if (l <= longest * 1.0001) continue;
-    longest = l;
-    along = normalize(u * way.x + cross(n, u) * way.y);
+    if (!(l > 0)) continue;
+    const double quarter = std::remainder(std::atan2(way.y, way.x), pi / 2);
+    auto& sum = lengths[std::llround(quarter / (2 * pi) * steps)];
+    if (l > length(sum.second)) sum.second = u * way.x + cross(n, u) * way.y;
+    sum.first += l;
+  }
+  double most = 0;
+  Vec3d along = u;
+  for (const auto& [key, sum] : lengths) {
+    if (sum.first <= most * 1.0001) continue;
+    most = sum.first;
+    along = normalize(sum.second);
   }
   const Vec3d wanted = std::abs(n.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d across = cross(n, along);
@@ -107,6 +118,18 @@ const char* name_of(SurfaceKind kind) {
   return "given";
 }
 
+bool lies_on(const AssessedSurface& s, const Vec2d& p) {
+  if (!(p.x >= 0 && p.y >= 0 && p.x <= s.width && p.y <= s.height)) return false;
+  return s.triangles.empty() ||
+         std::any_of(s.triangles.begin(), s.triangles.end(),
+                     [&](const PlaneTriangle& t) { return is_inside(t, p); });
+}
+
+Vec3d middle_of(const AssessedSurface& s) {
+  const Vec2d middle{s.width / 2, s.height / 2};
+  return s.place(lies_on(s, middle) ? middle : a_middle(s));
+}
+
 SurfaceGrid grid_of(const AssessedSurface& s) {
   SurfaceGrid g;
   const double inset = std::min(s.border, 0.45 * std::min(s.width, s.height));
@@ -117,7 +140,7 @@ SurfaceGrid grid_of(const AssessedSurface& s) {
   for (int row = 0; row < g.shape.rows; ++row)
     for (int column = 0; column < g.shape.columns; ++column) {
       const Vec2d p = g.first + Vec2d{g.cell.x * (column + 0.5), g.cell.y * (row + 0.5)};
-      if (is_on(s, p)) g.points.push_back({column, row, s.place(p)});
+      if (is_off_rim(s, p)) g.points.push_back({column, row, s.place(p)});
     }
   if (!g.points.empty()) return g;
   const Vec2d middle = a_middle(s), from = middle - g.first;
@@ -127,25 +150,25 @@ SurfaceGrid grid_of(const AssessedSurface& s) {
 }
 
 AssessedSurface surface_of_triangles(const std::vector<std::array<Vec3d, 3>>& triangles,
-                                     const Vec3d& n) {
+                                     const Vec3d& n,
+                                     const std::vector<std::array<Vec3d, 2>>& known_rim) {
   const Vec3d axis = std::abs(n.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d u = normalize(axis - n * dot(axis, n));
   const Vec3d origin = triangles.front()[0];
-  const auto flat = [&](const Vec3d& along) {
-    std::vector<PlaneTriangle> t;
+  const auto flat = [&](const auto& shapes, const Vec3d& along) {
+    std::vector<std::array<Vec2d, std::tuple_size_v<std::decay_t<decltype(shapes[0])>>>> out;
     const Vec3d across = cross(n, along);
-    for (const auto& corners : triangles) {
-      PlaneTriangle p;
-      for (size_t k = 0; k < 3; ++k)
+    for (const auto& corners : shapes) {
+      auto& p = out.emplace_back();
+      for (size_t k = 0; k < p.size(); ++k)
         p[k] = {dot(corners[k] - origin, along), dot(corners[k] - origin, across)};
-      t.push_back(p);
     }
-    return t;
+    return out;
   };
   AssessedSurface s;
-  s.along = direction_of(rim_of(flat(u)), u, n);
+  s.along = direction_of(known_rim.empty() ? rim_of(flat(triangles, u)) : flat(known_rim, u), u, n);
   s.across = cross(n, s.along);
-  s.triangles = flat(s.along);
+  s.triangles = flat(triangles, s.along);
   Vec2d lower = s.triangles[0][0], upper = lower;
   for (const PlaneTriangle& t : s.triangles)
     for (const Vec2d& p : t) {
@@ -156,7 +179,9 @@ AssessedSurface surface_of_triangles(const std::vector<std::array<Vec3d, 3>>& tr
     for (Vec2d& p : t) p = p - lower;
     s.area += 0.5 * std::abs(turn(t[0], t[1], t[2]));
   }
-  s.rim = rim_of(s.triangles);
+  s.rim = known_rim.empty() ? rim_of(s.triangles) : flat(known_rim, s.along);
+  if (!known_rim.empty())
+    for (auto& e : s.rim) e = {e[0] - lower, e[1] - lower};
   s.corner = origin + s.along * lower.x + s.across * lower.y;
   s.width = upper.x - lower.x;
   s.height = upper.y - lower.y;

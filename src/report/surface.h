@@ -50,9 +50,17 @@ struct SurfaceGrid {
 
 SurfaceGrid grid_of(const AssessedSurface& surface);
 
-// What a surface has of corners, m, in the directions u (unit) and n × u of the plane with the unit
-// normal n: all but name, kind and profile are set. Triangles with their corners in any order.
+// Whether a place in the plane is part of the surface.
+bool lies_on(const AssessedSurface& surface, const Vec2d& place);
+
+// The middle of the bounding rectangle, or of the largest triangle where that is no part of the
+// surface. In the file's coordinates.
+Vec3d middle_of(const AssessedSurface& surface);
+
+// The surface that triangles of a plane with the unit normal n make; name, kind and profile are not
+// set. Its rim is that of the triangles, which must share corners then, or the one that is known.
 AssessedSurface surface_of_triangles(const std::vector<std::array<Vec3d, 3>>& triangles,
-                                     const Vec3d& n);
+                                     const Vec3d& n,
+                                     const std::vector<std::array<Vec3d, 2>>& known_rim = {});
 
 }  // namespace troffer

@@ -71,11 +71,27 @@ TEST_CASE("a report: one page without anything from elsewhere, JSON and a table,
   for (const char* far : {"src=\"http", "href=", "url(", "@import", "<script", "<link", "<iframe"})
     CHECK(page.find(far) == std::string::npos);
   CHECK(page.find("class=\"pass\"") != std::string::npos);
-  CHECK(count(page, "<svg ") == 3);  // two grids and a legend
+  // A plan, a scale, two grids, a polar curve and the legend of the luminances.
+  CHECK(count(page, "<svg ") == 6);
+  CHECK(count(page, "polar curve, diffuse surface") == 1);
+  CHECK(read_file(folder.path("r/plan.svg")).starts_with("<svg "));
+  // The summary has a row for each surface; cylindrical illuminance adds one.
+  const size_t matrix = page.find("<table class=\"wide dense matrix\">");
+  REQUIRE(matrix != std::string::npos);
+  const std::string rows = page.substr(matrix, page.find("</table>", matrix) - matrix);
+  CHECK(count(rows, "<tr>") == 4);
+  // Words of statistics stand in the appendix alone.
+  const std::string body = page.substr(0, page.find("<h2>Appendix</h2>"));
+  CHECK(body.find("standard error") == std::string::npos);
+  CHECK(body.find("ias of the") == std::string::npos);
+  CHECK(page.find("Bias of the minimum") != std::string::npos);
   CHECK(count(page, "<section") == count(page, "</section>"));
   CHECK(count(page, "<tr") == count(page, "</tr>"));
   CHECK(json.find("\"format\": \"troffer report 1\"") != std::string::npos);
   CHECK(json.find("\"watts\": 36.0") != std::string::npos);
+  CHECK(json.find("\"samples_per_point\": 64") != std::string::npos);
+  CHECK(json.find("\"product\": \"diffuse surface\"") != std::string::npos);
+  CHECK(json.find("\"floor_area_m2\": 12") != std::string::npos);
   CHECK(json.find("\"name\": \"desk\"") != std::string::npos);
   CHECK(points.starts_with("surface,column,row,x,y,z,"));
   CHECK(count(points, "\"desk\",") > 20);
@@ -197,6 +213,44 @@ TEST_CASE("what cannot be is told in one line, and leaves no folder") {
     CHECK(f.error_lines().size() == 1);
     CHECK(f.err.starts_with("error: "));
     CHECK(folder.names() == std::vector<std::string>{"bad.json", "room.pbrt"});
+  }
+}
+
+TEST_CASE("a comparison sets another report beside this one, and refuses what is none") {
+  const Folder folder;
+  const std::string scene = folder.write("room.pbrt", room_pbrt);
+  const std::vector<std::string> quick{"--pictures", "off", "--power", "emitter0=36"};
+  auto first = command(folder, scene, "a", quick), second = command(folder, scene, "b", quick);
+  first.insert(first.end(), {"--title", "<i>dim</i>", "--maintenance", "0.4"});
+  second.insert(second.end(), {"--compare", folder.path("a/report.json")});
+  REQUIRE(run_program(folder, first).status == 0);
+  REQUIRE(run_program(folder, second).status == 0);
+  const std::string page = read_file(folder.path("b/report.html"));
+  const size_t at = page.find("<h2>Comparison</h2>");
+  REQUIRE(at != std::string::npos);
+  const std::string part = page.substr(at, page.find("<h2>", at + 4) - at);
+  CHECK(part.find("&lt;i&gt;dim&lt;/i&gt;") != std::string::npos);
+  CHECK(page.find("<i>") == std::string::npos);
+  CHECK(count(part, "<img ") == 2);  // both plans
+  CHECK(count(part, "<b>") >= 2);    // twice the light is a clear difference
+  CHECK(part.find("<td>Power, W</td>") != std::string::npos);
+  CHECK(read_file(folder.path("a/report.html")).find("<h2>Comparison") == std::string::npos);
+  // A report beside itself differs in nothing.
+  auto same = command(folder, scene, "c", quick);
+  same.insert(same.end(), {"--compare", folder.path("b/report.json")});
+  REQUIRE(run_program(folder, same).status == 0);
+  const std::string equal = read_file(folder.path("c/report.html"));
+  const size_t from = equal.find("<h2>Comparison</h2>");
+  CHECK(equal.substr(from, equal.find("<h2>", from + 4) - from).find("<b>") == std::string::npos);
+  for (const char* text :
+       {"{}", "[]", "{\"format\": \"troffer report 1\"}", "{\"format\": 1}", "x"}) {
+    auto bad = command(folder, scene, "d", quick);
+    bad.insert(bad.end(), {"--compare", folder.write("bad.json", text)});
+    const Finished f = run_program(folder, bad);
+    CAPTURE(text);
+    CHECK(f.status == 1);
+    CHECK(f.error_lines().size() == 1);
+    CHECK(f.err.starts_with("error: "));
   }
 }
 

@@ -215,6 +215,40 @@ TEST_CASE("within two standard errors nothing is said to pass or to fail") {
   CHECK(verdict_of({500, 0}, 500, false) == Verdict::pass);
 }
 
+TEST_CASE("observers on the floor are judged by the task's UGR limit") {
+  AssessmentOptions o = options_of(64);
+  o.has_contributions = o.has_cylindrical = false;
+  Scene bright = small_office();
+  for (Light& e : bright.lights) e.radiance *= 10;
+  const Assessment a = assess(bright, o, {}, never_stop);
+  REQUIRE(a.surfaces[1].surface.kind == SurfaceKind::floor);
+  const Glare* worst = worst_glare(a, 1);
+  REQUIRE(worst != nullptr);
+  REQUIRE(worst->ugr.value > 19);
+  size_t judged = 0;
+  for (const Check& c : a.checks) {
+    if (c.subject != a.surfaces[1].surface.name || c.quantity != "UGR") continue;
+    ++judged;
+    CHECK(c.required == 19);
+    CHECK(c.verdict == Verdict::fail);
+    CHECK(c.profile == "office-writing");
+  }
+  CHECK(judged == 1);
+  // A profile that limits nothing is not judged.
+  o.surfaces = {{"floor", "none", "", 0, 0, {}, {}, {}}};
+  for (const Check& c : assess(bright, o, {}, never_stop).checks) CHECK(c.quantity != "UGR");
+}
+
+TEST_CASE("an open check says how many samples would decide it") {
+  // Half the distance to two standard errors: four times as many.
+  const Check c{"desk", "p", "Ēm", "lx", 500, false, {503, 3}, verdict_of({503, 3}, 500, false)};
+  CHECK(samples_to_decide(c, 1024).value() == doctest::Approx(4096));
+  const Check sure{"desk", "p", "Ēm", "lx", 500, false, {520, 3}, Verdict::pass};
+  CHECK_FALSE(samples_to_decide(sure, 1024).has_value());
+  const Check equal{"desk", "p", "Ēm", "lx", 500, false, {500, 3}, Verdict::open};
+  CHECK_FALSE(samples_to_decide(equal, 1024).has_value());
+}
+
 TEST_CASE("a stop ends it, and too many points are refused") {
   const StopFlag stopped = true;
   CHECK_FALSE(assess(small_office(), options_of(64), {}, stopped).is_complete);
