@@ -11,7 +11,7 @@ namespace {
 
 using Json = GltfMaterialWriter::Json;
 
-Json list(Rgb c) {
+Json json_list(Rgb c) {
   return {c.r, c.g, c.b};
 }
 
@@ -41,10 +41,10 @@ void GltfMaterialWriter::add_color(const ColorInput& input, const std::string& n
                                    Json& extension) {
   const auto look = look_of_all(std::array{input.texture});
   if (!look) {
-    extension[name + "Factor"] = list(evaluate(scene_.textures, input, Vec2{0, 0}));
+    extension[name + "Factor"] = json_list(evaluate(scene_.textures, input, Vec2{0, 0}));
     return;
   }
-  extension[name + "Factor"] = list(input.value);
+  extension[name + "Factor"] = json_list(input.value);
   extension[name + "Texture"] =
       texture(fmt::format("color {} 1 1 1", input.texture), *look, [&](const Texture& t) {
         return baked_color(scene_, {Rgb{1}, input.texture}, t, nullptr);

@@ -8,7 +8,7 @@ namespace troffer {
 namespace {
 
 constexpr int most_texels_across = 8192;  // of tiled images: 64 Mi texels
-constexpr float rounding = 1e-4f;         // of a texel coordinate: on an edge, not beyond it
+constexpr float texel_rounding = 1e-4f;   // of a texel coordinate: on an edge, not beyond it
 
 Vec2 turned(const Texture& t, const Vec2& way) {
   const Vec2 uv{way.x * t.uv_scale.x, way.y * t.uv_scale.y};
@@ -109,8 +109,8 @@ std::optional<Texture> tiled(const Texture& look, const UvBox& uvs) {
   const UvBox places = places_over(look, uvs);
   Texture out = look;
   for (size_t axis = 0; axis < 2; ++axis) {
-    const float first = std::floor(places.lower[axis] + rounding),
-                end = std::ceil(places.upper[axis] - rounding);
+    const float first = std::floor(places.lower[axis] + texel_rounding),
+                end = std::ceil(places.upper[axis] - texel_rounding);
     const float n = std::max(end - first, 1.0f);
     int& size = axis == 0 ? out.width : out.height;
     if (!(n * float(size) <= float(most_texels_across))) return std::nullopt;
@@ -131,8 +131,8 @@ Texture look_over(const Texture& look, const UvBox& uvs) {
     const Vec2 t = turned(look, way);
     return std::hypot(t.x * float(look.width), t.y * float(look.height));
   };
-  out.width = int(std::ceil(std::clamp(texels({extent.x, 0}) - rounding, 1.0f, most)));
-  out.height = int(std::ceil(std::clamp(texels({0, extent.y}) - rounding, 1.0f, most)));
+  out.width = int(std::ceil(std::clamp(texels({extent.x, 0}) - texel_rounding, 1.0f, most)));
+  out.height = int(std::ceil(std::clamp(texels({0, extent.y}) - texel_rounding, 1.0f, most)));
   out.uv_scale = {1 / extent.x, 1 / extent.y};
   out.uv_offset = {-uvs.lower.x / extent.x, -uvs.lower.y / extent.y};
   out.uv_rotation_rad = 0;

@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "import/luminaire.h"
 #include "light/web.h"
-#include "temp_folder.h"
+#include "import/temp_folder.h"
 
 using namespace troffer;
 
