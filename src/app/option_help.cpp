@@ -13,7 +13,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t width = 80, text_column = 26;
+constexpr size_t help_width = 80, text_column = 26;
 
 // What an option's validator says of its values: of number_between() and its like, or of one_of().
 struct Values {
@@ -51,10 +51,10 @@ size_t columns(const std::string& text) {
   }));
 }
 
-// Appends words, from column `at` on, such that lines end before `width`.
+// Appends words, from column `at` on, such that lines end before `help_width`.
 void add_wrapped(const std::string& text, size_t at, std::string& out) {
   for (const std::string& word : split_at(text, ' ')) {
-    if (at > text_column && at + 1 + columns(word) > width) {
+    if (at > text_column && at + 1 + columns(word) > help_width) {
       out += "\n" + std::string(text_column, ' ');
       at = text_column;
     }

@@ -9,6 +9,9 @@ namespace troffer {
 
 namespace {
 
+// Names of its own: other sources may have the same ones for something else.
+namespace option_rows {
+
 constexpr const char* scenes = "gltf|glb|pbrt|obj|ply|stl|xml|rad|gz";
 constexpr const char* pictures = "exr|hdr|pfm|png";
 constexpr const char* pictures_read = "exr|hdr|pfm|png|jpg";
@@ -154,6 +157,8 @@ constexpr std::array rows{
 constexpr std::array group_order{input,  assessment, view, light, quality, lightmap, output,
                                  limits, certified,  path, fixed, kj92,    other};
 
+}  // namespace option_rows
+
 std::string plain_name(const CLI::Option& option) {
   if (option.get_positional()) return option.get_name(true);
   return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().front();
@@ -164,7 +169,7 @@ std::string plain_name(const CLI::Option& option) {
 const OptionRow* row_of(const std::string& command, const CLI::Option& option) {
   const std::string name = plain_name(option), own = command + " " + name;
   const OptionRow* found = nullptr;
-  for (const OptionRow& r : rows) {
+  for (const OptionRow& r : option_rows::rows) {
     if (r.name == own) return &r;
     if (found == nullptr && r.name == name) found = &r;
   }
@@ -180,17 +185,19 @@ std::vector<OptionGroup> grouped_options(const CLI::App& command) {
   for (const CLI::Option* o : command.get_options()) {
     if (o->get_group().empty()) continue;  // hidden
     const OptionRow* row = row_of(command.get_name(), *o);
-    const std::string_view group = row != nullptr ? row->group : other;
-    const auto at = std::find(group_order.begin(), group_order.end(), group);
-    placed.push_back({size_t(at - group_order.begin()),
-                      row != nullptr ? size_t(row - rows.data()) : rows.size(), o});
+    const std::string_view group = row != nullptr ? row->group : option_rows::other;
+    const auto at =
+        std::find(option_rows::group_order.begin(), option_rows::group_order.end(), group);
+    placed.push_back(
+        {size_t(at - option_rows::group_order.begin()),
+         row != nullptr ? size_t(row - option_rows::rows.data()) : option_rows::rows.size(), o});
   }
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
     return a.group != b.group ? a.group < b.group : a.row < b.row;
   });
   std::vector<OptionGroup> groups;
   for (const Placed& p : placed) {
-    const std::string name = group_order[p.group];
+    const std::string name = option_rows::group_order[p.group];
     if (groups.empty() || groups.back().name != name) groups.push_back({name, {}});
     groups.back().options.push_back(p.option);
   }

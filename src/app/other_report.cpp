@@ -49,8 +49,8 @@ size_t size_of(const JsonNode& list) {
 OtherSurface other_surface(const JsonNode& node) {
   OtherSurface s;
   s.name = node.member("name").as_string();
-  for (const char* light : {"electric_lx", "daylight_lx"}) {
-    const auto sums = object_of(node, light);
+  for (const char* kind : {"electric_lx", "daylight_lx"}) {
+    const auto sums = object_of(node, kind);
     if (!sums || s.mean) continue;
     s.mean = other_figure(*sums, "mean");
     s.uniformity = other_figure(*sums, "uniformity");
@@ -79,8 +79,8 @@ void add_glare(const JsonNode& list, OtherReport& r) {
   }
 }
 
-std::vector<uint8_t> beside(const std::string& path, const char* name, std::string_view begin) {
-  const fs::path file = fs::path(path).parent_path() / name;
+std::vector<uint8_t> beside(const std::string& report, const char* name, std::string_view begin) {
+  const fs::path file = fs::path(report).parent_path() / name;
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return {};
   std::vector<uint8_t> bytes = read_file_bytes(file.string(), largest_file);

@@ -272,14 +272,29 @@ TEST_CASE("measure: the header, the values, the errors") {
   }
 }
 
-TEST_CASE(
-    "scenes without light, camera or geometry: a warning, and no light of a sky but where asked") {
+TEST_CASE("scenes without surfaces and lights are refused; info tells what they hold") {
   const struct {
     const char *name, *text;
-  } odd[] = {
+  } empty[] = {
       {"nothing.pbrt", "WorldBegin\n"},
       {"nothing.obj", "# nothing\n"},
       {"nothing.gltf", "{\"asset\": {\"version\": \"2.0\"}}"},
+  };
+  for (const auto& e : empty) {
+    const Folder folder;
+    const std::string scene = folder.write(e.name, e.text), out = folder.path("o.pfm");
+    const Finished f = run_program(folder, {"render", scene, "-o", out, "--size", "16x12"});
+    CHECK(f.status == 1);
+    CHECK(f.err == "error: " + scene + ":1:1: is empty: it has neither surfaces nor lights\n");
+    CHECK(folder.names() == std::vector<std::string>{e.name});
+    CHECK(run_program(folder, {"info", scene, "--json"}).status == 0);
+  }
+}
+
+TEST_CASE("scenes without light or camera: a warning, and no light of a sky but where asked") {
+  const struct {
+    const char *name, *text;
+  } odd[] = {
       {"dark.pbrt", "WorldBegin\nShape \"sphere\"\n"},
       {"dark.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
   };
@@ -287,10 +302,8 @@ TEST_CASE(
     const Folder folder;
     CAPTURE(o.name);
     const std::string scene = folder.write(o.name, o.text), out = folder.path("o.pfm");
-    // Without geometry there is nothing that a sky could light; what there is stays dark if asked.
-    std::vector<std::string> arguments{"render", scene, "-o", out, "--size", "16x12"};
-    if (std::string(o.name).rfind("dark", 0) == 0)
-      arguments.insert(arguments.end(), {"--sky", "none"});
+    const std::vector<std::string> arguments{"render", scene,   "-o",    out,
+                                             "--size", "16x12", "--sky", "none"};
     const Finished f = run_program(folder, arguments);
     CHECK(f.status == 0);
     REQUIRE(!f.error_lines().empty());

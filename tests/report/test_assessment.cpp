@@ -130,7 +130,7 @@ TEST_CASE("luminaires alone add up to all; a watt for each; the report of an off
   CHECK(worst_glare(a, 0) != nullptr);
   CHECK(worst_glare(a, 1) != nullptr);
   CHECK(a.checks.size() >= 5);
-  const std::string page = report_page({{"t", "", "s", "1", "c", {}, {}, {}}, o, a, {}});
+  const std::string page = report_page({{"t", "", "s", "1", "c", {}, {}, {}}, o, a, {}, {}});
   CHECK(page.find("W/m² per 100 lx") != std::string::npos);
 }
 
