@@ -7,6 +7,8 @@ and troffer.fish there.
 import pathlib
 import sys
 
+sys.dont_write_bytecode = True  # the source folder stays as it is
+
 import completion
 import program_help
 

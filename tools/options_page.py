@@ -7,6 +7,8 @@ options_page.py --check TROFFER FILE: fails where the page is not what would be 
 import pathlib
 import sys
 
+sys.dont_write_bytecode = True  # the source folder stays as it is
+
 import program_help
 
 

@@ -8,6 +8,7 @@
 #include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/points_csv.h"
+#include "app/printable.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
@@ -109,6 +110,7 @@ int run_measure(const MeasureCommand& c) {
   if (c.points.empty() && c.grid.grids.empty())
     throw UsageError("measure: give --points FILE.csv or --grid NODE");
   PointList list = c.points.empty() ? PointList{} : read_points(c.points);
+  if (!c.is_quiet && !list.note.empty()) fmt::print(stderr, "note: {}\n", printable(list.note));
   const ThreadLimit limit(c.threads);
   UpUse up{!c.grid.grids.empty(), {}};
   Scene imported = load_scene(c.scene, c.lights, &c.daylight, c.is_quiet, up);

@@ -65,9 +65,7 @@ FoundSurfaces surfaces_of(const PreparedScene& scene, const Vec3& up, const Grid
 void add_grids(const PreparedScene& scene, const GridChoice& choice, const Vec3& up,
                PointList& list) {
   if (choice.grids.empty()) return;
-  if (!list.points.empty()) list.other_fields.resize(list.points.size());
-  for (std::string& fields : list.other_fields) fields += ",";
-  list.other_names += ",surface";
+  list.surfaces.resize(list.points.size());
   for (const std::string& text : choice.grids) {
     const Grid g = parse_grid(text);
     for (AssessedSurface s : surfaces_of(scene, up, g, choice.border).surfaces) {
@@ -77,11 +75,10 @@ void add_grids(const PreparedScene& scene, const GridChoice& choice, const Vec3&
         throw UsageError("--grid: more than a million points");
       for (const GridPoint& p : grid.points) {
         list.points.push_back({p.position, Vec3(s.normal())});
-        list.other_fields.push_back(std::string(list.other_count, ',') + "," + csv_field(s.name));
+        list.surfaces.push_back(s.name);
       }
     }
   }
-  ++list.other_count;
 }
 
 }  // namespace troffer

@@ -76,6 +76,7 @@ constexpr std::array rows{
     OptionRow{"--luminaire", light, "NODE=FILE[,LUMENS[,KELVIN]]", photometry},
     OptionRow{"--luminaires", light, "FILE", "csv"},
     OptionRow{"--dim", light, "NAME=FACTOR", ""},
+    OptionRow{"--baked", light, "", ""},
     OptionRow{"--emission-scale", light, "FACTOR", ""},
     OptionRow{"--light-radius", light, "METRES", ""},
     OptionRow{"--sky", light, "SKY", ""},

@@ -49,36 +49,29 @@ PointList read_points(const std::string& path) {
   if (table.header().line == 0)
     throw InputError(path, 1, 1, "the header x,y,z,nx,ny,nz is missing");
   const std::vector<size_t> where = table.columns(names, names.size(), "the header x,y,z,nx,ny,nz");
-  const std::vector<size_t> others = table.other_columns(names);
+  const std::vector<size_t> unused = table.other_columns(names);
   PointList list;
-  list.other_count = others.size();
-  for (const size_t f : others) list.other_names += "," + csv_field(table.header().fields[f]);
+  if (!unused.empty()) list.note = unused_columns_note(table, path, unused);
   CsvRow row;
-  while (table.next(row)) {
-    list.points.push_back(point_of(table, row, where));
-    if (others.empty()) continue;
-    std::string& fields = list.other_fields.emplace_back();
-    for (const size_t f : others)
-      fields += "," + (f < row.fields.size() ? csv_field(row.fields[f]) : std::string());
-  }
+  while (table.next(row)) list.points.push_back(point_of(table, row, where));
   if (list.points.empty()) throw InputError(path, 0, 0, "lists no point");
   return list;
 }
 
 std::string measurements_csv(const PointList& list, const MeasureResult& result) {
   const std::string csv = measurements_csv(list.points, result);
-  if (list.other_names.empty()) return csv;
+  if (list.surfaces.empty()) return csv;
   std::string out;
   size_t begin = 0, next = 0;
   const auto take_line = [&](const std::string& more) {
     const size_t end = std::min(csv.find('\n', begin), csv.size());
-    out.append(csv, begin, end - begin).append(more) += '\n';
+    out.append(csv, begin, end - begin).append("," + more) += '\n';
     begin = std::min(end + 1, csv.size());
   };
-  take_line(list.other_names);
+  take_line("surface");
   for (; begin < csv.size(); ++next) {
     while (!result.is_measured[next]) ++next;
-    take_line(next < list.other_fields.size() ? list.other_fields[next] : std::string());
+    take_line(csv_field(list.surfaces[next]));
   }
   return out;
 }

@@ -133,8 +133,8 @@ void forget_cut_off_texels(const PreparedScene& scene, const TexelSites& sites, 
     const LitPlace own = place(i);
     map.neighbours(i, around);
     for (const uint32_t n : around) {
-      if (!light[n].is_known || !(own.light <= darkest * luminance(light[n].irradiance))) continue;
       const LitPlace other = place(n);
+      if (!light[n].is_known || !(other.light > 0) || own.light > darkest * other.light) continue;
       const float offset = offset_of_point(own.position, box);
       const std::array<Ray, 1> ray{between(own, other, offset)};
       std::array<uint8_t, 1> is_hidden{};

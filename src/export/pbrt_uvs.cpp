@@ -28,6 +28,14 @@ bool is_one(const Texture& look, WrapMode wrap) {
   return look.wrap_u == wrap && look.wrap_v == wrap;
 }
 
+// Within the image mirroring is clamping; repeating blends its opposite edges.
+bool is_clamped_within(const Texture& look, const UvBox& places) {
+  const auto is_clamped = [&](WrapMode w) {
+    return !look.is_filtered || w == WrapMode::clamp || w == WrapMode::mirror;
+  };
+  return is_within(places) && is_clamped(look.wrap_u) && is_clamped(look.wrap_v);
+}
+
 const char* wrap_name(WrapMode mode) {
   return mode == WrapMode::clamp ? "clamp" : mode == WrapMode::black ? "black" : "repeat";
 }
@@ -95,20 +103,29 @@ void PbrtUvs::place_fixed(const std::vector<int32_t>& others) {
     if (is_rotated) lead(*first);
     return;
   }
+  // Both are always blended: texels that are not are made larger.
+  for (std::optional<Texture>* look : {&normal_, &emission_}) {
+    if (!*look || (*look)->is_filtered) continue;
+    const int times = std::clamp(2048 / std::max((*look)->width, (*look)->height), 1, 16);
+    (*look)->width *= times;
+    (*look)->height *= times;
+  }
   const Texture first = normal_ ? *normal_ : *emission_;
-  const bool is_one_place =
-      !normal_ || !emission_ ||
-      (is_same_place(*normal_, *emission_) && is_within(places_over(first, box)));
-  const bool is_plain = is_within(places_over(first, box)) ||
-                        (normal_ && !emission_ && is_one(first, WrapMode::repeat)) ||
-                        (!normal_ && is_one(first, WrapMode::clamp));
+  const UvBox places = places_over(first, box);
+  const bool is_one_place = !normal_ || !emission_ || is_same_place(*normal_, *emission_);
+  const bool is_clamped = is_clamped_within(first, places);
+  const bool is_plain = normal_ ? !emission_ && is_one(first, WrapMode::repeat)
+                                : is_clamped || is_one(first, WrapMode::clamp);
   // A normal map's frame turns with (u,v).
   if (is_one_place && is_plain && !(normal_ && first.uv_rotation_rad != 0)) {
     lead(first);
     return;
   }
   std::optional<Texture> whole = tiled(first, box);
-  const bool is_exact = whole && is_one_place;
+  const bool is_one_size =
+      !normal_ || !emission_ ||
+      (normal_->width == emission_->width && normal_->height == emission_->height);
+  const bool is_exact = whole && is_one_place && is_one_size;
   if (!whole) whole = look_over(first, box);
   // As fine as it is itself, over what all of them cover.
   const auto over_whole = [&](std::optional<Texture>& look) {
@@ -181,7 +198,7 @@ std::optional<PbrtUvs::Placing> PbrtUvs::placing(std::span<const int32_t> textur
     warnings_.add("products of images that lie differently are written as one, resampled");
   const UvBox box = uvs_.of(material_, is_second_);
   const bool is_said = look.wrap_u == look.wrap_v && look.wrap_u != WrapMode::mirror;
-  if (!is_said && !is_within(places_over(look, box))) {
+  if (!is_said && !is_clamped_within(look, places_over(look, box))) {
     const std::optional<Texture> all = tiled(look, box);
     if (!all)
       warnings_.add(

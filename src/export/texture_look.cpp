@@ -108,15 +108,18 @@ std::optional<Texture> tiled(const Texture& look, const UvBox& uvs) {
   if (look.uv_rotation_rad != 0) return std::nullopt;
   const UvBox places = places_over(look, uvs);
   Texture out = look;
+  // What is blended at the edges of the outer copies.
+  const int rim = look.is_filtered ? 1 : 0;
   for (size_t axis = 0; axis < 2; ++axis) {
     const float first = std::floor(places.lower[axis] + texel_rounding),
                 end = std::ceil(places.upper[axis] - texel_rounding);
     const float n = std::max(end - first, 1.0f);
     int& size = axis == 0 ? out.width : out.height;
     if (!(n * float(size) <= float(most_texels_across))) return std::nullopt;
-    size *= int(n);
-    out.uv_scale[axis] /= n;
-    out.uv_offset[axis] = (out.uv_offset[axis] - first) / n;
+    const auto before = float(size);
+    size = size * int(n) + 2 * rim;
+    out.uv_scale[axis] *= before / float(size);
+    out.uv_offset[axis] = ((out.uv_offset[axis] - first) * before + float(rim)) / float(size);
   }
   out.wrap_u = out.wrap_v = WrapMode::clamp;
   return out;

@@ -51,8 +51,8 @@ Vec2 uv_of_texel(const Texture& look, int x, int y);
 // Bounds of the positions in the image over a box of (u,v).
 UvBox places_over(const Texture& look, const UvBox& uvs);
 
-// The same image repeated as its wrapping asks, so often that its edges are not met within `uvs`;
-// none for rotated ones and where the result would be too large.
+// The same image repeated as its wrapping asks, so often that its edges are not met within `uvs`,
+// with a rim of one texel; none for rotated ones and where the result would be too large.
 std::optional<Texture> tiled(const Texture& look, const UvBox& uvs);
 // An image over the box, about as fine as `look`.
 Texture look_over(const Texture& look, const UvBox& uvs);

@@ -14,6 +14,7 @@
 #include "base/units.h"
 #include "import/attach_luminaire.h"
 #include "import/file.h"
+#include "import/kept_files.h"
 #include "import/reference_notes.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/csv_table.h"
@@ -121,7 +122,8 @@ Luminaire read_listed(const std::string& list, const Row& row, WarningLog& warni
   const ConfinedPath file = confined_path(folder_of(list), row.file);
   for (const std::string& note : references.notes()) warnings.add(note);
   std::error_code failure;
-  const bool is_there = file.is_fine() && std::filesystem::exists(file.path, failure);
+  const bool is_there =
+      file.is_fine() && (KeptFiles::find(file.path) || std::filesystem::exists(file.path, failure));
   if (!is_there)
     throw InputError(list, row.line, 1,
                      fmt::format("file '{}': {}", row.file.substr(0, 200),

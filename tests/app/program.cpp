@@ -62,11 +62,18 @@ std::string read_file(const std::string& path) {
 }
 
 std::string Finished::remarks() const {
-  if (status != 0 || err.empty()) return err;
-  const size_t before = err.rfind('\n', err.size() - 2);
-  const size_t last = before == err.npos ? 0 : before + 1;
-  const bool tells_end = err.compare(last, 6, "wrote ") == 0 || err.compare(last, 5, "done ") == 0;
-  return tells_end ? err.substr(0, last) : err;
+  // A slow machine prints progress lines: "render: 44 % after 3 s, 54 MB, 4 s left".
+  std::string text;
+  std::istringstream in(err);
+  for (std::string line; std::getline(in, line);)
+    if (line.find(" % after ") == line.npos || line.rfind("warning: ", 0) == 0)
+      text += line + (in.eof() ? "" : "\n");
+  if (status != 0 || text.empty()) return text;
+  const size_t before = text.rfind('\n', text.size() - 2);
+  const size_t last = before == text.npos ? 0 : before + 1;
+  const bool tells_end =
+      text.compare(last, 6, "wrote ") == 0 || text.compare(last, 5, "done ") == 0;
+  return tells_end ? text.substr(0, last) : text;
 }
 
 std::vector<std::string> Finished::error_lines() const {

@@ -32,7 +32,7 @@ struct Finished {
   double processor_seconds = 0;                  // in all
   double seconds_after_signal = 0;               // of those, the ones after the last send()
   std::vector<std::string> error_lines() const;  // err by lines, as remarks()
-  // err without the line in the end that tells the files, the time and the error.
+  // err without progress lines, and without the last line, which tells files, time and error.
   std::string remarks() const;
 };
 

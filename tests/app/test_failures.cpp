@@ -134,7 +134,6 @@ TEST_CASE("wrong usage: exit 2") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt), out = folder.path("o.exr");
   const std::vector<std::vector<std::string>> wrong = {
-      {},
       {"paint"},
       {"render"},
       {"render", scene},

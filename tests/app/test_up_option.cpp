@@ -60,7 +60,7 @@ TEST_CASE("a roof under a sky of 10 000 lx has 10 000 lx, or a warning names --u
   for (const char* up : {"z", "+z", "0,0,1", "0,0,2.5"}) {
     const Finished asked = run(tower, on_tower, {"--up", up});
     CHECK(measured(asked)[0].lx == doctest::Approx(10000).epsilon(0.002));
-    CHECK(asked.err == "");
+    CHECK(asked.remarks() == "");
   }
   CHECK(run(tower, on_tower, {"--quiet"}).err == "");
 }
@@ -114,7 +114,7 @@ TEST_CASE("statistics tell which way is up, and only what depends on it is told 
   CHECK(up["reason"] == "by a lamp that faces down");
   CHECK(up["doubt"] == "");
   const std::string points = folder.write("p.csv", "x,y,z,nx,ny,nz\n5,1,1,0,1,0\n");
-  CHECK(run_program(folder, {"measure", scene, "--points", points}).err == "");
+  CHECK(run_program(folder, {"measure", scene, "--points", points}).remarks() == "");
 }
 
 TEST_CASE("every command that loads a scene knows --up") {

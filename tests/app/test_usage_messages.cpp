@@ -167,7 +167,7 @@ TEST_CASE("layers for files that cannot hold them are told of") {
     std::vector<std::string> words{"render", scene,      "--size", "8x6",   "--spp",
                                    "1",      "--method", "fixed",  "--aov", "depth"};
     words.insert(words.end(), more.begin(), more.end());
-    return run_program(folder, words).err;
+    return run_program(folder, words).remarks();
   };
   const std::string png = folder.path("o.png"), exr = folder.path("o.exr");
   CHECK(err({"-o", png, "--exposure", "0"}) ==

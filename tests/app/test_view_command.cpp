@@ -15,7 +15,7 @@ TEST_CASE("view tells its address, and a signal ends it") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   for (const int which : {SIGINT, SIGTERM}) {
-    Running program(folder, {"view", scene, "--threads", "1", "--error", "0.001"});
+    Running program(folder, {"view", scene, "--threads", "1", "--error", "0.001", "--quiet"});
     program.let_work(0.5);
     program.send(which);
     const Finished f = program.wait();
@@ -83,7 +83,7 @@ TEST_CASE("view refuses what it cannot show, before any page is there") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
   const auto run = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"view"};
+    std::vector<std::string> arguments{"view", "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Finished f = run_program(folder, arguments);
     CHECK(f.out.empty());

@@ -353,9 +353,10 @@ TEST_CASE("glTF's measured luminaires: files, data, buffer views; places and fac
     CHECK(e.axes[1] == Vec3{0, 1, 0});
     CHECK(e.axes[2] == Vec3{0, 0, -1});
   }
-  const std::array<std::pair<const char*, const char*>, 4> unusable{
+  // A number that names no light is an error of the document.
+  CHECK_THROWS_AS(import("{'uri':'lamp.ies'}", "'light':1"), InputError);
+  const std::array<std::pair<const char*, const char*>, 3> unusable{
       {{"{'uri':'gone.ies'}", "'light':0"},
-       {"{'uri':'lamp.ies'}", "'light':1"},
        {"{'name':'nothing'}", "'light':0"},
        {"{'uri':'lamp.ies'}", "'light':0,'multiplier':-1"}}};
   for (const auto& [light, instance] : unusable) {

@@ -11,6 +11,7 @@
 #include "import/mesh_clean.h"
 #include "import/obj.h"
 #include "import/polygon.h"
+#include "import/reference_notes.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 
@@ -368,10 +369,12 @@ TEST_CASE(
   const TempFolder folder;
   folder.write("m.mtl", "newmtl a\nmap_Kd C:\\\\work\\\\red.pfm\n");
   folder.write("red.pfm", "PF\n1 1\n-1.0\n" + std::string(12, '\0'));
+  const ReferenceNotes references;
   const Scene scene = import_obj(
       folder.write("s.obj", "mtllib /home/somebody/m.mtl\n" + square + "usemtl a\nf 1 2 3\n"));
   CHECK(has_warning(scene, "the one beside the scene is"));
-  CHECK(has_warning(scene, "taken from beside the scene"));
+  REQUIRE(references.notes().size() == 1);
+  CHECK(references.notes()[0].find("is read from 'red.pfm'") != std::string::npos);
   CHECK(scene.textures.at(0).kind == TextureKind::image);
 }
 
