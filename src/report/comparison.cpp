@@ -25,7 +25,7 @@ std::string difference(const std::optional<Figure>& other, const std::optional<F
   const Figure d{own->value - other->value, std::hypot(own->error, other->error)};
   const double size = std::max(std::abs(own->value), std::abs(other->value));
   std::string text = with_error(std::abs(d.value), d.error);
-  text = (d.value < 0 ? "−" : "+") + text;
+  if (d.value != 0) text = (d.value < 0 ? "−" : "+") + text;
   const bool is_clear = std::abs(d.value) > 2 * d.error && std::abs(d.value) > 1e-9 * size;
   return fmt::format("<span class=\"n\">{}{}{}</span>", is_clear ? "<b>" : "", text,
                      is_clear ? "</b>" : "");

@@ -185,8 +185,9 @@ std::string type_block(const Assessment& a, size_t type, size_t first,
   constexpr double side = 150;
   const PlacedLuminaire& l = a.luminaires[first];
   const auto count = std::count(types.begin(), types.end(), type);
-  std::string text = fmt::format("<b>Type {}</b>: {}<br>{} × {} lm", char('A' + type % 26),
-                                 html_text(l.product), count, short_number(l.lumens));
+  std::string text =
+      fmt::format("<strong>Type {}</strong>: {}<br>{} × {} lm", char('A' + type % 26),
+                  html_text(l.product), count, short_number(l.lumens));
   if (l.watts)
     text += fmt::format(", {} W", short_number(*l.watts));
   else
