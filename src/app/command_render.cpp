@@ -320,7 +320,6 @@ void join(RenderCommand& c, Crew& crew) {
   c.lasting.time_limit = 0;
 }
 
-// --select.
 void restrict_selection(const Scene& scene, RenderCommand& c) {
   if (c.selected_lights.empty()) return;
   c.options.kj92.selection.is_restricted = true;

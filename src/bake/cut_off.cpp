@@ -164,10 +164,10 @@ void forget_cut_off_texels(const PreparedScene& scene, const TexelSites& sites, 
   for (const uint32_t i : second) light[i].is_known = false;
 }
 
-bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset) {
+bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset, float diagonal) {
   constexpr uint32_t looks = 16;
   constexpr float near = 0.1f, metre = 1;  // of the scene's diagonal
-  const float limit = std::min(near * float(bounds(scene.scene).diagonal()), metre);
+  const float limit = std::min(near * diagonal, metre);
   std::vector<Ray> rays;
   std::vector<Hit> hits(looks);
   const Frame frame(place.normal);

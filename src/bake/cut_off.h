@@ -30,7 +30,8 @@ std::vector<uint8_t> cut_off_samples(const PreparedScene& scene, std::span<const
 void forget_cut_off_texels(const PreparedScene& scene, const TexelSites& sites, const Atlas& atlas,
                            std::vector<SiteLight>& light);
 
-// Whether looks from a place end close by, as they do within walls and furniture.
-bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset);
+// Whether looks from a place end close by, as they do within walls and furniture. diagonal: of the
+// scene's bounds.
+bool is_enclosed(const PreparedScene& scene, const LitPlace& place, float offset, float diagonal);
 
 }  // namespace troffer

@@ -249,7 +249,8 @@ class Lighting {
     size_t kept = 0;
     for (size_t i = 0; i < samples.size(); ++i) {
       const bool counts =
-          !is_cut_off[i] || !(settings_.is_all_light || is_enclosed(scene_, places[i], offset));
+          !is_cut_off[i] || !(settings_.is_all_light ||
+                              is_enclosed(scene_, places[i], offset, float(bounds_.diagonal())));
       if (counts) samples[kept++] = samples[i];
     }
     samples.resize(kept);

@@ -20,6 +20,7 @@ struct GltfPlace {
   bool is_baked() const { return page >= 0 || has_light_colors; }
 };
 
+// Thirteen members: the scene and its options, and the tables of what the file holds already.
 class GltfMaterialWriter {
  public:
   using Json = nlohmann::ordered_json;

@@ -33,6 +33,7 @@ namespace {
 constexpr uint64_t cost_of_instance = 20;  // in triangles
 constexpr const char* lights_extension = "KHR_lights_punctual";
 
+// Thirteen members: the file, the readers of its parts, and what they have read.
 class Importer {
  public:
   Importer(const JsonNode& root, GltfFile& file, const ImportOptions& options, Scene& scene,

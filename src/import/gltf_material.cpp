@@ -97,8 +97,7 @@ class GltfMaterials::Reader {
     material_.roughness.texture = material_.metallic.texture = both;
   }
 
-  // The older model as a dielectric of that normal reflectance, which is KHR_materials_specular's
-  // with ior 1.5: its specularColor may be above 1.
+  // A dielectric of that normal reflectance: KHR_materials_specular with ior 1.5.
   void read_specular_glossiness(const JsonNode& old) {
     material_.base_color = {Rgb{1}, no_texture};
     material_.metallic = {0, no_texture, 2};

@@ -72,7 +72,7 @@ TEST_CASE("programs that write the same file do not clash") {
   std::vector<std::unique_ptr<Running>> programs;
   for (int i = 0; i < 4; ++i)
     programs.push_back(std::make_unique<Running>(
-        folder, std::vector<std::string>{"render", scene, "-o", out, "--threads", "1"}));
+        folder, std::vector<std::string>{"render", scene, "-o", out, "--threads", "1", "--quiet"}));
   for (const auto& p : programs) {
     const Finished f = p->wait();
     CHECK(f.status == 0);

@@ -121,7 +121,7 @@ TEST_CASE("radiosity stops at a signal, and what it has is written and whole") {
   CAPTURE(f.err);
   CHECK(f.status == 130);
   CHECK(f.seconds_after_signal < 10);
-  CHECK(f.err.rfind("interrupted after ", 0) == 0);
+  CHECK(f.err.find("interrupted after ") != std::string::npos);
   CHECK(f.err.find(" shots: wrote " + folder.path("a.trad") + ", ") != std::string::npos);
   CHECK(folder.names() == std::vector<std::string>{"a.glb", "a.trad", "room.pbrt", "s.json"});
   CHECK(refusal(scene, folder.path("a.trad"), nullptr).find("was interrupted after") !=

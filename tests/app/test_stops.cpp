@@ -176,12 +176,11 @@ TEST_CASE("a report, a baked and a converted scene are replaced whole") {
   const std::string scene = folder.write("room.pbrt", bright_room_pbrt());
   const std::string report = folder.path("report");
   fs::create_directory(report);
-  stop_often(
-      folder,
-      {{"report", scene, "-o", report, "--surface", "mesh0", "--pictures", "off", "--spp", "4",
-        "--contributions", "off", "--daylight-factor", "off", "--method", "path", "--threads", "1"},
-       {report + "/report.html", report + "/report.json", report + "/points.csv"}},
-      random);
+  stop_often(folder,
+             {{"report", scene, "-o", report, "--pictures", "off", "--spp", "4", "--contributions",
+               "off", "--daylight-factor", "off", "--method", "path", "--threads", "1"},
+              {report + "/report.html", report + "/report.json", report + "/points.csv"}},
+             random);
   const std::string baked = folder.path("b.glb"), converted = folder.path("c.gltf");
   stop_often(folder,
              {{"bake", scene, "-o", baked, "--hdr", "none", "--resolution", "16", "--spp", "4",

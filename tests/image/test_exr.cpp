@@ -117,10 +117,11 @@ TEST_CASE("headers that claim too much are refused before OpenEXR sees them") {
   CHECK(reason(f, 70, 50) == "");
   CHECK(reason(f, 100000, 100000).find("limit") != std::string::npos);
   CHECK(reason(f, 2000000000, 1).find("limit") != std::string::npos);
-  CHECK(reason(f, 1, 60000000) == "truncated EXR");
+  // A few bytes may not claim gigabytes: refused by the memory that the picture would take.
+  CHECK(reason(f, 1, 60000000).find("of memory") != std::string::npos);
   CHECK(reason(f, 0, 5) == "EXR with an empty data window");
   f.tile_width = f.tile_height = 64;
-  CHECK(reason(f, 8000, 8000) == "truncated EXR");
+  CHECK(reason(f, 8000, 8000).find("of memory") != std::string::npos);
 }
 
 TEST_CASE("layers become named channels in their window") {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/random.h"
@@ -113,11 +114,16 @@ std::string ies(Symmetry s, const Edition& edition, const Layout& layout, int un
   std::vector<double> gammas = heights, candelas;
   if (descends) gammas.assign(heights.rbegin(), heights.rend());
   const double metre = unit == 1 ? 1 / .3048 : 1;
-  // Factors multiply: 2 × .8 × 1.25.
+  // Factors multiply: 2 × .8 × 1.25 until 1991. Later editions reserve the third number, or, in
+  // 2019, use it as a code: 2 × 1.
+  const std::string_view head = edition.head;
+  const bool is_coded = head.find("2019") != head.npos;
+  const bool is_reserved =
+      is_coded || head.find("1995") != head.npos || head.find("2002") != head.npos;
   std::string text = std::string(edition.head) + "\n" + edition.tilt + "\n";
   text += layout.numbers({2, 6911.5, 2, double(gammas.size()), double(planes.size()), 1,
                           double(unit), .6 * metre, 1.2 * metre, 0});
-  text += layout.numbers({.8, 1.25, 99.5});
+  text += layout.numbers({is_reserved ? 1 : .8, is_coded ? 1.1 : is_reserved ? 1 : 1.25, 99.5});
   text += layout.numbers(gammas) + layout.numbers(planes);
   for (const double c : planes) {
     std::vector<double> row;

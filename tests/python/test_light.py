@@ -98,7 +98,7 @@ class AddedLight(unittest.TestCase):
         night = troffer.load(str(ROOM))
         night.add_light(weather=file, date='06-21T02:00')
         self.assertEqual(night.lights, [])
-        self.assertTrue(any('no light comes' in w for w in night.warnings))
+        self.assertTrue(any("below the horizon" in w for w in night.warnings))
 
     def test_surroundings_and_portals(self):
         image = self.folder / 'a,1.pfm'
