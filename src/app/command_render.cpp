@@ -11,7 +11,6 @@
 #include "app/output_guard.h"
 #include "app/outputs.h"
 #include "app/picture_files.h"
-#include "app/printable.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/signals.h"
@@ -40,27 +39,19 @@ void check_visible(const Scene& scene) {
     throw InputError(scene.file, 0, 0, "has nothing to show: no surface, sky or image");
 }
 
-// Layers are for .exr alone.
-void warn_of_layers(const RenderCommand& c) {
-  const auto holds_layers = [](const std::string& path) {
-    return image_format(path) == ImageFormat::exr;
-  };
-  if (!c.is_quiet && !c.options.aovs.empty() &&
-      std::none_of(c.outputs.begin(), c.outputs.end(), holds_layers))
-    fmt::print(stderr, "warning: --aov: {} cannot hold layers; write an .exr file too\n",
-               printable(c.outputs.front()));
+// By --eye and --target, which are in the file's coordinates; nothing where neither is given.
+std::optional<Camera> described_camera(const RenderCommand& c, const Vec3d& origin,
+                                       const Vec3& up) {
+  if (c.eye.empty() && c.target.empty()) return std::nullopt;
+  if (c.eye.empty() || c.target.empty()) throw UsageError("--eye and --target go together");
+  if (!c.camera.empty()) throw UsageError("--camera and --eye exclude each other");
+  return look_at(Vec3(parse_vector(c.eye, "--eye") - origin),
+                 Vec3(parse_vector(c.target, "--target") - origin), up, c.fov_deg);
 }
 
 // Nothing where the scene has no camera and none is described.
 std::optional<Camera> choose_camera(const Scene& scene, const RenderCommand& c, const Vec3& up) {
-  if (!c.eye.empty() || !c.target.empty()) {
-    if (c.eye.empty() || c.target.empty()) throw UsageError("--eye and --target go together");
-    if (!c.camera.empty()) throw UsageError("--camera and --eye exclude each other");
-    const auto place = [&](const std::string& text, const char* option) {
-      return Vec3(parse_vector(text, option) - scene.origin);
-    };
-    return look_at(place(c.eye, "--eye"), place(c.target, "--target"), up, c.fov_deg);
-  }
+  if (const auto described = described_camera(c, scene.origin, up)) return described;
   if (!c.camera.empty()) {
     for (const Camera& camera : scene.cameras)
       if (camera.name == c.camera) return camera;
@@ -178,6 +169,8 @@ std::vector<OutputReservation> check_and_reserve(RenderCommand& c,
   c.options.indirect = indirect_with(c.solution, c.options.method, c.options.indirect);
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
+  // Mistakes are told before the scene is read; far places differ by less than floats tell.
+  described_camera(c, c.eye.empty() ? Vec3d{} : parse_vector(c.eye, "--eye"), {0, 0, 1});
   if (c.options.crew != nullptr && !c.options.crew->leads()) return {};
   guard_files(c, guard.emplace());
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);

@@ -74,7 +74,7 @@ void add_grids(const PreparedScene& scene, const GridChoice& choice, const Vec3&
       if (grid.points.size() > most_points - list.points.size())
         throw UsageError("--grid: more than a million points");
       for (const GridPoint& p : grid.points) {
-        list.points.push_back({p.position, Vec3(s.normal())});
+        list.points.push_back({p.position, Vec3(s.normal()) + Vec3{0}});  // no -0
         list.surfaces.push_back(s.name);
       }
     }

@@ -39,6 +39,16 @@ double exposure_stops(const RenderCommand& c, const Image& picture, bool is_quie
 
 }  // namespace
 
+void warn_of_layers(const RenderCommand& c) {
+  const auto holds_layers = [](const std::string& path) {
+    return image_format(path) == ImageFormat::exr;
+  };
+  if (!c.is_quiet && !c.options.aovs.empty() &&
+      std::none_of(c.outputs.begin(), c.outputs.end(), holds_layers))
+    fmt::print(stderr, "warning: --aov: {} cannot hold layers; write an .exr file too\n",
+               printable(c.outputs.front()));
+}
+
 WriteOptions write_options(const RenderCommand& c, const Camera& camera, const Image& picture,
                            bool is_quiet) {
   WriteOptions write;

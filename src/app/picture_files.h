@@ -14,6 +14,9 @@ namespace troffer {
 WriteOptions write_options(const RenderCommand& command, const Camera& camera, const Image& picture,
                            bool is_quiet);
 
+// Says, unless the command is quiet, that no output can hold the layers of --aov: .exr alone can.
+void warn_of_layers(const RenderCommand& command);
+
 // Pictures that take the place of the command's outputs before these are there. A file that stood
 // there before stays, and its previews go beside it. What a failure leaves of previews is removed.
 class PreviewFiles {

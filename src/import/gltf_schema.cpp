@@ -298,7 +298,8 @@ constexpr auto supported_extensions =
                                      "KHR_materials_volume_scatter",
                                      "KHR_mesh_quantization",
                                      "KHR_node_visibility",
-                                     "KHR_texture_transform"});
+                                     "KHR_texture_transform",
+                                     "MOZ_lightmap"});
 
 bool is_supported(const std::string& name) {
   return std::find(supported_extensions.begin(), supported_extensions.end(), name) !=

@@ -241,8 +241,8 @@ Shape "sphere" "float radius" [0.1]
 TEST_CASE("measure: the header, the values, the errors") {
   const Folder folder;
   const std::string scene = folder.write("room.pbrt", lit_floor_pbrt);
-  const std::string points = folder.write(
-      "p.csv", "nx,ny,nz,x,y,z,remark\r\n0,0,2,0,0,0,middle\r\n\r\n0,0,-1,0,0,0,below\r\n");
+  const std::string points =
+      folder.write("p.csv", "nx,ny,nz,x,y,z\r\n0,0,2,0,0,0\r\n\r\n0,0,-1,0,0,0\r\n");
   for (const std::string method : {"certified", "path", "fixed"}) {
     const Finished f = run_well(
         folder, {"measure", scene, "--points", points, "--method", method, "--indirect", "none"});
