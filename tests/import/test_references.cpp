@@ -31,7 +31,11 @@ void check_red(const Scene& scene, const std::string& found = "is read from 'tex
   for (const Texture& t : scene.textures)
     is_there = is_there || (t.width == 1 && !t.texels8.empty() && t.texels8[0] == 255);
   CHECK(is_there);
-  CHECK(has_warning(scene, found));
+  const std::string first =
+      scene.warnings.entries().empty() ? "no warning" : scene.warnings.entries()[0].text;
+  CAPTURE(first);
+  const bool is_noted = found.empty() || has_warning(scene, found);
+  CHECK(is_noted);
 }
 
 const char* const obj =
@@ -46,9 +50,12 @@ TEST_CASE("images are found whatever the separator and the case") {
        {"textures\\floor.tga", "Textures/Floor.TGA", "TEXTURES\\FLOOR.tga",
         "C:\\Users\\me\\scene\\textures\\floor.tga", "d:/scene/Textures/floor.tga",
         "\\\\server\\share\\textures\\floor.tga"}) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     folder.write("a.mtl", "newmtl m\nmap_Kd " + std::string(name) + "\n");
-    if (name[0] != '\\') check_red(import_scene(folder.write("s.obj", obj)));
+    // In .mtl files a backslash alone is as good as a slash and needs no note.
+    if (name[0] != '\\')
+      check_red(import_scene(folder.write("s.obj", obj)),
+                std::string(name) == "textures\\floor.tga" ? "" : "textures/floor.tga'");
     const Scene pbrt = import_scene(folder.write(
         "s.pbrt", "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
                       std::string(name) +
