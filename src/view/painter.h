@@ -85,7 +85,7 @@ class Painter {
   // A layer of the view under way.
   struct Work {
     std::string layer;
-    int dimmer = -1;  // by its light alone; -1: all light
+    int dimmer = -1;                              // by its light alone; -1: all light
     std::shared_ptr<const PreparedScene> dimmed;  // "dimmed" alone has a scene of its own
     Method method = Method::certified;
     std::vector<Pass> passes;

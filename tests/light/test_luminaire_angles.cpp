@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "import/luminaire.h"
-#include "light/web.h"
 #include "import/temp_folder.h"
+#include "light/web.h"
 
 using namespace troffer;
 
