@@ -39,7 +39,8 @@ void check_visible(const Scene& scene) {
     throw InputError(scene.file, 0, 0, "has nothing to show: no surface, sky or image");
 }
 
-// By --eye and --target, which are in the file's coordinates; nothing where neither is given.
+// The camera of --eye and --target, which are in the file's coordinates; nothing where neither is
+// given.
 std::optional<Camera> described_camera(const RenderCommand& c, const Vec3d& origin,
                                        const Vec3& up) {
   if (c.eye.empty() && c.target.empty()) return std::nullopt;

@@ -166,7 +166,7 @@ void dim_power(const ReportCommand& c, const Scene& scene, std::vector<PowerRequ
   power.insert(power.end(), dimmed.begin(), dimmed.end());
 }
 
-// By photometric file, what it says of its product.
+// Product data, by photometric file.
 std::map<std::string, std::string> products_of(const Scene& scene) {
   std::map<std::string, std::string> products;
   for (const LightWeb& web : scene.webs) {

@@ -178,7 +178,7 @@ Scene load_scene(const SceneChoice& choice, const std::vector<std::string>& ligh
                  const DaylightOptions* daylight, bool is_quiet, UpUse& up,
                  const ShowShapes& show_shapes = {});
 
-// What --up says, or the scene shows; `scene` as it was read.
+// Decides by --up, else by the scene, given as it was read.
 UpDecision up_of(const SceneChoice& choice, const Scene& scene);
 // A line on standard error that says what was decided, unless the user or the format says it, or a
 // warning does.

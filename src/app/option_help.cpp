@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t help_width = 80, text_column = 26;
 
-// What an option's validator says of its values: of number_between() and its like, or of one_of().
+// The text of an option's validator: of number_between() and its like, or of one_of().
 struct Values {
   std::string range;  // "1 or more"
   std::vector<std::string> choices;

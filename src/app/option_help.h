@@ -1,4 +1,4 @@
-// What --help and `troffer help` print, and the same as JSON: tools/manual.py makes manual pages,
+// The texts of --help and `troffer help`, and the same as JSON: tools/manual.py makes manual pages,
 // shell completion and docs/reference/options.md of it.
 #pragma once
 

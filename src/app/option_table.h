@@ -1,5 +1,6 @@
-// What help, completion, the manual and docs/reference/options.md show of each option beside its
-// description: its group, the name of its value and the files it takes. The order is that of help.
+// The data that help, completion, the manual and docs/reference/options.md show of each option
+// beside its description: its group, the name of its value and the files it takes. The order is
+// that of help.
 #pragma once
 
 #include <CLI/CLI.hpp>

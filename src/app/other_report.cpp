@@ -58,7 +58,7 @@ OtherSurface other_surface(const JsonNode& node) {
   return s;
 }
 
-// Of an observer; empty where it belongs to no surface.
+// Name of the surface of an observer; empty where it belongs to no surface.
 std::string surface_name(const JsonNode& observer) {
   try {
     return observer.member("surface").as_string();

@@ -26,7 +26,7 @@ class OutputGuard {
   // The files that these options name.
   void add_inputs(const SceneChoice& scene, const DaylightOptions& daylight);
 
-  // To be called once the scene is read: images, meshes and included files are known then.
+  // Call once the scene is read: images, meshes and included files are known then.
   void check_files_read() const;
   const FilesRead& files_read() const { return read_; }
 

@@ -14,8 +14,8 @@ namespace troffer {
 
 enum class NumberKind { natural, integer, real };
 
-// What is wrong with `text` as such a number, in words; nothing where it is one. Takes a plus sign
-// and leading zeros off.
+// Says in words what is wrong with `text` as such a number; nothing where it is one. Takes a plus
+// sign and leading zeros off.
 std::optional<std::string> check_number(NumberKind kind, std::string& text);
 
 // Applies check_number() to all numeric options of all commands.

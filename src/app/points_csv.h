@@ -19,7 +19,7 @@ struct PointList {
 // of what cannot be read (a zero normal, say), and a list without points.
 PointList read_points(const std::string& path);
 
-// As a field of a table: in quotes where it holds commas, quotes or line breaks.
+// Returns the text as a field of a table: in quotes where it holds commas, quotes or line breaks.
 std::string csv_field(const std::string& text);
 
 // measurements_csv(), with the column "surface" at the end where the list has one.

@@ -8,7 +8,7 @@
 
 namespace troffer {
 
-// What is known of a phase under way.
+// State of a phase under way.
 struct PhaseState {
   double fraction = 0;   // done, in [0,1]
   double seconds = 0;    // since it began

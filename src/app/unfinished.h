@@ -1,4 +1,4 @@
-// What an interrupted run leaves. A file that stood at an output before may be more complete than
+// Results of an interrupted run. A file that stood at an output before may be more complete than
 // what the run has made, so it stays, and the unfinished result goes beside it.
 #pragma once
 

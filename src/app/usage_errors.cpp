@@ -43,7 +43,7 @@ std::string see_help(const CLI::App& command) {
   return " (troffer help " + command.get_name() + " lists its options)";
 }
 
-// What is left over is unknown options, and words for which there is no place.
+// The rest are unknown options, and words for which there is no place.
 std::string unexpected(const CLI::App& command, int argc, const char* const* argv) {
   const std::vector<std::string> left = command.remaining(true);
   for (int i = 2; i < argc; ++i) {

@@ -1,4 +1,4 @@
-// What glTF says of materials by extensions.
+// Writes the material extensions of glTF.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -11,7 +11,7 @@
 
 namespace troffer {
 
-// What a mesh itself adds to its material.
+// Attributes of a mesh that change its material.
 struct GltfPlace {
   int32_t page = -1;                   // of BakedLight::pages
   int set = 1;                         // of the page's texture coordinates

@@ -44,7 +44,7 @@ class GltfWriter {
        lights_ = Json::array();
 
   void add_part(const ScenePart& part, Rgb radiance);
-  // What all that wear a mesh share.
+  // Data that all instances of a mesh share.
   struct Primitive {
     Json json;
     uint32_t material = 0;

@@ -59,7 +59,7 @@ OutputFolder::OutputFolder(const std::string& path)
       path_((fs::path(path).parent_path() / folder_).string()) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return;
-  // Of one that is longer nothing is removed; what is there keeps its name anyway.
+  // A longer one is not used for removal: the old data keep their names anyway.
   if (fs::file_size(path, error) <= most_read) before_ = content_of(path);
 }
 

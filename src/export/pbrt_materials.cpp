@@ -24,7 +24,7 @@ float power_for_pbrt(RoughnessMeaning meaning) {
                                                       : 1;
 }
 
-// What says which texels a look shows.
+// The values that decide which texels a look shows.
 std::string key_of(const Texture& t) {
   return fmt::format(" {} {} {} {} {} {} {} {} {} {}", t.width, t.height, int(t.wrap_u),
                      int(t.wrap_v), t.uv_scale.x, t.uv_scale.y, t.uv_offset.x, t.uv_offset.y,

@@ -108,7 +108,7 @@ std::optional<Texture> tiled(const Texture& look, const UvBox& uvs) {
   if (look.uv_rotation_rad != 0) return std::nullopt;
   const UvBox places = places_over(look, uvs);
   Texture out = look;
-  // What is blended at the edges of the outer copies.
+  // Texels that are blended at the edges of the outer copies.
   const int rim = look.is_filtered ? 1 : 0;
   for (size_t axis = 0; axis < 2; ++axis) {
     const float first = std::floor(places.lower[axis] + texel_rounding),

@@ -25,7 +25,7 @@ class OutputSet {
  public:
   void add(const std::string& path, std::span<const uint8_t> bytes);
   void add(const std::string& path, std::string_view text);
-  // As write_image() writes it.
+  // Writes an image in the format of write_image().
   void add(const std::string& path, std::span<const Layer> layers, const WriteOptions& options);
 
   // to_disk: whole even where the power fails.

@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-// What troffer bake writes to asset.extras.
+// The key that troffer bake writes to asset.extras.
 double note_of(const JsonNode& root, const char* group, const char* name, double fallback) {
   const auto asset = root.find("asset");
   const auto extras = asset ? asset->find("extras") : std::nullopt;

@@ -288,7 +288,7 @@ bool MitsubaReader::shows_images(const MitsubaNode& given) const {
   });
 }
 
-// Of shapes from PLY files; null: others have none.
+// Attributes of shapes from PLY files; null for other shapes.
 MitsubaAttributes* MitsubaReader::attributes_of(const MitsubaNode& node, const MitsubaShape& shape,
                                                 const Attached& with) {
   if (node.type != "ply") return nullptr;

@@ -34,7 +34,7 @@ class MitsubaBsdfs {
   Scene& scene_;
   const MitsubaTree& tree_;
   MitsubaTextures& textures_;
-  // By bsdf and, where it shows attributes of a shape, by those.
+  // Materials by bsdf and, where it shows attributes of a shape, by these.
   std::map<std::pair<const MitsubaNode*, const MitsubaAttributes*>, std::optional<uint32_t>> made_;
   std::map<std::array<float, 4>, uint32_t> with_medium_;
   std::optional<uint32_t> grey_, black_, nothing_;

@@ -13,7 +13,7 @@
 
 namespace troffer {
 
-// What a spectrum is for.
+// The use of a spectrum.
 enum class SpectrumUse : uint8_t {
   emission,     // radiance per nanometre: its mean over the observer's luminance curve is the
                 // luminance

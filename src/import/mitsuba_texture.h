@@ -26,14 +26,14 @@ class MitsubaTextures {
   // warning that names it. InputError: values that cannot be used.
   ColorInput color(const MitsubaNode& plugin, std::initializer_list<std::string_view> names,
                    Rgb fallback);
-  // Of colours the luminance.
+  // A number; the luminance where a colour is given.
   FloatInput real(const MitsubaNode& plugin, std::initializer_list<std::string_view> names,
                   float fallback);
   FloatInput real(const MitsubaNode& parameter);
   // A colour of any size, 0 where there is none.
   ColorInput real_color(const MitsubaNode& plugin, std::string_view name);
   ColorInput color(const MitsubaNode& parameter);
-  // Of a source of light.
+  // The emission of a light.
   ColorInput emission(const MitsubaNode& parameter);
   // Three numbers per place, as of a normal map.
   ColorInput vector(const MitsubaNode& parameter);
@@ -55,7 +55,7 @@ class MitsubaTextures {
   TextureLoader loader_;
   int depth_ = 0;
 
-  // Of the parameter that is being read.
+  // Rules of the parameter that is being read.
   SpectrumUse use_ = SpectrumUse::reflectance;
   bool is_number_ = false;
   MitsubaAttributes* attributes_ = nullptr;

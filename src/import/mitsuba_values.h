@@ -35,8 +35,8 @@ Affine get_transform(const MitsubaNode& plugin, std::string_view name);
 // Numbers separated by commas or blanks.
 std::vector<double> numbers_of(const MitsubaNode& node, const std::string& text);
 
-// What an <rgb>, <srgb>, <spectrum>, <xyz>, <blackbody> or number says, in linear sRGB. Not below
-// 0. Files of spectra are looked up in `folder`.
+// Value of an <rgb>, <srgb>, <spectrum>, <xyz>, <blackbody> or number says, in linear sRGB. Not
+// below 0. Files of spectra are looked up in `folder`.
 Rgb color_of(const MitsubaNode& node, const std::string& folder, WarningLog& warnings,
              SpectrumUse use);
 // Emission of a black body. InputError at the node's place: a temperature that cannot be.

@@ -34,7 +34,7 @@ AttributeColumn column_of(const std::string& name) {
   for (const std::string_view ending : attribute_endings) {
     const size_t k = ending.find(name[at + 1]);
     if (k == std::string_view::npos) continue;
-    // As Mitsuba joins them, {prefix}_{r|g|b|a} gets "_color" behind its name.
+    // Mitsuba joins them: {prefix}_{r|g|b|a} gets "_color" behind its name.
     return {name.substr(0, at) + (ending == attribute_endings[1] ? "_color" : ""), k};
   }
   return {};

@@ -20,7 +20,8 @@
 
 namespace troffer {
 
-// What an expression may ask of the ray that it is evaluated for, in the pattern's own space.
+// Properties that an expression may ask of the ray that it is evaluated for, in the pattern's own
+// space.
 struct CalRay {
   Vec3d direction{0, 0, 1};  // Dx Dy Dz: away from the viewer, unit
   Vec3d normal{0, 0, -1};    // Nx Ny Nz: of the surface, unit
@@ -107,7 +108,7 @@ class CalProgram {
 // The text of a function file that comes with Radiance and that files name without bringing it
 // along: skies by gensky and gendaylit. Empty: none of these.
 std::string_view radiance_library_file(std::string_view name);
-// What every function file can use.
+// Functions and constants that every function file can use.
 std::string_view radiance_common_definitions();
 
 }  // namespace troffer

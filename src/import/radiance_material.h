@@ -23,7 +23,7 @@ struct RadianceLook {
   bool is_spot = false;
   double spot_angle_deg = 0;
   Vec3d spot_axis;  // as long as its focal distance, in the file's world
-  // What varies the emission, topmost first.
+  // Patterns that vary the emission, topmost first.
   std::vector<std::shared_ptr<const RadianceModifier>> patterns;
 };
 

@@ -30,7 +30,7 @@ class RadianceFunctions {
                     const std::string& folder);
 
   // One value per expression for a ray in world space; at m's place InputError where there is none.
-  // What is no finite number (1/0, log(-1)) counts as 0.
+  // A value that is not finite (1/0, log(-1)) counts as 0.
   std::vector<double> values(const CalRay& world);
   // Whether any value so far depended on the ray.
   bool has_used_ray() const { return program_.has_used_ray(); }

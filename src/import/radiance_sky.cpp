@@ -19,7 +19,7 @@ bool set_axes(Light& e, const Vec3d& up) {
   return is_finite(e.axes[0]) && is_finite(e.axes[2]);
 }
 
-// What the cone about the map's z shows: the pattern at each texel's middle, or 1. Rows across its
+// Light in the cone about the map's z: the pattern at each texel's middle, or 1. Rows across its
 // rim have the part of it that their solid angle has.
 EnvironmentMap cone_map(RadiancePattern* pattern, double half_angle, const Light& e) {
   EnvironmentMap map;

@@ -11,7 +11,7 @@
 
 namespace troffer {
 
-// What a surface is to those who see it from far away, in world space.
+// A surface as seen from far away, in world space.
 struct RadianceExtent {
   Vec3d middle;
   Vec3d area;          // along the normal of flat ones, as long as the area; 0: of round ones …
@@ -19,7 +19,7 @@ struct RadianceExtent {
 };
 RadianceExtent extent_of_polygon(const std::vector<Vec3d>& corners, const Affine& world,
                                  bool is_inverted);
-// Of ring, sphere, cylinder and cone. InputError at its place: too few numbers.
+// Reads ring, sphere, cylinder and cone. InputError at its place: too few numbers.
 RadianceExtent extent_of_round(const RadianceModifier& p, bool is_inverted);
 
 // Appends the spot; nothing where the beam leaves a flat surface at its back.

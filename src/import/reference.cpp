@@ -81,11 +81,11 @@ std::string found_under_other_name(const std::string& folder, const std::string&
   return "";
 }
 
-// By its letters and, links resolved, on the disk.
+// Checks the path by its letters and, with links resolved, on the disk.
 ConfinedPath confined(const std::string& folder, const fs::path& name) {
   if (name.is_absolute()) return {"", "absolute paths are not allowed"};
   const char* const leaves = "it leads out of the scene's folder";
-  // By the letters first, so that "x/../../y" is refused whether or not x exists.
+  // The letters come first, so that "x/../../y" is refused whether or not x exists.
   const fs::path plain = name.lexically_normal();
   if (plain.empty() || *plain.begin() == "..") return {"", leaves};
 

@@ -8,8 +8,8 @@
 
 namespace troffer {
 
-// What surfaces emit, times `factor`. Measured luminaires stay as they are. UsageError where it is
-// no number of at least 0.
+// Multiplies the emission of surfaces by `factor`. Measured luminaires stay as they are. UsageError
+// where it is no number of at least 0.
 void scale_surface_emission(Scene& scene, double factor);
 
 // Warns of a photometric scene in which surfaces emit as hardly any luminaire does, under 100 cd/m²

@@ -23,7 +23,7 @@ bool are_looked_up_alike(const Texture& a, const Texture& b) {
          a.uv_rotation_rad == b.uv_rotation_rad;
 }
 
-// Of a texel, or the number where there is no image.
+// Value of a texel, or the number where there is no image.
 float texel_of(const std::vector<Texture>& textures, const FloatInput& in, size_t i) {
   if (in.texture < 0) return in.value;
   const Texture& t = textures[size_t(in.texture)];

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double most_factor = 1e6;
 
-// What lights from beyond the scene are called (daylight/sky_lights.h).
+// Names of lights from beyond the scene (daylight/sky_lights.h).
 constexpr std::array<std::string_view, 3> daylight_names{"sky", "sun", "environment"};
 
 std::string_view name_of(const Light& e) {

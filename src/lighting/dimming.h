@@ -15,7 +15,7 @@ bool shines(const Scene& scene);
 // light the last counts. UsageError for other texts, and for names that no light has.
 void dim_lights(Scene& scene, const std::vector<std::string>& dims);
 
-// By what the light of that name is multiplied: 1 where nothing fits it.
+// Factor on the light of that name: 1 where nothing fits it.
 double dimming_of(const std::string& name, const std::vector<std::string>& dims);
 
 }  // namespace troffer

@@ -17,7 +17,7 @@ namespace troffer {
 // with line and column.
 void add_luminaire_list(Scene& scene, const std::string& path, const Vec3& down);
 
-// What each of the list's luminaires takes by its file, dimmed, W, in order: 0 where the file
+// Power of each of the list's luminaires by its file, dimmed, W, in order: 0 where the file
 // states nothing.
 std::vector<double> watts_of_luminaire_list(const std::string& path, const Vec3& down);
 

@@ -25,7 +25,7 @@ constexpr double open_outside = 0.4;
 // front.
 constexpr double hidden_share = 0.7;
 
-// What rays from one place meet, as shares of them.
+// Shares of the rays from one place, by what they meet.
 struct Outlook {
   double fronts = 0, backs = 0, open = 0, rays = 0;
 
@@ -75,7 +75,7 @@ bool is_luminaire(const Light& e) {
   return e.web != no_web;
 }
 
-// What stands there without the bodies of measured luminaires.
+// The scene without the bodies of measured luminaires.
 Box bounds_of_room(const Scene& scene) {
   std::set<std::string> luminaires;
   for (const Light& e : scene.lights)

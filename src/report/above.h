@@ -1,4 +1,4 @@
-// What stands over points of a scene: by rays straight up.
+// Finds the objects above points of a scene, by rays straight up.
 #pragma once
 
 #include <vector>

@@ -22,7 +22,7 @@ std::vector<PlaneSegment> outline_of(const std::vector<const FlatFace*>& faces,
 
 bool is_within(const PlaneCell& cell, const Vec2d& p);
 
-// What stands around and above a part of a floor.
+// Objects around and above a part of a floor.
 struct FloorSurroundings {
   double clear = 0;     // share of its places that have headroom
   double roofed = 0;    // … that have it under a ceiling

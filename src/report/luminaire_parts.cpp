@@ -43,7 +43,7 @@ double spot_share(const Light& e, double cosine) {
   return e.falloff == SpotFalloff::square ? t * t : t * t * (3 - 2 * t);
 }
 
-// What a piece sends in the unit direction w, cd.
+// Intensity of a piece in the unit direction w, cd.
 double intensity_of(const Scene& scene, const LightPrimitive& p, const Vec3d& w) {
   const Light& e = scene.lights[p.light];
   const double lm = scene.is_photometric ? 1 : luminous_efficacy;

@@ -23,7 +23,7 @@ const char* verdict_mark(Verdict v);       // a word in its colour
 
 // One row per surface: maintained mean, uniformity, glare, verdict; further requirements below.
 std::string summary_matrix(const Report& r);
-// What is not decided, and how many samples would decide it; empty where all is.
+// The open requirements, and how many samples would decide them; empty if none is open.
 std::string undecided_list(const Report& r);
 std::string figures_table(const SurfaceResult& s);
 // Surfaces against luminaires: the mean by each alone.

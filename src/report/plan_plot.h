@@ -8,7 +8,7 @@
 
 namespace troffer {
 
-// What lies on one level; numbers of Assessment::floors, surfaces and luminaires.
+// Parts of the assessment on one level; numbers of Assessment::floors, surfaces and luminaires.
 struct Storey {
   double height = 0;  // of its lowest floor along the vertical, m
   std::vector<size_t> floors, surfaces, luminaires;

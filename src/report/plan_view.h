@@ -20,8 +20,8 @@ PlanAxes plan_axes(const Vec3d& up);
 // other way round where the world is mirrored.
 Vec3d north_of(const Vec3d& up, double north_deg, bool is_mirrored);
 
-// As a plan is read: row by row from its top, each from the left. A row ends where the next surface
-// lies more than half a metre lower.
+// Order in which a plan is read: row by row from its top, each from the left. A row ends where the
+// next surface lies more than half a metre lower.
 void sort_by_rows(std::vector<AssessedSurface*>& surfaces, const Vec3d& up);
 
 // Whether a name comes before another: digits in it count as numbers, so that "desk 2" comes before

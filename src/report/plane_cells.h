@@ -15,7 +15,7 @@
 
 namespace troffer {
 
-// What a segment stands for; a bit set, since segments may lie on each other.
+// Meaning of a segment; a bit set, since segments may lie on each other.
 enum SegmentKind : uint8_t {
   segment_outline = 1,  // rim of a floor face, the face on its left
   segment_wall = 2,     // cut through what stands in the plane of walls

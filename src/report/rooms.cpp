@@ -336,7 +336,7 @@ class RoomFinder {
     return rim;
   }
 
-  // Of the face that most of the room's cells lie on.
+  // Name of the face that most of the room's cells lie on.
   std::string name_of_room(const std::vector<size_t>& inside) {
     if (faces_.size() == 1) return faces_[0]->name;
     std::map<std::string, double> areas;

@@ -11,7 +11,7 @@ namespace troffer {
 std::vector<std::string> light_names(const Scene& scene);
 std::vector<std::string> camera_names(const Scene& scene);
 std::vector<std::string> material_names(const Scene& scene);
-// Of meshes and instances, then of lights.
+// Names of meshes and instances, then of lights.
 std::vector<std::string> node_names(const Scene& scene);
 
 // "no light is named 'lmap'; did you mean 'lamp'? (troffer info lists them)".

@@ -34,7 +34,7 @@ constexpr FormatRule formats[] = {
 };
 constexpr FormatRule no_format{"", "scene", false, 'y', 0.25};
 
-// By the file's ending, as importers choose.
+// The format by the file's ending, as importers choose it.
 const FormatRule& format_of(const Scene& scene) {
   std::string file = scene.file;
   std::transform(file.begin(), file.end(), file.begin(),

@@ -30,7 +30,7 @@ struct UpDecision {
 // The cost is one pass over at most two million triangles.
 UpDecision decide_up(const Scene& scene);
 
-// What --up asked for.
+// The direction that --up asked for.
 UpDecision asked_up(const Vec3& up);
 
 // "y", "-z"; "0.6,0,0.8" for a direction along no axis.
