@@ -151,7 +151,7 @@ std::vector<PowerRequest> power_of_files(const ReportCommand& c, const Scene& sc
   return power;
 }
 
-// What is said of the power of lights that --dim changes holds for them undimmed: says it again, by
+// Statements of power hold for undimmed lights: scales those of lights that --dim changes, by
 // name, dimmed.
 void dim_power(const ReportCommand& c, const Scene& scene, std::vector<PowerRequest>& power) {
   if (c.daylight.dims.empty()) return;

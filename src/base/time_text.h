@@ -26,7 +26,7 @@ class TimeText {
   void expect(char sign, const char* before_what);
   // A whole number of at most `most_digits` digits within [least, most].
   int number(const char* what, size_t most_digits, int least, int most);
-  // What stands between date and time: T, t or blanks.
+  // Separator of date and time: T, t or blanks.
   void expect_time();
   // "HH:MM" and, where they are allowed, ":SS" and a fraction.
   TimeOfDay time_of_day(bool has_seconds);

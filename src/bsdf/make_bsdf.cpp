@@ -293,7 +293,7 @@ Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
                bool is_front) {
   const Inputs in{tables, textures, materials[material], tables.material(material), uv, is_front};
   Bsdf b;
-  // What a ray has met of a blended surface is as any other surface.
+  // The part of a blended surface that a ray has met is opaque.
   b.is_pane = in.prepared.is_pane && is_pane(in.material);
   if (!is_front && in.material.back_faces == BackFaces::black) {
     set_lambertian(b, Rgb{0});

@@ -65,7 +65,7 @@ void GltfMaterialWriter::add_glass(const Material& m, Json& out) {
   Json& volume = out["extensions"]["KHR_materials_volume"];
   volume["thicknessFactor"] = 1;
   if (m.absorption.is_black()) return;
-  // What is left after the way on which the strongest colour falls to 1/e.
+  // The colour left at the distance where the strongest channel falls to 1/e.
   const float most = max_component(m.absorption);
   volume["attenuationDistance"] = 1 / most;
   volume["attenuationColor"] = {std::exp(-m.absorption.r / most), std::exp(-m.absorption.g / most),

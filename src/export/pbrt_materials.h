@@ -17,7 +17,7 @@ class PbrtMaterialWriter {
   PbrtMaterialWriter(const Scene& scene, OutputFolder& files, WarningLog& warnings)
       : scene_(scene), files_(files), warnings_(warnings), mesh_uvs_(scene) {}
 
-  // What follows is about that material and the light on it (null: none). Returns the coordinates
+  // Begins a material and the light on it (null: none). Returns the coordinates
   // that its meshes are to be written with.
   const PbrtUvs& begin(uint32_t material, const Light* light);
 

@@ -127,7 +127,7 @@ void PbrtUvs::place_fixed(const std::vector<int32_t>& others) {
       (normal_->width == emission_->width && normal_->height == emission_->height);
   const bool is_exact = whole && is_one_place && is_one_size;
   if (!whole) whole = look_over(first, box);
-  // As fine as it is itself, over what all of them cover.
+  // The image keeps its own resolution, over the area that all of them cover.
   const auto over_whole = [&](std::optional<Texture>& look) {
     if (!look) return;
     const Texture own = look_over(*look, box);

@@ -17,8 +17,9 @@ namespace troffer {
 
 class MitsubaAttributes {
  public:
-  // Of the mesh that read_ply() made of the file; `scene` must outlive this. has_images: other
-  // textures of its looks use the mesh's (u,v), so that attributes go by the second ones.
+  // Reads attributes of the mesh that read_ply() made of the file; `scene` must outlive this.
+  // has_images: other textures of its looks use the mesh's (u,v), so that attributes go by the
+  // second ones.
   MitsubaAttributes(std::string ply_file, const Mesh& mesh, bool has_images, Scene& scene)
       : file_(std::move(ply_file)),
         triangles_(mesh.triangles),

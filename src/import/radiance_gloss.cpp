@@ -66,8 +66,8 @@ Material pane(const std::vector<double>& v) {
   return m;
 }
 
-// What is neither absorbed nor reflected as gloss: 1 - trans of it goes back evenly, trans goes
-// through, of which tspec straight on.
+// The light that is neither absorbed nor reflected as gloss: 1 - trans of it goes back evenly,
+// trans goes through, of which tspec straight on.
 Material translucent(const std::vector<double>& v, double roughness, double transmitted,
                      double transmitted_straight) {
   const double trans = std::clamp(transmitted, 0.0, 1.0);

@@ -31,7 +31,7 @@ class RadianceText {
   std::string word();
   // The first word of a statement; "!" where a command begins.
   std::string first_word();
-  // What follows '!' up to the end of the line; call where first_word() has returned "!".
+  // The text after '!' up to the end of the line; call where first_word() has returned "!".
   std::string command();
   RadianceArguments arguments();
   // A finite number.

@@ -58,7 +58,7 @@ std::string found_in_any_case(const fs::path& folder, const fs::path& relative) 
   return is_file(folder / at) ? at.string() : std::string();
 }
 
-// What a file that does not exist under its name may be called here; empty: nothing.
+// Name under which a file that does not exist may be found here; empty: none.
 std::string found_under_other_name(const std::string& folder, const std::string& relative) {
   // pbrt reads \f in "textures\floor.png" as one character.
   constexpr std::string_view escaped = "\n\t\r\b\f", letters = "ntrbf";

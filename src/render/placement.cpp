@@ -16,7 +16,7 @@ namespace troffer {
 namespace {
 
 constexpr size_t places_tried = 64, rays_of_place = 32;
-// Of the rays from a closed room's middle, most meet fronts, and few leave by openings. A room of
+// Most rays from a closed room's middle meet fronts, and few leave by openings. A room of
 // 5 x 4 x 2.7 m without its ceiling has .22 of them open.
 constexpr double least_fronts = 0.65, most_open = 0.12;
 // From outside of a room half of all directions are open, from its inside hardly any.

@@ -45,8 +45,8 @@ class Preview {
   // last one has stood for a while. Any number of threads, as long as nobody adds to this tile.
   void update(const Film& film, const PixelRect& tile);
 
-  // What was shown last or is about to be; empty before look() has made a picture. While nobody
-  // updates.
+  // The picture that was shown last or is about to be; empty before look() has made a picture.
+  // While nobody updates.
   const Image& picture() const { return image_; }
 
  private:
