@@ -1,5 +1,5 @@
 # Makes one static library troffer_<room> per row of layers.txt from
-# src/<room>/*.cpp, linked with just the rooms that its row names.
+# the .cpp files in src/<room>/ and its subfolders, linked with just the rooms that its row names.
 
 file(STRINGS ${CMAKE_SOURCE_DIR}/layers.txt _rows REGEX "^[a-z]")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/layers.txt)
@@ -14,7 +14,7 @@ foreach(_row IN LISTS _rows)
     continue()
   endif()
   string(REPLACE " " ";" _uses "${_uses}")
-  file(GLOB _sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${_room}/*.cpp)
+  file(GLOB_RECURSE _sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${_room}/*.cpp)
   list(FILTER _sources EXCLUDE REGEX "/(main|module)\\.cpp$")
   list(APPEND TROFFER_ROOMS ${_room})
   if(_sources)

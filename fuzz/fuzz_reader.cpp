@@ -10,11 +10,11 @@
 #include "image/read_image.h"
 #include "import/file.h"
 #include "import/import.h"
-#include "import/luminaire.h"
+#include "import/luminaire/luminaire.h"
 #include "import/measured_bsdf.h"
-#include "import/obj.h"
-#include "import/ply.h"
-#include "import/stl.h"
+#include "import/mesh/obj.h"
+#include "import/mesh/ply.h"
+#include "import/mesh/stl.h"
 #include "input_folder.h"
 
 namespace {

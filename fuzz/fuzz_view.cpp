@@ -66,7 +66,7 @@ class Target {
  public:
   void run(const std::string& lines) const {
     LayerBoard board;
-    MeasuringDesk desk(measuring_);
+    MeasuringQueue desk(measuring_);
     Painter painter(board, settings_.options, nullptr);
     ViewService service(lighting_, settings_, board, painter, desk);
     constexpr int most = 16;  // the desk takes no more than so many at a time, four times over

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrate/certified_direct.h"
+#include "certified/certified_direct.h"
+#include "kj92/bintree.h"
 #include "pairs.h"
-#include "shadow/bintree.h"
 
 namespace troffer::bench {
 
@@ -38,12 +38,12 @@ enum class Traversal { single, packets };
 void run_fixed(const Pairs& pairs, uint32_t n, Traversal traversal, uint64_t seed, Answers& out);
 
 // The bintree of 1992 over every source, rays of a hit's trees traced together round by round, the
-// allowed error shared by the sources as in rendering (integrate/tree_sampling.h), ratio estimate.
+// allowed error shared by the sources as in rendering (kj92/tree_sampling.h), ratio estimate.
 // With coherence a tree's pattern is reused at the tile's next hit on the same object.
 void run_kj92(const Pairs& pairs, const BintreeOptions& options, bool has_coherence, uint64_t seed,
               Answers& out);
 
-// Certified visibility as integrate/certified_lights.cpp drives it.
+// Certified visibility as certified/certified_lights.cpp drives it.
 void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t seed,
                    Answers& out);
 

@@ -142,7 +142,7 @@ with more than 128 rays); all methods of a scene and view in one run of the prog
 - **fixed**: N Owen-Sobol rays to every source, uniform in area, close to a source nearly uniform in
   solid angle; the ratio of open to all weights. *Packets*: 16 rays at a time, for N ≥ 32 such that
   a packet goes to a compact part of the source, which makes it up to twice as fast.
-- **kj92**: a bintree for each source as `--method kj92` grows it (`src/shadow/bintree.h`), over a
+- **kj92**: a bintree for each source as `--method kj92` grows it (`src/kj92/bintree.h`), over a
   sweep of the allowed variance; the allowed error is that of all sources together; ratio estimate.
 - **certified**: `--method certified` over a sweep of `--error`.
 

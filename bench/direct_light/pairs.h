@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "shadow/shadow_source.h"
 #include "trace/occluders.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer::bench {
 

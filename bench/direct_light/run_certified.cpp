@@ -1,5 +1,5 @@
 #include "base/random.h"
-#include "integrate/shadow_world.h"
+#include "certified/shadow_world.h"
 #include "methods.h"
 #include "shadow/receiver_clusters.h"
 
@@ -23,7 +23,7 @@ void take(const Pairs& pairs, size_t tile, size_t source, std::span<const uint32
 
 }  // namespace
 
-// As integrate/certified_lights.cpp does it.
+// As certified/certified_lights.cpp does it.
 void run_certified(const Pairs& pairs, const CertifiedOptions& options, uint64_t seed,
                    Answers& out) {
   const DirectScene& scene = pairs.scene;

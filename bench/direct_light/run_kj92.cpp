@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "integrate/tree_pool.h"
+#include "kj92/tree_pool.h"
 #include "methods.h"
 #include "shadow_rays.h"
 
@@ -10,7 +10,7 @@ namespace troffer::bench {
 
 namespace {
 
-// What integrate/tree_sampling.cpp has.
+// What kj92/tree_sampling.cpp has.
 constexpr float small_source = 0.002f, large_source = 0.5f;
 constexpr size_t packet_rays = 4;
 

@@ -8,8 +8,8 @@
 #include "base/warp.h"
 #include "experiments.h"
 #include "generated_scenes.h"
-#include "integrate/methods.h"
 #include "light/irradiance.h"
+#include "methods/methods.h"
 
 namespace troffer::bench {
 

@@ -42,7 +42,7 @@ class Measured:
         return float(np.sqrt(np.mean(self.error**2)) / self.lux.mean())
 
     @property
-    def told_relative(self):
+    def estimated_relative(self):
         """Root mean square over lit points, each error over the point's own light."""
         lit = self.lux > 0
         return float(np.sqrt(np.mean((self.error[lit] / self.lux[lit])**2)))
@@ -90,7 +90,7 @@ def row(name, kind, ours, paths, truth):
     both = np.sqrt(ours.error**2 + truth.error**2)
     z = (ours.lux - truth.lux) / np.where(both > 0, both, 1)
     by_paths = paths.cpu * (paths.told / ours.told) ** 2
-    each_by_paths = paths.cpu * (paths.told_relative / ours.told_relative) ** 2
+    each_by_paths = paths.cpu * (paths.estimated_relative / ours.estimated_relative) ** 2
     return {"scene": name, "list": kind, "points": len(z), "processor s": f"{ours.cpu:.2f}",
             "standard error": f"{ours.told:.5f}", "inside": f"{np.mean(np.abs(z) < 1.96):.3f}",
             "z": f"{np.sqrt(np.mean(z**2)):.2f}",
@@ -98,8 +98,8 @@ def row(name, kind, ours, paths, truth):
             "of the reference": f"{truth.told:.5f}", "path processor s": f"{paths.cpu:.2f}",
             "path standard error": f"{paths.told:.5f}",
             "path s at equal error": f"{by_paths:.1f}", "times as fast": f"{by_paths / ours.cpu:.1f}",
-            "relative error": f"{ours.told_relative:.5f}",
-            "path relative error": f"{paths.told_relative:.5f}",
+            "relative error": f"{ours.estimated_relative:.5f}",
+            "path relative error": f"{paths.estimated_relative:.5f}",
             "path s at equal relative error": f"{each_by_paths:.1f}",
             "times as fast by relative error": f"{each_by_paths / ours.cpu:.1f}"}
 

@@ -26,7 +26,7 @@
 #include "image/atomic_file.h"
 #include "image/image.h"
 #include "image/write_image.h"
-#include "shadow/bintree.h"
+#include "kj92/bintree.h"
 
 using namespace troffer;
 

@@ -30,10 +30,10 @@ def goes_by_pixels(records):
 class Job:
     def __init__(self, record, repeat, costs):
         self.seconds = [s * costs for s in record["seconds"] if s > 0] * repeat
-        letters = max(record["letters"], 1)
+        letters = max(record["messages"], 1)
         self.brief = record["brief_bytes"] / letters
         self.answer = record["answer_bytes"] / letters
-        self.told = record["told_bytes"] * repeat
+        self.told = record["sent_bytes"] * repeat
         self.before = record["before"] * repeat
 
     def handed_out(self, processes, net):
@@ -100,8 +100,8 @@ def main():
     a = p.parse_args()
     with open(a.journal) as lines:
         records = [json.loads(line) for line in lines]
-    letters = sum(r["letters"] for r in records)
-    letter = sum(r["letter_seconds"] for r in records) / max(letters, 1)
+    letters = sum(r["messages"] for r in records)
+    letter = sum(r["message_seconds"] for r in records) / max(letters, 1)
     net = Net(a.latency, a.bandwidth, letter)
     jobs = [Job(r, a.pixels if by_pixels else 1, a.rays)
             for r, by_pixels in zip(records, goes_by_pixels(records))]

@@ -124,8 +124,7 @@ void add_kj92(CLI::App* r, RenderCommand& c, RawOptions& raw) {
   r->add_flag("--ratio", sampling.uses_ratio,
               "Multiply the sampled visible share by the exact unoccluded light");
   r->add_option("--selection", raw.selection,
-                "kj92: the radiosity solution selects the sources; off: all emitters, everywhere. "
-                "certified with --indirect radiosity: bright patches are sources")
+                "The radiosity solution selects the sources; off: all emitters, everywhere")
       ->check(one_of({"on", "off"}))
       ->capture_default_str();
   r->add_option(
@@ -261,17 +260,14 @@ int check_and_run(const CLI::App& app, RenderCommand& render, const RawOptions& 
     throw UsageError("--shadow-rays 0 belongs to --method kj92");
   const Method method = parse_method(render.method);
   apply_lasting_options(render, app.get_option("--spp")->count() > 0);
-  warn_of_unused_options(app, method,
-                         indirect_with(render.solution, method, render.options.indirect),
-                         render.is_quiet);
+  warn_of_unused_options(app, method, render.is_quiet);
   return run_render(std::move(render));
 }
 
 int check_and_run(const CLI::App& app, MeasureCommand& measure, const RawOptions& raw) {
   measure.indirect = parse_indirect(raw.indirect);
   const Method method = parse_method(measure.method);
-  warn_of_unused_options(app, method, indirect_with(measure.solution, method, measure.indirect),
-                         measure.is_quiet);
+  warn_of_unused_options(app, method, measure.is_quiet);
   return run_measure(measure);
 }
 
@@ -305,7 +301,7 @@ std::optional<int> parse_or_help(CLI::App& app, int argc, const char* const* arg
   return std::nullopt;
 }
 
-int parse_and_run(int argc, const char* const* argv, Crew* crew) {
+int parse_and_run(int argc, const char* const* argv, ProcessGroup* group) {
   CLI::App app{"troffer renders rooms and measures their light."};
   app.set_version_flag("--version", std::string("troffer ") + TROFFER_VERSION);
   app.require_subcommand(1);
@@ -332,12 +328,12 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   add_bake(app, light);
   require_plain_numbers(app);
   set_help(app);
-  const bool leads = crew == nullptr || crew->leads();
+  const bool leads = group == nullptr || group->leads();
   if (const std::optional<int> status = parse_or_help(app, argc, argv, leads)) return *status;
-  render.options.crew = crew;
+  render.options.group = group;
   if (app.got_subcommand("render"))
     return check_and_run(*app.get_subcommand("render"), render, render_raw);
-  if (crew != nullptr && !crew->leads()) return exit_done;  // all else is for one
+  if (group != nullptr && !group->leads()) return exit_done;  // all else is for one
   if (app.got_subcommand("compare")) return run_compare(compare);
   if (app.got_subcommand("measure"))
     return check_and_run(*app.get_subcommand("measure"), measure, measure_raw);
@@ -345,7 +341,7 @@ int parse_and_run(int argc, const char* const* argv, Crew* crew) {
   if (app.got_subcommand("view")) return run_view(view);
   if (app.got_subcommand("convert")) return run_convert(convert);
   if (app.got_subcommand("report")) {
-    lighting.command_line = told_command(argc, argv);
+    lighting.command_line = command_text(argc, argv);
     return run_report(lighting);
   }
   if (app.got_subcommand("bake")) return check_and_bake(*app.get_subcommand("bake"), light);
@@ -363,35 +359,35 @@ int report(const char* text, int status) {
 
 // The process that leads tells the user, and ends with that status; another leaves the work to the
 // rest: a status of its own would end them too.
-int report(const char* text, int status, Crew* crew) {
-  if (crew == nullptr || crew->leads()) return report(text, status);
-  crew->leave(text);
+int report(const char* text, int status, ProcessGroup* group) {
+  if (group == nullptr || group->leads()) return report(text, status);
+  group->leave(text);
   return exit_done;
 }
 
 }  // namespace
 
-int run(int argc, const char* const* argv, Crew* crew) {
+int run(int argc, const char* const* argv, ProcessGroup* group) {
   std::string command;
   for (int i = 0; i < argc; ++i) command += (i > 0 ? " " : "") + std::string(argv[i]);
   set_check_command(command);
   exit_on_stop_signals();
   try {
-    const int status = parse_and_run(argc, argv, crew);
+    const int status = parse_and_run(argc, argv, group);
     // What was printed may still wait in the buffer: a full disk shows here.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw EnvironmentError("cannot write to standard output");
     return status;
   } catch (const UsageError& e) {
-    return report(e.what(), exit_usage, crew);
+    return report(e.what(), exit_usage, group);
   } catch (const InputError& e) {
-    return report(e.what(), exit_bad_input, crew);
+    return report(e.what(), exit_bad_input, group);
   } catch (const EnvironmentError& e) {
-    return report(e.what(), exit_bad_input, crew);
+    return report(e.what(), exit_bad_input, group);
   } catch (const std::bad_alloc&) {
-    return report("out of memory", exit_bad_input, crew);
+    return report("out of memory", exit_bad_input, group);
   } catch (const std::exception& e) {  // threads, the file system, text formatting
-    return report(e.what(), exit_bad_input, crew);
+    return report(e.what(), exit_bad_input, group);
   }
 }
 

@@ -53,7 +53,7 @@ BakeOptions options_of(const BakeCommand& c) {
   if (c.exposure != "auto" && !c.exposure.empty())
     o.exposure_stops = std::strtod(c.exposure.c_str(), nullptr);
   o.light.method = parse_method(c.method);
-  o.light.indirect = indirect_with(c.solution, o.light.method, parse_indirect(c.indirect));
+  o.light.indirect = parse_indirect(c.indirect);
   check_method(o.light.method, o.light.indirect, c.solution);
   o.light.depth = c.depth;
   o.light.error = c.error;
@@ -225,8 +225,7 @@ int check_and_bake(const CLI::App& command_line, BakeCommand command) {
   if (command_line.get_option("--texels-per-metre")->count() > 0 &&
       command_line.get_option("--resolution")->count() > 0)
     throw UsageError("--resolution and --texels-per-metre both say how fine: give one");
-  warn_of_unused_options(command_line, options.light.method, options.light.indirect,
-                         command.is_quiet);
+  warn_of_unused_options(command_line, options.light.method, command.is_quiet);
   return run_bake(command, std::move(options));
 }
 

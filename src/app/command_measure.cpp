@@ -94,7 +94,7 @@ int run_measure(const MeasureCommand& c) {
   const Clock::time_point start = Clock::now();
   MeasureOptions options;
   options.method = parse_method(c.method);
-  options.indirect = indirect_with(c.solution, options.method, c.indirect);
+  options.indirect = c.indirect;
   check_method(options.method, options.indirect, c.solution);
   options.spp = c.spp;
   options.depth = c.depth;

@@ -17,9 +17,9 @@
 #include "app/solution_file.h"
 #include "app/unfinished.h"
 #include "app/up_json.h"
-#include "base/crew.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/process_group.h"
 #include "image/output_set.h"
 #include "render/camera.h"
 #include "render/framing.h"
@@ -102,9 +102,9 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result, 
   j["width"] = s.width;
   j["height"] = s.height;
   j["threads"] = thread_count(c.options.threads);
-  if (c.options.crew != nullptr) j["processes"] = c.options.crew->size();
+  if (c.options.group != nullptr) j["processes"] = c.options.group->size();
   j["viewing_rays"] = n.viewing_rays;
-  j["glances"] = n.glances;
+  j["surrogate_samples"] = n.surrogates;
   j["shadow_rays"] = n.shadow_rays;
   j["shadow_rays_per_viewing_ray"] =
       n.viewing_rays > 0 ? double(n.shadow_rays) / double(n.viewing_rays) : 0.0;
@@ -143,7 +143,7 @@ std::string statistics_json(const RenderCommand& c, const RenderResult& result, 
   j["up"] = up_json(up);
   j["is_complete"] = result.is_complete;
   j["ended_by"] = name_of(result.end);
-  j["told_error"] = s.told_error;
+  j["estimated_error"] = s.estimated_error;
   j["share_done"] = s.share_done;
   j["gaps_filled"] = s.gaps_filled;
   j["unsampled"] = s.unsampled;
@@ -167,12 +167,11 @@ void guard_files(const RenderCommand& c, OutputGuard& guard) {
 std::vector<OutputReservation> check_and_reserve(RenderCommand& c,
                                                  std::optional<OutputGuard>& guard) {
   c.options.method = parse_method(c.method);
-  c.options.indirect = indirect_with(c.solution, c.options.method, c.options.indirect);
   check_method(c.options.method, c.options.indirect, c.solution);
   for (const std::string& path : c.outputs) image_format(path);  // a wrong ending: usage error
   // Mistakes are told before the scene is read; far places differ by less than floats tell.
   described_camera(c, c.eye.empty() ? Vec3d{} : parse_vector(c.eye, "--eye"), {0, 0, 1});
-  if (c.options.crew != nullptr && !c.options.crew->leads()) return {};
+  if (c.options.group != nullptr && !c.options.group->leads()) return {};
   guard_files(c, guard.emplace());
   std::vector<OutputReservation> reserved = reserve_outputs(c.outputs, c.stats);
   // Shares leave the cells as they are for each other.
@@ -254,12 +253,12 @@ int tell(const RenderResult& result, const RenderCommand& c, double total, const
       break;
     case RenderEnd::good_enough:
     case RenderEnd::complete:
-      if (!c.is_quiet && s.told_error > c.lasting.error_limit && c.lasting.error_limit > 0)
+      if (!c.is_quiet && s.estimated_error > c.lasting.error_limit && c.lasting.error_limit > 0)
         fmt::print(stderr,
                    "warning: the error told of the picture is {:.3g}, more than --error-limit: "
                    "--max-spp, --spp and --error ask for more\n",
-                   s.told_error);
-      if (!c.is_quiet) tell_written(c, total, s.told_error);
+                   s.estimated_error);
+      if (!c.is_quiet) tell_written(c, total, s.estimated_error);
   }
   return exit_done;
 }
@@ -304,9 +303,9 @@ void write_files(const RenderCommand& c, const RenderResult& result, const Camer
 }
 
 // What is seen of the picture, and kept, is the leading process's.
-void join(RenderCommand& c, Crew& crew) {
-  if (c.options.threads == 0) c.options.threads = crew.usual_threads();
-  if (crew.leads()) return;
+void join(RenderCommand& c, ProcessGroup& group) {
+  if (c.options.threads == 0) c.options.threads = group.usual_threads();
+  if (group.leads()) return;
   c.is_quiet = true;
   c.has_preview = false;
   c.stats.clear();
@@ -320,20 +319,20 @@ void restrict_selection(const Scene& scene, RenderCommand& c) {
   c.options.kj92.selection.only = lights_named(scene, c.selected_lights);
 }
 
-const StopFlag& stop_flag_of(Crew* crew) {
+const StopFlag& stop_flag_of(ProcessGroup* group) {
   const StopFlag& asked = install_stop_handlers();
-  if (crew == nullptr) return asked;
+  if (group == nullptr) return asked;
   stop_on_user_signal();
-  crew->watch(asked);
-  return crew->stop_flag();
+  group->watch(asked);
+  return group->stop_flag();
 }
 
 }  // namespace
 
 int run_render(RenderCommand c) {
   const Clock::time_point start = Clock::now();
-  Crew* crew = c.options.crew;
-  if (crew != nullptr) join(c, *crew);
+  ProcessGroup* group = c.options.group;
+  if (group != nullptr) join(c, *group);
   std::optional<OutputGuard> guard;
   const std::vector<OutputReservation> reserved = check_and_reserve(c, guard);
   warn_of_layers(c);
@@ -370,7 +369,7 @@ int run_render(RenderCommand c) {
   check_options(scene, camera, c.options);  // before the radiosity, which may take long
 
   restrict_selection(scene.scene, c);
-  LastingRun lasting(c, start, stop_flag_of(crew));
+  LastingRun lasting(c, start, stop_flag_of(group));
   lasting.begin(scene.scene, camera);
   const StopFlag& stop = lasting.stop();
   if (c.has_preview) {
@@ -379,7 +378,7 @@ int run_render(RenderCommand c) {
   }
   lasting.agree();
   const auto [result, cells] = prepare_and_render(scene, camera, c, stop, seconds);
-  if (crew != nullptr && !crew->leads()) return exit_done;
+  if (group != nullptr && !group->leads()) return exit_done;
   mark = Clock::now();
   Unfinished left;
   write_files(c, result, camera, lasting, files, left, [&] {

@@ -22,7 +22,7 @@
 #include "image/output_set.h"
 #include "image/read_image.h"
 #include "import/file.h"
-#include "import/luminaire.h"
+#include "import/luminaire/luminaire.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/dimming.h"
 #include "lighting/luminaire_list.h"

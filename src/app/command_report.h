@@ -35,7 +35,7 @@ void add_report(CLI::App& app, ReportCommand& command);  // its options
 int run_report(const ReportCommand& command);
 
 // The command as typed, for a shell, but for what does not change the result (--threads).
-std::string told_command(int argc, const char* const* argv);
+std::string command_text(int argc, const char* const* argv);
 
 // What is to be assessed, of the command line and its JSON files. up: of the scene. UsageError,
 // InputError with line and column.

@@ -22,7 +22,7 @@ class App;
 
 namespace troffer {
 
-class Crew;
+class ProcessGroup;
 
 constexpr int exit_done = 0;
 constexpr int exit_bad_input = 1;
@@ -192,15 +192,11 @@ Indirect parse_indirect(const std::string& name);  // likewise
 // Nothing, auto or stops; UsageError for others.
 void check_exposure(const std::string& text);
 
-// `automatic` where the file `solution` holds a radiosity solution: what takes it.
-Indirect indirect_with(const std::string& solution, Method method, Indirect indirect);
 // UsageError where options belong to another method.
 void check_method(Method method, Indirect indirect, const std::string& solution);
 
-// Warns, unless is_quiet, of every option given to `command` that its method does not use with this
-// indirect light (indirect_with's).
-void warn_of_unused_options(const CLI::App& command, Method method, Indirect indirect,
-                            bool is_quiet);
+// Warns, unless is_quiet, of every option given to `command` that its method does not use.
+void warn_of_unused_options(const CLI::App& command, Method method, bool is_quiet);
 
 // Says what the preprocessing leaves out of a scene.
 void warn_of_lights_left_out(const PreparedScene& scene, bool is_quiet);
@@ -214,6 +210,6 @@ std::unique_ptr<Preparation> prepare_method(const PreparedScene& scene, Method m
                                             const StopFlag& stop);
 
 // Parses the command line and runs it: the whole program but main.
-int run(int argc, const char* const* argv, Crew* crew = nullptr);
+int run(int argc, const char* const* argv, ProcessGroup* group = nullptr);
 
 }  // namespace troffer

@@ -8,8 +8,8 @@
 #include "app/part_note.h"
 #include "app/printable.h"
 #include "app/solution_file.h"
-#include "base/crew.h"
 #include "base/error.h"
+#include "base/process_group.h"
 #include "image/read_image.h"
 #include "render/camera.h"
 
@@ -56,7 +56,7 @@ LastingRun::LastingRun(RenderCommand& command, Clock::time_point start, const St
 void LastingRun::begin(const Scene& scene, const Camera& camera) {
   RenderOptions& o = command_.options;
   const LastingOptions& l = command_.lasting;
-  if (o.parts == 1 && l.checkpoint.empty() && o.crew == nullptr) return;
+  if (o.parts == 1 && l.checkpoint.empty() && o.group == nullptr) return;
   key_ = picture_key(TROFFER_VERSION, scene, camera, o, bytes_of_solution(command_.solution));
   if (l.checkpoint.empty()) return;
   const auto warn = [](const std::string& what) {
@@ -73,14 +73,14 @@ void LastingRun::begin(const Scene& scene, const Camera& camera) {
 }
 
 void LastingRun::agree() const {
-  Crew* crew = command_.options.crew;
-  if (crew == nullptr) return;
+  ProcessGroup* group = command_.options.group;
+  if (group == nullptr) return;
   std::vector<uint8_t> own(key_.program.begin(), key_.program.end());
   append(own, key_.settings);
   append(own, key_.scene);
   append(own, key_.preparation);
   std::vector<uint8_t> bytes = own;
-  if (!crew->tell(bytes, stop())) return;  // all is over
+  if (!group->tell(bytes, stop())) return;  // all is over
   if (bytes != own)
     throw EnvironmentError("scene, options, --solution or program are not those of process 0");
 }

@@ -142,7 +142,7 @@ constexpr std::array rows{
     OptionRow{"--part", limits, "K/N", ""},
     // Methods
     OptionRow{"--solution", certified, "FILE", "*"},
-    OptionRow{"--selection", certified, "ON", ""},
+    OptionRow{"--selection", kj92, "ON", ""},
     OptionRow{"--depth", path, "N", ""},
     OptionRow{"--shadow-rays", fixed, "N", ""},
     OptionRow{"--variance", kj92, "ERROR", ""},

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "image/read_image.h"
 #include "import/file.h"
-#include "import/gltf_json.h"
+#include "import/gltf/gltf_json.h"
 
 namespace troffer {
 

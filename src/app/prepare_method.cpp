@@ -13,19 +13,14 @@
 
 namespace troffer {
 
-Indirect indirect_with(const std::string& solution, Method method, Indirect indirect) {
-  const bool is_free = indirect == Indirect::automatic && method.row().has_choice_of_indirect;
-  return is_free && kind_of_solution(solution) == SolutionKind::radiosity ? Indirect::radiosity
-                                                                          : indirect;
-}
-
 void check_method(Method method, Indirect indirect, const std::string& solution) {
-  if (indirect == Indirect::radiosity && !method.row().has_choice_of_indirect)
-    throw UsageError("--indirect radiosity belongs to --method kj92 and certified");
-  if (indirect == Indirect::cells && !method.row().takes_cells)
-    throw UsageError("--indirect cells belongs to --method certified");
+  const bool is_usual = indirect == Indirect::automatic || indirect == Indirect::none ||
+                        indirect == method.row().usual_indirect;
+  if (!is_usual)
+    throw UsageError(fmt::format("--indirect {} belongs to --method {}", indirect.row().name,
+                                 indirect == Indirect::radiosity ? "kj92" : "certified"));
   if (!solution.empty() && !needs_radiosity(method, indirect) && !needs_cells(method, indirect))
-    throw UsageError(method.row().has_choice_of_indirect
+    throw UsageError(method.row().usual_indirect != Indirect::none
                          ? "--solution does not go with --indirect none: there is nothing to keep"
                          : "--solution belongs to --method kj92 and certified");
 }

@@ -7,7 +7,7 @@
 
 #include "app/surface_list.h"
 #include "import/file.h"
-#include "import/gltf_json.h"
+#include "import/gltf/gltf_json.h"
 
 namespace troffer {
 

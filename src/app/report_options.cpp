@@ -174,7 +174,7 @@ AssessmentOptions assessment_options(const ReportCommand& c, const Vec3& up) {
   return o;
 }
 
-std::string told_command(int argc, const char* const* argv) {
+std::string command_text(int argc, const char* const* argv) {
   std::string command = "troffer";
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];

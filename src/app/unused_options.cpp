@@ -12,8 +12,7 @@ namespace {
 
 struct MethodOption {
   const char* name;
-  const char* methods;           // those that use it, as a sentence names them
-  bool needs_radiosity = false;  // they use it only where they have a radiosity solution
+  const char* methods;  // those that use it, as a sentence names them
 };
 
 // Options of render and measure that not every method uses.
@@ -28,14 +27,13 @@ constexpr std::array<MethodOption, 12> method_options{{
     {"--probe-rays", "kj92"},
     {"--coherence", "kj92"},
     {"--ratio", "kj92"},
-    {"--selection", "certified and kj92", true},
+    {"--selection", "kj92"},
     {"--select", "kj92"},
 }};
 
 }  // namespace
 
-void warn_of_unused_options(const CLI::App& command, Method method, Indirect indirect,
-                            bool is_quiet) {
+void warn_of_unused_options(const CLI::App& command, Method method, bool is_quiet) {
   if (is_quiet) return;
   const std::string name(method.row().name);
   for (const MethodOption& o : method_options) {
@@ -44,10 +42,6 @@ void warn_of_unused_options(const CLI::App& command, Method method, Indirect ind
     if (std::string(o.methods).find(name) == std::string::npos)
       fmt::print(stderr, "warning: {} belongs to --method {}; {} does not use it\n", o.name,
                  o.methods, name);
-    else if (o.needs_radiosity && !needs_radiosity(method, indirect))
-      fmt::print(stderr,
-                 "warning: {} goes with --indirect radiosity; {} does not use it with another\n",
-                 o.name, name);
   }
 }
 

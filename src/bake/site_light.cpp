@@ -11,11 +11,11 @@
 #include "base/frame.h"
 #include "base/random.h"
 #include "base/warp.h"
-#include "integrate/prepared_scene.h"
-#include "integrate/purposes.h"
 #include "render/cell_pilot.h"
 #include "render/sample_sets.h"
 #include "trace/surface.h"
+#include "transport/prepared_scene.h"
+#include "transport/purposes.h"
 
 namespace troffer {
 

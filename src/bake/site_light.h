@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "integrate/integrator.h"
 #include "render/progress.h"
+#include "transport/integrator.h"
 
 namespace troffer {
 

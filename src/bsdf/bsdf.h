@@ -42,7 +42,7 @@
 // - Diffuse transmission: light that falls on the far side leaves this one by the diffuse lobe's
 //   law, its coat included, with `through` in place of `diffuse`. The functions below leave it out,
 //   but albedo(): who meets such a surface takes both sides, each with its part
-//   (integrate/two_sides.h).
+//   (transport/two_sides.h).
 // - Thin sheets: R = 2r / (1 + r) for each polarisation, the rest goes straight on. Rough thin
 //   sheets transmit GGX's reflection lobe mirrored to the other side, as glTF's viewers do, with
 //   R's roughness.

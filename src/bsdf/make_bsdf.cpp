@@ -74,7 +74,7 @@ void set_clear_coat(Bsdf& b, const Inputs& in) {
   in.tables.set_rows(b.clear, in.prepared);
   b.clear.is_shown = !b.is_within;
   if (!has_own_coat_normal(m)) return;
-  // Told in the frame of the front; that of the back has the same x axis.
+  // Sent in the frame of the front; that of the back has the same x axis.
   const Vec2 n = in.is_front ? in.uv.coat_normal : Vec2{-in.uv.coat_normal.x, in.uv.coat_normal.y};
   b.clear.has_normal = true;
   b.clear.normal = {n.x, n.y, std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y))};

@@ -1,4 +1,4 @@
-// How much a JSON text may hold. Told before it is parsed: what a parser makes of a text takes up
+// How much a JSON text may hold. Sent before it is parsed: what a parser makes of a text takes up
 // to a hundred times the memory of the text, and a few bytes open a new level.
 #pragma once
 

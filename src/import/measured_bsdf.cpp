@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "import/file.h"
-#include "import/gltf_json.h"
+#include "import/gltf/gltf_json.h"
 #include "import/spectra.h"
 
 namespace troffer {

@@ -5,7 +5,7 @@
 
 #include "base/transform.h"
 #include "import/emissive.h"
-#include "import/mesh_instancer.h"
+#include "import/gltf/mesh_instancer.h"
 #include "import/recentre.h"
 #include "import/source_place.h"
 

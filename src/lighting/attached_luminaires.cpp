@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/wildcard.h"
-#include "import/attach_luminaire.h"
+#include "import/luminaire/attach_luminaire.h"
 #include "import/spectra.h"
 #include "light/web.h"
 

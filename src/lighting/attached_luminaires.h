@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "import/luminaire.h"
+#include "import/luminaire/luminaire.h"
 #include "scene/scene.h"
 
 namespace troffer {

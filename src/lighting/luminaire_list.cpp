@@ -12,9 +12,9 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "import/attach_luminaire.h"
 #include "import/file.h"
 #include "import/kept_files.h"
+#include "import/luminaire/attach_luminaire.h"
 #include "import/reference_notes.h"
 #include "lighting/attached_luminaires.h"
 #include "lighting/csv_table.h"

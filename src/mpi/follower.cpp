@@ -22,8 +22,8 @@ Follower::Follower(Post& post, int usual_threads, double patience, std::function
       usual_threads_(usual_threads),
       patience_(patience),
       forsaken_(std::move(forsaken)),
-      courier_(
-          post, [this](Letter&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
+      transport_(
+          post, [this](Message&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
 
 // Others may need it to pass on what they are to know.
 Follower::~Follower() {
@@ -31,32 +31,32 @@ Follower::~Follower() {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [&] { return talk_.is_over; });
   }
-  courier_.end();
+  transport_.end();
 }
 
 void Follower::leave(const std::string& why) {
   const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(why.data()), why.size());
-  courier_.send(0, letter({LetterKind::left, 0, 0, 0}, bytes));
+  transport_.send(0, message({MessageKind::left, 0, 0, 0}, bytes));
 }
 
-void Follower::receive(Letter&& l) {
-  const LetterHeader h = header_of(l);
+void Follower::receive(Message&& l) {
+  const MessageHeader h = header_of(l);
   const std::lock_guard lock(mutex_);
   talk_.heard_at = Clock::now();
   switch (h.kind) {
-    case LetterKind::lease:
+    case MessageKind::lease:
       if (h.job == number_) leases_.push_back(std::move(l));
       break;
-    case LetterKind::result:
-    case LetterKind::repeat:
+    case MessageKind::result:
+    case MessageKind::repeat:
       on_result(l, h);
       break;
-    case LetterKind::end:
+    case MessageKind::end:
       talk_.is_over = true;
       stop_ = true;
-      courier_.send(0, letter({LetterKind::bye, 0, 0, 0}));
+      transport_.send(0, message({MessageKind::bye, 0, 0, 0}));
       break;
-    case LetterKind::stop:
+    case MessageKind::stop:
       stop_ = true;
       break;
     default:
@@ -65,10 +65,10 @@ void Follower::receive(Letter&& l) {
   news_.notify_all();
 }
 
-void Follower::on_result(const Letter& l, const LetterHeader& h) {
-  if (h.kind == LetterKind::result) {
+void Follower::on_result(const Message& l, const MessageHeader& h) {
+  if (h.kind == MessageKind::result) {
     const Post::Bytes same = std::make_shared<const std::vector<uint8_t>>(l.bytes);
-    for (const int child : children_of(rank_, size_)) courier_.send(child, same);
+    for (const int child : children_of(rank_, size_)) transport_.send(child, same);
   }
   if (h.job < number_) return;  // told before
   Results& r = results_[h.job];
@@ -86,12 +86,12 @@ void Follower::tick() {
   const StopFlag* asked = asked_.load();
   if (asked != nullptr && asked->load() && !talk_.has_halted) {
     talk_.has_halted = true;
-    courier_.send(0, letter({LetterKind::halt, 0, 0, 0}));
+    transport_.send(0, message({MessageKind::halt, 0, 0, 0}));
   }
   const Clock::time_point now = Clock::now();
   if (talk_.is_waiting && now - talk_.asked_at > ask_interval) {
     talk_.asked_at = now;
-    courier_.send(0, letter({LetterKind::ask, 0, number_, 0}));
+    transport_.send(0, message({MessageKind::ask, 0, number_, 0}));
   }
   if (!talk_.is_over && std::chrono::duration<double>(now - talk_.heard_at).count() > patience_)
     forsaken_();
@@ -103,7 +103,7 @@ void Follower::begin(uint32_t items_wanted) {
   leases_.clear();
   results_.erase(results_.begin(), results_.lower_bound(number_));
   talk_.asked_at = Clock::now();
-  courier_.send(0, letter({LetterKind::want, items_wanted, number_, 0}));
+  transport_.send(0, message({MessageKind::want, items_wanted, number_, 0}));
 }
 
 // With the lock held.
@@ -119,12 +119,12 @@ bool Follower::is_through() {
 }
 
 // Waits for one; none once the job is over.
-std::optional<Letter> Follower::next_lease(const StopFlag& stop) {
+std::optional<Message> Follower::next_lease(const StopFlag& stop) {
   std::unique_lock lock(mutex_);
   for (;;) {
     if (has_results() || stop_.load() || stop.load()) return std::nullopt;
     if (!leases_.empty()) {
-      Letter lease = std::move(leases_.front());
+      Message lease = std::move(leases_.front());
       leases_.pop_front();
       return lease;
     }
@@ -136,16 +136,16 @@ std::optional<Letter> Follower::next_lease(const StopFlag& stop) {
 
 // One thread.
 void Follower::work_on(const SharedWork& work, size_t slot, const StopFlag& stop) {
-  while (const std::optional<Letter> lease = next_lease(stop)) {
-    LetterHeader h = header_of(*lease);
+  while (const std::optional<Message> lease = next_lease(stop)) {
+    MessageHeader h = header_of(*lease);
     if (work.take_brief) work.take_brief(h.item, ByteReader(rest_of(*lease)));
     const double start = thread_seconds();
     if (!work.act(h.item, slot)) return;
     h.count = std::bit_cast<uint32_t>(float(thread_seconds() - start));
     SharedWork::Bytes result;
     work.save(h.item, result);
-    h.kind = LetterKind::done;
-    courier_.send(0, letter(h, result));
+    h.kind = MessageKind::done;
+    transport_.send(0, message(h, result));
   }
 }
 

@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "base/crew.h"
-#include "mpi/courier.h"
-#include "mpi/letters.h"
+#include "base/process_group.h"
+#include "mpi/message_transport.h"
+#include "mpi/messages.h"
 
 namespace troffer {
 
 // Fourteen members: the work, what has come for it, and what was said.
-class Follower final : public Crew {
+class Follower final : public ProcessGroup {
  public:
   // The post must outlive this. forsaken: called once rank 0 has been silent for `patience` seconds
   // (it says every ten that it is there); must not return.
@@ -42,13 +42,13 @@ class Follower final : public Crew {
     size_t missing = 1;
   };
 
-  void receive(Letter&& l);
-  void on_result(const Letter& l, const LetterHeader& h);
+  void receive(Message&& l);
+  void on_result(const Message& l, const MessageHeader& h);
   void tick();
   void begin(uint32_t items_wanted);
   bool has_results() const;
   bool is_through();
-  std::optional<Letter> next_lease(const StopFlag& stop);
+  std::optional<Message> next_lease(const StopFlag& stop);
   void work_on(const SharedWork& work, size_t slot, const StopFlag& stop);
   SharedWork::Bytes joined_results();
 
@@ -60,13 +60,13 @@ class Follower final : public Crew {
   std::mutex mutex_;  // of all below
   std::condition_variable news_;
   uint64_t number_ = 0;  // of the job
-  std::deque<Letter> leases_;
+  std::deque<Message> leases_;
   std::map<uint64_t, Results> results_;
   struct {
     bool is_over = false, has_halted = false, is_waiting = false;
     Clock::time_point heard_at = Clock::now(), asked_at;
   } talk_;
-  Courier courier_;  // last: it uses all the others
+  MessageTransport transport_;  // last: it uses all the others
 };
 
 }  // namespace troffer

@@ -22,11 +22,11 @@ void Journal::add(const JobRecord& j) {
   for (const float s : j.item_seconds)
     seconds += fmt::format("{}{:.3g}", seconds.empty() ? "" : ",", double(s));
   out_ << fmt::format(
-      "{{\"items\":{},\"for_all\":{},\"before\":{:.4g},\"wall\":{:.4g},\"letters\":{},"
-      "\"letter_seconds\":{:.4g},\"brief_bytes\":{},\"answer_bytes\":{},\"told_bytes\":{},"
+      "{{\"items\":{},\"for_all\":{},\"before\":{:.4g},\"wall\":{:.4g},\"messages\":{},"
+      "\"message_seconds\":{:.4g},\"brief_bytes\":{},\"answer_bytes\":{},\"sent_bytes\":{},"
       "\"seconds\":[{}]}}\n",
-      j.items, j.is_for_all, j.seconds_before, j.wall_seconds, j.letters, j.letter_seconds,
-      j.brief_bytes, j.answer_bytes, j.told_bytes, seconds);
+      j.items, j.is_for_all, j.seconds_before, j.wall_seconds, j.messages, j.message_seconds,
+      j.brief_bytes, j.answer_bytes, j.sent_bytes, seconds);
   out_.flush();
 }
 

@@ -19,10 +19,10 @@ struct JobRecord {
   double seconds_before = 0;  // since the last job, of the thread that calls for work
   double wall_seconds = 0;
   // Rank 0's, for letters.
-  double letter_seconds = 0;
-  size_t letters = 0;
+  double message_seconds = 0;
+  size_t messages = 0;
   size_t brief_bytes = 0, answer_bytes = 0;  // sent with leases and answers
-  size_t told_bytes = 0;                     // to all, once it was over
+  size_t sent_bytes = 0;                     // to all, once it was over
   std::vector<float> item_seconds;           // of each item, by whoever did it first
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "mpi/letters.h"
+#include "mpi/messages.h"
 #include "mpi/tree.h"
 
 namespace troffer {
@@ -29,55 +29,55 @@ Leader::Leader(Post& post, int usual_threads, Warn warn, std::unique_ptr<Journal
       warn_(std::move(warn)),
       journal_(std::move(journal)),
       others_(size_t(post.size())),
-      courier_(
-          post, [this](Letter&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
+      transport_(
+          post, [this](Message&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
 
 Leader::~Leader() {
   JobRecord rest;
   rest.seconds_before = thread_seconds() - last_end_;
   write_down(std::move(rest), 0);
   stop_ = true;
-  send_all({LetterKind::end, 0, 0, 0});
+  send_all({MessageKind::end, 0, 0, 0});
   {
     // All have to know before this process goes: what is still to be sent goes with it.
     std::unique_lock lock(mutex_);
     news_.wait_for(lock, time_for_byes, [&] { return others_.byes + 1 == size_; });
   }
-  courier_.end();
+  transport_.end();
 }
 
-void Leader::send_all(const LetterHeader& header) {
-  const Post::Bytes bytes = letter(header);
-  for (int r = 1; r < size_; ++r) courier_.send(r, bytes);
+void Leader::send_all(const MessageHeader& header) {
+  const Post::Bytes bytes = message(header);
+  for (int r = 1; r < size_; ++r) transport_.send(r, bytes);
 }
 
-void Leader::receive(Letter&& l) {
-  const LetterHeader h = header_of(l);
-  if (h.kind == LetterKind::done) return on_done(l, h);
+void Leader::receive(Message&& l) {
+  const MessageHeader h = header_of(l);
+  if (h.kind == MessageKind::done) return on_done(l, h);
   const std::lock_guard lock(mutex_);
   const auto from = size_t(l.from);
   switch (h.kind) {
-    case LetterKind::want:
+    case MessageKind::want:
       others_.entered[from] = std::max(others_.entered[from], h.job);
       if (job_ && h.job == number_)
         wanting_.insert(wanting_.end(), h.count, l.from);
       else if (h.job > number_)
         others_.early[from] = h.count;
       break;
-    case LetterKind::ask:
+    case MessageKind::ask:
       on_ask(l.from, h.job);
       break;
-    case LetterKind::left: {
+    case MessageKind::left: {
       const std::span<const uint8_t> why = rest_of(l);
       others_.last_words[from].assign(why.begin(), why.end());
       others_.is_gone[from] = true;
       if (number_ > 0) warn_of_gone();
       break;
     }
-    case LetterKind::halt:
+    case MessageKind::halt:
       stop_ = true;
       break;
-    case LetterKind::bye:
+    case MessageKind::bye:
       ++others_.byes;
       break;
     default:
@@ -87,7 +87,7 @@ void Leader::receive(Letter&& l) {
 }
 
 // The first answer counts. Others work on meanwhile.
-void Leader::on_done(const Letter& l, const LetterHeader& h) {
+void Leader::on_done(const Message& l, const MessageHeader& h) {
   const SharedWork* work = nullptr;
   double start = 0;
   {
@@ -110,21 +110,21 @@ void Leader::on_done(const Letter& l, const LetterHeader& h) {
   if (work->is_for_all) job_->results[h.item].assign(rest_of(l).begin(), rest_of(l).end());
   job_->is_loading = false;
   ++job_->done;
-  job_->record.letter_seconds += thread_seconds() - start;
-  ++job_->record.letters;
+  job_->record.message_seconds += thread_seconds() - start;
+  ++job_->record.messages;
   news_.notify_all();
 }
 
 // With the lock held.
 void Leader::on_ask(int from, uint64_t job) {
-  const auto t = told_.find(job);
-  if (t == told_.end() || Clock::now() - t->second.at < time_for_tree) return;
+  const auto t = sent_.find(job);
+  if (t == sent_.end() || Clock::now() - t->second.at < time_for_tree) return;
   if (t->second.repeated[size_t(from)]) return;
   t->second.repeated[size_t(from)] = true;
   const std::vector<Post::Bytes>& pieces = t->second.pieces;
   for (size_t i = 0; i < pieces.size(); ++i) {
-    const LetterHeader h{LetterKind::repeat, uint32_t(pieces.size()), job, i};
-    courier_.send(from, letter(h, std::span(*pieces[i]).subspan(sizeof(LetterHeader))));
+    const MessageHeader h{MessageKind::repeat, uint32_t(pieces.size()), job, i};
+    transport_.send(from, message(h, std::span(*pieces[i]).subspan(sizeof(MessageHeader))));
   }
 }
 
@@ -134,12 +134,12 @@ void Leader::tick() {
   if (stop_.load()) is_ending_ = true;
   if (is_ending_.load() && !said_.has_stopped) {
     said_.has_stopped = true;
-    send_all({LetterKind::stop, 0, 0, 0});
+    send_all({MessageKind::stop, 0, 0, 0});
     news_.notify_all();
   }
   if (Clock::now() - said_.last_alive > alive_interval) {
     said_.last_alive = Clock::now();
-    send_all({LetterKind::alive, 0, 0, 0});
+    send_all({MessageKind::alive, 0, 0, 0});
   }
   if (job_ && !is_ending_.load()) hand_out();
 }
@@ -157,9 +157,9 @@ void Leader::hand_out() {
     const double start = thread_seconds();
     SharedWork::Bytes brief;
     if (job_->work->brief) job_->work->brief(*item, brief);
-    courier_.send(to, letter({LetterKind::lease, 0, number_, *item}, brief));
-    job_->record.brief_bytes += sizeof(LetterHeader) + brief.size();
-    job_->record.letter_seconds += thread_seconds() - start;
+    transport_.send(to, message({MessageKind::lease, 0, number_, *item}, brief));
+    job_->record.brief_bytes += sizeof(MessageHeader) + brief.size();
+    job_->record.message_seconds += thread_seconds() - start;
   }
 }
 
@@ -306,8 +306,8 @@ bool Leader::share(const SharedWork& work, const StopFlag& stop) {
   return true;
 }
 
-void Leader::write_down(JobRecord record, size_t told_bytes) {
-  record.told_bytes = told_bytes;
+void Leader::write_down(JobRecord record, size_t sent_bytes) {
+  record.sent_bytes = sent_bytes;
   if (journal_) journal_->add(record);
   last_end_ = thread_seconds();
 }
@@ -344,26 +344,26 @@ SharedWork::Bytes Leader::joined_results() {
 // To all, in pieces, each of which goes on as soon as it has come.
 void Leader::publish(const SharedWork::Bytes& bytes) {
   const std::lock_guard lock(mutex_);
-  Told& told = told_[number_];
+  Sent& told = sent_[number_];
   told.at = Clock::now();
   told.repeated.resize(size_t(size_));
   const size_t count = std::max<size_t>(1, (bytes.size() + piece_size - 1) / piece_size);
   for (size_t i = 0; i < count; ++i) {
     const size_t first = i * piece_size;
-    const LetterHeader h{LetterKind::result, uint32_t(count), number_, i};
+    const MessageHeader h{MessageKind::result, uint32_t(count), number_, i};
     told.pieces.push_back(
-        letter(h, std::span(bytes).subspan(first, std::min(piece_size, bytes.size() - first))));
-    for (const int child : children_of(0, size_)) courier_.send(child, told.pieces.back());
+        message(h, std::span(bytes).subspan(first, std::min(piece_size, bytes.size() - first))));
+    for (const int child : children_of(0, size_)) transport_.send(child, told.pieces.back());
   }
-  forget_told();
+  forget_sent();
 }
 
 // What everybody has: who is at a later job.
-void Leader::forget_told() {
+void Leader::forget_sent() {
   uint64_t first = number_;
   for (size_t r = 1; r < others_.entered.size(); ++r)
     if (!others_.is_gone[r]) first = std::min(first, others_.entered[r]);
-  told_.erase(told_.begin(), told_.lower_bound(first));
+  sent_.erase(sent_.begin(), sent_.lower_bound(first));
 }
 
 }  // namespace troffer

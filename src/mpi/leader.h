@@ -18,15 +18,15 @@
 #include <string>
 #include <vector>
 
-#include "base/crew.h"
-#include "mpi/courier.h"
+#include "base/process_group.h"
 #include "mpi/journal.h"
-#include "mpi/letters.h"
+#include "mpi/message_transport.h"
+#include "mpi/messages.h"
 
 namespace troffer {
 
 // Seventeen members: the work, those who do it, and what was said to them.
-class Leader final : public Crew {
+class Leader final : public ProcessGroup {
  public:
   using Warn = std::function<void(const std::string&)>;
 
@@ -65,7 +65,7 @@ class Leader final : public Crew {
     Clock::time_point begun = Clock::now();
     JobRecord record;
   };
-  struct Told {
+  struct Sent {
     std::vector<Post::Bytes> pieces;
     Clock::time_point at;
     std::vector<bool> repeated;  // to each process
@@ -80,8 +80,8 @@ class Leader final : public Crew {
     int byes = 0;
   };
 
-  void receive(Letter&& l);
-  void on_done(const Letter& l, const LetterHeader& h);
+  void receive(Message&& l);
+  void on_done(const Message& l, const MessageHeader& h);
   void on_ask(int from, uint64_t job);
   void tick();
   void hand_out();
@@ -92,10 +92,10 @@ class Leader final : public Crew {
   void begin(const SharedWork& work);
   bool work_on(size_t slot, const StopFlag& stop);
   void publish(const SharedWork::Bytes& bytes);
-  void write_down(JobRecord record, size_t told_bytes);
+  void write_down(JobRecord record, size_t sent_bytes);
   SharedWork::Bytes joined_results();
-  void forget_told();
-  void send_all(const LetterHeader& header);
+  void forget_sent();
+  void send_all(const MessageHeader& header);
 
   const int size_, usual_threads_;
   Warn warn_;
@@ -110,12 +110,12 @@ class Leader final : public Crew {
   std::optional<Job> job_;
   std::deque<int> wanting_;  // a process for each item that it wants
   Others others_;
-  std::map<uint64_t, Told> told_;
+  std::map<uint64_t, Sent> sent_;
   struct {
     bool has_stopped = false;  // all were told to
     Clock::time_point last_alive;
   } said_;
-  Courier courier_;  // last: it uses all the others
+  MessageTransport transport_;  // last: it uses all the others
 };
 
 }  // namespace troffer

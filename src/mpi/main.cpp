@@ -52,17 +52,17 @@ int usual_threads() {
 
 int run_together(troffer::MpiPost& post, int argc, char** argv) {
   const int threads = usual_threads();
-  std::unique_ptr<troffer::Crew> crew;
+  std::unique_ptr<troffer::ProcessGroup> group;
   if (post.rank() == 0) {
     const char* file = std::getenv("TROFFER_MPI_JOURNAL");
     const auto warn = [](const std::string& what) { fmt::print(stderr, "warning: {}\n", what); };
-    crew = std::make_unique<troffer::Leader>(
+    group = std::make_unique<troffer::Leader>(
         post, threads, warn, file != nullptr ? std::make_unique<troffer::Journal>(file) : nullptr);
   } else {
-    crew = std::make_unique<troffer::Follower>(post, threads, patience, is_forsaken);
+    group = std::make_unique<troffer::Follower>(post, threads, patience, is_forsaken);
   }
-  const int status = troffer::run(argc, argv, crew.get());
-  crew.reset();
+  const int status = troffer::run(argc, argv, group.get());
+  group.reset();
   post.close(status);
   return status;
 }

@@ -49,7 +49,7 @@ struct MpiPost::Moving {
     Clock::time_point since;
   };
   struct In {
-    Letter letter;
+    Message message;
     MPI_Request request = MPI_REQUEST_NULL;
   };
   std::list<Out> out;
@@ -87,7 +87,7 @@ void MpiPost::close(int status) {
   MPI_Finalize();
 }
 
-std::optional<Letter> MpiPost::receive() {
+std::optional<Message> MpiPost::receive() {
   int flag = 0;
   MPI_Message message = MPI_MESSAGE_NULL;
   MPI_Status status;
@@ -96,9 +96,9 @@ std::optional<Letter> MpiPost::receive() {
     int size = 0;
     MPI_Get_count(&status, MPI_BYTE, &size);
     Moving::In& in = moving_->in.emplace_back();
-    in.letter.from = status.MPI_SOURCE;
-    in.letter.bytes.resize(size_t(size));
-    MPI_Imrecv(in.letter.bytes.data(), size, MPI_BYTE, &message, &in.request);
+    in.message.from = status.MPI_SOURCE;
+    in.message.bytes.resize(size_t(size));
+    MPI_Imrecv(in.message.bytes.data(), size, MPI_BYTE, &message, &in.request);
   }
   for (auto in = moving_->in.begin(); in != moving_->in.end();) {
     const Journey journey = look_at(in->request);
@@ -106,9 +106,9 @@ std::optional<Letter> MpiPost::receive() {
       ++in;
       continue;
     }
-    Letter letter = std::move(in->letter);
+    Message message = std::move(in->message);
     in = moving_->in.erase(in);
-    if (journey == Journey::arrived) return letter;
+    if (journey == Journey::arrived) return message;
   }
   return std::nullopt;
 }

@@ -21,7 +21,7 @@ class MpiPost final : public Post {
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
-  std::optional<Letter> receive() override;
+  std::optional<Message> receive() override;
   void send(int to, Bytes bytes) override;
   bool is_moving() override;
 

@@ -9,7 +9,7 @@
 
 namespace troffer {
 
-struct Letter {
+struct Message {
   int from = 0;
   std::vector<uint8_t> bytes;
 };
@@ -24,7 +24,7 @@ class Post {
   virtual int rank() const = 0;
   virtual int size() const = 0;
   // By one thread at a time. None of them waits.
-  virtual std::optional<Letter> receive() = 0;
+  virtual std::optional<Message> receive() = 0;
   virtual void send(int to, Bytes bytes) = 0;
   // Something large is on its way, and gets on whenever this is called.
   virtual bool is_moving() = 0;

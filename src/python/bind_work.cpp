@@ -71,7 +71,7 @@ void bind_picture(py::module_& m) {
            "view.")
       .def_property_readonly("layers", &layer_names, "Names of the layers besides the picture.")
       .def_property_readonly(
-          "error", [](const RenderResult& r) { return r.statistics.told_error; },
+          "error", [](const RenderResult& r) { return r.statistics.estimated_error; },
           "The error that the renderer tells of its picture: root of the mean square of the "
           "pixels' "
           "standard errors, over the mean luminance.")

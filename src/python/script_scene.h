@@ -9,9 +9,9 @@
 #include "base/parallel.h"
 #include "daylight/sky_lights.h"
 #include "import/import_options.h"
-#include "integrate/prepared_scene.h"
 #include "lighting/daylight_options.h"
 #include "scene/scene.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -1,10 +1,21 @@
 // The key of a scene (solution.h).
-#include "radiosity/hasher.h"
+#include "base/hasher.h"
 #include "radiosity/solution.h"
 
 namespace troffer {
 
 namespace {
+
+template <class T>
+void add_value(Hasher& h, const T& v) {
+  h.add(v);
+}
+void add_value(Hasher& h, const ColorInput& c) {
+  h.add_all(c.value, c.texture);
+}
+void add_value(Hasher& h, const FloatInput& c) {
+  h.add_all(c.value, c.texture, c.channel);
+}
 
 void add_meshes(Hasher& h, const std::vector<Mesh>& meshes) {
   h.add(meshes.size());
@@ -94,15 +105,16 @@ void add_web(Hasher& h, const LightWeb& web) {
 }  // namespace
 
 uint64_t radiosity_scene_key(const Scene& scene) {
-  Hasher h;
+  Hasher h(2);
   add_geometry(h, scene);
   h.add(scene.materials.size());
-  for (const Material& m : scene.materials) for_each_value(m, [&](const auto& v) { h.add(v); });
+  for (const Material& m : scene.materials)
+    for_each_value(m, [&](const auto& v) { add_value(h, v); });
   h.add(scene.textures.size());
   for (const Texture& t : scene.textures) add_texture(h, t);
   h.add(scene.lights.size());
   for (const Light& e : scene.lights) {
-    for_each_value(e, [&](const auto& v) { h.add(v); });
+    for_each_value(e, [&](const auto& v) { add_value(h, v); });
     if (e.web == no_web) continue;
     for (const Vec3& axis : e.axes) h.add(axis);
     add_web(h, scene.webs[size_t(e.web)]);

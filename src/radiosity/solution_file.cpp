@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/hasher.h"
 #include "base/own_file.h"
-#include "radiosity/hasher.h"
 #include "radiosity/solution.h"
 
 namespace troffer {
@@ -15,7 +15,7 @@ namespace {
 constexpr OwnFile solution_file{{'t', 'r', 'o', 'f', 'f', 'R', 'a', 'd'}, 3, "radiosity solution"};
 
 uint64_t points_key(const RadiosityMesh& mesh) {
-  Hasher h;
+  Hasher h(2);
   for (const ElementPoint& p : mesh.points) {
     h.add(p.position);
     h.add(p.normal);

@@ -8,9 +8,9 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "base/warp.h"
-#include "integrate/purposes.h"
 #include "scene/mesh_in_world.h"
 #include "trace/surface.h"
+#include "transport/purposes.h"
 
 namespace troffer {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "integrate/cell_builder.h"
+#include "gather/cell_builder.h"
 #include "render/camera.h"
 
 namespace troffer {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "render/camera.h"
 #include "render/light_outlines.h"
 #include "render/tile.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -39,11 +39,11 @@ Layer empty_layer(Aov aov, const PixelRect& window) {
 
 }  // namespace
 
-double Film::bytes(double pixels, const std::vector<Aov>& aovs, bool has_glances) {
+double Film::bytes(double pixels, const std::vector<Aov>& aovs, bool has_surrogates) {
   const bool has_first_hits = std::any_of(aovs.begin(), aovs.end(), needs_first_hit);
   // The layers of the result stand beside the sums when they are made.
   return pixels * double(sizeof(Pixel) + (has_first_hits ? sizeof(FirstHit) : 0) +
-                         (has_glances ? sizeof(Known) : 0) + sizeof(Rgb) * (1 + aovs.size()));
+                         (has_surrogates ? sizeof(Known) : 0) + sizeof(Rgb) * (1 + aovs.size()));
 }
 
 Film::Film(const PixelRect& window, const std::vector<Aov>& aovs, const Vec3d& origin)
@@ -64,27 +64,28 @@ double Film::standard_error(const Pixel& p) {
 // shows), and where it tells of none, the spread of the samples.
 //
 // Of whole pictures also what samples differ by beyond that: what edges within the pixel leave.
-double Film::told_error(size_t i) const {
+double Film::estimated_error(size_t i) const {
   const Pixel& p = pixels_[i];
   if (!p.has_source_variance)
     return standard_error(p) * std::pow(std::max(p.samples, 1u), -0.5 * evenness_);
   const double n = p.samples;
   double independent = independent_variance(p);
-  if (p.is_told_whole) independent += variance_beyond(i, independent);
+  if (p.has_whole_error) independent += variance_beyond(i, independent);
   return std::sqrt((independent + sqr(p.shared_error) + sqr(p.drawn_error)) / sqr(n) +
-                   variance_of_glances(i));
+                   variance_of_surrogates(i));
 }
 
 // Of a pixel's mean, what its glances leave of the edges through it: blocks of them lie in as many
 // squares of the pixel, so that means of n err by n^-3/4.
-double Film::variance_of_glances(size_t i) const {
+double Film::variance_of_surrogates(size_t i) const {
   if (known_.empty()) return 0;
-  const KnownSums& g = known_[i].glances;
-  const double m = g.count, size = glances_of_block, blocks = std::floor(m / size);
+  const KnownSums& g = known_[i].surrogates;
+  const double m = g.count, size = surrogates_of_block, blocks = std::floor(m / size);
   if (blocks < 2) return 0;
   const double mean = double(g.luminance) / blocks,
                of_block =
-                   std::max(double(known_[i].squares_of_glance_blocks) / blocks - sqr(mean), 0.0) *
+                   std::max(double(known_[i].squares_of_surrogate_blocks) / blocks - sqr(mean),
+                            0.0) *
                    blocks / (blocks - 1) / sqr(size),
                share = m / (m + pixels_[i].samples);
   return sqr(share) * of_block / std::pow(blocks, 1.5);
@@ -93,7 +94,7 @@ double Film::variance_of_glances(size_t i) const {
 // Of a pixel's sum, what is told of its samples, and all that others than these vary by.
 double Film::independent_variance(const Pixel& p) {
   const double n = p.samples;
-  return p.source_variance + sqr(error_of_mean(p.untold, p.untold_squared, n) * n);
+  return p.source_variance + sqr(error_of_mean(p.untold, p.without_error_squared, n) * n);
 }
 
 // Of a pixel's sum, what its samples are spread by more than this. Each four of them lie in four
@@ -106,8 +107,8 @@ double Film::variance_beyond(size_t i, double independent) const {
   const double size = known_.empty() ? 1 : known_[i].block_size, blocks = std::floor(n / size);
   if (known_.empty() || blocks < 2) {
     const PixelEstimate e = estimate_of(i);
-    const bool has_glances = !known_.empty() && known_[i].glances.count > 0;
-    const double error = has_glances ? e.error_of_rest : e.standard_error;
+    const bool has_surrogates = !known_.empty() && known_[i].surrogates.count > 0;
+    const double error = has_surrogates ? e.error_of_rest : e.standard_error;
     return gain_of_edges * std::max(sqr(error * n) - independent, 0.0);
   }
   const Known& k = known_[i];
@@ -127,19 +128,19 @@ PixelEstimate Film::estimate_of(size_t i) const {
   e.luminance = e.rest = p.sum_luminance / p.samples;
   e.standard_error = e.error_of_rest = standard_error(p);
   e.independent_variance =
-      p.is_told_whole ? independent_variance(p) / p.samples : sqr(e.standard_error) * p.samples;
+      p.has_whole_error ? independent_variance(p) / p.samples : sqr(e.standard_error) * p.samples;
   if (known_.empty()) return e;
   const Known& k = known_[i];
   const double n = p.samples;
   e.rest = double(k.rest) / n;
   e.error_of_rest = error_of_mean(k.rest, k.squares_of_rest, n);
-  if (k.glances.count == 0) return e;
-  const double of_glances =
-      error_of_mean(k.glances.luminance, k.glances.squares, double(k.glances.count));
+  if (k.surrogates.count == 0) return e;
+  const double of_surrogates =
+      error_of_mean(k.surrogates.luminance, k.surrogates.squares, double(k.surrogates.count));
   // What is known was seen by both.
-  const double m = k.glances.count, share = m / (m + n);
-  e.luminance += share * (double(k.glances.luminance) / m - double(k.samples.luminance) / n);
-  e.standard_error = std::sqrt(sqr(e.error_of_rest) + sqr(of_glances) * share);
+  const double m = k.surrogates.count, share = m / (m + n);
+  e.luminance += share * (double(k.surrogates.luminance) / m - double(k.samples.luminance) / n);
+  e.standard_error = std::sqrt(sqr(e.error_of_rest) + sqr(of_surrogates) * share);
   return e;
 }
 
@@ -156,12 +157,13 @@ Film::Light Film::light_of(size_t i) const {
     return std::min({sum.x, sum.y, sum.z}) < 0;
   };
   const Light as_it_came{plain.direct - as_vec(known_[i].evened) * each, plain.indirect};
-  if (known_[i].glances.count == 0) return is_less(plain) ? as_it_came : plain;
-  const auto &s = known_[i].samples, &g = known_[i].glances;
-  const double glance = 1.0 / g.count, share = double(g.count) / (double(g.count) + p.samples);
+  if (known_[i].surrogates.count == 0) return is_less(plain) ? as_it_came : plain;
+  const auto &s = known_[i].samples, &g = known_[i].surrogates;
+  const double each_surrogate = 1.0 / g.count,
+               share = double(g.count) / (double(g.count) + p.samples);
   const Light light{
-      plain.direct + (as_vec(g.direct) * glance - as_vec(s.direct) * each) * share,
-      plain.indirect + (as_vec(g.indirect) * glance - as_vec(s.indirect) * each) * share};
+      plain.direct + (as_vec(g.direct) * each_surrogate - as_vec(s.direct) * each) * share,
+      plain.indirect + (as_vec(g.indirect) * each_surrogate - as_vec(s.indirect) * each) * share};
   return is_less(light) ? as_it_came : light;
 }
 
@@ -180,21 +182,21 @@ void Film::FirstHit::forget_hits() {
   hits = 0;
 }
 
-void Film::add_glance(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
+void Film::add_surrogate(int x, int y, const RadianceBatch& batch, size_t i, float depth) {
   const size_t at = index(x, y);
   if (!first_hits_.empty()) {
-    if (known_[at].glances.count == 0) first_hits_[at].forget_hits();
+    if (known_[at].surrogates.count == 0) first_hits_[at].forget_hits();
     first_hits_[at].add(batch, i, depth);
   }
-  known_[at].add_glance(batch.known[i]);
+  known_[at].add_surrogate(batch.known[i]);
 }
 
-void Film::Known::add_glance(const KnownRadiance& seen) {
-  glances.add(seen);
-  glance_block += luminance(seen.direct + seen.indirect);
-  if (glances.count % glances_of_block != 0) return;
-  squares_of_glance_blocks += sqr(glance_block);
-  glance_block = 0;
+void Film::Known::add_surrogate(const KnownRadiance& seen) {
+  surrogates.add(seen);
+  surrogate_block += luminance(seen.direct + seen.indirect);
+  if (surrogates.count % surrogates_of_block != 0) return;
+  squares_of_surrogate_blocks += sqr(surrogate_block);
+  surrogate_block = 0;
 }
 
 // so_far: samples, with this one.
@@ -229,7 +231,7 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
     FirstHit& f = first_hits_[at];
     f.shadow_rays += batch.shadow_rays[i];
     f.sources += as_vec(batch.sources[i]);
-    if (known_.empty() || known_[at].glances.count == 0) f.add(batch, i, depth);
+    if (known_.empty() || known_[at].surrogates.count == 0) f.add(batch, i, depth);
   }
   const Rgb direct = batch.direct[i], indirect = batch.indirect[i];
   if (!is_finite(direct) || !is_finite(indirect)) return false;
@@ -252,11 +254,11 @@ bool Film::add(int x, int y, const RadianceBatch& batch, size_t i, float depth) 
   }
   if (!batch.shared_error.empty()) p.shared_error += double(batch.shared_error[i]);
   if (!batch.drawn_error.empty()) p.drawn_error += double(batch.drawn_error[i]);
-  if (!batch.told_indirect.empty()) {
-    p.is_told_whole = true;
-    const double untold = double(luminance(indirect)) - double(batch.told_indirect[i]);
+  if (!batch.indirect_with_error.empty()) {
+    p.has_whole_error = true;
+    const double untold = double(luminance(indirect)) - double(batch.indirect_with_error[i]);
     p.untold += untold;
-    p.untold_squared += untold * untold;
+    p.without_error_squared += untold * untold;
   }
   return true;
 }
@@ -304,7 +306,8 @@ Layer Film::make_layer(Aov aov) const {
           layer.image.pixels[i] = as_rgb(first_hits_[i].sources * (1.0 / pixels_[i].samples));
       break;
     case Aov::error:
-      for (size_t i = 0; i < pixels_.size(); ++i) layer.image.pixels[i] = Rgb{float(told_error(i))};
+      for (size_t i = 0; i < pixels_.size(); ++i)
+        layer.image.pixels[i] = Rgb{float(estimated_error(i))};
       break;
     case Aov::viewing_error:
       for (size_t i = 0; i < pixels_.size(); ++i)

@@ -54,7 +54,7 @@ struct KnownSums {
 class Film {
  public:
   // Bytes that a film of this many pixels takes.
-  static double bytes(double pixels, const std::vector<Aov>& aovs, bool has_glances);
+  static double bytes(double pixels, const std::vector<Aov>& aovs, bool has_surrogates);
 
   // `window`: the pixels kept, in coordinates of the whole image. `origin`: the scene's, added to
   // positions that are shown.
@@ -65,12 +65,12 @@ class Film {
   // not finite count as black; returns whether it was finite.
   bool add(int x, int y, const RadianceBatch& batch, size_t i, float depth);
 
-  // Of samples whose method does not tell what they err by (PixelSampling): for told_error().
+  // Of samples whose method does not tell what they err by (PixelSampling): for estimated_error().
   void set_evenness(double evenness) { evenness_ = evenness; }
   // From now on, what batches know of samples is kept. Before the first sample.
-  void expect_glances() { known_.resize(pixels_.size()); }
+  void expect_surrogates() { known_.resize(pixels_.size()); }
   // Layers of first hits are those of glances where there are any, as light is.
-  void add_glance(int x, int y, const RadianceBatch& batch, size_t i, float depth);
+  void add_surrogate(int x, int y, const RadianceBatch& batch, size_t i, float depth);
   // So many samples will the pixel have, of which it has no more than the first four yet: how far
   // they differ is told by larger blocks of them, which are spread more evenly.
   void expect_samples(int x, int y, uint32_t count);
@@ -83,7 +83,7 @@ class Film {
   std::optional<Rgb> radiance(int x, int y) const;
 
   // Standard error of the pixel's luminance: that of the layer `error`.
-  double told_error(int x, int y) const { return told_error(index(x, y)); }
+  double estimated_error(int x, int y) const { return estimated_error(index(x, y)); }
 
   // The picture, then the AOVs in the order given.
   std::vector<Layer> layers() const;
@@ -95,21 +95,21 @@ class Film {
   // pixel can be.
   bool load(int x, int y, ByteReader& in);
   // … of glances.
-  uint32_t glances(int x, int y) const {
-    return known_.empty() ? 0 : known_[index(x, y)].glances.count;
+  uint32_t surrogates(int x, int y) const {
+    return known_.empty() ? 0 : known_[index(x, y)].surrogates.count;
   }
 
  private:
-  static constexpr uint32_t first_block_size = 4, glances_of_block = 16;
+  static constexpr uint32_t first_block_size = 4, surrogates_of_block = 16;
   struct Pixel {
     Vec3d direct, indirect;
     double sum_luminance = 0, sum_luminance_squared = 0;
     double source_variance = 0;  // of the samples' direct light, as far as the method tells it
     double shared_error = 0;     // … of their indirect light, likewise
     double drawn_error = 0;      // … a draw of it
-    double untold = 0, untold_squared = 0;  // luminance of light of which it does not tell
+    double untold = 0, without_error_squared = 0;  // luminance of light of which it does not tell
     uint32_t samples = 0;
-    bool has_source_variance = false, is_told_whole = false;
+    bool has_source_variance = false, has_whole_error = false;
   };
   struct Light {
     Vec3d direct, indirect;
@@ -123,17 +123,17 @@ class Film {
   };
   // Of one pixel.
   struct Known {
-    KnownSums samples, glances;
+    KnownSums samples, surrogates;
     Rgb evened;                           // RadianceBatch::evened, of samples
     float rest = 0, squares_of_rest = 0;  // luminance of samples, less what is known
     // … summed over blocks of so many samples; the sums of whole blocks, and their squares
     uint32_t block_size = first_block_size;
     float block = 0, blocks = 0, squares_of_blocks = 0;
-    // Luminance that glances have seen, over blocks of glances_of_block: the one that is not whole
-    // yet, and the squares of those that are.
-    float glance_block = 0, squares_of_glance_blocks = 0;
+    // Luminance that glances have seen, over blocks of surrogates_of_block: the one that is not
+    // whole yet, and the squares of those that are.
+    float surrogate_block = 0, squares_of_surrogate_blocks = 0;
     void add_rest(float value, uint32_t so_far);
-    void add_glance(const KnownRadiance& seen);
+    void add_surrogate(const KnownRadiance& seen);
   };
   size_t index(int x, int y) const {
     return size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0);
@@ -141,10 +141,10 @@ class Film {
   PixelEstimate estimate_of(size_t i) const;
   Light light_of(size_t i) const;
   static double standard_error(const Pixel& p);
-  double told_error(size_t i) const;
+  double estimated_error(size_t i) const;
   static double independent_variance(const Pixel& p);
   double variance_beyond(size_t i, double independent) const;
-  double variance_of_glances(size_t i) const;
+  double variance_of_surrogates(size_t i) const;
   Layer make_layer(Aov aov) const;
 
   PixelRect window_;

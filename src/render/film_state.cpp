@@ -11,7 +11,7 @@ namespace {
 struct PixelBytes {
   Vec3d direct, indirect;
   double luminance, luminance_squared, source_variance, shared_error, drawn_error, untold,
-      untold_squared;
+      without_error_squared;
   uint32_t samples, flags;
 };
 static_assert(sizeof(PixelBytes) == 112);
@@ -23,7 +23,7 @@ struct FirstHitBytes {
 };
 static_assert(sizeof(FirstHitBytes) == 120);
 
-constexpr uint32_t has_variance_flag = 1, is_told_flag = 2;
+constexpr uint32_t has_variance_flag = 1, has_whole_error_flag = 2;
 
 }  // namespace
 
@@ -38,9 +38,9 @@ void Film::save(int x, int y, std::vector<uint8_t>& out) const {
   const Pixel& p = pixels_[i];
   append(out, PixelBytes{p.direct, p.indirect, p.sum_luminance, p.sum_luminance_squared,
                          p.source_variance, p.shared_error, p.drawn_error, p.untold,
-                         p.untold_squared, p.samples,
+                         p.without_error_squared, p.samples,
                          (p.has_source_variance ? has_variance_flag : 0) |
-                             (p.is_told_whole ? is_told_flag : 0)});
+                             (p.has_whole_error ? has_whole_error_flag : 0)});
   if (!first_hits_.empty()) {
     const FirstHit& f = first_hits_[i];
     append(out, FirstHitBytes{f.albedo, f.normal, f.position, f.sources, f.depth, f.shadow_rays,
@@ -61,11 +61,11 @@ bool Film::load(int x, int y, ByteReader& in) {
   p.shared_error = b.shared_error;
   p.drawn_error = b.drawn_error;
   p.untold = b.untold;
-  p.untold_squared = b.untold_squared;
+  p.without_error_squared = b.without_error_squared;
   p.samples = b.samples;
   p.has_source_variance = (b.flags & has_variance_flag) != 0;
-  p.is_told_whole = (b.flags & is_told_flag) != 0;
-  bool is_sound = b.flags <= (has_variance_flag | is_told_flag);
+  p.has_whole_error = (b.flags & has_whole_error_flag) != 0;
+  bool is_sound = b.flags <= (has_variance_flag | has_whole_error_flag);
   for (const double v : {p.direct.x, p.direct.y, p.direct.z, p.indirect.x, p.indirect.y,
                          p.indirect.z, p.sum_luminance, p.sum_luminance_squared})
     is_sound = is_sound && std::isfinite(v);

@@ -1,8 +1,8 @@
 // A camera for a scene whose file has none.
 #pragma once
 
-#include "integrate/prepared_scene.h"
 #include "scene/scene.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

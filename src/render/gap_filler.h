@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/deadline.h"
-#include "integrate/integrator.h"
 #include "render/camera.h"
 #include "render/film.h"
 #include "render/tile.h"
+#include "transport/integrator.h"
 
 namespace troffer {
 

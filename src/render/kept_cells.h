@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cells/cell_store.h"
-#include "integrate/methods.h"
-#include "integrate/prepared_scene.h"
+#include "methods/methods.h"
 #include "render/progress.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "render/camera.h"
 #include "render/tile.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "integrate/integrator.h"
 #include "render/measuring_places.h"
 #include "render/point_plan.h"
+#include "transport/integrator.h"
 
 namespace troffer {
 

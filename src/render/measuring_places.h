@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "render/measure.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -1,48 +1,16 @@
 #include "render/picture_key.h"
 
-#include <bit>
-#include <type_traits>
-
+#include "base/hasher.h"
 #include "base/own_file.h"
-#include "base/random.h"
 #include "radiosity/solution.h"
 
 namespace troffer {
 
 namespace {
 
-class Hasher {
- public:
-  template <class T>
-  void add(const T& v) {
-    if constexpr (std::is_same_v<T, float>) {
-      add_word(std::bit_cast<uint32_t>(v));
-    } else if constexpr (std::is_same_v<T, double>) {
-      add_word(std::bit_cast<uint64_t>(v));
-    } else {
-      add_word(uint64_t(v));
-    }
-  }
-  void add(const Vec3& v) { add_all(v.x, v.y, v.z); }
-  void add(const Rgb& c) { add_all(c.r, c.g, c.b); }
-  void add(const std::string& text) {
-    add(text.size());
-    for (const char c : text) add(static_cast<unsigned char>(c));
-  }
-  template <class... T>
-  void add_all(const T&... v) {
-    (add(v), ...);
-  }
-  uint64_t value() const { return hash_; }
-
- private:
-  void add_word(uint64_t v) { hash_ = hash_combine(hash_, v); }
-  uint64_t hash_ = 1;
-};
-
 // Beside what radiosity sees of a scene, what pictures show.
 uint64_t hash_of_scene(const Scene& scene) {
-  Hasher h;
+  Hasher h(1);
   h.add(radiosity_scene_key(scene));
   h.add_all(scene.origin.x, scene.origin.y, scene.origin.z, scene.is_photometric);
   for (const Mesh& m : scene.meshes) {
@@ -73,8 +41,7 @@ void add_trees(Hasher& h, const TreeSamplingOptions& s) {
 void add_selection(Hasher& h, const SelectionOptions& s) {
   const SelectionThresholds& t = s.thresholds;
   h.add_all(s.is_enabled, t.occluded_below, t.visible_above, t.major_share, t.shadow_edge,
-            t.probe_share, t.least_share, s.uses_patches, s.is_restricted, s.treats_all_lights,
-            s.most_patch_pieces, s.nearest_patch, s.only.size());
+            t.probe_share, t.least_share, s.uses_patches, s.is_restricted, s.only.size());
   for (const uint32_t light : s.only) h.add(light);
 }
 
@@ -86,7 +53,7 @@ void add_radiosity(Hasher& h, const RadiosityOptions& r) {
 }
 
 uint64_t hash_of_settings(const Camera& camera, const RenderOptions& o) {
-  Hasher h;
+  Hasher h(1);
   add_camera(h, camera);
   h.add(std::string(o.method.row().name));
   h.add_all(needs_radiosity(o.method, o.indirect), needs_cells(o.method, o.indirect),

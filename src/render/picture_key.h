@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "integrate/prepared_scene.h"
 #include "render/render.h"
 #include "scene/scene.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "render/camera.h"
 #include "render/tile.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -21,9 +21,7 @@ std::unique_ptr<Preparation> prepare(const PreparedScene& scene, Method method,
     solution = preprocess(scene, options, threads, progress, stop).solution;
   }
   if (stop.load()) return nullptr;
-  const MethodRow& row = method.row();
-  SelectionOptions selection =
-      row.selection != nullptr ? row.selection(settings.selection) : settings.selection;
+  SelectionOptions selection = settings.selection;
   if (is_direct_only) selection.uses_patches = false;
   SourceSelection selected(*solution, scene.tracer, scene.primitives, selection, threads, stop);
   if (stop.load()) return nullptr;

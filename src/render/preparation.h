@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "integrate/methods.h"
-#include "integrate/prepared_scene.h"
-#include "integrate/tree_sampling.h"
+#include "kj92/source_selection.h"
+#include "kj92/tree_sampling.h"
+#include "methods/methods.h"
 #include "radiosity/solution.h"
 #include "render/progress.h"
-#include "select/source_selection.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

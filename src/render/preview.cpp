@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "base/random.h"
-#include "integrate/purposes.h"
 #include "render/camera.h"
 #include "render/first_sight.h"
 #include "render/gap_filler.h"
 #include "render/tile.h"
+#include "transport/purposes.h"
 
 namespace troffer {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "radiosity/solver.h"
 #include "render/render.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/units.h"
-#include "integrate/allowed_error.h"
 #include "render/sample_spread.h"
+#include "transport/allowed_error.h"
 
 namespace troffer {
 
@@ -310,7 +310,7 @@ double allowed_error(double mean, double typical, const RefinementOptions& optio
 
 }  // namespace
 
-int glances_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
+int surrogates_wanted(const RefinementView& v, int x, int y, const RefinementOptions& options) {
   // Rays that cost so little may go for all that a picture's mean asks of what is bright.
   constexpr double most_times_less = 100;
   const auto of = [&](int px, int py) { return known_of(v.looks.at(px, py).known); };
@@ -333,25 +333,26 @@ int glances_wanted(const RefinementView& v, int x, int y, const RefinementOption
   const double wanted = variance > 0 ? std::pow(variance / sqr(allowed), 2.0 / 3) : 0;
   if (std::max(wanted, least) <= 4) return 0;
   int count = 16;
-  while (count < most_glances && count < std::max(wanted, least)) count *= 2;
+  while (count < most_surrogates && count < std::max(wanted, least)) count *= 2;
   return count;
 }
 
-WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_glances, int first,
+WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_surrogates, int first,
                              int most, const RefinementOptions& options) {
-  if (v.edges.has_unknown_light_edge(x, y) && !has_glances && !options.is_noise) return {most, 1};
+  if (v.edges.has_unknown_light_edge(x, y) && !has_surrogates && !options.is_noise)
+    return {most, 1};
   const auto of = [&](int px, int py) -> Varying {
     const PixelEstimate& e = v.looks.at(px, py).estimate;
-    if (has_glances) return {e.rest, sqr(e.error_of_rest) * e.samples, e.independent_variance};
+    if (has_surrogates) return {e.rest, sqr(e.error_of_rest) * e.samples, e.independent_variance};
     return {e.luminance, sqr(e.standard_error) * e.samples, e.independent_variance};
   };
   const Surroundings s =
-      look_around(v, x, y, has_glances || !has_known_light(v, x, y), options, of);
+      look_around(v, x, y, has_surrogates || !has_known_light(v, x, y), options, of);
   const bool has_edge = v.edges.has_surface_edge(x, y);
   const bool is_uneven = has_edge || s.has_contrast || s.has_thin_things;
   if (!is_uneven && !options.is_everywhere) return {first, 1};
   Varying neighbour = is_uneven ? s.largest : s.usual;
-  if (has_glances && s.apart.variance > neighbour.variance) neighbour = s.apart;
+  if (has_surrogates && s.apart.variance > neighbour.variance) neighbour = s.apart;
   double variance = neighbour.variance;
   if (options.is_noise) variance = s.mean_variance;
   // Two surfaces within the pixel, as different as the darkest and the brightest neighbour.
@@ -373,13 +374,13 @@ WantedSamples samples_wanted(const RefinementView& v, int x, int y, bool has_gla
   const SampleNeed need =
       least_work(spread, s.mean, allowed,
                  {double(first), double(most), double(options.most_even), options.evenness,
-                  options.is_noise ? 1 : options.most_thrift});
+                  options.is_noise ? 1 : options.most_effort_divisor});
   double wanted = need.count;
   // Of a slope n samples that are spread over the pixel leave a variance of n^-3.
   if (!options.is_noise) wanted = std::max(wanted, std::cbrt(s.slope_variance / sqr(allowed)));
-  if (has_glances) wanted = std::max(wanted, double(options.least_beside_glances));
+  if (has_surrogates) wanted = std::max(wanted, double(options.least_with_surrogates));
   return {wanted < double(most) ? std::clamp(int(std::ceil(wanted)), first, most) : most,
-          need.thrift};
+          need.effort_divisor};
 }
 
 }  // namespace troffer

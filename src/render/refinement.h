@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "base/own_file.h"
-#include "integrate/shadow_record.h"
 #include "render/edge_map.h"
 #include "render/film.h"
+#include "transport/shadow_record.h"
 
 namespace troffer {
 
@@ -37,10 +37,10 @@ struct RefinementOptions {
   // More rays than this squared are in proportion to the pixel's standard deviation, not to its
   // variance: so many rays leave the picture the least error. 0: all by the variance.
   float most_even = 0;
-  uint32_t most_thrift = 1;  // RadianceBatch::thrift
+  uint32_t most_effort_divisor = 1;  // SampleRequest::most_effort_divisor
   // Pixels that are glanced at get so many rays at least: where a glance knows what shines, but not
   // what is lit, thin things that are lit would be left to the first few.
-  int least_beside_glances = 0;
+  int least_with_surrogates = 0;
 };
 
 // One record for each pixel of the window, row by row: that of its last viewing ray.
@@ -95,18 +95,18 @@ struct RefinementView {
 };
 
 // How many rays a pixel should get that only look at what is known (Integrator::glance): none, or
-// a power of two, at most most_glances.
-constexpr int most_glances = 16'384;
-int glances_wanted(const RefinementView& view, int x, int y, const RefinementOptions& options);
+// a power of two, at most most_surrogates.
+constexpr int most_surrogates = 16'384;
+int surrogates_wanted(const RefinementView& view, int x, int y, const RefinementOptions& options);
 
 struct WantedSamples {
   int count = 0;
-  uint32_t thrift = 1;  // RadianceBatch::thrift, of those after the first
+  uint32_t effort_divisor = 1;  // SampleRequest::most_effort_divisor, of those after the first
 };
 
-// How many viewing rays a pixel should have, between `first` (what it has) and `most`; has_glances:
-// it will have some.
-WantedSamples samples_wanted(const RefinementView& view, int x, int y, bool has_glances, int first,
-                             int most, const RefinementOptions& options);
+// How many viewing rays a pixel should have, between `first` (what it has) and `most`;
+// has_surrogates: it will have some.
+WantedSamples samples_wanted(const RefinementView& view, int x, int y, bool has_surrogates,
+                             int first, int most, const RefinementOptions& options);
 
 }  // namespace troffer

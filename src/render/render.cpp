@@ -63,8 +63,8 @@ double film_bytes(const PixelRect& window, const RenderOptions& o) {
   constexpr double corner = 32;  // EdgeMap
   constexpr double record = sizeof(ShadowRecord) + 4 * sizeof(SourcePattern) + corner + sizeof(int);
   const bool is_refined = most_viewing_rays(o).in_pixel > o.spp;
-  const bool has_glances = is_refined && o.method == Method::certified;
-  return Film::bytes(pixels, o.aovs, has_glances) + (is_refined ? pixels * record : 0);
+  const bool has_surrogates = is_refined && o.method == Method::certified;
+  return Film::bytes(pixels, o.aovs, has_surrogates) + (is_refined ? pixels * record : 0);
 }
 
 TileRules tile_rules(const PreparedScene& scene, const RenderOptions& o) {
@@ -121,12 +121,12 @@ class Picture {
   double seconds_per_gap_ = 0;
 };
 
-// Estimated error of the picture, relative to its mean: as Rendering::told_error().
-double told_error(const Film& film, const PixelRect& window) {
+// Estimated error of the picture, relative to its mean: as Rendering::estimated_error().
+double estimated_error(const Film& film, const PixelRect& window) {
   double squares = 0, sum = 0;
   for (int y = window.y0; y < window.y1; ++y)
     for (int x = window.x0; x < window.x1; ++x) {
-      squares += sqr(film.told_error(x, y));
+      squares += sqr(film.estimated_error(x, y));
       sum += film.estimate(x, y).luminance;
     }
   const double pixels = double(window.width()) * window.height();
@@ -155,7 +155,7 @@ RenderResult Picture::make() {
     keep_beginning();
     Film film(plan_.region, options_.aovs, scene_.scene.origin);
     finish(film, result);
-    result.statistics.told_error = told_error(film, window);
+    result.statistics.estimated_error = estimated_error(film, window);
     result.layers = film.layers();
     for (Layer& l : result.layers) l.image = part_of(l.image, plan_.region, window);
     show_preview_in_gaps(film, result);
@@ -213,7 +213,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
                   {},
                   {},
                   options_.cells,
-                  options_.crew};
+                  options_.group};
   const MethodSettings settings = method_settings(options_);
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene_, options_.method, settings, preparation, &cells);
@@ -230,7 +230,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
   show_preview_in_gaps(rendering.film(), result);
   statistics.counters = rendering.counters();
   statistics.viewing_errors = rendering.viewing_errors();
-  statistics.told_error = rendering.told_error();
+  statistics.estimated_error = rendering.estimated_error();
 }
 
 }  // namespace

@@ -10,15 +10,15 @@
 
 #include "base/parallel.h"
 #include "image/image.h"
-#include "integrate/batch.h"
-#include "integrate/methods.h"
-#include "integrate/prepared_scene.h"
+#include "methods/methods.h"
 #include "render/preparation.h"
+#include "transport/batch.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 
 class Checkpoint;
-class Crew;
+class ProcessGroup;
 class Deadline;
 class Preview;
 
@@ -62,7 +62,7 @@ struct RenderOptions {
   // Other processes that call render() for the same picture, all of them alike but for preview,
   // deadline and checkpoint, which are rank 0's, as the result is: that of others is not whole. The
   // stop flag of these must be the crew's. May be null.
-  Crew* crew = nullptr;
+  ProcessGroup* group = nullptr;
   // automatic: cells, or paths where these take less.
   Indirect indirect = Indirect::cells;
   int depth = -1;             // path: most bounces; -1 = unlimited
@@ -104,7 +104,7 @@ struct RenderStatistics {
   ViewingErrors viewing_errors;
   // What the layer `error` says of all pixels together: root of their mean square, over the
   // picture's mean luminance.
-  double told_error = 0;
+  double estimated_error = 0;
   double share_done = 0;          // of the work, by tiles
   size_t gaps_filled = 0;         // pixels that are paths alone, for want of time
   size_t unsampled = 0;           // pixels without a sample, where a stop was requested

@@ -46,24 +46,25 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
   for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, most.usual));
   if (refining_.most.in_pixel > refining_.first_spp) {
     refining_.records.emplace(plan_.region);
-    refining_.can_glance = integrator.can_glance();
-    refining_.outlines.emplace(scene, camera_, plan_.region, refining_.can_glance, options.threads);
+    refining_.has_surrogates = integrator.has_surrogates();
+    refining_.outlines.emplace(scene, camera_, plan_.region, refining_.has_surrogates,
+                               options.threads);
     if (sampling.is_by_noise()) {
       refining_.options.error = float(sampling.error);
       refining_.options.evenness = sampling.evenness;
       refining_.options.is_everywhere = refining_.options.is_noise = true;
     }
     steps_.further = uint32_t(passes_of(refining_.most.in_pixel - refining_.first_spp));
-    if (refining_.can_glance) {
-      film_.expect_glances();
+    if (refining_.has_surrogates) {
+      film_.expect_surrogates();
       refining_.options.error = float(options.error);
       refining_.options.is_everywhere = true;
       refining_.options.most_even = 6;
       if (options.indirect != Indirect::none)
-        refining_.options.most_thrift = RadianceBatch::most_thrift;
+        refining_.options.most_effort_divisor = SampleRequest::most_effort_divisor;
       if (options.indirect == Indirect::none)
-        refining_.options.least_beside_glances = options.method.row().refinement * options.spp;
-      steps_.glances = 1;
+        refining_.options.least_with_surrogates = options.method.row().refinement * options.spp;
+      steps_.surrogates = 1;
     }
     if (refines_at_once()) steps_.further = 1;
   }
@@ -80,7 +81,10 @@ void Rendering::expect_gaps(double seconds_per_pixel) {
 RenderEnd Rendering::run() {
   const bool wants_typical = options_.method.row().wants_typical;
   const auto typical = wants_typical ? float(typical_luminance()) : 0;
-  for (Work& w : work_) w.radiance.typical = typical;
+  for (Work& w : work_) {
+    w.rays.request.is_picture = typical > 0;
+    w.rays.request.typical_luminance = typical;
+  }
   agree_on_limits();
   RenderEnd end = RenderEnd::complete;
   const uint32_t at_a_time = refining_.takes_turns ? 1 : steps_.first;
@@ -125,11 +129,11 @@ ViewingErrors Rendering::viewing_errors() const {
   return e;
 }
 
-double Rendering::told_error() const {
+double Rendering::estimated_error() const {
   const PixelRect& w = plan_.window;
   double sum = 0;
   for (int y = w.y0; y < w.y1; ++y)
-    for (int x = w.x0; x < w.x1; ++x) sum += sqr(film_.told_error(x, y));
+    for (int x = w.x0; x < w.x1; ++x) sum += sqr(film_.estimated_error(x, y));
   const double mean = mean_luminance(w), pixels = double(w.width()) * w.height();
   return mean > 0 ? std::sqrt(sum / pixels) / mean : 0;
 }
@@ -153,7 +157,7 @@ std::string Rendering::name_of_ray(const void* work, size_t i) {
 
 // Does these steps of those of the tiles, in this order, that have not done them yet.
 void Rendering::step(const StepSpan& steps, const Tiles& tiles, const Act& act) {
-  if (options_.crew != nullptr) return share_steps(steps, tiles, act);
+  if (options_.group != nullptr) return share_steps(steps, tiles, act);
   for (uint32_t number = steps.first; number < steps.end; ++number) {
     Tiles left;
     for (const size_t t : tiles)
@@ -200,8 +204,8 @@ void Rendering::tell_progress(size_t tile, uint32_t step) {
       progress_.gaps -= common_pixels(r, plan_.window);
       expect_gaps(progress_.seconds_per_gap);
     }
-    const bool is_glance = step >= steps_.first && step < steps_.first + steps_.glances;
-    if (!is_glance) ++progress_.tiles_done;
+    const bool is_surrogate = step >= steps_.first && step < steps_.first + steps_.surrogates;
+    if (!is_surrogate) ++progress_.tiles_done;
     if (report_) report_(share_done());
   }
 }
@@ -216,7 +220,7 @@ bool Rendering::is_good_enough(uint32_t step, const Tiles& later) {
   // Whoever went on knew that it was not.
   bool has_gone_on = false;
   for (const size_t t : later) has_gone_on |= book_.steps(t) > step + 1;
-  return agree(leads() && !has_gone_on && told_error() <= options_.error_limit);
+  return agree(leads() && !has_gone_on && estimated_error() <= options_.error_limit);
 }
 
 Rendering::Tiles Rendering::all_tiles() const {
@@ -247,11 +251,11 @@ Rgb Rendering::evened(const Work& w, size_t ray) const {
 void Rendering::trace(Work& w) {
   w.radiance.reset(w.rays.size());
   if (refining_.records) w.radiance.records.assign(w.rays.size(), {});
-  if (refining_.can_glance) w.radiance.known.assign(w.rays.size(), {});
+  if (refining_.has_surrogates) w.radiance.known.assign(w.rays.size(), {});
   integrator_.radiance(w.rays, *w.scratch, w.radiance, w.counters);
   for (size_t i = 0; i < w.rays.size(); ++i) {
     const auto [x, y] = w.pixels[i];
-    if (refining_.can_glance) {
+    if (refining_.has_surrogates) {
       const Rgb even = evened(w, i);
       w.radiance.evened.push_back(even);
       w.radiance.direct[i] += even;

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "integrate/integrator.h"
 #include "render/camera.h"
 #include "render/film.h"
 #include "render/progress.h"
 #include "render/refinement.h"
 #include "render/tile.h"
 #include "render/tile_book.h"
+#include "transport/integrator.h"
 
 namespace troffer {
 
@@ -45,7 +45,7 @@ class Rendering {
   std::vector<Layer> layers() const;
   Counters counters() const;
   ViewingErrors viewing_errors() const;
-  double told_error() const;  // RenderStatistics
+  double estimated_error() const;  // RenderStatistics
   double share_done() const;
 
  private:
@@ -57,25 +57,25 @@ class Rendering {
     std::unique_ptr<IntegratorScratch> scratch;
     Counters counters;  // of the tile under way
   };
-  // Of one pixel, as checkpoints and other processes get it: viewing rays in all, and the thrift of
-  // those after the first (RadianceBatch::thrift).
+  // Of one pixel, as checkpoints and other processes get it: viewing rays in all, and the effort
+  // divisor of those after the first (SampleRequest::effort_divisor).
   struct WantedPixel {
-    uint32_t samples, glances, thrift;
+    uint32_t samples, surrogates, effort_divisor;
   };
   // By pixels of the region, row by row.
   struct FurtherRays {
-    std::vector<int> samples, glances;
-    std::vector<uint32_t> thrift;
+    std::vector<int> samples, surrogates;
+    std::vector<uint32_t> effort_divisor;
     // As if no further ray was wanted.
     FurtherRays(size_t pixels, int first)
-        : samples(pixels, first), glances(pixels), thrift(pixels, 1) {}
+        : samples(pixels, first), surrogates(pixels), effort_divisor(pixels, 1) {}
     WantedPixel at(size_t i) const {
-      return {uint32_t(samples[i]), uint32_t(glances[i]), thrift[i]};
+      return {uint32_t(samples[i]), uint32_t(surrogates[i]), effort_divisor[i]};
     }
     void set(size_t i, const WantedPixel& w) {
       samples[i] = int(w.samples);
-      glances[i] = int(w.glances);
-      thrift[i] = w.thrift;
+      surrogates[i] = int(w.surrogates);
+      effort_divisor[i] = w.effort_divisor;
     }
   };
   // What refinement knows; empty where pixels get no further rays.
@@ -89,13 +89,13 @@ class Rendering {
     std::optional<FurtherRays> wanted;
     bool has_begun = false;
     bool takes_turns = true;  // a step of all tiles comes before the next: a limit may cut in
-    bool can_glance = false;
+    bool has_surrogates = false;
   };
   // How many steps of a tile (tile_book.h) are passes over all of the picture, looks at what is
   // known, and further rays; in this order.
   struct Steps {
-    uint32_t first = 0, glances = 0, further = 0;
-    uint32_t all() const { return first + glances + further; }
+    uint32_t first = 0, surrogates = 0, further = 0;
+    uint32_t all() const { return first + surrogates + further; }
   };
   struct Progress {
     std::mutex mutex;
@@ -124,15 +124,15 @@ class Rendering {
   RenderEnd refine_by_passes();
   RenderEnd refine_by_tiles();
   bool refine(const PixelRect& tile, Work& w);
-  float looseness(int rays) const;
+  float error_scale(int rays) const;
   Tiles all_tiles() const;
   Tiles noisiest_first() const;
   FurtherRays further_rays(double typical) const;
   void keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const;
   void keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const;
-  bool glance(const PixelRect& tile, Work& w);
+  bool add_surrogates(const PixelRect& tile, Work& w);
   // Not compared with neighbours' patterns, which come pass by pass.
-  bool refines_at_once() const { return refining_.can_glance || refining_.options.is_noise; }
+  bool refines_at_once() const { return refining_.has_surrogates || refining_.options.is_noise; }
   double typical_luminance();  // looked at once
   double mean_luminance(const PixelRect& window) const;
   void tell_progress(size_t tile, uint32_t step);
@@ -142,8 +142,8 @@ class Rendering {
   void agree_on_limits();
   bool agree(bool value);
   void share_steps(const StepSpan& steps, const Tiles& tiles, const Act& act);
-  void save_for_crew(size_t tile, std::vector<uint8_t>& out) const;
-  void load_from_crew(size_t tile, ByteReader& in);
+  void save_for_group(size_t tile, std::vector<uint8_t>& out) const;
+  void load_from_group(size_t tile, ByteReader& in);
   void take_over(size_t tile, ByteReader in);
   void brief(size_t tile, std::vector<uint8_t>& out) const;
   void take_brief(size_t tile, ByteReader in);

@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "integrate/allowed_error.h"
 #include "render/edge_map.h"
 #include "render/rendering.h"
+#include "transport/allowed_error.h"
 
 namespace troffer {
 
@@ -31,7 +31,7 @@ RenderEnd Rendering::refine() {
 }
 
 RenderEnd Rendering::refine_by_passes() {
-  if (options_.crew != nullptr) share_records();
+  if (options_.group != nullptr) share_records();
   const PixelRecords& records = *refining_.records;
   const uint32_t at_a_time = refining_.takes_turns ? 1 : steps_.further;
   for (uint32_t pass = 0; pass < steps_.further; pass += at_a_time) {
@@ -56,16 +56,16 @@ RenderEnd Rendering::refine_by_passes() {
 
 // All further rays of a tile at once: few pixels may get many.
 RenderEnd Rendering::refine_by_tiles() {
-  const uint32_t further = steps_.first + steps_.glances;
+  const uint32_t further = steps_.first + steps_.surrogates;
   const auto act = [&](uint32_t number, const PixelRect& tile, Work& w) {
-    return number < further ? glance(tile, w) : refine(tile, w);
+    return number < further ? add_surrogates(tile, w) : refine(tile, w);
   };
   if (!refining_.takes_turns) {
     // What takes longest is not to be begun last.
     step({steps_.first, steps_.all()}, leads() ? noisiest_first() : all_tiles(), act);
     return progress_.was_stopped ? RenderEnd::stopped : RenderEnd::complete;
   }
-  if (steps_.glances > 0) step({steps_.first, further}, all_tiles(), act);
+  if (steps_.surrogates > 0) step({steps_.first, further}, all_tiles(), act);
   Tiles left = is_limited() && leads() ? noisiest_first() : all_tiles();
   const size_t parts = options_.error_limit > 0 ? std::min(looks, left.size()) : 1;
   const size_t in_all = left.size();
@@ -98,7 +98,7 @@ Rendering::Tiles Rendering::noisiest_first() const {
 // How many times the usual error each of so many rays of a pixel may have: together they still
 // leave it at most half of what the usual number does. A power of two, so that rays of many pixels
 // go together.
-float Rendering::looseness(int rays) const {
+float Rendering::error_scale(int rays) const {
   float loose = 1;
   for (int n = rays / (16 * std::max(options_.spp, 1)); n > 0; n /= 4) loose *= 2;
   return loose;
@@ -116,21 +116,21 @@ bool Rendering::refine(const PixelRect& tile, Work& w) {
     return refining_.wanted->samples[refining_.records->index(p.x, p.y)];
   };
   const auto leniency = [&](const Pixel2& p) {
-    return std::pair(refining_.wanted->thrift[refining_.records->index(p.x, p.y)],
-                     looseness(wanted(p)));
+    return std::pair(refining_.wanted->effort_divisor[refining_.records->index(p.x, p.y)],
+                     error_scale(wanted(p)));
   };
   std::vector<Pixel2> pixels = pixels_in_order(tile);
   std::stable_sort(pixels.begin(), pixels.end(),
                    [&](const Pixel2& a, const Pixel2& b) { return leniency(a) < leniency(b); });
   const auto end = [&](bool is_whole) {
     send();
-    w.radiance.looseness = 1;
-    w.radiance.thrift = 1;
+    w.rays.request.error_scale = 1;
+    w.rays.request.effort_divisor = 1;
     return is_whole;
   };
   for (const Pixel2& p : pixels) {
-    if (leniency(p) != std::pair(w.radiance.thrift, w.radiance.looseness)) send();
-    std::tie(w.radiance.thrift, w.radiance.looseness) = leniency(p);
+    if (leniency(p) != std::pair(w.rays.request.effort_divisor, w.rays.request.error_scale)) send();
+    std::tie(w.rays.request.effort_divisor, w.rays.request.error_scale) = leniency(p);
     film_.expect_samples(p.x, p.y, uint32_t(wanted(p)));
     int left = wanted(p) - refining_.first_spp;
     while (left > 0) {
@@ -153,25 +153,26 @@ Rendering::FurtherRays Rendering::further_rays(double typical) const {
   const auto row = [&](const RefinementView& view, int y) {
     for (int x = r.x0; x < r.x1; ++x) {
       const size_t i = records.index(x, y);
-      if (refining_.can_glance) wanted.glances[i] = glances_wanted(view, x, y, refining_.options);
+      if (refining_.has_surrogates)
+        wanted.surrogates[i] = surrogates_wanted(view, x, y, refining_.options);
       const WantedSamples samples =
-          samples_wanted(view, x, y, wanted.glances[i] > 0, refining_.first_spp,
+          samples_wanted(view, x, y, wanted.surrogates[i] > 0, refining_.first_spp,
                          refining_.most.in_pixel, refining_.options);
       wanted.samples[i] = samples.count;
-      wanted.thrift[i] = samples.thrift;
+      wanted.effort_divisor[i] = samples.effort_divisor;
     }
   };
   constexpr int rows_at_a_time = 8;
   const int bands = (r.height() + rows_at_a_time - 1) / rows_at_a_time;
   parallel_for(size_t(bands), options_.threads, [&](size_t band) {
     const int y0 = r.y0 + int(band) * rows_at_a_time, y1 = std::min(y0 + rows_at_a_time, r.y1);
-    const PixelLooks looks(film_, refining_.can_glance, records.window, y0, y1);
+    const PixelLooks looks(film_, refining_.has_surrogates, records.window, y0, y1);
     for (int y = y0; y < y1; ++y) row({looks, records, edges, typical}, y);
   });
-  constexpr int glances_in_mean = 4096;
+  constexpr int surrogates_in_mean = 4096;
   for (const PixelRect& tile : plan_.tiles) {
     if (refining_.most.in_mean < refining_.most.in_pixel) keep_in_bounds(tile, wanted);
-    if (refining_.can_glance) keep_in_bounds(tile, glances_in_mean, wanted.glances);
+    if (refining_.has_surrogates) keep_in_bounds(tile, surrogates_in_mean, wanted.surrogates);
   }
   return wanted;
 }
@@ -190,7 +191,7 @@ void Rendering::keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>
   }
 }
 
-// Viewing rays; those that are fewer than were wanted are lit with less thrift.
+// Viewing rays; those that are fewer than were wanted are lit with a smaller effort divisor.
 void Rendering::keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const {
   const std::vector<Pixel2> pixels = pixels_in_order(tile);
   std::vector<int> asked;
@@ -199,30 +200,30 @@ void Rendering::keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const
   keep_in_bounds(tile, refining_.most.in_mean, wanted.samples);
   for (size_t k = 0; k < pixels.size(); ++k) {
     const size_t i = refining_.records->index(pixels[k].x, pixels[k].y);
-    for (int n = wanted.samples[i]; n < asked[k] && wanted.thrift[i] > 1; n *= 2)
-      wanted.thrift[i] /= 2;
+    for (int n = wanted.samples[i]; n < asked[k] && wanted.effort_divisor[i] > 1; n *= 2)
+      wanted.effort_divisor[i] /= 2;
   }
 }
 
 // Rays that look at what is known, where that varies within a pixel.
-bool Rendering::glance(const PixelRect& tile, Work& w) {
+bool Rendering::add_surrogates(const PixelRect& tile, Work& w) {
   constexpr size_t rays_at_a_time = 1024;
   const uint64_t seed = hash_of(options_.seed, uint64_t{0x676c'616e});  // not that of samples
   const auto send = [&] {
     const CheckContext context(&w, w.rays.size(), name_of_ray);
     w.radiance.reset(w.rays.size());
     w.radiance.known.assign(w.rays.size(), {});
-    integrator_.glance(w.rays, *w.scratch, w.radiance, w.counters);
+    integrator_.surrogate_radiance(w.rays, *w.scratch, w.radiance, w.counters);
     for (size_t i = 0; i < w.rays.size(); ++i) {
       w.radiance.known[i].direct += evened(w, i);
-      film_.add_glance(w.pixels[i].x, w.pixels[i].y, w.radiance, i,
-                       camera_.depth(w.radiance.position[i]));
+      film_.add_surrogate(w.pixels[i].x, w.pixels[i].y, w.radiance, i,
+                          camera_.depth(w.radiance.position[i]));
     }
     w.rays.clear();
     w.pixels.clear();
   };
   for (const Pixel2& p : pixels_in_order(tile)) {
-    const auto all = size_t(refining_.wanted->glances[refining_.records->index(p.x, p.y)]);
+    const auto all = size_t(refining_.wanted->surrogates[refining_.records->index(p.x, p.y)]);
     for (size_t first = 0; first < all;) {
       const size_t count = std::min(all - first, rays_at_a_time - w.rays.size());
       add_viewing_rays(camera_, p, uint32_t(first), uint32_t(count), seed, w.rays);
@@ -258,9 +259,9 @@ double Rendering::typical_luminance() {
   const CheckContext context(&w, w.rays.size(), name_of_ray);
   w.radiance.reset(w.rays.size());
   Counters uncounted;
-  w.radiance.is_rough = true;
+  w.rays.request.is_coarse = true;
   integrator_.radiance(w.rays, *w.scratch, w.radiance, uncounted);
-  w.radiance.is_rough = false;
+  w.rays.request.is_coarse = false;
   std::vector<double> values;
   for (size_t i = 0; i < w.rays.size(); ++i) {
     const Rgb l = w.radiance.direct[i] + w.radiance.indirect[i];

@@ -69,7 +69,7 @@ void Rendering::restore() {
   for (size_t t = 0; t < book_.size(); ++t) {
     const uint32_t steps = book_.steps(t);
     if (steps > 0) progress_.gaps -= common_pixels(plan_.tiles[t], plan_.window);
-    progress_.tiles_done += steps - (steps > steps_.first ? steps_.glances : 0);
+    progress_.tiles_done += steps - (steps > steps_.first ? steps_.surrogates : 0);
   }
 }
 
@@ -83,8 +83,9 @@ bool Rendering::restore_wanted(ByteReader in) {
     const auto w = in.next<WantedPixel>();
     if (w.samples < uint32_t(refining_.first_spp) ||
         w.samples > uint32_t(refining_.most.in_pixel) ||
-        w.glances > (refining_.can_glance ? uint32_t(most_glances) : 0) ||
-        !std::has_single_bit(w.thrift) || w.thrift > refining_.options.most_thrift)
+        w.surrogates > (refining_.has_surrogates ? uint32_t(most_surrogates) : 0) ||
+        !std::has_single_bit(w.effort_divisor) ||
+        w.effort_divisor > refining_.options.most_effort_divisor)
       return false;
     wanted.set(i, w);
   }
@@ -95,19 +96,19 @@ bool Rendering::restore_wanted(ByteReader in) {
 // Rays that a pixel must have had after so many steps.
 bool Rendering::is_as_expected(uint32_t steps, int x, int y) const {
   uint32_t samples = std::min(uint32_t(refining_.first_spp), steps * samples_per_batch),
-           glances = 0;
+           surrogates = 0;
   if (steps > steps_.first) {
     const size_t i = refining_.records->index(x, y);
     const auto wanted = uint32_t(refining_.wanted->samples[i]);
     const uint32_t further = steps - steps_.first;
     if (refines_at_once()) {
-      glances = uint32_t(refining_.wanted->glances[i]);
-      if (further > steps_.glances) samples = wanted;
+      surrogates = uint32_t(refining_.wanted->surrogates[i]);
+      if (further > steps_.surrogates) samples = wanted;
     } else {
       samples = std::min(wanted, uint32_t(refining_.first_spp) + further * samples_per_batch);
     }
   }
-  return film_.estimate(x, y).samples == samples && film_.glances(x, y) == glances;
+  return film_.estimate(x, y).samples == samples && film_.surrogates(x, y) == surrogates;
 }
 
 bool Rendering::restore_tile(ByteReader in) {

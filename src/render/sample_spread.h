@@ -15,7 +15,7 @@ struct SampleSpread {
 
 struct SampleNeed {
   double count = 0;
-  uint32_t thrift = 1;  // RadianceBatch::thrift
+  uint32_t effort_divisor = 1;  // SampleRequest::effort_divisor
 };
 
 struct SampleCosts {
@@ -24,8 +24,8 @@ struct SampleCosts {
   // Count × cost beyond this squared is in proportion to the standard deviation, not to the
   // variance. 0: never.
   double most_even = 0;
-  double evenness = 0;       // PixelSampling
-  uint32_t most_thrift = 1;  // 1: further samples are drawn as the first ones are
+  double evenness = 0;               // PixelSampling
+  uint32_t most_effort_divisor = 1;  // 1: further samples are drawn as the first ones are
 };
 
 // With what thrift samples leave the pixel an error of `allowed` (both in luminance; mean: of what

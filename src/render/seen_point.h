@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "integrate/prepared_scene.h"
 #include "render/measure.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "integrate/purposes.h"
+#include "transport/purposes.h"
 
 namespace troffer {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrate/batch.h"
 #include "render/camera.h"
 #include "render/film.h"
+#include "transport/batch.h"
 
 namespace troffer {
 

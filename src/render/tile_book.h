@@ -9,7 +9,7 @@
 #include <mutex>
 #include <vector>
 
-#include "integrate/batch.h"
+#include "transport/batch.h"
 
 namespace troffer {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "integrate/prepared_scene.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "report/glare.h"
 #include "report/surface.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "report/rooms.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

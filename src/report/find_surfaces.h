@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "report/surface.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

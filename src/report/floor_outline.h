@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "report/flat_faces.h"
 #include "report/plane_cut.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

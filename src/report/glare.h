@@ -16,8 +16,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "report/statistics.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

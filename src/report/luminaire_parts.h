@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "report/groups.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

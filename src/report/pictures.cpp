@@ -21,7 +21,7 @@ ReportPicture make_picture(const PreparedScene& scene, const Camera& camera, Ren
   p.scale = luminance_scale(image, unit);
   for (const Rgb& pixel : image.pixels) p.mean += double(luminance(pixel)) * unit;
   p.mean /= double(image.pixels.size());
-  p.told_error = r.statistics.told_error;
+  p.estimated_error = r.statistics.estimated_error;
   p.seen = encode_png(image, {brightness(image).auto_stops, ToneMap::filmic}, options.threads);
   p.luminances = false_colour_png(image, unit, p.scale);
   return p;

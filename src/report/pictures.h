@@ -15,8 +15,8 @@ struct ReportPicture {
   int width = 0, height = 0;
   std::vector<uint8_t> seen, luminances;  // PNG
   LuminanceScale scale;
-  double mean = 0;        // luminance, cd/m²
-  double told_error = 0;  // root mean square error of a pixel, of the mean; 0: not told
+  double mean = 0;             // luminance, cd/m²
+  double estimated_error = 0;  // root mean square error of a pixel, of the mean; 0: not told
   bool is_complete = true;
 };
 

@@ -255,14 +255,14 @@ std::string picture_section(const std::vector<ReportPicture>& pictures) {
     const std::string camera = p.name.empty() ? "" : ", camera " + html_name(p.name);
     h += figure(image(p.seen, "the room as it is seen"), "The room as it is seen" + camera + ".",
                 "picture") +
-         figure(
-             image(p.luminances, "luminances as false colours") +
-                 factor_legend(p.scale.least, p.scale.largest, "cd/m²", full_width),
-             fmt::format("Initial luminances{}; mean {} cd/m²{}.", camera, short_number(p.mean),
-                         p.told_error > 0 ? fmt::format(", uncertainty of a pixel {:.1f} % of that",
-                                                        100 * p.told_error)
-                                          : ""),
-             "picture");
+         figure(image(p.luminances, "luminances as false colours") +
+                    factor_legend(p.scale.least, p.scale.largest, "cd/m²", full_width),
+                fmt::format("Initial luminances{}; mean {} cd/m²{}.", camera, short_number(p.mean),
+                            p.estimated_error > 0
+                                ? fmt::format(", uncertainty of a pixel {:.1f} % of that",
+                                              100 * p.estimated_error)
+                                : ""),
+                "picture");
   }
   return h;
 }

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "integrate/prepared_scene.h"
 #include "report/flat_faces.h"
 #include "report/floor_outline.h"
 #include "report/surface.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

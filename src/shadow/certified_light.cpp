@@ -63,7 +63,7 @@ void settle_flat(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m)
     divide_flat(task, m.members, hull, whole, scene, m.gather, m.counters);
   FoundFacets& found = *task.request.found;
   const bool is_far = task.request.far != nullptr;
-  if (!is_far && found.is_hopeless() && found.rim == FoundFacets::Rim::unknown)
+  if (!is_far && found.is_over_budget() && found.rim == FoundFacets::Rim::unknown)
     found.rim = has_rim(source, target.tolerance, task.options.most_found, scene)
                     ? FoundFacets::Rim::some
                     : FoundFacets::Rim::none;

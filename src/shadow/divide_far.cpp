@@ -44,7 +44,7 @@ class FarDivision {
 
   // share: of the whole cell.
   void divide(const FlatCell& cell, bool is_whole, int halvings, double share = 1) {
-    if (!is_whole && !is_worth_more()) return add_hopeless(cell, is_whole);
+    if (!is_whole && !is_worth_more()) return add_over_budget(cell, is_whole);
     gather_facets(hull_, cell.all_corners(), task_.request.flat->plane.normal, most_, scene_,
                   memory_.candidates, counters_);
     const std::span<const FacetToAdd> frame = task_.request.frame;
@@ -55,7 +55,7 @@ class FarDivision {
     const double masks = double(members_.size()) * (cost_of_far_mask + double(length));
     if (!memory_.candidates.is_too_long && length > always_masked &&
         masks > worth_of_mask * share * allowed_) {
-      add_hopeless(cell, is_whole);  // rays are cheaper
+      add_over_budget(cell, is_whole);  // rays are cheaper
     } else if (!memory_.candidates.is_too_long) {
       work_ -= length > 0 ? masks : 0;
       won_ += share * allowed_;
@@ -67,7 +67,7 @@ class FarDivision {
       won_ += share * allowed_;
       add_part(cell, is_whole).is_dark = true;
     } else if (halvings == 0 || !is_worth_more() || cell.is_disk || !halve(cell, first, second)) {
-      add_hopeless(cell, is_whole);
+      add_over_budget(cell, is_whole);
     } else {
       divide(first, false, halvings - 1, share / 2);
       divide(second, false, halvings - 1, share / 2);
@@ -75,7 +75,7 @@ class FarDivision {
   }
 
   // Without a look at anything.
-  void leave(const FlatCell& cell) { add_hopeless(cell, true); }
+  void leave(const FlatCell& cell) { add_over_budget(cell, true); }
   double work() const { return work_; }
 
  private:
@@ -129,7 +129,7 @@ class FarDivision {
                    memory_.left) == Certificate::dark;
   }
 
-  void add_hopeless(const FlatCell& cell, bool is_whole) {
+  void add_over_budget(const FlatCell& cell, bool is_whole) {
     clear_list();
     memory_.candidates.is_too_long = true;
     memory_.candidates.is_complete = false;
@@ -146,7 +146,7 @@ class FarDivision {
     part.facets.swap(memory_.candidates.facets);
     part.rounds.swap(memory_.candidates.rounds);
     part.is_complete = memory_.candidates.is_complete;
-    part.is_hopeless = memory_.candidates.is_too_long;
+    part.is_over_budget = memory_.candidates.is_too_long;
     return part;
   }
 
@@ -171,16 +171,16 @@ void divide_far(const SourceTask& task, std::span<const uint32_t> members, const
   FoundFacets& found = *task.request.found;
   const double radius = hull.radius();
   // Where a cell has been given up close by, it is not halved again; few receivers do not even ask.
-  const bool is_hopeless = found.is_hopeless_at(hull.centre, radius);
+  const bool is_over_budget = found.is_over_budget_at(hull.centre, radius);
   FarDivision division(task, members, hull, scene, memory, counters);
   if (division.work() < cost_of_gather)
     division.leave(cell);
   else
-    division.divide(cell, true, is_hopeless ? 0 : most_halvings);
-  size_t hopeless = 0;
-  for (const SourcePart& p : memory.parts.all()) hopeless += p.is_hopeless ? 1 : 0;
-  if (!is_hopeless && 4 * hopeless >= 3 * memory.parts.all().size() && hopeless > 0)
-    found.note_hopeless(hull.centre, radius);
+    division.divide(cell, true, is_over_budget ? 0 : most_halvings);
+  size_t over_budget = 0;
+  for (const SourcePart& p : memory.parts.all()) over_budget += p.is_over_budget ? 1 : 0;
+  if (!is_over_budget && 4 * over_budget >= 3 * memory.parts.all().size() && over_budget > 0)
+    found.note_over_budget(hull.centre, radius);
 }
 
 }  // namespace troffer

@@ -21,8 +21,8 @@ void FoundFacets::add(std::vector<uint32_t>& ids) {
   }
 }
 
-bool FoundFacets::is_hopeless_at(const Vec3d& centre, double radius) const {
-  return std::any_of(hopeless_.begin(), hopeless_.end(), [&](const Place& p) {
+bool FoundFacets::is_over_budget_at(const Vec3d& centre, double radius) const {
+  return std::any_of(over_budget_.begin(), over_budget_.end(), [&](const Place& p) {
     return length(p.centre - centre) <= 2 * (p.radius + radius);
   });
 }

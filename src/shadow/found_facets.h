@@ -25,9 +25,11 @@ class FoundFacets {
 
   // A cluster about `centre` within `radius` had lists that stayed too long; and whether one has,
   // that close.
-  void note_hopeless(const Vec3d& centre, double radius) { hopeless_.push_back({centre, radius}); }
-  bool is_hopeless_at(const Vec3d& centre, double radius) const;
-  bool is_hopeless() const { return !hopeless_.empty(); }
+  void note_over_budget(const Vec3d& centre, double radius) {
+    over_budget_.push_back({centre, radius});
+  }
+  bool is_over_budget_at(const Vec3d& centre, double radius) const;
+  bool is_over_budget() const { return !over_budget_.empty(); }
 
   // What pilots say of rays straight to the source (direct_rays.h): for all clusters alike, so that
   // rays of a pixel's hits on several of them share a sequence.
@@ -50,7 +52,7 @@ class FoundFacets {
     Vec3d centre;
     double radius;
   };
-  std::vector<Place> hopeless_;
+  std::vector<Place> over_budget_;
   std::vector<Entry> entries_;
 };
 

@@ -127,7 +127,8 @@ struct Division {
   CertifiedCounters& counters;
 
   bool is_last_try(int halvings, const ReceiverHull& hull) const {
-    return halvings == 0 || task.request.found->is_hopeless_at(hull.centre, half_diameter_of(hull));
+    return halvings == 0 ||
+           task.request.found->is_over_budget_at(hull.centre, half_diameter_of(hull));
   }
   // A last try keeps few, for what it finds stays incomplete.
   size_t most_facets(bool is_last) const {
@@ -147,7 +148,7 @@ struct Division {
     return std::min(longest, size_t(std::min(std::max(worth, fewest_facets), shared)));
   }
   void cut_list(const ReceiverHull& hull) {
-    task.request.found->note_hopeless(hull.centre, half_diameter_of(hull));
+    task.request.found->note_over_budget(hull.centre, half_diameter_of(hull));
     shorten_candidates(*task.request.found, hull.centre, task.options.most_found, scene,
                        memory.candidates.facets);
     std::vector<RoundBody>& rounds = memory.candidates.rounds;
@@ -164,7 +165,7 @@ struct Division {
     part.is_masked_known = memory.candidates.is_masked_known;
     part.is_complete = memory.candidates.is_complete;
     part.is_dark = false;
-    part.is_hopeless = memory.candidates.is_too_long;
+    part.is_over_budget = memory.candidates.is_too_long;
     return part;
   }
 
@@ -207,7 +208,7 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
     const size_t worth = most_before_flat(members.size(), is_last);
     if (worth > most) is_too_long = gather(worth);
     if (is_too_long && found.dense.is_partly_open()) {
-      found.note_hopeless(hull.centre, half_diameter_of(hull));
+      found.note_over_budget(hull.centre, half_diameter_of(hull));
       return add_unknown(members, hull, cell, is_whole);
     }
   }

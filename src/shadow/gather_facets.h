@@ -20,9 +20,9 @@ struct SourcePart {
   std::vector<RoundBody> rounds;
   std::vector<Quad> masked;  // as in ShadowCandidates
   bool is_masked_known = false;
-  bool is_complete = true;   // nothing else can hide anything
-  bool is_hopeless = false;  // the list was too long and has been cut
-  bool is_dark = false;      // one facet hides all of it from all members
+  bool is_complete = true;      // nothing else can hide anything
+  bool is_over_budget = false;  // the list was too long and has been cut
+  bool is_dark = false;         // one facet hides all of it from all members
 };
 
 // The parts that one source comes to; keeps their memory from source to source.

@@ -15,7 +15,7 @@ namespace {
 constexpr int most_samples = 256;
 // … or in every fourth, where what is integrated is gentle and so many are open then: of the fine
 // lattice, and of the coarse one, which is for errors of 2 % and more.
-constexpr size_t gentle_samples = 16, coarse_gentle_samples = 8;
+constexpr size_t low_variance_samples = 16, coarse_low_variance_samples = 8;
 
 // Sets points, weights and places to the open samples of every stride-th row and column.
 void set_points(const SourceCellTask& cell, uint32_t member, const OpenSamples& s, int stride,
@@ -122,11 +122,12 @@ void add_lattice_integral(const SourceCellTask& cell, uint32_t member, const Ope
                           float light, float share_variance, uint32_t rays, uint64_t random,
                           LatticeMemory& m, SourceResults& results) {
   const bool is_fine = cell.frame.lattice().samples() > most_samples;
-  const bool is_gentle = cell.source.integrand->is_gentle(cell.source.number, member);
-  const size_t fewest = is_gentle ? (is_fine ? gentle_samples : coarse_gentle_samples) : 1;
-  int stride = is_gentle ? 4 : is_fine ? 2 : 1;
+  const bool is_low_variance = cell.source.integrand->is_low_variance(cell.source.number, member);
+  const size_t fewest =
+      is_low_variance ? (is_fine ? low_variance_samples : coarse_low_variance_samples) : 1;
+  int stride = is_low_variance ? 4 : is_fine ? 2 : 1;
   set_points(cell, member, samples, stride, random, m);
-  if (is_gentle && m.weights.size() < fewest)
+  if (is_low_variance && m.weights.size() < fewest)
     set_points(cell, member, samples, stride = is_fine ? 2 : 1, random, m);
   if (m.weights.empty()) set_points(cell, member, samples, stride = 1, random, m);
   if (m.weights.empty()) return;

@@ -217,7 +217,7 @@ void add_lit(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,
 void mask_cell(const SourceCellTask& cell, std::span<const uint32_t> members,
                const FacetList& facets, MaskMemory& memory, SourceResults& results) {
   const auto mask =
-      cell.is_complete ? mask_complete : (cell.is_hopeless ? mask_often : mask_incomplete);
+      cell.is_complete ? mask_complete : (cell.is_over_budget ? mask_often : mask_incomplete);
   for (const uint32_t m : members) mask(cell, m, facets, memory, results);
 }
 

@@ -24,7 +24,7 @@ void set_list(const MaskFrame& frame, const SourcePart& part, std::span<const Fa
 
 // The list of what only rays can tell of; null where there is nothing, or it is not known whole.
 const FacetList* set_masked(const MaskFrame& frame, const SourcePart& part, FacetList& list) {
-  if (part.masked.empty() || !part.is_masked_known || part.is_hopeless) return nullptr;
+  if (part.masked.empty() || !part.is_masked_known || part.is_over_budget) return nullptr;
   list.clear();
   for (const Quad& q : part.masked) list.add(frame, q);
   list.finish();
@@ -62,7 +62,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
     if (!is_all)
       memory.some_receivers.set(task.cluster, memory.members,
                                 hull_of(task.cluster, memory.members));
-    settle_cell({task, frame, unoccluded, stream, part.is_complete, part.is_hopeless,
+    settle_cell({task, frame, unoccluded, stream, part.is_complete, part.is_over_budget,
                  set_masked(frame, part, memory.masked)},
                 is_all ? memory.receivers : memory.some_receivers, memory.settle, results);
   }
@@ -94,9 +94,10 @@ void set_aside(const SourceTask& task, const SourcePart& part, PartMemory& memor
 
 void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
                       ShadowScene& scene, PartMemory& memory, SourceResults& results) {
-  if (part.is_dark || (part.is_hopeless && task.request.far != nullptr && results.left != nullptr))
+  if (part.is_dark ||
+      (part.is_over_budget && task.request.far != nullptr && results.left != nullptr))
     return set_aside(task, part, memory, results);
-  if (!part.is_hopeless || is_dark(task, part, memory.settle))
+  if (!part.is_over_budget || is_dark(task, part, memory.settle))
     return settle_by_masks(task, part, stream, memory, results);
   // An integrand wants to know which points are open.
   SourcePart others = part;
@@ -141,7 +142,7 @@ void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& me
                               task.unoccluded,
                               stream,
                               part.is_complete,
-                              part.is_hopeless,
+                              part.is_over_budget,
                               set_masked(frame, part, memory.masked)};
     const bool is_nothing = part.facets.empty() && part.rounds.empty() && entering.empty();
     if (part.is_complete && is_nothing && !task.does_horizon_hide()) {

@@ -16,7 +16,7 @@ struct SourceCellTask {
   std::span<const float> unoccluded;  // per receiver of the cluster, of the cell, sr
   uint64_t stream;                    // hash that tells its random numbers from other cells'
   bool is_complete;                   // of the list of facets
-  bool is_hopeless;                   // lists of this source are too long: masks share the rays
+  bool is_over_budget;                // lists of this source are too long: masks share the rays
 
   // Of a list that is not complete all that it lacks; null where that is not known.
   const FacetList* masked = nullptr;

@@ -44,7 +44,7 @@ class ShadowIntegrand {
   // as the mask has.
   virtual bool is_smooth(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
   // … and varies over the source so slowly that a few of them are enough.
-  virtual bool is_gentle(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
+  virtual bool is_low_variance(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
   virtual void evaluate_many(uint32_t /*request*/, uint32_t /*member*/, PointArrays& /*points*/) {}
 };
 

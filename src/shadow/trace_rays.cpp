@@ -27,7 +27,7 @@ void trace_without_names(std::span<const RaySource> sources, RayPlan& plan, Shad
   t.picked_arrays.resize(0);
   for (const RayGroup& g : plan.groups) {
     const RaySource& s = sources[g.source];
-    if (!s.found->is_hopeless() || s.is_round) continue;
+    if (!s.found->is_over_budget() || s.is_round) continue;
     for (uint32_t i = g.first; i < g.first + g.count; ++i) {
       const double height = dot(s.normal, Vec3d(plan.segments[i].from) - s.point);
       const double end = 1 - 1.25 * s.tolerance / height;

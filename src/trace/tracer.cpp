@@ -171,22 +171,6 @@ void occluded_packets(RTCScene scene, Context& context, const Segments& segments
   }
 }
 
-Ray ray_of(const Segments& s, size_t i) {
-  return {{s.coordinate(0)[i], s.coordinate(1)[i], s.coordinate(2)[i]},
-          0,
-          {s.coordinate(3)[i], s.coordinate(4)[i], s.coordinate(5)[i]},
-          1};
-}
-
-void append(RayLog& log, const Segments& s) {
-  log.batches.push_back({log.rays.size(), s.size(), Coherence::coherent, true});
-  for (size_t i = 0; i < s.size(); ++i) log.rays.push_back(ray_of(s, i));
-}
-
-}  // namespace
-
-namespace {
-
 Hit closest_of(RTCScene scene, const InstanceNumbers& instances, Context& context, const Ray& ray) {
   RTCRayHit r;
   fill(r.ray, ray);
@@ -197,15 +181,6 @@ Hit closest_of(RTCScene scene, const InstanceNumbers& instances, Context& contex
   instances.apply(r.hit.instID[0], hit);
   return hit;
 }
-
-void append(RayLog& log, std::span<const Ray> rays, Coherence coherence, bool is_occlusion) {
-  log.batches.push_back({log.rays.size(), rays.size(), coherence, is_occlusion});
-  log.rays.insert(log.rays.end(), rays.begin(), rays.end());
-}
-
-}  // namespace
-
-namespace {
 
 // act(N) with the packets' size as a constant.
 template <class Act>
@@ -220,7 +195,6 @@ void in_packets(size_t size, const Act& act) {
 
 void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence,
                      Meeting meeting) const {
-  if (log_ != nullptr) append(*log_, rays, coherence, false);
   Context context(meeting);
   if (coherence == Coherence::coherent) {
     context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -238,7 +212,6 @@ void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, Coherence c
 
 void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
                       Coherence coherence) const {
-  if (log_ != nullptr) append(*log_, rays, coherence, true);
   Context context(Meeting::all);
   if (coherence == Coherence::coherent) {
     in_packets(embree_->packet_size,
@@ -256,7 +229,6 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<uint8_t> is_occluded,
 }
 
 void Tracer::occluded(const Segments& segments, std::span<uint8_t> is_occluded) const {
-  if (log_ != nullptr) append(*log_, segments);
   Context context(Meeting::all);
   in_packets(embree_->packet_size,
              [&](auto n) { occluded_packets<n>(embree_->scene, context, segments, is_occluded); });

@@ -22,17 +22,6 @@ enum class Meeting : uint8_t {
   as_seen,  // as the eye does: not the backs of those that are unseen from there
 };
 
-// All rays that a tracer is asked about, in order: for benchmarks.
-struct RayLog {
-  struct Batch {
-    size_t first, size;  // in `rays`
-    Coherence coherence;
-    bool is_occlusion;
-  };
-  std::vector<Ray> rays;
-  std::vector<Batch> batches;
-};
-
 // The same scene, its vertices such that a tracer needs no copies of them; not to be changed then.
 Scene with_room_for_tracer(Scene scene);
 
@@ -70,14 +59,10 @@ class Tracer {
   // What panes on a ray leave of its light, whatever else is on it.
   Rgb transmittance(const Ray& ray) const;
 
-  // From now on also writes all rays into `log` (null: no more). Not while other threads trace.
-  void set_log(RayLog* log) { log_ = log; }
-
  private:
   struct Embree;
   std::unique_ptr<Embree> embree_;
   const PaneGlass* glass_ = nullptr;  // null: there are no panes
-  RayLog* log_ = nullptr;
 };
 
 }  // namespace troffer

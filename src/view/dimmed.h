@@ -7,7 +7,7 @@
 #include "image/image.h"
 #include "render/measure.h"
 #include "view/layer_board.h"
-#include "view/measuring_desk.h"
+#include "view/measuring_queue.h"
 
 namespace troffer {
 

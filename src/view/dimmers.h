@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/rgb.h"
-#include "integrate/prepared_scene.h"
+#include "transport/prepared_scene.h"
 
 namespace troffer {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "view/measuring_desk.h"
+#include "view/measuring_queue.h"
 
 namespace troffer {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "integrate/methods.h"
+#include "methods/methods.h"
 
 namespace troffer {
 

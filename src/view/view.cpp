@@ -24,7 +24,7 @@ bool view(Scene scene, ViewSettings settings, const ViewStart& start, const Stop
   Painter::Shown shown;
   if (tev) shown = [&](const Image& image) { tev->show(image); };
   LayerBoard board;
-  MeasuringDesk desk(measuring);
+  MeasuringQueue desk(measuring);
   Painter painter(board, settings.options, shown);
   ViewService service(lighting, settings, board, painter, desk);
   HttpServer server(start.port, random_token(),

@@ -71,7 +71,7 @@ ImageSize moderate_size(const Camera& camera) {
 }
 
 ViewService::ViewService(std::shared_ptr<Lighting> lighting, ViewSettings settings,
-                         LayerBoard& board, Painter& painter, MeasuringDesk& desk)
+                         LayerBoard& board, Painter& painter, MeasuringQueue& desk)
     : lighting_(std::move(lighting)),
       settings_(std::move(settings)),
       board_(board),

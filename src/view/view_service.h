@@ -10,7 +10,7 @@
 
 #include "view/http_server.h"
 #include "view/layer_board.h"
-#include "view/measuring_desk.h"
+#include "view/measuring_queue.h"
 #include "view/painter.h"
 
 namespace troffer {
@@ -32,7 +32,7 @@ class ViewService {
  public:
   // All must outlive this. Shows the first camera at once.
   ViewService(std::shared_ptr<Lighting> lighting, ViewSettings settings, LayerBoard& board,
-              Painter& painter, MeasuringDesk& desk);
+              Painter& painter, MeasuringQueue& desk);
 
   // UsageError for what makes no sense. From one thread at a time.
   HttpResponse answer(const HttpRequest& request);
@@ -60,7 +60,7 @@ class ViewService {
   ViewSettings settings_;
   LayerBoard& board_;
   Painter& painter_;
-  MeasuringDesk& desk_;
+  MeasuringQueue& desk_;
   std::atomic<bool> is_closed_ = false;
 };
 

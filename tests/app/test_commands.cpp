@@ -385,17 +385,6 @@ TEST_CASE("options that the method does not use are named in a warning") {
     arguments.push_back("--quiet");
     run_well(folder, arguments);
   }
-  for (const std::string indirect : {"auto", "cells", "radiosity", "none"}) {
-    CAPTURE(indirect);
-    const Finished f =
-        run_program(folder, {"render", scene, "-o", folder.path("o.pfm"), "--size", "16x12",
-                             "--spp", "1", "--selection", "off", "--indirect", indirect});
-    CHECK(f.status == 0);
-    CHECK(f.remarks() == (indirect == "radiosity"
-                              ? ""
-                              : "warning: --selection goes with --indirect radiosity; "
-                                "certified does not use it with another\n"));
-  }
   const Finished f = run_program(
       folder, {"measure", scene, "--points", points, "--depth", "2", "-o", folder.path("o.csv")});
   CHECK(f.status == 0);

@@ -56,7 +56,7 @@ std::vector<std::string> includes_of(const fs::path& file) {
 
 std::vector<fs::path> files_of(const std::string& room) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(root / "src" / room))
+  for (const auto& entry : fs::recursive_directory_iterator(root / "src" / room))
     if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
       files.push_back(entry.path());
   return files;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "import/gltf.h"
+#include "import/gltf/gltf.h"
 #include "import/scene_checks.h"
 #include "import/temp_folder.h"
 

@@ -11,8 +11,8 @@
 #include "base/error.h"
 #include "import/file.h"
 #include "import/import.h"
+#include "import/mesh/ply.h"
 #include "import/mesh_clean.h"
-#include "import/ply.h"
 #include "support/stopwatch.h"
 
 using namespace troffer;

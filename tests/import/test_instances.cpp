@@ -8,8 +8,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "import/gltf/mesh_instancer.h"
 #include "import/gltf_builder.h"
-#include "import/mesh_instancer.h"
 #include "import/temp_folder.h"
 #include "scene/mesh_in_world.h"
 #include "support/instanced_scenes.h"

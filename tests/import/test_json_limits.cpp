@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
+#include "import/gltf/gltf_json.h"
 #include "import/gltf_builder.h"
-#include "import/gltf_json.h"
 #include "import/json_limits.h"
 
 using namespace troffer;

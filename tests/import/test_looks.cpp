@@ -7,7 +7,7 @@
 #include "image/write_image.h"
 #include "import/gltf_builder.h"
 #include "import/import.h"
-#include "import/obj.h"
+#include "import/mesh/obj.h"
 #include "import/temp_folder.h"
 
 using namespace troffer;

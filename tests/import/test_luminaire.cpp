@@ -1,5 +1,5 @@
 // Photometric files: what they say, the sins that are forgiven, and ten thousand mutations.
-#include "import/luminaire.h"
+#include "import/luminaire/luminaire.h"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"
-#include "import/attach_luminaire.h"
+#include "import/luminaire/attach_luminaire.h"
 #include "support/beam_ies.h"
 #include "temp_folder.h"
 

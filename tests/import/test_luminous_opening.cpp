@@ -1,5 +1,5 @@
 // Luminous openings: shapes by the signs of dimensions, and bodies of the right size.
-#include "import/luminous_opening.h"
+#include "import/luminaire/luminous_opening.h"
 
 #include <doctest/doctest.h>
 

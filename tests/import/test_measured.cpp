@@ -9,8 +9,8 @@
 #include "base/random.h"
 #include "base/units.h"
 #include "import/measured_bsdf.h"
-#include "import/mitsuba.h"
-#include "import/pbrt.h"
+#include "import/mitsuba/mitsuba.h"
+#include "import/pbrt/pbrt.h"
 #include "import/scene_checks.h"
 #include "import/temp_folder.h"
 

@@ -1,5 +1,5 @@
 // Mitsuba's XML: syntax, transforms, cameras, shapes and their fronts, lights.
-#include "import/mitsuba.h"
+#include "import/mitsuba/mitsuba.h"
 
 #include <doctest/doctest.h>
 

@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "import/mitsuba.h"
-#include "import/mitsuba_serialized.h"
+#include "import/mitsuba/mitsuba.h"
+#include "import/mitsuba/mitsuba_serialized.h"
 #include "mutations.h"
 #include "scene_checks.h"
 #include "temp_folder.h"

@@ -12,8 +12,8 @@
 #include "base/error.h"
 #include "base/facets.h"
 #include "base/units.h"
-#include "import/mitsuba.h"
-#include "import/mitsuba_spectrum.h"
+#include "import/mitsuba/mitsuba.h"
+#include "import/mitsuba/mitsuba_spectrum.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

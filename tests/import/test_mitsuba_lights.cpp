@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/units.h"
-#include "import/mitsuba.h"
+#include "import/mitsuba/mitsuba.h"
 #include "scene/projected_image.h"
 #include "scene_checks.h"
 #include "temp_folder.h"

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/sun_position.h"
 #include "base/units.h"
-#include "import/mitsuba.h"
+#include "import/mitsuba/mitsuba.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "image/write_image.h"
-#include "import/obj.h"
+#include "import/mesh/obj.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

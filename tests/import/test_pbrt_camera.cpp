@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "image/write_image.h"
-#include "import/pbrt.h"
-#include "import/pbrt_lens.h"
+#include "import/pbrt/pbrt.h"
+#include "import/pbrt/pbrt_lens.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "image/write_image.h"
-#include "import/pbrt.h"
+#include "import/pbrt/pbrt.h"
 #include "import/spectra.h"
 #include "scene_checks.h"
 #include "temp_folder.h"

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "import/mesh_clean.h"
-#include "import/pbrt.h"
+#include "import/pbrt/pbrt.h"
 #include "import/subdivide_loop.h"
 #include "scene_checks.h"
 #include "temp_folder.h"

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "import/pbrt.h"
-#include "import/pbrt_params.h"
-#include "import/pbrt_tokens.h"
+#include "import/pbrt/pbrt.h"
+#include "import/pbrt/pbrt_params.h"
+#include "import/pbrt/pbrt_tokens.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

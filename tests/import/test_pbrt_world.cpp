@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "import/mesh_clean.h"
-#include "import/pbrt.h"
+#include "import/pbrt/pbrt.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

@@ -15,9 +15,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "import/obj.h"
-#include "import/ply.h"
-#include "import/stl.h"
+#include "import/mesh/obj.h"
+#include "import/mesh/ply.h"
+#include "import/mesh/stl.h"
 #include "import/weld.h"
 #include "mutations.h"
 #include "temp_folder.h"

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "import/ply.h"
+#include "import/mesh/ply.h"
 #include "temp_folder.h"
 
 using namespace troffer;

@@ -1,5 +1,5 @@
 // Radiance's scene files: syntax, surfaces and their fronts, materials, commands, views.
-#include "import/radiance.h"
+#include "import/radiance/radiance.h"
 
 #include <doctest/doctest.h>
 

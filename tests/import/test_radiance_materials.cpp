@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "import/mesh_clean.h"
-#include "import/radiance.h"
+#include "import/radiance/radiance.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

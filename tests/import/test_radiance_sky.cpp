@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "import/environment_file.h"
-#include "import/radiance.h"
-#include "import/radiance_cal.h"
+#include "import/radiance/radiance.h"
+#include "import/radiance/radiance_cal.h"
 #include "scene_checks.h"
 #include "temp_folder.h"
 

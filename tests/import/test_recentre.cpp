@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "import/gltf_builder.h"
-#include "import/obj.h"
-#include "import/pbrt.h"
-#include "import/ply.h"
+#include "import/mesh/obj.h"
+#include "import/mesh/ply.h"
+#include "import/pbrt/pbrt.h"
 #include "import/recentre.h"
 #include "import/temp_folder.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "import/luminaire.h"
+#include "import/luminaire/luminaire.h"
 #include "import/temp_folder.h"
 #include "light/web.h"
 

@@ -12,7 +12,7 @@
 
 #include "base/random.h"
 #include "base/units.h"
-#include "import/luminaire.h"
+#include "import/luminaire/luminaire.h"
 #include "import/temp_folder.h"
 #include "light/web.h"
 

@@ -11,7 +11,7 @@
 
 #include "base/random.h"
 #include "base/units.h"
-#include "import/luminaire.h"
+#include "import/luminaire/luminaire.h"
 #include "support/beam_ies.h"
 
 using namespace troffer;

@@ -25,25 +25,25 @@ class Office {
     const std::lock_guard lock(mutex_);
     is_dead_[size_t(rank)] = true;
     // So that its threads end too.
-    boxes_[size_t(rank)] = {{0, *letter({LetterKind::end, 0, 0, 0})}};
+    boxes_[size_t(rank)] = {{0, *message({MessageKind::end, 0, 0, 0})}};
   }
   void put(int from, int to, const Post::Bytes& bytes) {
     const std::lock_guard lock(mutex_);
     if (!is_dead_[size_t(from)] && !is_dead_[size_t(to)])
       boxes_[size_t(to)].push_back({from, *bytes});
   }
-  std::optional<Letter> take(int rank) {
+  std::optional<Message> take(int rank) {
     const std::lock_guard lock(mutex_);
-    std::deque<Letter>& box = boxes_[size_t(rank)];
+    std::deque<Message>& box = boxes_[size_t(rank)];
     if (box.empty()) return std::nullopt;
-    Letter l = std::move(box.front());
+    Message l = std::move(box.front());
     box.pop_front();
     return l;
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::deque<Letter>> boxes_;
+  std::vector<std::deque<Message>> boxes_;
   std::vector<bool> is_dead_;
 };
 
@@ -52,7 +52,7 @@ class OfficePost final : public Post {
   OfficePost(Office& office, int rank) : office_(office), rank_(rank) {}
   int rank() const override { return rank_; }
   int size() const override { return office_.size(); }
-  std::optional<Letter> receive() override { return office_.take(rank_); }
+  std::optional<Message> receive() override { return office_.take(rank_); }
   void send(int to, Bytes bytes) override { office_.put(rank_, to, bytes); }
   bool is_moving() override { return false; }
 
@@ -69,14 +69,14 @@ void run_crew(Office& office, const Leader::Warn& warn, const Body& body) {
   for (int r = 1; r < office.size(); ++r)
     others.emplace_back([&, r] {
       OfficePost post(office, r);
-      Follower crew(post, 1, 1e9, [] {});
-      body(crew);
+      Follower group(post, 1, 1e9, [] {});
+      body(group);
       --at_work;
     });
   {
     OfficePost post(office, 0);
-    Leader crew(post, 1, warn);
-    body(crew);
+    Leader group(post, 1, warn);
+    body(group);
     while (at_work > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   for (std::thread& t : others) t.join();

@@ -71,7 +71,7 @@ RenderResult broken_off(const Room& room, RenderOptions o, const File& file, boo
 }
 
 bool is_same_work(const Counters& a, const Counters& b) {
-  return a.viewing_rays == b.viewing_rays && a.glances == b.glances &&
+  return a.viewing_rays == b.viewing_rays && a.surrogates == b.surrogates &&
          a.shadow_rays == b.shadow_rays && a.extension_rays == b.extension_rays &&
          a.mixed == b.mixed && a.masked == b.masked;
 }

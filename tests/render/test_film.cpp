@@ -98,13 +98,13 @@ namespace {
 
 // What is told of one pixel whose samples the method tells to be without error, but for what they
 // differ by.
-double told_error_of(const std::vector<float>& values, bool expects_glances) {
+double estimated_error_of(const std::vector<float>& values, bool expects_surrogates) {
   Film film({0, 0, 1, 1}, {Aov::error});
-  if (expects_glances) film.expect_glances();
+  if (expects_surrogates) film.expect_surrogates();
   RadianceBatch b;
   b.reset(values.size());
-  b.tell_variance();
-  b.tell_shared_error();
+  b.enable_variance();
+  b.enable_shared_error();
   b.known.assign(values.size(), {});
   for (size_t i = 0; i < values.size(); ++i) {
     b.direct[i] = Rgb{values[i]};
@@ -128,11 +128,12 @@ TEST_CASE("of whole pictures, what samples differ by within a pixel is told") {
     edge.push_back(i % 2 == 0 ? 1.0f : 2.0f);
     spikes.push_back(i % 13 == 5 ? 9.0f : 1.0f);
   }
-  CHECK(told_error_of(edge, true) < 0.01);
-  CHECK(told_error_of(spikes, true) == doctest::Approx(independent_error_of(spikes)).epsilon(0.2));
+  CHECK(estimated_error_of(edge, true) < 0.01);
+  CHECK(estimated_error_of(spikes, true) ==
+        doctest::Approx(independent_error_of(spikes)).epsilon(0.2));
   // Of few samples one cannot know: what edges would leave of it.
   const std::vector<float> few{1, 1, 2, 2};
-  for (const bool expects_glances : {false, true})
-    CHECK(told_error_of(few, expects_glances) ==
+  for (const bool expects_surrogates : {false, true})
+    CHECK(estimated_error_of(few, expects_surrogates) ==
           doctest::Approx(std::sqrt(0.5) * independent_error_of(few)).epsilon(1e-4));
 }

@@ -83,7 +83,6 @@ TEST_CASE("every method shows of instances what it shows of copies") {
   for (const auto& [method, indirect, most] : {std::tuple{Method::fixed, Indirect::none, 5e-3},
                                                {Method::path, Indirect::automatic, 0.02},
                                                {Method::certified, Indirect::automatic, 5e-3},
-                                               {Method::certified, Indirect::radiosity, 5e-3},
                                                {Method::kj92, Indirect::automatic, 5e-3}}) {
     RenderOptions o = small_options(method, indirect);
     if (method == Method::path) o.spp = 64;

@@ -124,14 +124,14 @@ TEST_CASE("an error limit ends the work when the picture tells no more, the same
       few.spp = few.max_spp = 4;
       return render_now(scene, mixed_room_camera(), few);
     }();
-    o.error_limit = method == Method::certified ? 0.9 * first.statistics.told_error
-                                                : 0.25 * first.statistics.told_error;
+    o.error_limit = method == Method::certified ? 0.9 * first.statistics.estimated_error
+                                                : 0.25 * first.statistics.estimated_error;
     o.threads = 1;
     const RenderResult r = render_now(scene, mixed_room_camera(), o);
     CHECK(r.end == RenderEnd::good_enough);
     CHECK(r.is_complete);
-    CHECK(r.statistics.told_error <= o.error_limit);
-    CHECK(r.statistics.told_error > 0.3 * o.error_limit);
+    CHECK(r.statistics.estimated_error <= o.error_limit);
+    CHECK(r.statistics.estimated_error > 0.3 * o.error_limit);
     CHECK(rms_told(r) > 0);
     RenderOptions all = o;
     all.error_limit = 0;

@@ -7,7 +7,7 @@
 #include "base/frame.h"
 #include "base/random.h"
 #include "base/warp.h"
-#include "integrate/path_forecast.h"
+#include "methods/path_forecast.h"
 #include "render/pictures.h"
 #include "support/surfaceless_lights.h"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "integrate/methods.h"
+#include "methods/methods.h"
 #include "render/blinds_in_the_sun.h"
 #include "render/measured_points.h"
 #include "render/measuring_places.h"

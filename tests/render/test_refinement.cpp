@@ -170,8 +170,8 @@ int wanted_amid(const Value& value, bool tells = false) {
         RadianceBatch batch;
         batch.reset(1);
         if (tells) {
-          batch.tell_variance();
-          batch.told_indirect.assign(1, 0);
+          batch.enable_variance();
+          batch.indirect_with_error.assign(1, 0);
         }
         batch.direct[0] = Rgb{float(value(x, y, k))};
         film.add(x, y, batch, 0, 3);

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double allowed = 0.02, allowed2 = allowed * allowed;
 
-SampleNeed need(const SampleSpread& spread, uint32_t most_thrift, double most_even = 0,
+SampleNeed need(const SampleSpread& spread, uint32_t most_effort_divisor, double most_even = 0,
                 double most = 1e9) {
-  return least_work(spread, 1, allowed, {4, most, most_even, 0, most_thrift});
+  return least_work(spread, 1, allowed, {4, most, most_even, 0, most_effort_divisor});
 }
 
 }  // namespace
@@ -35,14 +35,14 @@ TEST_CASE("what samples differ by says how many of them are wanted") {
 
 TEST_CASE("the more rays of a pixel differ by what they meet, the less is done for each") {
   // Chance of their own alone is not mended by more of it.
-  CHECK(need({.chance = 0.5}, 16).thrift == 1);
+  CHECK(need({.chance = 0.5}, 16).effort_divisor == 1);
   uint32_t last = 1;
   for (const double edge : {0.1, 1.0, 10.0, 100.0}) {
     const SampleNeed n = need({.chance = 0.01, .placed = edge}, 16);
     CAPTURE(edge);
-    CHECK(n.thrift >= last);
+    CHECK(n.effort_divisor >= last);
     CHECK(n.count >= std::pow(edge / allowed2, 2.0 / 3));
-    last = n.thrift;
+    last = n.effort_divisor;
   }
   CHECK(last == 16);
 }
@@ -51,15 +51,15 @@ TEST_CASE("the more rays of a pixel differ by what they meet, the less is done f
 TEST_CASE("a pixel that may not have as many rays as thrift wants does without") {
   const SampleSpread edge{.chance = 0.01, .placed = 100};
   const SampleNeed all = need(edge, 16);
-  REQUIRE(all.thrift == 16);
+  REQUIRE(all.effort_divisor == 16);
   const SampleNeed some = need(edge, 16, 0, 0.9 * all.count);
-  CHECK(some.thrift < all.thrift);
+  CHECK(some.effort_divisor < all.effort_divisor);
   CHECK(some.count <= 0.9 * all.count);
-  CHECK(need(edge, 16, 0, 16).thrift == 1);
+  CHECK(need(edge, 16, 0, 16).effort_divisor == 1);
 }
 
 TEST_CASE("thrift never takes more work than doing without") {
-  const auto work = [](const SampleNeed& n) { return n.count * (0.1 + 1.0 / n.thrift); };
+  const auto work = [](const SampleNeed& n) { return n.count * (0.1 + 1.0 / n.effort_divisor); };
   for (const double chance : {1e-4, 1e-2, 1.0})
     for (const double placed : {0.0, 1e-2, 1.0})
       for (const double thin : {0.0, 1e-2, 1.0})
@@ -69,7 +69,7 @@ TEST_CASE("thrift never takes more work than doing without") {
             double least = 1e300;
             for (const uint32_t most : {2u, 4u, 8u, 16u}) {
               const SampleNeed n = need(s, most, even);
-              CHECK(n.thrift <= most);
+              CHECK(n.effort_divisor <= most);
               CHECK(work(n) <= least * (1 + 1e-9));
               least = work(n);
             }

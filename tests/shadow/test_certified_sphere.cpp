@@ -263,7 +263,7 @@ TEST_CASE("a slit that most masks miss counts in an integral with its width, not
       SourceVisibility out;
       evaluate_alone(options, source, {&x, 1}, scene, found, {&out, 1},
                      has_integrand ? &integrand : nullptr);
-      REQUIRE(found.is_hopeless());
+      REQUIRE(found.is_over_budget());
       const double value =
           has_integrand ? double(out.value.g) : double(out.visible) * double(out.unoccluded);
       misses += value == 0;

@@ -60,7 +60,7 @@ Made made_over_seeds(const FlatSource& source, const std::vector<Quad>& facets, 
     std::vector<SourceVisibility> out(4);
     FoundFacets found;
     evaluate_alone(options, source, receivers, scene, found, out);
-    REQUIRE(found.is_hopeless());
+    REQUIRE(found.is_over_budget());
     double of_pixel = 0;
     for (size_t i = 0; i < 4; ++i) {
       const double left = double(out[i].unoccluded) - light_behind(facets, receivers[i]);
@@ -151,7 +151,7 @@ TEST_CASE("rays straight to a source: no bias where little or nothing is open") 
     FoundFacets found;
     found.dense.open_share = 0.5;
     found.dense.rays = 16;
-    found.note_hopeless({}, 1);
+    found.note_over_budget({}, 1);
     evaluate_alone(options, source, receivers, scene, found, out);
     for (size_t i = 0; i < count; ++i) {
       if (out[i].answer == ShadowAnswer::below) continue;

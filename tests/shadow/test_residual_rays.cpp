@@ -59,9 +59,9 @@ TEST_CASE("rays: numbers keep the bound, in proportion to what a pair could be w
 }
 
 TEST_CASE("rays: what is met in the way is noted, what lies in the source's plane hides nothing") {
-  for (const bool is_hopeless : {false, true}) {
+  for (const bool is_over_budget : {false, true}) {
     OneSource one(receivers_on_floor(1, 1));
-    if (is_hopeless) one.found.note_hopeless({}, 1);
+    if (is_over_budget) one.found.note_over_budget({}, 1);
     BruteForceScene scene;
     scene.facets = {parallelogram_facet({-4, -4, 2}, {8, 0, 0}, {0, 8, 0}),
                     parallelogram_facet({0, -4, 1}, {4, 0, 0}, {0, 8, 0})};
@@ -79,8 +79,8 @@ TEST_CASE("rays: what is met in the way is noted, what lies in the source's plan
     CHECK(free > 30);
     CHECK(traced.tallies[0].free == double(free));
     // nobody asks for names where lists are hopeless
-    CHECK(one.found.entries().size() == (is_hopeless ? 0 : 1));
-    if (!is_hopeless) CHECK(one.found.entries()[0].id == 1);
+    CHECK(one.found.entries().size() == (is_over_budget ? 0 : 1));
+    if (!is_over_budget) CHECK(one.found.entries()[0].id == 1);
   }
 }
 

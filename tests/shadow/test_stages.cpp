@@ -114,7 +114,7 @@ TEST_CASE("gathering: a short list is one part, with what stands between and not
   CHECK(part.members.size() == 64);
   CHECK(part.is_whole);
   CHECK(part.is_complete);
-  CHECK_FALSE(part.is_hopeless);
+  CHECK_FALSE(part.is_over_budget);
   REQUIRE(part.facets.size() == 1);
   CHECK(part.facets[0].id == 0);
   CHECK(one.counters.gathers == 1);
@@ -143,7 +143,7 @@ TEST_CASE("gathering: too long lists divide receivers and source; each pair stay
     // close together there is nothing to gain by halving receivers: the source is
     if (spacing < 0.1f) CHECK_FALSE(is_any_whole);
     for (const double a : area) CHECK(a == doctest::Approx(1));
-    CHECK_FALSE(one.found.is_hopeless());
+    CHECK_FALSE(one.found.is_over_budget());
   }
 }
 
@@ -165,8 +165,8 @@ TEST_CASE("gathering: hopeless lists are cut, keep what rays have met, and are r
   for (const uint32_t id : {7u, 399u})
     CHECK(std::any_of(kept.begin(), kept.end(), [&](const auto& f) { return f.id == id; }));
   CHECK_FALSE(memory.parts.all()[0].is_complete);
-  CHECK(memory.parts.all()[0].is_hopeless);
-  CHECK(one.found.is_hopeless());
+  CHECK(memory.parts.all()[0].is_over_budget);
+  CHECK(one.found.is_over_budget());
   // the next time nobody tries to halve
   one.options.most_halvings = 3;
   one.counters = {};
@@ -193,7 +193,7 @@ TEST_CASE("gathering: next to a sphere there is no list, and receivers are halve
   CHECK(members == 64);
   CHECK(memory.parts.all().size() > 1);
   CHECK(has_complete);
-  CHECK_FALSE(one.found.is_hopeless());
+  CHECK_FALSE(one.found.is_over_budget());
 }
 
 TEST_CASE("a rim is what rises out of the source's slab within its outline") {
@@ -362,8 +362,8 @@ TEST_CASE("masks: of an incomplete list what is dark is answered, what is open w
   const SourceTask task = one.task();
   const FacetList half = one.list_of(frame, {plate(0, 3, -3, 3, 1)});
   MaskMemory memory;
-  for (const bool is_hopeless : {false, true}) {
-    const SourceCellTask cell{task, frame, one.unoccluded, 1, false, is_hopeless};
+  for (const bool is_over_budget : {false, true}) {
+    const SourceCellTask cell{task, frame, one.unoccluded, 1, false, is_over_budget};
     one.sums.assign(1, {});
     one.queue.clear();
     one.queue.sources.push_back(one.ray_source());
@@ -372,7 +372,7 @@ TEST_CASE("masks: of an incomplete list what is dark is answered, what is open w
     mask_cell(cell, one.members, half, memory, results);
     CHECK(one.sums[0].light == 0);
     CHECK(one.sums[0].unoccluded == one.unoccluded[0]);
-    const size_t passes = is_hopeless ? one.options.masks_with_rays : 1;
+    const size_t passes = is_over_budget ? one.options.masks_with_rays : 1;
     REQUIRE(one.queue.open.size() == passes);
     double light = 0;
     for (const RayQueue::OpenPair& p : one.queue.open) {

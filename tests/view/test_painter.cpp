@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "support/scenes.h"
 #include "view/dimmed.h"
-#include "view/measuring_desk.h"
+#include "view/measuring_queue.h"
 #include "view/painter.h"
 
 using namespace troffer;
@@ -200,7 +200,7 @@ TEST_CASE("points are measured in the background, whole and by single luminaires
   const auto lighting = std::make_shared<Lighting>(room());
   MeasureOptions o;
   o.threads = 2;
-  MeasuringDesk desk(o);
+  MeasuringQueue desk(o);
   const std::vector<MeasuringPoint> points{{{2, 0.5, 0}, {0, 0, 1}}, {{2, 2, 1}, {0, 0, 1}}};
   const uint64_t whole = desk.add({lighting, points, false});
   const uint64_t parts = desk.add({lighting, points, true});

@@ -1,0 +1,36 @@
+// Light straight from sources at first surfaces by one DirectLight, and at what these show in gloss
+// by another, which may be rougher: it arrives weaker, and mixed. So does that of a pixel's further
+// samples, each of which is a small part of it.
+#pragma once
+
+#include "transport/direct_light.h"
+
+namespace troffer {
+
+class StagedDirect final : public DirectLight {
+ public:
+  // Of the same walked_part(). samples: of a pixel that are not further ones.
+  StagedDirect(std::unique_ptr<DirectLight> first, std::unique_ptr<DirectLight> later,
+               uint32_t samples);
+
+  std::unique_ptr<DirectLightScratch> make_scratch() const override;
+  WalkedPart walked_part() const override { return first_->walked_part(); }
+  bool tells_variance() const override { return first_->tells_variance(); }
+  void begin(const SampleRequest& request, DirectLightScratch& scratch) const override;
+  void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
+             Counters& counters) const override;
+  void flush(DirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
+  void weigh(SeenEmission& seen) const override;
+
+ private:
+  struct Scratch;
+  bool is_first(const Walk& walk, uint32_t scatterings) const {
+    return walk.scatterings <= scatterings && walk.sample < samples_;
+  }
+  void take(const WaveHits& wave, bool first, WaveHits& out) const;
+
+  std::unique_ptr<DirectLight> first_, later_;
+  uint32_t samples_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,289 @@
+#include "gather/bright_places.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/box.h"
+#include "base/units.h"
+#include "base/warp.h"
+
+namespace troffer {
+
+namespace {
+
+constexpr double least_brightness = 2;  // of a bright cell, over the mean
+// Of the mean square, were as many rays as is best sent to bright cells: above this it is not worth
+// while.
+constexpr double most_left = 0.6;
+constexpr float first_radius = 2;  // of a place, in cells
+// Cones are at least so wide (sine), and none is made from nearer than this many radii.
+constexpr float least_sine = 0.02f, least_distance = 1.2f;
+constexpr float unknown_fill = 0.5f, least_flat = 0.8f;
+constexpr float least_visible = 0.02f, least_share = 0.003f;
+constexpr double most_amiss = 16;  // what is expected, and what is found
+constexpr float below_one = 0.99999994f;
+constexpr size_t least_tries = 2;  // of sight of each place
+
+struct BrightCell {
+  Vec3 position, normal;
+  double share = 0;       // of rays that meet it
+  double irradiance = 0;  // that one of them brings
+  const PilotHit* first = nullptr;
+  uint32_t hits = 0;
+};
+
+struct Sphere {
+  Vec3 centre;
+  float radius = 0;
+};
+
+Sphere sphere_around(std::span<const BrightCell> cells, float margin) {
+  Box box;
+  for (const BrightCell& c : cells) box.grow(c.position);
+  Sphere s{box.centre(), 0};
+  for (const BrightCell& c : cells) s.radius = std::max(s.radius, length(c.position - s.centre));
+  s.radius += margin;
+  return s;
+}
+
+// In two by their longest side's middle, until none is larger.
+void divide(std::span<BrightCell> cells, float margin, float most_radius,
+            std::vector<std::span<BrightCell>>& out) {
+  if (cells.size() < 2 || sphere_around(cells, margin).radius <= most_radius)
+    return out.push_back(cells);
+  Box box;
+  for (const BrightCell& c : cells) box.grow(c.position);
+  const Vec3 d = box.extent();
+  const size_t axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
+  const float middle = box.centre()[axis];
+  const auto half = std::stable_partition(
+      cells.begin(), cells.end(), [&](const BrightCell& c) { return c.position[axis] < middle; });
+  const auto first = size_t(half - cells.begin());
+  if (first == 0 || first == cells.size()) return out.push_back(cells);
+  divide(cells.first(first), margin, most_radius, out);
+  divide(cells.subspan(first), margin, most_radius, out);
+}
+
+BrightPlace place_of(std::span<const BrightCell> cells, float margin) {
+  BrightPlace p;
+  const Sphere s = sphere_around(cells, margin);
+  p.centre = s.centre;
+  p.radius = s.radius;
+  double share = 0, squares = 0;
+  for (const BrightCell& c : cells) {
+    share += c.share;
+    squares += c.share * sqr(c.irradiance);
+    p.normal += c.normal * float(c.share);
+  }
+  p.normal = p.normal * float(1 / share);
+  p.mean_square = float(squares / share);
+  return p;
+}
+
+BrightHits hits_of(std::span<const BrightCell> cells) {
+  BrightHits h;
+  const size_t step = std::max<size_t>(cells.size() / BrightHits::most, 1);
+  for (size_t i = 0; i < cells.size() && h.count < BrightHits::most; i += step)
+    h.hits[h.count++] = cells[i].first->hit;
+  // Of few cells more than one hit each.
+  for (uint32_t k = 1; k < BrightHits::most && h.count < BrightHits::most; ++k)
+    for (const BrightCell& c : cells)
+      if (k < c.hits && h.count < BrightHits::most) h.hits[h.count++] = c.first[k].hit;
+  return h;
+}
+
+// What is known of rays towards a place that is seen from somewhere. Without first values: of room
+// for many, little is used.
+struct Towards {
+  uint32_t place;
+  float height;     // 1 - cosine of the cone's half angle
+  float by_cosine;  // share of rays drawn so
+  float expected;   // mean over those of the square of what they bring
+  float wanted;     // of rays, not over all of them
+};
+
+// All but the place's number; false where nothing can be seen of it, or one stands in it.
+bool look_towards(const BrightPlace& p, float visible, const CellHit& at, Towards& t) {
+  const Vec3 d = p.centre - at.position;
+  const bool is_flat = length_squared(p.normal) >= sqr(least_flat);
+  if (is_flat && dot(d, p.normal) >= 0) return false;
+  const float distance = length(d);
+  if (!(distance > least_distance * p.radius)) return false;
+  const Vec3 axis = d * (1 / distance);
+  const float sine = std::max(p.radius / distance, least_sine), height = dot(axis, at.normal);
+  if (height <= -sine) return false;
+  // Of its cosines, where the horizon cuts through it.
+  const float mean_cosine = height >= sine ? height : sqr(height + sine) / (4 * sine);
+  const float fill = is_flat ? std::max(-dot(axis, p.normal), 0.0f) : unknown_fill;
+  t.height = sqr(sine) / (1 + std::sqrt(1 - sqr(sine)));
+  t.by_cosine = std::min(2 * t.height * mean_cosine, 1.0f);
+  const float mean_square = p.mean_square * fill * visible;
+  t.expected = t.by_cosine * mean_square;
+  t.wanted = t.by_cosine * std::sqrt(mean_square);
+  return true;
+}
+
+}  // namespace
+
+BrightPlaces::BrightPlaces(const Tracer& tracer, std::vector<PilotHit> seen,
+                           std::span<const Rgb> irradiance, float cell_size)
+    : tracer_(&tracer) {
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const PilotHit& a, const PilotHit& b) { return a.cell < b.cell; });
+  std::vector<BrightCell> cells;
+  double shares = 0, sum = 0, squares = 0;
+  for (size_t i = 0; i < seen.size();) {
+    BrightCell& c = cells.emplace_back();
+    c.first = &seen[i];
+    const double e = double(luminance(irradiance[seen[i].cell]));
+    double brought = 0;
+    for (; i < seen.size() && seen[i].cell == c.first->cell; ++i, ++c.hits) {
+      c.share += double(seen[i].share);
+      brought += double(seen[i].share) * double(seen[i].weight) * e;
+      c.position += seen[i].hit.position * seen[i].share;
+      c.normal += seen[i].hit.horizon * seen[i].share;
+    }
+    if (!(c.share > 0)) {
+      cells.pop_back();
+      continue;
+    }
+    c.position = c.position * float(1 / c.share);
+    c.normal = c.normal * float(1 / c.share);
+    c.irradiance = brought / c.share;
+    shares += c.share;
+    sum += brought;
+    squares += brought * c.irradiance;
+  }
+  if (!(shares > 0)) return;
+  const double mean = sum / shares;
+  std::erase_if(cells,
+                [&](const BrightCell& c) { return !(c.irradiance > least_brightness * mean); });
+  double bright = 0, bright_shares = 0;
+  for (const BrightCell& c : cells) {
+    bright += c.share * sqr(c.irradiance);
+    bright_shares += c.share;
+  }
+  const double left = std::max(squares - bright, 0.0), left_shares = shares - bright_shares;
+  const double best = sqr(std::sqrt(bright * bright_shares) + std::sqrt(left * left_shares));
+  if (!(best < most_left * squares * shares)) return;
+  rest_ = float(left / shares);
+  const float margin = 0.5f * cell_size;
+  std::vector<std::span<BrightCell>> parts;
+  for (float radius = first_radius * cell_size; parts.empty() || parts.size() > most_places;
+       radius *= 1.5f) {
+    parts.clear();
+    divide(cells, margin, radius, parts);
+  }
+  for (const std::span<BrightCell> part : parts) {
+    places_.push_back(place_of(part, margin));
+    hits_.push_back(hits_of(part));
+  }
+}
+
+BrightSight BrightPlaces::sight_from(std::span<const CellHit> from, size_t rays) const {
+  BrightSight sight{std::vector<float>(places_.size(), 1), rest_};
+  if (places_.empty() || from.empty()) return sight;
+  const size_t tried = std::clamp(rays / places_.size(), least_tries, size_t{BrightHits::most});
+  std::vector<Ray> towards;
+  for (const BrightHits& h : hits_)
+    for (size_t i = 0; i < tried; ++i) {
+      const CellHit &a = from[i * from.size() / tried], &b = h.hits[i % h.count];
+      towards.push_back(
+          segment(a.position + a.horizon * a.offset, b.position + b.horizon * b.offset));
+    }
+  std::vector<uint8_t> is_occluded(towards.size());
+  tracer_->occluded(towards, is_occluded);
+  for (size_t k = 0; k < places_.size(); ++k) {
+    const auto first = is_occluded.begin() + std::ptrdiff_t(k * tried);
+    const auto seen = std::count(first, first + std::ptrdiff_t(tried), 0);
+    sight.visible[k] = std::max(float(seen) / float(tried), least_visible);
+  }
+  return sight;
+}
+
+GatherAim::GatherAim(const BrightPlaces& places, std::span<const float> visible, float rest,
+                     const CellHit& at) {
+  if (places.all().empty()) return;
+  std::array<Towards, BrightPlaces::most_places> towards;
+  size_t count = 0;
+  const float others = std::sqrt(rest);
+  float all = others;
+  for (uint32_t k = 0; k < places.all().size(); ++k) {
+    if (!look_towards(places.all()[k], visible[k], at, towards[count])) continue;
+    towards[count].place = k;
+    all += towards[count++].wanted;
+  }
+  if (!(all > 0)) return;
+  const auto share_of = [&](const Towards& t) {
+    const float share = (t.wanted - others * t.by_cosine) / all;
+    return share > least_share ? share : 0;
+  };
+  float sum = 0;
+  for (size_t i = 0; i < count; ++i) sum += share_of(towards[i]);
+  const float scale = sum > 1 - least_by_cosine ? (1 - least_by_cosine) / sum : 1;
+  for (size_t i = 0; i < count; ++i) {
+    const Towards& t = towards[i];
+    const float share = share_of(t) * scale;
+    if (share == 0) continue;
+    const Vec3 axis = normalize(places.all()[t.place].centre - at.position);
+    cones_.push_back({Frame(axis), t.height, share, share / (2 * pi_f * t.height)});
+    by_cosine_ -= share;
+    expected_ += t.expected;
+  }
+}
+
+float GatherAim::density_towards(const Vec3& direction) const {
+  float density = 0;
+  for (const Cone& c : cones_)
+    if (length_squared(direction - c.frame.normal) <= 2 * c.height) density += c.density;
+  return density;
+}
+
+float GatherAim::density(const CellHit& at, const Vec3& direction) const {
+  return by_cosine_ * std::max(dot(direction, at.normal), 0.0f) * inv_pi_f +
+         density_towards(direction);
+}
+
+Vec3 GatherAim::direction(const CellHit& at, Vec2 number, float& weight) const {
+  const Frame frame(at.normal);
+  weight = 1;
+  if (cones_.empty()) return frame.to_world(cosine_hemisphere_from_square(number));
+  Vec3 world;
+  if (number.x < by_cosine_) {
+    number.x = std::min(number.x / by_cosine_, below_one);
+    world = frame.to_world(cosine_hemisphere_from_square(number));
+  } else {
+    float left = number.x - by_cosine_;
+    size_t k = 0;
+    while (k + 1 < cones_.size() && left >= cones_[k].share) left -= cones_[k++].share;
+    const Cone& c = cones_[k];
+    const Vec2 d = disk_from_square(Vec2{std::clamp(left / c.share, 0.0f, below_one), number.y});
+    const float below = (sqr(d.x) + sqr(d.y)) * c.height;  // the axis, over 1
+    const float scale = std::sqrt(c.height * (2 - below));
+    world = c.frame.to_world({d.x * scale, d.y * scale, 1 - below});
+  }
+  const float by_cosine = std::max(dot(world, at.normal), 0.0f) * inv_pi_f;
+  weight = by_cosine > 0 ? by_cosine / density(at, world) : 0;
+  return world;
+}
+
+void BrightTally::add(const GatherAim& aim, const Vec3& direction, float weight, float irradiance) {
+  expected_ += double(aim.expected());
+  if (!(weight > 0)) return;
+  const double square = sqr(double(irradiance)) / double(weight);
+  if (aim.is_towards_bright(direction)) {
+    bright_ += square;
+  } else {
+    rest_ += square;
+    rest_rays_ += double(weight);
+  }
+}
+
+void BrightTally::tell(BrightSight& sight) const {
+  if (rest_rays_ > 0) sight.rest = float(rest_ / rest_rays_);
+  if (!(expected_ > 0)) return;
+  const auto scale = float(std::clamp(bright_ / expected_, 1 / most_amiss, most_amiss));
+  for (float& v : sight.visible) v *= scale;
+}
+
+}  // namespace troffer

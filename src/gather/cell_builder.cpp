@@ -1,0 +1,329 @@
+#include "gather/cell_builder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/units.h"
+#include "gather/cell_direct.h"
+#include "gather/cell_rays.h"
+#include "gather/pilot_places.h"
+#include "gather/row_plan.h"
+#include "gather/uneven_cells.h"
+
+namespace troffer {
+
+namespace {
+
+// All measured: docs/cells.md.
+constexpr float size_of_median = 0.06f;  // of a cell, of the median length of gather rays …
+constexpr double size_by_error = 0.58;   // … for fine errors; larger ones take larger cells
+// A cell with fewer first rays than this gets its light straight from sources by draws, this many
+// for a ray.
+constexpr uint32_t rays_for_proofs = 4, draws_of_ray = 2;
+constexpr int most_rounds = 12;
+constexpr size_t tasks_at_a_time = 1 << 14;
+// Points for which so many times as many rays are worth it, or more, get them.
+constexpr double enough_times_more = 1.5;
+constexpr size_t refining_tasks_at_a_time = 1 << 16;
+
+using Clock = std::chrono::steady_clock;
+
+// All that look at cells first.
+struct Asking {
+  size_t askers = 0;           // viewing rays, and points
+  std::vector<PilotHit> seen;  // by gather rays …
+  std::vector<size_t> end;     // … of one task after the other, up to here
+  uint32_t rays = 0;           // of each task
+};
+
+class Builder {
+ public:
+  Builder(const PreparedScene& scene, const DirectLight& direct, const CellBuilderOptions& options,
+          CellStore* store, const StopFlag& stop, Counters& counters)
+      : scene_(scene),
+        walks_(scene, direct.images()),
+        options_(options),
+        stop_(stop),
+        counters_(counters),
+        store_(store),
+        plan_(rows_, options.error, options.seed) {}
+
+  void ask(const CellPilot& pilot);
+  // False once stopped, or where cells are too many.
+  bool make_rows(const std::function<void(double)>& progress);
+  std::unique_ptr<Cells> finish(const DirectLight& direct, const CellPilot& pilot,
+                                Clock::time_point start);
+
+ private:
+  void start_map(const CellsSeen& seen);
+  bool add_direct(const DirectLight& direct, CellDirectLight& lit);
+  void keep(const CellDirectLight& lit);
+  void note(const std::vector<CellTask>& tasks, CellsSeen& seen);
+  bool run(const std::vector<CellTask>& tasks);
+  std::span<const CellHit> hits_of(const CellTask& task) const;
+  bool run_and_go_on(std::vector<CellTask> tasks, double most_cells,
+                     const std::function<void(double)>& progress);
+  bool refine(double times);
+  double rays_for_points(const DirectLight& direct, const CellPilot& pilot,
+                         const CellDirectLight& lit, const CellLight& light);
+
+  const PreparedScene& scene_;
+  GatherWalks walks_;
+  CellBuilderOptions options_;
+  const StopFlag& stop_;
+  Counters& counters_;
+  CellStore* store_;  // null: nothing is kept
+  std::shared_ptr<CellMap> map_;
+  CellRows rows_;
+  RowPlan plan_;
+  Asking asking_;
+  size_t entries_kept_ = 0;  // of rows_, from the store
+  CellStatistics statistics_;
+};
+
+// What is kept, or an empty map of cells as large as suits what was seen.
+void Builder::start_map(const CellsSeen& seen) {
+  if (store_ != nullptr && store_->map) {
+    map_ = std::make_shared<CellMap>(*store_->map);
+    map_->freeze();
+    rows_ = std::move(store_->rows);
+    entries_kept_ = rows_.entry_count();
+    return;
+  }
+  std::vector<float> lengths;
+  for (const CellSeen& c : seen.seen) lengths.push_back(c.distance);
+  const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
+  if (!lengths.empty()) std::nth_element(lengths.begin(), middle, lengths.end());
+  const float median = lengths.empty() ? 0 : *middle;
+  const float size =
+      size_of_median *
+      float(std::pow(coarseness(options_.error, RowPlan::fine_error), size_by_error));
+  // Finer than this, voxels would be no larger than the rounding of positions.
+  const Box box = bounds(scene_.scene);
+  const float least = box.is_empty() ? 1.0f : std::max(1e-5f * box.diagonal(), least_cell);
+  map_ = std::make_shared<CellMap>(scene_.tracer, std::max(size * median, least));
+}
+
+void Builder::ask(const CellPilot& pilot) {
+  const std::vector<PilotPlace> places = places_of(pilot, walks_, counters_);
+  asking_.askers = pilot.viewing.size() + pilot.places.size();
+  std::vector<CellTask> tasks;
+  const auto rays = uint32_t(std::clamp<size_t>(
+      RowPlan::pilot_rays / std::max<size_t>(places.size(), 1), RowPlan::rays_of_row, 2048));
+  const uint32_t sets = options_.points.most_rays > 0 ? PointsSeen::sets : 1;
+  for (uint32_t i = 0; i < places.size(); ++i)
+    for (uint32_t k = 0; k < sets && !places[i].is_gloss; ++k) {
+      CellTask& t = tasks.emplace_back();
+      t.count = rays / sets;
+      t.stream = hash_of(options_.seed, i + k * uint32_t(places.size()), uint64_t{0x7069'6c6f});
+      t.weight = places[i].weight / float(sets * t.count);
+      t.from = {&places[i].hit, 1};
+    }
+  asking_.rays = rays / sets;
+  const size_t tasks_of_rays = tasks.size();
+  CellsSeen seen;
+  trace_cell_rays(walks_, nullptr, tasks, options_.threads, options_.group, stop_, seen, counters_);
+  if (stop_.load()) seen.seen.clear();  // not all of them
+  for (const PilotPlace& p : places) {
+    if (!p.is_gloss) continue;
+    seen.seen.push_back({uint32_t(tasks.size()), no_cell, p.distance, Rgb{1}, p.hit});
+    tasks.emplace_back().weight = p.weight;
+  }
+  start_map(seen);
+  map_->look_closely(options_.points.most_rays > 0, options_.threads);
+  map_->halve_where(uneven_cells(scene_));
+  for (const CellSeen& c : seen.seen) {
+    const uint32_t cell = map_->add(c.hit, c.distance, true);
+    const float share = tasks[c.task].weight, weight = luminance(c.weight);
+    plan_.ask(cell, share * weight);
+    if (tasks[c.task].count == 0) continue;
+    asking_.end.resize(c.task, asking_.seen.size());
+    asking_.seen.push_back({c.hit, cell, share, weight});
+  }
+  asking_.end.resize(tasks_of_rays, asking_.seen.size());
+  plan_.see(map_->size());  // what is kept, where nothing is seen
+  plan_.end_asking();
+  rows_.finish(map_->size());
+}
+
+std::span<const CellHit> Builder::hits_of(const CellTask& task) const {
+  const std::span<const CellHit> hits = map_->hits(task.cell);
+  if (hits.size() < 2) return hits;
+  const size_t half = hits.size() / 2;
+  return task.is_second_half ? hits.subspan(half) : hits.first(half);
+}
+
+// New cells where there were none, and the rows.
+void Builder::note(const std::vector<CellTask>& tasks, CellsSeen& seen) {
+  std::vector<RowEntry> entries;
+  size_t at = 0;
+  for (uint32_t t = 0; t < tasks.size(); ++t) {
+    entries.clear();
+    for (; at < seen.seen.size() && seen.seen[at].task == t; ++at) {
+      CellSeen& c = seen.seen[at];
+      if (c.cell == no_cell) c.cell = map_->add(c.hit, c.distance);
+      entries.push_back({c.cell, c.weight});
+    }
+    rows_.add({tasks[t].cell, tasks[t].count, 0, tasks[t].is_second_half, seen.emission[t]},
+              entries);
+  }
+  TROFFER_CHECK(at == seen.seen.size());
+}
+
+bool Builder::run(const std::vector<CellTask>& tasks) {
+  CellsSeen seen;
+  std::vector<CellTask> some;
+  for (size_t first = 0; first < tasks.size(); first += tasks_at_a_time) {
+    if (stop_.load(std::memory_order_relaxed)) return false;
+    some.assign(tasks.begin() + std::ptrdiff_t(first),
+                tasks.begin() + std::ptrdiff_t(std::min(first + tasks_at_a_time, tasks.size())));
+    for (CellTask& t : some) t.from = hits_of(t);
+    trace_cell_rays(walks_, map_.get(), some, options_.threads, options_.group, stop_, seen,
+                    counters_);
+    if (stop_.load()) return false;
+    note(some, seen);
+  }
+  plan_.see(map_->size());
+  rows_.finish(map_->size());
+  return true;
+}
+
+// These, and then first rays of all that needs them. False once stopped, or where cells are too
+// many.
+bool Builder::run_and_go_on(std::vector<CellTask> tasks, double most_cells,
+                            const std::function<void(double)>& progress) {
+  for (int round = 1; !tasks.empty(); ++round) {
+    if (!run(tasks) || double(map_->size()) > most_cells) return false;
+    ++statistics_.rounds;
+    if (progress) progress(1 - 1 / (1.0 + 0.5 * statistics_.rounds));
+    if (round == most_rounds) break;
+    tasks = plan_.first_tasks();
+  }
+  return !stop_.load();
+}
+
+// As many further rays as first ones.
+bool Builder::make_rows(const std::function<void(double)>& progress) {
+  const double most = options_.most_cells;
+  return double(map_->size()) <= most && run_and_go_on(plan_.first_tasks(), most, progress) &&
+         run_and_go_on(plan_.further_tasks(map_->frozen()), most, progress);
+}
+
+// So many times as many rays as there are. Not of narrow cells: gather rays pass them on.
+bool Builder::refine(double times) {
+  std::vector<CellTask> tasks = plan_.refining_tasks(times * double(rows_.ray_count()));
+  std::erase_if(tasks, [&](const CellTask& t) { return map_->is_narrow(t.cell); });
+  for (size_t begin = 0; begin < tasks.size(); begin += refining_tasks_at_a_time) {
+    if (map_->size() > RowPlan::most_cells) break;
+    const size_t end = std::min(begin + refining_tasks_at_a_time, tasks.size());
+    if (!run({tasks.begin() + std::ptrdiff_t(begin), tasks.begin() + std::ptrdiff_t(end)}))
+      return false;
+  }
+  return run_and_go_on(plan_.first_tasks(), std::numeric_limits<double>::infinity(), nullptr);
+}
+
+// How many times the rays that there are: for what points err by the noise of cells, but for narrow
+// ones, which their rays pass.
+double Builder::rays_for_points(const DirectLight& direct, const CellPilot& pilot,
+                                const CellDirectLight& lit, const CellLight& light) {
+  if (options_.points.most_rays <= 0 || store_ != nullptr) return 1;
+  PointsSeen points{asking_.rays, {}, asking_.end};
+  for (const PilotHit& h : asking_.seen) points.seen.push_back({h.cell, h.weight});
+  std::vector<float> straight;
+  for (const Rgb& e :
+       direct_light_at(pilot.places, walks_, direct, options_.threads, stop_, counters_))
+    straight.push_back(luminance(e));
+  CellsOff off{rows_.differences(light.irradiance, options_.threads), lit.half_difference};
+  for (uint32_t c = 0; c < map_->size(); ++c)
+    if (map_->is_narrow(c)) off.by_rows[c] = off.by_hits[c] = 0;
+  const PointsNoise noise = noise_at_points(points, straight, rows_, light.irradiance, off,
+                                            options_.points, options_.threads);
+  return times_as_many_rays(noise, double(rows_.ray_count()));
+}
+
+// Light straight from sources, where it is not kept, or there yet; false once stopped.
+bool Builder::add_direct(const DirectLight& direct, CellDirectLight& lit) {
+  size_t first = lit.irradiance.size();
+  if (first == 0 && map_->frozen() > 0 && store_->direct_error <= options_.direct_error) {
+    lit = {std::move(store_->direct), std::move(store_->direct_half_difference)};
+    first = map_->frozen();
+  }
+  // What is kept may matter more to the next view.
+  std::vector<uint8_t> draws(map_->size(), 0);
+  for (uint32_t c = 0; store_ == nullptr && c < draws.size(); ++c)
+    if (plan_.first_rays(c) < rays_for_proofs)
+      draws[c] = uint8_t(draws_of_ray * plan_.first_rays(c));
+  add_direct_light(*map_, walks_, direct, draws, first, options_.threads, options_.group, stop_,
+                   lit, counters_);
+  return !stop_.load();
+}
+
+// Hits are no longer needed but by those who go on from here.
+void Builder::keep(const CellDirectLight& lit) {
+  if (store_ == nullptr) return map_->forget_hits();
+  const bool is_relit = map_->frozen() > 0 && store_->direct_error > options_.direct_error;
+  store_->is_changed =
+      map_->size() > map_->frozen() || rows_.entry_count() > entries_kept_ || is_relit;
+  if (map_->frozen() == 0 || is_relit) store_->direct_error = options_.direct_error;
+  store_->map = map_;
+  store_->rows = std::move(rows_);
+  store_->direct = lit.irradiance;
+  store_->direct_half_difference = lit.half_difference;
+}
+
+std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilot& pilot,
+                                       Clock::time_point start) {
+  CellDirectLight lit;
+  const auto solve = [&] {
+    return rows_.solve(lit.irradiance, lit.half_difference, plan_.importance(), options_.threads);
+  };
+  if (!add_direct(direct, lit)) return nullptr;
+  CellLight light = solve();
+  const double times = rays_for_points(direct, pilot, lit, light);
+  if (times >= enough_times_more) {
+    if (!refine(times) || !add_direct(direct, lit)) return nullptr;
+    light = solve();
+  }
+  std::vector<NoiseDraws> noise;
+  if (options_.points.most_rays > 0)
+    noise = rows_.noise_draws(rows_.differences(light.irradiance, options_.threads),
+                              lit.half_difference, options_.threads);
+  statistics_.unresolved = plan_.unresolved();
+  statistics_.cells = map_->size();
+  double sum = 0;
+  for (size_t c = 0; c < plan_.asked().size(); ++c)
+    sum += double(plan_.asked()[c]) * double(luminance(light.irradiance[c]));
+  statistics_.typical = sum / pi / double(std::max<size_t>(asking_.askers, 1));
+  statistics_.entries = rows_.entry_count();
+  statistics_.rays = rows_.ray_count();
+  statistics_.iterations = light.iterations;
+  statistics_.size = double(map_->size_of_cells());
+  statistics_.bytes = double(map_->bytes()) + double(rows_.entry_count()) * sizeof(RowEntry) +
+                      double(noise.size() * sizeof(NoiseDraws));
+  BrightPlaces bright(scene_.tracer, std::move(asking_.seen), light.irradiance,
+                      map_->size_of_cells());
+  keep(lit);
+  statistics_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return std::make_unique<Cells>(scene_, std::move(map_), std::move(lit.irradiance),
+                                 std::move(light.irradiance), std::move(light.half_difference),
+                                 std::move(noise), statistics_, direct.images(), std::move(bright));
+}
+
+}  // namespace
+
+std::unique_ptr<Cells> make_cells(const PreparedScene& scene, const DirectLight& direct,
+                                  const CellPilot& pilot, const CellBuilderOptions& options,
+                                  CellStore* store, const std::function<void(double)>& progress,
+                                  const StopFlag& stop, Counters& counters) {
+  const Clock::time_point start = Clock::now();
+  Builder builder(scene, direct, options, store, stop, counters);
+  builder.ask(pilot);
+  if (!builder.make_rows(progress)) return nullptr;
+  return builder.finish(direct, pilot, start);
+}
+
+}  // namespace troffer

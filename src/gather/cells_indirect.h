@@ -1,0 +1,36 @@
+// Indirect light by rays that gather what cells reflect (docs/cells.md).
+#pragma once
+
+#include <memory>
+
+#include "gather/gather_records.h"
+#include "transport/indirect_light.h"
+
+namespace troffer {
+
+class CellsIndirect final : public IndirectLight {
+ public:
+  // records: of the picture; null: there is none.
+  CellsIndirect(std::unique_ptr<const Cells> cells, std::unique_ptr<const GatherRecords> records)
+      : cells_(std::move(cells)), records_(std::move(records)) {}
+
+  std::unique_ptr<IndirectLightScratch> make_scratch() const override;
+  void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
+             Counters& counters) const override;
+  bool gathers_gloss() const override { return records_ != nullptr; }
+  bool is_known() const override { return records_ != nullptr; }
+  void know(const WaveHits& wave, RadianceBatch& out) const override;
+  void begin(const SampleRequest& request, IndirectLightScratch& scratch) const override;
+  void flush(IndirectLightScratch& scratch, RadianceBatch& out, Counters& counters) const override;
+  // By one ray per sample.
+  void gather(const SensorBatch& sensors, IndirectLightScratch& scratch, RadianceBatch& out,
+              Counters& counters) const override;
+
+ private:
+  struct Scratch;
+
+  std::unique_ptr<const Cells> cells_;
+  std::unique_ptr<const GatherRecords> records_;
+};
+
+}  // namespace troffer

@@ -1,0 +1,133 @@
+// How records are made (gather_records.h): gathers, further rays, fits; each over all the picture
+// before the next. Where pixels lie close together for how light changes, every second one of every
+// second row has a record, and those between have none (gather_thinning.cpp).
+#pragma once
+
+#include <vector>
+
+#include "cells/linear_fit.h"
+#include "gather/gather_records.h"
+
+namespace troffer {
+
+class GatherPass {
+ public:
+  static constexpr int most_pixels = 16;                      // radius of a fit
+  static constexpr int usual_pixels = 5;                      // … of what is usual around it
+  static constexpr uint32_t first_rays = 8, most_rays = 512;  // of a record
+  // Radii of fits in harmonic mean distances: within it light is nearly linear.
+  static constexpr float near_radius = 0.06f;
+
+  GatherPass(const Cells& cells, const PictureView& view, const GatherOptions& options,
+             const StopFlag& stop, GatherRecords& out);
+  bool run(const std::function<void(double)>& progress, Counters& counters);
+
+ private:
+  struct Tile {
+    PixelWindow pixels;                 // within the window
+    int x = 0, y = 0;                   // its first pixel in the picture's own tiling
+    std::vector<GatherRecord> records;  // by pixels, row by row; until they are joined
+    std::vector<uint16_t> counts;       // of each pixel
+    BrightSight sight;                  // from its surfaces
+  };
+  struct Worker {
+    Worker() { viewing.is_view = true; }
+    GatherScratch viewing;
+    CellsScratch cells;
+    Counters counters;
+  };
+  // Of a record's two sums, one.
+  using Part = GatherSums GatherRecord::*;
+  // What is known of a record's surroundings.
+  struct Surroundings {
+    float nearness = 0;  // mean of 1 / distance
+    float variance = 0;  // of one gather of 16 rays, by the spread of its rays
+    float records = 0;   // of which this is the mean
+  };
+  // Of one of a record's sums.
+  struct Fitted {
+    Rgb value;
+    float error = 0;
+    bool is_one_sided = false;  // a mean of neighbours that lie to one side
+  };
+  // Of the records around one: which are looked at.
+  enum class Asked : uint8_t { all, other_half };
+  // Of a record's rays.
+  enum class Rays : uint8_t { first, further };
+
+  bool has_close_pixels(Worker& w) const;
+  bool thin(std::vector<Tile>& tiles, Counters& counters);
+  bool is_spared(int x, int y, uint32_t r) const;
+  void leave_out(const std::vector<uint8_t>& is_left_out);
+  void see(Tile& tile, Worker& w) const;
+  Ray ray_of(int x, int y, float& spread) const;
+  void gather(std::vector<GatherRecord>& records, const std::vector<uint32_t>& counts,
+              const Tile& tile, const std::vector<uint32_t>& places, Rays which, Worker& w,
+              BrightTally* tally = nullptr) const;
+  void join(std::vector<Tile>& tiles);
+  bool is_beside(int x, int y, uint32_t r) const;
+  float usual_rays(int x, int y, uint32_t r) const;
+  bool is_neighbour(uint32_t at, uint32_t other, Part part) const;
+  Surroundings around(int x, int y, uint32_t r, Part part, Asked asked = Asked::all) const;
+  static bool is_on_lattice(int x, int y) { return ((x | y) & 1) == 0; }
+  int step_of(int x, int y, int step) const;
+  LinearFit fit(int x, int y, uint32_t r, Part part, float radius, int along,
+                Asked asked = Asked::all) const;
+  static FittedLight solved(const LinearFit& fit, const Surroundings& s);
+  float allowed_error(const GatherRecord& r, Part part, float around) const;
+  uint32_t further_rays(int x, int y, uint32_t r, Part part) const;
+  float fit_part(int x, int y, uint32_t r, Part part, Fitted& fitted) const;
+  float own_rays(int x, int y, uint32_t r, Part part) const;
+  FittedRecord fitted(int x, int y, uint32_t r) const;
+  void gather_wanted(const Tile& tile, Rays which, Worker& w);
+  // work: all but how many tiles and threads there are.
+  bool over_tiles(std::vector<Tile>& tiles, SharedWork work, Counters& counters);
+  bool see_all(std::vector<Tile>& tiles, Counters& counters);
+  bool gather_wanted(std::vector<Tile>& tiles, Rays which, Counters& counters);
+  template <class Visit>
+  void records_of(const Tile& tile, const Visit& visit) const;
+  template <class T, class Of>
+  bool for_records(std::vector<Tile>& tiles, Counters& counters, std::vector<T>& values,
+                   const Of& of);
+
+  const Cells& cells_;
+  const PictureView& view_;
+  const GatherOptions& options_;
+  const StopFlag& stop_;
+  GatherRecords& out_;
+  std::vector<Worker> workers_;
+  bool is_thinned_ = false;       // pixels between others may have no record
+  std::vector<uint8_t> beside_;   // of each record: whether something else stands close by
+  std::vector<uint32_t> wanted_;  // rays of each record, from now on
+  // Of the places around each record, on average.
+  std::vector<float> usual_rays_;
+};
+
+// Visits (x, y, record).
+template <class Visit>
+void GatherPass::records_of(const Tile& t, const Visit& visit) const {
+  for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
+    for (int x = t.pixels.x0; x < t.pixels.x1; ++x)
+      out_.of_pixel(x, y, [&](uint32_t r) { visit(x, y, r); });
+}
+
+// A value for every record, of(x, y, record), which looks at records around it, not at these
+// values.
+template <class T, class Of>
+bool GatherPass::for_records(std::vector<Tile>& tiles, Counters& counters, std::vector<T>& values,
+                             const Of& of) {
+  SharedWork work;
+  work.act = [&](size_t t, size_t) {
+    records_of(tiles[t], [&](int x, int y, uint32_t r) { values[r] = of(x, y, r); });
+    return true;
+  };
+  work.save = [&](size_t t, SharedWork::Bytes& out) {
+    records_of(tiles[t], [&](int, int, uint32_t r) { append(out, values[r]); });
+  };
+  work.load = [&](size_t t, ByteReader in) {
+    records_of(tiles[t], [&](int, int, uint32_t r) { values[r] = in.next<T>(); });
+  };
+  return over_tiles(tiles, std::move(work), counters);
+}
+
+}  // namespace troffer

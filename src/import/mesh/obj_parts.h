@@ -1,0 +1,56 @@
+// The triangles of an OBJ file by object, group and material, each part with vertices of its own.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "import/mesh/obj_piece.h"
+
+namespace troffer {
+
+struct ObjPart {
+  std::string name, material;
+  std::vector<Triangle> triangles;
+  // Per vertex what it is made of, and the next vertex at the same position.
+  struct Vertex {
+    ObjCorner corner;
+    uint32_t next = obj_nothing;
+  };
+  std::vector<Vertex> vertices;
+  bool has_uvs = false, has_normals = false;
+  bool is_painted = false;  // has vertices made where colours of vertices had been seen
+};
+
+class ObjParts {
+ public:
+  // Names of what comes next.
+  void set_object(std::string name);
+  void set_group(std::string name);
+  void set_material(std::string name);
+  void begin_colors() { has_colors_ = true; }
+
+  // Triangles of three corners each, none of them at the number `positions` or beyond.
+  void add(const ObjCorner* corners, size_t triangles, size_t positions);
+
+  std::vector<std::unique_ptr<ObjPart>>& all() { return all_; }
+
+ private:
+  // First vertex of the current part at a position, valid where the stamp is the part's.
+  struct First {
+    uint32_t stamp = 0, vertex = obj_nothing;
+  };
+  std::string object_, group_, material_;
+  bool has_colors_ = false;
+  std::vector<std::unique_ptr<ObjPart>> all_;
+  std::unordered_map<std::string, ObjPart*> by_key_;
+  ObjPart* current_ = nullptr;  // where triangles go; null after a change of names
+  std::vector<First> firsts_;
+  uint32_t stamp_ = 0;
+
+  void select();
+  uint32_t vertex_of(const ObjCorner& corner);
+};
+
+}  // namespace troffer

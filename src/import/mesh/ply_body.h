@@ -1,0 +1,50 @@
+// The body of a PLY file: scalars one after the other, in any of the three encodings.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "import/mesh/ply_header.h"
+
+namespace troffer {
+
+class PlyBody {
+ public:
+  // From the byte `begin`, on that line; the text must outlive this.
+  PlyBody(std::string_view text, size_t begin, int line, PlyFormat format, const std::string& file)
+      : text_(text), at_(begin), line_start_(begin), line_(line), format_(format), file_(file) {}
+
+  double next(PlyType type) {
+    return format_ == PlyFormat::ascii ? next_ascii(type) : next_binary(type);
+  }
+  size_t at() const { return at_; }
+  size_t remaining() const { return text_.size() - at_; }
+  bool is_ascii() const { return format_ == PlyFormat::ascii; }
+  // Goes on to the next scalar of text; whether there is none.
+  bool is_done();
+  // On to the byte `at`, past `lines` ends of lines.
+  void go_to(size_t at, int lines) {
+    at_ = line_start_ = at;
+    line_ += lines;
+  }
+  // On to behind the last scalar before the byte `end`, past `lines` ends of lines before that.
+  void go_behind_scalar(size_t end, int lines);
+  // The length of a list. InputError: negative, or the text is too short for as many.
+  size_t list_length(const PlyProperty& property);
+  void skip(const PlyProperty& property);
+  // At the scalar read last.
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  std::string_view text_;
+  size_t at_, last_ = 0, line_start_;
+  int line_;
+  PlyFormat format_;
+  const std::string& file_;
+
+  void skip_blanks();
+  double next_ascii(PlyType type);
+  double next_binary(PlyType type);
+};
+
+}  // namespace troffer

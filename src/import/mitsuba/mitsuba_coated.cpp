@@ -1,0 +1,156 @@
+// Mitsuba's bsdfs with a clear coat.
+#include <algorithm>
+#include <cmath>
+
+#include "import/mitsuba/mitsuba_bsdf.h"
+#include "import/mitsuba/mitsuba_values.h"
+#include "import/two_widths.h"
+
+namespace troffer {
+
+namespace {
+
+// Of another kind than diffuse, which is a coated diffuse one then.
+bool can_be_coated(const Material& m) {
+  return m.coat.value <= 0 &&
+         (m.kind == MaterialKind::conductor || m.kind == MaterialKind::coated_diffuse ||
+          m.kind == MaterialKind::dielectric || m.kind == MaterialKind::metallic_roughness);
+}
+
+// The second lobe of the plugin: a quarter of `clearcoat`, of an index of 1.5, between .1 and .001
+// wide; of ggx, where the plugin's has longer tails.
+void read_principled_coat(const MitsubaNode& node, MitsubaTextures& textures, Material& m) {
+  m.coat = textures.real(node, {"clearcoat"}, 0);
+  m.coat.value = 0.25f * std::clamp(m.coat.value, 0.0f, 1.0f);
+  const double gloss = std::clamp(get_number(node, "clearcoat_gloss", 0), 0.0, 1.0);
+  m.coat_roughness.value = float(std::sqrt(lerp(0.1, 0.001, gloss)));
+}
+
+// A number or colour of zeros.
+bool is_nothing(const MitsubaNode& parameter) {
+  if (!is_color(parameter) || !parameter.has("value")) return false;
+  const std::string& text = parameter.attribute("value");
+  return text.find_first_not_of("0.,; ") == std::string::npos;
+}
+
+// What light keeps on its way into the coat and out again, from all directions evenly.
+float kept_evenly(float exponent, float index) {
+  constexpr int steps = 64;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double sine2 = (i + 0.5) / steps / sqr(double(index));  // Lambert's law, bent
+    sum += std::exp(-double(exponent) / std::sqrt(1 - sine2));
+  }
+  return float(sqr(sum / steps));
+}
+
+// The base darker by what the coat absorbs.
+void absorb(Material& m, Rgb exponent, float index) {
+  if (m.kind == MaterialKind::dielectric) {  // straight through, on one side or both of a sheet
+    for (size_t c = 0; c < 3; ++c)
+      m.base_color.value[c] *= std::exp(-exponent[c] * (m.is_thin ? 2.0f : 1.0f));
+    return;
+  }
+  if (m.kind == MaterialKind::conductor) {  // straight on
+    ColorInput& factor = m.is_reflectance ? m.base_color : m.specular_color;
+    for (size_t c = 0; c < 3; ++c) factor.value[c] *= std::exp(-2 * exponent[c]);
+    return;
+  }
+  for (size_t c = 0; c < 3; ++c) m.base_color.value[c] *= kept_evenly(exponent[c], index);
+}
+
+}  // namespace
+
+Material MitsubaBsdfs::principled(const MitsubaNode& node) {
+  Material m;
+  m.kind = MaterialKind::metallic_roughness;
+  m.base_color = textures_.color(node, {"base_color"}, Rgb{0.5f});
+  m.roughness = textures_.real(node, {"roughness"}, 0.5f);
+  m.roughness_meaning = RoughnessMeaning::alpha_is_square;
+  m.metallic = textures_.real(node, {"metallic"}, 0);
+  m.transmission = textures_.real(node, {"spec_trans"}, 0);
+  m.is_thin = node.type == "principledthin";
+  const bool is_opaque = m.transmission.texture < 0 && m.transmission.value <= 0;
+  if (is_opaque && !m.is_thin) m.back_faces = BackFaces::black;
+  if (find_parameter(node, "eta")) {
+    m.ior = float(index_of_refraction(node, "eta", "bk7"));
+  } else {
+    const double specular = std::clamp(get_number(node, "specular", 0.5), 0.0, 1.0);
+    m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
+  }
+  if (m.is_thin) {  // 2: all of what is diffuse
+    m.diffuse_transmission = textures_.real(node, {"diff_trans"}, 0);
+    m.diffuse_transmission.value *= 0.5f;
+    m.diffuse_transmission_color = m.base_color;
+  }
+  read_principled_coat(node, textures_, m);
+  std::string left_out;
+  const auto leave_out = [&](const char* name) {
+    const MitsubaNode* p = find_parameter(node, name);
+    if (!p || is_nothing(*p)) return false;
+    left_out += std::string(left_out.empty() ? "" : ", ") + name;
+    return true;
+  };
+  if (leave_out("sheen")) leave_out("sheen_tint");
+  for (const char* name : {"spec_tint", "flatness"}) leave_out(name);
+  find_parameter(node, "sheen_tint");
+  const FloatInput grain = textures_.real(node, {"anisotropic"}, 0);
+  if (grain.texture < 0 && m.roughness.texture < 0 && is_opaque && !m.is_thin && grain.value > 0) {
+    // Roughness is squared to a width: the square root of the model's aspect.
+    const float aspect = std::pow(1 - 0.9f * std::min(grain.value, 1.0f), 0.25f);
+    set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
+  } else if (grain.texture >= 0 || grain.value > 0) {
+    leave_out("anisotropic");
+  }
+  for (const char* name : {"main_specular_sampling_rate", "clearcoat_sampling_rate",
+                           "diffuse_reflectance_sampling_rate"})
+    find_parameter(node, name);
+  approximate(node, "as metal and coat mixed by its weights" +
+                        (left_out.empty() ? "" : ", without " + left_out));
+  return m;
+}
+
+std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
+  std::optional<Material> m = nested(node);
+  const ColorInput absorbed = textures_.real_color(node, "sigma_a");
+  const Rgb exponent = absorbed.value * float(std::max(get_number(node, "thickness", 1), 0.0));
+  const ColorInput specular = textures_.color(node, {"specular_reflectance"}, Rgb{1});
+  const bool is_diffuse = m && m->kind == MaterialKind::diffuse && !m->is_alpha_masked &&
+                          m->diffuse_transmission.value <= 0;
+  if (!m || (!is_diffuse && !can_be_coated(*m))) {
+    for (const char* name : {"alpha", "int_ior", "ext_ior", "distribution"})
+      find_parameter(node, name);
+    if (m) approximate(node, "without the coat");
+    return m;
+  }
+  const auto index = float(index_of_refraction(node, "int_ior", "bk7") /
+                           index_of_refraction(node, "ext_ior", "air"));
+  if (!exponent.is_black()) {
+    absorb(*m, exponent, index);
+    approximate(node, "what its coat absorbs as a colour of what lies below");
+  }
+  if (is_diffuse) {
+    m->kind = MaterialKind::coated_diffuse;
+    if (node.type == "roughcoating") read_alpha(node, *m);
+    m->ior = index;
+    m->specular_color = specular;
+    return m;
+  }
+  if (specular.texture >= 0 || specular.value != Rgb{1})
+    approximate(node, "without its specular_reflectance");
+  m->coat.value = 1;
+  if (m->kind == MaterialKind::dielectric)
+    approximate(node, "over glass as a coat into which light goes straight on");
+  if (node.type == "roughcoating") {
+    Material coat;
+    read_alpha(node, coat);
+    m->coat_roughness = coat.roughness;
+  }
+  // Both are told as the base tells its own.
+  if (m->roughness_meaning == RoughnessMeaning::alpha_is_square)
+    m->coat_roughness.value = std::sqrt(m->coat_roughness.value);
+  m->coat_ior = index;
+  return m;
+}
+
+}  // namespace troffer

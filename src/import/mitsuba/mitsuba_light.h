@@ -1,0 +1,20 @@
+// Mitsuba's emitter plugins without surface -> lights.
+//
+// References: [1] W. Jakob et al., "Mitsuba 3 documentation: Emitters"; [2] W. Jakob, "Mitsuba 0.6
+//   Documentation", §8.7 (Emitters); [3] A. J. Preetham, P. Shirley, B. Smits, "A Practical
+//   Analytic Model for Daylight", SIGGRAPH 1999 (appendix A.2: luminance).
+#pragma once
+
+#include "import/mitsuba/mitsuba_texture.h"
+#include "import/mitsuba/mitsuba_tree.h"
+#include "scene/scene.h"
+
+namespace troffer {
+
+// Appends the lights of an <emitter> that stands by itself to the scene, positions counted from its
+// origin. Those that are not supported are warnings that name them. InputError: parameters that
+// cannot be used.
+void add_mitsuba_light(const MitsubaNode& node, const MitsubaTree& tree, MitsubaTextures& textures,
+                       Scene& scene);
+
+}  // namespace troffer

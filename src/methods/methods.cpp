@@ -1,0 +1,363 @@
+#include "methods/methods.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/error.h"
+#include "certified/certified_direct.h"
+#include "certified/imaged_direct.h"
+#include "certified/staged_direct.h"
+#include "gather/cells_indirect.h"
+#include "kj92/bintree_direct.h"
+#include "kj92/radiosity_indirect.h"
+#include "light/far_cells.h"
+#include "methods/path.h"
+#include "methods/path_forecast.h"
+#include "methods/paths_indirect.h"
+#include "transport/fixed_direct.h"
+#include "transport/wave_integrator.h"
+
+namespace troffer {
+
+namespace {
+
+// Light at cells, and at what gloss shows: certified as at first surfaces, but for an error that
+// their number makes small, or what carries it.
+double error_beyond(const MethodInput& in) {
+  constexpr double least_error = 0.1;
+  return std::max(in.settings.error, least_error);
+}
+CertifiedSettings settings_beyond(const MethodInput& in) {
+  constexpr int few_points = 8;
+  CertifiedSettings s = certified_settings(error_beyond(in), in.scene.scene.lights.size());
+  s.gloss_samples = few_points;
+  return s;
+}
+
+// … at the first viewing rays of a pixel: where a hit takes more rays than so many draws, which err
+// by less than such a picture may, they take its place.
+CertifiedSettings settings_of_first(const MethodInput& in) {
+  constexpr double coarse = 0.2;
+  constexpr int draws = 32;
+  CertifiedSettings s =
+      certified_settings(in.settings.error, in.scene.scene.lights.size(), in.settings.viewing_rays);
+  if (in.cells != nullptr && in.cells->view != nullptr && in.settings.error >= coarse)
+    s.draws = draws;
+  return s;
+}
+
+// In pictures by draws where certificates take more, by few for errors from `coarse` on. (Points
+// that are measured share cells, and would err by one and the same noise of theirs.)
+CertifiedSettings drawn_beyond(const MethodInput& in, double coarse) {
+  constexpr int draws = 16, few_draws = 8;  // powers of two: stratified best
+  CertifiedSettings s = settings_beyond(in);
+  if (in.cells->view != nullptr) s.draws = in.settings.error >= coarse ? few_draws : draws;
+  return s;
+}
+// … at further viewing rays of a pixel, each of which is a small part of it, and at what gloss
+// shows of all of them.
+CertifiedSettings settings_of_further(const MethodInput& in) {
+  CertifiedSettings s = drawn_beyond(in, 0.1);
+  s.matte_times = 2;
+  return s;
+}
+// … at cells, which have eight hits or more each.
+CertifiedSettings settings_of_cells(const MethodInput& in) {
+  return drawn_beyond(in, 0.02);
+}
+
+// By cells, a picture errs by half of what is asked of it, or less; so it should by paths.
+double error_by_paths(double asked) {
+  return 0.75 * asked;
+}
+int most_by_paths(const MethodSettings& s) {
+  constexpr int most = 1 << 14;
+  return s.most_viewing_rays > 0 ? s.most_viewing_rays : most;
+}
+
+// What neighbours share errs alike in many pixels: it is seen as stains where as much noise of
+// single pixels is not. So light that is gathered errs by less than is asked, down to 1 %.
+double error_of_gather(double asked) {
+  constexpr double as_asked = 0.01;
+  return std::sqrt(asked * std::min(asked, as_asked));
+}
+
+std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in, const DirectLight& direct,
+                                                   double most_cells) {
+  TROFFER_CHECK(in.cells != nullptr);
+  const auto part = [&](double first, double last) -> std::function<void(double)> {
+    if (!in.cells->progress) return nullptr;
+    return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
+  };
+  std::unique_ptr<Cells> cells =
+      make_cells(in.scene, direct, in.cells->pilot,
+                 {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error,
+                  most_cells, in.cells->group, in.cells->points},
+                 in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
+  if (!cells) return nullptr;
+  in.cells->statistics = cells->statistics();
+  if (in.cells->points.most_rays > 0)
+    cells->look_closely_where_worth_it(in.cells->pilot.places, in.cells->seed, in.cells->counters);
+  std::unique_ptr<GatherRecords> records;
+  if (in.cells->view != nullptr) {
+    const GatherOptions options{error_of_gather(in.settings.error), cells->statistics().typical,
+                                in.settings.threads, in.cells->seed, in.cells->group};
+    records = GatherRecords::make(*cells, *in.cells->view, options, part(0.4, 1), in.cells->stop,
+                                  in.cells->counters);
+    if (!records) return nullptr;
+  }
+  return std::make_unique<CellsIndirect>(std::move(cells), std::move(records));
+}
+
+// Lights in mirrors, for all of them.
+struct Stage {
+  std::unique_ptr<DirectLight>& direct;
+  CertifiedSettings settings;
+};
+void add_images(const MethodInput& in, std::initializer_list<Stage> stages) {
+  const std::shared_ptr<const MirrorImages> images = MirrorImages::make(in.scene);
+  if (!images) return;
+  std::vector<std::shared_ptr<const Occluders>> occluders;
+  for (const MirrorImages::Image& image : images->all())
+    occluders.push_back(std::make_shared<const Occluders>(image.scene->scene, &image.scene->glass));
+  for (const Stage& s : stages)
+    if (s.direct)
+      s.direct = std::make_unique<ImagedDirect>(std::move(s.direct), images, occluders, s.settings);
+}
+
+// What may hide a light that has a certificate: asked for nothing else, and empty where there is
+// none.
+std::shared_ptr<const Occluders> occluders_for(const MethodInput& in) {
+  const std::vector<Light>& lights = in.scene.scene.lights;
+  const bool is_asked = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
+    return has_surface(light.kind) || has_far_cells(light.kind);
+  });
+  if (!is_asked) return std::make_shared<const Occluders>(Scene());
+  return std::make_shared<const Occluders>(in.scene.scene, &in.scene.glass);
+}
+
+// What paths would take for the picture, where they may take the place of cells.
+std::optional<PathForecast> forecast(const MethodInput& in) {
+  const CellInput& cells = *in.cells;
+  if (in.settings.indirect != Indirect::automatic || cells.view == nullptr ||
+      cells.store != nullptr)
+    return std::nullopt;
+  const int most = most_by_paths(in.settings);
+  const PathForecast f = forecast_paths(in.scene, *cells.view, error_by_paths(in.settings.error),
+                                        most, cells.seed, in.cells->counters);
+  // Where few rays are allowed, hardly any pixel may want more than that.
+  if (4 * f.viewing_rays > most) return std::nullopt;
+  return f;
+}
+
+std::unique_ptr<Integrator> make_paths(const MethodInput& in, const PathForecast& forecast) {
+  return std::make_unique<PathIntegrator>(
+      in.scene, PathOptions{in.settings.depth, false,
+                            sampling_by_paths(forecast, error_by_paths(in.settings.error),
+                                              most_by_paths(in.settings))});
+}
+
+// Light straight from sources alone. A pixel's further viewing rays are many, and what they show is
+// what it errs by: each may err by more, and is drawn where certificates take more than that.
+std::unique_ptr<Integrator> make_refined_direct(const MethodInput& in,
+                                                const std::shared_ptr<const Occluders>& occluders,
+                                                std::unique_ptr<DirectLight> first) {
+  constexpr double more = 3;
+  constexpr int few_draws = 8;  // a power of two: stratified best
+  CertifiedSettings s =
+      certified_settings(std::min(more * in.settings.error, 1.0), in.scene.scene.lights.size());
+  s.draws = few_draws;
+  std::unique_ptr<DirectLight> further = std::make_unique<CertifiedDirect>(in.scene, occluders, s);
+  return std::make_unique<WaveIntegrator>(
+      in.scene,
+      std::make_unique<StagedDirect>(std::move(first), std::move(further),
+                                     uint32_t(in.settings.viewing_rays)),
+      nullptr, true);
+}
+
+std::unique_ptr<Integrator> make_path(const MethodInput& in) {
+  return std::make_unique<PathIntegrator>(
+      in.scene, PathOptions{in.settings.depth, in.settings.is_direct_only()});
+}
+
+std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
+  // Where nothing shines, cells would look for light as long as they may.
+  const bool keeps_cells = in.cells != nullptr && in.cells->store != nullptr;
+  if (in.scene.scene.lights.empty() && !keeps_cells) return make_path(in);
+  std::optional<PathForecast> paths;
+  const bool takes_cells =
+      needs_cells(Method::certified, in.settings.indirect) && !in.settings.measures_by_paths;
+  if (takes_cells) paths = forecast(in);
+  if (paths && paths->rays_for_cells < 0) return make_paths(in, *paths);
+  const CertifiedSettings settings = settings_of_first(in);
+  const std::shared_ptr<const Occluders> occluders = occluders_for(in);
+  std::unique_ptr<DirectLight> direct =
+      std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
+  std::unique_ptr<IndirectLight> indirect;
+  if (in.settings.measures_by_paths) {
+    add_images(in, {{direct, settings}});
+    indirect = std::make_unique<PathsIndirect>(in.scene, direct->images());
+    return std::make_unique<WaveIntegrator>(in.scene, std::move(direct), std::move(indirect));
+  }
+  if (takes_cells) {
+    const CertifiedSettings at_cells = settings_of_cells(in);
+    std::unique_ptr<DirectLight> of_cells =
+        std::make_unique<CertifiedDirect>(in.scene, occluders, at_cells);
+    const CertifiedSettings drawn = settings_of_further(in);
+    std::unique_ptr<DirectLight> further;
+    if (drawn.draws > 0) further = std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
+    add_images(in, {{direct, settings}, {of_cells, at_cells}, {further, drawn}});
+    const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : in.cells->most_cells;
+    indirect = make_cells_indirect(in, *of_cells, most_cells);
+    if (!indirect) return paths && !in.cells->stop.load() ? make_paths(in, *paths) : nullptr;
+    if (!further) further = std::move(of_cells);
+    constexpr auto all = std::numeric_limits<uint32_t>::max();
+    const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;
+    return std::make_unique<WaveIntegrator>(
+        in.scene, std::make_unique<StagedDirect>(std::move(direct), std::move(further), samples),
+        std::move(indirect));
+  }
+  if (in.settings.is_direct_only() && in.settings.is_refined)
+    return make_refined_direct(in, occluders, std::move(direct));
+  return std::make_unique<WaveIntegrator>(in.scene, std::move(direct), nullptr);
+}
+
+// The trees sample selected patches as they do lights.
+std::unique_ptr<Integrator> make_kj92(const MethodInput& in) {
+  TROFFER_CHECK(in.radiosity != nullptr);
+  std::unique_ptr<IndirectLight> indirect;
+  if (!in.settings.is_direct_only())
+    indirect = std::make_unique<RadiosityIndirect>(in.scene, *in.radiosity);
+  return std::make_unique<WaveIntegrator>(
+      in.scene, std::make_unique<BintreeDirect>(in.scene, *in.radiosity, in.settings.trees),
+      std::move(indirect));
+}
+
+std::unique_ptr<Integrator> make_fixed(const MethodInput& in) {
+  return std::make_unique<WaveIntegrator>(
+      in.scene, std::make_unique<FixedDirect>(in.scene, in.settings.shadow_rays), nullptr);
+}
+
+// Of many lights most are drawn.
+double certified_rays(const MethodSettings& s, size_t lights) {
+  constexpr size_t most = 256;
+  return double(certified_settings(s.error, lights).shadow_rays) * double(std::min(lights, most));
+}
+double kj92_rays(const MethodSettings& s, size_t lights) {
+  return double(s.trees.tree.most_rays) * double(lights);
+}
+double fixed_rays(const MethodSettings& s, size_t lights) {
+  return double(s.shadow_rays) * double(lights);
+}
+double path_rays(const MethodSettings&, size_t) {
+  return 1;
+}
+
+}  // namespace
+
+// In the order of the constants of Method and Indirect.
+struct MethodTable {
+  static const std::array<MethodRow, 4> methods;
+  static const std::array<IndirectRow, 4> indirects;
+
+  template <class Kind, class Rows>
+  static std::optional<Kind> find(const Rows& rows, std::string_view name) {
+    for (uint8_t i = 0; i < rows.size(); ++i)
+      if (rows[i].name == name) return Kind(i);
+    return std::nullopt;
+  }
+};
+
+// Stops are looked for between tiles: those of scenes with many sources are smaller.
+constexpr double most_rays_of_tile = 1 << 22;
+// certified: few sources get rays.
+constexpr double most_certified_rays_of_tile = 1 << 25;
+
+const std::array<MethodRow, 4> MethodTable::methods{{
+    {
+        .name = "certified",
+        .make = make_certified,
+        .rays_per_sample = certified_rays,
+        .usual_indirect = Indirect::cells,
+        .widest_tile = 8,  // clusters of hits should be small in space
+        .most_rays_per_tile = most_certified_rays_of_tile,
+        .has_noise_of_batch = true,
+        .wants_typical = true,
+        .refinement = 4,
+        .measures_to_error = true,
+        .measuring_samples_per_direct = 32,
+    },
+    {
+        .name = "kj92",
+        .make = make_kj92,
+        .rays_per_sample = kj92_rays,
+        .usual_indirect = Indirect::radiosity,
+        .always_needs_radiosity = true,
+        .is_same_in_crops = false,  // results are compared with published ones of the very crop
+        // A sample is all the rays that the bintrees want.
+        .usual_measuring_samples = 256,
+    },
+    {
+        .name = "fixed",
+        .make = make_fixed,
+        .rays_per_sample = fixed_rays,
+        .is_direct_only = true,
+        .most_rays_per_tile = most_rays_of_tile,
+        .rays_of_measuring_sample = 16,  // a set of shadow rays to every source
+    },
+    {
+        .name = "path",
+        .make = make_path,
+        .rays_per_sample = path_rays,
+    },
+}};
+
+const std::array<IndirectRow, 4> MethodTable::indirects{{
+    {.name = "auto"},
+    {.name = "none"},
+    {.name = "radiosity", .needs_radiosity = true},
+    {.name = "cells", .needs_cells = true},
+}};
+
+std::optional<Method> Method::find(std::string_view name) {
+  return MethodTable::find<Method>(MethodTable::methods, name);
+}
+std::string Method::names() {
+  std::string names;
+  for (size_t i = 0; i < MethodTable::methods.size(); ++i) {
+    if (i > 0) names += i + 1 == MethodTable::methods.size() ? " or " : ", ";
+    names += MethodTable::methods[i].name;
+  }
+  return names;
+}
+const MethodRow& Method::row() const {
+  return MethodTable::methods[row_];
+}
+std::optional<Indirect> Indirect::find(std::string_view name) {
+  return MethodTable::find<Indirect>(MethodTable::indirects, name);
+}
+const IndirectRow& Indirect::row() const {
+  return MethodTable::indirects[row_];
+}
+
+Indirect chosen_indirect(Method method, Indirect indirect) {
+  return indirect == Indirect::none ? indirect : method.row().usual_indirect;
+}
+
+bool needs_radiosity(Method method, Indirect indirect) {
+  return method.row().always_needs_radiosity ||
+         chosen_indirect(method, indirect).row().needs_radiosity;
+}
+
+bool needs_cells(Method method, Indirect indirect) {
+  return chosen_indirect(method, indirect).row().needs_cells;
+}
+
+std::unique_ptr<Integrator> make_integrator(Method method, const MethodInput& input) {
+  return method.row().make(input);
+}
+
+}  // namespace troffer

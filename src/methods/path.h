@@ -1,0 +1,71 @@
+// Unidirectional path tracing: the reference for every other method.
+// Next-event estimation with one light chosen by a light tree, or picked of few that are all asked,
+// and sampled by solid angle, combined with BSDF sampling by the power heuristic; Russian roulette.
+// Unbiased but for the depth limit.
+//
+// References: [1] Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, ch. 9.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "transport/integrator.h"
+#include "transport/light_tree_direct.h"
+#include "transport/mirror_images.h"
+#include "transport/resampled_direct.h"
+
+namespace troffer {
+
+struct PathOptions {
+  int depth = -1;               // most scatterings (0 emission, 1 direct light); -1 = no limit
+  bool is_direct_only = false;  // only light that is scattered once, not counting mirrors and glass
+  PixelSampling sampling = {};
+  // What comes to a sensor straight from sources is not asked for, nor what these images show it of
+  // them.
+  bool leaves_out_direct_at_sensors = false;
+  // What these show matte surfaces of lights is asked for like lights; null: paths find it.
+  std::shared_ptr<const MirrorImages> images = nullptr;
+};
+
+class PathIntegrator final : public Integrator {
+ public:
+  PathIntegrator(const PreparedScene& scene, const PathOptions& options)
+      : scene_(scene), options_(options), tree_(scene, LightTreeDirect::Competition::all) {
+    if (ResampledDirect::suits(scene)) few_lights_.emplace(scene);
+    if (!options.images) return;
+    for (const MirrorImages::Image& image : options.images->all())
+      lit_images_.emplace_back(*image.scene, LightTreeDirect::Competition::none);
+  }
+
+  std::unique_ptr<IntegratorScratch> make_scratch() const override;
+  PixelSampling sampling() const override { return options_.sampling; }
+  void radiance(const ViewingRays& rays, IntegratorScratch& scratch, RadianceBatch& out,
+                Counters& counters) const override;
+  void irradiance(const SensorBatch& sensors, IntegratorScratch& scratch, RadianceBatch& out,
+                  Counters& counters) const override;
+
+ private:
+  struct Scratch;
+
+  void follow(Scratch& scratch, Coherence first, RadianceBatch& out, Counters& counters) const;
+  void arrive(Scratch& scratch, RadianceBatch& out) const;
+  void shade(Scratch& scratch, RadianceBatch& out, Counters& counters) const;
+  void add_images(Scratch& scratch, RadianceBatch& out, Counters& counters) const;
+  void add_emission(const Walk& walk, const Vertex& vertex, RadianceBatch& out) const;
+  void add_miss(const Walk& walk, RadianceBatch& out) const;
+  void add_seen(const Walk& walk, uint32_t light, Rgb radiance, float weight,
+                RadianceBatch& out) const;
+  bool step_from(Walk& walk, const Vertex& vertex, const Bsdf& bsdf, const Vec2& direction) const;
+  void step_on(Scratch& scratch) const;
+  float weight_of(const Walk& walk, const Vertex& vertex) const;
+  bool is_last(const Walk& walk) const;
+
+  const PreparedScene& scene_;
+  PathOptions options_;
+  LightTreeDirect tree_;
+  std::optional<ResampledDirect> few_lights_;  // in place of the tree
+  std::vector<LightTreeDirect> lit_images_;    // of options_.images
+};
+
+}  // namespace troffer

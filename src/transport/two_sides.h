@@ -1,0 +1,55 @@
+// Surfaces that light passes evenly, such as curtains: where a ray meets one there are two
+// vertices, one on either side, each with its part of what the surface does.
+#pragma once
+
+#include "base/random.h"
+#include "transport/purposes.h"
+#include "transport/vertex.h"
+#include "transport/walk.h"
+
+namespace troffer {
+
+inline bool has_two_sides(const Bsdf& bsdf) {
+  return !bsdf.through.is_black();
+}
+
+// The far side of v, as seen by a viewer who stands there as the viewer of v does here.
+inline Vertex far_side(const Vertex& v) {
+  Vertex far = v;
+  far.geometric_normal = v.geometric_normal * -1.0f;
+  far.frame = Frame(v.frame.normal * -1.0f);
+  far.is_front = !v.is_front;
+  return far;
+}
+
+// Numbers for what happens on the far side: not those of this one.
+inline uint64_t far_stream(uint64_t stream) {
+  return hash_of(stream, uint64_t{0x6661'7220'7369'6465});
+}
+
+// Takes the far side's part from `bsdf`, which keeps this one's; `walk` and `far` become those of
+// the far side.
+inline Bsdf take_far_side(const Vertex& v, Bsdf& bsdf, Walk& walk, Vertex& far) {
+  far = far_side(v);
+  walk.stream = far_stream(walk.stream);
+  const Bsdf part = through_part(bsdf);
+  bsdf.through = Rgb{0};
+  return part;
+}
+
+// One of the two sides, each as often as it sends light on.
+inline void choose_side(Walk& walk, Vertex& v, Bsdf& bsdf) {
+  const Bsdf part = through_part(bsdf);
+  bsdf.through = Rgb{0};
+  const float near = luminance(albedo(bsdf, v.wo.z)), far = luminance(albedo(part, v.wo.z));
+  const float share = far / (near + far);
+  if (!(side_number(walk) < share)) {
+    if (share > 0) walk.throughput *= 1 / (1 - share);
+    return;
+  }
+  walk.throughput *= 1 / share;
+  v = far_side(v);
+  bsdf = part;
+}
+
+}  // namespace troffer

@@ -1,0 +1,270 @@
+// Rays that only look at what is known of light: the same mean, with less noise where edges are.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/film.h"
+#include "render/pictures.h"
+
+using namespace troffer;
+using namespace troffer::test;
+
+namespace {
+
+// A room whose window, of its own light, is behind slats.
+Scene room_behind_blinds() {
+  Scene s;
+  const uint32_t grey = add_diffuse(s, Rgb{0.6f, 0.5f, 0.4f}), white = add_diffuse(s, Rgb{0.8f});
+  add_box_inside(s, grey, {0, 0, 0}, {3, 3, 2.5f});
+  const float back = 2.99f;
+  make_light(
+      s,
+      add_quad(s, white,
+               std::array<Vec3, 4>{
+                   Vec3{0.8f, back, 0.8f}, {2.2f, back, 0.8f}, {2.2f, back, 2}, {0.8f, back, 2}}),
+      Rgb{10});
+  for (int i = 0; i < 15; ++i) {
+    const float z = 0.82f + 0.08f * float(i);
+    add_quad(s, white,
+             std::array<Vec3, 4>{Vec3{0.7f, 2.9f, z},
+                                 {2.3f, 2.9f, z},
+                                 {2.3f, 2.95f, z + 0.05f},
+                                 {0.7f, 2.95f, z + 0.05f}});
+  }
+  return s;
+}
+const Camera at_window = look_at({0.5f, 0.3f, 1.5f}, {1.6f, 3, 1.3f}, {0, 0, 1}, 55);
+
+RenderOptions small_picture() {
+  RenderOptions o;
+  o.indirect = Indirect::cells;
+  o.width = 32;
+  o.height = 24;
+  o.threads = 2;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "glances: a pixel is what they and its samples know in the mean, and how far samples differ") {
+  Film film({0, 0, 2, 1}, {Aov::direct, Aov::indirect, Aov::albedo});
+  film.expect_surrogates();
+  RadianceBatch b;
+  b.reset(2);
+  b.direct = {Rgb{4}, Rgb{1}};
+  b.indirect = {Rgb{1}, Rgb{2}};
+  b.known = {{Rgb{3}, Rgb{0.5f}}, {Rgb{1}, Rgb{1.5f}}};
+  b.is_hit = {1, 1};
+  b.albedo = {Rgb{0.2f}, Rgb{0.4f}};
+  for (int x = 0; x < 2; ++x)
+    for (size_t i = 0; i < 2; ++i) CHECK(film.add(x, 0, b, i, 0));
+  RadianceBatch surrogates;
+  surrogates.reset(3);
+  surrogates.known = {{Rgb{3}, Rgb{0.5f}}, {Rgb{3}, Rgb{0.5f}}, {Rgb{0}, Rgb{0.5f}}};
+  surrogates.is_hit = {1, 1, 0};
+  surrogates.albedo[1] = Rgb{1};
+  for (size_t i = 0; i < 3; ++i) film.add_surrogate(0, 0, surrogates, i, 0);
+  const std::vector<Layer> layers = film.layers();
+  const double direct = (3 + 1 + 3 + 3 + 0) / 5.0 + (4 - 3 + 1 - 1) / 2.0;
+  const double indirect = (0.5 + 1.5 + 3 * 0.5) / 5.0 + (1 - 0.5 + 2 - 1.5) / 2.0;
+  CHECK(double(layers[1].image.at(0, 0).g) == doctest::Approx(direct));
+  CHECK(double(layers[2].image.at(0, 0).g) == doctest::Approx(indirect));
+  CHECK(double(layers[0].image.at(0, 0).g) == doctest::Approx(direct + indirect));
+  CHECK(layers[0].image.at(1, 0) == Rgb{4});  // without glances: the mean of its samples
+  CHECK(layers[3].image.at(0, 0) == Rgb{0.5f});
+  CHECK(double(layers[3].image.at(1, 0).g) == doctest::Approx(0.3));
+  const PixelEstimate e = film.estimate(0, 0);
+  CHECK(e.luminance == doctest::Approx(direct + indirect));
+  CHECK(e.rest == doctest::Approx(1));
+  CHECK(e.error_of_rest == doctest::Approx(0.5));  // of rests 1.5 and 0.5
+  CHECK(e.standard_error == doctest::Approx(std::sqrt(0.25 + 1 * 3 / 5.0)));
+}
+
+TEST_CASE("glances: no pixel sends less light than none") {
+  Film film({0, 0, 1, 1}, {});
+  film.expect_surrogates();
+  RadianceBatch b;
+  b.reset(1);
+  b.direct = {Rgb{0.2f}};
+  b.known = {{Rgb{1}, Rgb{0}}};
+  film.add(0, 0, b, 0, 0);
+  b.known[0].direct = Rgb{0.5f};
+  film.add_surrogate(0, 0, b, 0, 0);
+  CHECK(film.layers()[0].image.at(0, 0) == Rgb{0.2f});
+}
+
+TEST_CASE("lamps evened out: no pixel sends less light than none, but what its rays brought") {
+  Film film({0, 0, 2, 1}, {});
+  film.expect_surrogates();
+  RadianceBatch b;
+  b.reset(1);
+  b.known.assign(1, {});
+  b.evened = {Rgb{-0.5f, 0.25f, 0.25f}};
+  b.direct = {Rgb{0.2f} + b.evened[0]};
+  b.known[0].direct = b.evened[0];
+  film.add(0, 0, b, 0, 0);
+  CHECK(film.layers()[0].image.at(0, 0).r == doctest::Approx(0.2f));
+  CHECK(film.layers()[0].image.at(0, 0).g == doctest::Approx(0.2f));
+  // One that is more than none stays evened.
+  b.evened = {Rgb{0.25f}};
+  b.direct = {Rgb{0.2f} + b.evened[0]};
+  b.known[0].direct = b.evened[0];
+  film.add(1, 0, b, 0, 0);
+  CHECK(film.layers()[0].image.at(1, 0).r == doctest::Approx(0.45f));
+}
+
+TEST_CASE("glances: the mean of a picture with blinds stays") {
+  const PreparedScene scene(room_behind_blinds());
+  RenderOptions o = small_picture();
+  o.spp = 4;
+  o.max_spp = 16;
+  const Moments refined = render_ensemble(scene, at_window, o, 8).mean;
+  o.seed = 1000;
+  o.spp = o.max_spp = 16;
+  const Moments even = render_ensemble(scene, at_window, o, 8).mean;
+  const double spread = std::sqrt(refined.variance_of_mean() + even.variance_of_mean());
+  CAPTURE(refined.mean());
+  CAPTURE(even.mean());
+  CAPTURE(spread);
+  CHECK(spread < 0.004 * even.mean());  // it could see a bias
+  CHECK(std::abs(refined.mean() - even.mean()) < 3.3 * spread);
+}
+
+TEST_CASE("direct light alone: edges get the rays that they want, and the error is told") {
+  const PreparedScene scene(room_behind_blinds());
+  RenderOptions o = small_picture();
+  o.indirect = Indirect::none;
+  o.max_spp = 0;
+  o.spp = 4;
+  constexpr int pictures = 6;
+  std::vector<Image> all;
+  double told = 0;
+  Moments means;
+  for (int i = 0; i < pictures; ++i) {
+    o.seed = uint64_t(i);
+    const RenderResult r = render_now(scene, at_window, o);
+    CHECK(r.statistics.counters.surrogates > 0);
+    CHECK(r.statistics.counters.viewing_rays > 16 * uint64_t(o.width * o.height));
+    told += r.statistics.estimated_error / pictures;
+    all.push_back(r.layers[0].image);
+    double sum = 0;
+    for (const Rgb& c : all.back().pixels) sum += double(luminance(c));
+    means.add(sum / double(all.back().pixels.size()));
+  }
+  double squares = 0;
+  for (size_t p = 0; p < all[0].pixels.size(); ++p) {
+    Moments pixel;
+    for (const Image& image : all) pixel.add(double(luminance(image.pixels[p])));
+    squares += pixel.variance_of_mean() * pictures / double(all[0].pixels.size());
+  }
+  const double made = std::sqrt(squares) / means.mean();
+  MESSAGE("made ", made, ", told ", told);
+  CHECK(made < 0.05);  // 0.5 with 16 rays at edges
+  CHECK(told > 0.8 * made);
+  CHECK(told < 2.5 * made);
+  o.method = Method::fixed;
+  o.spp = 64;
+  o.shadow_rays = 16;
+  const Moments fixed = render_ensemble(scene, at_window, o, 6).mean;
+  const double spread = std::sqrt(means.variance_of_mean() + fixed.variance_of_mean());
+  CHECK(spread < 0.01 * fixed.mean());  // it could see a bias
+  CHECK(std::abs(means.mean() - fixed.mean()) < 3.3 * spread);
+}
+
+TEST_CASE("glances: blinds before a window err by less than half, with fewer viewing rays") {
+  const PreparedScene scene(room_behind_blinds());
+  RenderOptions o = small_picture();
+  o.spp = o.max_spp = 128;
+  const Image converged = render_now(scene, at_window, o).layers[0].image;
+  const auto error = [&](const RenderResult& r) {
+    double sum = 0;
+    for (size_t i = 0; i < converged.pixels.size(); ++i)
+      sum += std::pow(double(r.layers[0].image.pixels[i].g) - double(converged.pixels[i].g), 2);
+    return std::sqrt(sum / double(converged.pixels.size()));
+  };
+  o.seed = 1;
+  o.spp = o.max_spp = 16;
+  const RenderResult even = render_now(scene, at_window, o);
+  CHECK(even.statistics.counters.surrogates == 0);
+  o.spp = 4;
+  const RenderResult refined = render_now(scene, at_window, o);
+  CHECK(refined.statistics.counters.surrogates > 0);
+  CHECK(refined.statistics.counters.viewing_rays < even.statistics.counters.viewing_rays);
+  MESSAGE("error ", error(refined), ", by 16 rays a pixel ", error(even));
+  CHECK(error(refined) < 0.5 * error(even));
+  o.threads = 3;
+  CHECK(is_identical(refined.layers, render_now(scene, at_window, o).layers));
+  o.has_crop = true;
+  o.crop = {7, 5, 25, 20};
+  CHECK(pixels_off_crop(refined, render_now(scene, at_window, o), o.crop) == 0);
+}
+
+TEST_CASE("refinement: pixels behind blinds err by about what is asked, and by less if less is") {
+  const PreparedScene scene(room_behind_blinds());
+  // Two halves of a reference: by their product their own noise does not count.
+  std::array<Image, 2> halves;
+  for (size_t i = 0; i < 2; ++i) {
+    RenderOptions o = small_picture();
+    o.method = Method::path;
+    o.indirect = Indirect::automatic;
+    o.spp = o.max_spp = 1024;
+    o.seed = 10 + i;
+    halves[i] = render_now(scene, at_window, o).layers[0].image;
+  }
+  double mean = 0;
+  for (const Rgb& p : halves[0].pixels) mean += double(p.g);
+  mean /= double(halves[0].pixels.size());
+  const auto error = [&](double asked) {
+    RenderOptions o = small_picture();
+    o.spp = 4;
+    o.max_spp = 1024;
+    o.error = asked;
+    const Image image = render_now(scene, at_window, o).layers[0].image;
+    double sum = 0;
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+      const auto off = [&](const Image& half) {
+        return double(image.pixels[i].g) - double(half.pixels[i].g);
+      };
+      sum += off(halves[0]) * off(halves[1]);
+    }
+    return std::sqrt(std::max(sum, 0.0) / double(image.pixels.size())) / mean;
+  };
+  const double coarse = error(0.05), fine = error(0.01);
+  MESSAGE("of .05 ", coarse, ", of .01 ", fine);
+  CHECK(coarse < 0.05);
+  CHECK(fine < 0.02);
+  CHECK(fine < 0.7 * coarse);
+}
+
+// Two thousand times as bright as the room, and three pixels wide: an error there of a thousandth
+// of the light is twice the picture's mean.
+TEST_CASE("glances: more at the outline of what is very bright") {
+  Scene s;
+  add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {3, 3, 2.5f});
+  const Vec3 at{1.5f, 2.5f, 1.6f}, u{0.09f, 0, 0.03f}, v{-0.03f, 0, 0.09f};
+  make_light(s,
+             add_quad(s, add_diffuse(s, Rgb{0.5f}),
+                      std::array<Vec3, 4>{at - u - v, at + u - v, at + u + v, at - u + v}),
+             Rgb{2000});
+  const PreparedScene scene(std::move(s));
+  RenderOptions o = small_picture();
+  o.error = 0.05;
+  std::vector<Moments> pixels(size_t(o.width) * size_t(o.height));
+  Moments all;
+  for (int k = 0; k < 6; ++k, ++o.seed) {
+    const Image picture = render_now(scene, at_window, o).layers[0].image;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      pixels[i].add(double(luminance(picture.pixels[i])));
+      all.add(double(luminance(picture.pixels[i])));
+    }
+  }
+  double variance = 0;
+  for (const Moments& m : pixels) variance += m.variance_of_mean() * 6 / double(pixels.size());
+  const double error = std::sqrt(variance) / all.mean();
+  CAPTURE(all.mean());
+  CAPTURE(error);
+  CHECK(error < 0.02);
+}
