@@ -21,7 +21,6 @@ constexpr float least_sine = 0.02f, least_distance = 1.2f;
 constexpr float unknown_fill = 0.5f, least_flat = 0.8f;
 constexpr float least_visible = 0.02f, least_share = 0.003f;
 constexpr double most_amiss = 16;  // what is expected, and what is found
-constexpr float below_one = 0.99999994f;
 constexpr size_t least_tries = 2;  // of sight of each place
 
 struct BrightCell {

@@ -158,7 +158,7 @@ void add_direct_light(const CellMap& map, const GatherWalks& walks, const Direct
   light.irradiance.resize(map.size());
   light.half_difference.resize(map.size(), 0);
   std::vector<Worker> workers(size_t(thread_count(threads)));
-  const auto group = [&](size_t g) {
+  const auto cells_of = [&](size_t g) {
     const size_t first = g * cells_of_group;
     return std::span(order).subspan(first, std::min(cells_of_group, order.size() - first));
   };
@@ -169,20 +169,20 @@ void add_direct_light(const CellMap& map, const GatherWalks& walks, const Direct
     Worker& w = workers[slot];
     w.certified.clear();
     w.sampled.clear();
-    for (const uint32_t c : group(g))
+    for (const uint32_t c : cells_of(g))
       (c < samples.size() && samples[c] > 0 ? w.sampled : w.certified).push_back(c);
     if (!w.certified.empty()) light_group(map, walks, direct, w.certified, w, light);
     if (!w.sampled.empty()) sample_group(map, walks, w.sampled, samples, w, light);
     return true;
   };
   work.save = [&](size_t g, SharedWork::Bytes& bytes) {
-    for (const uint32_t c : group(g)) {
+    for (const uint32_t c : cells_of(g)) {
       append(bytes, light.irradiance[c]);
       append(bytes, light.half_difference[c]);
     }
   };
   work.load = [&](size_t g, ByteReader in) {
-    for (const uint32_t c : group(g)) {
+    for (const uint32_t c : cells_of(g)) {
       light.irradiance[c] = in.next<Rgb>();
       light.half_difference[c] = in.next<float>();
     }

@@ -11,7 +11,6 @@ namespace troffer {
 
 namespace {
 
-constexpr float below_one = 0.99999994f;
 // Fewer than so many rays by the lobe are not worth their densities.
 constexpr float least_by_lobe = 0.03f;
 

@@ -19,6 +19,7 @@ class RadiosityIndirect final : public IndirectLight {
   std::unique_ptr<IndirectLightScratch> make_scratch() const override;
   void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;
+  void flush(IndirectLightScratch&, RadianceBatch&, Counters&) const override {}
   // One cosine-distributed ray per sample reads the radiosity of the surface that it hits.
   void gather(const SensorBatch& sensors, IndirectLightScratch& scratch, RadianceBatch& out,
               Counters& counters) const override;

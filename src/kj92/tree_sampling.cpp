@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "kj92/bintree_pattern.h"
 
 namespace troffer {
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/simd.h"
+#include "base/units.h"
 #include "shadow/cell_points.h"
 #include "shadow/pilot_rays.h"
 #include "shadow/trace_rays.h"
@@ -194,7 +195,7 @@ class Caster {
       wanted -= own;
     }
     if (!(own > 0)) return {c, 0, 0};
-    return {c, points_[c].area() * double(all / own), std::min(wanted / own, 0.99999994f)};
+    return {c, points_[c].area() * double(all / own), std::min(wanted / own, below_one)};
   }
 
   // The rays of the batch's receiver i.

@@ -182,6 +182,13 @@ Hit closest_of(RTCScene scene, const InstanceNumbers& instances, Context& contex
   return hit;
 }
 
+Ray ray_of(const Segments& s, size_t i) {
+  return {{s.coordinate(0)[i], s.coordinate(1)[i], s.coordinate(2)[i]},
+          0,
+          {s.coordinate(3)[i], s.coordinate(4)[i], s.coordinate(5)[i]},
+          1};
+}
+
 // act(N) with the packets' size as a constant.
 template <class Act>
 void in_packets(size_t size, const Act& act) {
