@@ -248,8 +248,9 @@ int tell(const RenderResult& result, const RenderCommand& c, double total, const
                  total, 100 * s.share_done,
                  s.gaps_filled == 0
                      ? ""
-                     : fmt::format("; {} of {} pixels are by paths alone", s.gaps_filled,
-                                   size_t(s.width) * size_t(s.height)));
+                     : fmt::format("; {} of {} pixels are {}", s.gaps_filled,
+                                   size_t(s.width) * size_t(s.height),
+                                   s.gaps_are_paths ? "by paths alone" : "a first estimate"));
       break;
     case RenderEnd::good_enough:
     case RenderEnd::complete:

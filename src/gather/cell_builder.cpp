@@ -64,6 +64,7 @@ class Builder {
   void keep(const CellDirectLight& lit);
   void note(const std::vector<CellTask>& tasks, CellsSeen& seen);
   bool run(const std::vector<CellTask>& tasks);
+  bool has_enough() const { return options_.enough != nullptr && options_.enough->load(); }
   std::span<const CellHit> hits_of(const CellTask& task) const;
   bool run_and_go_on(std::vector<CellTask> tasks, double most_cells,
                      const std::function<void(double)>& progress);
@@ -186,6 +187,7 @@ bool Builder::run(const std::vector<CellTask>& tasks) {
                     counters_);
     if (stop_.load()) return false;
     note(some, seen);
+    if (has_enough()) break;
   }
   plan_.see(map_->size());
   rows_.finish(map_->size());
@@ -200,7 +202,7 @@ bool Builder::run_and_go_on(std::vector<CellTask> tasks, double most_cells,
     if (!run(tasks) || double(map_->size()) > most_cells) return false;
     ++statistics_.rounds;
     if (progress) progress(1 - 1 / (1.0 + 0.5 * statistics_.rounds));
-    if (round == most_rounds) break;
+    if (round == most_rounds || has_enough()) break;
     tasks = plan_.first_tasks();
   }
   return !stop_.load();
@@ -209,8 +211,9 @@ bool Builder::run_and_go_on(std::vector<CellTask> tasks, double most_cells,
 // As many further rays as first ones.
 bool Builder::make_rows(const std::function<void(double)>& progress) {
   const double most = options_.most_cells;
-  return double(map_->size()) <= most && run_and_go_on(plan_.first_tasks(), most, progress) &&
-         run_and_go_on(plan_.further_tasks(map_->frozen()), most, progress);
+  if (double(map_->size()) > most || !run_and_go_on(plan_.first_tasks(), most, progress))
+    return false;
+  return has_enough() || run_and_go_on(plan_.further_tasks(map_->frozen()), most, progress);
 }
 
 // So many times as many rays as there are. Not of narrow cells: gather rays pass them on.
@@ -283,7 +286,7 @@ std::unique_ptr<Cells> Builder::finish(const DirectLight& direct, const CellPilo
   };
   if (!add_direct(direct, lit)) return nullptr;
   CellLight light = solve();
-  const double times = rays_for_points(direct, pilot, lit, light);
+  const double times = has_enough() ? 1 : rays_for_points(direct, pilot, lit, light);
   if (times >= enough_times_more) {
     if (!refine(times) || !add_direct(direct, lit)) return nullptr;
     light = solve();

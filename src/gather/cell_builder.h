@@ -32,6 +32,9 @@ struct CellBuilderOptions {
   double most_cells = std::numeric_limits<double>::infinity();
   ProcessGroup* group = nullptr;  // others that make the same cells; may be null
   GatheringPoints points{};  // how those of the pilot gather; most_rays 0: nothing is done for that
+  // Once set, no further rows are made: light that only they would bring is missing, and
+  // CellStatistics::unresolved estimates its share. Null: never.
+  const StopFlag* enough = nullptr;
 };
 
 // direct: light straight from sources. store: what is kept from before, or nothing yet; left with

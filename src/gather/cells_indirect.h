@@ -11,7 +11,7 @@ namespace troffer {
 class CellsIndirect final : public IndirectLight {
  public:
   // records: of the picture; null: there is none.
-  CellsIndirect(std::unique_ptr<const Cells> cells, std::unique_ptr<const GatherRecords> records)
+  CellsIndirect(std::shared_ptr<const Cells> cells, std::shared_ptr<const GatherRecords> records)
       : cells_(std::move(cells)), records_(std::move(records)) {}
 
   std::unique_ptr<IndirectLightScratch> make_scratch() const override;
@@ -29,8 +29,8 @@ class CellsIndirect final : public IndirectLight {
  private:
   struct Scratch;
 
-  std::unique_ptr<const Cells> cells_;
-  std::unique_ptr<const GatherRecords> records_;
+  std::shared_ptr<const Cells> cells_;
+  std::shared_ptr<const GatherRecords> records_;
 };
 
 }  // namespace troffer

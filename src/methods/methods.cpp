@@ -85,31 +85,40 @@ double error_of_gather(double asked) {
   return std::sqrt(asked * std::min(asked, as_asked));
 }
 
-std::unique_ptr<IndirectLight> make_cells_indirect(const MethodInput& in, const DirectLight& direct,
-                                                   double most_cells) {
+// Cells, and the records of a picture; null where stopped before they were whole.
+struct GatheredCells {
+  std::shared_ptr<const Cells> cells;
+  std::shared_ptr<const GatherRecords> records;  // null also where no picture is made
+  bool is_whole = false;
+};
+
+GatheredCells make_gathered_cells(const MethodInput& in, const DirectLight& direct,
+                                  double most_cells) {
   TROFFER_CHECK(in.cells != nullptr);
   const auto part = [&](double first, double last) -> std::function<void(double)> {
     if (!in.cells->progress) return nullptr;
     return [&in, first, last](double f) { in.cells->progress(first + (last - first) * f); };
   };
+  GatheredCells made;
   std::unique_ptr<Cells> cells =
       make_cells(in.scene, direct, in.cells->pilot,
                  {in.settings.threads, in.cells->seed, error_beyond(in), in.settings.error,
-                  most_cells, in.cells->group, in.cells->points},
+                  most_cells, in.cells->group, in.cells->points, in.cells->enough},
                  in.cells->store, part(0, 0.4), in.cells->stop, in.cells->counters);
-  if (!cells) return nullptr;
+  if (!cells) return made;
   in.cells->statistics = cells->statistics();
   if (in.cells->points.most_rays > 0)
     cells->look_closely_where_worth_it(in.cells->pilot.places, in.cells->seed, in.cells->counters);
-  std::unique_ptr<GatherRecords> records;
+  made.cells = std::move(cells);
   if (in.cells->view != nullptr) {
-    const GatherOptions options{error_of_gather(in.settings.error), cells->statistics().typical,
-                                in.settings.threads, in.cells->seed, in.cells->group};
-    records = GatherRecords::make(*cells, *in.cells->view, options, part(0.4, 1), in.cells->stop,
-                                  in.cells->counters);
-    if (!records) return nullptr;
+    const GatherOptions options{error_of_gather(in.settings.error),
+                                made.cells->statistics().typical, in.settings.threads,
+                                in.cells->seed, in.cells->group};
+    made.records = GatherRecords::make(*made.cells, *in.cells->view, options, part(0.4, 1),
+                                       in.cells->stop, in.cells->counters);
   }
-  return std::make_unique<CellsIndirect>(std::move(cells), std::move(records));
+  made.is_whole = in.cells->view == nullptr || made.records != nullptr;
+  return made;
 }
 
 // Lights in mirrors, for all of them.
@@ -126,6 +135,21 @@ void add_images(const MethodInput& in, std::initializer_list<Stage> stages) {
   for (const Stage& s : stages)
     if (s.direct)
       s.direct = std::make_unique<ImagedDirect>(std::move(s.direct), images, occluders, s.settings);
+}
+
+// Few draws of lights, and one look at cells.
+std::unique_ptr<Integrator> make_quick(const MethodInput& in,
+                                       const std::shared_ptr<const Occluders>& occluders,
+                                       const std::shared_ptr<const Cells>& cells,
+                                       const std::shared_ptr<const GatherRecords>& records) {
+  constexpr int few_draws = 4;  // a power of two: stratified best
+  CertifiedSettings settings = settings_beyond(in);
+  settings.draws = few_draws;
+  std::unique_ptr<DirectLight> direct =
+      std::make_unique<CertifiedDirect>(in.scene, occluders, settings);
+  add_images(in, {{direct, settings}});
+  return std::make_unique<WaveIntegrator>(in.scene, std::move(direct),
+                                          std::make_unique<CellsIndirect>(cells, records));
 }
 
 // What may hide a light that has a certificate: asked for nothing else, and empty where there is
@@ -211,8 +235,11 @@ std::unique_ptr<Integrator> make_certified(const MethodInput& in) {
     if (drawn.draws > 0) further = std::make_unique<CertifiedDirect>(in.scene, occluders, drawn);
     add_images(in, {{direct, settings}, {of_cells, at_cells}, {further, drawn}});
     const double most_cells = paths ? paths->rays_for_cells / rays_of_cell : in.cells->most_cells;
-    indirect = make_cells_indirect(in, *of_cells, most_cells);
-    if (!indirect) return paths && !in.cells->stop.load() ? make_paths(in, *paths) : nullptr;
+    const GatheredCells made = make_gathered_cells(in, *of_cells, most_cells);
+    if (made.cells && in.cells->enough != nullptr)
+      in.cells->quick = make_quick(in, occluders, made.cells, made.records);
+    if (!made.is_whole) return paths && !in.cells->stop.load() ? make_paths(in, *paths) : nullptr;
+    indirect = std::make_unique<CellsIndirect>(made.cells, made.records);
     if (!further) further = std::move(of_cells);
     constexpr auto all = std::numeric_limits<uint32_t>::max();
     const uint32_t samples = in.cells->view != nullptr ? uint32_t(in.settings.viewing_rays) : all;

@@ -93,6 +93,12 @@ struct CellInput {
   // How points gather from them, where it is to points: then their rays look closely, too
   // (CellMap::look_closely).
   GatheringPoints points{};
+  // Once set, preparation ends as soon as it can (CellBuilderOptions::enough). Null: never.
+  const StopFlag* enough = nullptr;
+  // Result, if `enough` is given: the same light by fewer rays and with more noise, for pixels that
+  // a time limit leaves without samples. It exists as soon as there are cells, even if `stop` then
+  // prevents the integrator.
+  std::unique_ptr<Integrator> quick{};
 };
 
 // What a method is made from. radiosity, cells: null where there is none; radiosity is copied.

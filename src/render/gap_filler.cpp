@@ -31,9 +31,15 @@ GapFiller::GapFiller(const PreparedScene& scene, const ViewingCamera& camera,
                      const RenderOptions& options)
     : camera_(camera),
       options_(options),
-      paths_(paths_for(scene, options)),
+      integrator_(paths_for(scene, options)),
       work_(size_t(thread_count(options.threads))) {
   for (Work& w : work_) w.rays.cone = camera.cone(int(samples_at_once));
+}
+
+void GapFiller::use(std::unique_ptr<Integrator> quick) {
+  integrator_ = std::move(quick);
+  is_by_paths_ = false;
+  for (Work& w : work_) w.scratch.reset();
 }
 
 // Of the samples first_sample … of each pixel; film: null: nobody wants them.
@@ -44,7 +50,7 @@ void GapFiller::trace(const std::vector<Pixel2>& pixels, uint32_t first_sample, 
   parallel_for_slots(batches, options_.threads, [&](size_t b, size_t slot) {
     if (stop.load(std::memory_order_relaxed)) return;
     Work& w = work_[slot];
-    if (!w.scratch) w.scratch = paths_->make_scratch();
+    if (!w.scratch) w.scratch = integrator_->make_scratch();
     w.rays.clear();
     const size_t first = b * pixels_of_batch;
     const size_t end = std::min(first + pixels_of_batch, pixels.size());
@@ -52,7 +58,7 @@ void GapFiller::trace(const std::vector<Pixel2>& pixels, uint32_t first_sample, 
       add_viewing_rays(camera_, pixels[p], first_sample, samples_at_once, seed, w.rays);
     w.radiance.reset(w.rays.size());
     w.radiance.known.assign(w.rays.size(), {});
-    paths_->radiance(w.rays, *w.scratch, w.radiance, w.counters);
+    integrator_->radiance(w.rays, *w.scratch, w.radiance, w.counters);
     if (film == nullptr) return;
     for (size_t i = 0; i < w.rays.size(); ++i) {
       const Pixel2& p = pixels[first + i / samples_at_once];

@@ -1,5 +1,6 @@
-// A picture that ran out of time is whole all the same: pixels that no ray has gone through yet get
-// paths, of the light that the picture is to show. Unbiased, and noisy.
+// Completes a picture whose time is up: pixels without samples get a few from a cheap integrator of
+// the same light. That is the method's own quick integrator once its cells exist, else path tracing
+// (unbiased and noisy).
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,12 @@ class GapFiller {
   // All must outlive this.
   GapFiller(const PreparedScene& scene, const ViewingCamera& camera, const RenderOptions& options);
 
-  // Seconds that a pixel takes at least, on all threads: measured here, by some rays through the
-  // window.
+  // Replaces path tracing, from the next call on.
+  void use(std::unique_ptr<Integrator> quick);
+  bool is_by_paths() const { return is_by_paths_; }
+
+  // Seconds on all threads for the first samples of one pixel: measured here by some rays through
+  // the window.
   double seconds_per_pixel(const PixelRect& window);
 
   // Fills pixels of the window that have no samples, and tells how many they were: with 4 each, so
@@ -43,7 +48,8 @@ class GapFiller {
 
   const ViewingCamera& camera_;
   const RenderOptions& options_;
-  std::unique_ptr<Integrator> paths_;
+  std::unique_ptr<Integrator> integrator_;
+  bool is_by_paths_ = true;
   std::vector<Work> work_;  // per thread
 };
 

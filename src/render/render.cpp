@@ -98,8 +98,7 @@ class Picture {
         viewing_(camera, size_.width, size_.height) {
     if (options.deadline == nullptr) return;
     filler_ = std::make_unique<GapFiller>(scene, viewing_, options);
-    seconds_per_gap_ = filler_->seconds_per_pixel(plan_.window);
-    options.deadline->keep_back(seconds_per_gap_ * plan_.window.width() * plan_.window.height());
+    keep_time_for_gaps();
   }
 
   RenderResult make();
@@ -109,6 +108,7 @@ class Picture {
   void finish(Film& film, RenderResult& result);
   void show_preview_in_gaps(const Film& film, RenderResult& result) const;
   void keep_beginning() const;
+  void keep_time_for_gaps();
 
   const PreparedScene& scene_;
   const RenderOptions& options_;
@@ -119,6 +119,7 @@ class Picture {
   const ViewingCamera viewing_;
   std::unique_ptr<GapFiller> filler_;  // null: there is all the time
   double seconds_per_gap_ = 0;
+  double missing_light_ = 0;  // share of reflected light that cells cut short do not have
 };
 
 // Estimated error of the picture, relative to its mean: as Rendering::estimated_error().
@@ -131,6 +132,12 @@ double estimated_error(const Film& film, const PixelRect& window) {
     }
   const double pixels = double(window.width()) * window.height();
   return sum > 0 ? std::sqrt(squares / pixels) * pixels / sum : 0;
+}
+
+// Reserves the time to fill all pixels.
+void Picture::keep_time_for_gaps() {
+  seconds_per_gap_ = filler_->seconds_per_pixel(plan_.window);
+  options_.deadline->keep_back(seconds_per_gap_ * plan_.window.width() * plan_.window.height());
 }
 
 RenderResult Picture::make() {
@@ -155,7 +162,7 @@ RenderResult Picture::make() {
     keep_beginning();
     Film film(plan_.region, options_.aovs, scene_.scene.origin);
     finish(film, result);
-    result.statistics.estimated_error = estimated_error(film, window);
+    result.statistics.estimated_error = std::hypot(estimated_error(film, window), missing_light_);
     result.layers = film.layers();
     for (Layer& l : result.layers) l.image = part_of(l.image, plan_.region, window);
     show_preview_in_gaps(film, result);
@@ -177,6 +184,7 @@ void Picture::keep_beginning() const {
 void Picture::finish(Film& film, RenderResult& result) {
   if (result.end != RenderEnd::stopped || !filler_ || !options_.deadline->is_over()) return;
   result.statistics.gaps_filled = filler_->fill(film, plan_.window, *options_.deadline);
+  result.statistics.gaps_are_paths = filler_->is_by_paths();
   if (!options_.deadline->parent().load()) result.end = RenderEnd::out_of_time;
 }
 
@@ -215,11 +223,24 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
                   options_.cells,
                   options_.group};
   const MethodSettings settings = method_settings(options_);
+  std::optional<Deadline> preparing;  // processes of a group have to agree on what they prepare
+  if (filler_ && options_.group == nullptr) {
+    constexpr double share_of_rows = 0.3;  // conventional: half of the time is for the pixels
+    const std::chrono::duration<double> rows(share_of_rows * options_.deadline->seconds_left());
+    preparing.emplace(stop_, Deadline::Clock::now() +
+                                 std::chrono::duration_cast<Deadline::Clock::duration>(rows));
+    cells.enough = &preparing->flag();
+  }
   const std::unique_ptr<Integrator> integrator =
       make_integrator(scene_, options_.method, settings, preparation, &cells);
-  if (!integrator) return;
   RenderStatistics& statistics = result.statistics;
   statistics.cells = cells.statistics;
+  if (cells.quick) {
+    filler_->use(std::move(cells.quick));
+    keep_time_for_gaps();
+    missing_light_ = cells.statistics.unresolved;
+  }
+  if (!integrator) return;
   statistics.is_by_paths = integrator->sampling().is_by_noise();
   Rendering rendering(scene_, viewing_, *integrator, options_, plan_, of_tiles, stop_);
   rendering.expect_gaps(seconds_per_gap_);
@@ -230,7 +251,7 @@ void Picture::render(const Preparation* preparation, RenderResult& result) {
   show_preview_in_gaps(rendering.film(), result);
   statistics.counters = rendering.counters();
   statistics.viewing_errors = rendering.viewing_errors();
-  statistics.estimated_error = rendering.estimated_error();
+  statistics.estimated_error = std::hypot(rendering.estimated_error(), missing_light_);
 }
 
 }  // namespace

@@ -106,7 +106,8 @@ struct RenderStatistics {
   // picture's mean luminance.
   double estimated_error = 0;
   double share_done = 0;          // of the work, by tiles
-  size_t gaps_filled = 0;         // pixels that are paths alone, for want of time
+  size_t gaps_filled = 0;         // pixels that a time limit left to GapFiller
+  bool gaps_are_paths = false;    // they are path traced: there were no cells yet
   size_t unsampled = 0;           // pixels without a sample, where a stop was requested
   bool shows_preview = false;     // these show RenderOptions::preview; else they are black
   double preprocess_seconds = 0;  // of the preparation, whoever made it

@@ -10,7 +10,7 @@ namespace troffer {
 std::vector<Pass> passes_to(const Method& method, double error) {
   constexpr int few_samples = 4, most_samples = 256;
   std::vector<Pass> passes;
-  if (!method.row().takes_cells) {
+  if (!needs_cells(method, Indirect::automatic)) {
     for (int spp = few_samples; spp <= most_samples; spp *= 2) {
       if (spp == few_samples) passes.push_back({2, error, spp, double(spp)});
       passes.push_back({1, error, spp, double(spp)});
