@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "scene/mesh_in_world.h"
+#include "trace/coincident_fronts.h"
 
 namespace troffer {
 
@@ -66,6 +67,10 @@ bool is_from_behind(const RTCFilterFunctionNArguments* args, unsigned i) {
 
 bool is_skipped(const HitTest& test, const Context& context,
                 const RTCFilterFunctionNArguments* args, unsigned i) {
+  if (!test.has_coincident_front.empty() &&
+      test.has_coincident_front[RTCHitN_primID(args->hit, args->N, i)] != 0 &&
+      is_from_behind(args, i))
+    return true;
   if (context.is_through) return test.has_holes && coverage_at(test, args, i) <= 0;
   switch (context.meeting) {
     case Meeting::all:
@@ -290,7 +295,11 @@ Tracer::Embree::Embree(const Scene& s, const PaneGlass* glass) {
   scene = new_scene();
   instances.first = first_instance(s);
   tests.resize(instances.first + s.instanced_meshes.size());
-  for (uint32_t i = 0; i < s.meshes.size(); ++i) add_mesh(s, i, glass);
+  std::vector<std::vector<uint8_t>> fronts = coincident_fronts(s);
+  for (uint32_t i = 0; i < s.meshes.size(); ++i) {
+    tests[i].has_coincident_front = std::move(fronts[i]);
+    add_mesh(s, i, glass);
+  }
   add_spheres(s, glass);
   add_disks(s, glass);
   add_instances(s, glass);

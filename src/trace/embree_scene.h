@@ -30,6 +30,7 @@ struct HitTest {
   bool has_holes = false, hides_backs = false, has_panes = false;
   bool hides_in_places = false;  // panes are opaque where alpha is 1
   std::vector<uint8_t> is_pane;  // per primitive; empty: all are, where it has any
+  std::vector<uint8_t> has_coincident_front;  // per triangle (coincident_fronts); empty: none has
 
   bool is_pane_at(uint32_t primitive) const {
     return has_panes && (is_pane.empty() || is_pane[primitive] != 0);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "kj92/radiosity_indirect.h"
 #include "light/irradiance.h"
 #include "light/source_surface.h"
 #include "probe.h"

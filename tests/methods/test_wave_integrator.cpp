@@ -37,7 +37,7 @@ struct LoggedDirect final : DirectLight {
     return std::make_unique<DirectLightScratch>();
   }
   WalkedPart walked_part() const override { return part; }
-  void begin(DirectLightScratch&) const override { log.note("begin"); }
+  void begin(const SampleRequest&, DirectLightScratch&) const override { log.note("begin"); }
   void queue(WaveHits& wave, DirectLightScratch&, RadianceBatch&, Counters&) const override {
     CHECK(wave.size() > 0);
     CHECK(wave.vertices.size() == wave.size());
@@ -64,7 +64,7 @@ struct LoggedIndirect final : IndirectLight {
   std::unique_ptr<IndirectLightScratch> make_scratch() const override {
     return std::make_unique<IndirectLightScratch>();
   }
-  void begin(IndirectLightScratch&) const override { log.note("begin"); }
+  void begin(const SampleRequest&, IndirectLightScratch&) const override { log.note("begin"); }
   void queue(WaveHits& wave, IndirectLightScratch&, RadianceBatch&, Counters&) const override {
     log.note_hits(wave);
   }

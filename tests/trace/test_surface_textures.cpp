@@ -120,6 +120,35 @@ TEST_CASE("backs that are unseen: to the eye alone") {
   }
 }
 
+TEST_CASE("of one-sided triangles back to back, every ray meets the one that faces it") {
+  for (const bool is_turned_first : {false, true}) {
+    Material m;
+    m.back_faces = BackFaces::unseen;
+    Scene scene = square(m, ramp());
+    scene.meshes.push_back(scene.meshes[0]);
+    for (Triangle& t : scene.meshes[is_turned_first ? 0 : 1].triangles) std::swap(t[1], t[2]);
+    const uint32_t up = is_turned_first ? 1 : 0;
+    const Tracer tracer(scene);
+    std::vector<Ray> rays(20);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      rays[i].origin = {1 + float(i) * 0.1f, 1.3f, i % 2 == 0 ? 1.0f : -1.0f};
+      rays[i].direction = {0.1f, 0.2f, i % 2 == 0 ? -1.0f : 1.0f};
+    }
+    std::vector<Hit> hits(rays.size());
+    for (const Coherence coherence : {Coherence::none, Coherence::coherent})
+      for (const Meeting meeting : {Meeting::all, Meeting::as_seen}) {
+        tracer.closest(rays, hits, coherence, meeting);
+        for (size_t i = 0; i < rays.size(); ++i) {
+          REQUIRE(hits[i].is_valid());
+          CHECK(hits[i].geometry == (i % 2 == 0 ? up : 1 - up));
+        }
+      }
+    std::vector<uint8_t> hidden(rays.size());
+    tracer.occluded(rays, hidden);
+    for (const uint8_t h : hidden) CHECK(h == 1);
+  }
+}
+
 TEST_CASE("what shines by a texture is seen with its mean over the footprint") {
   // Columns of 1 and 3, each 1/64 of (u,v), which is 1/32 m.
   Texture columns = grey_image(64, 1, [](int x, int) { return x % 2 == 0 ? 1.0f : 3.0f; });
