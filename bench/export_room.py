@@ -1,4 +1,4 @@
-"""A room of a .blend file as glTF, under panels: the rooms of docs/public-scenes.md.
+"""A room of a .blend file as glTF, under panels: the rooms of docs/results/public-scenes.md.
 
   blender -b ROOM.blend --python bench/export_room.py -- OUT.glb X0 Y0 X1 Y1 CEILING STEP
 

@@ -7,7 +7,7 @@ environment: of the pictures, for a quick look.
 Renders the rooms of rooms.py by the default, by `fixed` and by `path` (direct light alone), each
 with some seeds, and writes two tables: processor seconds of a picture and its errors, and how many
 times longer `fixed` and `path` would take for the default's error. With --output they go to that
-file after each row (headings and all, ready for docs/daylight.md), and the runs to one of its name
+file after each row (headings and all, ready for docs/reference/daylight.md), and the runs to one of its name
 that ends in .csv. Errors come from the differences of pictures: the relative RMSE of all pixels,
 most of which is made by edges where the sky itself is seen, and the median pixel's relative error
 (as a standard deviation).

@@ -125,7 +125,7 @@ def bias_rows(out):
 
 def write(out, tiles, commands, is_quick, missing):
     header, body = summary_rows(out)
-    command = f"`bench/direct{' --quick' if is_quick else ''} --copy docs/results-direct`"
+    command = f"`bench/direct{' --quick' if is_quick else ''} --copy docs/results/direct`"
     first = ("**A quick try: few hits and settings, no results.** " if is_quick else "")
     absent = f" Left out, as it was not there: {', '.join(missing)}." if missing else ""
     text = f"""# Direct light: error against time

@@ -51,7 +51,7 @@ def text(interiors, left_out, rows, noises, is_quick):
     missing = f"Not in this run: {', '.join(i.name for i in left_out)}.\n\n" if left_out else ""
     return f"""# Whole pictures of interiors: error against time
 
-{note}Made by `bench/global --copy docs/results-global`, this page too; nothing here is typed by hand.
+{note}Made by `bench/global --copy docs/results/global`, this page too; nothing here is typed by hand.
 The default method over a sweep of `--error`, beside path tracing, in one run on the same machine:
 *processor s* is processor time of the whole command, all threads, reading the scene and all
 preparation included. *Relative RMSE*: over the picture's mean, per pixel and for means of 8 × 8

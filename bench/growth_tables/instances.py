@@ -46,7 +46,7 @@ def mean_of(path):
 
 def page(rows, minutes):
     lines = ["# What instances cost", "",
-             "Made by `bench/instances --copy docs/results-growth`; nothing here is typed by hand. A hall "
+             "Made by `bench/instances --copy docs/results/growth`; nothing here is typed by hand. A hall "
              "of 20 × 15 × 4 m under 12 lamps, full of plants (`bench/growth_tables/plants.py`), each the "
              "same bush of curved leaves, turned, of another size, every fifth mirrored; "
              f"{os.cpu_count()} threads, " + ", ".join(f"`{words}`" for _, words in METHODS) + ". *Instances*: "

@@ -195,7 +195,7 @@ HEADER = ["what", "error", "it takes s", "one takes s", "times", "path: times", 
 
 def page(rows, minutes):
     lines = ["# Many lamps beside one", "",
-             "Made by `bench/growth --lamps --copy docs/results-growth`. The room of "
+             "Made by `bench/growth --lamps --copy docs/results/growth`. The room of "
              "[the growth tables](README.md), 10,000 triangles, "
              f"{SIZE.replace('x', ' × ')} pixels, whole pictures. *Error*: root mean square over the mean, of "
              f"what is not a lamp (less than {BRIGHT} times the mean), that the default made by "

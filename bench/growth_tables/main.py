@@ -109,7 +109,7 @@ EXPLANATION = {
 
 def page(rows, sizes, minutes):
     lines = ["# How time and memory grow", "",
-             "Made by `bench/growth --copy docs/results-growth`, this page too; nothing here is typed by "
+             "Made by `bench/growth --copy docs/results/growth`, this page too; nothing here is typed by "
              "hand. A room of 8 × 6 × 3 m with 24 bumpy bodies and a grid of lights in its ceiling "
              "(`bench/growth_tables/rooms.py`), whole pictures, `" + OPTIONS + "`; 10,000 triangles, 10 "
              f"lights, 256 × 256 pixels and {os.cpu_count()} threads where nothing else is said. Seconds by "

@@ -1,8 +1,8 @@
-"""The page of docs/results-measuring."""
+"""The page of docs/results/measuring."""
 
 HEAD = """# Lists of measured points: error against time
 
-Made by `bench/measuring --copy docs/results-measuring`, this page too; nothing here is typed by
+Made by `bench/measuring --copy docs/results/measuring`, this page too; nothing here is typed by
 hand. Points are what a picture shows, on floors, walls and furniture alike: every pixel of a coarse
 one (the long list), or some of them. `troffer measure` as it is (`--error 0.01`, which measures to a
 quarter of it) beside `--method path`, in one run on the same machine. *Processor s*: of the whole
