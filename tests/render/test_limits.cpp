@@ -1,6 +1,9 @@
 // Renderings that end for time, or because they are good enough.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "base/deadline.h"
 #include "render/checkpoint.h"
 #include "render/pictures.h"
@@ -111,6 +114,50 @@ TEST_CASE("a part-way picture keeps what it has: the rest alone is filled") {
   CHECK(r.statistics.gaps_filled > 0);
   CHECK(same >= 48 * 36 - r.statistics.gaps_filled);
   CHECK(black_pixels(r.layers[0].image) < 48 * 36 / 20);
+}
+
+TEST_CASE("time that is up after cells are made leaves a picture by cells, far better than paths") {
+  const PreparedScene scene(mixed_room());
+  RenderOptions right = options_for(Method::path);
+  right.spp = 2048;
+  const RenderResult reference = render_now(scene, mixed_room_camera(), right);
+  RenderOptions o = options_for(Method::certified);
+  o.indirect = Indirect::cells;
+  o.error = 0.05;
+  // Root of the mean square difference in luminance, without the brightest pixels: edges of lamps.
+  const auto actual_error = [&](const RenderResult& r) {
+    std::vector<double> squares;
+    for (size_t i = 0; i < 48 * 36; ++i)
+      squares.push_back(double(sqr(luminance(r.layers[0].image.pixels[i]) -
+                                   luminance(reference.layers[0].image.pixels[i]))));
+    std::sort(squares.begin(), squares.end());
+    squares.resize(squares.size() * 9 / 10);
+    return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / double(squares.size()));
+  };
+  const auto ended_at = [&](double share) {
+    const StopFlag stop = false;
+    Deadline deadline(stop, Deadline::Clock::now() + std::chrono::hours(100));
+    o.deadline = &deadline;
+    const RenderResult r = render(
+        scene, mixed_room_camera(), o,
+        [&](double done) {
+          if (done < share) return;
+          deadline.keep_back(1e9);
+          while (!deadline.flag().load()) std::this_thread::yield();
+        },
+        deadline.flag());
+    CHECK(r.end == RenderEnd::out_of_time);
+    CHECK(r.statistics.gaps_filled == 48 * 36);
+    CHECK(r.statistics.estimated_error > 0);
+    CHECK(mean(r.layers[0].image) ==
+          doctest::Approx(mean(reference.layers[0].image)).epsilon(0.05));
+    return r;
+  };
+  // Half of the progress is preparation: two fifths of that for cells, the rest for gathering.
+  const RenderResult by_paths = ended_at(0.05), by_cells = ended_at(0.25);
+  CHECK(by_paths.statistics.gaps_are_paths);
+  CHECK(!by_cells.statistics.gaps_are_paths);
+  CHECK(actual_error(by_cells) < 0.5 * actual_error(by_paths));
 }
 
 TEST_CASE("an error limit ends the work when the picture tells no more, the same for any threads") {
