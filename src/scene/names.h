@@ -1,4 +1,5 @@
-// The names in a scene that options refer to, each once, in the order of the file.
+// Names in a scene that options refer to, each once, in file order. Used for error messages and
+// listings.
 #pragma once
 
 #include <string>
