@@ -1,4 +1,4 @@
-// Disjoint sets of 0 … n - 1 (union-find).
+// Union-find over the numbers 0 to n - 1. Used to find connected pieces of meshes.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ class DisjointSets {
  public:
   explicit DisjointSets(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-  // The smallest member of i's set.
+  // Returns the smallest member of i's set.
   uint32_t find(uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

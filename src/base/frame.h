@@ -1,4 +1,5 @@
-// Orthonormal frames.
+// Orthonormal frames, for shading and sampling.
+//
 // References: [1] Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 #pragma once
 
@@ -14,7 +15,7 @@ struct FrameT {
   FrameT() = default;
   FrameT(const Vec3T<T>& t, const Vec3T<T>& b, const Vec3T<T>& n)
       : tangent(t), bitangent(b), normal(n) {}
-  // Any frame about the unit vector n [1].
+  // Frame around the unit vector n, with arbitrary tangents [1].
   explicit FrameT(const Vec3T<T>& n) : normal(n) {
     const T sign = std::copysign(T(1), n.z);
     const T a = T(-1) / (sign + n.z);

@@ -74,7 +74,7 @@ template <class T>
 inline T length(const Vec3T<T>& v) {
   return std::sqrt(dot(v, v));
 }
-// Unit vector along v; v must not be zero.
+// Unit vector along v, which must not be zero.
 template <class T>
 inline Vec3T<T> normalize(const Vec3T<T>& v) {
   return v * (T(1) / length(v));
