@@ -1,4 +1,4 @@
-// Union-find over the numbers 0 to n - 1. Used to find connected pieces of meshes.
+// Union-find over the numbers 0 to n - 1. Used to group vertices, triangles and polygons.
 #pragma once
 
 #include <algorithm>

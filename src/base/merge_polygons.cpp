@@ -182,8 +182,8 @@ bool PolygonMerger::add_flat(std::span<const uint32_t> members, bool only_if_mer
   merger_.pieces.corners.clear();
   merger_.pieces.first.assign(1, 0);
   flat_pieces_.clear();
-  for (const uint32_t p : members) {               // a sliver that rounding has flipped
-    if (!(dot(area_of(p), normal) > 0)) continue;  // a sliver that rounding has turned over
+  for (const uint32_t p : members) {
+    if (!(dot(area_of(p), normal) > 0)) continue;  // a sliver that rounding has flipped
     flat_pieces_.push_back(p);
     for (const uint32_t v : pieces_[p]) {
       if (local_[v] == no_polygon) {

@@ -1,6 +1,6 @@
 // Merges coplanar convex polygons of one surface, so that a tessellated wall becomes one polygon.
-// The result is exact to the rounding of single-precision coordinates. Used to build facets and
-// occluders.
+// The result is exact to the rounding of single-precision coordinates. Used for occluders, sources
+// and mirrors.
 //
 // Polygons merge across a whole edge that only they share and that they traverse in opposite
 // directions. Merged polygons are convex unions of whole pieces. Let L be the largest absolute
@@ -10,7 +10,6 @@
 // rounding error of the vertices. A neighbour may keep an omitted vertex; the gap is no larger than
 // that, so a ray that starts a rounding error off its surface does not notice. Edges without
 // omitted vertices keep their exact numbers.
-// off its surface can tell. An edge that nothing is left out of stays the same numbers.
 #pragma once
 
 #include <cstdint>

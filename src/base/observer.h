@@ -1,5 +1,5 @@
 // CIE 1931 2-degree observer, illuminant D65, and the conversion of XYZ to linear sRGB. Used by
-// importers of spectra. Wavelengths are in nm.
+// importers of spectra and by thin films. Wavelengths are in nm.
 //
 // References: [1] CIE 15:2004, "Colorimetry" (Table T.4: the observer; Table T.1: illuminant D65).
 #pragma once

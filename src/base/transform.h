@@ -1,4 +1,5 @@
-// Affine transforms in double precision. Names read target_from_source: world_from_light.
+// Affine transforms in double precision. Used by importers, instances and exporters. Names read
+// target_from_source: world_from_light. Lengths are in metres unless the name says otherwise.
 #pragma once
 
 #include <array>

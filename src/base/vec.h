@@ -1,4 +1,5 @@
-// Small fixed-size vectors of float and double.
+// Vectors of two and three floats (Vec2, Vec3) or doubles (Vec2d, Vec3d). Used everywhere;
+// positions in metres, directions without unit.
 #pragma once
 
 #include <algorithm>

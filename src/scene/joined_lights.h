@@ -1,4 +1,4 @@
-// Joins lights with identical geometry. Used when a scene is prepared for rendering.
+// Joins lights with identical geometry. Used when a scene is loaded.
 #pragma once
 
 #include "scene/scene.h"

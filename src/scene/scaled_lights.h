@@ -1,4 +1,4 @@
-// Scales the lights of a scene, for dimmers: geometry and the numbers of lights stay as they are.
+// Scales the lights of a scene, for dimmers. Geometry and light indices are unchanged.
 #pragma once
 
 #include <span>

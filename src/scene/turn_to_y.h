@@ -1,4 +1,4 @@
-// Rotates scenes for file formats in which y is up. Used by exporters.
+// Rotates scenes for file formats in which y is up. Used by the glTF exporter.
 #pragma once
 
 #include <array>

@@ -11,10 +11,8 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_radiance_bytes = uint64_t(1)
-                                        // total of all files, each counted as often as it is
-                                        // included
-                                        << 30;
+// Limit on the bytes of all files together; a file counts each time it is included.
+constexpr uint64_t max_radiance_bytes = uint64_t(1) << 30;
 constexpr size_t max_open_files = 16;
 
 class RadianceReader {

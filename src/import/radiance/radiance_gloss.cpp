@@ -13,8 +13,8 @@ namespace {
 
 constexpr double pane_index = 1.52;
 constexpr double least_roughness = 1e-3;  // below this, Radiance reflects as a mirror
-constexpr double least_fresnel =
-    0.017999;  // Mirror reflectance below which Radiance applies no Fresnel term.
+// Mirror reflectance below which Radiance applies no Fresnel term.
+constexpr double least_fresnel = 0.017999;
 constexpr float least_left = 1e-15f;  // Radiance's smallest transmissivity of glass
 
 Rgb rgb_at(const std::vector<double>& v, size_t i = 0) {
