@@ -1,5 +1,5 @@
 // Reflection of diffuse light at a smooth dielectric boundary from inside. Importers and bsdf/ use
-// it for coats over a diffuse base.
+// it for coats over a diffuse base, so that both have the same brightness.
 //
 // References: [1] L. B. Wolff, "Diffuse-Reflectance Model for Smooth Dielectric Surfaces", JOSA A
 //   11(11), 1994.

@@ -1,4 +1,6 @@
-// Union-find over the numbers 0 to n - 1. Used to group vertices, triangles and polygons.
+// Union-find over the numbers 0 to n - 1. Used to group vertices, triangles, polygons and lights'
+// triangles. Each set is represented by its smallest member, so results do not depend on the order
+// of joins.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,6 @@
-// Hash table from directed edges to the polygon on their left. Used while polygons are merged.
+// Hash table from directed edges between numbered vertices to the polygon on their left. Used by
+// RegionMerger, whose polygons change while it runs. Edges with more than one polygon are marked
+// and stay so.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
-// The three exceptions that end a command, and TROFFER_CHECK for bugs. Used everywhere.
+// The three exceptions that end a command, and TROFFER_CHECK for bugs. InputError is for bad files,
+// EnvironmentError for failures outside the program, UsageError for bad command lines. A failed
+// check prints the item of work, such as a pixel, and aborts.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Orthonormal frames, for shading and sampling.
+// Orthonormal frames around a normal. Used to change between local and world directions in shading
+// and sampling, in float (Frame) and double (Framed).
 //
 // References: [1] Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 #pragma once

@@ -1,4 +1,5 @@
-// Log of warnings. Equal messages share an entry with a count.
+// Log of warnings. Importers and options add to it, and app/ prints it once. Equal messages share
+// an entry with a count.
 #pragma once
 
 #include <cstddef>

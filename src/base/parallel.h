@@ -1,4 +1,5 @@
-// Parallel loops on oneTBB (its only user), and cooperative cancellation.
+// Parallel loops on oneTBB (its only user), and cooperative cancellation. Results never depend on
+// the number of threads or on scheduling.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,5 @@
-// Hints to load memory into the cache. They affect only speed.
+// Hints to load memory into the cache. Loops over many lookups issue them ahead of use. They affect
+// only speed, and compile to nothing where the compiler has no such hint.
 #pragma once
 
 #include <cstddef>

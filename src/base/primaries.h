@@ -1,4 +1,5 @@
-// Conversion of colours with other primaries to linear sRGB. Used by importers.
+// Conversion of colours with other primaries to linear sRGB. Used by importers, for files with
+// their own colour space. Chromaticities are CIE 1931 x, y.
 //
 // References: [1] SMPTE RP 177:1993 (matrices from chromaticities); [2] Lam's matrix of cones as
 //   ICC.1:2010, Annex E, has it ("Bradford").

@@ -1,4 +1,5 @@
 // Flat convex quadrilaterals and planes as plain data. Rooms exchange occluders in this form.
+// Positions are in metres.
 #pragma once
 
 #include <array>

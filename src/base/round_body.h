@@ -1,4 +1,5 @@
 // Spheres and disks as plain data. Rooms exchange occluders that are not facets in this form.
+// Lengths are in metres.
 #pragma once
 
 #include "base/vec.h"

@@ -1,4 +1,5 @@
-// Suggests the file that a mistyped path may have meant. Used in error messages.
+// Suggests the file that a mistyped path may have meant. Used in error messages about missing
+// files.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// Maps between the unit square and all directions, for environment images.
+// Maps between the unit square and all directions, for environment images. Directions are unit
+// vectors in the image's own axes. Used by importers and light/.
 //
 //   lat_long    u: azimuth about z, from x to y, over a whole turn; v: angle from +z, over pi
 //   equal_area  the octahedron unfolded so that equal areas are equal solid angles [1]: +z in the

@@ -1,4 +1,5 @@
-// Position of the sun by place and time. Used for skies and daylight. Angles are in degrees.
+// Position of the sun by place and time. Used for skies, daylight and Mitsuba's sun. Angles are in
+// degrees, times are Julian days of universal time.
 //
 // References: [1] Meeus, "Astronomical Algorithms", 2nd ed., 1998: ch. 7 (Julian day), 12 (sidereal
 //   time), 13 (coordinates), 16 (refraction, Eq. 16.4), 22 (nutation), 25 (the sun, low accuracy).

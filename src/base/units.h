@@ -1,4 +1,5 @@
-// Constants and units. SI throughout; any other unit is part of the name.
+// Mathematical constants and unit conversions. SI throughout; any other unit is part of the name,
+// such as angle_deg or diagonal_mm.
 #pragma once
 
 namespace troffer {

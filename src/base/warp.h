@@ -1,4 +1,5 @@
-// Maps from the unit square to other domains, with densities and inverses. Used by all sampling.
+// Maps from the unit square to disks, hemispheres, spheres and triangles, with densities and
+// inverses. Used by all sampling.
 //
 // References: [1] Shirley & Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
 #pragma once

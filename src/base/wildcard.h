@@ -1,4 +1,5 @@
-// Wildcards in names that options give: 'panel*' fits panel.001 and panel.002.
+// Wildcards in names that options give: 'panel*' fits panel.001 and panel.002. Used wherever an
+// option names lights, surfaces or nodes.
 #pragma once
 
 #include <string_view>

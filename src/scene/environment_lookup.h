@@ -1,4 +1,5 @@
 // Interpolated values of environment images. Used by light/environment_image.h and by importers.
+// Radiance in the units of the image.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Joins lights with identical geometry. Used when a scene is loaded.
+// Joins lights with identical geometry. Used when a scene is loaded, before anything numbers its
+// lights.
 #pragma once
 
 #include "scene/scene.h"

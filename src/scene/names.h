@@ -1,5 +1,5 @@
-// Names in a scene that options refer to, each once, in file order. Used for error messages and
-// listings.
+// Names in a scene that options refer to, each once, in file order. Used to match options, to list
+// names, and for error messages that suggest the nearest name.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// Patterns and noise, and mappings from space to (u,v). Used by evaluate() in scene/texture.cpp.
+// Procedural patterns and noise, and mappings from positions in space to (u,v). Used by evaluate()
+// in scene/texture.cpp.
 #pragma once
 
 #include "scene/texture.h"

@@ -1,4 +1,5 @@
-// Rotates scenes for file formats in which y is up. Used by the glTF exporter.
+// Rotates scenes for file formats in which y is up. Used by the glTF exporter, which reports the
+// rotation.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Converts Mitsuba's bsdf plugins to materials. Used by MitsubaReader.
+// Converts Mitsuba's bsdf plugins to materials. Used by MitsubaReader. A bsdf becomes one scene
+// material on its first use; approximations add warnings.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: BSDFs"; [2] W. Jakob, "Mitsuba 0.6
 //   Documentation", §8.2 (Surface scattering models).

@@ -1,4 +1,5 @@
-// Renames elements of Mitsuba files before 0.4 to their later names. Used while MitsubaTree reads.
+// Renames elements of Mitsuba files before 0.4 to their later names. Used while MitsubaTree reads,
+// so that all other readers know only the newest names.
 //
 // References: [1] W. Jakob, "Mitsuba 0.6 Documentation", §6 (Scene file format); [2] Mitsuba 0.6,
 //   data/schema/upgrade_0.3.0.xsl and upgrade_0.4.0.xsl, which list the renamed elements.

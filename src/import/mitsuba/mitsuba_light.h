@@ -1,4 +1,5 @@
-// Converts Mitsuba's emitter plugins without a surface to lights. Used by MitsubaReader.
+// Converts Mitsuba's emitter plugins without a surface to lights: points, spots, projectors,
+// environments and skies. Used by MitsubaReader.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Emitters"; [2] W. Jakob, "Mitsuba 0.6
 //   Documentation", §8.7 (Emitters); [3] A. J. Preetham, P. Shirley, B. Smits, "A Practical

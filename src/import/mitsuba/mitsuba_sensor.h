@@ -1,4 +1,5 @@
-// Converts Mitsuba's sensor plugins to cameras. Used by MitsubaReader and for projector lights.
+// Converts Mitsuba's sensor and film plugins to cameras. Used by MitsubaReader; projector lights
+// share the field of view.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Sensors, Films".
 #pragma once

@@ -1,4 +1,5 @@
-// Reader of Mitsuba's compressed mesh files (.serialized). Used by MitsubaShapes.
+// Reader of Mitsuba's compressed mesh files (.serialized), which hold several meshes. Used by
+// MitsubaShapes. The data may be hostile: sizes and indices are checked.
 //
 // References: [1] W. Jakob, "Mitsuba 0.6 Documentation", §8.1 (Serialized mesh loader: the file
 //   format, versions 3 and 4).

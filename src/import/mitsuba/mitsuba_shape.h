@@ -1,4 +1,5 @@
-// Converts Mitsuba's shape plugins to geometry in object space. Used by MitsubaReader.
+// Converts Mitsuba's shape plugins to geometry in object space. Used by MitsubaReader, which
+// applies to_world. Mesh files are OBJ, PLY and .serialized.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Shapes"; [2] W. Jakob, "Mitsuba 0.6
 //   Documentation", §8.1 (Shapes). [3] T. Duff et al., "Building an Orthonormal Basis, Revisited",

@@ -1,4 +1,5 @@
-// Transforms and vectors of Mitsuba's XML files. Used by the readers of values and textures.
+// Transforms and vectors of Mitsuba's XML files. Used by the readers of values and textures. Angles
+// in files are degrees.
 #pragma once
 
 #include "base/transform.h"

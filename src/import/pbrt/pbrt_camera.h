@@ -1,4 +1,5 @@
-// Converts pbrt's Camera and Film directives to a scene's camera. Used by PbrtInterpreter.
+// Converts pbrt's Camera and Film directives to a scene's camera. Used by PbrtInterpreter. Lens
+// data of files are in millimetres.
 //
 // References: [1] pbrt-v4 Input File Format, sections "Cameras" and "Film",
 //   pbrt.org/fileformat-v4.

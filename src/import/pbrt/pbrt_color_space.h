@@ -1,4 +1,5 @@
-// Colour spaces of pbrt files: converts their rgb triples to linear sRGB.
+// Colour spaces of pbrt files: converts their rgb triples to linear sRGB. Used by PbrtInterpreter
+// for every parameter list.
 //
 // References: [1] pbrt-v4 Input File Format, "Color spaces", pbrt.org/fileformat-v4.
 //   [2] ITU-R BT.2020 and BT.709; SMPTE RP 431-2 (DCI-P3, with pbrt's white D65); SMPTE ST 2065-1.

@@ -1,4 +1,5 @@
-// Converts pbrt's curves to tubes and ribbons of triangles. Used by read_pbrt_shape.
+// Converts pbrt's curves to tubes and ribbons of triangles in object space. Used by
+// read_pbrt_shape.
 //
 // References: [1] pbrt-v4 Input File Format, section "Shapes", pbrt.org/fileformat-v4.
 #pragma once

@@ -1,4 +1,6 @@
-// Interpreter of pbrt files: carries out one directive after the other. Used by import_pbrt.
+// Interpreter of pbrt files: carries out one directive after the other and adds to a scene. Used by
+// import_pbrt. Its functions are in pbrt.cpp (the world) and pbrt_interpreter.cpp (everything
+// else).
 //
 // References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
 #pragma once

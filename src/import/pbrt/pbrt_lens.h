@@ -1,4 +1,5 @@
-// Lens files of pbrt's realistic cameras, reduced to a thin lens. Used by read_pbrt_camera.
+// Lens files of pbrt's realistic cameras, reduced to a thin lens by paraxial optics. Used by
+// read_pbrt_camera.
 //
 // References: [1] pbrt-v4 Input File Format, "Cameras: realistic";
 //   [2] Kolb, Mitchell & Hanrahan, "A Realistic Camera Model for Computer Graphics",

@@ -1,4 +1,5 @@
-// Converts pbrt's LightSource directives (lights without a surface). Used by PbrtInterpreter.
+// Converts pbrt's LightSource directives (lights without a surface). Used by PbrtInterpreter. Area
+// lights are in pbrt_shape.h.
 //
 // References: [1] pbrt-v4 Input File Format, section "Lights", pbrt.org/fileformat-v4.
 //   [2] Pharr, Jakob & Humphreys, "Physically Based Rendering", 4th ed., 12.5.3.

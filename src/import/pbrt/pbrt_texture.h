@@ -1,4 +1,5 @@
 // Named textures of pbrt files, each made when a material first uses it. Used by PbrtMaterials.
+// Directives only store a texture's parameters.
 //
 // References: [1] pbrt-v4 Input File Format, section "Textures", pbrt.org/fileformat-v4.
 #pragma once

@@ -1,4 +1,5 @@
 // Tokenizer of pbrt files: directives, quoted strings, numbers and brackets, each with its place.
+// Used by all readers of this folder. Tokens refer to the text and do not copy it.
 //
 // References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
 #pragma once

@@ -1,4 +1,5 @@
-// Transform directives of pbrt files. Used by PbrtInterpreter.
+// Transform directives of pbrt files. Used by PbrtInterpreter, which keeps the current transform.
+// Angles in files are degrees.
 //
 // References: [1] pbrt-v4 Input File Format, section "Transformations", pbrt.org/fileformat-v4.
 #pragma once

@@ -1,4 +1,5 @@
-// Commands in Radiance files, interpreted without running anything. Used by RadianceReader.
+// Commands in Radiance files (xform and genbox), interpreted without running anything. Used by
+// RadianceReader, and by RadianceFunctions for transform options.
 //
 // References: [1] Radiance manual pages xform(1), genbox(1).
 #pragma once

@@ -1,4 +1,5 @@
-// Converts Radiance's reflecting and transmitting materials. Used by RadianceMaterials.
+// Converts Radiance's reflecting and transmitting materials to scene materials. Used by
+// RadianceMaterials. Approximations add warnings.
 //
 // References: [1] "The RADIANCE 5.1 Synthetic Imaging System", §2.1.2 (materials); [2] G. Ward,
 //   "Measuring and Modeling Anisotropic Reflection", SIGGRAPH 1992 (rough gloss); [3] G. Ward

@@ -1,4 +1,5 @@
 // Converts Radiance's surfaces and distant sources to geometry and lights. Used by RadianceReader.
+// Polygons that do not emit are merged to one mesh per material.
 //
 // References: [1] "The RADIANCE 5.1 Synthetic Imaging System", §2.1.1 (surfaces).
 #pragma once

@@ -1,4 +1,5 @@
-// Tokenizer of Radiance's scene files. Used by all readers of this folder.
+// Tokenizer of Radiance's scene files, and parsers of words and numbers. Used by all readers of
+// this folder.
 //
 // References: [1] G. W. Larson, R. Shakespeare, "Rendering with Radiance", 1998, appendix A (scene
 //   description); [2] "The RADIANCE 5.1 Synthetic Imaging System" (reference manual, refman.pdf).

@@ -1,4 +1,5 @@
-// Converts Radiance's view options to cameras. Used by RadianceReader.
+// Converts Radiance's view options to cameras. Used by RadianceReader, for view comments and view
+// files.
 //
 // References: [1] Radiance manual pages rpict(1), rvu(1) (-vt -vp -vd -vu -vh -vv -vs -vl -vo -va).
 #pragma once
