@@ -1,5 +1,5 @@
 // Single scattering by microfacets with uncorrelated shadowing and masking: the product of Smith's
-// G1 for both directions. Light lost between facets stays lost.
+// G1 for both directions. Light lost between microfacets stays lost.
 //
 // This is the definition of Mitsuba's rough bsdfs. Importers and bsdf/ share these functions, so
 // that a colour that an importer converts matches the reflection function that shows it.
@@ -15,8 +15,8 @@ namespace troffer {
 
 enum class FacetShape : uint8_t { ggx, beckmann };
 
-// Smith's G1, the share of facets that a direction sees, as a function of (alpha tan θ)². [1] Eq.
-// 34; for Beckmann the rational fit of Eq. 27.
+// Smith's G1, the share of microfacets that a direction sees, as a function of (alpha tan θ)². [1]
+// Eq. 34; for Beckmann the rational fit of Eq. 27.
 inline float smith_g1(FacetShape shape, float alpha_tan2) {
   if (shape == FacetShape::ggx) return 2 / (1 + std::sqrt(1 + alpha_tan2));
   if (!(alpha_tan2 > 0.390625f)) return 1;  // 1 / 1.6²

@@ -76,19 +76,21 @@ struct Light {
   // spot: full intensity within the inner angle, none beyond the outer one, which is larger
   float cos_inner = 1, cos_outer = 0;
   SpotFalloff falloff = SpotFalloff::smooth_step;
-  // point with a texture: irradiance on a plane across the axis is proportional to the picture, so
-  // the intensity at angle a from the axis is divided by cos³ a (Mitsuba's projector).
+  // point with a texture: irradiance on a plane across the axis is proportional to the picture.
+  // The intensity at angle a from the axis is divided by cos³ a (Mitsuba's projector).
   bool lights_plane_evenly = false;
-  // point, spot: distance where it has faded to nothing, m; 0: no limit (light/point_light.h)
+  // point, spot, m. Above 0: distance where the light has faded to nothing. Below 0: minus the
+  // focal distance of Radiance's spotlight. 0: inverse square without limit (light/no_surface.h).
   float range = 0;
 
-  int32_t environment = no_environment;  // environment: image, index into Scene::environments
+  int32_t environment = no_environment;  // environment, point: index into Scene::environments
   SkyShape sky;                          // sky
   float angular_radius = 0;              // sun: of its disc, rad
   // point, kinds with a surface: index into Scene::webs
   int32_t web = no_web;
   // World directions of the light's own x, y, z: unit, orthogonal, of either handedness. They
-  // orient an environment's image, a sky (z is up), and the luminaire of a web.
+  // orient an environment's image, a sky (z is up), and the luminaire of a web. The x and y axes of
+  // a projected picture are not unit (scene/projected_image.h).
   std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 };
 

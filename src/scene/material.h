@@ -44,7 +44,7 @@ enum class RoughnessMeaning : uint8_t {
 
 // Microfacet model of rough gloss.
 enum class FacetModel : uint8_t {
-  // GGX with height-correlated shadowing and masking; light lost between facets returns
+  // GGX with height-correlated shadowing and masking; light lost between microfacets returns
   // (bsdf/lost_light.cpp)
   balanced,
   single_ggx,       // GGX with shadowing times masking; lost light stays lost (Mitsuba)
