@@ -1,4 +1,5 @@
-// Axis-aligned boxes. An empty box has lower > upper and grows from any point.
+// Axis-aligned boxes of float (Box) and double (Boxd). Used for bounds everywhere. An empty box has
+// lower > upper; growing it by a point makes it that point.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,5 @@
-// What a smooth dielectric boundary does to light that a diffuse base under it scatters.
+// Reflection of diffuse light at a smooth dielectric boundary from inside. Importers and bsdf/ use
+// it for coats over a diffuse base, so that both have the same brightness.
 //
 // References: [1] L. B. Wolff, "Diffuse-Reflectance Model for Smooth Dielectric Surfaces", JOSA A
 //   11(11), 1994.
@@ -6,13 +7,14 @@
 
 namespace troffer {
 
-// Mean reflectance of the boundary from inside, over diffuse light: what of the base's light comes
-// back to it [1]. `index`: inside over outside, above 0. Exact Fresnel terms, midpoint rule.
+// Mean reflectance of the boundary from inside for diffuse light: the share of the base's light
+// that returns to it [1]. `index` is inside over outside, above 0. Exact Fresnel terms, midpoint
+// rule.
 float mean_reflectance_inside(double index);
 
-// A base of reflectance ρ under a coat whose mean reflectance from inside is f, and the reflectance
-// of a base that looks the same where every reflection within is as of a white one: ρ (1-f) /
-// (1-ρf), and back.
+// Convert the reflectance ρ of a base under a coat of mean inside reflectance f. as_of_white_base()
+// returns the equivalent reflectance for a coat that treats every inner reflection as if the base
+// were white: ρ (1-f) / (1-ρf). from_white_base() is its inverse.
 constexpr float as_of_white_base(float rho, float f) {
   return rho * (1 - f) / (1 - rho * f);
 }

@@ -1,4 +1,5 @@
-// A time at which work is to end.
+// Deadlines of timed work, as a stop flag. Used by renderers with a time limit; times are in
+// seconds.
 #pragma once
 
 #include <atomic>
@@ -11,13 +12,13 @@
 
 namespace troffer {
 
-// Owns a flag that is set when another is, or when the time is up, whichever comes first. A thread
-// of its own looks at both, a few hundred times a second.
+// Owns a flag that is set when `parent` is set or the time is up, whichever comes first. Its own
+// thread checks both about 250 times a second.
 class Deadline {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `parent` must outlive this.
+  // `parent` must outlive this object.
   Deadline(const StopFlag& parent, Clock::time_point end);
   ~Deadline();
   Deadline(const Deadline&) = delete;
@@ -25,11 +26,11 @@ class Deadline {
 
   const StopFlag& flag() const { return flag_; }
   const StopFlag& parent() const { return parent_; }
-  // The flag was set for the time, and nobody has set the parent since.
+  // True if the flag was set for the time and the parent is still not set.
   bool is_over() const { return flag_.load() && !parent_.load(); }
-  // Below zero once it is over.
+  // Seconds until the end; negative afterwards.
   double seconds_left() const;
-  // Sets the flag so much earlier: what is left to do then takes this long. By any thread.
+  // Sets the flag that much earlier, to leave time for the remaining work. Thread-safe.
   void keep_back(double seconds) { kept_back_ = seconds; }
 
  private:
@@ -42,7 +43,7 @@ class Deadline {
   std::mutex mutex_;
   std::condition_variable ending_;
   bool is_ending_ = false;
-  std::thread watcher_;  // last: it uses all the others
+  std::thread watcher_;  // last, because it uses all other members
 };
 
 }  // namespace troffer

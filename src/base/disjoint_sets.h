@@ -1,4 +1,6 @@
-// Disjoint sets of 0 … n - 1 (union-find).
+// Union-find over the numbers 0 to n - 1. Used to group vertices, triangles, polygons and lights'
+// triangles. Each set is represented by its smallest member, so results do not depend on the order
+// of joins.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +15,7 @@ class DisjointSets {
  public:
   explicit DisjointSets(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-  // The smallest member of i's set.
+  // Returns the smallest member of i's set.
   uint32_t find(uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

@@ -1,4 +1,6 @@
-// Directed edges between numbered vertices -> the polygon on their left, while polygons change.
+// Hash table from directed edges between numbered vertices to the polygon on their left. Used by
+// RegionMerger, whose polygons change while it runs. Edges with more than one polygon are marked
+// and stay so.
 #pragma once
 
 #include <cstddef>
@@ -8,17 +10,17 @@
 
 namespace troffer {
 
-// A hash table with open addressing; it grows as needed.
+// Open addressing; grows as needed.
 class EdgeTable {
  public:
   static constexpr uint32_t none = 0xffffffffu, many = 0xfffffffeu;
 
-  // Empties it, with room for so many edges.
+  // Empties the table and reserves room for that many edges.
   void clear(size_t edges);
-  // The polygon; none; or many, where more than one has been there at a time.
+  // Returns the polygon; `none`; or `many` if the edge has had more than one at a time.
   uint32_t find(uint32_t from, uint32_t to) const;
   void insert(uint32_t from, uint32_t to, uint32_t polygon);
-  // What has been of many stays so.
+  // Removes an edge. An edge with `many` stays so.
   void erase(uint32_t from, uint32_t to);
 
  private:

@@ -10,7 +10,7 @@ namespace {
 std::string located(const std::string& file, int line, int column, const std::string& what) {
   if (file.empty()) return what;
   if (line < 0) return file + ": " + what;  // a missing file has no lines
-  // What is wrong with a file as a whole is reported at its beginning: the place is always there.
+  // Errors of a whole file are reported at 1:1, so that there is always a place.
   const bool has_place = line > 0;
   return file + ":" + std::to_string(has_place ? line : 1) + ":" +
          std::to_string(has_place ? column : 1) + ": " + what;

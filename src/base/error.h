@@ -1,4 +1,6 @@
-// The three kinds of failure that end a command, and CHECK for bugs.
+// The three exceptions that end a command, and TROFFER_CHECK for bugs. InputError is for bad files,
+// EnvironmentError for failures outside the program, UsageError for bad command lines. A failed
+// check prints the item of work, such as a pixel, and aborts.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +9,8 @@
 
 namespace troffer {
 
-// A file that cannot be used as it is. Thrown by readers, caught once in app/, printed as
-// "error: FILE:LINE:COLUMN: what". Line and column count from 1; 0 = the file as a
-// whole, printed as 1:1.
+// A file cannot be used. Readers throw it; app/ catches it once and prints "error:
+// FILE:LINE:COLUMN: what". Line and column count from 1; 0 means the whole file, printed as 1:1.
 class InputError : public std::runtime_error {
  public:
   InputError(std::string file, int line, int column, std::string what);
@@ -23,7 +24,7 @@ class InputError : public std::runtime_error {
   int line_, column_;
 };
 
-// The world around us failed: cannot write, disk full, out of memory.
+// The environment failed: cannot write, disk full, out of memory.
 class EnvironmentError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,15 +36,16 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Prints the failed condition, where, and what this thread was working on, then aborts.
+// Prints the failed condition, its place and what this thread was working on, then aborts.
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
 
-// The command that reproduces a run, for the message of a failed CHECK; set once by app/.
+// Sets the command that reproduces the run, for the message of a failed check. Called once by app/.
 void set_check_command(std::string command);
 
-// What the calling thread works on, for the message of a failed CHECK: a batch of items, of which
-// name(batch, i) says "pixel (3,4), sample 0". It is called only once a CHECK has failed; the batch
-// must stay as it is until then. A context within another one takes its place while it lives.
+// Registers what the calling thread works on, for the message of a failed check. The work is a
+// batch of items; name(batch, i) returns a text such as "pixel (3,4), sample 0". It is called only
+// after a failed check. The batch must stay unchanged until then. A nested context replaces the
+// outer one during its lifetime.
 class CheckContext {
  public:
   using Name = std::string (*)(const void* batch, size_t item);
@@ -65,8 +67,8 @@ class CheckContext {
   static constinit thread_local size_t item_, first_;
 };
 
-// Lives as long as a loop over items of the batch; at(i) says at which it is and costs one store.
-// Outside such loops the message names the first and the last item of the batch.
+// Marks the current item within a loop over the batch. at(i) costs one store. Outside such loops
+// the message names the first and the last item.
 class CheckItems {
  public:
   CheckItems() = default;
@@ -76,8 +78,8 @@ class CheckItems {
   void at(size_t item) { CheckContext::item_ = item; }
 };
 
-// Lives as long as a part of the batch is worked on, whose items are numbered from 0 again:
-// `first`, by the batch's own numbers, is the first of them.
+// Marks work on a part of the batch whose items count from 0 again. `first` is the index of its
+// first item in the batch.
 class CheckPart {
  public:
   explicit CheckPart(size_t first) : outer_first_(CheckContext::first_) {
@@ -91,11 +93,11 @@ class CheckPart {
   size_t outer_first_;
 };
 
-// What the calling thread works on, in words; empty outside of any context.
+// Text for what the calling thread works on; empty outside any context.
 std::string check_place();
 
 }  // namespace troffer
 
-// A condition that only a bug can break; stays on in release builds.
+// Checks a condition that only a bug can violate. It stays on in release builds.
 #define TROFFER_CHECK(condition) \
   ((condition) ? void(0) : ::troffer::check_failed(#condition, __FILE__, __LINE__))

@@ -26,15 +26,16 @@ FacetInterface at_facet(double c, double index) {
 
 }  // namespace
 
-// Midpoint rule over the facets, each in proportion to its area seen from above. By symmetry half
-// the azimuths suffice; steep facets, whose weights are large, get more nodes.
+// Midpoint rule over the microfacets, weighted by their projected area. Symmetry halves the
+// azimuths. Steep microfacets, which have large weights, get more nodes.
 RoughShares rough_shares(FacetShape shape, double alpha, double index, double cosine) {
   constexpr int n = 48;
   const double c = std::clamp(cosine, 1e-6, 1.0), s = std::sqrt(1 - c * c);
   const double seen = facet_g1(shape, alpha, c);
   RoughShares sum;
   for (int j = 0; j < n; ++j) {
-    const double rest = 1 - (j + 0.5) / n, steeper = rest * rest;  // share of steeper facets
+    const double rest = 1 - (j + 0.5) / n,
+                 steeper = rest * rest;  // share of the steeper microfacets
     const double tangent =
         alpha * std::sqrt(shape == FacetShape::ggx ? (1 - steeper) / steeper : -std::log(steeper));
     const double z = 1 / std::sqrt(1 + tangent * tangent);

@@ -1,4 +1,6 @@
-// Orthonormal frames.
+// Orthonormal frames around a normal. Used to change between local and world directions in shading
+// and sampling, in float (Frame) and double (Framed).
+//
 // References: [1] Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 #pragma once
 
@@ -14,7 +16,7 @@ struct FrameT {
   FrameT() = default;
   FrameT(const Vec3T<T>& t, const Vec3T<T>& b, const Vec3T<T>& n)
       : tangent(t), bitangent(b), normal(n) {}
-  // Any frame about the unit vector n [1].
+  // Frame around the unit vector n, with arbitrary tangents [1].
   explicit FrameT(const Vec3T<T>& n) : normal(n) {
     const T sign = std::copysign(T(1), n.z);
     const T a = T(-1) / (sign + n.z);

@@ -1,5 +1,5 @@
-// Hashes a sequence of numbers and texts to 64 bits. Keys of files (solutions, checkpoints) are
-// made with it: a change of the order or kind of what is added makes old files unreadable.
+// 64-bit hash of a sequence of numbers and texts. Solutions and checkpoints use it as a key: a
+// change in the order or kind of the hashed values makes old files unreadable.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ namespace troffer {
 
 class Hasher {
  public:
-  // Hashes of the same sequence with different `start` are unrelated.
+  // Different values of `start` give unrelated hashes of the same sequence.
   explicit Hasher(uint64_t start) : hash_(start) {}
 
   // Integers and enumerators count as 64 bits, floating-point numbers as their bits.

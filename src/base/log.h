@@ -1,4 +1,5 @@
-// Warnings, collected and counted: equal messages are one entry.
+// Log of warnings. Importers and options add to it, and app/ prints it once. Equal messages share
+// an entry with a count.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,8 @@ struct Warning {
   size_t count = 1;
 };
 
-// Not for use from parallel loops. Keeps at most `max_entries` different texts, so that a
-// hostile file cannot fill memory with them; the rest are counted in one last entry.
+// Not thread-safe. Keeps at most `max_entries` different texts, so that a hostile file cannot fill
+// memory; the rest are counted in one last entry.
 class WarningLog {
  public:
   void add(std::string text, size_t count = 1);

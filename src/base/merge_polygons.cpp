@@ -11,7 +11,8 @@ namespace troffer {
 
 namespace {
 
-constexpr double slab_thickness = 0x1p-21, straightness = 0x1p-22;  // of the largest coordinate
+// relative to the largest coordinate
+constexpr double slab_thickness = 0x1p-21, straightness = 0x1p-22;
 
 double largest_coordinate(const Vec3& p) {
   return double(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}));
@@ -25,7 +26,7 @@ struct Pair {
 class PolygonMerger {
  public:
   PolygonMerger(std::span<const Vec3> positions, const PolygonList& pieces, size_t most_corners);
-  // The edges between two vertices; all of them, in order, before merge().
+  // Takes the edges between two vertices. Call it for all of them, in order, before merge().
   void look_at(std::span<const PolygonEdge> edges);
   MergedPolygons merge();
 
@@ -41,9 +42,9 @@ class PolygonMerger {
   const PolygonList& pieces_;
   std::vector<Pair> pairs_;  // coplanar neighbours
   DisjointSets regions_;
-  std::vector<uint32_t> local_;        // per vertex: number in the region at hand
-  std::vector<uint32_t> flat_pieces_;  // of the region at hand: those that merger_ has
-  std::vector<uint32_t> vertices_;     // of the region at hand
+  std::vector<uint32_t> local_;        // number in the current region, by vertex
+  std::vector<uint32_t> flat_pieces_;  // pieces of the current region that merger_ has
+  std::vector<uint32_t> vertices_;     // vertices of the current region
   RegionMerger merger_;
   MergedPolygons out_;
 };
@@ -52,7 +53,7 @@ PolygonMerger::PolygonMerger(std::span<const Vec3> positions, const PolygonList&
                              size_t most_corners)
     : positions_(positions), pieces_(pieces), regions_(pieces.size()), merger_(most_corners) {}
 
-// Unit normal times area; zero where there is none. Not kept: there may be millions.
+// Unit normal times area; zero for degenerate pieces. Not stored, because there may be millions.
 Vec3d PolygonMerger::area_of(uint32_t piece) const {
   const std::span<const uint32_t> c = pieces_[piece];
   const Vec3d origin = position(c[0]);
@@ -62,7 +63,7 @@ Vec3d PolygonMerger::area_of(uint32_t piece) const {
   return is_finite(sum) ? sum * 0.5 : Vec3d{};
 }
 
-// A first look, at neighbours: whether both may be part of one flat region.
+// Quick test of two neighbours: true if both may belong to one flat region.
 bool PolygonMerger::is_coplanar(uint32_t a, uint32_t b) const {
   Vec3d normal = area_of(a);
   const Vec3d other = area_of(b);
@@ -93,7 +94,7 @@ void PolygonMerger::look_at(std::span<const PolygonEdge> edges) {
   regions_.join(e.polygon, f.polygon);
 }
 
-// Most pieces of curved surfaces have no partner: lists are of those that have.
+// Most pieces of curved surfaces have no partner, so the lists hold only those that do.
 MergedPolygons PolygonMerger::merge() {
   const auto n = uint32_t(pieces_.size());
   out_.of_piece.assign(n, no_polygon);
@@ -142,7 +143,7 @@ void PolygonMerger::add_alone(uint32_t piece) {
 
 void PolygonMerger::add_region(std::span<const uint32_t> members, std::span<const Pair> pairs) {
   if (add_flat(members, false)) return;
-  // Each is flat with its neighbours but all are not: pairs, those with the longest edges first.
+  // Neighbours are coplanar but the whole is not: merge pairs, those with the longest edges first.
   std::vector<std::pair<double, const Pair*>> order;
   for (const Pair& p : pairs)
     order.emplace_back(-length_squared(position(p.high) - position(p.low)), &p);
@@ -157,8 +158,8 @@ void PolygonMerger::add_region(std::span<const uint32_t> members, std::span<cons
     if (out_.of_piece[p] == no_polygon) add_alone(p);
 }
 
-// Merges pieces that lie in one plane; false, with nothing done, where they do not, or, if
-// only_if_merged, where nothing merges.
+// Merges pieces that lie in one plane. Returns false, without any change, if they do not, or with
+// only_if_merged if they do not merge to one polygon.
 bool PolygonMerger::add_flat(std::span<const uint32_t> members, bool only_if_merged) {
   Vec3d normal;
   for (const uint32_t p : members) normal += area_of(p);
@@ -182,7 +183,7 @@ bool PolygonMerger::add_flat(std::span<const uint32_t> members, bool only_if_mer
   merger_.pieces.first.assign(1, 0);
   flat_pieces_.clear();
   for (const uint32_t p : members) {
-    if (!(dot(area_of(p), normal) > 0)) continue;  // a sliver that rounding has turned over
+    if (!(dot(area_of(p), normal) > 0)) continue;  // a sliver that rounding has flipped
     flat_pieces_.push_back(p);
     for (const uint32_t v : pieces_[p]) {
       if (local_[v] == no_polygon) {

@@ -1,14 +1,15 @@
-// Coplanar convex polygons of one surface merged to larger ones, so that a tessellated wall is one
-// polygon: exact to the rounding of single-precision coordinates.
+// Merges coplanar convex polygons of one surface, so that a tessellated wall becomes one polygon.
+// The result is exact to the rounding of single-precision coordinates. Used for occluders, sources
+// and mirrors.
 //
-// Polygons merge across a whole edge that only they share, along which they run in opposite
-// directions; merged ones are convex, and unions of whole pieces. Let L be the largest absolute
-// coordinate of a connected flat region. All its vertices lie within a slab 2^-21 L thick. A vertex
-// that is left out lies within 2^-22 L of the merged polygon's edge, and within 2^-10 of that
-// polygon's width. So a merged polygon covers what its pieces cover and no more, up to 2^-21 L, of
-// the order of what rounding to single precision moved the vertices by. Where neighbours keep a
-// vertex that it leaves out, the two part by no more than that: no ray that starts a rounding error
-// off its surface can tell. An edge that nothing is left out of stays the same numbers.
+// Polygons merge across a whole edge that only they share and that they traverse in opposite
+// directions. Merged polygons are convex unions of whole pieces. Let L be the largest absolute
+// coordinate of a connected flat region. All its vertices lie in a slab of thickness 2^-21 L. An
+// omitted vertex lies within 2^-22 L of the merged polygon's edge, and within 2^-10 of the
+// polygon's width. A merged polygon therefore covers what its pieces cover up to 2^-21 L, about the
+// rounding error of the vertices. A neighbour may keep an omitted vertex; the gap is no larger than
+// that, so a ray that starts a rounding error off its surface does not notice. Edges without
+// omitted vertices keep their exact numbers.
 #pragma once
 
 #include <cstdint>
@@ -23,17 +24,18 @@ namespace troffer {
 constexpr uint32_t no_polygon = 0xffffffffu;
 
 struct MergedPolygons {
-  PolygonList polygons;  // corners in the order of the pieces' (the front stays the front)
-  std::vector<uint32_t> of_piece;  // per piece: what covers it; no_polygon where it has no area
+  PolygonList polygons;  // corners in the order of the pieces, so the front stays the front
+  // index of the covering polygon, by piece; no_polygon if it has no area
+  std::vector<uint32_t> of_piece;
 };
 
 // pieces: convex polygons of at most 12 corners, which are indices of welded positions; edges:
-// sorted_edges(pieces). Merged polygons have at most most_corners corners (at most 12); a piece
-// that merges with nothing stays as it is. Polygons are numbered by their connected flat regions,
-// in order of the first pieces. Deterministic; O(n log n) for what tessellation makes.
+// sorted_edges(pieces). Merged polygons have at most most_corners corners (at most 12). A piece
+// that cannot be merged is kept. Polygons are numbered by connected flat regions, in the order of
+// their first pieces. Deterministic; O(n log n) for typical tessellations.
 MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
                               std::span<const PolygonEdge> edges, size_t most_corners);
-// The same, with edges that are made as they are needed (for_each_edge), and handed on to `look`.
+// The same, with edges made on demand (for_each_edge) and passed on to `look`.
 MergedPolygons merge_polygons(std::span<const Vec3> positions, const PolygonList& pieces,
                               size_t most_corners, const EdgeVisitor& look);
 

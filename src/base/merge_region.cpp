@@ -8,16 +8,16 @@ namespace troffer {
 
 namespace {
 
-// A merged polygon may lose this share of its width.
+// Share of its width that a merged polygon may lose.
 constexpr double width_share = 0x1p-10;
-// Corners turn left by more than this (sine of the angle).
+// Least sine of the left turn at a corner.
 constexpr double least_turn = 1e-9;
 
 double cross2(const Vec2d& a, const Vec2d& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-// x lies within `limit` of the segment from p to q, between its ends.
+// True if x lies within `limit` of the segment from p to q, between its ends.
 bool is_on_segment(const Vec2d& x, const Vec2d& p, const Vec2d& q, double limit) {
   const Vec2d e = q - p, d = x - p;
   const double square = dot(e, e), along = dot(e, d), across = cross2(e, d);
@@ -34,7 +34,8 @@ bool turns_left(const Vec2d& p, const Vec2d& q, const Vec2d& r) {
 RegionMerger::RegionMerger(size_t most_corners)
     : most_corners_(std::min(most_corners, most_merged_corners)) {}
 
-// The one simple loop of edges with a piece on the left only; false if there is no such.
+// Finds the loop of edges with a piece only on their left. Returns false if it is not one simple
+// loop.
 bool RegionMerger::find_boundary(std::vector<uint32_t>& loop) {
   boundary_.next.assign(points.size(), none);
   size_t edges = 0;
@@ -59,8 +60,8 @@ bool RegionMerger::find_boundary(std::vector<uint32_t>& loop) {
   return boundary_.next[loop.back()] == start;
 }
 
-// Pieces that all turn the same way cover each place as often as their boundary winds around it: a
-// simple convex boundary is covered once, and nothing beyond it.
+// Tries to merge all pieces at once. Pieces of equal orientation cover each point as often as their
+// boundary winds around it, so a simple convex boundary is covered exactly once.
 bool RegionMerger::merge_all() {
   std::vector<uint32_t>& loop = boundary_.loop;
   if (!find_boundary(loop)) return false;
@@ -87,7 +88,7 @@ bool RegionMerger::merge_all() {
     const Vec2d &p = at(from), &q = at(to);
     for (size_t i = from + 1; i < to; ++i)
       if (!is_on_segment(at(i), p, q, limit)) return false;
-    // every corner lies on the left of every edge: a polygon that winds around once
+    // every corner lies left of every edge, so the polygon winds around once
     if (!turns_left(p, q, at(corners[(k + 2) % count]))) return false;
     for (size_t i = 0; i < count; ++i)
       if (cross2(q - p, at(corners[i]) - p) < 0 && corners[i] != to % n) return false;
@@ -143,7 +144,8 @@ bool RegionMerger::is_straight(const Vec2d& p, const Vec2d& q, const Chain& chai
   return true;
 }
 
-// Leaves corners out that lie on a straight edge. False if the rest is not convex or too much.
+// Omits corners that lie on a straight edge. Returns false if the rest is not convex or has too
+// many corners.
 bool RegionMerger::simplify(const LongLoop& loop, double area, ShortLoop& out) {
   const size_t n = loop.count;
   const auto at = [&](size_t i) -> const Vec2d& { return points[loop.corners[i % n]]; };
@@ -181,8 +183,8 @@ bool RegionMerger::simplify(const LongLoop& loop, double area, ShortLoop& out) {
   return true;
 }
 
-// Merges part a with what lies across one of its edges. is_blocked is set where that has been
-// merged in this round already.
+// Merges part a with its neighbour across one edge. Sets is_blocked if the neighbour has already
+// been merged in this round.
 bool RegionMerger::try_merge(uint32_t a, uint32_t edge, bool& is_blocked) {
   const ShortLoop& l = now_.parts[a].loop;
   const uint32_t from = l.corners[edge], to = l.corners[(edge + 1) % l.count];
@@ -224,7 +226,7 @@ bool RegionMerger::try_merge(uint32_t a, uint32_t edge, bool& is_blocked) {
   return true;
 }
 
-// Pairs of triangles, those with the longest edges between them first.
+// Merges pairs of triangles, those with the longest common edges first.
 void RegionMerger::merge_halves() {
   struct Pair {
     double length2;
@@ -251,7 +253,7 @@ void RegionMerger::merge_halves() {
   }
 }
 
-// Merges across edges of a kind until nothing more can be merged; false if nothing was.
+// Merges across edges of one kind until nothing more merges. Returns false if nothing merged.
 bool RegionMerger::merge_rounds(Edges edges) {
   const size_t before = now_.alive;
   rounds_.active.clear();

@@ -1,9 +1,9 @@
-// Convex polygons of one plane that share whole edges, merged to fewer convex polygons: the part of
-// merge_polygons.h that knows two dimensions only.
+// Merges convex polygons of one plane that share whole edges: the two-dimensional part of
+// merge_polygons.h, which is its only user.
 //
-// First all of them are tried as one polygon, whatever their edges inside; then pairs are merged,
-// halves of a quadrilateral first, then rows, then rows of rows, so that every merged polygon has
-// grown from parts of about the same size. Both ways to lay rows are tried.
+// First it tries to merge all of them to one polygon. Otherwise it merges pairs: halves of
+// quadrilaterals first, then rows, then rows of rows, so that merged parts have similar sizes. Both
+// row directions are tried.
 #pragma once
 
 #include <array>
@@ -17,21 +17,21 @@
 
 namespace troffer {
 
-// Of a merged polygon; what may merge has no more.
+// Largest number of corners, of merged polygons and of their pieces.
 constexpr size_t most_merged_corners = 12;
 
 class RegionMerger {
  public:
   explicit RegionMerger(size_t most_corners);
 
-  // The pieces of the region at hand; corners index `points`. Each is convex, counterclockwise, and
-  // has area.
+  // Input: the pieces of the current region, whose corners index `points`. Each is convex,
+  // counterclockwise and has a positive area.
   std::vector<Vec2d> points;
   PolygonList pieces;
 
-  // Merges. Vertices are left out where they lie within `tolerance` of the merged polygon's edge,
-  // and within 2^-10 of its width (area by half the perimeter). Results: `merged`, and for each
-  // piece the merged polygon that covers it. Deterministic; O(n log n) for grids.
+  // Merges. Omits vertices within `tolerance` of the merged polygon's edge and within 2^-10 of its
+  // width (area by half the perimeter). Output: `merged`, and for each piece the polygon that
+  // covers it. Deterministic; O(n log n) for grids.
   void run(double tolerance);
   PolygonList merged;
   std::vector<uint32_t> of_piece;
@@ -39,7 +39,7 @@ class RegionMerger {
  private:
   static constexpr uint32_t none = EdgeTable::none;
 
-  // Vertices left out along an edge: a list in chains_.links.
+  // Vertices omitted along an edge: a linked list in chains_.links.
   struct Chain {
     uint32_t head = none, tail = none;
   };
@@ -61,14 +61,15 @@ class RegionMerger {
   struct Part {
     ShortLoop loop;
     double area = 0;
-    uint32_t last_piece = 0;  // the first one has the part's own number; next_piece_
+    // end of the list in next_piece, which starts at the part's own number
+    uint32_t last_piece = 0;
     uint32_t last_round = 0, last_queued = 0;
     bool is_alive = true, is_single = true;
   };
   struct Partition {
     std::vector<Part> parts;
-    std::vector<uint32_t> next_piece;  // of the same part
-    size_t alive = 0;                  // parts
+    std::vector<uint32_t> next_piece;  // next piece of the same part
+    size_t alive = 0;                  // number of parts
   };
   enum class Edges : uint8_t { along_x, along_y, all };
 
@@ -93,12 +94,12 @@ class RegionMerger {
   Partition now_, best_;
   struct Chains {
     std::vector<Link> links;
-    size_t visits_left = 0;  // of links
+    size_t visits_left = 0;  // budget of visited links
   } chains_;
   struct Rounds {
     uint32_t number = 0;
     std::vector<uint32_t> active, next_active;  // parts
-    Vec2d axis;                                 // of rows
+    Vec2d axis;                                 // of the rows
   } rounds_;
   struct Boundary {
     std::vector<uint32_t> next, loop;

@@ -69,7 +69,7 @@ constexpr ObserverTable d65{
     51.959,  54.6998, 57.4406, 58.8765, 60.3125,
 };
 
-// Mean of D65 over y_bar: what makes its luminance that of an equal-energy light of 1.
+// Mean of D65 over y_bar. Dividing by it gives D65 the luminance of an equal-energy light of 1.
 constexpr double d65_mean = 98.99741751876255;
 
 struct ObserverPlace {

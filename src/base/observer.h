@@ -1,4 +1,6 @@
-// The eye as numbers: the CIE 1931 2-degree observer, and linear sRGB of XYZ.
+// CIE 1931 2-degree observer, illuminant D65, and the conversion of XYZ to linear sRGB. Used by
+// importers of spectra and by thin films. Wavelengths are in nm.
+//
 // References: [1] CIE 15:2004, "Colorimetry" (Table T.4: the observer; Table T.1: illuminant D65).
 #pragma once
 
@@ -8,9 +10,9 @@
 namespace troffer {
 
 constexpr int least_visible_nm = 360, most_visible_nm = 830;
-constexpr int observer_step_nm = 5;  // of the tables; linear between
+constexpr int observer_step_nm = 5;  // of the tables, linear in between
 
-// The matching functions [1]; 0 outside the visible range.
+// Colour matching functions [1]; 0 outside the visible range.
 Vec3d color_matching(double nm);
 
 // Spectral power of illuminant D65 [1], scaled to a mean of 1 over the observer's luminance curve.

@@ -1,6 +1,7 @@
-// The bytes of the program's own files: a header, which begins with `char magic[8]` and `uint32_t
-// version` and has a `uint64_t hash` of all else, and a body of plain structures one after the
-// other. Little endian. Such a file may come from anybody: what is read is checked.
+// Layout of the program's own binary files (solutions, checkpoints). A header begins with `char
+// magic[8]` and `uint32_t version` and has a `uint64_t hash` of everything else. The body is a
+// sequence of plain structures. Little endian. Such files may come from anyone, so all that is read
+// is checked.
 #pragma once
 
 #include <bit>
@@ -19,7 +20,7 @@ static_assert(std::endian::native == std::endian::little, "the program's files a
 struct OwnFile {
   char magic[8];
   uint32_t version;
-  const char* name;  // in messages: "radiosity solution"
+  const char* name;  // for messages: "radiosity solution"
 
   bool is_of(std::span<const uint8_t> bytes) const {
     return bytes.size() >= sizeof(magic) && std::memcmp(bytes.data(), magic, sizeof(magic)) == 0;
@@ -33,7 +34,7 @@ void append(std::vector<uint8_t>& out, const T& v) {
   std::memcpy(out.data() + at, &v, sizeof(T));
 }
 
-// Reads one thing after the other; that there are enough bytes has been seen to.
+// Reads values in sequence. The caller ensures that there are enough bytes (CHECK).
 class ByteReader {
  public:
   explicit ByteReader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
@@ -51,16 +52,15 @@ class ByteReader {
   std::span<const uint8_t> bytes_;
 };
 
-// Finds damage, not intent: anybody can compute it.
+// Hash that detects damage, not manipulation.
 uint64_t hash_of_parts(std::span<const uint8_t> header, std::span<const uint8_t> body);
 
-// A header that says what kind of file it is, of a version that the program reads. Errors:
-// InputError.
+// Checks magic, version and header size. Throws InputError.
 void check_kind(const OwnFile& kind, std::span<const uint8_t> bytes, size_t header_size,
                 const std::string& file);
 
-// Counts off what a header says that the body has. Errors: InputError, where the body is too short
-// for it, or too long.
+// Accounts for the parts of a body that the header announces. Throws InputError if the body is too
+// short or too long.
 class BodySize {
  public:
   BodySize(const OwnFile& kind, uint64_t bytes, const std::string& file)
@@ -82,7 +82,7 @@ uint64_t hash_of_file(Header h, std::span<const uint8_t> body) {
   return hash_of_parts(header, body);
 }
 
-// The file; of the header, magic, version and hash are set here.
+// Returns the file's bytes. Sets magic, version and hash of the header.
 template <class Header>
 std::vector<uint8_t> own_file(const OwnFile& kind, Header h, std::span<const uint8_t> body) {
   std::memcpy(h.magic, kind.magic, sizeof(h.magic));
@@ -95,9 +95,9 @@ std::vector<uint8_t> own_file(const OwnFile& kind, Header h, std::span<const uin
   return out;
 }
 
-// The header of a file that is whole: of the right kind and version, with all the parts that
-// `count(header, BodySize&)` takes off and no more, undamaged. What its numbers mean is the
-// caller's to check. Errors: InputError.
+// Returns the header of a file after checking kind, version, size and hash. `count(header,
+// BodySize&)` takes the parts that the body must have. The caller checks the meaning of the
+// header's values. Throws InputError.
 template <class Header, class Count>
 Header checked_header(const OwnFile& kind, std::span<const uint8_t> bytes, const std::string& file,
                       const Count& count) {

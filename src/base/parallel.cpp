@@ -10,7 +10,7 @@
 namespace troffer {
 
 struct ThreadLimit::Limit {
-  // Made in its place: a control that is copied ends with the one it was copied from.
+  // Constructed in place, because a copied control ends with the original.
   explicit Limit(size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
@@ -34,7 +34,7 @@ void parallel_for_slots(size_t n, int threads, const std::function<void(size_t, 
     for (size_t i = 0; i < n; ++i) body(i, 0);
     return;
   }
-  // An explicit request may exceed TBB's own idea of the machine.
+  // An explicit thread count may exceed TBB's default for the machine.
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(count));
   tbb::task_arena arena(count);
   arena.execute([&] {

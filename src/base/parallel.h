@@ -1,4 +1,5 @@
-// Parallel loops over oneTBB (its only user), and cooperative cancellation.
+// Parallel loops on oneTBB (its only user), and cooperative cancellation. Results never depend on
+// the number of threads or on scheduling.
 #pragma once
 
 #include <atomic>
@@ -8,29 +9,29 @@
 
 namespace troffer {
 
-// Runs body(i) for every i in [0, n), in any order, on `threads` threads (0 = all cores).
-// Bodies must write to places that depend on i only, so that results do not depend on
-// scheduling. The first exception is rethrown.
+// Runs body(i) for every i in [0, n), in any order, on `threads` threads (0 = all cores). A body
+// may only write to places that depend on i, so that results do not depend on scheduling. The first
+// exception is rethrown.
 void parallel_for(size_t n, int threads, const std::function<void(size_t)>& body);
 
-// As above with a small dense index in [0, thread_count(threads)) that no two concurrent bodies
-// share: for per-thread scratch memory, never for results.
+// The same with a slot index in [0, thread_count(threads)) that no two concurrent bodies share. Use
+// it for per-thread scratch memory, never for results.
 void parallel_for_slots(size_t n, int threads,
                         const std::function<void(size_t i, size_t slot)>& body);
 
-// Runs body(first, end) for consecutive pieces of [0, n) of `piece` items (the last one of fewer),
-// in any order, on all cores. Where the pieces are does not depend on threads.
+// Runs body(first, end) for consecutive pieces of `piece` items of [0, n), in any order, on all
+// cores. The last piece may be shorter. The pieces do not depend on the number of threads.
 void parallel_pieces(size_t n, size_t piece,
                      const std::function<void(size_t first, size_t end)>& body);
 
-// Runs body() such that TBB loops inside it, a library's own included, stay on this thread.
+// Runs body() so that TBB loops inside it, a library's included, stay on this thread.
 void run_on_one_thread(const std::function<void()>& body);
 
-// `threads`, or the number of cores for 0, as far as a ThreadLimit lets.
+// Returns `threads`, or for 0 the number of cores that a ThreadLimit allows.
 int thread_count(int threads);
 
-// While it lives, 0 threads are `threads` (0: all cores) for whoever asks, libraries on oneTBB
-// included: for work that is handed no number of its own.
+// During its lifetime, 0 threads mean `threads` (0: all cores) for all callers and oneTBB
+// libraries. For work that is not given a thread count.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
@@ -43,7 +44,7 @@ class ThreadLimit {
   std::unique_ptr<Limit> limit_;
 };
 
-// Set from a signal handler or a progress callback; loops look at it between items of work.
+// Set by a signal handler or a progress callback. Loops check it between items of work.
 using StopFlag = std::atomic<bool>;
 
 }  // namespace troffer

@@ -22,8 +22,8 @@ std::vector<uint32_t> weld(std::span<const Vec3> positions) {
 
 namespace {
 
-// Edges from low vertices in [first, end), sorted; begin: where those of each vertex of the list
-// begin among all of them.
+// Sorted edges whose lower vertex is in [first, end). `begin` has the index of each vertex's first
+// edge among all edges.
 void edges_from(const PolygonList& polygons, const std::vector<uint32_t>& begin, size_t first,
                 size_t end, std::vector<PolygonEdge>& edges) {
   edges.resize(begin[end] - begin[first]);
@@ -47,7 +47,7 @@ void edges_from(const PolygonList& polygons, const std::vector<uint32_t>& begin,
               });
 }
 
-// Where the edges of each low vertex begin, and where all end.
+// Index of the first edge of each lower vertex, and the total number.
 std::vector<uint32_t> edge_begins(const PolygonList& polygons, size_t vertex_count) {
   std::vector<uint32_t> begin(vertex_count + 1, 0);
   for (size_t p = 0; p < polygons.size(); ++p) {

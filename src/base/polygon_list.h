@@ -1,4 +1,5 @@
-// Polygons over shared vertices, as plain lists, and which edges they share.
+// Polygons over shared vertices, and their common edges. Used by merge_polygons.h and for
+// adjacency.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,8 @@
 
 namespace troffer {
 
-// Polygon i has the corners corners[first[i]] … corners[first[i + 1] - 1], in order around it:
-// indices into positions that are kept elsewhere.
+// Corners of polygon i are corners[first[i]] to corners[first[i + 1] - 1], in order: indices into
+// positions that the caller keeps.
 struct PolygonList {
   std::vector<uint32_t> corners;
   std::vector<uint32_t> first{0};
@@ -27,22 +28,22 @@ struct PolygonList {
   }
 };
 
-// Vertices at the same place get the same number, that of one of them.
+// Returns an index for each vertex; vertices at the same place share the index of one of them.
 std::vector<uint32_t> weld(std::span<const Vec3> positions);
 
-// An edge of one polygon between vertices low < high; is_forward: it runs from low to high.
+// Edge of one polygon between vertices low < high. is_forward: the polygon runs from low to high.
 struct PolygonEdge {
   uint32_t low, high;
   uint32_t polygon;
   bool is_forward;
 };
 
-// All edges but those from a vertex to itself, sorted by low, high and polygon: those of several
-// polygons stand together. O(n log n) at worst, linear where few polygons meet at a vertex.
+// Returns all edges except those from a vertex to itself, sorted by low, high and polygon, so that
+// common edges are adjacent. O(n log n) at worst; linear if few polygons meet at a vertex.
 std::vector<PolygonEdge> sorted_edges(const PolygonList& polygons, size_t vertex_count);
 
-// Calls visit for each pair of vertices with the edges between them, in the same order. The edges
-// are made a part at a time: large lists take little memory.
+// Calls visit for each pair of vertices with the edges between them, in the same order. Edges are
+// made in parts, so large lists need little memory.
 using EdgeVisitor = std::function<void(std::span<const PolygonEdge>)>;
 void for_each_edge(const PolygonList& polygons, size_t vertex_count, const EdgeVisitor& visit);
 void for_each_edge(std::span<const PolygonEdge> sorted, const EdgeVisitor& visit);

@@ -1,18 +1,19 @@
-// Hints to fetch what is needed soon: no effect but on time.
+// Hints to load memory into the cache. Loops over many lookups issue them ahead of use. They affect
+// only speed, and compile to nothing where the compiler has no such hint.
 #pragma once
 
 #include <cstddef>
 
 namespace troffer {
 
-// The line of memory that this is in.
+// Prefetches the cache line of an address.
 inline void prefetch_line([[maybe_unused]] const void* at) {
 #if defined(__GNUC__) || defined(__clang__)
   __builtin_prefetch(at);
 #endif
 }
 
-// All of an object, line by line.
+// Prefetches all cache lines of an object.
 template <class T>
 void prefetch_object(const T& object) {
   constexpr size_t line = 64;  // bytes

@@ -6,12 +6,12 @@ namespace troffer {
 
 namespace {
 
-// XYZ of luminance 1.
+// XYZ of a chromaticity with luminance 1.
 Vec3d xyz_of(const Chromaticity& c) {
   return {c.x / c.y, 1, (1 - c.x - c.y) / c.y};
 }
 
-// The primaries add up to a white of luminance 1.
+// Matrix from the primaries to XYZ, where (1, 1, 1) is a white of luminance 1.
 Affine xyz_from(const Primaries& p) {
   Affine m;
   for (size_t i = 0; i < 3; ++i) {
@@ -23,7 +23,7 @@ Affine xyz_from(const Primaries& p) {
   return m;
 }
 
-// XYZ of what looks under one white as the argument does under the other [2].
+// Chromatic adaptation of XYZ from one white to another [2].
 Affine adaptation(const Chromaticity& from, const Chromaticity& to) {
   Affine cones;
   cones.columns = {Vec3d{0.8951, -0.7502, 0.0389}, Vec3d{0.2664, 1.7135, -0.0685},

@@ -1,4 +1,5 @@
-// Colours of other primaries than those of linear sRGB.
+// Conversion of colours with other primaries to linear sRGB. Used by importers, for files with
+// their own colour space. Chromaticities are CIE 1931 x, y.
 //
 // References: [1] SMPTE RP 177:1993 (matrices from chromaticities); [2] Lam's matrix of cones as
 //   ICC.1:2010, Annex E, has it ("Bradford").
@@ -15,17 +16,17 @@ struct Chromaticity {
 };
 struct Primaries {
   std::array<Chromaticity, 3> colors;  // red, green, blue
-  Chromaticity white;                  // what (1, 1, 1) is
+  Chromaticity white;                  // chromaticity of (1, 1, 1)
 };
 
 constexpr Primaries srgb_primaries{{{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}}, {0.3127, 0.3290}};
 
-// Linear sRGB of a colour of those primaries [1]. `keeps_white`: (1, 1, 1) becomes (1, 1, 1), seen
-// under its own white as the other is under D65 [2]; else colours stay the lights that they are.
-// Not finite where the primaries span no colours.
+// Matrix from colours of these primaries to linear sRGB [1]. With keeps_white, (1, 1, 1) stays (1,
+// 1, 1) by chromatic adaptation to D65 [2]; otherwise colours keep their chromaticity. Not finite
+// if the primaries are degenerate.
 Affine srgb_from(const Primaries& primaries, bool keeps_white);
 
-// Whether they are those of sRGB, to the digits that files have.
+// True if they are sRGB's, to the precision of files.
 bool are_srgb(const Primaries& primaries);
 
 }  // namespace troffer

@@ -1,6 +1,6 @@
-// Processes that work on one thing together, as threads do within one. All of them have the same
-// input and call the same functions below in the same order (what else they do is the same too, so
-// that they come to the same); rank 0 leads: what only one is to do, it does.
+// Processes that share work, as threads do within one process. Implemented for MPI. All processes
+// have the same input and call the same functions in the same order. Rank 0 leads: it does what
+// only one process may do. Used by renderers and solvers; docs/mpi.md has the usage.
 #pragma once
 
 #include <cstddef>
@@ -16,29 +16,31 @@
 
 namespace troffer {
 
-// Items 0 … items - 1, each done by one process, or by several to the same end.
+// Work on items 0 to items - 1. Each item is done by one process, or by several with the same
+// result.
 struct SharedWork {
   using Bytes = std::vector<uint8_t>;
 
   size_t items = 0;
   int threads = 0;  // of this process; 0 = all cores
-  // Does one: must write to places that depend on the item only. slot: as in parallel_for_slots.
-  // False where it was broken off, for a stop.
+  // Does one item; it may only write to places that depend on the item. `slot` is as in
+  // parallel_for_slots. Returns false if a stop interrupted it.
   std::function<bool(size_t item, size_t slot)> act;
-  // What came of it, as bytes; by the thread that did it.
+  // Appends the item's result as bytes. Called by the thread that did the item.
   std::function<void(size_t item, Bytes& out)> save;
-  // … as others have it then. One at a time, by any thread, while others act on other items.
+  // Restores an item from the bytes of `save`. Called serially, from any thread, while other items
+  // are being worked on.
   std::function<void(size_t item, ByteReader in)> load;
-  // All get what came of the items; else rank 0 alone.
+  // True if all processes get the results; otherwise only rank 0 does.
   bool is_for_all = true;
 
-  // Of rank 0, where not all items are to be done, or some before others: which, in order.
+  // Rank 0 only: `order` lists the items to do, in order, instead of all of them.
   bool has_order = false;
   std::vector<size_t> order;
-  // What rank 0 tells of an item to whoever is to do it; may be empty. One at a time, by any
-  // thread, while no thread of rank 0 acts on that item.
+  // Rank 0 appends data for the process that will do the item; may be empty. Called serially, from
+  // any thread, while no thread of rank 0 works on that item.
   std::function<void(size_t item, Bytes& out)> brief;
-  // … is told so, by the thread that will do it.
+  // Receives the bytes of `brief`, on the thread that will do the item.
   std::function<void(size_t item, ByteReader in)> take_brief;
 };
 
@@ -49,25 +51,26 @@ class ProcessGroup {
   virtual int size() const = 0;
   bool leads() const { return rank() == 0; }
 
-  // Once it returns, all is done, and what came of it is where it is to be. False where work is to
-  // end: `stop` of rank 0 was set. (Others look at it too: theirs is to be stop_flag().)
+  // Returns after all items are done and the results are distributed. Returns false if rank 0's
+  // `stop` was set. Other processes must pass stop_flag() as `stop`.
   virtual bool share(const SharedWork& work, const StopFlag& stop) = 0;
-  // All get the bytes that rank 0 has. False as above.
+  // Sends rank 0's bytes to all processes. Returns false as above.
   virtual bool tell(SharedWork::Bytes& bytes, const StopFlag& stop) = 0;
-  // Set once work is to end: by rank 0, or because one of the processes was asked to.
+  // Set when the work is to end: by rank 0, or because a process was asked to.
   virtual const StopFlag& stop_flag() const = 0;
-  // `asked`, which must outlive this, is set where this process is asked to end the work.
+  // Registers a flag that asks this process to end the work. It must outlive this object.
   virtual void watch(const StopFlag& asked) = 0;
-  // This process can take no part any more.
+  // Withdraws this process after an error; it takes no further part.
   virtual void leave(const std::string& why) = 0;
-  // That this process should use where nobody says how many.
+  // Number of threads for this process if the user gives none.
   virtual int usual_threads() const = 0;
 };
 
-// crew: null: this process alone does all of it, in order. False once `stop` is set.
+// Shares the work with the group. Without group (null), this process does all items in order.
+// Returns false once `stop` is set.
 bool share(ProcessGroup* group, const SharedWork& work, const StopFlag& stop);
 
-// Plain data, their number first.
+// append_all() writes the number of values and the values, plain data; next_all() reads them.
 template <class T>
 void append_all(std::vector<uint8_t>& out, std::span<const T> values) {
   static_assert(std::is_trivially_copyable_v<T>);

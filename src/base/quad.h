@@ -1,4 +1,5 @@
-// Flat facets and planes as plain data: what rooms hand each other when they speak of occluders.
+// Flat convex quadrilaterals and planes as plain data. Rooms exchange occluders in this form.
+// Positions are in metres.
 #pragma once
 
 #include <array>
@@ -7,14 +8,14 @@
 
 namespace troffer {
 
-// A flat convex quadrilateral, vertices in order around it; a triangle repeats its last vertex.
+// A flat convex quadrilateral with vertices in order. A triangle repeats its last vertex.
 using Quad = std::array<Vec3, 4>;
 
 inline bool is_triangle(const Quad& q) {
   return q[2].x == q[3].x && q[2].y == q[3].y && q[2].z == q[3].z;
 }
 
-// The half-space normal · p <= distance; the normal is unit.
+// The half-space normal · p <= distance, with a unit normal.
 struct Plane {
   Vec3 normal;
   float distance = 0;

@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Primitive polynomials and initial direction numbers of dimensions 1 … 4 [2, new-joe-kuo-6].
+// Primitive polynomials and initial direction numbers of dimensions 1 to 4 [2, new-joe-kuo-6].
 struct Polynomial {
   unsigned degree, coefficients;
   std::array<uint32_t, 3> initial;
@@ -80,7 +80,7 @@ void sobol_groups(const uint64_t* streams, const uint32_t* samples, size_t n, ui
 
 namespace {
 
-// Bits of two words, the first 16 from the top of each, in turn.
+// Interleaves the upper 16 bits of two words.
 uint32_t morton_code(uint32_t x, uint32_t y) {
   uint32_t code = 0;
   for (int b = 31; b >= 16; --b) code = (code << 2) | (((x >> b) & 1u) << 1) | ((y >> b) & 1u);
@@ -120,7 +120,7 @@ void SobolBlocks::draw(uint64_t stream, uint32_t purpose, uint32_t block, int di
     }
     return;
   }
-  // Shuffling moves the block as a whole, and within it changes the order alone.
+  // Shuffling moves the block as a whole; within the block it changes only the order.
   const uint32_t high = group.index_ & ~(n - 1);
   const uint64_t scrambles = group.scrambles_of(0);
   draw_pair(order_.data(), n, high, uint32_t(scrambles), uint32_t(scrambles >> 32), out, out + n);

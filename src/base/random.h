@@ -1,5 +1,6 @@
-// Hashes and Owen-scrambled Sobol points. Streams derive from (pixel, sample, purpose) and never
-// from threads.
+// Hashes and Owen-scrambled Sobol points. Random streams derive from (pixel, sample, purpose),
+// never from threads. Used by all sampling.
+//
 // References: [1] Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
 //   [2] Joe & Kuo, "Constructing Sobol Sequences with Better Two-Dimensional Projections", 2008.
 //   [3] O'Neill, "PCG", 2014 (output permutation used as a hash).
@@ -39,7 +40,7 @@ constexpr float unit_float(uint32_t bits) {
   return float(bits >> 8) * 0x1p-24f;
 }
 
-// A plain stream of independent numbers, for tests and for what needs no stratification.
+// A plain stream of independent numbers, for tests and for uses without stratification.
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(mix64(seed + 0x853c49e6748fea9bull)) {}
@@ -67,8 +68,8 @@ constexpr uint32_t reverse_bits(uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
 }
 
-// Owen scrambling acts from the most to the least significant bit; on the reversed word that is
-// a hash in which a bit only depends on lower ones [1, section 3; constants by N. Vegdahl].
+// Owen scrambling runs from the most to the least significant bit. On the reversed word it is a
+// hash whose bits depend only on lower bits [1, section 3; constants by N. Vegdahl].
 constexpr uint32_t owen_hash_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -83,20 +84,20 @@ constexpr uint32_t nested_uniform_scramble(uint32_t x, uint32_t seed) {
 
 constexpr int sobol_dimensions = 5;
 
-// Sobol direction numbers bit-reversed, so that a point comes out ready for owen_hash_reversed.
+// Bit-reversed Sobol direction numbers, so that a point is ready for owen_hash_reversed.
 const std::array<std::array<uint32_t, 32>, sobol_dimensions>& sobol_matrices_reversed();
 
-// XOR of the direction numbers of dimensions 2 … 4 over every value of each byte of the index:
-// 12 KiB, which takes the loop over the bits of a scrambled index out of the renderer.
+// XOR of the direction numbers of dimensions 2 to 4 for every value of each index byte: 12 KiB. It
+// replaces a loop over the bits of a scrambled index.
 using SobolBytes = std::array<std::array<std::array<uint32_t, 256>, 4>, sobol_dimensions - 2>;
 extern const SobolBytes sobol_bytes;
 
-// Bit-reversed coordinate `dimension` (0 … 4) of Sobol point `index`.
+// Bit-reversed coordinate `dimension` (0 to 4) of Sobol point `index`.
 inline uint32_t sobol_reversed(uint32_t index, int dimension) {
-  if (dimension == 0) return index;  // van der Corput: the reversal undoes itself
+  if (dimension == 0) return index;  // van der Corput: the reversals cancel
   if (dimension == 1) {
-    // Direction number k is row k of Pascal's triangle mod 2, so bit j of the result is the parity
-    // of the index bits whose position contains j as a subset: one step per bit of a position.
+    // Direction number k is row k of Pascal's triangle mod 2. Bit j of the result is the parity of
+    // the index bits whose position contains j as a subset: one step per bit of a position.
     uint32_t x = index;
     x ^= (x & 0xaaaaaaaau) >> 1;
     x ^= (x & 0xccccccccu) >> 2;
@@ -109,13 +110,12 @@ inline uint32_t sobol_reversed(uint32_t index, int dimension) {
          bytes[3][index >> 24];
 }
 
-// Owen-scrambled Sobol set, padded: dimensions come in groups (a group is one purpose, such as
-// "bounce 2, light"), each with its own scramble and its own shuffling of the index [1, section 4].
-// Each group alone is a (0,m,2)-net in its first two dimensions and well stratified in all five.
+// Padded Owen-scrambled Sobol set. Dimensions come in groups; a group serves one purpose, such as
+// "bounce 2, light", and has its own scramble and index shuffle [1, section 4]. Each group alone is
+// a (0,m,2)-net in its first two dimensions and well stratified in all five.
 class SobolGroup {
  public:
-  // `stream` names the pixel and the seed and is a hash already; `purpose` names the group, `index`
-  // the sample.
+  // `stream` is a hash of pixel and seed, `purpose` the number of the group, `index` the sample.
   SobolGroup(uint64_t stream, uint32_t purpose, uint32_t index)
       : seed_(mix64(stream + (uint64_t(purpose) + 1) * golden)),
         index_(nested_uniform_scramble(index, uint32_t(seed_))) {}
@@ -143,24 +143,24 @@ class SobolGroup {
   uint32_t index_;
 };
 
-// Blocks of n consecutive samples of such groups, for n a power of two in an order of their own:
+// Blocks of n consecutive samples of a group. If n is a power of two, they come in spatial order:
 // every 2^k of them, counted from the first, fill one elementary interval of the first two
-// dimensions, so that points which lie together come together. (The order is that of the
-// unscrambled points along a Morton curve: scrambling moves elementary intervals as wholes.)
+// dimensions. The order is that of the unscrambled points along a Morton curve; scrambling moves
+// elementary intervals as wholes.
 class SobolBlocks {
  public:
   explicit SobolBlocks(uint32_t n = 1);
   uint32_t size() const { return uint32_t(order_.size()); }
-  // The first `dimensions` (2 or 3) values of samples [block * n, block * n + n) of SobolGroup(
-  // stream, purpose, ·): out[d * n + i] is dimension d of the i-th of them.
+  // Computes the first `dimensions` (2 or 3) values of samples [block * n, block * n + n) of
+  // SobolGroup(stream, purpose, ·). out[d * n + i] is dimension d of the i-th one.
   void draw(uint64_t stream, uint32_t purpose, uint32_t block, int dimensions, float* out) const;
 
  private:
   std::vector<uint32_t> order_;
 };
 
-// The first `dimensions` (2 … 4) values of SobolGroup(streams[i], purpose, samples[i]) for all i of
-// n, at a stroke: out[d * n + i] is dimension d of group i.
+// Computes the first `dimensions` (2 to 4) values of SobolGroup(streams[i], purpose, samples[i])
+// for all i < n in one vectorised pass. out[d * n + i] is dimension d of group i.
 void sobol_groups(const uint64_t* streams, const uint32_t* samples, size_t n, uint32_t purpose,
                   int dimensions, float* out);
 

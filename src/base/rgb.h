@@ -1,4 +1,5 @@
 // Linear colour with Rec. 709 (sRGB) primaries: radiance, irradiance or reflectance per channel.
+// Used for all light and material values.
 #pragma once
 
 #include <algorithm>

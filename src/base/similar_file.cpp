@@ -18,7 +18,7 @@ std::string did_you_mean_file(const std::string& path) {
   for (fs::directory_iterator i(folder, error), end;
        !error && i != end && names.size() < most_names; i.increment(error))
     names.push_back(i->path().filename().string());
-  std::sort(names.begin(), names.end());  // the folder's own order differs between machines
+  std::sort(names.begin(), names.end());  // directory order differs between machines
   return did_you_mean(asked.filename().string(), names);
 }
 

@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t longest = 200;  // letters that are compared: names come from files
+constexpr size_t longest = 200;  // characters that are compared; names may come from files
 
 std::string lower(std::string_view text) {
   std::string s(text.substr(0, longest));
@@ -43,12 +43,12 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
   const std::string typed = lower(word);
   for (size_t i = 0; i < std::min(names.size(), most_names); ++i) {
     const std::string& name = names[i];
-    if (name == word) continue;  // it exists, and was refused for another reason
+    if (name == word) continue;  // it exists and was refused for another reason
     const size_t difference =
         name.size() > word.size() ? name.size() - word.size() : word.size() - name.size();
     const bool is_beginning = word.size() >= shortest_beginning && lower(name).starts_with(typed);
     if (difference >= least && !is_beginning) continue;
-    // A whole beginning counts as one letter's difference.
+    // A prefix counts as a difference of one letter.
     const size_t distance = is_beginning && difference > 0 ? 1 : edit_distance(word, name);
     if (distance >= least) continue;
     least = distance;

@@ -1,4 +1,5 @@
-// The known name nearest to a mistyped one, for messages that end in "did you mean …?".
+// Suggests the known name nearest to a mistyped one, for messages that end in "did you mean
+// 'lamp'?".
 #pragma once
 
 #include <string>
@@ -7,15 +8,15 @@
 
 namespace troffer {
 
-// Letters to insert, delete, replace or swap with their neighbour to make `b` of `a`, regardless of
-// case (restricted Damerau-Levenshtein distance, in bytes).
+// Number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`,
+// ignoring case (restricted Damerau-Levenshtein distance, in bytes).
 size_t edit_distance(std::string_view a, std::string_view b);
 
-// The name that differs from `word` in at most a third of its letters, or begins with it; empty
-// where there is none. The first of several that are equally near.
+// Returns the name that differs from `word` in at most a third of its letters or begins with it;
+// empty if there is none. Of several equally near names it returns the first.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& names);
 
-// "; did you mean 'lamp'?", or nothing.
+// Returns "; did you mean 'lamp'?", or an empty string.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace troffer

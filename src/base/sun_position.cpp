@@ -11,8 +11,8 @@ namespace {
 
 constexpr double j2000 = 2451545.0;
 constexpr double days_per_century = 36525;
-// Terrestrial minus universal time since about 2015; a minute more moves the sun by 1e-3 degrees
-// among the stars.
+// Terrestrial minus universal time, about its value since 2015. A minute more moves the sun by 1e-3
+// degrees among the stars.
 constexpr double delta_t_days = 69.0 / 86400;
 constexpr double parallax_deg = 8.794 / 3600;
 
@@ -27,8 +27,8 @@ struct Equatorial {
   double right_ascension_deg, declination_deg, distance_au;
 };
 
-// Apparent place of the sun [1, ch. 25], with what Venus, Jupiter and the moon add [2]; t in
-// centuries of terrestrial time from J2000.
+// Apparent position of the sun [1, ch. 25], with perturbations by Venus, Jupiter and the moon [2].
+// t is in centuries of terrestrial time from J2000.
 Equatorial apparent_sun(double t) {
   const double mean_longitude = 280.46646 + t * (36000.76983 + t * 0.0003032);
   const double anomaly = 357.52911 + t * (35999.05029 - t * 0.0001537);
@@ -50,7 +50,7 @@ Equatorial apparent_sun(double t) {
               (1 + eccentricity * cosine(anomaly + centre))};
 }
 
-// Greenwich, apparent [1, Eq. 12.4 and p. 88].
+// Apparent sidereal time at Greenwich [1, Eq. 12.4 and p. 88].
 double sidereal_time_deg(double julian_day_ut) {
   const double days = julian_day_ut - j2000, t = days / days_per_century;
   const double node = 125.04 - 1934.136 * t;
@@ -58,7 +58,7 @@ double sidereal_time_deg(double julian_day_ut) {
          0.00478 * sine(node) * cosine(23.4393);
 }
 
-// What air at 1010 hPa and 10 °C adds to an altitude [1, Eq. 16.4]; nothing well below the horizon.
+// Refraction of air at 1010 hPa and 10 °C [1, Eq. 16.4]; 0 well below the horizon.
 double refraction_deg(double altitude_deg) {
   if (altitude_deg < -0.575) return 0;
   const double angle = altitude_deg + 10.3 / (altitude_deg + 5.11);

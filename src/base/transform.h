@@ -1,4 +1,5 @@
-// Affine transforms in double precision. Names read target_from_source: world_from_light.
+// Affine transforms in double precision. Used by importers, instances and exporters. Names read
+// target_from_source: world_from_light. Lengths are in metres unless the name says otherwise.
 #pragma once
 
 #include <array>
@@ -18,9 +19,9 @@ struct Affine {
   }
   double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
   bool swaps_handedness() const { return determinant() < 0; }
-  // A normal (covector) under this transform, not normalised: determinant times the inverse
-  // transpose, which exists for singular transforms too. Its sense is the sense of the image of
-  // the tangent plane's cross product.
+  // Transforms a normal (covector), without normalising: determinant times the inverse transpose,
+  // which exists for singular transforms too. The sign is that of the transformed tangents' cross
+  // product.
   Vec3d normal(const Vec3d& n) const {
     return cross(columns[1], columns[2]) * n.x + cross(columns[2], columns[0]) * n.y +
            cross(columns[0], columns[1]) * n.z;

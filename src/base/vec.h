@@ -1,4 +1,5 @@
-// Small fixed-size vectors of float and double.
+// Vectors of two and three floats (Vec2, Vec3) or doubles (Vec2d, Vec3d). Used everywhere;
+// positions in metres, directions without unit.
 #pragma once
 
 #include <algorithm>
@@ -74,7 +75,7 @@ template <class T>
 inline T length(const Vec3T<T>& v) {
   return std::sqrt(dot(v, v));
 }
-// Unit vector along v; v must not be zero.
+// Unit vector along v, which must not be zero.
 template <class T>
 inline Vec3T<T> normalize(const Vec3T<T>& v) {
   return v * (T(1) / length(v));

@@ -1,4 +1,6 @@
-// Maps from the unit square to other domains, with densities and inverses.
+// Maps from the unit square to disks, hemispheres, spheres and triangles, with densities and
+// inverses. Used by all sampling.
+//
 // References: [1] Shirley & Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
 #pragma once
 
@@ -9,8 +11,8 @@
 
 namespace troffer {
 
-// sin x / x and cos x for |x| <= pi/4 by their series: relative error under 1e-7 in float; the
-// double versions are the library's.
+// sin x / x and cos x for |x| <= pi/4 by series: relative error below 1e-7 in float. The double
+// versions call the library.
 inline float sine_over_small(float x) {
   const float z = x * x;
   return 1 + z * (-1.6666667e-1f + z * (8.3333310e-3f + z * (-1.9841e-4f + z * 2.7e-6f)));
@@ -61,7 +63,7 @@ inline Vec2T<T> square_from_disk(const Vec2T<T>& p) {
   return {(a + 1) / 2, (b + 1) / 2};
 }
 
-// Cosine-weighted direction about +z; density pdf_cosine_hemisphere per unit solid angle.
+// Cosine-weighted direction about +z. Density pdf_cosine_hemisphere per unit solid angle.
 inline Vec3 cosine_hemisphere_from_square(const Vec2& u) {
   const Vec2 d = disk_from_square(u);
   return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y))};
@@ -73,7 +75,7 @@ inline Vec2 square_from_cosine_hemisphere(const Vec3& w) {
   return square_from_disk(Vec2{w.x, w.y});
 }
 
-// Uniform direction on the sphere, density 1/(4 pi) per unit solid angle.
+// Uniform direction on the sphere. Density 1/(4 pi) per unit solid angle.
 inline Vec3 sphere_from_square(const Vec2& u) {
   const float z = 1 - 2 * u.x;
   const float r = std::sqrt(std::max(0.0f, 1 - z * z));
@@ -86,8 +88,8 @@ inline Vec2 square_from_sphere(const Vec3& w) {
   return {(1 - w.z) / 2, v};
 }
 
-// Uniform barycentrics (b1, b2) of a triangle, density 2 per unit of the barycentric square's
-// half: the folding-free square-root map.
+// Uniform barycentrics (b1, b2) of a triangle by the square-root map, without folding. Density 2 in
+// the barycentric triangle.
 template <class T>
 inline Vec2T<T> triangle_from_square(const Vec2T<T>& u) {
   const T s = std::sqrt(u.x);

@@ -1,11 +1,12 @@
-// Names as options give them: 'panel*' stands for panel.001, panel.002 …
+// Wildcards in names that options give: 'panel*' fits panel.001 and panel.002. Used wherever an
+// option names lights, surfaces or nodes.
 #pragma once
 
 #include <string_view>
 
 namespace troffer {
 
-// Whether `pattern` is the name itself, or fits it where '*' stands for any letters, or none.
+// True if `pattern` equals the name, or fits it with '*' for any letters or none.
 inline bool fits_wildcard(std::string_view name, std::string_view pattern) {
   if (name == pattern) return true;
   size_t n = 0, p = 0, star = pattern.npos, after_star = 0;

@@ -1,4 +1,5 @@
-// Values of images of all directions between texels.
+// Interpolated values of environment images. Used by light/environment_image.h and by importers.
+// Radiance in the units of the image.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +9,8 @@
 
 namespace troffer {
 
-// At a place of the unit square: bilinear between texel centres, across the square's edges as the
-// sphere goes on.
+// Value at a place of the unit square: bilinear between texel centres. Beyond the square's edges
+// the sphere continues.
 inline Rgb value_at(const EnvironmentMap& map, const Vec2& uv) {
   const float x = uv.x * float(map.width) - 0.5f, y = uv.y * float(map.height) - 0.5f;
   const float x0 = std::floor(x), y0 = std::floor(y);

@@ -1,4 +1,4 @@
-// An image of what lies beyond the scene, over all directions: plain data. Looked up and sampled by
+// Image of the light from infinity, over all directions: plain data. Evaluated and sampled by
 // light/environment_image.h.
 #pragma once
 
@@ -13,8 +13,8 @@ namespace troffer {
 struct EnvironmentMap {
   std::string name;
   SphereMap projection = SphereMap::lat_long;
-  int width = 0, height = 0;  // at least 1; equal_area: the same
-  // Radiance in W/(m² sr), or cd/m² where Scene::is_photometric; row-major, row 0 at v = 0; finite,
+  int width = 0, height = 0;  // at least 1; equal for equal_area
+  // Radiance in W/(m² sr), or cd/m² if Scene::is_photometric. Row-major, row 0 at v = 0; finite,
   // not negative.
   std::vector<Rgb> texels;
 };

@@ -10,18 +10,19 @@ namespace {
 
 using Corner = std::array<float, 3>;
 Corner corner(const Vec3& p) {
-  return {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // -0 is 0
+  return {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // turns -0 into 0
 }
 
-// Where and to which sides a light shines, as a list of numbers: equal for lights that are to be
-// joined.
+// Geometry of a light and the sides it emits from, as a list of numbers. Lights with equal lists
+// are joined.
 using Place = std::vector<float>;
 
 void append(const std::vector<Corner>& corners, Place& out) {
   for (const Corner& c : corners) out.insert(out.end(), c.begin(), c.end());
 }
 
-// The outline from its least corner on; the way round tells the front, where there is one.
+// Starts the outline at its smallest corner. The direction of a one-sided outline shows the front
+// and is kept; that of a two-sided one is normalized.
 std::vector<Corner> canonical(std::vector<Corner> corners, bool is_two_sided) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   if (!is_two_sided) return corners;
@@ -72,7 +73,7 @@ bool may_be_joined(const Light& e) {
   return has_surface(e.kind) && e.texture == no_texture && !e.is_alpha_masked && e.web == no_web;
 }
 
-// For each light the first one in its place; itself where there is none before.
+// Index of the first light in the same place, for each light; its own index if it is the first.
 std::vector<uint32_t> first_in_place(const Scene& scene) {
   std::map<Place, uint32_t> places;
   std::vector<uint32_t> first(scene.lights.size());
@@ -83,8 +84,7 @@ std::vector<uint32_t> first_in_place(const Scene& scene) {
   return first;
 }
 
-// Takes the triangles away that shine as a light that is gone; lights of the mesh are told where
-// theirs are now.
+// Removes the triangles of removed lights. The caller rebuilds the triangle lists of the others.
 void remove_triangles(Mesh& mesh, const std::vector<uint8_t>& is_gone) {
   size_t kept = 0;
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -118,7 +118,7 @@ void remove_lights(Scene& scene, const std::vector<uint8_t>& is_gone) {
     if (is_gone[i] != 0) continue;
     renumbered[i] = int32_t(kept.size());
     kept.push_back(std::move(scene.lights[i]));
-    kept.back().triangles.clear();  // as the meshes say below
+    kept.back().triangles.clear();  // rebuilt from the meshes below
   }
   scene.lights = std::move(kept);
   const auto renumber = [&](int32_t& e) {

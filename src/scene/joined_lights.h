@@ -1,15 +1,15 @@
-// Lights that lie exactly in each other's place.
+// Joins lights with identical geometry. Used when a scene is loaded, before anything numbers its
+// lights.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace troffer {
 
-// The scene with such lights joined: the first one sends what all of them did, and the surfaces of
-// the others are gone. Two surfaces in one place hide each other or not as rounding wills, and a
-// ray that arrives meets one of them: every method would count something else. Spheres, disks,
-// polygons and meshes count that have the same corners and shine to the same sides, without image
-// or mask.
+// Returns the scene with such lights joined: the first one emits the sum, and the other surfaces
+// are removed. Two coincident surfaces hide each other as rounding decides, and a ray hits only one
+// of them, so methods would disagree about their light. Joins spheres, disks, polygons and meshes
+// with the same corners and emitting sides, without image, mask or web.
 Scene with_joined_lights(Scene scene);
 
 }  // namespace troffer

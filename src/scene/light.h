@@ -1,5 +1,5 @@
-// What the scene says gives light: one closed set of kinds, plain data. What each kind does is in
-// light/light.h.
+// Lights as data: one closed set of kinds. Importers fill them in; light/light.h implements each
+// kind. Units are W/(m² sr) and W/sr, or cd/m² and cd if Scene::is_photometric.
 #pragma once
 
 #include <array>
@@ -18,76 +18,79 @@ constexpr int32_t no_environment = -1;
 constexpr int32_t no_web = -1;
 
 enum class LightKind : uint8_t {
-  // Diffuse surfaces; what is hit has their number (Mesh::lights, Sphere::light, Disk::light).
+  // Diffuse surfaces. Hits carry their index (Mesh::lights, Sphere::light, Disk::light).
   polygon,
   disk,
   sphere,
   mesh,
-  // Without surface: no ray hits them.
+  // No surface: no ray hits them.
   point,
   spot,
-  // At infinity: rays that leave the scene see them, but for `distant`.
+  // At infinity: rays that leave the scene see them, except `distant`.
   distant,
   environment,
   sky,
   sun,
 };
 
-// Luminance of a sky, relative: (1 + a exp(b / cos Z)) (k + c exp(d x) + e cos² x) at the angle Z
-// from the zenith and x from the sun (light/sky_light.h); below the horizon the ground.
+// Relative luminance of a sky: (1 + a exp(b / cos Z)) (k + c exp(d x) + e cos² x), at the angle Z
+// from the zenith and x from the sun (light/sky_light.h). Below the horizon it is the ground's.
 struct SkyShape {
   float a = 0, b = 0, c = 0, d = 0, e = 0, k = 1;
   Rgb ground;  // radiance
 };
 
-// How a spot fades between its angles, by t = 0 at the outer cosine to 1 at the inner one.
+// Falloff of a spot between its angles; t is 0 at the outer cosine and 1 at the inner one.
 enum class SpotFalloff : uint8_t {
   smooth_step,  // 3t² - 2t³
   square,       // t²
-  linear,       // by the angle itself, not its cosine: Mitsuba's
+  linear,       // linear in the angle, not in its cosine (Mitsuba)
 };
 
 struct Light {
-  std::string name;  // glTF node, else emitter0, emitter1 …; may repeat
+  std::string name;  // glTF node, otherwise emitter0, emitter1 and so on; may repeat
   LightKind kind = LightKind::polygon;
-  // W/(m² sr), or cd/m² where Scene::is_photometric; point, spot: radiant intensity (largest), W/sr
-  // or cd; distant: irradiance of a surface that faces it, W/m² or lx. A factor on what varies: an
-  // environment's image, a sky's shape, a web.
+  // Radiance in W/(m² sr), or cd/m² if Scene::is_photometric. Point, spot: largest radiant
+  // intensity, W/sr or cd. Distant: irradiance of a surface that faces it, W/m² or lx. An
+  // environment's image, a sky's shape and a web are multiplied by it.
   Rgb radiance;
 
-  // Kinds with a surface: it emits from the front, or from both sides where is_two_sided.
-  // Factor on radiance: of a mesh over its (u,v); of a point or a spot a picture that it throws
+  // Kinds with a surface emit from the front, or from both sides if is_two_sided. The texture is a
+  // factor on radiance: of a mesh over its (u,v), of a point or spot a projected picture
   // (scene/projected_image.h).
   int32_t texture = no_texture;
   bool is_two_sided = false;
-  bool is_alpha_masked = false;     // mesh only: dark where its material's mask makes holes
+  bool is_alpha_masked = false;     // mesh only: the material's mask also cuts the emission
   uint32_t geometry = 0;            // index into meshes, disks or spheres
-  std::vector<uint32_t> triangles;  // polygon, mesh: the triangles of that mesh, ascending
-  std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise seen from front
+  std::vector<uint32_t> triangles;  // polygon, mesh: triangles of that mesh, ascending
+  std::vector<Vec3> polygon;        // polygon: convex outline, counterclockwise from the front
 
-  // environment, sky, sun: nothing, or the corners of a rectangle that its light comes through
-  // alone, counterclockwise seen from where it arrives
+  // environment, sky, sun: corners of the portal rectangle, counterclockwise as seen from the side
+  // that its light reaches. Empty without portal.
   std::vector<Vec3> portal;
 
   Vec3 position;  // point, spot
-  // spot: axis of its beam; distant, sun, sky: which the light takes that comes from there, or from
-  // the sun in it; unit
+  // spot: beam axis. distant, sun: direction that the light travels in; sky: the same for its sun.
+  // Unit.
   Vec3 direction{0, 0, -1};
-  // spot: whole within the inner angle, none beyond the outer one, which is larger
+  // spot: full intensity within the inner angle, none beyond the outer one, which is larger
   float cos_inner = 1, cos_outer = 0;
   SpotFalloff falloff = SpotFalloff::smooth_step;
-  // point with a texture: a plane across its axis gets light in proportion to the picture, so that
-  // the intensity at the angle a from the axis is over cos³ a (Mitsuba's projector)
+  // point with a texture: irradiance on a plane across the axis is proportional to the picture.
+  // The intensity at angle a from the axis is divided by cos³ a (Mitsuba's projector).
   bool lights_plane_evenly = false;
-  float range = 0;  // point, spot: > 0: fades to nothing at that distance, m (light/point_light.h)
+  // point, spot, m. Above 0: distance where the light has faded to nothing. Below 0: minus the
+  // focal distance of Radiance's spotlight. 0: inverse square without limit (light/no_surface.h).
+  float range = 0;
 
-  int32_t environment = no_environment;  // environment: an image, of Scene::environments
+  int32_t environment = no_environment;  // environment, point: index into Scene::environments
   SkyShape sky;                          // sky
   float angular_radius = 0;              // sun: of its disc, rad
-  // point, kinds with a surface: how it shines by direction, of Scene::webs
+  // point, kinds with a surface: index into Scene::webs
   int32_t web = no_web;
-  // World directions of its own x, y, z, unit, orthogonal, of any handedness: of the environment's
-  // image; sky: z is up; of the luminaire whose web it has
+  // World directions of the light's own x, y, z: unit, orthogonal, of either handedness. They
+  // orient an environment's image, a sky (z is up), and the luminaire of a web. The x and y axes of
+  // a projected picture are not unit (scene/projected_image.h).
   std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 };
 
@@ -95,13 +98,13 @@ inline bool has_surface(LightKind k) {
   return k <= LightKind::mesh;
 }
 
-// A single direction brings its light to a point: none meets it by chance.
+// True if the light reaches a point from a single direction, which no sampled ray hits.
 inline bool is_delta(LightKind k) {
   return k == LightKind::point || k == LightKind::spot || k == LightKind::distant;
 }
 
-// Calls visit(v) with all that says what a light is, but its name and the list of its triangles
-// (which Mesh::lights says too): numbers, vectors and colours.
+// Calls visit(v) for the numbers, vectors and colours that define a light. Leaves out its name and
+// its triangle list, which Mesh::lights holds too.
 template <class Visit>
 void for_each_value(const Light& e, const Visit& visit) {
   visit(uint64_t(e.kind) | uint64_t(e.is_two_sided) << 8 | uint64_t(e.lights_plane_evenly) << 9);

@@ -1,4 +1,5 @@
-// Materials as data: what importers fill in and bsdf/ turns into reflection functions at a hit.
+// Materials as data. Importers fill them in; bsdf/ turns them into reflection functions at a hit.
+// Roughness, coverage and colours are dimensionless; absorption is per metre.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +26,13 @@ struct FloatInput {
 };
 
 enum class MaterialKind : uint8_t {
-  diffuse,             // Lambertian reflection base_color
-  coated_diffuse,      // dielectric coat of index ior and `roughness` over Lambertian base_color
-  conductor,           // complex index eta + i k per channel; or base_color where is_reflectance
-  dielectric,          // glass of index ior; solid, or a thin sheet where is_thin
-  metallic_roughness,  // glTF: mix by `metallic` of a base_color metal and a coated diffuse;
-                       // `transmission` of the diffuse part passes as through glass instead
+  diffuse,         // Lambertian reflection base_color
+  coated_diffuse,  // dielectric coat of index ior and `roughness` over Lambertian base_color
+  conductor,       // complex index eta + i k per channel; or base_color if is_reflectance
+  dielectric,      // glass of index ior: solid, or a thin sheet if is_thin
+  // glTF: mix by `metallic` of base_color metal and coated diffuse; `transmission` of the diffuse
+  // part passes as through glass
+  metallic_roughness,
 };
 
 // How `roughness` becomes the GGX width alpha.
@@ -40,19 +42,20 @@ enum class RoughnessMeaning : uint8_t {
   alpha_is_square,  // alpha = roughness²: glTF
 };
 
-// Microfacets of rough gloss.
+// Microfacet model of rough gloss.
 enum class FacetModel : uint8_t {
-  balanced,         // GGX, shadowing and masking correlated by height; what is lost between facets
-                    // returns (bsdf/lost_light.cpp)
-  single_ggx,       // GGX, shadowing times masking; what is lost stays lost: Mitsuba's
+  // GGX with height-correlated shadowing and masking; light lost between microfacets returns
+  // (bsdf/lost_light.cpp)
+  balanced,
+  single_ggx,       // GGX with shadowing times masking; lost light stays lost (Mitsuba)
   single_beckmann,  // the same with Beckmann's distribution
 };
 
-// What a surface is to those who see its back.
+// Look of a surface from behind.
 enum class BackFaces : uint8_t {
-  shown,   // the same as its front
-  black,   // it reflects nothing there (Mitsuba's one-sided ones)
-  unseen,  // viewing rays go through (glTF's); to light it is the same as its front
+  shown,   // same as the front
+  black,   // reflects nothing there (Mitsuba's one-sided materials)
+  unseen,  // viewing rays pass (glTF); for light it is the same as the front
 };
 
 struct Material {
@@ -61,64 +64,65 @@ struct Material {
   ColorInput base_color{Rgb{0.5f}, no_texture};
   FloatInput roughness{0, no_texture, 0};
   RoughnessMeaning roughness_meaning = RoughnessMeaning::alpha;
-  FacetModel facets = FacetModel::balanced;  // of coated_diffuse, conductor and dielectric
+  FacetModel facets = FacetModel::balanced;  // coated_diffuse, conductor, dielectric
   FloatInput metallic{0, no_texture, 2};
-  // GGX is alpha + (1 - alpha) × this² wide along TexturePlace::grain, alpha across it: of
-  // conductors and metallic_roughness. The grain lies so far counterclockwise from growing u,
-  // turned further by the texture's red and green as a direction.
+  // conductor, metallic_roughness: GGX has the width alpha + (1 - alpha) × anisotropy² along
+  // TexturePlace::grain and alpha across it. The rotation turns the grain counterclockwise from
+  // growing u. The texture's red and green turn it further, as a direction.
   FloatInput anisotropy{0, no_texture, 2};
   float anisotropy_rotation_rad = 0;
-  // metallic_roughness: cloth's fibres over it (bsdf/sheen.h), metal and glass too. Black: none.
+  // metallic_roughness: sheen of cloth fibres over the rest (bsdf/sheen.h), metal and glass
+  // included. Black: none.
   ColorInput sheen_color{Rgb{0}, no_texture};
   FloatInput sheen_roughness{0, no_texture, 3};
-  // A clear coat over all else (bsdf/clear_coat.h), of an index of its own: of metallic_roughness
-  // and of dielectrics the share of the surface that wears it, its base as without it
-  // (KHR_materials_clearcoat); of a conductor a layer over all of it in which light bends; of
-  // coated_diffuse a second coat. Solid glass wears it outside, thin sheets on both sides.
+  // Clear coat over the rest, with an index of its own (bsdf/clear_coat.h). metallic_roughness and
+  // dielectric: share of the surface under the coat, whose base is unchanged
+  // (KHR_materials_clearcoat). conductor: a layer over all of it that refracts. coated_diffuse: a
+  // second coat. Solid glass has the coat outside, a thin sheet on both sides.
   FloatInput coat{0, no_texture, 0};
   FloatInput coat_roughness{0, no_texture, 1};
   float coat_ior = 1.5f;
-  // The coat leans by a map of its own, or not at all; else with the base.
+  // True if the coat has its own normal map, or stays flat without one. Otherwise it follows the
+  // base.
   bool has_coat_normal = false;
   int32_t coat_normal_texture = no_texture;
   float coat_normal_scale = 1;
-  // metallic_roughness: a thin film over its gloss (bsdf/thin_film.h): the share that wears it, its
-  // index, and its thickness, so far from `film_thinnest_nm` to `film_thickest_nm`.
+  // metallic_roughness: thin film over the gloss (bsdf/thin_film.h): its share of the surface, its
+  // index, and its thickness, interpolated from `film_thinnest_nm` to `film_thickest_nm`.
   FloatInput iridescence{0, no_texture, 0};
   float film_ior = 1.3f;
   FloatInput film_thickness{1, no_texture, 1};
   float film_thinnest_nm = 100, film_thickest_nm = 400;
   float ior = 1.5f;                       // real index of refraction, inside / outside
   FloatInput specular{1, no_texture, 3};  // KHR_materials_specular: specularFactor
-  // … specularColorFactor; of coated_diffuse, dielectrics and conductors of eta and k a factor on
-  // what they reflect as gloss, and on that alone
+  // KHR_materials_specular: specularColorFactor. coated_diffuse, dielectric, conductor with eta and
+  // k: factor on the specular reflection only.
   ColorInput specular_color{Rgb{1}, no_texture};
   FloatInput transmission{0, no_texture, 0};  // KHR_materials_transmission
-  // Light that comes through and leaves the other side evenly, as through paper, curtains and opal
-  // glass: of diffuse ones the share `diffuse_transmission` × its colour, beside base_color; of
-  // metallic_roughness so much of what is diffuse passes, in that colour, in place of base_color
+  // Diffuse transmission, as of paper, curtains and opal glass. diffuse: `diffuse_transmission` ×
+  // its colour is transmitted in addition to base_color. metallic_roughness: that share of the
+  // diffuse light passes, in this colour instead of base_color
   // (KHR_materials_diffuse_transmission).
   FloatInput diffuse_transmission{0, no_texture, 3};
   ColorInput diffuse_transmission_color{Rgb{1}, no_texture};
   bool is_thin = false;  // dielectric, transmission: no refraction
-  // Inside solid glass: the share exp(-absorption × metres) is left. Of a sheet: the exponent
-  // straight through it.
+  // Solid glass: transmits exp(-absorption × metres). Sheet: exponent at normal incidence.
   Rgb absorption{0};
   BackFaces back_faces = BackFaces::shown;
   bool is_reflectance = false;          // conductor: normal reflectance is base_color
   Rgb eta{0.2f}, k{3.9f};               // conductor
-  int32_t normal_texture = no_texture;  // tangent space, linear
+  int32_t normal_texture = no_texture;  // tangent space, linear; -1: none
   float normal_scale = 1;
-  FloatInput bump{0, no_texture, 0};  // height in metres; none without a texture
-  bool is_alpha_masked = false;       // hits with alpha < cutoff are not there …
-  bool is_alpha_blended = false;  // … or, where it is masked: alpha is the share of rays that hit
+  FloatInput bump{0, no_texture, 0};  // height, m; none without a texture
+  bool is_alpha_masked = false;       // hits with alpha < cutoff are ignored
+  bool is_alpha_blended = false;      // only with is_alpha_masked: alpha is the coverage
   FloatInput alpha{1, no_texture, 3};
   float alpha_cutoff = 0.5f;
-  // What it would mirror goes straight through instead: scene/mirror_image.h.
+  // Light that it would mirror passes straight through instead (scene/mirror_image.h).
   bool is_image = false;
 };
 
-// Calls visit(input) for every input that says how a material scatters light: what may be textured.
+// Calls visit(input) for every input of the scattering model that may be textured.
 template <class Visit>
 void for_each_input(const Material& m, const Visit& visit) {
   for (const ColorInput* c :
@@ -130,8 +134,8 @@ void for_each_input(const Material& m, const Visit& visit) {
     visit(*f);
 }
 
-// Calls visit(v) for all that says how a material scatters light and where it has holes (bumps and
-// names do neither): inputs, numbers, colours.
+// Calls visit(v) for the inputs, numbers and colours that define scattering and coverage. Leaves
+// out names and bumps.
 template <class Visit>
 void for_each_value(const Material& m, const Visit& visit) {
   visit(uint64_t(m.kind));
@@ -153,13 +157,13 @@ void for_each_value(const Material& m, const Visit& visit) {
   visit(m.alpha_cutoff);
 }
 
-// Whether its coat has another normal than its base.
+// True if the coat has another normal than the base.
 inline bool has_own_coat_normal(const Material& m) {
   return m.coat.value > 0 && m.has_coat_normal &&
          (m.coat_normal_texture >= 0 || m.normal_texture >= 0 || m.bump.texture >= 0);
 }
 
-// Whether it scatters light differently from place to place.
+// True if any input of the scattering model is textured.
 inline bool has_textured_input(const Material& m) {
   bool is_any = false;
   for_each_input(m, [&](const auto& input) { is_any = is_any || input.texture >= 0; });
@@ -177,8 +181,8 @@ inline float evaluate(const std::vector<Texture>& textures, const FloatInput& in
   return in.value * (in.channel == 3 ? v.alpha : v.rgb[size_t(in.channel)]);
 }
 
-// The share of rays that meet the surface at uv: 0 where a mask makes a hole, 1 where it does not,
-// between where alpha blends. Of a material that is_alpha_masked.
+// Coverage at uv: 0 or 1 by a mask, between if alpha blends. Call it for materials that are
+// is_alpha_masked.
 inline float coverage(const std::vector<Texture>& textures, const Material& m,
                       const TexturePlace& uv) {
   const float alpha = evaluate(textures, m.alpha, uv);
@@ -186,7 +190,7 @@ inline float coverage(const std::vector<Texture>& textures, const Material& m,
   return alpha > 0 ? (alpha < 1 ? alpha : 1.0f) : 0.0f;
 }
 
-// Whether no ray meets it there.
+// True if the surface is absent at uv.
 inline bool is_cut_out(const std::vector<Texture>& textures, const Material& m,
                        const TexturePlace& uv) {
   return coverage(textures, m, uv) <= 0;

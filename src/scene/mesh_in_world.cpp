@@ -17,9 +17,9 @@ double largest(const Vec3d& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-// By how much the rounding of coordinates grows on the way to the mesh and back: the row sum norm
-// of |M| |M^-1|, 1 where M stretches along the axes, at most 3 for rotations. Infinite or NaN for
-// what is singular.
+// Growth of rounding errors of coordinates on the way to the mesh and back: the row sum norm of
+// M| |M^-1|. It is 1 if M scales along the axes, at most 3 for rotations, and infinite or NaN if M
+// is singular.
 double growth_of_rounding(const Affine& m) {
   const std::array<Vec3d, 3> there = abs_columns(inverse(m)), back = abs_columns(m);
   const Vec3d sums = there[0] + there[1] + there[2];
@@ -30,14 +30,14 @@ double growth_of_rounding(const Affine& m) {
 
 Vec3 MeshInWorld::in_world(const Vec3& normal) const {
   const Affine& m = instance_->world_from_mesh;
-  // Affine::normal carries the sign of the determinant, but a normal does not change sides.
+  // Affine::normal carries the sign of the determinant, but a normal must not change sides.
   const Vec3d n = m.normal(Vec3d(normal)) * (instance_->is_mirrored ? -1.0 : 1.0);
   const double size = length(n);
   return size > 0 && std::isfinite(size) ? Vec3(n / size) : normal;
 }
 
 bool is_instanceable(const Affine& m) {
-  constexpr double largest_scale = 1e9, smallest_volume = 1e-27;  // floats keep both
+  constexpr double largest_scale = 1e9, smallest_volume = 1e-27;  // within the range of floats
   const double det = std::abs(m.determinant());
   if (!(det > smallest_volume) || !(length(m.translation) < largest_scale)) return false;
   for (const Vec3d& column : m.columns)
@@ -48,7 +48,7 @@ bool is_instanceable(const Affine& m) {
 Box bounds_in_world(const Mesh& mesh, const Affine& world_from_mesh) {
   Boxd box;
   for (const Vec3& p : mesh.positions) box.grow(world_from_mesh.point(Vec3d(p)));
-  return {Vec3(box.lower), Vec3(box.upper)};  // rounded as corners are
+  return {Vec3(box.lower), Vec3(box.upper)};  // rounded as positions are
 }
 
 Vec3 reach_of(const Mesh& mesh) {

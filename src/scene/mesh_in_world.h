@@ -1,8 +1,8 @@
-// Meshes as they stand in the world: those of Scene::meshes as they are, and instances, whose
-// corners are computed when they are asked for: in double precision, rounded once, so that they are
-// what a copy in the world would hold.
+// Meshes in world space: those of Scene::meshes, and instances. Corners of instances are computed
+// on demand in double precision and rounded once, so they equal those of a copy in the world. Used
+// by ray tracing, lights and exporters. Positions are in metres from Scene::origin.
 //
-// Geometry numbers, as hits have them: meshes; one number for all spheres, one for all disks; then
+// Geometry numbers of hits: meshes first, then one number for all spheres, one for all disks, then
 // instances.
 #pragma once
 
@@ -26,7 +26,7 @@ inline bool is_mesh(const Scene& scene, uint32_t geometry) {
 
 class MeshInWorld {
  public:
-  // Both must outlive this. instance: null: the mesh stands as it is.
+  // Both must outlive this object. Without an instance the mesh is in world space already.
   explicit MeshInWorld(const Mesh& mesh, const Instance* instance = nullptr)
       : mesh_(mesh), instance_(instance) {}
 
@@ -35,7 +35,7 @@ class MeshInWorld {
   const std::string& name() const { return instance_ != nullptr ? instance_->name : mesh_.name; }
   size_t size() const { return mesh_.triangles.size(); }
 
-  // Numbers of vertices, in the order in which they show the front to the world.
+  // Vertex indices, in the order that shows the front in world space.
   Triangle triangle(size_t i) const {
     const Triangle& t = mesh_.triangles[i];
     return instance_ != nullptr && instance_->is_mirrored ? Triangle{t[0], t[2], t[1]} : t;
@@ -44,7 +44,7 @@ class MeshInWorld {
     const Vec3& p = mesh_.positions[vertex];
     return instance_ != nullptr ? Vec3(instance_->world_from_mesh.point(Vec3d(p))) : p;
   }
-  // Of a mesh that has normals; unit.
+  // Unit normal. The mesh must have normals.
   Vec3 normal(uint32_t vertex) const {
     const Vec3& n = mesh_.normals[vertex];
     return instance_ != nullptr ? in_world(n) : n;
@@ -61,7 +61,7 @@ class MeshInWorld {
   const Instance* instance_;
 };
 
-// The mesh of that number; is_mesh() must hold.
+// Returns the mesh with that geometry number. Requires is_mesh().
 inline MeshInWorld mesh_at(const Scene& scene, uint32_t geometry) {
   if (geometry < scene.meshes.size()) return MeshInWorld(scene.meshes[geometry]);
   const Instance& i = scene.instances[geometry - first_instance(scene)];
@@ -76,19 +76,18 @@ void for_each_mesh(const Scene& scene, const Visit& visit) {
   for (uint32_t i = 0; i < instances; ++i) visit(meshes + 2 + i, mesh_at(scene, meshes + 2 + i));
 }
 
-// An instance of instanced mesh `number`; the transform must be is_instanceable(). reach:
-// reach_of() that mesh; bounds: bounds_in_world().
+// Makes an instance of instanced mesh `number`. The transform must be is_instanceable(). `reach` is
+// reach_of() the mesh and `bounds` its bounds_in_world().
 Instance make_instance(uint32_t number, const Affine& world_from_mesh, std::string name,
                        const Vec3& reach, const Box& bounds);
-Vec3 reach_of(const Mesh& mesh);  // the largest coordinates without their signs, per axis
+Vec3 reach_of(const Mesh& mesh);  // largest absolute coordinate per axis
 Box bounds_in_world(const Mesh& mesh, const Affine& world_from_mesh);  // of all vertices
 
-// Whether rays may be taken to a mesh under that transform and back without losing more than a few
-// times what rounding takes from them in the world: not where it is singular, nearly so, or not
-// finite.
+// True if rays can be transformed to a mesh and back without losing more than a few times the
+// rounding error of world space. False for singular, nearly singular and infinite transforms.
 bool is_instanceable(const Affine& world_from_mesh);
 
-// The mesh, copied out.
+// Returns a copy of the mesh in world space.
 Mesh copied_to_world(const MeshInWorld& mesh);
 
 }  // namespace troffer

@@ -18,10 +18,11 @@ Side side_of(const FlatMirror& m, float least, float most) {
   return least >= -m.tolerance ? Side::front : Side::both;
 }
 
-// The part of a mesh that lies in front of the plane.
+// The part of a mesh in front of the mirror's plane.
 struct CutMesh {
-  Mesh mesh;                      // of the same material; no lights, no normals
-  std::vector<int32_t> triangle;  // per triangle of the whole one: this one's, where it is not cut
+  Mesh mesh;  // same material; without lights and normals
+  // index here of each triangle of the whole mesh; -1 if cut or behind
+  std::vector<int32_t> triangle;
 };
 
 class MeshCutter {
@@ -66,7 +67,7 @@ class MeshCutter {
     if (number_[v] == none) number_[v] = add(mesh_.positions[v], uv(v), uv_2(v));
     return number_[v];
   }
-  // Where an edge meets the plane: the same for both triangles beside it.
+  // Vertex where an edge crosses the plane, shared by both triangles of the edge.
   uint32_t crossing(uint32_t a, uint32_t b) {
     const auto [low, high] = std::minmax(a, b);
     const auto [it, is_new] = crossings_.try_emplace({low, high}, 0);
@@ -93,12 +94,12 @@ class MeshCutter {
   const Mesh& mesh_;
   const FlatMirror& mirror_;
   std::vector<float> above_;
-  std::vector<uint32_t> number_;  // of a vertex in the part
+  std::vector<uint32_t> number_;  // index in the part, by vertex
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> crossings_;
   CutMesh out_;
 };
 
-// What becomes of a scene's parts.
+// Builds the mirror image of a scene, one kind of content after the other.
 class ImageMaker {
  public:
   ImageMaker(const Scene& scene, const FlatMirror& mirror) : scene_(scene), mirror_(mirror) {
@@ -140,7 +141,7 @@ class ImageMaker {
   const Scene& scene_;
   const FlatMirror& mirror_;
   MirrorImage out_;
-  std::map<uint32_t, int32_t> lights_;  // of the scene, with a surface: the image's, or no_light
+  std::map<uint32_t, int32_t> lights_;  // scene light with a surface -> image light, or no_light
 };
 
 bool is_clear(const Material& m) {
@@ -148,7 +149,7 @@ bool is_clear(const Material& m) {
          (m.kind == MaterialKind::metallic_roughness && m.transmission.value > 0);
 }
 
-// Nothing reflects: glass stays, for some of it are panes, and so do holes.
+// Makes all materials black. Glass is kept, because panes pass light, and so is coverage.
 void ImageMaker::add_materials() {
   Material dark;
   dark.base_color = {Rgb{0}, no_texture};
@@ -165,7 +166,7 @@ void ImageMaker::add_materials() {
   out_.scene.materials.back().is_image = true;
 }
 
-// The texels that are still asked for.
+// Copies only the textures that the image still uses.
 void ImageMaker::add_textures() {
   const std::vector<Texture>& all = scene_.textures;
   std::vector<bool> is_used(all.size(), false);
@@ -185,7 +186,7 @@ void ImageMaker::add_textures() {
     if (is_used[t]) out_.scene.textures[t] = all[t];
 }
 
-// The number of a light's image; no_light where it has none. front: the light's mesh, cut.
+// Returns the index of a light's image, or no_light. `front` is the light's mesh, cut at the plane.
 int32_t ImageMaker::light_of_image(uint32_t light, uint32_t geometry, const CutMesh* front) {
   const auto [it, is_new] = lights_.try_emplace(light, no_light);
   if (!is_new) return it->second;
@@ -226,7 +227,7 @@ void ImageMaker::add_cut(const Mesh& mesh) {
   out_.scene.meshes.push_back(std::move(front.mesh));
 }
 
-// Those that the plane cuts are copied out.
+// Instances that the plane cuts are copied to meshes.
 void ImageMaker::add_instances() {
   out_.scene.instanced_meshes = scene_.instanced_meshes;
   for (Mesh& mesh : out_.scene.instanced_meshes) mesh.normals = {};
@@ -252,7 +253,8 @@ void ImageMaker::add_meshes() {
   add_instances();
 }
 
-// A sphere or disk that reaches so far from its centre's height; false: it crosses the plane.
+// Adds a sphere or disk that extends `reach` from its centre along the normal. Returns false if it
+// crosses the plane.
 template <class Shape, class Reflect>
 bool ImageMaker::add_round(const Shape& shape, float reach, std::vector<Shape>& out,
                            const Reflect& reflect) {
@@ -309,8 +311,8 @@ void ImageMaker::add_quad(uint32_t material, const std::array<Vec3, 4>& corners)
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
 }
 
-// In the plane, half planes outside each edge of the outline: all of it but the mirror. Around the
-// front, five sides of a box.
+// Covers the plane except the mirror by one large quad outside each edge of the outline, and
+// encloses the front by five sides of a box.
 void ImageMaker::add_wall() {
   const std::vector<Vec3>& outline = mirror_.outline;
   const Box box = bounds(scene_);

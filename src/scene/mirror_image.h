@@ -1,5 +1,6 @@
-// What a flat mirror shows, as a scene of its own: light that a mirror throws on a surface comes
-// straight on from lights behind it.
+// Mirror image of a scene in a flat mirror, as a scene of its own. Light that reaches a surface by
+// way of the mirror then comes straight from lights behind it. Used for light sampling through
+// mirrors.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +12,12 @@
 
 namespace troffer {
 
-// One convex polygon of a mesh, seen from one side.
+// One convex polygon of a mesh that mirrors on one side.
 struct FlatMirror {
-  Vec3 normal;                // unit, on the side that mirrors
-  float height = 0;           // of its plane, along the normal
-  float tolerance = 0;        // metres; what is no farther from the plane lies in it
-  std::vector<Vec3> outline;  // convex, any way round
+  Vec3 normal;                // unit, on the mirroring side
+  float height = 0;           // of the plane along the normal, m
+  float tolerance = 0;        // metres; points closer to the plane count as in it
+  std::vector<Vec3> outline;  // convex, of either orientation
   uint32_t mesh = 0;
   uint32_t material = 0;
 
@@ -24,23 +25,22 @@ struct FlatMirror {
   Vec3 reflected(const Vec3& p) const { return p - normal * (2 * above(p)); }
   Vec3 reflected_direction(const Vec3& d) const { return d - normal * (2 * dot(normal, d)); }
   Affine reflection() const;
-  // Of the lowest and the highest corner of a box.
+  // Smallest and largest height of a box above the plane, m.
   std::pair<float, float> heights(const Box& box) const;
 };
 
 struct MirrorImage {
   Scene scene;
-  std::vector<uint32_t> lights;  // of the scene that was mirrored: of each light here
+  std::vector<uint32_t> lights;  // index in the original scene, by light of the image
 };
 
-// A scene in which a surface in front of the mirror gets, straight from lights, just the light that
-// it gets from lights by way of this mirror and no other: all that lies in front of the mirror's
-// plane, cut off there, which hides but does not shine; the image of that behind the plane, where
-// the lights shine; between them an opaque wall, with a pane for the mirror (Material::is_image);
-// and walls around the front, so that no other light comes in.
+// Returns a scene whose direct light equals the light that arrives by way of this mirror alone. The
+// part of the scene in front of the plane stays and occludes, but does not emit. Its mirror image
+// lies behind the plane and emits. An opaque wall with a pane for the mirror (Material::is_image)
+// divides them, and more walls around the front keep other light out.
 //
-// Lights of which something lies behind the plane are left out. Nothing, where a sphere or disk
-// crosses the plane: it cannot be cut.
+// A light with any part behind the plane is left out. Returns nothing if a sphere or disk crosses
+// the plane, since these cannot be cut.
 std::optional<MirrorImage> image_in(const Scene& scene, const FlatMirror& mirror);
 
 }  // namespace troffer

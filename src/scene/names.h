@@ -1,4 +1,5 @@
-// The names in a scene that options refer to, each once, in the order of the file.
+// Names in a scene that options refer to, each once, in file order. Used to match options, to list
+// names, and for error messages that suggest the nearest name.
 #pragma once
 
 #include <string>

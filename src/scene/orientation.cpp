@@ -12,20 +12,20 @@ namespace troffer {
 
 namespace {
 
-// Weight of what is certain enough to decide, or to doubt, alone.
+// Weights at which evidence decides alone, or casts doubt on the format.
 constexpr double deciding = 1, contradicting = 3;
-// Hints for another direction leave a doubt where they weigh this share of the decision's.
+// Evidence for another direction casts doubt from this share of the decision's weight.
 constexpr double doubtful_share = 0.6;
 
 struct FormatRule {
   const char* ending;
   const char* name;
-  bool is_fixed;  // the format says it
-  char axis;      // what it says, or what most files have
-  double weight;  // of that, as a hint's (scene/up_hints.h)
+  bool is_fixed;  // the format prescribes the axis
+  char axis;      // prescribed axis, or that of most files
+  double weight;  // of that convention, on the scale of hints (scene/up_hints.h)
 };
 
-// Exporters of OBJ turn to y by default, those of STL keep z; pbrt and PLY files have both.
+// OBJ exporters turn scenes to y by default, STL exporters keep z; pbrt and PLY files have either.
 constexpr FormatRule formats[] = {
     {"gltf", "glTF", true, 'y', 0},     {"glb", "glTF", true, 'y', 0},
     {"rad", "Radiance", true, 'z', 0},  {"xml", "Mitsuba", false, 'y', 2},
@@ -34,7 +34,7 @@ constexpr FormatRule formats[] = {
 };
 constexpr FormatRule no_format{"", "scene", false, 'y', 0.25};
 
-// The format by the file's ending, as importers choose it.
+// Format by the file's ending, as importers choose it.
 const FormatRule& format_of(const Scene& scene) {
   std::string file = scene.file;
   std::transform(file.begin(), file.end(), file.begin(),
@@ -56,7 +56,7 @@ double weight_for(const std::vector<UpHint>& hints, const Vec3& up) {
   return sum;
 }
 
-// "by A, B and C", the strongest three.
+// Text "by A, B and C" with the three strongest sources.
 std::string sources_of(const std::vector<UpHint>& hints, const Vec3& up) {
   std::vector<std::string> names;
   for (const UpHint& h : hints)
@@ -67,7 +67,7 @@ std::string sources_of(const std::vector<UpHint>& hints, const Vec3& up) {
   return text;
 }
 
-// The direction other than `up` that hints weigh most for; its weight is 0 where there are none.
+// The direction other than `up` with the most weight; weight 0 if there is none.
 UpHint strongest_other(const std::vector<UpHint>& hints, const Vec3& up) {
   UpHint best{up, 0, ""};
   for (const UpHint& h : hints) {
@@ -90,7 +90,7 @@ UpDecision decide_by_format(const FormatRule& format, const std::vector<UpHint>&
   return d;
 }
 
-// The scene is less tall than wide, more often than not.
+// Hint from the proportions: most scenes are less tall than wide.
 UpHint hint_of_extent(const Scene& scene) {
   constexpr double weak = 0.5;
   const Box box = bounds(scene);

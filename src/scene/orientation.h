@@ -1,5 +1,5 @@
-// Which way a scene stands: by its format where that says it, else by what the scene shows.
-// Skies, measured luminaires, reports and exports to other axes depend on it.
+// Decides which way is up in a scene: by its format if that prescribes it, otherwise by evidence in
+// the scene. Used by skies, measured luminaires, reports and exports to other axes.
 #pragma once
 
 #include <optional>
@@ -13,35 +13,34 @@ namespace troffer {
 enum class UpBasis {
   asked,       // --up
   format,      // glTF: y; Radiance: z
-  evidence,    // cameras, names, objects that stand on others … (scene/up_hints.h)
-  convention,  // nothing in the file says; most files of the format have it so
+  evidence,    // cameras, names, standing objects and other hints (scene/up_hints.h)
+  convention,  // no evidence; as in most files of the format
 };
 
 struct UpDecision {
-  Vec3 up{0, 1, 0};  // unit, unless asked
+  Vec3 up{0, 1, 0};  // unit, except for UpBasis::asked
   UpBasis basis = UpBasis::format;
-  std::string reason;  // ends a sentence "z is up …": "by its cameras"
-  // A sentence where another direction may be meant: hints contradict each other or the format, or
-  // there are none. Empty elsewhere. It names --up.
+  std::string reason;  // end of a sentence such as "z is up, by its cameras"
+  // Sentence that another direction may be meant and that names --up: hints contradict each other
+  // or the format, or there are none. Otherwise empty.
   std::string doubt;
 };
 
-// Decides for a scene as it was read; the same for a scene with further lights from `up`'s sky.
-// The cost is one pass over at most two million triangles.
+// Decides for a scene as imported; lights added later by a sky option do not change the result.
+// Costs one pass over at most two million triangles.
 UpDecision decide_up(const Scene& scene);
 
-// The direction that --up asked for.
+// Decision for the direction of --up.
 UpDecision asked_up(const Vec3& up);
 
-// "y", "-z"; "0.6,0,0.8" for a direction along no axis.
+// Returns "y" or "-z"; "0.6,0,0.8" for a direction along no axis.
 std::string name_of_up(const Vec3& up);
 
-// "z is up, by its cameras".
+// Returns "z is up, by its cameras".
 std::string describe(const UpDecision& decision);
 
-// Whether its world is left-handed, as pbrt's own is. A camera that keeps the hand of a
-// right-handed world says that the world is one; pbrt's is not, where its camera has not mirrored
-// it back.
+// True if the world is left-handed, as pbrt's is, judged by the handedness of the first camera. A
+// pbrt file may mirror its camera to get a right-handed world.
 bool is_mirrored(const Scene& scene);
 
 }  // namespace troffer

@@ -11,7 +11,7 @@ namespace troffer {
 namespace {
 
 constexpr double tolerance = 1e-3;
-// Triangles whose edges are tried as directions of sides: all of them would take their square.
+// Triangles whose edges are tried as side directions; trying all would take quadratic time.
 constexpr size_t most_looked_at = 256;
 
 std::array<Vec3d, 3> corners_of(const Mesh& mesh, const Triangle& t) {
@@ -46,7 +46,7 @@ std::optional<std::vector<Vec3>> rectangle_of_meshes(const Scene& scene, const s
   });
   if (!(sum > 0) || !(length(area) > (1 - tolerance) * sum)) return std::nullopt;
   const Vec3d n = normalize(area);
-  // Some edge runs along a side: the one along which the bounds are least.
+  // One edge runs along a side: the one with the smallest bounds along it.
   double least = INFINITY;
   std::vector<Vec3> best;
   size_t looked_at = 0;

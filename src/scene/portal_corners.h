@@ -1,4 +1,5 @@
-// The rectangle that a light from beyond a scene comes through alone (Light::portal).
+// Portals: the rectangles that light of environment lights enters through (Light::portal). Used by
+// importers and by the option that names a portal.
 #pragma once
 
 #include <optional>
@@ -11,11 +12,12 @@
 
 namespace troffer {
 
-// Whether four corners, in order around it, are those of a rectangle, within a thousandth.
+// True if four corners, in order, form a rectangle within a thousandth.
 bool is_rectangle(std::span<const Vec3d> corners);
 
-// The corners of the rectangle that the meshes of a name fill, in one plane, counterclockwise seen
-// from their front, which is where the light arrives; nothing where they do not.
+// Corners of the rectangle that all meshes of that name fill in one plane. They run
+// counterclockwise as seen from the front, which is the side that the light reaches. Nothing if
+// they form no rectangle.
 std::optional<std::vector<Vec3>> rectangle_of_meshes(const Scene& scene, const std::string& name);
 
 }  // namespace troffer

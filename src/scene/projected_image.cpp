@@ -6,7 +6,7 @@ namespace troffer {
 
 Rgb projected_flux(const Scene& scene, const Light& e) {
   constexpr int n = 256;
-  // Half width and height at a distance of 1.
+  // Half width and half height at distance 1.
   const float a = 1 / length(e.axes[0]), b = 1 / length(e.axes[1]);
   double r = 0, g = 0, blue = 0;
   for (int i = 0; i < n * n; ++i) {

@@ -1,4 +1,5 @@
-// Scales the lights of a scene, for dimmers: geometry and the numbers of lights stay as they are.
+// Scales the lights of a scene, for dimmers. Geometry and light indices are unchanged. Used by the
+// view's dimmers.
 #pragma once
 
 #include <span>

@@ -22,7 +22,7 @@ size_t stored_triangle_count(const Scene& scene) {
   return n;
 }
 
-// Of the vertices that triangles use, on all cores.
+// Bounds of the vertices that triangles use; runs on all cores.
 static Box bounds_of_triangles(const Mesh& mesh) {
   constexpr size_t at_once = size_t(1) << 16;
   std::vector<Box> parts(mesh.triangles.size() / at_once + 1);

@@ -1,5 +1,5 @@
-// A scene: immutable data once built, with no algorithms of its own. Positions are in world space,
-// counted from Scene::origin.
+// The scene: plain data, immutable once built. Importers make it and all methods read it. Positions
+// are in metres in world space, relative to Scene::origin.
 #pragma once
 
 #include <array>
@@ -24,28 +24,28 @@ namespace troffer {
 
 using Triangle = std::array<uint32_t, 3>;
 
-// Triangles that share a material. The front of a triangle is the side from which p0, p1, p2 run
-// counterclockwise; importers order vertices so that this is the front by their format's rules.
+// Triangles with one material. p0, p1, p2 run counterclockwise as seen from the front. Importers
+// order vertices by their format's rules for the front.
 struct Mesh {
   std::string name;
   std::vector<Vec3> positions;  // metres
   std::vector<Vec3> normals;    // empty, or per vertex: unit shading normals
-  std::vector<Vec2> uvs;        // empty, or per vertex: what lights and alpha are looked up by
+  std::vector<Vec2> uvs;        // empty, or per vertex: for lights, alpha and most textures
   std::vector<Vec2> uvs_2;      // the same, for textures mapped by second_uv
   std::vector<Triangle> triangles;
   std::vector<int32_t> lights;  // empty (nothing emits), or per triangle
   uint32_t material = 0;
 };
 
-// A mesh that is stored once and stands in several places (scene/mesh_in_world.h makes instances
-// and says where their triangles lie). The front of a triangle stays the front under transforms
-// that mirror: there its vertices run the other way round.
+// A mesh that is stored once and placed in several positions. scene/mesh_in_world.h makes instances
+// and computes their triangles. The front of a triangle stays the front under mirroring transforms,
+// where its vertices run clockwise.
 struct Instance {
   std::string name;
-  uint32_t mesh = 0;       // of Scene::instanced_meshes
+  uint32_t mesh = 0;       // index into Scene::instanced_meshes
   Affine world_from_mesh;  // invertible
   bool is_mirrored = false;
-  float reach = 0;  // metres: of what coordinates a ray's rounding is, taken to the mesh and back
+  float reach = 0;  // metres: coordinate that bounds a ray's rounding error to the mesh and back
   Box bounds;       // of all triangles, in the world
 };
 
@@ -69,9 +69,9 @@ struct Disk {
 
 enum class CameraKind : uint8_t { perspective, orthographic };
 
-// right, up, forward are unit and orthogonal, of either handedness (pbrt mirrors).
-// The image plane at distance 1 spans [-1,1] × half_extent along the shorter image axis, or along
-// the vertical where fov_is_vertical.
+// right, up and forward are unit and orthogonal, of either handedness (pbrt mirrors). The image
+// plane at distance 1 spans [-1,1] × half_extent along the shorter image axis, or along the
+// vertical if fov_is_vertical.
 struct Camera {
   std::string name;
   CameraKind kind = CameraKind::perspective;
@@ -80,21 +80,21 @@ struct Camera {
   bool fov_is_vertical = true;
   bool has_screen_window = false;
   std::array<float, 4> screen_window{-1, 1, -1, 1};  // pbrt: xmin xmax ymin ymax × half_extent
-  float lens_radius = 0;                             // metres; 0 = pinhole
+  float lens_radius = 0;                             // metres; 0 is a pinhole
   float focal_distance = 1e6f;                       // metres along forward
-  // Metres along forward: what lies nearer or farther is not seen. 0: no limit.
+  // Metres along forward: anything nearer or farther is invisible. 0: no limit.
   float near_clip = 0, far_clip = 0;
-  int width = 0, height = 0;  // image size the file asks for; 0 = it does not say
-  float aspect = 0;           // width / height the file asks for; 0 = it does not say
+  int width = 0, height = 0;  // image size that the file asks for; 0 if none
+  float aspect = 0;           // width / height that the file asks for; 0 if none
 };
 
 struct Scene {
   std::string file;  // as given on the command line
-  // Where the file has what is (0,0,0) here: zero, unless the scene lies far from the file's
-  // origin, where floats are coarse. Whoever takes positions from users or shows them adds it.
+  // Position of our (0,0,0) in the file: zero unless the scene lies far from the file's origin,
+  // where floats are coarse. Code that reads or shows users' positions must add it.
   Vec3d origin;
   std::vector<Mesh> meshes;
-  std::vector<Mesh> instanced_meshes;  // each in a space of its own; nothing of them emits
+  std::vector<Mesh> instanced_meshes;  // each in its own space; never emits
   std::vector<Instance> instances;
   std::vector<Sphere> spheres;
   std::vector<Disk> disks;
@@ -105,29 +105,28 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   bool is_photometric = false;  // emission in cd/m² (glTF); else W/(m² sr)
-  // Where importers were to leave images out: bytes of those that there would have been, encoded.
+  // Encoded bytes of the images that importers left out, if they were told to leave images out.
   std::optional<uint64_t> left_out_image_bytes;
   WarningLog warnings;
 };
 
-size_t triangle_count(const Scene& scene);  // those of every instance too
-size_t stored_triangle_count(const Scene& scene);
-Box bounds(const Scene& scene);           // from the scene's origin
-Boxd bounds_in_file(const Scene& scene);  // in the file's coordinates
+size_t triangle_count(const Scene& scene);         // counts every instance
+size_t stored_triangle_count(const Scene& scene);  // counts instanced meshes once
+Box bounds(const Scene& scene);                    // relative to the scene's origin
+Boxd bounds_in_file(const Scene& scene);           // in the file's coordinates
 
-// A copy of which only lights named in `names` emit; UsageError names one that does not exist.
+// Returns a copy in which only the lights in `names` emit. Throws UsageError for an unknown name.
 Scene with_only_lights(Scene scene, const std::vector<std::string>& names);
 
-// The share of rays that meet a light with a surface at uv: alpha masks and blends.
+// Coverage of a light with a surface at uv, by alpha masks and blends.
 inline float coverage(const Scene& scene, const Light& e, const Vec2& uv) {
   return e.is_alpha_masked
              ? coverage(scene.textures, scene.materials[scene.meshes[e.geometry].material], uv)
              : 1.0f;
 }
 
-// Emission of a light that has a surface towards a viewer on its front (or back), where the surface
-// has texture coordinates uv: the mean over a footprint, whose middle decides about holes. Where
-// alpha blends, the mean over rays that meet it and rays that do not.
+// Radiance that a light with a surface emits from its front (or back) at uv: the mean over the
+// footprint, times the coverage at its centre.
 inline Rgb emitted_radiance(const Scene& scene, const Light& e, bool is_front,
                             const TexturePlace& uv) {
   if (!is_front && !e.is_two_sided) return Rgb{0};

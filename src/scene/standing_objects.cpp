@@ -14,7 +14,7 @@ namespace troffer {
 namespace {
 
 constexpr size_t most_split_triangles = 300'000;
-// Things touch where their distance is at most this share of the scene's diagonal: 5 mm in 10 m.
+// Contact tolerance, as a share of the scene's diagonal: 5 mm in 10 m.
 constexpr float contact_share = 5e-4f;
 constexpr float least_cosine = 0.9999f;  // between an axis and the normal of a level surface
 
@@ -72,7 +72,7 @@ class Contacts {
     }
   }
 
-  // For each vertex a vertex of its piece, the same for all of a piece.
+  // A representative vertex of its connected piece, for each vertex.
   std::vector<uint32_t> pieces_of(const MeshInWorld& mesh) const {
     const std::vector<Vec3>& positions = mesh.mesh().positions;
     std::vector<uint32_t> pieces(positions.size(), 0);
@@ -113,7 +113,7 @@ class Contacts {
     }
   }
 
-  // Joins the triangles of one object in one plane, and orders all by level.
+  // Merges the triangles of one object in one plane, and sorts all faces by level.
   void merge(std::vector<LevelFace>& faces) const {
     std::sort(faces.begin(), faces.end(), [](const LevelFace& a, const LevelFace& b) {
       return a.object != b.object ? a.object < b.object : a.level < b.level;
@@ -139,7 +139,7 @@ class Contacts {
     faces = std::move(merged);
   }
 
-  // Whether an object with volume stands on a larger flat surface of another one.
+  // True if the object has volume and stands on a larger flat surface of another one.
   bool stands(uint32_t number, size_t axis) const {
     const Box& object = objects_[number];
     const Vec3 size = object.extent();

@@ -22,13 +22,13 @@ const std::array<float, 256>& srgb_table() {
 
 constexpr int outside = -1;
 
-// The two texels along one axis between which a coordinate lies, and how far towards the second.
+// The two texels around a coordinate along one axis, and the weight of the second.
 struct TexelPair {
   int first, second;
   float t;
 };
 
-// Without division of integers: this runs for every textured hit.
+// Avoids integer division: this runs for every textured hit.
 TexelPair texels_at(float coordinate, int n, WrapMode mode, bool is_filtered) {
   float c = coordinate;
   if (mode == WrapMode::repeat) {
@@ -37,7 +37,7 @@ TexelPair texels_at(float coordinate, int n, WrapMode mode, bool is_filtered) {
     c -= 2 * std::floor(c * 0.5f);
     c = c > 1 ? 2 - c : c;
   } else {
-    c = std::clamp(c, -2.0f, 3.0f);  // far outside is as outside as just outside
+    c = std::clamp(c, -2.0f, 3.0f);  // beyond one tile outside, the distance does not matter
   }
   const float x = c * float(n) - (is_filtered ? 0.5f : 0.0f);
   const float low = std::floor(x);
@@ -62,7 +62,7 @@ TexelPair texels_at(float coordinate, int n, WrapMode mode, bool is_filtered) {
   return {i, j, x - low};
 }
 
-// One size of an image.
+// One resolution of an image.
 struct Texels {
   const uint8_t* bytes;  // null: floats
   const float* floats;
@@ -82,13 +82,13 @@ TextureValue texel(const Texture& t, const Texels& from, int i, int j) {
   if (i < 0 || j < 0) return {Rgb{0}, 0};
   const size_t n = size_t(t.channels);
   const size_t at = (size_t(j) * size_t(from.width) + size_t(i)) * n;
-  if (from.bytes != nullptr && t.is_srgb && n == 3) {  // most of what there is
+  if (from.bytes != nullptr && t.is_srgb && n == 3) {  // the most common case
     const std::array<float, 256>& table = srgb_table();
     const uint8_t* c = from.bytes + at;
     return {{table[c[0]], table[c[1]], table[c[2]]}, 1};
   }
   std::array<float, 4> c{0, 0, 0, 1};
-  const size_t alpha_channel = n == 2 ? 1 : n == 4 ? 3 : n;  // n: none
+  const size_t alpha_channel = n == 2 ? 1 : n == 4 ? 3 : n;  // n if there is none
   for (size_t k = 0; k < n; ++k) {
     if (from.bytes == nullptr)
       c[k] = from.floats[at + k];
@@ -106,13 +106,13 @@ TextureValue blend(const TextureValue& a, const TextureValue& b, float t) {
   return {a.rgb * (1 - t) + b.rgb * t, a.alpha * (1 - t) + b.alpha * t};
 }
 
-// Texels that a lookup reads, and how it blends them.
+// Texels that a lookup reads, and their weights.
 struct Footprint {
   TexelPair x, y;
 };
 
-// The way from one place of the surface to another, in the image's (u,v): KHR_texture_transform,
-// rotation * (scale * uv), counterclockwise with v down.
+// Offset on the surface, in the image's (u,v), by KHR_texture_transform: rotation * (scale * uv),
+// counterclockwise with v down.
 Vec2 turned(const Texture& t, const Vec2& way) {
   const Vec2 uv{way.x * t.uv_scale.x, way.y * t.uv_scale.y};
   if (t.uv_rotation_rad == 0) return uv;
@@ -138,15 +138,15 @@ TextureValue texels_value(const Texture& t, const Texels& of, const Vec2& uv, bo
                blend(texel(t, of, x.first, y.second), texel(t, of, x.second, y.second), x.t), y.t);
 }
 
-// How a footprint is looked up: so many probes along `side`, in (u,v), at a level between sizes.
+// Lookup of a footprint: `count` probes along `side`, in (u,v), at a fractional level.
 struct Probes {
   int count = 1;
   Vec2 side;
   float level = 0;
 };
 
-// As wide as its shorter side, in texels of the level; a footprint more than eight times as long
-// as wide is taken as wider.
+// Chooses a level whose texels are as wide as the footprint's shorter side. A footprint more than
+// eight times as long as wide is widened.
 Probes probes_of(const Texture& t, const TexturePlace& place) {
   constexpr int most = 8;
   Vec2 a = turned(t, place.axis_a), b = turned(t, place.axis_b);
@@ -211,7 +211,7 @@ TextureValue evaluate(const std::vector<Texture>& textures, uint32_t texture,
     case TextureKind::image:
       return image_value(t, place);
     case TextureKind::product: {
-      // Factors have lower indices, so this ends.
+      // Factors have lower indices, so the recursion ends.
       const TextureValue a = evaluate(textures, t.factor_a, place);
       const TextureValue b = evaluate(textures, t.factor_b, place);
       return {a.rgb * b.rgb * t.value, a.alpha * b.alpha};

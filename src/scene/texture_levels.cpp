@@ -1,4 +1,5 @@
-// Levels of images: each half as large as the one before, by the exact mean of what a texel covers.
+// Levels of images: each is half as large as the one before, with the exact mean of the covered
+// texels.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,8 +17,8 @@ struct FloatImage {
   std::vector<float> texels;
 };
 
-// Which texels of a row of `from` a texel of a row of `to` covers, and how much of each: two, or
-// up to three where `from` is odd.
+// Texels of a source row that one output texel covers, and their weights: two, or up to three if
+// the source size is odd.
 struct Span {
   int first = 0, count = 0;
   std::array<float, 4> weights{};
@@ -39,7 +40,7 @@ std::vector<Span> spans(int from, int to) {
   return all;
 }
 
-// read(texel, channel) gives linear values.
+// Requires that read(texel, channel) returns linear values.
 template <class Read>
 FloatImage halved(int width, int height, size_t channels, const Read& read) {
   FloatImage small;
@@ -50,7 +51,7 @@ FloatImage halved(int width, int height, size_t channels, const Read& read) {
   float* out = small.texels.data();
   for (const Span& row : rows)
     for (const Span& column : columns) {
-      if (row.count == 2 && column.count == 2) {  // everywhere where sides are even
+      if (row.count == 2 && column.count == 2) {  // the case of even sizes
         const float weight = row.weights[0] * column.weights[0];
         const size_t above = size_t(row.first) * size_t(width) + size_t(column.first);
         const size_t below = above + size_t(width);
@@ -71,12 +72,12 @@ FloatImage halved(int width, int height, size_t channels, const Read& read) {
   return small;
 }
 
-// What the bytes of an image stand for.
+// Linear values of an image's bytes, and the inverse.
 struct ByteCode {
   std::array<float, 256> values{};
-  std::array<float, 255> ends{};  // of what each but the last is nearest to
+  std::array<float, 255> ends{};  // midpoints between neighbouring values
   static constexpr size_t table_size = 1 << 12;
-  std::array<uint8_t, table_size> starts{};  // the first end above that value, or one before it
+  std::array<uint8_t, table_size> starts{};  // first midpoint above that value, or one before
   bool is_srgb;
 
   explicit ByteCode(bool is_of_srgb) : is_srgb(is_of_srgb) {
@@ -88,7 +89,7 @@ struct ByteCode {
       starts[k] = uint8_t(std::upper_bound(ends.begin(), ends.end(), least) - ends.begin());
     }
   }
-  // A table says where to begin: ends are further apart than its steps, but for the darkest.
+  // The table gives the start; only the darkest midpoints are closer together than its steps.
   uint8_t nearest(float value) const {
     size_t i = starts[size_t(std::clamp(value, 0.0f, 1.0f) * (table_size - 1))];
     while (i < ends.size() && ends[i] <= value) ++i;
@@ -104,9 +105,7 @@ void build_levels(Texture& t) {
   t.levels_float.clear();
   if (t.kind != TextureKind::image || (t.width <= 1 && t.height <= 1)) return;
   const auto n = size_t(t.channels);
-  const size_t alpha = n == 2   ? 1
-                       : n == 4 ? 3
-                                : n;  // carries no transfer function; n: there is none
+  const size_t alpha = n == 2 ? 1 : n == 4 ? 3 : n;  // not sRGB-encoded; n if there is none
   const ByteCode color(t.is_srgb), plain(false);
   const auto code = [&](size_t c) -> const ByteCode& { return c == alpha ? plain : color; };
   std::array<const std::array<float, 256>*, 4> tables{};

@@ -10,8 +10,8 @@ namespace troffer {
 
 namespace {
 
-constexpr float farthest = 1e8f;  // cells beyond are one
-constexpr float finest = 1e15f;   // … of octaves
+constexpr float farthest = 1e8f;  // larger coordinates count as 0
+constexpr float finest = 1e15f;   // the same for octaves
 
 Vec3 in_texture(const Texture& t, const Vec3& position) {
   const Vec3 p(t.from_scene.point(Vec3d(position)));
@@ -19,7 +19,7 @@ Vec3 in_texture(const Texture& t, const Vec3& position) {
   return reach.x < farthest && reach.y < farthest && reach.z < farthest ? p : Vec3{};
 }
 
-// By how much the way to texture space stretches lengths, at most.
+// Largest factor by which the transform to texture space stretches lengths.
 float stretch(const Texture& t) {
   double most = 0;
   for (const Vec3d& c : t.from_scene.columns) most = std::max(most, length(c));
@@ -32,7 +32,8 @@ uint64_t cell_hash(int64_t x, int64_t y, int64_t z) {
   return hash_of(uint64_t(x), uint64_t(y), uint64_t(z));
 }
 
-// The gradient of a corner, one of the twelve edges of a cube [2], times the way from it.
+// Dot product of a corner's gradient, one of the twelve edge directions of a cube [2], and the
+// offset from it.
 float slope(int64_t x, int64_t y, int64_t z, const Vec3& way) {
   const uint64_t h = cell_hash(x, y, z) >> 33;
   const uint64_t axis = h % 3;
@@ -44,7 +45,7 @@ float ease(float t) {
   return t * t * t * (t * (t * 6 - 15) + 10);
 }
 
-// Gradient noise, 0 in the mean, within about ±1.
+// Gradient noise with mean 0, within about ±1.
 float noise(const Vec3& p) {
   const auto cell = [](float v) { return int64_t(std::floor(v)); };
   const Vec3 reach = abs(p);
@@ -66,8 +67,8 @@ float noise(const Vec3& p) {
   return mix(planes[0], planes[1], w);
 }
 
-// Octaves of noise, each twice as fine and `persistence` as strong as the one before; those finer
-// than half the footprint are left out, the last one in part. is_absolute: of its absolute value
+// Sum of octaves, each twice as fine and `persistence` as strong as the one before. Octaves finer
+// than half the footprint are left out, the last one in part. is_absolute sums absolute values
 // (turbulence).
 float octaves_of_noise(Vec3 p, float width, float persistence, int octaves, bool is_absolute) {
   const float visible = width > 0 ? -1 - std::log2(width) : float(octaves);
@@ -82,7 +83,7 @@ float octaves_of_noise(Vec3 p, float width, float persistence, int octaves, bool
   }
   if (i < octaves) sum += strength * ease(count - float(i)) * (term(p) - (is_absolute ? 0.25f : 0));
   if (!is_absolute) return sum;
-  for (; i < octaves; ++i) {  // their mean
+  for (; i < octaves; ++i) {  // mean of the omitted octaves
     sum += 0.25f * strength;
     strength *= persistence;
   }
@@ -109,7 +110,7 @@ Rgb marble(const Texture& t, const Vec3& p, float width) {
 
 // ---- patterns
 
-// Mean over [x - d/2, x + d/2] of what is 1 in even cells and -1 in odd ones.
+// Mean over [x - d/2, x + d/2] of a function that is 1 in even cells and -1 in odd ones.
 float mean_of_squares(float x, float d) {
   const auto even = [](float v) { return v - 2 * std::floor(v * 0.5f); };  // in [0, 2)
   if (d < 1e-4f) return even(x) < 1 ? 1.0f : -1.0f;
@@ -124,7 +125,7 @@ float extent(const TexturePlace& p, bool is_u) {
               : std::abs(p.axis_a.y) + std::abs(p.axis_b.y);
 }
 
-// The place in the pattern's own (s,t).
+// Place in the pattern's own (s,t).
 TexturePlace pattern_place(const Texture& t, const TexturePlace& given) {
   TexturePlace p = t.mapping == TextureMapping::uv ? given : mapped_place(t, given);
   const auto turn = [&](const Vec2& v) { return Vec2{v.x * t.uv_scale.x, v.y * t.uv_scale.y}; };
@@ -135,7 +136,7 @@ TexturePlace pattern_place(const Texture& t, const TexturePlace& given) {
   return p;
 }
 
-// The share of `first` among checks.
+// Share of `first` in a checkerboard.
 float even_share(const Texture& t, const TexturePlace& given) {
   if (t.mapping == TextureMapping::solid) {
     const Vec3 p = in_texture(t, given.position);
@@ -148,8 +149,8 @@ float even_share(const Texture& t, const TexturePlace& given) {
                     mean_of_squares(p.uv.y, extent(p, false));
 }
 
-// A disk in every second cell, at random within it. Where a footprint is as large as a cell, their
-// share of the area.
+// Disk at a random place in half of the cells, chosen by hash. A footprint as large as a cell gets
+// the disks' share of the area.
 float inside_dots(const Texture& t, const TexturePlace& given) {
   constexpr float radius = 0.35f, most_shift = 0.5f - radius;
   const TexturePlace p = pattern_place(t, given);
@@ -171,7 +172,7 @@ Rgb operand(const std::vector<Texture>& textures, const TextureOperand& o,
   return o.texture < 0 ? o.value : o.value * evaluate(textures, uint32_t(o.texture), place).rgb;
 }
 
-// The share of `second`.
+// Share of `second`.
 float mixed_share(const std::vector<Texture>& textures, const Texture& t,
                   const TexturePlace& place) {
   if (t.kind == TextureKind::checks) return 1 - even_share(t, place);

@@ -1,4 +1,5 @@
-// Turns scenes for formats in which y is up.
+// Rotates scenes for file formats in which y is up. Used by the glTF exporter, which reports the
+// rotation.
 #pragma once
 
 #include <array>
@@ -8,11 +9,11 @@
 
 namespace troffer {
 
-// The shortest rotation that takes a direction to +y: images of the axes. Exact for axes: z becomes
+// Returns the shortest rotation from `up` to +y, as images of the axes. Exact for axes: z becomes
 // y, y becomes -z, x stays.
 std::array<Vec3d, 3> turn_to_y(const Vec3& up);
 
-// "(x, y, z) becomes (x, z, -y)" for turns that exchange axes; empty for others.
+// Returns "(x, y, z) becomes (x, z, -y)" for rotations that exchange axes; otherwise empty.
 std::string describe_turn(const std::array<Vec3d, 3>& images);
 
 }  // namespace troffer

@@ -23,7 +23,7 @@ Vec3 direction(size_t i) {
 // Weight by direction.
 using Shares = std::array<double, directions>;
 
-// Adds to the axis that the unit vector lies along, within 18 degrees.
+// Adds the weight to the axis within 18 degrees of the unit vector.
 void add_along(const Vec3& v, double weight, Shares& shares) {
   for (size_t i = 0; i < directions; ++i)
     if (dot(v, direction(i)) > 0.95f) shares[i] += weight;
@@ -35,7 +35,7 @@ double total(const Shares& shares) {
   return sum;
 }
 
-// `weight`, shared out by `shares`; hints of less than `least` of it are left out.
+// Distributes `weight` by `shares` to hints. Shares below `least` of the total give none.
 void add_hints(const Shares& shares, double weight, double least, const char* source,
                std::vector<UpHint>& hints) {
   const double all = total(shares);
@@ -55,8 +55,8 @@ void add_skies(const Scene& scene, std::vector<UpHint>& hints) {
   add_hints(images, 2, 0.5, "the image of its surroundings", hints);
 }
 
-// A level camera's `right` is perpendicular to up. Of two axes that this leaves, up is the one
-// nearer to the camera's own. A camera that looks along an axis may as well look down on a plan.
+// The `right` vector of a level camera is perpendicular to up. If two axes remain, up is the one
+// closer to the camera's up. A camera that looks along an axis may be looking down on a plan.
 void add_cameras(const Scene& scene, std::vector<UpHint>& hints) {
   Shares shares{};
   double strength = 0;
@@ -71,7 +71,7 @@ void add_cameras(const Scene& scene, std::vector<UpHint>& hints) {
     const bool is_along_axis =
         std::max({std::abs(c.forward.x), std::abs(c.forward.y), std::abs(c.forward.z)}) > 0.999f;
     const bool is_steep = dot(c.up, direction(best)) < 0.8f;
-    if (is_along_axis && best >= 3) continue;  // a plan: its up is where north lies
+    if (is_along_axis && best >= 3) continue;  // a plan: its up may point north
     const double weight = is_along_axis || is_steep ? 1.5 : 3;
     shares[best] += weight;
     strength = std::max(strength, weight);
@@ -79,7 +79,8 @@ void add_cameras(const Scene& scene, std::vector<UpHint>& hints) {
   add_hints(shares, strength, 0.2, scene.cameras.size() == 1 ? "its camera" : "its cameras", hints);
 }
 
-// Words of letters, in lower case; "FloorPlane.001" has two.
+// True if a word of the name is in the list. Words are letters in lower case; "FloorPlane.001" has
+// two.
 bool has_word(const std::string& name, const std::vector<std::string_view>& words) {
   std::string word;
   const auto is_word = [&] { return std::find(words.begin(), words.end(), word) != words.end(); };
@@ -111,11 +112,11 @@ bool is_ceiling(const std::string& name) {
   return has_word(name, words);
 }
 
-// Areas of the triangles of a mesh, or of many, that lie along axes.
+// Areas of triangles perpendicular to the axes, of one mesh or of many.
 struct FlatAreas {
   double all = 0;
   std::array<double, 3> by_axis{};
-  std::array<double, 6> at_side{};  // of a box: lower x, y, z, upper x, y, z
+  std::array<double, 6> at_side{};  // at a box's lower x, y, z and upper x, y, z sides
 
   void add(const std::array<Vec3, 3>& p, const Box& box, float tolerance, double weight) {
     const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
@@ -131,12 +132,12 @@ struct FlatAreas {
   }
 };
 
-// Every so many triangles of a mesh are looked at where the scene has millions.
+// Step between the triangles that are examined; above 1 in scenes of millions of triangles.
 size_t stride_of(const Scene& scene) {
   return 1 + triangle_count(scene) / 2'000'000;
 }
 
-// Large flat meshes that are called floor or ceiling, or whose material is.
+// Large flat meshes that are named floor or ceiling, or whose material is.
 class NamedFloors {
  public:
   NamedFloors(const Scene& scene, const Box& box) : scene_(scene), box_(box) {}
@@ -180,8 +181,8 @@ class NamedFloors {
   bool has_floor_ = false, has_ceiling_ = false;
 };
 
-// Of the six sides of the scene's bounds a surface fills one only, a low one: the ground that all
-// else stands on. Or the whole scene is flat.
+// Adds a hint if a surface fills exactly one side of the scene's bounds, and that is a low one: the
+// ground below everything. Or if the whole scene is flat.
 void add_lone_ground(const FlatAreas& areas, const Box& box, std::vector<UpHint>& hints) {
   constexpr double filled = 0.8;
   constexpr float flat = 1e-6f;
@@ -232,8 +233,8 @@ void add_standing(const Scene& scene, std::vector<UpHint>& hints) {
          most > 1 ? "objects that stand on others" : "an object that stands on another"});
 }
 
-// Area times unit normal, of a light with a surface; its length is less than the area of a curved
-// one.
+// Area times mean unit normal of a light with a surface. For curved lights it is shorter than the
+// area.
 Vec3 area_vector(const Scene& scene, const Light& e, double& area) {
   Vec3 sum{0};
   area = 0;
@@ -255,8 +256,8 @@ Vec3 area_vector(const Scene& scene, const Light& e, double& area) {
   return sum;
 }
 
-// Most lamps hang from ceilings; windows that were made sources face sideways, so that this is
-// never a strong hint.
+// Lamps mostly hang from ceilings. Windows modelled as lights face sideways, so this hint is never
+// strong.
 void add_lamps(const Scene& scene, std::vector<UpHint>& hints) {
   Shares shares{};
   std::array<size_t, directions> counts{};

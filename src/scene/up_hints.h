@@ -1,5 +1,5 @@
 // Hints in a scene's content at which way is up. scene/orientation.h weighs them against each other
-// and against what the file's format says.
+// and against the file's format.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ namespace troffer {
 struct UpHint {
   Vec3 up;             // unit, along an axis
   double weight = 0;   // 1: weak, 3: strong
-  std::string source;  // "its cameras": what gives the hint, as the end of "z is up by …"
+  std::string source;  // end of the sentence "z is up by its cameras"
 };
 
-// Strongest first. The sources: skies and images of surroundings, cameras, names of floors and
-// ceilings, objects that stand on others, lamps that face down, a sun, a ground that is alone.
+// Returns hints, strongest first. Sources: skies and environment images, cameras, names of floors
+// and ceilings, standing objects, lamps that face down, the sun, a lone ground.
 std::vector<UpHint> up_hints(const Scene& scene);
 
 }  // namespace troffer

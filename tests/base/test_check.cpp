@@ -1,4 +1,4 @@
-// A failed CHECK names the pixel and the sample.
+// A failed TROFFER_CHECK names the pixel and the sample.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -53,7 +53,7 @@ TEST_CASE("the place follows batches, loops and threads") {
   CHECK(check_place().empty());
   {
     const CheckContext context(&samples, samples.size(), name_of);
-    // outside of a loop over items: from the first to the last
+    // outside a loop over items: the first and the last
     CHECK(check_place() == "one from pixel (0,7), sample 40 to pixel (2,7), sample 60");
     {
       CheckItems items;

@@ -1,4 +1,4 @@
-// A time at which work is to end.
+// Deadlines set their flag in time and tell a timeout from a stop.
 #include "base/deadline.h"
 
 #include <doctest/doctest.h>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::chrono::hours far_off{1000};
 
-// For as long as it takes.
+// Waits without limit.
 void wait_for(const StopFlag& flag) {
   while (!flag.load()) std::this_thread::yield();
 }
@@ -39,5 +39,5 @@ TEST_CASE("… earlier by what is kept back, and when its parent is set, which i
   parent = true;
   wait_for(stopped.flag());
   CHECK(!stopped.is_over());
-  CHECK(!kept.is_over());  // the stop asks for more
+  CHECK(!kept.is_over());  // a stop by the parent is no timeout
 }

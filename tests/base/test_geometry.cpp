@@ -58,7 +58,7 @@ TEST_CASE("transforms: inverse, product, normals") {
     CHECK(length((a * b).vector(p) - a.vector(b.vector(p))) < 1e-9);
     CHECK((a * b).determinant() ==
           doctest::Approx(a.determinant() * b.determinant()).epsilon(1e-9));
-    // the normal of a transformed plane, with its sense
+    // normal of a transformed plane, with its sign
     CHECK(length(a.normal(cross(p, q)) - cross(a.vector(p), a.vector(q))) < 1e-9);
   }
   const Affine turn = Affine::rotate(rad_from_deg(90), {0, 0, 2});
@@ -82,7 +82,7 @@ TEST_CASE("boxes grow from nothing") {
   Box c;
   c.grow(Vec3{-1, 5, 3});
   b.grow(c);
-  b.grow(Box{});  // nothing
+  b.grow(Box{});  // empty box
   CHECK(b.lower == Vec3{-1, 2, 3});
   CHECK(b.upper == Vec3{1, 5, 3});
   CHECK(b.centre() == Vec3{0, 3.5f, 3});

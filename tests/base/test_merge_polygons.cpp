@@ -1,4 +1,5 @@
-// Polygons merged to larger ones. Walls and other surfaces: tests/trace; sources: tests/shadow.
+// Merging of convex polygons. tests/trace covers walls and other surfaces, tests/shadow covers
+// sources.
 #include "base/merge_polygons.h"
 
 #include <doctest/doctest.h>
@@ -65,7 +66,7 @@ TEST_CASE("the table of edges grows, forgets, and knows what many share") {
 }
 
 TEST_CASE("corners are limited, and the front stays the front") {
-  // a fan about the centre of a regular polygon, and one about a corner
+  // one fan around the centre of a regular polygon, and one around a corner
   for (uint32_t n = 3; n <= 24; ++n)
     for (const size_t most : {size_t(4), size_t(8), size_t(11), size_t(12)})
       for (const bool about_corner : {false, true}) {
@@ -99,7 +100,7 @@ TEST_CASE("corners are limited, and the front stays the front") {
 }
 
 TEST_CASE("quadrilaterals and polygons merge too; nothing at all does not") {
-  // 3 × 1 squares, the middle one of two triangles
+  // three squares in a row, the middle one as two triangles
   const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0},
                             {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {3, 1, 0}};
   PolygonList list;
@@ -117,7 +118,7 @@ TEST_CASE("quadrilaterals and polygons merge too; nothing at all does not") {
 }
 
 TEST_CASE("edges by parts are those of the sorted list, and merge the same") {
-  // A rough grid, flat in one half: more edges than one part has.
+  // A rough grid, flat in one half, with more edges than one part holds.
   constexpr uint32_t n = 480;
   std::vector<Vec3> p;
   PolygonList list;

@@ -1,4 +1,4 @@
-// Loops over items on several threads, and their limit.
+// Parallel loops on several threads, and their limit.
 #include "base/parallel.h"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ using namespace troffer;
 
 namespace {
 
-// The threads that a loop of as many items as it likes runs on.
+// Number of threads that a loop with default thread count runs on.
 size_t threads_of_loop() {
   std::mutex mutex;
   std::set<std::thread::id> seen;

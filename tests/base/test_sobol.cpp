@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Do the points fall once into each of the 2^a × 2^(m-a) boxes, for every a?
+// True if each of the 2^a × 2^(m-a) boxes holds exactly one point, for every a.
 bool is_net(const std::vector<Vec2>& points, unsigned m) {
   for (unsigned a = 0; a <= m; ++a) {
     std::set<uint32_t> boxes;
@@ -50,7 +50,7 @@ TEST_CASE("Sobol points from tables are those of the direction numbers") {
 }
 
 TEST_CASE("the plain Sobol sequence begins as published") {
-  // Joe & Kuo's first points; they visit indices along a Gray code.
+  // Joe & Kuo's first points, which visit indices along a Gray code.
   const double expected[8][3] = {{0, 0, 0},
                                  {0.5, 0.5, 0.5},
                                  {0.75, 0.25, 0.25},
@@ -117,8 +117,8 @@ TEST_CASE("one point of many streams is uniform in its pairs of dimensions") {
 }
 
 TEST_CASE("streams and purposes do not follow one another") {
-  // Sums over whole sets nearly cancel in Sobol points, so a bound of 5 deviations of
-  // independent numbers is generous for what must not correlate.
+  // Sums over whole sets of Sobol points nearly cancel. A bound of five standard deviations of
+  // independent numbers is therefore generous.
   constexpr uint32_t n = 4096;
   const auto column = [](uint64_t stream, uint32_t purpose, int d) {
     std::vector<double> v(n);
@@ -172,7 +172,7 @@ TEST_CASE("the plain stream is uniform and hashes are bijections of bits") {
 }
 
 TEST_CASE("groups drawn at a stroke are those drawn one by one, bit for bit") {
-  constexpr size_t n = 1003;  // not a multiple of any vector register
+  constexpr size_t n = 1003;  // not a multiple of any vector register's width
   std::vector<uint64_t> streams(n);
   std::vector<uint32_t> samples(n);
   for (size_t i = 0; i < n; ++i) {
@@ -205,7 +205,7 @@ TEST_CASE("blocks hold the points of their samples, those close to each other to
       }
       CHECK(of_blocks == of_groups);
       if (n < 32 || n == 48) continue;
-      // Every 16 of them lie in one of n / 16 parts, as wide as high or twice as wide.
+      // Every 16 points lie in one of n / 16 parts, which are squares or twice as wide as high.
       const uint32_t bits = uint32_t(std::countr_zero(n / 16));
       const uint32_t columns = 1u << ((bits + 1) / 2), rows = 1u << (bits / 2);
       size_t strays = 0;

@@ -1,5 +1,4 @@
-// Maps between the square and all directions: inverses, areas, and edges that go on where the
-// sphere does.
+// Maps between the square and all directions: inverses, areas, and continuity across edges.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,7 +22,7 @@ TEST_CASE("directions and squares are each other's inverse") {
       const Vec3 w = direction_from_square(map, uv);
       REQUIRE(std::abs(length(w) - 1) < 1e-5f);
       const Vec2 back = square_from_direction(map, w);
-      // Near the poles of lat_long azimuths are coarse.
+      // Azimuths are coarse near the poles of lat_long.
       const float slack =
           map == SphereMap::lat_long ? 1e-5f / std::max(1e-3f, std::hypot(w.x, w.y)) : 1e-3f;
       REQUIRE(std::abs(back.x - uv.x) < slack);

@@ -1,4 +1,4 @@
-// What a mistyped word may have meant.
+// Suggestions for mistyped words.
 #include <doctest/doctest.h>
 
 #include "base/suggestion.h"
@@ -24,7 +24,7 @@ TEST_CASE("the nearest name is found, and none where all are far") {
   CHECK(nearest_name("meas", names) == "measure");
   CHECK(nearest_name("xyz", names) == "");
   CHECK(nearest_name("", names) == "");
-  CHECK(nearest_name("a", {"b"}) == "");  // all of it would be another
+  CHECK(nearest_name("a", {"b"}) == "");  // replacing the only letter is no suggestion
   CHECK(nearest_name("az", {"ay"}) == "ay");
   CHECK(nearest_name("render", {}) == "");
 }

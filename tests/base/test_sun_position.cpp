@@ -1,4 +1,4 @@
-// The sun against published positions.
+// The sun's position against published values.
 #include "base/sun_position.h"
 
 #include <doctest/doctest.h>
@@ -20,8 +20,8 @@ TEST_CASE("Julian days") {
 
 TEST_CASE("the worked example of NREL's Solar Position Algorithm") {
   // Reda & Andreas, NREL/TP-560-34302 (2008), table A5.1: Golden, Colorado, 17 October 2003,
-  // 12:30:30 at -7 h; topocentric zenith 50.11162 with the air of 820 hPa and 11 °C, whose
-  // refraction there is .0040 less than a standard atmosphere's; azimuth 194.34024.
+  // 12:30:30 at -7 h. Topocentric zenith 50.11162, azimuth 194.34024. Its air of 820 hPa and 11 °C
+  // refracts 0.0040 less than a standard atmosphere.
   const SunPosition p =
       sun_position(39.742476, -105.1786, julian_day(2003, 10, 17, 12 + 30.5 / 60 + 7));
   CHECK(std::abs(p.altitude_deg - (90 - 50.11162)) < 0.01);
@@ -30,9 +30,9 @@ TEST_CASE("the worked example of NREL's Solar Position Algorithm") {
 }
 
 TEST_CASE("Meeus' example of the sun's place, seen from the pole") {
-  // Astronomical Algorithms, example 25.b: 13 October 1992, 0h TD (58.7 s before UT was there);
-  // apparent declination -7.78389, by the complete theory. From the north pole, below the horizon,
-  // altitude is declination but for parallax.
+  // Astronomical Algorithms, example 25.b: 13 October 1992, 0h TD (58.7 s ahead of UT then). The
+  // apparent declination is -7.78389 by the complete theory. At the north pole, below the horizon,
+  // the altitude equals the declination except for parallax.
   const SunPosition p = sun_position(90, 0, julian_day(1992, 10, 13, -58.7 / 3600));
   CHECK(std::abs(p.altitude_deg - (-7.78389)) < 0.01);
   CHECK(p.distance_au == doctest::Approx(0.99760775).epsilon(1e-4));

@@ -1,4 +1,4 @@
-// Parallel loops, warnings, errors.
+// Parallel loops, warnings and errors.
 #include <doctest/doctest.h>
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// Warps: inverses, densities by Jacobians, χ².
+// Warps: inverses, densities by Jacobians, and χ² tests.
 #include <doctest/doctest.h>
 
 #include <vector>

@@ -1,6 +1,6 @@
-// layers.txt against the real #includes, both ways: a room may include only the rooms its row
-// names, and only rooms of rows above; its row names none that it does not include. External
-// libraries come in through one door each.
+// Checks layers.txt against the #includes, in both directions. A room may include only the rooms in
+// its row, which must stand above it, and must include all of them. Each external library has one
+// room that may include it, with few exceptions.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ Layers read_layers() {
   return layers;
 }
 
-// Included names of a file: {"base/vec.h", …}, quoted and angled alike.
+// Included names of a file, such as "base/vec.h", quoted and angled alike.
 std::vector<std::string> includes_of(const fs::path& file) {
   std::vector<std::string> names;
   std::ifstream in(file);
@@ -62,7 +62,7 @@ std::vector<fs::path> files_of(const std::string& room) {
   return files;
 }
 
-// From room to room, with a file that includes: what layers.txt should say.
+// From room to room, with one file that includes: the expected content of layers.txt.
 using Arrows = std::map<std::pair<std::string, std::string>, std::string>;
 
 Arrows arrows_of(const Layers& layers) {

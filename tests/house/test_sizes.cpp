@@ -1,8 +1,7 @@
-// Sizes that keep the house readable: functions of at most 60 lines; classes of at most a dozen
-// data members unless the comment right above says why (it has the word "members"), which does not
-// ask it of plain data: rows of options, records of files; files of at most 400 lines. Read off the
-// text by braces and semicolons: no compiler, but comments, literals and preprocessor lines are
-// left out first.
+// Size limits of the code: functions have at most 60 lines and files at most 400. Classes have at
+// most 12 data members, unless the comment directly above has the word "members". Plain data such
+// as option rows and file records is exempt. The text is analysed by braces and semicolons, after
+// comments, literals and preprocessor lines are blanked.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,9 +27,9 @@ struct Function {
 };
 
 struct Class {
-  std::string head, comment;  // the lines right above
+  std::string head, comment;  // comment: the comment lines directly above
   size_t line = 0, members = 0;
-  bool is_data = true;  // no member that is only for its own functions: none ends in _
+  bool is_data = true;  // no member name ends in _
 };
 
 struct Sizes {
@@ -43,7 +42,7 @@ bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-// Where the literal, comment or preprocessor line ends that begins at i; i where none does.
+// End of the literal, comment or preprocessor line that begins at i; i if none does.
 size_t end_of_blank(std::string_view t, size_t i) {
   const auto after = [&](std::string_view end, size_t from) {
     const size_t at = t.find(end, from);
@@ -56,7 +55,7 @@ size_t end_of_blank(std::string_view t, size_t i) {
     const size_t open = t.find('(', i);
     return after(")" + std::string(t.substr(i + 2, open - i - 2)) + "\"", open);
   }
-  if (t[i] == '"' || (t[i] == '\'' && !is_after_word)) {  // not the 's in 60'000
+  if (t[i] == '"' || (t[i] == '\'' && !is_after_word)) {  // not the ' in 60'000
     size_t end = i + 1;
     while (end < t.size() && t[end] != t[i]) end += t[end] == '\\' ? 2 : 1;
     return std::min(end + 1, t.size());
@@ -70,7 +69,7 @@ size_t end_of_blank(std::string_view t, size_t i) {
   return i;
 }
 
-// The text with all of these as blanks; lines stay lines.
+// The text with all of these blanked; line breaks stay.
 std::string code_of(std::string_view text) {
   std::string code(text);
   for (size_t i = 0; i < text.size();) {
@@ -82,8 +81,8 @@ std::string code_of(std::string_view text) {
   return code;
 }
 
-// A declaration without what could be mistaken: brackets and what is in them, but for parentheses
-// that are not in others; attributes with parentheses of their own; access.
+// Outline of a declaration without parts that could be misread. Drops the content of brackets and
+// keeps outer parentheses as "()". Drops attributes with parentheses and access specifiers.
 std::string outline(std::string_view head) {
   static const std::regex aside(
       R"(\b(alignas|decltype|__attribute__|noexcept|requires)\s*\([^;{]*?\)+)");
@@ -94,7 +93,7 @@ std::string outline(std::string_view head) {
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool is_arrow = c == '>' && i > 0 && (text[i - 1] == '-' || text[i - 1] == '=');
-    // no comparison, which has blanks around it
+    // a comparison has blanks around it
     const bool is_angle =
         c == '<' && i > 0 && i + 1 < text.size() &&
         (out.ends_with("template ") ||
@@ -120,8 +119,8 @@ bool begins_with_word(const std::string& text, std::initializer_list<std::string
   });
 }
 
-// Data members that a declaration in a class makes, which ends with its semicolon; `has_type`: a
-// class or an enumeration that is defined there has been taken out.
+// Number of data members that a declaration in a class makes. It ends with its semicolon.
+// `has_type`: a class or enumeration defined in it has been taken out.
 size_t members_of(std::string_view declaration, bool has_type) {
   std::string text = outline(declaration);
   if (begins_with_word(text, {"using", "typedef", "friend", "static", "static_assert", "template",
@@ -130,13 +129,13 @@ size_t members_of(std::string_view declaration, bool has_type) {
   if (!has_type && begins_with_word(text, {"struct", "class", "union", "enum"})) return 0;
   const std::string declared = text.substr(0, text.find('='));
   if (declared.find_first_not_of(" \n") == std::string::npos) return 0;
-  if (declared.find("(*)") != std::string::npos) return 1;  // of functions
+  if (declared.find("(*)") != std::string::npos) return 1;  // a pointer to a function
   if (declared.find("()") != std::string::npos || declared.find("operator") != std::string::npos)
     return 0;
   return 1 + size_t(std::count(text.begin(), text.end(), ','));
 }
 
-// Names a member that only functions of the class use.
+// True if the declaration has a member whose name ends in _.
 bool has_own_member(std::string_view declaration) {
   static const std::regex own(R"(\w_(?!\w))");
   const std::string text = outline(declaration);
@@ -145,7 +144,7 @@ bool has_own_member(std::string_view declaration) {
 
 enum class Block { space, type, enumeration, function, other };
 
-// What the brace after `head` opens.
+// Kind of block that the brace after `head` opens.
 Block block_of(std::string_view head, Block around) {
   std::string text = outline(head);
   if (begins_with_word(text, {"template"})) text = outline(std::string_view(text).substr(8));
@@ -171,15 +170,15 @@ class Reader {
  private:
   struct Open {
     Block block;
-    size_t head;   // where the declaration begins that the block belongs to
-    size_t index;  // of the function or class
+    size_t head;   // start of the declaration that the block belongs to
+    size_t index;  // index of the function or class
     size_t parentheses;
   };
   std::string_view text_;
   std::string code_;
   Sizes sizes_;
   std::vector<Open> open_;
-  size_t head_ = 0;  // where the declaration begins that is being read
+  size_t head_ = 0;  // start of the current declaration
   size_t parentheses_ = 0;
   bool has_type_ = false;
 
@@ -212,7 +211,7 @@ std::string Reader::comment_above(size_t at) const {
 }
 
 void Reader::open(size_t at) {
-  // `public:` is no part of what follows it
+  // `public:` is not part of the declaration that follows
   static const std::regex access(R"((public|protected|private)\s*:(?!:)\s*)");
   std::match_results<std::string::const_iterator> found;
   while (std::regex_search(code_.cbegin() + std::ptrdiff_t(head_),
@@ -241,7 +240,7 @@ void Reader::close(size_t at) {
   if (o.block == Block::function) {
     const size_t next = code_.find_first_not_of(" \n", at + 1);
     if (next < code_.size() && (code_[next] == ',' || code_[next] == '{')) {
-      // Foo::Foo() : a_{1}, b_{2} {}: the body has not come yet
+      // Foo::Foo() : a_{1}, b_{2} {}: the body is still to come
       sizes_.functions.erase(sizes_.functions.begin() + std::ptrdiff_t(o.index));
       head_ = o.head;
       return;
@@ -249,7 +248,7 @@ void Reader::close(size_t at) {
     Function& f = sizes_.functions[o.index];
     f.lines = line_of(at) + 1 - f.line;
   } else if (o.block == Block::other && (around() == Block::space || around() == Block::type)) {
-    head_ = o.head;  // an initialiser of a declaration that goes on
+    head_ = o.head;  // an initialiser within a declaration
     return;
   }
   begin_after(at);

@@ -1,5 +1,5 @@
-// What can be read off the sources: headers that are compiled alone, tests that skip nothing which
-// is here and do not depend on how busy the machine is.
+// Rules that can be checked in the sources: headers compile alone, tests skip nothing that the
+// repository holds, and tests do not depend on the machine's load.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -59,7 +59,7 @@ TEST_CASE("every header stands at the head of its own .cpp, or is compiled by th
 }
 
 TEST_CASE("tests skip nothing that the repository holds") {
-  // What is not in it: collections of broken files, a device that is always full.
+  // May be absent: collections of broken files, and a device that is always full.
   const std::set<std::string> may_skip{"tests/image/test_badinputs.cpp",
                                        "tests/import/test_badinputs.cpp",
                                        "tests/app/test_failures.cpp"};

@@ -1,6 +1,6 @@
-// The one-definition rule across rooms: two types of one name in one namespace are one type to the
-// linker, whichever room they are defined in. Compilers see one file at a time and do not complain;
-// the program then runs one type's functions on the other's objects.
+// Checks the one-definition rule across rooms. The linker treats two types of one name in one
+// namespace as one type, whichever room defines them. Compilers see one file at a time and do not
+// complain. The program may then run one type's functions on the other's objects.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Length of a literal that begins at text[i], or 0. Raw ones count as usual ones: they have no
-// quotation marks within.
+// Length of a literal that begins at text[i], or 0. Raw literals are read as ordinary ones, so they
+// must contain no quotation marks.
 size_t literal_length(const std::string& text, size_t i) {
   const char quote = text[i];
   if (quote != '"' && quote != '\'') return 0;
@@ -38,7 +38,7 @@ size_t literal_length(const std::string& text, size_t i) {
   return k + 1 - i;
 }
 
-// Without comments, literals and preprocessor lines.
+// The code without comments, literals and preprocessor lines.
 std::string code_of(const std::string& text) {
   std::string code;
   bool is_at_start = true;  // of a line
@@ -73,7 +73,7 @@ std::string with_single_spaces(const std::string& text) {
   return std::regex_replace(std::regex_replace(text, spaces, " "), edges, "");
 }
 
-// What a file defines for all to see: types, and inline functions by their whole heads.
+// Externally visible definitions of a file: types, and inline functions by their whole heads.
 struct Definitions {
   std::vector<std::string> types, functions;
 };
@@ -85,7 +85,8 @@ Definitions definitions_in(const std::string& code) {
       "(?: alignas\\(\\w+\\))? ([\\w:]+)(?: final)?(?: ?: ?[^:(].*)?");
   static const std::regex function("(?:.* )?(?:inline|constexpr) .*\\(.*");
   Definitions found;
-  std::vector<std::string> open;  // what each open brace belongs to; "": to nobody elsewhere
+  // namespace or type of each open brace; "" if invisible to other files
+  std::vector<std::string> open;
   size_t start = 0;
   for (size_t i = 0; i < code.size(); ++i) {
     if (code[i] == ';') start = i + 1;

@@ -26,7 +26,7 @@ TEST_CASE("corners of instances are those of copies, bit by bit, their front out
       CHECK(a == copy.positions[copy.triangles[t][0]]);
       CHECK(b == copy.positions[copy.triangles[t][1]]);
       CHECK(c == copy.positions[copy.triangles[t][2]]);
-      // Front and normals outside, under mirrors too.
+      // Front and normals point outwards, under mirroring transforms too.
       CHECK(dot(cross(b - a, c - a), a - middle) > 0);
       const Vec3 n = mesh.normal(mesh.triangle(t)[0]);
       CHECK(n == copy.normals[copy.triangles[t][0]]);
@@ -47,6 +47,6 @@ TEST_CASE("transforms that rays do not survive are not for instances") {
   CHECK_FALSE(is_instanceable(Affine::scale({1e10, 1e10, 1e10})));
   CHECK_FALSE(is_instanceable(Affine::scale({std::nan(""), 1, 1})));
   CHECK_FALSE(is_instanceable(Affine::translate({0, std::nan(""), 0})));
-  // Stretched along what is no axis of the world, then turned back: much of a ray would be lost.
+  // A stretch along a direction that is no world axis, then a rotation: rays would lose precision.
   CHECK_FALSE(is_instanceable(Affine::scale({1000, 1, 1}) * Affine::rotate(0.8, {0, 0, 1})));
 }

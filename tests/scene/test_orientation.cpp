@@ -1,4 +1,4 @@
-// Which way is up: by formats, by what scenes show, and what is said where these disagree.
+// Decisions on which way is up: by format, by evidence, and the messages when these disagree.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -10,7 +10,7 @@ using namespace troffer;
 
 namespace {
 
-// Scenes are built with y up, and turned afterwards.
+// Builds scenes with y up; z_up() turns them.
 struct Builder {
   Scene scene;
 
@@ -44,7 +44,7 @@ struct Builder {
     }
     scene.meshes.push_back(m);
   }
-  // Six walls of one quad each: x to `size.x` and so on.
+  // Six walls of one quad each, from the origin to `s`.
   void room(const Vec3& s) {
     level(0, 0, s.x, 0, s.z);
     level(s.y, 0, s.x, 0, s.z);
@@ -58,7 +58,7 @@ struct Builder {
       for (const float dz : {0.0f, 0.7f}) box({x + dx, 0, z + dz}, {0.05f, 0.7f, 0.05f});
     box({x, 0.7f, z}, {1.15f, 0.04f, 0.75f});
   }
-  // A square that shines down.
+  // A square that emits downwards.
   void lamp(float x, float y, float z) {
     Mesh& m = quad(
         {Vec3{x, y, z}, Vec3{x + 0.6f, y, z}, Vec3{x + 0.6f, y, z + 0.6f}, Vec3{x, y, z + 0.6f}});
@@ -79,7 +79,7 @@ struct Builder {
   }
 };
 
-// y becomes z, z becomes -y.
+// Turns y to z and z to -y.
 Vec3 turned(const Vec3& v) {
   return {v.x, -v.z, v.y};
 }
@@ -98,7 +98,7 @@ Scene z_up(Scene s) {
 
 const Vec3 y{0, 1, 0}, z{0, 0, 1};
 
-// Finds y in the scene and z in the turned one.
+// Checks that y is found in the scene and z in the turned one.
 void check_both(const Scene& scene, const std::string& reason) {
   const UpDecision straight = decide_up(scene), other = decide_up(z_up(scene));
   CHECK(straight.up == y);

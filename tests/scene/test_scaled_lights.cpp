@@ -1,4 +1,4 @@
-// Dimmed lights: every kind of emission scales, and nothing else changes.
+// Scaled lights: every kind of emission scales, and nothing else changes.
 #include <doctest/doctest.h>
 
 #include <vector>
@@ -20,6 +20,6 @@ TEST_CASE("lights are scaled channel by channel, the ground of a sky too") {
   CHECK(scaled.lights[1].radiance == Rgb{1});
   CHECK(scaled.lights[1].sky.ground == Rgb{2});
   CHECK(scaled.lights[1].kind == LightKind::sky);
-  // The numbers of lights stay where one is turned off: what is hit refers to them.
+  // Light numbers stay when one is turned off, because geometry refers to them.
   CHECK(with_scaled_lights(s, std::vector<Rgb>{Rgb{0}, Rgb{1}}).lights.size() == 2);
 }

@@ -1,4 +1,4 @@
-// Counting, bounds, choosing lights.
+// Counts, bounds and selection of lights.
 #include <doctest/doctest.h>
 
 #include "base/error.h"
@@ -8,7 +8,7 @@ using namespace troffer;
 
 namespace {
 
-// Two meshes, a sphere, a disk; lights "lamp" (mesh 0), "lamp" (sphere), "desk" (mesh 1).
+// Two meshes, a sphere and a disk; lights "lamp" (mesh 0), "lamp" (sphere), "desk" (mesh 1).
 Scene small() {
   Scene s;
   s.materials.resize(1);
@@ -49,7 +49,7 @@ TEST_CASE("triangles and bounds count everything") {
   CHECK(b.upper.z == doctest::Approx(10 + 3 * 0.6));
   CHECK(b.upper.y == doctest::Approx(3 * 0.8));
   CHECK(bounds(Scene{}).is_empty());
-  // only vertices that triangles use
+  // only vertices that triangles use count
   Scene loose = small();
   loose.meshes[0].positions.push_back({100, 100, 100});
   CHECK(bounds(loose).upper.x == 7);

@@ -11,7 +11,7 @@ using namespace troffer;
 
 namespace {
 
-// 3 × 2 linear grey texels 1 2 3 / 4 5 6.
+// 3 × 2 linear grey texels: 1 2 3 / 4 5 6.
 Texture small() {
   Texture t;
   t.kind = TextureKind::image;
@@ -33,10 +33,10 @@ TEST_CASE("texel centres return texels, between them values are bilinear") {
     for (int x = 0; x < 3; ++x)
       CHECK(grey(t, (float(x) + 0.5f) / 3, (float(y) + 0.5f) / 2) ==
             doctest::Approx(double(1 + x + 3 * y)).epsilon(1e-5));
-  // v points down: the top row is small v
+  // v points down: the top row has small v
   CHECK(grey(t, 1.0f / 3, 0.25f) == doctest::Approx(1.5));
   CHECK(grey(t, 0.5f, 0.5f) == doctest::Approx(3.5));
-  // bilinear in both, over the middle of four texels
+  // bilinear in both directions, between four texels
   const float u = 0.4f, v = 0.45f, fx = u * 3 - 0.5f, fy = v * 2 - 0.5f;
   CHECK(grey(t, u, v) == doctest::Approx(double(1 + fx + 3 * fy)).epsilon(1e-5));
 }
@@ -124,7 +124,7 @@ TEST_CASE("scale, rotation, offset, inversion") {
   t.uv_rotation_rad = 1.5707963268f;
   t.uv_scale = {1, 0.9f};
   t.uv_offset = {0.05f, 1};
-  // (0.3, 0.8) -> scaled (0.3, 0.72) -> turned (0.72, -0.3) -> (0.77, 0.7)
+  // (0.3, 0.8) -> scaled (0.3, 0.72) -> rotated (0.72, -0.3) -> (0.77, 0.7)
   const float x = 0.77f * 3 - 0.5f, y = 0.7f * 2 - 0.5f;
   CHECK(grey(t, 0.3f, 0.8f) == doctest::Approx(double(1 + x + 3 * y)).epsilon(1e-4));
   Texture inverted = small();

@@ -1,4 +1,4 @@
-// Images at fractions of their size, and look-ups over a footprint.
+// Levels of images, and lookups over a footprint.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,14 +22,14 @@ Texture random_image(int width, int height, int channels, bool is_bytes, uint64_
   for (int i = 0; i < width * height * channels; ++i) {
     const float v = random.next_float();
     if (is_bytes)
-      t.texels8.push_back(uint8_t(v < 0.5f ? 0 : 255));  // the worst for rounding in code
+      t.texels8.push_back(uint8_t(v < 0.5f ? 0 : 255));  // the worst case for rounding to bytes
     else
       t.texels_float.push_back(v);
   }
   return t;
 }
 
-// Mean of a texture by its texels.
+// Mean of a texture over its texels.
 Rgb texel_mean(const Texture& t) {
   const std::vector<Texture> textures{t};
   Rgb sum;
@@ -48,7 +48,7 @@ TexturePlace over(const Vec2& uv, const Vec2& a, const Vec2& b) {
   return p;
 }
 
-// Columns of black and white, each one texel wide.
+// Black and white columns, each one texel wide.
 Texture stripes() {
   Texture t = grey_image(64, 64, [](int x, int) { return x % 2 == 0 ? 1.0f : 0.0f; });
   build_levels(t);
@@ -97,10 +97,10 @@ TEST_CASE("a long footprint is not wider than it is") {
   for (const float x : {20.5f, 21.5f}) {
     const Vec2 at{x * texel, 0.5f};
     const float sharp = int(x) % 2 == 0 ? 1.0f : 0.0f;
-    // along the stripes: eight texels long, and one of them wide
+    // along the stripes: eight texels long and one wide
     const float along = evaluate(textures, 0, over(at, {texel, 0}, {0, 8 * texel})).rgb.r;
     CHECK(std::abs(along - sharp) < 1e-5f);
-    // across: grey
+    // across the stripes: grey
     const float across = evaluate(textures, 0, over(at, {8 * texel, 0}, {0, texel})).rgb.r;
     CHECK(std::abs(across - 0.5f) < 0.02f);
   }

@@ -1,4 +1,4 @@
-// Checks, dots, mixes and noise, and the ways from places in space to (u,v).
+// Checks, dots, mixes and noise, and mappings from space to (u,v).
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ TEST_CASE("checks in the plane and in space, and their mean over a footprint") {
   CHECK(grey(t, Vec2{0.5f, 0.5f}) == 1);
   CHECK(grey(t, Vec2{1.5f, 0.5f}) == 0);
   CHECK(grey(t, Vec2{-0.5f, -0.5f}) == 1);
-  // against many points: half the area at the edge, and anything between
+  // compared with many point lookups, for footprints of several sizes
   for (const float size : {0.3f, 1.0f, 1.7f, 6.3f}) {
     TexturePlace p(Vec2{0.9f, 0.4f});
     p.axis_a = {size, 0};

@@ -1,4 +1,4 @@
-// The lists of what materials and lights are made of leave nothing out that matters.
+// The value lists of materials and lights leave out nothing that matters.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -75,7 +75,7 @@ TEST_CASE("any change of a material that changes what it scatters changes its va
 TEST_CASE("a material is textured where one of its inputs is") {
   Material m;
   CHECK_FALSE(has_textured_input(m));
-  m.alpha.texture = m.normal_texture = 0;  // a mask and bumps are no inputs of scattering
+  m.alpha.texture = m.normal_texture = 0;  // masks and bumps are not inputs of scattering
   CHECK_FALSE(has_textured_input(m));
   for (FloatInput* f : {&m.roughness, &m.metallic, &m.specular, &m.transmission}) {
     f->texture = 0;

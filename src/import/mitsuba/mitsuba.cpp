@@ -14,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-constexpr int max_shape_depth = 8;  // of shapes in shapes
+constexpr int max_shape_depth = 8;  // nesting of shapes in shapes
 
 class MitsubaReader {
  public:
@@ -28,14 +28,14 @@ class MitsubaReader {
   void read();
 
  private:
-  // What a shape has beside its geometry.
+  // Elements that a shape has besides its geometry.
   struct Attached {
-    // The last bsdf is the shape's; of an OBJ file those of several names are for its materials.
+    // The shape's last bsdf. The named bsdfs of an OBJ shape belong to the file's materials.
     const MitsubaNode* bsdf = nullptr;
     std::vector<std::pair<std::string, const MitsubaNode*>> by_material;
     const MitsubaNode* emitter = nullptr;
     bool has_medium = false;  // on either side
-    Rgb absorption{0};        // of the one inside
+    Rgb absorption{0};        // of the medium inside, per metre
   };
 
   Scene& scene_;
@@ -44,11 +44,11 @@ class MitsubaReader {
   MitsubaBsdfs bsdfs_;
   MitsubaShapes shapes_;
   GeometryPlacer placer_;
-  // Shapes of groups, which many instances place.
+  // Shapes of groups, shared by their instances.
   std::map<std::pair<const MitsubaNode*, std::string>,
            std::shared_ptr<const std::optional<MitsubaShape>>>
       in_groups_;
-  std::map<const MitsubaNode*, std::unique_ptr<MitsubaAttributes>> attributes_;  // of shapes
+  std::map<const MitsubaNode*, std::unique_ptr<MitsubaAttributes>> attributes_;  // by shape
   size_t lights_ = 0;
   int depth_ = 0;
 
@@ -78,14 +78,14 @@ void MitsubaReader::read_element(const MitsubaNode& node) {
   if (node.tag == "shape") {
     add_shape(node, Affine(), false);
   } else if (node.tag == "emitter") {
-    // An area light that stands by itself waits for shapes that refer to it.
+    // A top-level area light emits only from shapes that refer to it.
     if (node.type != "area") add_mitsuba_light(node, tree_, textures_, scene_);
   } else if (node.tag == "sensor") {
     add_mitsuba_camera(node, tree_, scene_);
   } else if (node.tag == "integrator") {
     read_integrator(node);
   } else if (node.tag == "medium") {
-    // Those of shapes are read where shapes name them.
+    // Media are read where shapes refer to them.
   } else if (node.tag != "bsdf" && node.tag != "texture" && node.tag != "sampler" &&
              node.tag != "film" && node.tag != "spectrum" && node.tag != "boolean" &&
              node.tag != "ref" && node.tag != "rfilter") {
@@ -93,7 +93,7 @@ void MitsubaReader::read_element(const MitsubaNode& node) {
   }
 }
 
-// Options of the command line say how a picture is made; what changes its light is told.
+// The command line sets how to render, so only parameters that change the light add warnings.
 void MitsubaReader::read_integrator(const MitsubaNode& node) {
   if (get_flag(node, "hide_emitters", false))
     scene_.warnings.add("integrator: hide_emitters is not supported: sources are seen");
@@ -107,7 +107,7 @@ void MitsubaReader::read_integrator(const MitsubaNode& node) {
     if (child->tag == "integrator") read_integrator(*child);
 }
 
-// What a medium absorbs per metre; that it scatters is left out.
+// Absorption of a medium per metre. Scattering is left out with a warning.
 Rgb MitsubaReader::absorption_of(const MitsubaNode& medium) {
   medium.is_used = true;
   if (medium.type != "homogeneous") {
@@ -199,7 +199,7 @@ void MitsubaReader::add_children(const MitsubaNode& group, const Affine& parent,
 }
 
 void MitsubaReader::add_shape(const MitsubaNode& node, const Affine& parent, bool is_instance) {
-  if (node.type == "shapegroup") return;  // shown by its instances
+  if (node.type == "shapegroup") return;  // placed by its instances
   if (++depth_ > max_shape_depth) node.place.fail("shapes contain each other too deeply");
   if (node.type == "instance") {
     add_instance(node, parent);
@@ -233,7 +233,8 @@ void MitsubaReader::add_plain_shape(const MitsubaNode& node, const Affine& world
   add_part(node, world, is_instance, with, &rest);
 }
 
-// Nothing: light goes on. Up to version 0.6 so do surfaces that only part two media.
+// Returns nothing for surfaces that light passes unchanged. Up to version 0.6 these include
+// surfaces without bsdf between two media.
 std::optional<uint32_t> MitsubaReader::material_of(const Attached& with, bool is_emitting) {
   std::optional<uint32_t> material;
   if (with.bsdf)
@@ -278,7 +279,7 @@ void MitsubaReader::add_part(const MitsubaNode& node, const Affine& world, bool 
   place(**shape, world, look);
 }
 
-// Whether a bsdf or emitter has textures that are looked up by the shape's (u,v).
+// True if a bsdf or emitter has textures that are looked up by the shape's (u,v).
 bool MitsubaReader::shows_images(const MitsubaNode& given) const {
   const MitsubaNode& node = tree_.resolved(given);
   if (node.tag == "texture" && (node.type == "bitmap" || node.type == "checkerboard")) return true;
@@ -288,7 +289,7 @@ bool MitsubaReader::shows_images(const MitsubaNode& given) const {
   });
 }
 
-// Attributes of shapes from PLY files; null for other shapes.
+// Attributes of a shape from a PLY file; null for other shapes.
 MitsubaAttributes* MitsubaReader::attributes_of(const MitsubaNode& node, const MitsubaShape& shape,
                                                 const Attached& with) {
   if (node.type != "ply") return nullptr;

@@ -1,4 +1,5 @@
-// Mitsuba scenes (.xml), versions 0.5 to 3.
+// Importer of Mitsuba scenes (.xml), versions 0.5 to 3. Called by import_scene (import/import.h).
+// Lengths stay in the units of the file; emission is radiance in W/(m² sr).
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation"; [2] W. Jakob, "Mitsuba 0.6
 //   Documentation".
@@ -11,13 +12,12 @@
 
 namespace troffer {
 
-// The scene such a file describes, in its own world; emission in W/(m² sr) as the file has it.
-// Files it names are looked up in its folder and never outside. Shapes, bsdfs, textures, emitters
-// and sensors that are not supported are warnings that name them; docs/mitsuba.md lists all.
-// Sources are called by their id, else emitter0, emitter1 … in the order of the shapes that emit.
-// The front of a surface, which alone emits, is the side of its normals, else of its winding;
-// flip_normals turns it.
-// InputError: with line and column, for anything malformed.
+// Returns the scene that the file describes, in its own world. Files that it names are looked up in
+// its folder and never outside. Every unsupported shape, bsdf, texture, emitter or sensor adds a
+// warning; docs/mitsuba.md lists them. Lights are named by their id, otherwise emitter0, emitter1
+// and so on in the order of the emitting shapes. A surface emits from its front only: the side of
+// its normals, or of its winding without normals. flip_normals swaps the sides. Throws InputError,
+// with line and column, for malformed files.
 Scene import_mitsuba(const std::string& path, ImageUse images = ImageUse::read);
 
 }  // namespace troffer

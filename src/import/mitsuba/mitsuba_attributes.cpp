@@ -9,20 +9,20 @@ namespace troffer {
 
 namespace {
 
-// Squares of 2 x 2 texels side by side, one per triangle.
+// Layout of an attribute's image: one square of 2 x 2 texels per triangle.
 struct AttributeLayout {
   size_t columns, rows;
   explicit AttributeLayout(size_t n)
       : columns(std::max<size_t>(1, size_t(std::ceil(std::sqrt(double(n)))))),
         rows((n + columns - 1) / columns) {}
-  // Middle of a texel of triangle i.
+  // Centre of texel (dx, dy) of triangle i, in (u,v).
   Vec2 middle(size_t i, size_t dx, size_t dy) const {
     return {float((double(2 * (i % columns) + dx) + 0.5) / double(2 * columns)),
             float((double(2 * (i / columns) + dy) + 0.5) / double(2 * rows))};
   }
 };
 
-// Vertices of its own for every triangle.
+// Gives every triangle its own three vertices.
 void give_own_vertices(Mesh& mesh) {
   Mesh out;
   const auto take = [](auto& to, const auto& from, uint32_t v) {
@@ -89,7 +89,7 @@ int32_t MitsubaAttributes::make(const PlyAttribute& a) {
       texel(0, 0) = at(0, k);
       texel(1, 0) = at(1, k);
       texel(0, 1) = at(2, k);
-      texel(1, 1) = at(1, k) + at(2, k) - at(0, k);  // the mixed term vanishes
+      texel(1, 1) = at(1, k) + at(2, k) - at(0, k);  // makes the bilinear interpolation linear
     }
   }
   scene_.textures.push_back(std::move(image));

@@ -1,7 +1,8 @@
-// Mitsuba's textures of type mesh_attribute: numbers per vertex or face of one shape.
+// Textures of Mitsuba's type mesh_attribute: values per vertex or face of one shape. Used by
+// MitsubaReader and MitsubaTextures.
 //
-// Each triangle gets vertices of its own and 2 x 2 texels of an image, whose bilinear mean is the
-// linear one between its three corners.
+// Each triangle gets its own vertices and 2 x 2 texels of an image. Bilinear interpolation of these
+// texels equals linear interpolation between the triangle's corners.
 #pragma once
 
 #include <map>
@@ -17,20 +18,20 @@ namespace troffer {
 
 class MitsubaAttributes {
  public:
-  // Reads attributes of the mesh that read_ply() made of the file; `scene` must outlive this.
-  // has_images: other textures of its looks use the mesh's (u,v), so that attributes go by the
-  // second ones.
+  // Reads attributes of the mesh that read_ply() made from the file. `scene` must outlive this
+  // object. has_images: other textures of the shape use the mesh's (u,v), so attributes use its
+  // second (u,v).
   MitsubaAttributes(std::string ply_file, const Mesh& mesh, bool has_images, Scene& scene)
       : file_(std::move(ply_file)),
         triangles_(mesh.triangles),
         has_images_(has_images),
         scene_(scene) {}
 
-  // Texture that shows the attribute of that name; nothing where the shape has none.
+  // Returns the texture of the attribute of that name, or nothing if the shape has none.
   std::optional<int32_t> texture(const std::string& name);
-  // Number of textures asked for.
+  // Number of textures that have been requested.
   size_t uses() const { return uses_; }
-  // Gives the mesh the (u,v) that its textures are looked up by, the first time.
+  // Gives the mesh the (u,v) of its attribute textures. Only the first call has an effect.
   void finish(Mesh& mesh);
 
  private:
@@ -46,8 +47,8 @@ class MitsubaAttributes {
   int32_t make(const PlyAttribute& attribute);
 };
 
-// Gives every triangle vertices of its own with (u,v) = (0,0), (1,0), (0,1): what Mitsuba has for
-// meshes without coordinates.
+// Gives every triangle its own vertices with (u,v) = (0,0), (1,0), (0,1), as Mitsuba does for
+// meshes without texture coordinates.
 void add_corner_uvs(Mesh& mesh);
 
 }  // namespace troffer

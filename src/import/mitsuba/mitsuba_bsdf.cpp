@@ -20,7 +20,7 @@ bool is_texture(const ColorInput& c) {
   return c.texture >= 0;
 }
 
-// Its back reflects nothing.
+// The material with a black back.
 Material one_sided(Material m) {
   m.back_faces = BackFaces::black;
   return m;
@@ -80,7 +80,7 @@ std::optional<uint32_t> MitsubaBsdfs::index_of(const MitsubaNode& given) {
   return made_[{&node, shows_attributes ? textures_.attributes() : nullptr}] = index;
 }
 
-// The bsdf within another one: the first; nothing where it is null.
+// Converts the first bsdf inside another one. Returns nothing if it is null.
 std::optional<Material> MitsubaBsdfs::nested(const MitsubaNode& node) {
   for (const MitsubaNode* child : node.children) {
     const MitsubaNode& inner = tree_.resolved(*child);
@@ -143,7 +143,7 @@ Material MitsubaBsdfs::conductor(const MitsubaNode& node) {
     m.eta = *other;
     m.k = *named_metal("metal-" + name + "-k");
   } else {
-    // 0 + i: reflects everything.
+    // eta 0 and k 1 reflect all light
     m.is_reflectance = true;
     m.base_color = scale;
     if (name != "none") {
@@ -170,11 +170,10 @@ Material MitsubaBsdfs::dielectric(const MitsubaNode& node) {
   return m;
 }
 
-// Light that the base scatters is tinted at each inner reflection only where `nonlinear`; else all
-// reflections are as of a white base: ρ / (1 - F) in place of ρ / (1 - ρF), with F the mean
-// reflectance of the coat from inside. Our coat is the former; ρ / (1 - F + ρF) makes it the
-// latter. A roughness that differs from place to place, which Mitsuba 3 does not know, takes
-// balanced facets.
+// Mitsuba's default treats every inner reflection as if the base were white: ρ / (1 - F), with F
+// the coat's mean reflectance from inside. With `nonlinear` it is ρ / (1 - ρF), as in our coat. A
+// base colour of ρ / (1 - F + ρF) turns ours into Mitsuba's default. Textured roughness, which
+// Mitsuba 3 does not have, uses FacetModel::balanced.
 Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
   Material m;
   m.kind = MaterialKind::coated_diffuse;
@@ -200,7 +199,7 @@ Material MitsubaBsdfs::plastic(const MitsubaNode& node) {
   return m;
 }
 
-// The exponent of a lobe as wide as ggx of width α: α² = 2 / (n + 2).
+// Converts an exponent n to the GGX width α of an equally wide lobe: α² = 2 / (n + 2).
 Material MitsubaBsdfs::phong(const MitsubaNode& node) {
   Material m;
   m.kind = MaterialKind::metallic_roughness;
@@ -215,7 +214,7 @@ Material MitsubaBsdfs::phong(const MitsubaNode& node) {
     read_alpha(node, m);
   }
   find_parameter(node, "variant");
-  // Schlick's coat of that reflectance at normal incidence, up to the index 3.
+  // Sets the index whose Fresnel reflectance at normal incidence is specular_reflectance, up to 3.
   const float f = std::sqrt(std::clamp(mean_of(specular), 0.0f, 0.25f));
   m.ior = (1 + f) / (1 - f);
   if (m.ior <= 1) m.specular.value = 0;
@@ -223,14 +222,14 @@ Material MitsubaBsdfs::phong(const MitsubaNode& node) {
   return m;
 }
 
-// The share of rays that meet it.
+// Converts the opacity to the material's alpha.
 std::optional<Material> MitsubaBsdfs::masked(const MitsubaNode& node) {
   const FloatInput opacity = textures_.real(node, {"opacity"}, 0.5f);
   std::optional<Material> m = nested(node);
   return m ? with_mask(node, std::move(*m), opacity) : m;
 }
 
-// Of bumps the texture is heights in metres, times `scale`.
+// Bump maps are heights in metres, multiplied by `scale`.
 std::optional<Material> MitsubaBsdfs::bumped(const MitsubaNode& node) {
   std::optional<Material> m = nested(node);
   const auto scale = float(get_number(node, "scale", 1));
@@ -254,7 +253,7 @@ std::optional<Material> MitsubaBsdfs::bumped(const MitsubaNode& node) {
   return m;
 }
 
-// A copy whose inside absorbs as `medium` does.
+// Returns the index of a copy whose inside absorbs that much per metre.
 uint32_t MitsubaBsdfs::with_medium(uint32_t material, Rgb absorption) {
   const std::array<float, 4> key{float(material), absorption.r, absorption.g, absorption.b};
   const auto found = with_medium_.find(key);
@@ -265,7 +264,7 @@ uint32_t MitsubaBsdfs::with_medium(uint32_t material, Rgb absorption) {
   return with_medium_[key] = uint32_t(scene_.materials.size() - 1);
 }
 
-// The same on both sides; with a second bsdf for the back, that one is left out.
+// Shows the same material on both sides. A second bsdf for the back is left out.
 std::optional<Material> MitsubaBsdfs::two_sided(const MitsubaNode& node) {
   std::optional<Material> m = nested(node);
   if (m) m->back_faces = BackFaces::shown;

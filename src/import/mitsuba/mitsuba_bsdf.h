@@ -1,4 +1,5 @@
-// Mitsuba's bsdf plugins -> materials.
+// Converts Mitsuba's bsdf plugins to materials. Used by MitsubaReader. A bsdf becomes one scene
+// material on its first use; approximations add warnings.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: BSDFs"; [2] W. Jakob, "Mitsuba 0.6
 //   Documentation", §8.2 (Surface scattering models).
@@ -16,25 +17,25 @@ namespace troffer {
 
 class MitsubaBsdfs {
  public:
-  // All must outlive this.
+  // All arguments must outlive this object.
   MitsubaBsdfs(Scene& scene, const MitsubaTree& tree, MitsubaTextures& textures)
       : scene_(scene), tree_(tree), textures_(textures) {}
 
-  // Index in Scene::materials of what a <bsdf> says, made when it is first asked for; nothing for
-  // surfaces that are not there for light (null). InputError: parameters that cannot be used.
+  // Returns the index in Scene::materials of a <bsdf>, which is converted on its first use. Returns
+  // nothing for `null`, which light passes unchanged. Throws InputError for unusable parameters.
   std::optional<uint32_t> index_of(const MitsubaNode& bsdf);
-  // That material with a medium inside that absorbs so much per metre.
+  // Returns the index of a copy with a medium inside of that absorption per metre.
   uint32_t with_medium(uint32_t material, Rgb absorption);
-  // Of shapes without bsdf: grey; black where they emit.
+  // Returns the material of shapes without bsdf: grey, or black if they emit.
   uint32_t default_index(bool is_emitting);
-  // Of what emits and is otherwise not there: a pane that neither reflects nor takes anything.
+  // Returns the material of emitting shapes that are otherwise invisible: a pane of index 1.
   uint32_t nothing_index();
 
  private:
   Scene& scene_;
   const MitsubaTree& tree_;
   MitsubaTextures& textures_;
-  // Materials by bsdf and, where it shows attributes of a shape, by these.
+  // Materials by bsdf and, if it shows attributes of a shape, by these attributes.
   std::map<std::pair<const MitsubaNode*, const MitsubaAttributes*>, std::optional<uint32_t>> made_;
   std::map<std::array<float, 4>, uint32_t> with_medium_;
   std::optional<uint32_t> grey_, black_, nothing_;
@@ -50,10 +51,10 @@ class MitsubaBsdfs {
   Material principled(const MitsubaNode& node);
   Material phong(const MitsubaNode& node);
   std::optional<Material> masked(const MitsubaNode& node);
-  // A bsdf within `blendbsdf` and `mixturebsdf`, and its share.
+  // A bsdf within `blendbsdf` or `mixturebsdf`, and its share.
   struct Part {
     double share = 0;
-    std::optional<Material> material;  // none: light goes on
+    std::optional<Material> material;  // none: light passes unchanged
   };
   std::vector<Part> parts_of(const MitsubaNode& node);
   std::optional<Material> blended(const MitsubaNode& node);

@@ -1,4 +1,4 @@
-// Mitsuba's bsdfs with a clear coat.
+// Mitsuba's bsdfs with a clear coat (part of MitsubaBsdfs).
 #include <algorithm>
 #include <cmath>
 
@@ -10,15 +10,15 @@ namespace troffer {
 
 namespace {
 
-// Of another kind than diffuse, which is a coated diffuse one then.
+// True for materials that can carry a coat. A diffuse one becomes coated_diffuse instead.
 bool can_be_coated(const Material& m) {
   return m.coat.value <= 0 &&
          (m.kind == MaterialKind::conductor || m.kind == MaterialKind::coated_diffuse ||
           m.kind == MaterialKind::dielectric || m.kind == MaterialKind::metallic_roughness);
 }
 
-// The second lobe of the plugin: a quarter of `clearcoat`, of an index of 1.5, between .1 and .001
-// wide; of ggx, where the plugin's has longer tails.
+// Reads the plugin's clearcoat lobe, whose weight is a quarter of `clearcoat`. Its width is between
+// 0.1 and 0.001. The lobe is GGX here; the plugin's has longer tails.
 void read_principled_coat(const MitsubaNode& node, MitsubaTextures& textures, Material& m) {
   m.coat = textures.real(node, {"clearcoat"}, 0);
   m.coat.value = 0.25f * std::clamp(m.coat.value, 0.0f, 1.0f);
@@ -26,32 +26,33 @@ void read_principled_coat(const MitsubaNode& node, MitsubaTextures& textures, Ma
   m.coat_roughness.value = float(std::sqrt(lerp(0.1, 0.001, gloss)));
 }
 
-// A number or colour of zeros.
+// True for a number or colour of zeros.
 bool is_nothing(const MitsubaNode& parameter) {
   if (!is_color(parameter) || !parameter.has("value")) return false;
   const std::string& text = parameter.attribute("value");
   return text.find_first_not_of("0.,; ") == std::string::npos;
 }
 
-// What light keeps on its way into the coat and out again, from all directions evenly.
+// Share of uniform diffuse light that is not absorbed on its way into the coat and out again.
 float kept_evenly(float exponent, float index) {
   constexpr int steps = 64;
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
-    const double sine2 = (i + 0.5) / steps / sqr(double(index));  // Lambert's law, bent
+    // sin² of the refracted direction, uniform in sin² by Lambert's law
+    const double sine2 = (i + 0.5) / steps / sqr(double(index));
     sum += std::exp(-double(exponent) / std::sqrt(1 - sine2));
   }
   return float(sqr(sum / steps));
 }
 
-// The base darker by what the coat absorbs.
+// Darkens the base by the coat's absorption.
 void absorb(Material& m, Rgb exponent, float index) {
-  if (m.kind == MaterialKind::dielectric) {  // straight through, on one side or both of a sheet
+  if (m.kind == MaterialKind::dielectric) {  // light passes straight, once per side of a sheet
     for (size_t c = 0; c < 3; ++c)
       m.base_color.value[c] *= std::exp(-exponent[c] * (m.is_thin ? 2.0f : 1.0f));
     return;
   }
-  if (m.kind == MaterialKind::conductor) {  // straight on
+  if (m.kind == MaterialKind::conductor) {  // normal incidence
     ColorInput& factor = m.is_reflectance ? m.base_color : m.specular_color;
     for (size_t c = 0; c < 3; ++c) factor.value[c] *= std::exp(-2 * exponent[c]);
     return;
@@ -78,7 +79,7 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
     const double specular = std::clamp(get_number(node, "specular", 0.5), 0.0, 1.0);
     m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
   }
-  if (m.is_thin) {  // 2: all of what is diffuse
+  if (m.is_thin) {  // diff_trans ranges to 2, which transmits all diffuse light
     m.diffuse_transmission = textures_.real(node, {"diff_trans"}, 0);
     m.diffuse_transmission.value *= 0.5f;
     m.diffuse_transmission_color = m.base_color;
@@ -96,7 +97,7 @@ Material MitsubaBsdfs::principled(const MitsubaNode& node) {
   find_parameter(node, "sheen_tint");
   const FloatInput grain = textures_.real(node, {"anisotropic"}, 0);
   if (grain.texture < 0 && m.roughness.texture < 0 && is_opaque && !m.is_thin && grain.value > 0) {
-    // Roughness is squared to a width: the square root of the model's aspect.
+    // The model's aspect is for widths; roughness is the square root of a width.
     const float aspect = std::pow(1 - 0.9f * std::min(grain.value, 1.0f), 0.25f);
     set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
   } else if (grain.texture >= 0 || grain.value > 0) {
@@ -146,7 +147,7 @@ std::optional<Material> MitsubaBsdfs::coated(const MitsubaNode& node) {
     read_alpha(node, coat);
     m->coat_roughness = coat.roughness;
   }
-  // Both are told as the base tells its own.
+  // The coat's roughness has the meaning of the base's.
   if (m->roughness_meaning == RoughnessMeaning::alpha_is_square)
     m->coat_roughness.value = std::sqrt(m->coat_roughness.value);
   m->coat_ior = index;

@@ -11,8 +11,8 @@ namespace troffer {
 
 namespace {
 
-// cd/m² per radiance in Mitsuba's unit of spectra, W/(m² sr nm): 683 lm/W times the integral of the
-// observer's luminance curve.
+// Luminance (cd/m²) per unit of Mitsuba's spectral radiance, W/(m² sr nm): 683 lm/W times the
+// integral of the observer's luminance curve (nm).
 constexpr double luminance_per_radiance = 683 * 106.857;
 
 class DaylightReader {
@@ -30,7 +30,7 @@ class DaylightReader {
   WarningLog& warnings_;
   Affine world_;
 
-  // Up to version 0.6 y is up and -z north; later z up and x north [1, 2].
+  // Up to version 0.6, y is up and -z north; later z is up and x north [1, 2].
   Vec3d up() const { return normalize(world_.columns[is_legacy_ ? 1 : 2]); }
   Vec3d in_world(double azimuth_rad, double altitude_rad) const;
   Vec3d to_sun() const;
@@ -46,7 +46,8 @@ Vec3d DaylightReader::in_world(double azimuth_rad, double altitude_rad) const {
       world_.vector(is_legacy_ ? Vec3d{east, high, -north} : Vec3d{north, east, high}));
 }
 
-// Given in the world, else by place and time: without any, Tokyo on 10 July 2010 at 15 o'clock.
+// Direction to the sun: given in the world, or computed from place and time. Mitsuba's default is
+// Tokyo on 10 July 2010 at 15:00.
 Vec3d DaylightReader::to_sun() const {
   const auto given = get_vector(node_, "sun_direction");
   const double latitude = get_number(node_, "latitude", 35.6894);
@@ -65,7 +66,7 @@ Vec3d DaylightReader::to_sun() const {
   return in_world(rad_from_deg(at.azimuth_deg), rad_from_deg(at.altitude_deg));
 }
 
-// Luminances of clear skies by turbidity [3].
+// Luminance distribution of a clear sky of that turbidity [3].
 Light DaylightReader::sky(double turbidity, double height, double scale,
                           const Vec3d& to_sun) const {
   const double t = turbidity, theta = pi / 2 - height;
@@ -94,7 +95,7 @@ double DaylightReader::sun_radius_rad() const {
   return rad_from_deg(whole / 2 * get_number(node_, "sun_radius_scale", 1));
 }
 
-// Illuminance of a plane that faces the sun: what air of that turbidity lets through.
+// Converts the illuminance that a plane facing the sun receives through air of that turbidity.
 Light DaylightReader::sun(double turbidity, double height, double scale) const {
   Light e;
   e.kind = LightKind::sun;

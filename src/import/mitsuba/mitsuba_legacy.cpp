@@ -9,7 +9,7 @@ namespace troffer {
 namespace {
 
 struct Renamed {
-  std::string_view of;  // type of the plugin, "": any
+  std::string_view of;  // type of the plugin; "" for any
   std::string_view from, to;
 };
 constexpr std::array types_before_0_3{
@@ -83,7 +83,7 @@ void MitsubaUpgrade::begin(MitsubaNode& node, MitsubaNode& parent) {
 }
 
 void MitsubaUpgrade::begin_before_0_3(MitsubaNode& node, MitsubaNode& parent) {
-  if (node.tag == "bsdf" && node.type == "mirror") {  // chrome stands for it
+  if (node.tag == "bsdf" && node.type == "mirror") {  // approximated by chromium
     node.type = "conductor";
     add(node, "string", "value", "Cr");
     nodes_.back().name = "material";
@@ -99,7 +99,7 @@ void MitsubaUpgrade::begin_before_0_3(MitsubaNode& node, MitsubaNode& parent) {
   node.attributes["origin"] = join("o");
   node.attributes["target"] = join("t");
   if (node.has("ux")) node.attributes["up"] = join("u");
-  add(parent, "scale", "x", "-1");  // x was to the right
+  add(parent, "scale", "x", "-1");  // the camera's x pointed right before 0.3
 }
 
 void MitsubaUpgrade::begin_before_0_4(MitsubaNode& node, MitsubaNode& parent) {
@@ -116,7 +116,8 @@ void MitsubaUpgrade::begin_before_0_4(MitsubaNode& node, MitsubaNode& parent) {
   node.attributes["value"] = node.attribute("value") == "false" ? "larger" : "smaller";
 }
 
-// `kind`_amount was a factor on `kind`_reflectance, which was `fallback` where it was not given.
+// Multiplies `kind`_reflectance by `kind`_amount, as versions before 0.3 did. `fallback` is the
+// reflectance if none is given.
 void MitsubaUpgrade::scale_reflectance(MitsubaNode& node, const char* kind, double fallback) {
   const std::string name = std::string(kind) + "_reflectance",
                     amount = std::string(kind) + "_amount";

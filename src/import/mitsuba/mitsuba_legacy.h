@@ -1,7 +1,8 @@
-// Elements of Mitsuba before 0.4 -> the names that later versions have for them.
+// Renames elements of Mitsuba files before 0.4 to their later names. Used while MitsubaTree reads,
+// so that all other readers know only the newest names.
 //
 // References: [1] W. Jakob, "Mitsuba 0.6 Documentation", §6 (Scene file format); [2] Mitsuba 0.6,
-//   data/schema/upgrade_0.3.0.xsl and upgrade_0.4.0.xsl, which say what was renamed.
+//   data/schema/upgrade_0.3.0.xsl and upgrade_0.4.0.xsl, which list the renamed elements.
 #pragma once
 
 #include <deque>
@@ -11,23 +12,23 @@
 
 namespace troffer {
 
-// Major and minor number of a version: "0.3.0" -> {0, 3}. What is no version is as the newest.
+// Major and minor number of a version: "0.3.0" -> {0, 3}. Other text counts as the newest version.
 struct MitsubaVersion {
   int major = 3, minor = 0;
   bool is_below(int a, int b) const { return major < a || (major == a && minor < b); }
 };
 MitsubaVersion mitsuba_version(std::string_view text);
 
-// Brings elements of older versions to the newest names, while they are read.
+// Updates elements of older versions to the newest names while they are read.
 class MitsubaUpgrade {
  public:
-  // New elements are put at the end of `nodes`, which must outlive this.
+  // New elements are appended to `nodes`, which must outlive this object.
   explicit MitsubaUpgrade(std::deque<MitsubaNode>& nodes) : nodes_(nodes) {}
   void set_version(const MitsubaVersion& version) { version_ = version; }
 
-  // An element that has its attributes, but no children yet, and will be one of `parent`.
+  // Updates an element that has its attributes but no children yet. `parent` will be its parent.
   void begin(MitsubaNode& node, MitsubaNode& parent);
-  // … that has its children.
+  // Updates an element that has all its children.
   void end(MitsubaNode& node);
 
  private:

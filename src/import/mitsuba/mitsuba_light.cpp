@@ -16,8 +16,8 @@ namespace troffer {
 
 namespace {
 
-// The first and the last row lie on the poles in Mitsuba, half a row inside here: rows between
-// those of the file, so many more that little is blurred.
+// Resamples rows: Mitsuba's first and last rows lie on the poles, ours half a row inside. Output
+// rows lie between those of the file; there are enough of them to blur little.
 EnvironmentMap from_pole_to_pole(EnvironmentMap map) {
   constexpr size_t most_texels = size_t(1) << 23;
   const int steps = map.height - 1;
@@ -109,7 +109,8 @@ void MitsubaLightReader::point() {
   if (is_finite(e.position)) add(std::move(e));
 }
 
-// Linear in the angle between beam_width and cutoff_angle. A texture spans the cone's outer circle.
+// Intensity falls linearly with the angle from beam_width to cutoff_angle. A texture spans the
+// cone.
 void MitsubaLightReader::spot() {
   Light e;
   e.kind = LightKind::spot;
@@ -133,8 +134,8 @@ void MitsubaLightReader::spot() {
   if (turn(e, world_.columns[2]) && is_finite(e.position)) add(std::move(e));
 }
 
-// A picture of that half width and height at a distance of 1, its first row at -y. Its axes are
-// those of to_world without its scale.
+// Projects a picture of that half width and height at distance 1, with its first row at -y. The
+// axes are those of to_world without its scale.
 void MitsubaLightReader::throw_picture(Light& e, int32_t texture, double half_width,
                                        double half_height) {
   if (texture < 0) return;
@@ -146,8 +147,8 @@ void MitsubaLightReader::throw_picture(Light& e, int32_t texture, double half_wi
   e.axes = {Vec3(x / half_width), Vec3(y / half_height), Vec3(z)};
 }
 
-// A camera turned round: what it would see on its image plane falls there, in proportion to the
-// picture on every plane across its axis. `irradiance` times pi at a distance of 1.
+// Inverse of a camera: lights each plane across its axis in proportion to the picture. Emits pi
+// times `irradiance` at distance 1.
 void MitsubaLightReader::projector() {
   Light e;
   e.kind = LightKind::point;
@@ -162,13 +163,13 @@ void MitsubaLightReader::projector() {
     c.texture = int32_t(scene_.textures.size()) - 1;
   } else if (const Texture& t = scene_.textures[size_t(c.texture)];
              t.kind == TextureKind::image && t.width > 0 && t.height > 0) {
-    // A checkerboard has no resolution there.
+    // A checkerboard texture has no resolution in Mitsuba.
     if (!is_checkerboard(*given)) aspect = double(t.width) / t.height;
   }
   const double half_height = mitsuba_vertical_extent(node_, aspect);
   e.radiance = c.value * float(pi * get_number(node_, "scale", 1));
   e.position = Vec3(world_.translation - scene_.origin);
-  // The picture's left is at +x, its top at +y, as for cameras.
+  // The picture's left is at +x and its top at +y, as for cameras.
   throw_picture(e, c.texture, -half_height * aspect, -half_height);
   if (e.texture >= 0 && is_finite(e.position)) add(std::move(e));
 }
@@ -185,7 +186,7 @@ void MitsubaLightReader::directional() {
   if (turn(e, world_.vector(given.value_or(Vec3d{0, 0, 1})))) add(std::move(e));
 }
 
-// The image's +z is the world's +y, its azimuth runs from -z to +x.
+// The image's +z is the world's +y. Its azimuth runs from -z to +x.
 bool MitsubaLightReader::set_axes(Light& e) {
   const Vec3d up = normalize(world_.columns[1]);
   const Vec3d x = normalize(-world_.columns[2] + up * dot(world_.columns[2], up));

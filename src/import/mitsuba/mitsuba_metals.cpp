@@ -1,6 +1,6 @@
-// Indices of Mitsuba's named metals, as its rgb modes have them: eta and k of its tables, each
-// reduced to linear sRGB like a spectrum of light (import/mitsuba/mitsuba_spectrum.h). Where a
-// table ends within the visible range, it counts as zero beyond, as there.
+// Complex indices of Mitsuba's named metals, as in its rgb modes: eta and k of its tables. Each is
+// reduced to linear sRGB like an emission spectrum (import/mitsuba/mitsuba_spectrum.h). Beyond the
+// end of a table the values count as zero, as in Mitsuba.
 //
 // References: [1] Palik (ed.), "Handbook of Optical Constants of Solids", Academic Press, 1985 and
 //   1991. [2] W. Jakob et al., "Mitsuba 3 documentation: BSDFs" (conductor: names of materials).

@@ -1,4 +1,4 @@
-// Mitsuba's bsdfs of several others: blendbsdf and mixturebsdf.
+// Mitsuba's bsdfs that combine several others: blendbsdf and mixturebsdf (part of MitsubaBsdfs).
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double negligible = 1e-6;
 
-// Darker by a factor, where one colour says how bright it is.
+// Scales the material's reflectance. Returns false for materials that no single colour scales.
 bool scale_by(Material& m, double share) {
   if (m.kind == MaterialKind::conductor && !m.is_reflectance && m.coat.value <= 0) {
     m.specular_color.value *= float(share);
@@ -39,7 +39,7 @@ std::vector<MitsubaBsdfs::Part> MitsubaBsdfs::parts_of(const MitsubaNode& node) 
   return parts;
 }
 
-// The share of rays that meet it, beside a mask of its own.
+// Returns the material with coverage `share`, multiplied by its own mask if that is a constant.
 std::optional<Material> MitsubaBsdfs::with_mask(const MitsubaNode& node, Material m,
                                                 const FloatInput& share) {
   if (share.texture < 0 && share.value >= 1) return m;
@@ -54,14 +54,14 @@ std::optional<Material> MitsubaBsdfs::with_mask(const MitsubaNode& node, Materia
   return m;
 }
 
-// Diffuse ones add up; holes are shares that light goes through; of the others the one that has the
-// most weight.
+// Mixes bsdfs: diffuse ones are added, and `null` becomes alpha. Of other materials, the one with
+// the most weight is taken.
 std::optional<Material> MitsubaBsdfs::sum_of(const MitsubaNode& node, std::vector<Part> parts) {
   double open = 0, solid = 0;
   for (const Part& part : parts) (part.material ? solid : open) += part.share;
   std::erase_if(parts, [](const Part& p) { return !p.material || p.share <= negligible; });
   if (parts.empty()) return std::nullopt;
-  const double all = open > negligible ? open + solid : 1;  // the rest of 1 is absorbed
+  const double all = open > negligible ? open + solid : 1;  // the remainder up to 1 is absorbed
   const bool are_diffuse = std::all_of(parts.begin(), parts.end(), [](const Part& p) {
     return is_plain_diffuse(*p.material) && p.material->base_color.texture < 0 &&
            transmitted(*p.material).texture < 0;
@@ -88,8 +88,8 @@ std::optional<Material> MitsubaBsdfs::sum_of(const MitsubaNode& node, std::vecto
   return with_mask(node, std::move(m), {float((all - open) / all), no_texture, 0});
 }
 
-// By a weight that differs from place to place: of two diffuse ones colours between both, of one
-// beside a hole a mask.
+// Blends two bsdfs by a textured weight: two diffuse ones by their colours, one and `null` by a
+// mask.
 std::optional<Material> MitsubaBsdfs::blended_by(const MitsubaNode& node, const FloatInput& weight,
                                                  std::vector<Part>& parts) {
   std::optional<Material>&first = parts[0].material, &second = parts[1].material;
@@ -121,7 +121,7 @@ std::optional<Material> MitsubaBsdfs::blended(const MitsubaNode& node) {
   return sum_of(node, std::move(parts));
 }
 
-// What is left of 1 is absorbed; weights of more than 1 in all are brought down to it.
+// The remainder of the weights up to 1 is absorbed. Weights that exceed 1 in total are normalized.
 std::optional<Material> MitsubaBsdfs::mixed(const MitsubaNode& node) {
   const MitsubaNode* given = find_parameter(node, "weights");
   std::vector<Part> parts = parts_of(node);

@@ -12,7 +12,7 @@ namespace troffer {
 namespace {
 
 struct Film {
-  int width = 768, height = 576;  // of the whole picture
+  int width = 768, height = 576;  // of the whole picture, in pixels
   int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;
 };
 
@@ -41,7 +41,8 @@ Film read_film(const MitsubaNode& sensor, const MitsubaTree& tree) {
   return film;
 }
 
-// Looks along +z with +y up and +x to the left.
+// Sets position and axes. The sensor looks along +z, with +y up and +x to the left. Returns the
+// scale of its x axis.
 double set_frame(const MitsubaNode& node, const Vec3d& origin, Camera& camera,
                  WarningLog& warnings) {
   const Affine world = get_transform(node, "to_world");
@@ -65,7 +66,7 @@ double set_frame(const MitsubaNode& node, const Vec3d& origin, Camera& camera,
   return length(x);
 }
 
-// The part of the image plane that the crop shows, moved by the principal point.
+// Sets the part of the image plane that the crop shows, shifted by the principal point.
 void set_window(const MitsubaNode& node, const Film& film, Camera& camera) {
   const double dx = 2 * get_number(node, "principal_point_offset_x", 0);
   const double dy = 2 * get_number(node, "principal_point_offset_y", 0);
@@ -82,7 +83,8 @@ void set_window(const MitsubaNode& node, const Film& film, Camera& camera) {
                           float(y(film.crop_y + film.crop_height)), float(y(film.crop_y))};
 }
 
-// Distances along the view; the defaults, .01 and 10 000, are left at no limit.
+// Distances along the viewing direction; 0 means no limit. Mitsuba's defaults, 0.01 and 10 000, are
+// not applied.
 void set_clip(const MitsubaNode& node, Camera& camera) {
   camera.near_clip = float(get_number(node, "near_clip", 0));
   camera.far_clip = float(get_number(node, "far_clip", 0));
@@ -94,7 +96,7 @@ void set_clip(const MitsubaNode& node, Camera& camera) {
 
 }  // namespace
 
-// Without `fov` by a lens of `focal_length` on film of 36 x 24 mm, whose diagonals match.
+// Without `fov`, a lens of `focal_length` on 36 x 24 mm film of the same diagonal decides.
 double mitsuba_vertical_extent(const MitsubaNode& node, double aspect) {
   std::string axis = get_text(node, "fov_axis", "x");
   std::transform(axis.begin(), axis.end(), axis.begin(),

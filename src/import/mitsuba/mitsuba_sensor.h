@@ -1,4 +1,5 @@
-// Mitsuba's sensor plugins -> cameras.
+// Converts Mitsuba's sensor and film plugins to cameras. Used by MitsubaReader; projector lights
+// share the field of view.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Sensors, Films".
 #pragma once
@@ -8,14 +9,14 @@
 
 namespace troffer {
 
-// tan of half the vertical field of view that a sensor or projector asks for by fov and fov_axis or
-// by focal_length. aspect: width / height. InputError: values that cannot be.
+// Tangent of half the vertical field of view of a sensor or projector, from fov and fov_axis or
+// from focal_length. `aspect` is width / height. Throws InputError for impossible values.
 double mitsuba_vertical_extent(const MitsubaNode& node, double aspect);
 
-// Appends the camera of a <sensor> to the scene, its position counted from the scene's origin; of a
-// batch, those of all sensors in it.
-// Kinds other than perspective, thinlens and orthographic are shown as perspective, with a warning.
-// InputError: angles, sizes and transforms that cannot be.
+// Appends the camera of a <sensor> to the scene, or those of all sensors in a batch. Positions are
+// relative to the scene's origin. Types other than perspective, thinlens and orthographic become
+// perspective cameras, with a warning. Throws InputError for impossible angles, sizes and
+// transforms.
 void add_mitsuba_camera(const MitsubaNode& node, const MitsubaTree& tree, Scene& scene);
 
 }  // namespace troffer

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint16_t magic = 0x041C;
 constexpr uint64_t max_vertices = 180'000'000;
-constexpr size_t chunk = size_t(1) << 16;  // numbers that memory is taken for at once
+constexpr size_t chunk = size_t(1) << 16;  // numbers that are allocated at once
 
 enum Flag : uint32_t {
   has_normals = 0x0001,
@@ -25,7 +25,7 @@ enum Flag : uint32_t {
   double_precision = 0x2000,
 };
 
-// Little-endian data under deflate.
+// Reader of little-endian values from deflated data.
 class Inflated {
  public:
   Inflated(std::span<const uint8_t> data, const std::string& path) : path_(path) {
@@ -52,7 +52,7 @@ class Inflated {
     read(&v, sizeof v);
     return v;
   }
-  // `count` numbers, T in the file.
+  // Reads `count` numbers of type T.
   template <class T>
   std::vector<double> reals(uint64_t count) {
     std::vector<double> out;
@@ -80,7 +80,7 @@ T value_at(std::span<const uint8_t> file, size_t at, const std::string& path) {
   return v;
 }
 
-// Offset of mesh `index`, by the table at the end of the file.
+// Byte offset of mesh `index`, from the table at the end of the file.
 uint64_t offset_of(std::span<const uint8_t> file, size_t index, const std::string& path) {
   const auto version = value_at<uint16_t>(file, 2, path);
   if (value_at<uint16_t>(file, 0, path) != magic || (version != 3 && version != 4))

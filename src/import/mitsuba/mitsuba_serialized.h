@@ -1,4 +1,5 @@
-// Mitsuba's compressed mesh files.
+// Reader of Mitsuba's compressed mesh files (.serialized), which hold several meshes. Used by
+// MitsubaShapes. The data may be hostile: sizes and indices are checked.
 //
 // References: [1] W. Jakob, "Mitsuba 0.6 Documentation", §8.1 (Serialized mesh loader: the file
 //   format, versions 3 and 4).
@@ -13,13 +14,13 @@
 namespace troffer {
 
 struct SerializedMesh {
-  AnchoredMesh mesh;  // normals and (u,v) where the file has some
+  AnchoredMesh mesh;  // with normals and (u,v) if the file has them
   bool has_face_normals = false;
 };
 
-// The mesh number `index` of that file's contents. InputError{path, 0, 0, what}: no such mesh, data
-// that is cut short or broken, indices out of range, more than 60 million triangles. Memory stays
-// in proportion to what the data expand to.
+// Returns mesh number `index` of the file's contents. Throws InputError{path, 0, 0, what} for a
+// missing mesh, truncated or broken data, indices out of range, and more than 60 million triangles.
+// Memory is proportional to the expanded data.
 SerializedMesh read_serialized(std::span<const uint8_t> file, size_t index,
                                const std::string& path);
 

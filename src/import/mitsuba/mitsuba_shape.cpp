@@ -19,7 +19,7 @@ namespace {
 constexpr int cylinder_steps = 64, disk_steps = 128, disk_rings = 16;
 constexpr double flat_tolerance = 1e-6;
 
-// [-1,1]², front +z.
+// The square [-1,1]², front +z.
 Mesh rectangle() {
   Mesh m;
   m.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -28,8 +28,8 @@ Mesh rectangle() {
   return m;
 }
 
-// [-1,1]³, front outside, sides and (u,v) in Mitsuba's order: bit k of a corner's number is the
-// sign of axis k.
+// The cube [-1,1]³, front outside, with faces and (u,v) in Mitsuba's order. Bit k of a corner's
+// number is the sign of axis k.
 Mesh cube() {
   constexpr std::array<uint32_t, 24> corners{1, 5, 4, 0, 3, 2, 6, 7, 1, 3, 7, 5,
                                              5, 7, 6, 4, 4, 6, 2, 0, 3, 1, 0, 2};
@@ -47,7 +47,7 @@ Mesh cube() {
   return m;
 }
 
-// Axes across a cylinder's axis, from whose first one its azimuth counts [3].
+// Axes perpendicular to a cylinder's axis. The azimuth counts from the first one [3].
 struct Across {
   Vec3d x, y;
 };
@@ -56,7 +56,7 @@ Across across(const Vec3d& n) {
   return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
-// The mantle between two points, without ends, front outside: u around, v along.
+// Mantle between two points, without caps, front outside; u runs around and v along.
 Mesh cylinder(const Vec3d& p0, const Vec3d& p1, double radius) {
   const auto [x, y] = across(normalize(p1 - p0));
   Mesh m;
@@ -80,8 +80,8 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// Vertex normals where a mesh has none, the mean of its faces' weighted by their angles, as Mitsuba
-// makes them; left out again where all are those of the faces.
+// Adds vertex normals as Mitsuba does: the mean of the face normals, weighted by their angles. Adds
+// none if all equal the face normals.
 void add_smooth_normals(Mesh& mesh) {
   std::vector<Vec3d> sums(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
@@ -104,7 +104,8 @@ void add_smooth_normals(Mesh& mesh) {
   if (is_flat) return;
   mesh.normals.reserve(sums.size());
   for (const Vec3d& n : sums)
-    mesh.normals.push_back(length(n) > 0 ? Vec3(normalize(n)) : Vec3{});  // mended when placed
+    // zero normals are repaired when placed
+    mesh.normals.push_back(length(n) > 0 ? Vec3(normalize(n)) : Vec3{});
 }
 
 bool belongs_to(const std::string& material, const MitsubaObjPart& part) {
@@ -114,7 +115,7 @@ bool belongs_to(const std::string& material, const MitsubaObjPart& part) {
 
 }  // namespace
 
-// Rings of quads between lines of one azimuth. Those of the innermost ring are triangles.
+// Rings of quads between lines of equal azimuth; the innermost ring has triangles.
 Mesh mitsuba_disk() {
   Mesh m;
   for (int j = 0; j <= disk_rings; ++j) {
@@ -143,7 +144,8 @@ std::string MitsubaShapes::file_path(const MitsubaNode& node) {
   return path.path;
 }
 
-// The file, or what is of one material in it, as one mesh. How materials look Mitsuba says itself.
+// Returns the OBJ file, or its part of one material, as one mesh. The file's own materials are
+// ignored: the scene file sets the look.
 AnchoredMesh MitsubaShapes::read_obj(const std::string& path, const MitsubaObjPart* part) {
   if (last_obj_.path != path) last_obj_ = {path, import_obj(path)};
   const Scene& scene = last_obj_.scene;

@@ -1,4 +1,5 @@
-// Mitsuba's shape plugins -> geometry, in spaces of their own.
+// Converts Mitsuba's shape plugins to geometry in object space. Used by MitsubaReader, which
+// applies to_world. Mesh files are OBJ, PLY and .serialized.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Shapes"; [2] W. Jakob, "Mitsuba 0.6
 //   Documentation", §8.1 (Shapes). [3] T. Duff et al., "Building an Orthonormal Basis, Revisited",
@@ -22,17 +23,16 @@ struct MitsubaShape {
   Vec3d centre;
   double radius = 1;
   bool is_turned = false;  // flip_normals
-  // The front of a mesh without normals is the side that the transform takes its winding's to, not
-  // that of its winding in the world.
+  // For a mesh without normals: a mirroring transform keeps the front, instead of following the
+  // winding in the world.
   bool keeps_side = false;
 };
 
-// The unit disk as triangles with Mitsuba's (u,v): distance from the middle, and azimuth over a
-// turn.
+// The unit disk as triangles with Mitsuba's (u,v): distance from the centre, and azimuth / 2π.
 Mesh mitsuba_disk();
 
-// Of an OBJ file what is of one material, told by its name as MitsubaNode::name has it; of no name
-// what is of none of `others`.
+// Part of an OBJ file: the faces of the material `name`, spelled like MitsubaNode::name. With an
+// empty name, the faces whose material is not in `others`.
 struct MitsubaObjPart {
   std::string name;
   std::vector<std::string> others;
@@ -40,26 +40,26 @@ struct MitsubaObjPart {
 
 class MitsubaShapes {
  public:
-  // Both must outlive this.
+  // Both must outlive this object.
   MitsubaShapes(const MitsubaTree& tree, WarningLog& warnings) : tree_(tree), warnings_(warnings) {}
 
-  // The geometry of a <shape>, without its to_world; nothing, with a warning that names it, where
-  // it is not supported. InputError: parameters or files that cannot be used.
-  // Of an OBJ file all of it, or that part.
+  // Returns the geometry of a <shape> without its to_world; of an OBJ file only `part`, if given.
+  // Returns nothing, with a warning, for unsupported shapes. Throws InputError for unusable
+  // parameters or files.
   std::optional<MitsubaShape> read(const MitsubaNode& node, const MitsubaObjPart* part = nullptr);
-  // The file that a shape names. InputError: it may not be used.
+  // Path of the file that a shape names. Throws InputError if the file must not be used.
   std::string file_path(const MitsubaNode& node);
 
  private:
   const MitsubaTree& tree_;
   WarningLog& warnings_;
-  // The file of serialized meshes that was read last: many shapes in a row come from one.
+  // The last file of serialized meshes: many consecutive shapes come from one file.
   struct LastFile {
     std::string path;
     std::vector<uint8_t> bytes;
   } last_file_;
 
-  // The OBJ file that was read last: its parts may be of many bsdfs.
+  // The last OBJ file: its parts may have different bsdfs.
   struct LastObj {
     std::string path;
     Scene scene;

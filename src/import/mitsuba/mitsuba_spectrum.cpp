@@ -9,9 +9,9 @@ namespace troffer {
 
 namespace {
 
-constexpr int spectrum_steps =
-    1000;  // from the least visible wavelength to the most, both included
-// Mean of the observer's luminance curve over these spectrum_steps, times their range.
+// Samples from the least visible wavelength to the greatest, both included.
+constexpr int spectrum_steps = 1000;
+// Integral of the observer's luminance curve (nm), as the mean of these samples times their range.
 constexpr double luminance_integral = 106.7502593994140625;
 
 Rgb srgb_of(const Vec3d& c) {

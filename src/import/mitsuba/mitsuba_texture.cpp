@@ -27,7 +27,7 @@ WrapMode wrap_mode(const MitsubaNode& node, const std::string& text) {
 
 }  // namespace
 
-// Of all bitmaps: those that nobody uses cost a little time of other cores.
+// Starts to decode all bitmaps. Unused ones cost a little time on other cores.
 MitsubaTextures::MitsubaTextures(Scene& scene, const MitsubaTree& tree)
     : scene_(scene), tree_(tree), loader_(scene) {
   if (!loader_.decodes_ahead()) return;
@@ -45,7 +45,8 @@ int32_t MitsubaTextures::append(Texture texture) {
   return int32_t(scene_.textures.size()) - 1;
 }
 
-// (u,v) -> uv · scale + offset: to_uv of version 2 and 3; uscale … voffset of 0.x.
+// Maps (u,v) to uv · scale + offset: to_uv of versions 2 and 3; uscale, vscale, uoffset, voffset of
+// 0.x.
 void MitsubaTextures::set_coordinates(const MitsubaNode& node, Texture& look) {
   const double both = get_number(node, "uvscale", 1);
   look.uv_scale = {float(get_number(node, "uscale", both)),
@@ -54,7 +55,7 @@ void MitsubaTextures::set_coordinates(const MitsubaNode& node, Texture& look) {
   if (!find_parameter(node, "to_uv")) return;
   const Affine t = get_transform(node, "to_uv");
   const auto &x = t.columns[0], &y = t.columns[1];
-  // Texture has a rotation after the scale: columns scale_u (cos, -sin) and scale_v (sin, cos).
+  // Texture rotates after scaling: columns scale_u (cos, -sin) and scale_v (sin, cos).
   const double determinant = x.x * y.y - x.y * y.x;
   const double su = std::hypot(x.x, x.y), sv = std::copysign(std::hypot(y.x, y.y), determinant);
   look.uv_offset = {float(t.translation.x), float(t.translation.y)};
@@ -105,8 +106,8 @@ Rgb MitsubaTextures::plain(const MitsubaNode& node, std::string_view name, Rgb f
   return fallback;
 }
 
-// Two by two squares on [0,1]², the first colour where both coordinates are in the same half; where
-// one number is asked for, in different halves: Mitsuba's two look-ups differ.
+// Two by two squares on [0,1]², with the first colour where both coordinates are in the same half.
+// If a number is asked for, the colours swap: Mitsuba's lookups of colours and numbers differ.
 ColorInput MitsubaTextures::checkerboard(const MitsubaNode& node) {
   Rgb a = plain(node, "color0", Rgb{0.4f}), b = plain(node, "color1", Rgb{0.2f});
   if (is_number_ && !tree_.is_legacy()) std::swap(a, b);
@@ -146,7 +147,7 @@ ColorInput MitsubaTextures::attribute(const MitsubaNode& node) {
   return {Rgb{0}, no_texture};
 }
 
-// Plugins of one colour: [1], "Spectra".
+// Returns the colour of a spectrum plugin ([1], "Spectra"); nothing for other plugins.
 std::optional<Rgb> MitsubaTextures::spectrum_plugin(const MitsubaNode& node) {
   const std::string& type = node.type;
   if (type == "uniform" || type == "srgb" || type == "constant" || type == "d65" ||
@@ -259,7 +260,7 @@ ColorInput MitsubaTextures::vector(const MitsubaNode& parameter) {
   return value(parameter, SpectrumUse::factor, false);
 }
 
-// Where a number is asked for, colours count by their luminance.
+// Replaces colours by their luminance, for parameters that are numbers.
 int32_t MitsubaTextures::with_grey_texels(int32_t index) {
   const Texture& from = scene_.textures[size_t(index)];
   if (from.kind != TextureKind::image || from.channels < 3) return index;

@@ -1,4 +1,5 @@
-// Colours and numbers of Mitsuba's plugins that may be textures.
+// Colours and numbers of Mitsuba's plugins that may be textures. Used by MitsubaBsdfs and for
+// lights.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Textures"; [2] W. Jakob, "Mitsuba 0.6
 //   Documentation", §8.4 (Textures).
@@ -19,34 +20,34 @@ namespace troffer {
 
 class MitsubaTextures {
  public:
-  // Both must outlive this.
+  // Both must outlive this object.
   MitsubaTextures(Scene& scene, const MitsubaTree& tree);
 
-  // A colour, a texture or a reference to one. What has no counterpart is one colour, with a
-  // warning that names it. InputError: values that cannot be used.
+  // Returns a colour, a texture, or the target of a reference to one. Unsupported textures become
+  // one colour, with a warning. Throws InputError for unusable values.
   ColorInput color(const MitsubaNode& plugin, std::initializer_list<std::string_view> names,
                    Rgb fallback);
-  // A number; the luminance where a colour is given.
+  // Returns a number; of a colour, its luminance.
   FloatInput real(const MitsubaNode& plugin, std::initializer_list<std::string_view> names,
                   float fallback);
   FloatInput real(const MitsubaNode& parameter);
-  // A colour of any size, 0 where there is none.
+  // Returns a colour of any size; 0 if it is not given.
   ColorInput real_color(const MitsubaNode& plugin, std::string_view name);
   ColorInput color(const MitsubaNode& parameter);
-  // The emission of a light.
+  // Returns the emission of a light.
   ColorInput emission(const MitsubaNode& parameter);
-  // Three numbers per place, as of a normal map.
+  // Returns three numbers per texel, as of a normal map.
   ColorInput vector(const MitsubaNode& parameter);
 
-  // The shape whose attributes textures of type mesh_attribute show from now on; null: none, and
-  // they are one colour, with a warning.
+  // Sets the shape whose attributes mesh_attribute textures show from here on. With null, these
+  // textures are black, with a warning.
   void set_attributes(MitsubaAttributes* attributes) { attributes_ = attributes; }
   const MitsubaAttributes* attributes() const { return attributes_; }
-  // Number of attributes shown of that shape.
+  // Number of attribute textures requested for that shape.
   size_t attribute_uses() const { return attributes_ ? attributes_->uses() : 0; }
 
-  // A texture of which every value v of every channel is v / (1 - f + f v): Lambertian reflection
-  // under a coat that is darker than Mitsuba's, made equal to it (mitsuba_bsdf.cpp).
+  // Returns a texture with every value v replaced by v / (1 - f + f v). It makes our coat over a
+  // Lambertian base as bright as Mitsuba's (mitsuba_bsdf.cpp).
   int32_t with_brightened_texels(int32_t texture, float f);
 
  private:
@@ -55,11 +56,11 @@ class MitsubaTextures {
   TextureLoader loader_;
   int depth_ = 0;
 
-  // Rules of the parameter that is being read.
+  // Rules for the parameter that is being read.
   SpectrumUse use_ = SpectrumUse::reflectance;
   bool is_number_ = false;
   MitsubaAttributes* attributes_ = nullptr;
-  std::map<int32_t, int32_t> grey_;  // textures and those of their luminance
+  std::map<int32_t, int32_t> grey_;  // texture -> texture of its luminance
 
   ColorInput value(const MitsubaNode& node, SpectrumUse use, bool is_number);
   ColorInput texture(const MitsubaNode& node);

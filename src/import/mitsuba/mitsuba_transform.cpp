@@ -23,14 +23,14 @@ Vec3d triple(const MitsubaNode& node, const std::string& text) {
   return {n[0], n[1], n[2]};
 }
 
-// Looks along +z from the origin, y up, x to the left.
+// The camera looks along +z from `origin`, with y up and x to the left.
 Affine look_at(const MitsubaNode& node) {
   const Vec3d origin = triple(node, node.attribute("origin"));
   const Vec3d direction = triple(node, node.attribute("target")) - origin;
   Vec3d up = node.has("up") ? triple(node, node.attribute("up")) : Vec3d{0};
   if (!(length(direction) > 0)) node.place.fail("lookat: origin and target are the same point");
   const Vec3d forward = normalize(direction);
-  if (!(length(up) > 0))  // any that is not along the view
+  if (!(length(up) > 0))  // any direction across the view
     up = std::abs(forward.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
   const Vec3d left = cross(up, forward);
   if (!(length(left) > 1e-12 * length(up))) node.place.fail("lookat: up is along the view");

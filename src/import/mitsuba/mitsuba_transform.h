@@ -1,4 +1,5 @@
-// Transforms and vectors of Mitsuba's XML files.
+// Transforms and vectors of Mitsuba's XML files. Used by the readers of values and textures. Angles
+// in files are degrees.
 #pragma once
 
 #include "base/transform.h"
@@ -6,12 +7,12 @@
 
 namespace troffer {
 
-// x, y, z of a node, each `fallback`'s where it is not there; or three numbers (or one for all) as
-// its value. InputError: text that is no number.
+// Returns x, y and z of a node, missing ones from `fallback`; or its value of three numbers, or one
+// for all. Throws InputError for text that is not a number.
 Vec3d vector_attribute(const MitsubaNode& node, const Vec3d& fallback);
 
-// Of a <transform>: its children, the first one applied first. Of an <animation>: the first
-// transform of it. InputError: what is no affine transform.
+// Returns the affine transform of a <transform>: its children, the first one applied first. Of an
+// <animation> it returns the first transform. Throws InputError for anything that is not affine.
 Affine transform_of(const MitsubaNode& node);
 
 }  // namespace troffer

@@ -12,10 +12,10 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_mitsuba_bytes = uint64_t(256) << 20;  // of all files
+constexpr uint64_t max_mitsuba_bytes = uint64_t(256) << 20;  // of all files together
 constexpr size_t max_nodes = 8'000'000;
 constexpr size_t max_element_depth = 64, max_included_files = 200, max_nested_files = 16;
-constexpr size_t max_expanded_bytes = size_t(64) << 20;  // of values with $parameters
+constexpr size_t max_expanded_bytes = size_t(64) << 20;  // of all values with $parameters
 constexpr size_t max_value = size_t(1) << 20;
 
 bool is_upper(char c) {
@@ -25,7 +25,7 @@ bool is_name_character(char c) {
   return is_upper(c) || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-// Where lines begin, to find the place of an offset.
+// Line starts of a file; finds the line and column of an offset.
 class Lines {
  public:
   explicit Lines(std::string_view text) {
@@ -67,7 +67,7 @@ class MitsubaTreeReader {
   void read_root(const std::string& path);
 
  private:
-  // A file while its elements are copied.
+  // A file whose elements are being copied.
   struct Open {
     std::shared_ptr<const std::string> path;
     const Lines& lines;
@@ -79,7 +79,7 @@ class MitsubaTreeReader {
   std::map<std::string, std::string> parameters_;
   uint64_t bytes_ = 0;
   size_t files_ = 0, open_files_ = 0, expanded_bytes_ = 0;
-  // A parameter without <default> that the element asks for which is being read; "": none.
+  // First parameter without <default> in the element that is being read; "" if there is none.
   std::string unknown_;
 
   void read_file_into(const std::string& path, const SourcePlace* from, MitsubaNode& parent,
@@ -134,7 +134,7 @@ void MitsubaTreeReader::read_file_into(const std::string& path, const SourcePlac
   --open_files_;
 }
 
-// Files without a version are of the first ones where they have what only those have.
+// A file without a version counts as 0.2 if it has elements that only such files have.
 void MitsubaTreeReader::set_version(const pugi::xml_node& root) {
   const bool is_first = root.child("camera") || root.child("luminaire");
   const MitsubaVersion version =
@@ -164,7 +164,8 @@ void MitsubaTreeReader::fill(const pugi::xml_node& from, MitsubaNode& node) {
   }
 }
 
-// Mitsuba is given such parameters by its command line; how a picture is made is ours anyway.
+// Mitsuba takes such parameters from its command line. Integrators and samplers have no effect
+// here, so these are left out without a warning.
 void MitsubaTreeReader::leave_out(const MitsubaNode& node, const MitsubaNode& parent) {
   if (node.tag == "include" || node.tag == "default")
     node.place.fail("the parameter $" + unknown_ + " has no <default>");
@@ -189,7 +190,7 @@ void MitsubaTreeReader::add_child(const Open& open, const pugi::xml_node& from, 
   if (!unknown_.empty()) return leave_out(node, to);
   upgrade_.begin(node, to);
   if (node.tag == "default") {
-    parameters_.emplace(node.name, node.attribute("value"));  // the first one counts
+    parameters_.emplace(node.name, node.attribute("value"));  // keeps the first definition
   } else if (node.tag == "include") {
     include(node, to, depth);
   } else if (node.tag == "alias") {
@@ -226,7 +227,7 @@ void MitsubaTreeReader::include(const MitsubaNode& node, MitsubaNode& parent, si
   read_file_into(path.path, &node.place, parent, depth);
 }
 
-// $name and (version 0.x to 3) ${name}.
+// Replaces $name and (versions 0.x to 3) ${name} by the parameter's value.
 std::string MitsubaTreeReader::expanded(std::string_view text, const SourcePlace& place) {
   if (text.find('$') == std::string_view::npos) return std::string(text);
   std::string out;

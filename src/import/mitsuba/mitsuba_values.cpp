@@ -69,7 +69,7 @@ SampledSpectrum spectrum_from_numbers(const MitsubaNode& node, const std::vector
   return s;
 }
 
-// Lines of wavelength and value; # begins a comment.
+// Reads lines of wavelength and value; # begins a comment.
 SampledSpectrum spectrum_file(const MitsubaNode& node, const std::string& folder) {
   const std::string& name = node.attribute("filename");
   const ConfinedPath path = confined_path(folder, name);
@@ -83,7 +83,7 @@ SampledSpectrum spectrum_file(const MitsubaNode& node, const std::string& folder
   return spectrum_from_numbers(node, numbers_of(node, text));
 }
 
-// Nothing where the spectrum is one number for all wavelengths.
+// Returns nothing if the spectrum is one number for all wavelengths.
 std::optional<SampledSpectrum> sampled(const MitsubaNode& node, const std::string& folder) {
   if (node.has("filename")) return spectrum_file(node, folder);
   std::string text = value_of(node);
@@ -108,7 +108,7 @@ struct NamedIndex {
   std::string_view name;
   double index;
 };
-// Indices of refraction at the sodium line, from tables of physics.
+// Indices of refraction at the sodium line, from physics tables.
 constexpr std::array named_indices{
     NamedIndex{"vacuum", 1.0},
     NamedIndex{"helium", 1.000036},
@@ -163,7 +163,7 @@ std::vector<double> numbers_of(const MitsubaNode& node, const std::string& text)
     if (*at == '+') ++at;
     double value = 0;
     const auto result = std::from_chars(at, end, value);
-    // Some writers put the f of C's floats behind.
+    // Some writers append the f of C's float literals.
     const char* const next = result.ptr < end && *result.ptr == 'f' ? result.ptr + 1 : result.ptr;
     if (result.ec != std::errc() || !std::isfinite(value) || (next < end && !is_separator(*next)))
       node.place.fail("'" + shortened(std::string(at, end)) + "' is no number");
@@ -246,7 +246,7 @@ Rgb color_of(const MitsubaNode& node, const std::string& folder, WarningLog& war
     return not_negative(node, rgb_from_text(node, text), warnings);
   if (node.tag == "srgb") {
     const Rgb c = rgb_from_text(node, text);
-    if (text.starts_with('#')) return c;  // linear already
+    if (text.starts_with('#')) return c;  // already linear
     return not_negative(node, {linear_from_srgb(c.r), linear_from_srgb(c.g), linear_from_srgb(c.b)},
                         warnings);
   }

@@ -1,4 +1,5 @@
-// The world: shapes, materials, lights and objects; and the table of all directives.
+// Directives inside the world (shapes, materials, lights, objects), and the table of all
+// directives.
 #include "import/pbrt/pbrt.h"
 
 #include <algorithm>
@@ -36,9 +37,10 @@ void PbrtInterpreter::on_object_instance(const PbrtToken& word, PbrtTokenizer& t
     placer_.place_instance(shape, state_.transform, place);
 }
 
-// The materials that a mix names must be there already, which keeps it from containing itself.
+// Resolves the two materials of a mix. They must be defined earlier, so a mix cannot contain
+// itself.
 void PbrtInterpreter::resolve_mix(PbrtMaterial& material) const {
-  constexpr int most_depth = 8;  // each may double the parts
+  constexpr int most_depth = 8;  // each level may double the number of materials
   if (material.type != "mix") return;
   const PbrtParam* names = material.params.find("materials");
   if (!names || names->strings.size() != 2)

@@ -1,4 +1,5 @@
-// pbrt-v4 scene files.
+// Importer of pbrt-v4 scene files (.pbrt). Called by import_scene (import/import.h). Lengths stay
+// in the units of the file; emission is radiance in W/(m² sr).
 //
 // References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
 #pragma once
@@ -10,15 +11,17 @@
 
 namespace troffer {
 
-// The scene a .pbrt file describes, in its own (left-handed) world; emission in W/(m² sr).
-// Files it names are looked up in its folder and never outside. Shapes, materials, textures and
-// lights that are not supported are warnings that name them. Lights are called emitter0,
-// emitter1 … in the order of the shapes that emit.
-// The front of a surface, which alone emits unless the light is twosided, is the side of pbrt's
-// surface normal [1]: per-vertex normals decide where a mesh has some, else its winding or, for
-// quadrics, the outside (disk: +z); ReverseOrientation turns it, and so does a transform that
-// mirrors (but not where there are per-vertex normals).
-// InputError: with line and column, for anything malformed.
+// Returns the scene that a .pbrt file describes, in the file's own (left-handed) world. Files that
+// it names are looked up in its folder and never outside. Every unsupported shape, material,
+// texture or light adds a warning that names it. Lights are named emitter0, emitter1, … in the
+// order of the emitting shapes.
+//
+// A surface emits from its front, and from both sides if its light is twosided. The front is the
+// side of pbrt's surface normal [1]. Per-vertex normals decide if a mesh has them. Otherwise the
+// winding decides, or for quadrics the outside (disk: +z). ReverseOrientation swaps the sides. A
+// mirroring transform swaps them too, unless there are per-vertex normals.
+//
+// Throws InputError, with line and column, for malformed files.
 Scene import_pbrt(const std::string& path, ImageUse images = ImageUse::read);
 
 }  // namespace troffer

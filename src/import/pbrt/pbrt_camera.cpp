@@ -20,9 +20,9 @@ int resolution(const PbrtParams& params, const char* name, int fallback) {
   return n;
 }
 
-// A position from `origin`, far from which it went through the transform and back: what is left of
-// that in the last digits of the doubles is taken off, so that a camera on a plane of its scene's
-// coordinates stays there.
+// Position relative to `origin`. The position has gone through the camera transform and its inverse
+// in world coordinates, which leaves an error in the last digits of a far position. Rounding
+// removes it, so that a camera on a coordinate plane of its scene stays there.
 Vec3d from_origin(const Vec3d& p, const Vec3d& origin) {
   if (origin == Vec3d{}) return p;
   const Vec3d reach = abs(origin);
@@ -33,7 +33,8 @@ Vec3d from_origin(const Vec3d& p, const Vec3d& origin) {
   return out;
 }
 
-// Position and axes; returns the uniform part of the scale, in metres per unit of camera space.
+// Sets position and axes. Returns the uniform part of the scale, in world units per unit of camera
+// space.
 double set_frame(Camera& camera, const Affine& camera_from_world, const Vec3d& origin,
                  const PbrtParams& params, WarningLog& warnings) {
   const double determinant = camera_from_world.determinant();
@@ -51,7 +52,7 @@ double set_frame(Camera& camera, const Affine& camera_from_world, const Vec3d& o
                 std::abs(dot(forward, right)) / (sz * sx)});
   if (differs(sx) || differs(sy) || differs(sz) || skew > 1e-3)
     warnings.add("the camera's transform stretches or shears: shown without");
-  // Orthonormal to the last bit, in the handedness of the file.
+  // Makes the axes orthonormal to the last bit, with the handedness of the file.
   const Vec3d f = forward / sz;
   const Vec3d r = normalize(right - f * dot(right, f));
   const Vec3d u = cross(f, r);
@@ -62,7 +63,7 @@ double set_frame(Camera& camera, const Affine& camera_from_world, const Vec3d& o
   return scale;
 }
 
-// cropwindow in parts of the picture, or pixelbounds.
+// Pixels x0 x1 y0 y1 of cropwindow (fractions of the picture) or pixelbounds (pixels).
 std::array<int, 4> film_window(const PbrtParams& params, const PbrtFilm& film) {
   std::array<int, 4> window{0, film.width, 0, film.height};
   const std::array<int, 4> sizes{film.width, film.width, film.height, film.height};
@@ -81,7 +82,7 @@ std::array<int, 4> film_window(const PbrtParams& params, const PbrtFilm& film) {
   return window;
 }
 
-// The part of the image plane that the film's window shows.
+// Reduces the picture and the image plane to the film's window.
 void crop_screen_window(Camera& camera, const PbrtFilm& film) {
   const auto& w = film.window;
   camera.width = w[1] - w[0];
@@ -99,7 +100,8 @@ void crop_screen_window(Camera& camera, const PbrtFilm& film) {
   camera.screen_window = {x(w[0]), x(w[1]), y(w[3]), y(w[2])};
 }
 
-// A thin lens of the same focal length, opening and focus, told of.
+// Approximates a realistic camera by a thin lens of the same focal length, aperture and focus, and
+// adds a warning that says so.
 void set_realistic_lens(Camera& camera, const PbrtParams& params, const PbrtFilm& film,
                         double scale, const std::string& folder, WarningLog& warnings) {
   const std::string file = params.get_string("lensfile", "");

@@ -19,7 +19,7 @@ struct NamedPrimaries {
 constexpr Chromaticity d65 = srgb_primaries.white;
 
 constexpr std::array<NamedPrimaries, 4> all_primaries{{
-    // [2], as PbrtColorSpace counts them
+    // Indexed by PbrtColorSpace; values from [2].
     {"srgb", srgb_primaries},
     {"rec2020", {{{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}}}, d65}},
     {"dci-p3", {{{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}}}, d65}},
@@ -46,7 +46,7 @@ void to_srgb(PbrtParam& param, PbrtColorSpace space, bool shines) {
   const Affine matrix = srgb_from(all_primaries[size_t(space)].primaries, !shines);
   for (size_t i = 0; i + 2 < param.numbers.size(); i += 3) {
     const Vec3d c = matrix.vector({param.numbers[i], param.numbers[i + 1], param.numbers[i + 2]});
-    // A white stays one to the last digit, where it would be a rounding above 1 and be clamped.
+    // Rounds values next to 0 and 1, so that white is not clamped for a rounding error above 1.
     for (size_t k = 0; k < 3; ++k)
       param.numbers[i + k] = std::abs(c[k] - 1) < 1e-7 ? 1 : std::abs(c[k]) < 1e-7 ? 0 : c[k];
   }

@@ -11,12 +11,12 @@ namespace troffer {
 namespace {
 
 constexpr int tube_sides = 6;
-constexpr double most_turn_rad = 0.2;  // of a cell of a tube
-constexpr int most_cells = 16;         // of a segment
+constexpr double most_turn_rad = 0.2;  // turn of the curve per cell
+constexpr int most_cells = 16;         // per segment
 
 struct PbrtCurve {
   std::vector<std::array<Vec3d, 4>> segments;  // cubic Bézier
-  std::vector<Vec3d> normals;                  // at the segments' ends; empty: a tube
+  std::vector<Vec3d> normals;                  // at the segment ends; empty for a tube
   double width0 = 1, width1 = 1;
 };
 
@@ -24,7 +24,7 @@ std::array<Vec3d, 4> cubic_of_quadratic(const Vec3d& a, const Vec3d& b, const Ve
   return {a, a * (1.0 / 3) + b * (2.0 / 3), b * (2.0 / 3) + c * (1.0 / 3), c};
 }
 
-// The piece of a uniform B-spline that begins at that control point, as a Bézier.
+// Segment of the curve from control point `i` on, as a cubic Bézier curve.
 std::array<Vec3d, 4> piece(const std::vector<Vec3d>& p, size_t i, size_t degree, bool is_bezier) {
   if (degree == 2) {
     if (is_bezier) return cubic_of_quadratic(p[i], p[i + 1], p[i + 2]);
@@ -92,7 +92,7 @@ CurvePoint at(const std::array<Vec3d, 4>& s, double t) {
                                : Vec3d{0, 0, 1}};
 }
 
-// Cells along a segment: by how far its control polygon turns.
+// Number of cells along a segment, from the total turn of its control polygon.
 int cells_of(const std::array<Vec3d, 4>& s) {
   double turn = 0;
   Vec3d last;
@@ -107,10 +107,10 @@ int cells_of(const std::array<Vec3d, 4>& s) {
   return std::clamp(int(std::ceil(turn / most_turn_rad)), 1, most_cells);
 }
 
-// One ring of a tube, or the two ends of a strip's rung.
+// One ring of a tube, or two opposite points of a ribbon.
 struct Rung {
   CurvePoint point;
-  Vec3d side;  // perpendicular to the tangent; a strip's normal
+  Vec3d side;  // perpendicular to the tangent; the normal of a ribbon
   double width = 0, v = 0;
 };
 
@@ -126,7 +126,7 @@ void append_rung(Mesh& mesh, const Rung& r, bool is_strip) {
     add(r.point.position + other * (r.width / 2), r.side, 1);
     return;
   }
-  // The mean width of a prism is its perimeter over pi.
+  // The mean projected width of a convex prism is its perimeter divided by pi.
   const double radius = r.width / 2 * pi / (tube_sides * std::sin(pi / tube_sides));
   for (int k = 0; k <= tube_sides; ++k) {
     const double phi = 2 * pi * (k % tube_sides) / tube_sides;
@@ -135,7 +135,7 @@ void append_rung(Mesh& mesh, const Rung& r, bool is_strip) {
   }
 }
 
-// Perpendicular to the tangent and as near `wanted` as can be.
+// Unit vector perpendicular to the tangent and as close to `wanted` as possible.
 Vec3d side_of(const Vec3d& tangent, const Vec3d& wanted) {
   const Vec3d flat = wanted - tangent * dot(wanted, tangent);
   const double size = length(flat);
@@ -163,7 +163,7 @@ AnchoredMesh read_pbrt_curve(const PbrtParams& params, size_t max_triangles, War
       r.point = at(curve.segments[i], t);
       r.v = (double(i) + t) / double(n);
       r.width = curve.width0 + (curve.width1 - curve.width0) * r.v;
-      // A tube's side is carried along, so that the tube does not twist.
+      // A tube carries its side vector along, so that it does not twist.
       r.side = side = side_of(
           r.point.tangent, is_strip ? curve.normals[i] * (1 - t) + curve.normals[i + 1] * t : side);
       append_rung(mesh, r, is_strip);

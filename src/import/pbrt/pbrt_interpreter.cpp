@@ -1,4 +1,4 @@
-// The frame: files, blocks, transforms and what stands before WorldBegin.
+// Files, blocks, transforms and the directives before WorldBegin.
 #include "import/pbrt/pbrt_interpreter.h"
 
 #include <algorithm>
@@ -14,7 +14,8 @@ namespace troffer {
 namespace {
 
 constexpr size_t max_include_depth = 64;
-constexpr size_t max_files = 20'000;  // together: files that include each other twice end soon
+// bounds the exponential growth of files that include each other twice
+constexpr size_t max_files = 20'000;
 constexpr size_t max_open_blocks = 100'000;
 
 }  // namespace
@@ -84,7 +85,7 @@ void PbrtInterpreter::run_directive(const PbrtToken& word, PbrtTokenizer& tokens
 }
 
 std::string PbrtInterpreter::parse_string(const PbrtToken& word, PbrtTokenizer& tokens) {
-  // Older files put single strings in brackets too.
+  // Some files put single strings in brackets.
   const bool has_brackets = tokens.peek().kind == PbrtTokenKind::open_bracket;
   if (has_brackets) tokens.next();
   const PbrtToken token = tokens.next();
@@ -139,7 +140,7 @@ void PbrtInterpreter::on_include(const PbrtToken& word, PbrtTokenizer& tokens) {
   run_file(path.path, &place);
 }
 
-// An imported file leaves the graphics state as it was.
+// Runs an imported file and restores the graphics state afterwards.
 void PbrtInterpreter::on_import(const PbrtToken& word, PbrtTokenizer& tokens) {
   need_world(word, tokens);
   const State before = state_;
@@ -168,7 +169,7 @@ void PbrtInterpreter::on_attribute(const PbrtToken& word, PbrtTokenizer& tokens)
     fail_at(place, "Attribute: unknown target \"" + target + "\"");
   const PbrtParams params = parse_params(tokens, "Attribute", place, scene_.warnings);
   Defaults defaults = *state_.defaults;
-  // The newest come first: they are found before older ones.
+  // Newer defaults stand first, so that a lookup finds them before older ones.
   std::vector<PbrtParam> list;
   for (PbrtParam param : params.all()) {
     param.is_default = true;
@@ -234,14 +235,15 @@ void PbrtInterpreter::on_film(const PbrtToken& word, PbrtTokenizer& tokens) {
   film_ = read_pbrt_film(type, parse_typed(word, tokens, type, "film"), scene_.warnings);
 }
 
-// Sampler, Integrator, PixelFilter, Accelerator: how to make an image is the command line's matter.
+// Sampler, Integrator, PixelFilter and Accelerator are ignored: the command line sets how to
+// render.
 void PbrtInterpreter::on_sampling(const PbrtToken& word, PbrtTokenizer& tokens) {
   need_options(word, tokens);
   const std::string type = parse_string(word, tokens);
   parse_typed(word, tokens, type, "");
 }
 
-// What concerns how pbrt itself goes about it needs no mention; what changes its pictures does.
+// Ignores options that only change how pbrt works; warns of those that change its pictures.
 void PbrtInterpreter::on_option(const PbrtToken& word, PbrtTokenizer& tokens) {
   constexpr std::array<std::string_view, 8> of_no_consequence{"disablepixeljitter",
                                                               "disablewavelengthjitter",

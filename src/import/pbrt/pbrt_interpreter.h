@@ -1,4 +1,6 @@
-// Carries out the directives of pbrt files, one after the other.
+// Interpreter of pbrt files: carries out one directive after the other and adds to a scene. Used by
+// import_pbrt. Its functions are in pbrt.cpp (the world) and pbrt_interpreter.cpp (everything
+// else).
 //
 // References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
 #pragma once
@@ -20,11 +22,12 @@ namespace troffer {
 class PbrtInterpreter {
  public:
   PbrtInterpreter(Scene& scene, const std::string& path, PlacedBounds& bounds);
-  // The whole file and what it includes. InputError as import_pbrt.
+  // Reads the whole file and all files that it includes. Throws InputError as import_pbrt does.
   void run();
 
  private:
-  using Defaults = std::map<std::string, std::vector<PbrtParam>>;  // by target of Attribute
+  // by target of the Attribute directive
+  using Defaults = std::map<std::string, std::vector<PbrtParam>>;
   struct State {
     Affine transform;  // at the start of the shutter interval
     bool is_reversed = false;
@@ -32,7 +35,7 @@ class PbrtInterpreter {
     std::shared_ptr<const PbrtAreaLight> light;
     std::shared_ptr<const Defaults> defaults;
     bool is_start_active = true, is_end_active = true;
-    Rgb absorption{0};  // of the medium inside shapes
+    Rgb absorption{0};  // of the medium inside shapes, per metre
     PbrtColorSpace color_space = PbrtColorSpace::srgb;
   };
   enum class Block { attribute, object };
@@ -55,7 +58,7 @@ class PbrtInterpreter {
     std::map<std::string, Affine> coordinate_systems;
     std::map<std::string, std::shared_ptr<PbrtMaterial>> materials;
     std::map<std::string, std::vector<PbrtShape>> objects;
-    std::map<std::string, Rgb> media;  // by what they absorb
+    std::map<std::string, Rgb> media;  // absorption per metre
   } named_;
   std::vector<PbrtShape>* open_object_ = nullptr;
   struct Files {
@@ -64,7 +67,7 @@ class PbrtInterpreter {
     uint64_t bytes_read = 0;
   } files_;
 
-  // Read before the world begins; the camera waits for the film.
+  // Read before WorldBegin. The camera is made there, when the film is known.
   PbrtFilm film_;
   struct PendingCamera {
     std::string type;

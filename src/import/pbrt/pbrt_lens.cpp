@@ -27,7 +27,7 @@ PbrtLens read_pbrt_lens(const std::string& path, double aperture_mm) {
   }
   if (numbers.empty() || numbers.size() % numbers_per_surface != 0)
     throw InputError(path, 0, 0, "a lens has four numbers for each surface");
-  // A ray that comes in parallel to the axis at height 1: its height, and slope times index [2].
+  // Traces a paraxial ray that enters at height 1: its height, and its slope times the index [2].
   double height = 1, slope = 0, index = 1, at_stop = 1, stop_mm = aperture_mm;
   for (size_t i = 0; i < numbers.size(); i += numbers_per_surface) {
     const double radius = numbers[i], thickness = numbers[i + 1];

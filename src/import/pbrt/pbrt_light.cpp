@@ -28,7 +28,7 @@ class PbrtLightReader {
     return place(e, vector("from", {})) ? std::optional(e) : std::nullopt;
   }
 
-  // Whole up to coneangle - conedeltaangle, dark from coneangle on [1].
+  // Full intensity within coneangle - conedeltaangle; dark beyond coneangle [1].
   std::optional<Light> spot() {
     Light e;
     e.kind = LightKind::spot;
@@ -51,7 +51,7 @@ class PbrtLightReader {
     return turn(e, to - from) ? std::optional(e) : std::nullopt;
   }
 
-  // Intensity by an equal-area image of all directions, whose z is the light's own y [1].
+  // Intensity from an equal-area image of all directions. The image's z is the light's y [1].
   std::optional<Light> goniometric() {
     Light e;
     e.kind = LightKind::point;
@@ -74,7 +74,7 @@ class PbrtLightReader {
     return place(e, {}) ? std::optional(e) : std::nullopt;
   }
 
-  // A slide: the shorter side spans `fov`, and its top is towards the light's own y [1].
+  // Slide projector: the image's shorter side spans `fov`; its top points along the light's y [1].
   std::optional<Light> projection() {
     Light e;
     e.kind = LightKind::point;
@@ -115,7 +115,7 @@ class PbrtLightReader {
     if (!read_image(file) || !set_axes(e)) return std::nullopt;
     const EnvironmentMap& map = scene_.environments.back();
     e.environment = int32_t(scene_.environments.size()) - 1;
-    // Of a horizontal plane in the image's own space.
+    // Irradiance on a horizontal plane in the image's own space.
     const auto mean = double(luminance(irradiance_from_above(map)));
     e.radiance = Rgb{1} * scale_with("illuminance", mean > 0 ? mean : 1);
     return e;
@@ -127,7 +127,8 @@ class PbrtLightReader {
     return p != nullptr ? emission_value(*p, context_) : Rgb{1};
   }
 
-  // scale; where `name` is given, over what a light of 1 brings of it.
+  // Returns `scale`. If the parameter `name` is given, returns the factor that reaches that total;
+  // `of_one` is the total of a light of value 1.
   float scale_with(const char* name, double of_one) {
     const double scale = params_.get_float("scale", 1);
     if (!(scale >= 0)) fail_at(params_.find("scale")->place, "scale must not be negative");
@@ -151,8 +152,8 @@ class PbrtLightReader {
     return p;
   }
 
-  // A rectangle in the world whatever the transform is, counterclockwise seen from where its light
-  // arrives [2].
+  // Portal rectangle, in world space whatever the light's transform is. Its corners run
+  // counterclockwise as seen from the side that its light reaches [2].
   std::vector<Vec3> portal() {
     const std::vector<double>& v = params_.numbers("portal", PbrtType::point3);
     if (v.empty()) return {};
@@ -179,7 +180,7 @@ class PbrtLightReader {
     return true;
   }
 
-  // The image's axes in the world: the transform without its scale.
+  // Sets the image's axes in the world: the transform without its scale.
   bool set_axes(Light& e) {
     const auto& c = transform_.columns;
     const Vec3d z = normalize(c[2]);
@@ -253,7 +254,7 @@ std::optional<Light> read_pbrt_light(const std::string& type, const PbrtParams& 
   if (light)
     params.warn_unread(context.warnings);
   else
-    params.ignore_all();  // why it is left out has been told
+    params.ignore_all();  // a warning has already given the reason
   if (light && !is_finite(light->radiance)) {
     context.warnings.add("LightSource too bright for a number: left out");
     light.reset();

@@ -54,7 +54,7 @@ Rgb PbrtMaterials::read_medium(const std::string& type, const PbrtParams& params
     const PbrtParam* p = params.find(name);
     return p ? factor_value(*p, textures.spectrum_context()) : fallback;
   };
-  // Without numbers pbrt takes those of a substance.
+  // pbrt's default coefficients of a medium.
   const Rgb absorbed = color("sigma_a", Rgb{0.0011f, 0.0024f, 0.014f}),
             scattered = color("sigma_s", Rgb{2.55f, 3.21f, 3.77f});
   const auto scale = float(params.get_float("scale", 1));
@@ -112,8 +112,8 @@ void PbrtMaterials::read_conductor(const PbrtParams& params, Material& m,
   m.k = k ? conductor_value(*k, textures.spectrum_context()) : *named_metal("metal-Cu-k");
 }
 
-// How pbrt walks within the coat makes no difference to the whole of its walks; what scatters in it
-// does.
+// Parameters of pbrt's random walk in the coat do not change its expected value and are ignored. A
+// scattering medium in the coat does, and adds a warning.
 void PbrtMaterials::warn_of_coat_medium(const PbrtParams& params) {
   params.ignore({"thickness", "g", "maxdepth", "nsamples"});
   const PbrtParam* albedo = params.find("albedo");
@@ -134,7 +134,7 @@ Material PbrtMaterials::make_coated_conductor(const PbrtParams& params) {
   return m;
 }
 
-// Two diffuse ones are exactly one of the mixed colours.
+// Blends two diffuse materials exactly; otherwise returns the one with more weight, with a warning.
 Material PbrtMaterials::make_mix(const PbrtMaterial& material) {
   FloatInput amount = textures.real(material.params, "amount", 0.5f);
   material.params.ignore({"materials"});
@@ -148,7 +148,7 @@ Material PbrtMaterials::make_mix(const PbrtMaterial& material) {
   return share < 0.5f ? first : second;
 }
 
-// The albedo of what scatters below the surface, under its boundary.
+// Approximates subsurface scattering by a diffuse albedo under a smooth or rough boundary.
 Material PbrtMaterials::make_subsurface(const PbrtParams& params) {
   Material m;
   m.kind = MaterialKind::coated_diffuse;
@@ -163,7 +163,7 @@ Material PbrtMaterials::make_subsurface(const PbrtParams& params) {
   return m;
 }
 
-// Heights in metres, shown by the shading normal, as pbrt does. Even ones change nothing.
+// Reads displacement (metres) as a bump map, as pbrt does. Constant heights have no effect.
 void PbrtMaterials::read_bump(const PbrtParams& params, Material& m) {
   const FloatInput height = textures.real(params, "displacement", 0);
   if (height.texture >= 0) m.bump = height;

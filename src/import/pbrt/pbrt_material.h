@@ -1,4 +1,5 @@
-// pbrt materials -> scene materials, made when a shape first wears them.
+// Converts pbrt materials to scene materials, each when a shape first uses it. Used by
+// PbrtInterpreter and PbrtPlacer.
 //
 // References: [1] pbrt-v4 Input File Format, section "Materials", pbrt.org/fileformat-v4.
 #pragma once
@@ -15,17 +16,17 @@
 
 namespace troffer {
 
-// What a Material or MakeNamedMaterial directive says; several shapes share one.
+// A Material or MakeNamedMaterial directive; several shapes may share one.
 struct PbrtMaterial {
   std::string name, type;
   PbrtParams params;
-  std::vector<std::shared_ptr<const PbrtMaterial>> mixed;  // the two of a mix
-  int depth = 0;                                           // of mixes within it
-  int32_t index = -1;                                      // in Scene::materials, once made
-  // Copies, by texture × factor of alpha and by what is absorbed inside.
+  std::vector<std::shared_ptr<const PbrtMaterial>> mixed;  // the two materials of a mix
+  int depth = 0;                                           // nesting depth of mixes
+  int32_t index = -1;                                      // in Scene::materials; -1 until made
+  // Indices of copies, by alpha texture, alpha factor and absorption.
   std::map<std::array<float, 5>, uint32_t> copies;
 
-  // An interface between media: not there for light.
+  // True for an interface between media, which light passes unchanged.
   bool is_interface() const { return type.empty() || type == "none" || type == "interface"; }
 };
 
@@ -36,16 +37,18 @@ class PbrtMaterials {
 
   PbrtTextures textures;
 
-  // Index in Scene::materials. InputError: parameters of wrong type, unknown textures.
+  // Returns the index in Scene::materials. Throws InputError for parameters of the wrong type and
+  // unknown textures.
   uint32_t index_of(PbrtMaterial& material);
-  // The same material, met by the share `alpha` of rays, around a medium that absorbs so much per
+  // Returns the index of a copy with coverage `alpha`, around a medium with that absorption per
   // metre.
   uint32_t index_of_copy(PbrtMaterial& material, const std::optional<FloatInput>& alpha,
                          Rgb absorption);
-  // The material for meshes whose (u,v) run clockwise. pbrt's y of a normal map is normal × x there
-  // too (its materials.h, NormalMap), the scene's runs up the image: green is turned round.
+  // Returns the index of a copy for meshes whose (u,v) run clockwise. pbrt's y of a normal map is
+  // normal × x there too (its materials.h, NormalMap), but the scene's runs up the image. The copy
+  // inverts the green channel.
   uint32_t with_turned_normals(uint32_t material);
-  // What a medium absorbs per metre; nothing of those that are left out, with a warning.
+  // Absorption of a medium per metre. Unsupported media add a warning and absorb nothing.
   Rgb read_medium(const std::string& type, const PbrtParams& params);
 
  private:
@@ -53,7 +56,7 @@ class PbrtMaterials {
   std::map<uint32_t, uint32_t> turned_;  // by material
 
   Material make(const PbrtMaterial& material);
-  // Of parameters whose names begin with `prefix`.
+  // The next two read parameters whose names begin with `prefix`.
   void read_roughness(const PbrtParams& params, Material& m, const std::string& prefix = "");
   void read_conductor(const PbrtParams& params, Material& m, const std::string& prefix = "");
   Material make_coated_conductor(const PbrtParams& params);
@@ -64,7 +67,7 @@ class PbrtMaterials {
   void read_bump(const PbrtParams& params, Material& m);
 };
 
-// Whether anything in that material depends on (u,v).
+// True if any input of the material depends on (u,v).
 bool is_textured(const Material& material);
 
 }  // namespace troffer

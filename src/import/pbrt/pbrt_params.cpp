@@ -12,7 +12,7 @@ struct TypeRow {
   std::string_view word;
   PbrtType type;
 };
-// The words a file may use; the first word of each type is the one for messages.
+// Type names that a file may use. The first row of each type gives its name in messages.
 constexpr std::array type_rows{
     TypeRow{"integer", PbrtType::integer},
     TypeRow{"float", PbrtType::real},
@@ -32,7 +32,7 @@ constexpr std::array type_rows{
     TypeRow{"texture", PbrtType::texture},
 };
 
-// Numbers come in groups of this many.
+// Numbers per value of a type.
 size_t group_size(PbrtType type) {
   switch (type) {
     case PbrtType::point2:
@@ -68,7 +68,7 @@ PbrtType find_type(std::string_view word, const PbrtPlace& place) {
   fail_at(place, "unknown parameter type " + in_quotes(word.substr(0, 40)));
 }
 
-// "type name" of a declaration, blanks between.
+// Parses the "type name" of a declaration, which are separated by blanks.
 PbrtParam parse_declaration(const PbrtToken& token, const PbrtPlace& place) {
   const std::string_view text = token.text;
   const auto blank = " \t";

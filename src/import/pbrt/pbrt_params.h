@@ -1,4 +1,5 @@
-// Parameter lists of pbrt directives: "type name" followed by values, checked by type.
+// Parameter lists of pbrt directives: "type name" followed by values, checked by type. Used by all
+// readers of this folder.
 //
 // References: [1] pbrt-v4 Input File Format, section "Parameter Lists", pbrt.org/fileformat-v4.
 #pragma once
@@ -24,7 +25,7 @@ enum class PbrtType {
   vector3,
   normal,
   rgb,
-  spectrum,  // numbers: wavelength (nm), value pairs; or one string: a name or a file
+  spectrum,  // numbers: pairs of wavelength (nm) and value; or one string: a name or a file
   blackbody,
   boolean,
   string,
@@ -38,12 +39,13 @@ struct PbrtParam {
   std::vector<double> numbers;
   std::vector<std::string> strings;
   std::vector<bool> booleans;
-  bool is_default = false;       // comes of an Attribute directive
-  mutable bool is_read = false;  // somebody asked for it
+  bool is_default = false;       // set by an Attribute directive
+  mutable bool is_read = false;  // a reader has asked for it
 };
 
-// The parameters of one directive. Getters mark what they return as read, and throw InputError at
-// the parameter's place where type, number of values or a value (not finite) is wrong.
+// The parameters of one directive. Getters mark the parameters that they return as read. They throw
+// InputError, at the parameter's place, for a wrong type or number of values and for values that
+// are not finite.
 class PbrtParams {
  public:
   std::string owner;  // for messages: Shape "sphere"
@@ -56,7 +58,7 @@ class PbrtParams {
     for (PbrtParam& param : params_) change(param);
   }
 
-  // The first parameter of that name, or none.
+  // Returns the first parameter of that name, or null.
   const PbrtParam* find(std::string_view name) const;
   bool has(std::string_view name) const { return find(name) != nullptr; }
 
@@ -65,26 +67,26 @@ class PbrtParams {
   bool get_bool(std::string_view name, bool fallback) const;
   std::string get_string(std::string_view name, const std::string& fallback) const;
 
-  // All numbers of a parameter of one of the given types; none = empty. The count is a multiple of
-  // the type's size; values may be infinite or NaN.
+  // Returns all numbers of a parameter of that type; empty if it is absent. Their count is a
+  // multiple of the type's size. Values may be infinite or NaN.
   const std::vector<double>& numbers(std::string_view name, PbrtType type) const;
 
-  // Known and of no consequence here.
+  // Marks parameters as read that are known and have no effect here.
   void ignore(std::initializer_list<std::string_view> names) const;
   void ignore_all() const;
-  // A counted warning for every parameter nobody asked for.
+  // Adds a counted warning for every parameter that has not been read.
   void warn_unread(WarningLog& warnings) const;
 
  private:
   std::vector<PbrtParam> params_;
 };
 
-// What the file calls a type.
+// Name of a type in pbrt files.
 const char* type_name(PbrtType type);
 
-// Reads `"type name" values` pairs up to the next thing that is not a string.
-// InputError: malformed declarations, unknown types (pbrt-v3's are named as such), values that do
-// not fit the type, values missing.
+// Reads `"type name" values` pairs up to the next token that is not a string. Throws InputError for
+// malformed declarations, unknown types (those of pbrt-v3 are named as such), missing values, and
+// values that do not fit the type.
 PbrtParams parse_params(PbrtTokenizer& tokens, std::string owner, const PbrtPlace& place,
                         WarningLog& warnings);
 

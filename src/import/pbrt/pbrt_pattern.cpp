@@ -1,4 +1,4 @@
-// Patterns and noise of pbrt files (PbrtTextures).
+// Procedural patterns and noise (part of PbrtTextures).
 #include <algorithm>
 
 #include "import/pbrt/pbrt_texture.h"
@@ -16,7 +16,7 @@ Vec3d vector_of(const PbrtParams& params, std::string_view name, const Vec3d& fa
 
 }  // namespace
 
-// What becomes the texture's (u,v), or its place in space.
+// Reads how a texture maps (u,v) or a position in space to its own coordinates.
 void PbrtTextures::read_mapping(const Named& texture, bool is_solid, Texture& look) {
   const PbrtParams& params = texture.params;
   const std::string mapping = is_solid ? "" : params.get_string("mapping", "uv");

@@ -16,12 +16,12 @@ bool is_similarity(const Affine& t) {
   return keeps_circles(t, 0, 1) && keeps_circles(t, 1, 2) && keeps_circles(t, 2, 0);
 }
 
-// In triangles; vertices without triangles cost memory too.
+// Cost in triangles. Vertices without triangles cost memory too.
 size_t cost_of(const Mesh& mesh) {
   return std::max(mesh.triangles.size(), mesh.positions.size() / 3);
 }
 
-// How many triangles have (u,v) that run clockwise on their front.
+// Number of triangles whose (u,v) run clockwise on their front.
 size_t count_turned(const Mesh& mesh) {
   if (mesh.uvs.empty()) return 0;
   size_t n = 0;
@@ -32,7 +32,7 @@ size_t count_turned(const Mesh& mesh) {
   return n;
 }
 
-// Mean luminance of an image, which pbrt divides a given power by.
+// Mean luminance of an image. pbrt divides a given power by it.
 double mean_luminance(const Scene& scene, int32_t texture) {
   const Texture& t = scene.textures[size_t(texture)];
   if (t.kind != TextureKind::image) return luminance(t.value);
@@ -93,15 +93,15 @@ void PbrtPlacer::place(Placing placing) {
   }
 }
 
-// Exact shapes have no (u,v) and no holes; those that emit stay exact.
+// Exact spheres and disks have no (u,v) and no holes. Emitting ones always stay exact.
 bool PbrtPlacer::needs_triangles(const Placing& placing) {
   if (placing.is_emitting) return false;
   const Material& m = scene_.materials[material_of(placing)];
   return is_textured(m) || m.is_alpha_masked;
 }
 
-// A mesh's own normals turn with ReverseOrientation; computed ones, of quadrics, also with a
-// transform that mirrors.
+// True if the normals point the other way. ReverseOrientation turns a mesh's own normals. A
+// mirroring transform also turns the computed normals of quadrics.
 bool PbrtPlacer::are_normals_turned(const Placing& placing, bool is_quadric) {
   return is_quadric ? placing.is_flipped_quadric : placing.shape.is_reversed;
 }
@@ -117,7 +117,7 @@ Light PbrtPlacer::next_light(const PbrtAreaLight& light, double area) {
   e.is_two_sided = light.is_two_sided;
   e.radiance = light.radiance;
   if (light.power > 0 && area > 0) {
-    // A diffuse source of radiance L sends out pi L per area and side.
+    // A diffuse source of radiance L emits pi L per area and side.
     e.radiance *= float(light.power / (pi * area * (light.is_two_sided ? 2 : 1)));
   }
   if (!is_finite(e.radiance)) {
@@ -167,7 +167,7 @@ void PbrtPlacer::place_disk(const Placing& placing) {
   const double r = placing.shape.radius * length(t.columns[0]);
   bounds_.add_ball(centre, r);
   disk.radius = float(r);
-  // The axes of its plane are not parallel, so their cross product has a length.
+  // Columns 0 and 1 are not parallel (keeps_circles), so their cross product is not zero.
   const Vec3d axis = normalize(cross(t.columns[0], t.columns[1]));
   const bool is_turned = placing.is_flipped_quadric != t.swaps_handedness();
   disk.normal = Vec3(is_turned ? -axis : axis);
@@ -207,7 +207,7 @@ void PbrtPlacer::set_normal_map(Mesh& mesh) {
   if (2 * turned > all) mesh.material = materials_.with_turned_normals(mesh.material);
 }
 
-// Of one shape of an object; false: it is to be copied.
+// Places an instance as a shared mesh. Returns false if the mesh has to be copied instead.
 bool PbrtPlacer::place_shared(const Placing& placing, const AnchoredMesh& local, bool is_quadric) {
   const PbrtShape& shape = placing.shape;
   const size_t triangles = local.mesh.triangles.size();
@@ -259,7 +259,7 @@ void PbrtPlacer::place_mesh(const Placing& placing, const AnchoredMesh& local, b
   if (has_image) {
     spec.texture = materials_.textures.image(shape.light->image, true, WrapMode::clamp);
     const double mean = shape.light->power > 0 ? mean_luminance(scene_, spec.texture) : 1;
-    if (mean > 1e-9) spec.radiance *= float(1 / mean);  // else black or nearly so
+    if (mean > 1e-9) spec.radiance *= float(1 / mean);  // otherwise the image is (nearly) black
   }
   add_mesh_lights(scene_, index, spec);
 }

@@ -1,4 +1,5 @@
-// Shapes of a pbrt file -> geometry and lights of the scene, in world space.
+// Adds the shapes of a pbrt file to the scene's geometry and lights, in world space. Used by
+// PbrtInterpreter, which hands over each shape when its directive is read.
 #pragma once
 
 #include "import/gltf/mesh_instancer.h"
@@ -11,26 +12,27 @@ class PbrtPlacer {
   PbrtPlacer(Scene& scene, PbrtMaterials& materials, PlacedBounds& bounds)
       : scene_(scene), materials_(materials), bounds_(bounds), instancer_(scene, bounds) {}
 
-  // Adds the shape, emission included.
+  // Adds the shape with its emission.
   void place(const PbrtShape& shape, const PbrtPlace& place);
-  // Adds one more copy, transformed, without emission.
+  // Adds one more transformed copy, without emission.
   void place_instance(const PbrtShape& shape, const Affine& world_from_instance,
                       const PbrtPlace& place);
-  // Counts a shape that waits in an object, so that the limit holds for what is never placed too.
+  // Counts a shape of an object definition, so that the limit covers objects that are never placed.
   void count_waiting(const PbrtShape& shape, const PbrtPlace& place);
-  // Another shape with an area light has appeared that will not be placed: it keeps its number.
+  // Reserves the number of an emitting shape that is not placed, so that later lights keep theirs.
   void skip_light() { ++lights_; }
-  // Lights without surface are counted apart, so that those of shapes keep their numbers.
+  // Number of the next light without a surface. These have a count of their own, so that the lights
+  // of shapes keep their numbers.
   size_t next_light_source() { return light_sources_++; }
 
  private:
-  // A shape on its way into the scene.
+  // A shape that is being placed.
   struct Placing {
     const PbrtShape& shape;
-    Affine world_from_object;         // its translation from the scene's origin
-    bool is_flipped_quadric = false;  // normals of quadrics point the other way
+    Affine world_from_object;         // relative to the scene's origin
+    bool is_flipped_quadric = false;  // the quadric's normals point the other way
     bool is_emitting = false;
-    bool is_instance = false;  // one of many, of an object
+    bool is_instance = false;  // part of an object that is instanced
     PbrtPlace place;
   };
 
@@ -39,7 +41,7 @@ class PbrtPlacer {
   PlacedBounds& bounds_;
   MeshInstancer instancer_;
   size_t lights_ = 0, light_sources_ = 0;
-  size_t cost_ = 0;                // triangles so far; small shapes count as a few
+  size_t cost_ = 0;                // triangles so far; each shape counts at least least_shape_cost
   uint64_t placed_triangles_ = 0;  // by instances
 
   void place(Placing placing);
@@ -51,7 +53,7 @@ class PbrtPlacer {
   static bool are_normals_turned(const Placing& placing, bool is_quadric);
   uint32_t material_of(const Placing& placing);
   bool needs_triangles(const Placing& placing);
-  // Emission of the next light, whose area (m²) turns power into radiance.
+  // Returns the emission of the next light. Its area (m²) converts power to radiance.
   Light next_light(const PbrtAreaLight& light, double area);
   void spend(size_t triangles, const PbrtPlace& place);
 };

@@ -24,7 +24,7 @@ std::vector<Vector> vectors_of(const std::vector<double>& numbers) {
   return out;
 }
 
-// "point2 uv", or with a warning the "float uv" of older files.
+// Reads "point2 uv", or with a warning the "float uv" of pbrt-v3 files.
 std::vector<Vec2> read_uvs(const PbrtParams& params, WarningLog& warnings) {
   const PbrtParam* param = params.find("uv");
   if (!param) return {};
@@ -39,7 +39,7 @@ std::vector<Vec2> read_uvs(const PbrtParams& params, WarningLog& warnings) {
   return out;
 }
 
-// Per-vertex data of another length than the positions is left out, as pbrt does.
+// Drops per-vertex data whose length differs from the positions', as pbrt does.
 template <class T>
 void check_length(std::vector<T>& values, size_t vertices, const char* name,
                   const PbrtParams& params, WarningLog& warnings) {
@@ -49,11 +49,11 @@ void check_length(std::vector<T>& values, size_t vertices, const char* name,
 }
 
 struct VertexData {
-  AnchoredMesh vertices;  // no triangles yet
+  AnchoredMesh vertices;  // without triangles
   std::vector<uint32_t> indices;
 };
 
-// P, N, uv and indices of a mesh whose faces have `corners` vertices.
+// Reads P, N, uv and indices of a mesh whose faces have `corners` vertices.
 VertexData read_vertices(const PbrtParams& params, size_t corners, WarningLog& warnings) {
   VertexData data;
   set_positions(data.vertices, vectors_of<Vec3d>(params.numbers("P", PbrtType::point3)));
@@ -94,8 +94,8 @@ AnchoredMesh read_triangle_mesh(const PbrtParams& params, WarningLog& warnings) 
   return std::move(data.vertices);
 }
 
-// Subdivision takes about 200 bytes per triangle. A few bytes may not become gigabytes; large
-// control meshes may be cut as files do it, three times.
+// Limits of subdivision, which takes about 200 bytes per triangle. A small file must not expand to
+// gigabytes; 64 = 4³ allows pbrt's default of three levels for control meshes of any size.
 constexpr uint64_t always_subdivided = 2'000'000, most_subdivided_ratio = 64;
 
 AnchoredMesh read_subdivision(const PbrtParams& params, WarningLog& warnings) {
@@ -119,11 +119,11 @@ AnchoredMesh read_subdivision(const PbrtParams& params, WarningLog& warnings) {
   return {subdivide_loop(control.mesh, levels), control.anchor};
 }
 
-// Planar patches become two triangles each, which share the vertices of the file; where one is
-// curved, every patch is cut into cells, so that neighbours meet.
+// Splits planar patches into two triangles each, which share the file's vertices. If any patch is
+// curved, every patch is cut into cells, so that neighbours meet without gaps.
 AnchoredMesh read_bilinear_mesh(const PbrtParams& params, WarningLog& warnings) {
   VertexData data = read_vertices(params, 4, warnings);
-  params.ignore({"emissionfilename"});  // where pbrt samples the light more often
+  params.ignore({"emissionfilename"});  // only guides pbrt's light sampling
   Mesh& vertices = data.vertices.mesh;
   std::vector<BilinearPatch> patches;
   bool is_flat = true;
@@ -222,7 +222,8 @@ bool read_disk(const PbrtParams& params, PbrtShape& shape) {
   return true;
 }
 
-// False: the shape is cut away everywhere. pbrt's lights of alpha 0 shine all the same.
+// Returns false if alpha is 0 everywhere. An emitting shape of alpha 0 stays: in pbrt it still
+// emits.
 bool read_alpha(const PbrtParams& params, bool shines, PbrtTextures& textures, WarningLog& warnings,
                 PbrtShape& shape) {
   if (!params.has("alpha")) return true;

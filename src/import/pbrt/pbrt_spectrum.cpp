@@ -75,7 +75,7 @@ double single_number(const PbrtParam& param) {
 }
 
 double kelvin_of(const PbrtParam& param) {
-  // pbrt-v4 takes a temperature; older files add a scale.
+  // A second number is the scale of pbrt-v3 files.
   if (param.numbers.empty() || param.numbers.size() > 2 || !(param.numbers[0] > 0) ||
       !std::isfinite(param.numbers[0]))
     fail_param(param, "one positive temperature in kelvin expected");
@@ -94,7 +94,7 @@ Rgb plain_value(const PbrtParam& param, const PbrtSpectrumContext& context) {
     case PbrtType::real:
       return Rgb{float(single_number(param))};
     case PbrtType::spectrum:
-      // As a reflectance an illuminant is white.
+      // An illuminant counts as white if it is used as a reflectance.
       if (!param.strings.empty() && named_illuminant(single_name(param))) return Rgb{1};
       return reflectance_from_spectrum(sampled(param, context));
     default:

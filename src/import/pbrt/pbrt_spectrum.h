@@ -1,4 +1,6 @@
-// Values of spectrum-like parameters (rgb, spectrum, blackbody) in linear sRGB.
+// Converts spectral parameters (rgb, spectrum, blackbody) of pbrt files to linear sRGB. Used by the
+// readers of materials, textures and lights. All functions throw InputError, at the parameter's
+// place, for unusable values.
 #pragma once
 
 #include <string>
@@ -9,23 +11,21 @@
 
 namespace troffer {
 
-// What the readers below need: the folder of spectrum files, and where warnings go.
+// Folder of the spectrum files, and the log for warnings.
 struct PbrtSpectrumContext {
   const std::string& folder;
   WarningLog& warnings;
 };
 
-// All throw InputError at the parameter's place for values that cannot be used.
-
-// Reflectance in [0,1]; what lies outside is clamped with a warning.
+// Reflectance. Values outside [0,1] are clamped with a warning.
 Rgb reflectance_value(const PbrtParam& param, const PbrtSpectrumContext& context);
-// A factor that may be of any size (constant textures, scales), not below 0.
+// A factor of any size (constant textures, scales). Negative values become 0 with a warning.
 Rgb factor_value(const PbrtParam& param, const PbrtSpectrumContext& context);
-// Radiance of a light. Spectra and black bodies count as shapes only, of luminance 1.
+// Radiance of a light. Spectra and black bodies are scaled to luminance 1.
 Rgb emission_value(const PbrtParam& param, const PbrtSpectrumContext& context);
-// Complex index of a metal, one part of it.
+// One part (eta or k) of a metal's complex index of refraction.
 Rgb conductor_value(const PbrtParam& param, const PbrtSpectrumContext& context);
-// Real index of refraction (> 0) at 587.6 nm.
+// Real index of refraction (> 0) at 587.6 nm. Spectra add a warning about dispersion.
 float ior_value(const PbrtParam& param, const PbrtSpectrumContext& context);
 
 }  // namespace troffer

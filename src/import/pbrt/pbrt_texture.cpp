@@ -12,7 +12,7 @@ namespace {
 constexpr size_t max_images_per_lookup = 64;
 constexpr int max_pbrt_texture_depth = 100;
 
-// pbrt's v points up; the scene's textures have v down.
+// Converts from pbrt's v, which points up, to the scene's, which points down.
 void turn_upside_down(Texture& look, Vec2 scale, Vec2 offset) {
   look.uv_scale = {scale.x, -scale.y};
   look.uv_offset = {offset.x, 1 - offset.y};
@@ -27,14 +27,14 @@ WrapMode wrap_mode(const PbrtParams& params, WarningLog& warnings) {
   return WrapMode::repeat;
 }
 
-// Linear values of a texel's colour channels.
+// Linear value of channel `i` of the texels.
 float linear_texel(const Texture& t, size_t i) {
   if (t.texels8.empty()) return t.texels_float[i];
   const float v = float(t.texels8[i]) / 255.0f;
   return t.is_srgb ? linear_from_srgb(v) : v;
 }
 
-// A one-channel copy: the mean of the colour channels, as pbrt reads images for numbers [1].
+// One-channel copy: the mean of the colour channels, as pbrt reads images for floats [1].
 Texture grey_copy(const Texture& t) {
   Texture grey = t;
   grey.channels = 1;
@@ -50,7 +50,7 @@ Texture grey_copy(const Texture& t) {
   return grey;
 }
 
-// A copy decoded by a power law, alpha left as it is.
+// Copy decoded by a power law. Alpha is unchanged.
 Texture gamma_copy(const Texture& t, float gamma) {
   Texture decoded = t;
   decoded.texels_float.resize(t.texels8.size());
@@ -83,7 +83,7 @@ PbrtTextures::Named& PbrtTextures::find(const std::string& name, bool is_float,
                                         const PbrtParam& asked_by) {
   auto& named = is_float ? floats_ : colors_;
   auto found = named.find(name);
-  // A float texture may stand for a grey spectrum.
+  // A float texture may stand in for a grey spectrum.
   if (found == named.end() && !is_float) {
     found = floats_.find(name);
     if (found == floats_.end()) found = named.end();
@@ -135,8 +135,8 @@ ColorInput PbrtTextures::argument(const PbrtParams& params, std::string_view nam
   return texture.value;
 }
 
-// Their names stand in quotes after "string filename"; what else is found so
-// is no harm. Without escapes, which nobody writes.
+// Finds strings in quotes after "string filename". A false match does no harm. Names with escape
+// sequences are not found.
 void PbrtTextures::expect_images_of(std::string_view text) {
   constexpr std::string_view parameter = "filename\"";
   constexpr size_t most_between = 64, most_name = 4096, most_images = 4096;
@@ -210,7 +210,7 @@ void PbrtTextures::make_image(Named& texture, const std::string& name) {
     append(gamma_copy(scene_.textures[size_t(index)], float(gamma)));
   if (is_image() && texture.is_float && scene_.textures[size_t(index)].channels > 1)
     append(grey_copy(scene_.textures[size_t(index)]));
-  if (is_image() && is_mapped) {  // by a place in space instead
+  if (is_image() && is_mapped) {  // maps a position in space instead of (u,v)
     append(scene_.textures[size_t(index)]);
     Texture& mapped = scene_.textures.back();
     turn_upside_down(mapped, {1, 1}, {0, 0});
@@ -223,7 +223,7 @@ void PbrtTextures::make_image(Named& texture, const std::string& name) {
 void PbrtTextures::make_scale(Named& texture, const std::string& name) {
   const PbrtParams& params = texture.params;
   const ColorInput a = argument(params, "tex", texture.is_float, Rgb{1}, texture.images);
-  // The scale is a float texture or value; an rgb value does no harm.
+  // The scale is a float texture or value; an rgb value is accepted too.
   const PbrtParam* scale = params.find("scale");
   const bool is_float = !scale || scale->type != PbrtType::rgb;
   const ColorInput b = argument(params, "scale", is_float, Rgb{1}, texture.images);
@@ -241,7 +241,7 @@ void PbrtTextures::make_scale(Named& texture, const std::string& name) {
   scene_.textures.push_back(std::move(product));
 }
 
-// Squares of two colours, as an image of four texels.
+// Makes a checkerboard of two plain colours as an image of four texels.
 bool PbrtTextures::make_checkerboard(Named& texture, const std::string& name) {
   const PbrtParams& params = texture.params;
   size_t images = 0;
@@ -256,7 +256,8 @@ bool PbrtTextures::make_checkerboard(Named& texture, const std::string& name) {
   image.width = image.height = 2;
   image.channels = 3;
   image.is_filtered = image.is_srgb = false;
-  for (const Rgb& c : {b.value, a.value, a.value, b.value})  // v points down: the top row first
+  // the top row first, since v points down
+  for (const Rgb& c : {b.value, a.value, a.value, b.value})
     image.texels_float.insert(image.texels_float.end(), {c.r, c.g, c.b});
   turn_upside_down(
       image,
@@ -268,7 +269,7 @@ bool PbrtTextures::make_checkerboard(Named& texture, const std::string& name) {
   return true;
 }
 
-// Of two plain values the value between them.
+// Mixes two plain values.
 bool PbrtTextures::make_mix(Named& texture) {
   const PbrtParams& params = texture.params;
   size_t images = 0;

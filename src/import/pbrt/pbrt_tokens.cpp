@@ -21,7 +21,7 @@ bool may_start_number(char c) {
   return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
 }
 
-// Whole-word number; overflow reads as infinity, underflow as zero or a denormal.
+// Parses a whole word. Overflow gives infinity, underflow zero or a denormal.
 bool parse_number(std::string_view text, double& value) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   const char* end = text.data() + text.size();
@@ -35,7 +35,7 @@ bool parse_number(std::string_view text, double& value) {
 }  // namespace
 
 void fail_at(const PbrtPlace& place, const std::string& what) {
-  // Names in a file may contain anything, a message is one line.
+  // Names in a file may contain control characters, but a message is one line.
   std::string line = what;
   for (char& c : line)
     if (static_cast<unsigned char>(c) < 32) c = '?';
@@ -73,7 +73,7 @@ void PbrtTokenizer::skip_blanks() {
     } else if (!is_pbrt_blank(c)) {
       return;
     }
-    // A lone carriage return ends a line too; "\r\n" ends one.
+    // A lone carriage return ends a line too; "\r\n" counts once.
     const bool ends_line =
         text_[at_] == '\n' ||
         (text_[at_] == '\r' && (at_ + 1 == text_.size() || text_[at_ + 1] != '\n'));
@@ -159,7 +159,7 @@ std::string unescaped(std::string_view quoted) {
       case '\\':
         out += c;
         break;
-      default:  // no escape of pbrt's: part of a Windows path
+      default:  // not an escape of pbrt: part of a Windows path
         out += '\\';
         out += c;
     }

@@ -1,4 +1,5 @@
-// The words of a pbrt file: directives, quoted strings, numbers and brackets, each with its place.
+// Tokenizer of pbrt files: directives, quoted strings, numbers and brackets, each with its place.
+// Used by all readers of this folder. Tokens refer to the text and do not copy it.
 //
 // References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
 #pragma once
@@ -17,15 +18,15 @@ struct PbrtPlace {
 
 // Throws InputError.
 [[noreturn]] void fail_at(const PbrtPlace& place, const std::string& what);
-// "FILE:LINE:COLUMN: what", for warnings that should be found again.
+// Returns "FILE:LINE:COLUMN: what", for warnings that the user should be able to locate.
 std::string at_place(const PbrtPlace& place, const std::string& what);
 
 enum class PbrtTokenKind { end, word, string, number, open_bracket, close_bracket };
 
 struct PbrtToken {
   PbrtTokenKind kind = PbrtTokenKind::end;
-  std::string_view text;  // as it stands in the file; of a string the part between the quotes
-  double number = 0;      // number: may be infinite or NaN where the file says so
+  std::string_view text;  // as in the file; of a string, the part between the quotes
+  double number = 0;      // value of a number; infinite or NaN if the file says so
   int line = 0, column = 0;
 };
 
@@ -34,10 +35,10 @@ class PbrtTokenizer {
   // `text` must outlive the tokenizer and its tokens.
   PbrtTokenizer(std::string file, std::string_view text);
 
-  // The next token; after the last one, `end` again and again. InputError: an unterminated string,
-  // a malformed number.
+  // Returns the next token; after the last one, always `end`. Throws InputError for unterminated
+  // strings and malformed numbers.
   PbrtToken next();
-  // The next token without taking it.
+  // Returns the next token without consuming it.
   const PbrtToken& peek();
 
   PbrtPlace place(const PbrtToken& token) const { return {file_, token.line, token.column}; }
@@ -57,7 +58,7 @@ class PbrtTokenizer {
   PbrtToken scan_word(PbrtToken token);
 };
 
-// The value of a quoted string: backslash escapes replaced.
+// Value of a quoted string, with backslash escapes replaced.
 std::string unescaped(std::string_view quoted);
 
 }  // namespace troffer

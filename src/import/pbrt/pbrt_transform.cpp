@@ -8,7 +8,7 @@ namespace troffer {
 
 namespace {
 
-// camera_from_world that looks from `eye` to `target` [1].
+// camera_from_world of a camera that looks from `eye` to `target` [1].
 Affine look_at(const std::vector<double>& n, const PbrtPlace& place) {
   const Vec3d eye(n[0], n[1], n[2]), target(n[3], n[4], n[5]), up(n[6], n[7], n[8]);
   const Vec3d direction = target - eye;
@@ -24,7 +24,7 @@ Affine look_at(const std::vector<double>& n, const PbrtPlace& place) {
   return inverse(world_from_camera);
 }
 
-// Sixteen numbers, column after column: the translation is at 12 … 14.
+// Reads sixteen numbers in column-major order; the translation is at 12, 13 and 14.
 Affine matrix(const std::vector<double>& n, const PbrtPlace& place) {
   const bool is_affine =
       std::abs(n[3]) <= 1e-9 && std::abs(n[7]) <= 1e-9 && std::abs(n[11]) <= 1e-9 && n[15] != 0;

@@ -1,4 +1,5 @@
-// Transform directives of pbrt files.
+// Transform directives of pbrt files. Used by PbrtInterpreter, which keeps the current transform.
+// Angles in files are degrees.
 //
 // References: [1] pbrt-v4 Input File Format, section "Transformations", pbrt.org/fileformat-v4.
 #pragma once
@@ -14,15 +15,16 @@ namespace troffer {
 
 struct PbrtTransform {
   Affine value;
-  bool is_absolute = false;  // takes the place of the current transform, else multiplied from right
+  // replaces the current transform; otherwise it is multiplied from the right
+  bool is_absolute = false;
 };
 
-// Reads the numbers of Identity, Translate, Scale, Rotate, LookAt, Transform or ConcatTransform;
-// none for any other word. InputError: missing or infinite numbers, a view direction along `up`,
-// projective matrices.
+// Reads the numbers of Identity, Translate, Scale, Rotate, LookAt, Transform or ConcatTransform.
+// Returns nothing for any other word. Throws InputError for missing or infinite numbers, for a view
+// direction along `up`, and for projective matrices.
 std::optional<PbrtTransform> parse_transform(const PbrtToken& directive, PbrtTokenizer& tokens);
 
-// `count` finite numbers, with or without brackets around them.
+// Reads `count` finite numbers, with or without brackets around them.
 std::vector<double> parse_numbers(PbrtTokenizer& tokens, size_t count, std::string_view directive);
 
 }  // namespace troffer

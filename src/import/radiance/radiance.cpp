@@ -11,8 +11,8 @@ namespace troffer {
 
 namespace {
 
-constexpr uint64_t max_radiance_bytes = uint64_t(1)
-                                        << 30;  // of all files, as often as they are shown
+// Limit on the bytes of all files together; a file counts each time it is included.
+constexpr uint64_t max_radiance_bytes = uint64_t(1) << 30;
 constexpr size_t max_open_files = 16;
 
 class RadianceReader {
@@ -25,10 +25,10 @@ class RadianceReader {
   void read();
 
  private:
-  // How a file is shown.
+  // Transform, modifier and orientation that a file is included with.
   struct Shown {
     Affine world;
-    std::string modifier;  // of all surfaces; "" = their own
+    std::string modifier;  // replaces that of all surfaces; "" keeps their own
     bool is_inverted = false;
   };
 
@@ -119,7 +119,7 @@ void RadianceReader::read_statement(RadianceText& text, const std::string& first
   surfaces_.add(p, name, shown.is_inverted);
 }
 
-// genbox, xform and cat, and what xforms that follow in a pipe make of them. Nothing is executed.
+// Interprets genbox, xform and cat, and pipes of them into xform. Nothing is executed.
 void RadianceReader::run(const std::string& command, const Shown& shown, const SourcePlace& place) {
   std::vector<std::vector<std::string>> parts(1);
   for (const std::string& word : words_of(command)) {

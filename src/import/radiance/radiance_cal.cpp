@@ -9,9 +9,9 @@ namespace troffer {
 namespace {
 
 constexpr int max_depth = 200;
-constexpr int64_t max_steps = 1'000'000;  // of one value
+constexpr int64_t max_steps = 1'000'000;  // per value
 
-// Functions of one number that C++ has under the same name.
+// Evaluates functions of one number that C++ has under the same name.
 double plain_function(const std::string& name, double x, bool& is_known) {
   is_known = true;
   if (name == "sin") return std::sin(x);
@@ -129,7 +129,7 @@ std::optional<double> CalProgram::of_ray(const std::string& name) {
         return varying(ray_.normal[axis]);
       case 'P':
         return varying(ray_.point[axis]);
-      case 'T':  // the pattern's space is where it is evaluated
+      case 'T':  // the pattern's origin is that of its own space
         return 0;
       case 'I':
       case 'J':
@@ -146,7 +146,7 @@ std::optional<double> CalProgram::of_ray(const std::string& name) {
 
 double CalProgram::call(const CalNode& node, const Activation* in) {
   int32_t name = node.index;
-  if (name < 0) {  // a parameter: what the caller passes must be a name
+  if (name < 0) {  // a parameter: its argument must be the name of a function
     const auto which = size_t(~name);
     const Activation* at = in;
     const CalNode* passed = nullptr;

@@ -1,8 +1,7 @@
-// Radiance's function files (.cal): a small language of definitions that patterns refer to.
-//
-// A program holds definitions and expressions. Variables and functions are looked up by name when
-// they are evaluated, so that files may define them in any order. Arguments are evaluated when they
-// are needed: `if` and `select` evaluate only what they return.
+// Interpreter of Radiance's function files (.cal), a small language for patterns. A program holds
+// definitions and expressions. Names are looked up when they are evaluated, so files may define
+// them in any order. Arguments are evaluated lazily: `if` and `select` evaluate only what they
+// return. Used by RadianceFunctions.
 //
 // References: [1] G. Ward, "The RADIANCE function file language" (refman §4, manual page icalc(1));
 //   [2] manual pages gensky(1), gendaylit(1): names and arguments of the sky functions.
@@ -20,11 +19,10 @@
 
 namespace troffer {
 
-// Properties that an expression may ask of the ray that it is evaluated for, in the pattern's own
-// space.
+// The ray that an expression is evaluated for, in the pattern's own space.
 struct CalRay {
-  Vec3d direction{0, 0, 1};  // Dx Dy Dz: away from the viewer, unit
-  Vec3d normal{0, 0, -1};    // Nx Ny Nz: of the surface, unit
+  Vec3d direction{0, 0, 1};  // Dx Dy Dz: unit, away from the viewer
+  Vec3d normal{0, 0, -1};    // Nx Ny Nz: unit surface normal
   Vec3d point;               // Px Py Pz
 };
 
@@ -36,48 +34,50 @@ enum class CalOp : uint8_t {
   divide,
   power,
   negate,
-  parameter,  // of the function that is being evaluated
-  name,       // a variable
-  call,       // of a function, or of a parameter that names one
+  parameter,  // parameter of the function that is being evaluated
+  name,       // variable
+  call,       // call of a function, or of a parameter that names one
 };
 
 struct CalNode {
   CalOp op = CalOp::number;
   double number = 0;
-  int32_t index = 0;  // parameter: which; name, call: into the names; call of a parameter: ~which
+  // parameter: which one; name, call: index into names_; call of a parameter: ~which
+  int32_t index = 0;
   std::vector<int32_t> children;
 };
 
+// Definitions and expressions of one pattern. Evaluation changes the program: use one per thread.
 class CalProgram {
  public:
   CalProgram();
 
-  // Adds the definitions of a file; later ones replace earlier ones. InputError: at the place in
-  // that text.
+  // Adds the definitions of a file; later ones replace earlier ones. Throws InputError with the
+  // place in that text.
   void read(std::shared_ptr<const std::string> file, std::string_view text);
-  // An expression by itself, for value(). InputError: at `place`.
+  // Adds an expression for value() and returns its index. Throws InputError at `place`.
   int32_t expression(std::string_view text, const SourcePlace& place);
-  // Values of arg(1), arg(2) …
+  // Sets the values of arg(1), arg(2) and so on.
   void set_arguments(std::vector<double> arguments) { arguments_ = std::move(arguments); }
 
-  // The value of an expression for a ray; not finite where it divides by zero and the like.
-  // Nothing: a name is not defined, an argument is missing, or it does not come to an end;
-  // problem() says which.
+  // Returns the value of an expression for a ray; not finite after a division by zero or the like.
+  // Returns nothing, and sets problem(), if a name is undefined, an argument is missing, or the
+  // evaluation does not end.
   std::optional<double> value(int32_t expression, const CalRay& ray);
   const std::string& problem() const { return problem_; }
-  // Whether any value so far depended on the ray.
+  // True if any value so far depended on the ray.
   bool has_used_ray() const { return has_used_ray_; }
 
  private:
   struct Definition {
     std::string name;
     std::vector<std::string> parameters;
-    int32_t body = -1;  // none: not defined, or built in
+    int32_t body = -1;  // -1: not defined, or built in
     bool is_function = false;
-    uint64_t clock = 0;  // when a variable's value was found
+    uint64_t clock = 0;  // evaluation that `value` belongs to
     double value = 0;
   };
-  // A function that is being evaluated.
+  // A function call that is being evaluated.
   struct Activation {
     const CalNode* call = nullptr;
     const Activation* outer = nullptr;
@@ -105,8 +105,8 @@ class CalProgram {
   std::optional<double> of_ray(const std::string& name);
 };
 
-// The text of a function file that comes with Radiance and that files name without bringing it
-// along: skies by gensky and gendaylit. Empty: none of these.
+// Text of a function file that comes with Radiance and that scenes refer to: the skies of gensky
+// and gendaylit. Empty for other names.
 std::string_view radiance_library_file(std::string_view name);
 // Functions and constants that every function file can use.
 std::string_view radiance_common_definitions();

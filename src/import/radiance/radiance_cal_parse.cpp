@@ -1,4 +1,4 @@
-// Text of function files -> definitions and expressions.
+// Parser of function files (part of CalProgram).
 #include <charconv>
 
 #include "import/radiance/radiance_cal.h"
@@ -22,8 +22,8 @@ bool is_of_name(char c) {
 
 }  // namespace
 
-// Recursive descent over the grammar of [1]: sums of products of powers, a sign binds closer than
-// a power.
+// Recursive-descent parser of the grammar in [1]: sums of products of powers. A sign binds tighter
+// than a power.
 class CalParser {
  public:
   CalParser(CalProgram& program, std::string_view text, std::shared_ptr<const std::string> file,
@@ -37,7 +37,7 @@ class CalParser {
   CalProgram& program_;
   std::string_view text_;
   std::shared_ptr<const std::string> file_;
-  const SourcePlace* fixed_;  // where the text as a whole stands; null: it is a file
+  const SourcePlace* fixed_;  // place of the whole text; null if the text is a file
   size_t at_ = 0;
   int nesting_ = 0;
   std::vector<std::string> parameters_;
@@ -71,7 +71,7 @@ void CalParser::fail(const std::string& what) const {
   place.fail(what);
 }
 
-// The next character that is neither blank nor in a comment, '\0' at the end.
+// Next character outside blanks and comments; '\0' at the end.
 char CalParser::peek() {
   for (int open = 0; at_ < text_.size(); ++at_) {
     const char c = text_[at_];
@@ -180,7 +180,8 @@ int32_t CalParser::named() {
   return add(std::move(call));
 }
 
-// NAME = expression; NAME(a,b) : expression; outputs ($1 = …) are of no use here.
+// Parses NAME = expression or NAME(a,b) : expression. Outputs ($1 = expression) are parsed and
+// dropped.
 void CalParser::definition() {
   parameters_.clear();
   const bool is_output = take('$');

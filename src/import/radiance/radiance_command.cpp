@@ -22,8 +22,8 @@ class XformParser {
   const SourcePlace& place_;
   size_t at_ = 0;
   RadianceXform out_;
-  Affine step_;         // of the part that is being read
-  size_t repeats_ = 1;  // of that part
+  Affine step_;         // transform of the part that is being read
+  size_t repeats_ = 1;  // repetitions of that part
   bool is_array_ = false;
 
   double number() { return radiance_number(word(), place_); }
@@ -42,7 +42,8 @@ class XformParser {
   void then(const Affine& t) { step_ = t * step_; }
 };
 
-// Applies the part to all copies so far: repeated, or 0, 1 … times in as many copies.
+// Ends a part: applies it `repeats_` times to all copies, or with -a makes a copy for each count
+// from 0.
 void XformParser::finish_part() {
   if (is_array_ && out_.copies.size() * repeats_ > max_copies)
     place_.fail("xform: more than 100000 copies");

@@ -1,4 +1,5 @@
-// Commands in Radiance's files that are done here, and never by running anything.
+// Commands in Radiance files (xform and genbox), interpreted without running anything. Used by
+// RadianceReader, and by RadianceFunctions for transform options.
 //
 // References: [1] Radiance manual pages xform(1), genbox(1).
 #pragma once
@@ -11,18 +12,19 @@
 
 namespace troffer {
 
-// What xform(1)'s options say.
+// Result of xform(1)'s options.
 struct RadianceXform {
-  std::vector<Affine> copies{Affine()};  // one, or all of its arrays
-  std::string modifier;                  // -m: of all surfaces; "" = their own
-  bool is_inverted = false;              // -I: fronts and backs of surfaces change places
+  std::vector<Affine> copies{Affine()};  // one transform, or all of its arrays
+  std::string modifier;                  // -m: replaces that of all surfaces; "" keeps their own
+  bool is_inverted = false;              // -I: swaps the fronts and backs of surfaces
   std::vector<std::string> files;
 };
-// `words` after "xform". InputError at `place`: unknown options, more than 100 000 copies.
+// Parses the words after "xform". Throws InputError, at `place`, for unknown options and more than
+// 100 000 copies.
 RadianceXform parse_xform(const std::vector<std::string>& words, const SourcePlace& place);
 
-// The boxes of genbox(1): a material and polygons, each of corners that run counterclockwise about
-// its front.
+// A box of genbox(1): its material and polygons. Corners run counterclockwise as seen from the
+// front.
 struct RadianceBox {
   std::string modifier;
   std::vector<std::vector<Vec3d>> polygons;

@@ -12,25 +12,25 @@ namespace troffer {
 namespace {
 
 constexpr double pane_index = 1.52;
-constexpr double least_roughness = 1e-3;  // below it Radiance's gloss is a mirror's
-constexpr double least_fresnel =
-    0.017999;                         // of a mirror's reflectance: below it there is no Fresnel
-constexpr float least_left = 1e-15f;  // Radiance's own least transmissivity of glass
+constexpr double least_roughness = 1e-3;  // below this, Radiance reflects as a mirror
+// Mirror reflectance below which Radiance applies no Fresnel term.
+constexpr double least_fresnel = 0.017999;
+constexpr float least_left = 1e-15f;  // Radiance's smallest transmissivity of glass
 
 Rgb rgb_at(const std::vector<double>& v, size_t i = 0) {
   return {float(std::max(v[i], 0.0)), float(std::max(v[i + 1], 0.0)),
           float(std::max(v[i + 2], 0.0))};
 }
 
-// The index of a surface that reflects that share of light at normal incidence.
+// Index of refraction of a surface with that reflectance at normal incidence.
 float index_of(double reflectance) {
   const double f = std::sqrt(std::clamp(reflectance, 0.0, 0.9));
   return float((1 + f) / (1 - f));
 }
 
-// plastic: a share `specular` of all light is reflected white, the rest by the base. metal: that
-// share coloured. Rough gloss of plastic reflects the same share at all angles [2]; a mirror's
-// grows towards grazing light, and so does, other than Radiance's, that of rough metal.
+// plastic reflects the share `specular` in white and the rest diffusely; metal reflects it
+// coloured. Rough plastic reflects the same share at all angles [2]; a mirror's share grows towards
+// grazing angles. So does that of rough metal, unlike in Radiance.
 Material glossy(const std::vector<double>& v, double roughness, bool is_metal) {
   Material m;
   m.base_color.value = clamp01(rgb_at(v));
@@ -44,7 +44,7 @@ Material glossy(const std::vector<double>& v, double roughness, bool is_metal) {
     m.specular.value = 0;
     return m;
   }
-  // An index of 0 reflects everything at all angles, of which the share `specular` is taken.
+  // An index of 0 reflects everything at all angles; the share `specular` of it is taken.
   const bool is_even = roughness >= least_roughness || specular < least_fresnel;
   m.metallic.value = 0;
   m.specular.value = is_even ? float(specular) : 1;
@@ -52,8 +52,8 @@ Material glossy(const std::vector<double>& v, double roughness, bool is_metal) {
   return m;
 }
 
-// A sheet of index n whose inside leaves the share t of light that crosses it straight on. Along
-// the refracted ray at the cosine c it leaves t^(1/c) [3].
+// Sheet of index n that transmits t at normal incidence. Along the refracted ray of cosine c it
+// transmits t^(1/c) [3].
 Material pane(const std::vector<double>& v) {
   Material m;
   m.kind = MaterialKind::dielectric;
@@ -66,8 +66,8 @@ Material pane(const std::vector<double>& v) {
   return m;
 }
 
-// The light that is neither absorbed nor reflected as gloss: 1 - trans of it goes back evenly,
-// trans goes through, of which tspec straight on.
+// Splits the light that is neither absorbed nor reflected specularly: 1 - trans is reflected
+// diffusely, trans is transmitted, and tspec of that passes straight.
 Material translucent(const std::vector<double>& v, double roughness, double transmitted,
                      double transmitted_straight) {
   const double trans = std::clamp(transmitted, 0.0, 1.0);
@@ -85,7 +85,7 @@ Material translucent(const std::vector<double>& v, double roughness, double tran
   return m;
 }
 
-// An even part that comes back, one that goes through.
+// Diffuse reflection and diffuse transmission.
 Material even_sheet(Rgb reflected, Rgb through) {
   Material m;
   set_diffuse(m, {clamp01(reflected), no_texture}, {clamp01(through), no_texture});
@@ -101,7 +101,7 @@ Material solid_glass(const RadianceModifier& m, WarningLog& warnings) {
   const double inside = v[3], outside = is_interface ? v[7] : 1;
   if (!(inside > 0) || !(outside > 0)) m.place.fail("an index of refraction must be positive");
   out.ior = float(inside / outside);
-  // The numbers are what is left after a metre.
+  // The numbers are transmittances per metre.
   const Rgb left = rgb_at(v);
   for (size_t c = 0; c < 3; ++c) out.absorption[c] = -std::log(std::clamp(left[c], 1e-6f, 1.0f));
   if (is_interface && rgb_at(v, 4) != Rgb{1})
@@ -109,8 +109,8 @@ Material solid_glass(const RadianceModifier& m, WarningLog& warnings) {
   return out;
 }
 
-// transfunc, transdata: r g b rspec trans tspec; their functions weigh what is reflected and
-// transmitted as gloss.
+// transfunc and transdata have r g b rspec trans tspec. Their functions shape the specular
+// reflection and transmission, which is shown diffuse.
 Material translucent_by_function(const RadianceModifier& m, WarningLog& warnings) {
   const std::vector<double>& v = m.arguments.reals;
   warnings.add("\"" + m.type + "\": what its function shapes is shown diffuse");
@@ -119,7 +119,7 @@ Material translucent_by_function(const RadianceModifier& m, WarningLog& warnings
   return even_sheet(rgb_at(v) * (1 - rest * trans), rgb_at(v) * (rest * trans));
 }
 
-// BRTDfunc, WGMDfunc: diffuse reflectance of the front, of the back, diffuse transmittance.
+// BRTDfunc and WGMDfunc have diffuse front reflectance, back reflectance and transmittance.
 Material by_functions(const RadianceModifier& m, WarningLog& warnings) {
   const std::vector<double>& v = m.arguments.reals;
   const std::vector<std::string>& strings = m.arguments.strings;

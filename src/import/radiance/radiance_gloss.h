@@ -1,4 +1,5 @@
-// Radiance's materials that reflect and transmit -> materials.
+// Converts Radiance's reflecting and transmitting materials to scene materials. Used by
+// RadianceMaterials. Approximations add warnings.
 //
 // References: [1] "The RADIANCE 5.1 Synthetic Imaging System", §2.1.2 (materials); [2] G. Ward,
 //   "Measuring and Modeling Anisotropic Reflection", SIGGRAPH 1992 (rough gloss); [3] G. Ward
@@ -10,10 +11,10 @@
 
 namespace troffer {
 
-// The number of real arguments that a material needs; -1: that type is no material.
+// Number of real arguments that a material needs; -1 if the type is not a material.
 int least_radiance_reals(const std::string& type);
 
-// The material of a modifier that has that many; what is approximated goes to the warnings.
+// Converts a modifier that has that many arguments. Approximations add warnings.
 Material radiance_material(const RadianceModifier& m, WarningLog& warnings);
 
 }  // namespace troffer

@@ -1,7 +1,6 @@
-// Function files that scenes name without bringing them along, in our own words.
-//
-// Both skies fade into the ground's brightness at the horizon: sky and ground are weighted by
-// (Dz + 1.01)^10 and its inverse, so that they have equal parts at Dz = -.01.
+// Function files that come with Radiance, rewritten from their documentation. Both skies fade into
+// the ground's brightness at the horizon: sky and ground are weighted by (Dz + 1.01)^10 and its
+// inverse, and so have equal parts at Dz = -0.01.
 //
 // References: [1] manual pages gensky(1), gendaylit(1), and what these print; [2] CIE S 003:1996,
 //   "Spatial distribution of daylight: CIE standard overcast sky and clear sky"; [3] Matsuura &
@@ -15,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-// A1 kind, A2 brightness of the zenith, A3 of the ground, A4 factor, A5 A6 A7 towards the sun.
+// gensky: A1 kind; brightness A2 of the zenith, A3 of the ground; A4 factor; A5 A6 A7 to the sun.
 constexpr std::string_view skybright = R"(
   over_ground = (Dz + 1.01)^10;
   cos_sun = Dx*A5 + Dy*A6 + Dz*A7;
@@ -35,8 +34,8 @@ constexpr std::string_view skybright = R"(
   skybright = skybr;
 )";
 
-// A1 factor on the sky, A2 brightness of the ground, A3 … A7 the model's a … e, A8 A9 A10 towards
-// the sun.
+// gendaylit: A1 factor on the sky; A2 brightness of the ground; A3 to A7 the model's a to e; A8 A9
+// A10 to the sun.
 constexpr std::string_view perezlum = R"(
   over_ground = (Dz + 1.01)^10;
   cos_sun = Dx*A8 + Dy*A9 + Dz*A10;
@@ -45,8 +44,8 @@ constexpr std::string_view perezlum = R"(
   skybright = (over_ground*sky + A2/over_ground) / (over_ground + 1/over_ground);
 )";
 
-// The same in colour: A11 clearness, A12 … A22 coefficients of chromaticity by colour temperature,
-// which follows from the luminance unless the sky is overcast.
+// gendaylit in colour: A11 clearness; A12 to A22 coefficients of chromaticity by colour
+// temperature. Unless the sky is overcast, the temperature follows from the luminance.
 constexpr std::string_view perezlum_colour = R"(
   temperature = if(1.065 - arg(11), 6191, 1e6 / (78.648*log10(skybright) - 180.956));
   cubic(i) = ((arg(i)/temperature + arg(i+1))/temperature + arg(i+2))/temperature + arg(i+3);

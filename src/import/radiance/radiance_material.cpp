@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-constexpr int max_chain = 64;  // of modifiers of modifiers
+constexpr int max_chain = 64;  // nesting of modifiers
 
 bool is_mixture(const std::string& type) {
   return type.starts_with("mix");
@@ -38,8 +38,8 @@ void RadianceMaterials::define(const std::string& name, RadianceModifier modifie
   const auto below = modifiers_.find(defined->modifier);
   if (below != modifiers_.end()) below_[defined.get()] = below->second;
   const bool is_new = modifiers_.insert_or_assign(name, defined).second;
-  if (!is_new) looks_.clear();  // what others are made of may have changed
-  looks_.erase(name);           // grey until now
+  if (!is_new) looks_.clear();  // materials made from the old definition may differ
+  looks_.erase(name);           // a reference before the definition has a grey look
 }
 
 RadianceMaterials::Modifier RadianceMaterials::modifier_below(const RadianceModifier& m) const {
@@ -49,7 +49,7 @@ RadianceMaterials::Modifier RadianceMaterials::modifier_below(const RadianceModi
   return later == modifiers_.end() ? nullptr : later->second;
 }
 
-// The material, or mixture, behind aliases and patterns.
+// Returns the material or mixture behind aliases and patterns.
 RadianceMaterials::Modifier RadianceMaterials::material_of(std::string name,
                                                            const SourcePlace& place) {
   Modifier m;
@@ -111,7 +111,7 @@ RadianceLook RadianceMaterials::even_look_of(const std::string& name, const Sour
 RadiancePattern RadianceMaterials::pattern_of(const RadianceLook& look) const {
   RadiancePattern pattern;
   for (const Modifier& p : look.patterns) {
-    if (p->type.starts_with("tex")) continue;  // bends normals: of no effect on emission
+    if (p->type.starts_with("tex")) continue;  // bends normals; no effect on emission
     if (!RadiancePattern::is_evaluated(p->type))
       p->place.fail("a sky's light by \"" + p->type +
                     "\" is not read: give the sky by --sky or --environment");
@@ -120,7 +120,7 @@ RadiancePattern RadianceMaterials::pattern_of(const RadianceLook& look) const {
   return pattern;
 }
 
-// Patterns and textures that a material wears, topmost first.
+// Patterns and textures of a material, outermost first.
 std::vector<RadianceMaterials::Modifier> RadianceMaterials::patterns_of(
     const RadianceModifier& m) const {
   std::vector<Modifier> out;
@@ -138,7 +138,7 @@ std::vector<RadianceMaterials::Modifier> RadianceMaterials::patterns_of(
   return out;
 }
 
-// The factor of patterns that are the same everywhere; others are told of and left out.
+// Product of the patterns that are constant. Others are left out with a warning.
 Rgb RadianceMaterials::even_part(const std::vector<Modifier>& patterns, bool is_light) {
   Rgb product{1};
   for (const Modifier& p : patterns) {
@@ -194,7 +194,8 @@ RadianceLook RadianceMaterials::convert(const std::string& name, const RadianceM
     look.is_there = false;
     return look;
   }
-  // A mirror is itself only for light that it relays from sources; all else sees the other one.
+  // A mirror with an alternate material reflects light from sources only; viewers see the
+  // alternate.
   if (m.type == "mirror" && !m.arguments.strings.empty()) {
     scene_.warnings.add(
         "\"mirror\" with an alternate material is shown as that one: sunlight and lamplight that "

@@ -1,4 +1,5 @@
-// Radiance's materials -> materials and emission.
+// Converts Radiance's modifiers to materials and emission. Used by RadianceReader and
+// RadianceSurfaces.
 //
 // References: [1] "The RADIANCE 5.1 Synthetic Imaging System", §2.1.2 (materials).
 #pragma once
@@ -14,35 +15,34 @@
 
 namespace troffer {
 
-// What a surface of some modifier is.
+// Look of the surfaces with one modifier.
 struct RadianceLook {
-  bool is_there = true;  // void: not for light
+  bool is_there = true;  // false for void: light passes unchanged
   uint32_t material = 0;
   Rgb emission;
-  // spotlight: intensity within that angle about that axis only
+  // The next three belong to spotlight, which emits only within an angle about an axis.
   bool is_spot = false;
   double spot_angle_deg = 0;
-  Vec3d spot_axis;  // as long as its focal distance, in the file's world
-  // Patterns that vary the emission, topmost first.
+  Vec3d spot_axis;  // its length is the focal distance; in the file's world
+  // Patterns on the emission, outermost first.
   std::vector<std::shared_ptr<const RadianceModifier>> patterns;
 };
 
 class RadianceMaterials {
  public:
-  // `folder`: of the scene, where function files lie.
+  // `folder` is the scene's, where function files lie.
   RadianceMaterials(Scene& scene, std::string folder) : scene_(scene), folder_(std::move(folder)) {}
 
-  // Defines a modifier; a later one of that name replaces it for what follows.
+  // Defines a modifier. A later one of the same name replaces it for what follows.
   void define(const std::string& name, RadianceModifier modifier);
   static bool is_modifier(const std::string& type);
 
-  // The look of surfaces whose modifier is `name`; grey, with a warning, where there is none.
-  // InputError at `place`: arguments that are missing, modifiers that refer to each other.
+  // Returns the look of surfaces with the modifier `name`; grey, with a warning, if there is none.
+  // Throws InputError, at `place`, for missing arguments and circular modifiers.
   const RadianceLook& look_of(const std::string& name, const SourcePlace& place);
-  // The same without patterns: those that are the same everywhere multiply the emission, others are
-  // named in a warning.
+  // Returns the look without patterns: constant ones multiply the emission, others add a warning.
   RadianceLook even_look_of(const std::string& name, const SourcePlace& place);
-  // The product of a look's patterns. InputError: one of them cannot be evaluated.
+  // Returns the product of a look's patterns. Throws InputError if one of them cannot be evaluated.
   RadiancePattern pattern_of(const RadianceLook& look) const;
 
  private:
@@ -51,9 +51,9 @@ class RadianceMaterials {
   Scene& scene_;
   std::string folder_;
   std::map<std::string, Modifier> modifiers_;
-  // The modifier each one modifies, as it was when that one was defined.
+  // The modifier below each one, as defined when that one was defined.
   std::map<const RadianceModifier*, Modifier> below_;
-  // For what another file defines.
+  // Stands in for undefined modifiers.
   Modifier grey_ = std::make_shared<const RadianceModifier>(
       RadianceModifier{"void", "plastic", {{}, {0.5, 0.5, 0.5, 0, 0}}, {}, {}});
   std::map<std::string, RadianceLook> looks_;

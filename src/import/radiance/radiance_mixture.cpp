@@ -1,4 +1,5 @@
-// Radiance's mixtures: a share of the surface is one material, the rest another.
+// Radiance's mixtures: a share of the surface is one material, the rest another (part of
+// RadianceMaterials).
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +23,7 @@ Vec3d sample_point(int i) {
 
 }  // namespace
 
-// The foreground's part. Of functions that vary from place to place, their mean.
+// Share of the foreground. A function that varies is replaced by its mean.
 double RadianceMaterials::foreground_share(const RadianceModifier& m) {
   RadianceFunctions function(m, 2, 1, 3, folder_);
   const double first = std::clamp(function.values({})[0], 0.0, 1.0);

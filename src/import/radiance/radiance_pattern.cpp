@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint64_t max_function_file_bytes = uint64_t(4) << 20;
 
-// A file beside the scene goes before one that comes with Radiance, as in Radiance's search path.
+// A file in the scene's folder precedes one that comes with Radiance, as in Radiance's search path.
 void read_functions(const std::string& name, const std::string& folder, const SourcePlace& place,
                     CalProgram& program) {
   const ConfinedPath path = confined_path(folder, name);

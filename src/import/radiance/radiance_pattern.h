@@ -1,4 +1,5 @@
-// Radiance's patterns by functions (brightfunc, colorfunc), evaluated.
+// Evaluates Radiance's patterns by functions (brightfunc, colorfunc). Used by RadianceMaterials and
+// for sky lights.
 #pragma once
 
 #include <optional>
@@ -17,24 +18,25 @@ struct RadianceModifier {
   std::string modifier, type;
   RadianceArguments arguments;
   SourcePlace place;
-  Affine world;  // from the space of its file, which an xform may have moved
+  Affine world;  // from the space of its file, which an xform may have transformed
 };
 
-// The functions of a modifier. Copies are independent: one per thread.
+// The functions of a modifier. Evaluation changes the object: use one copy per thread.
 class RadianceFunctions {
  public:
-  // `count` expressions among m's string arguments from `first` on; string `file` names the
-  // function file ("." = none; of the scene's `folder`, else one that comes with Radiance), which
-  // options of a transform may follow. InputError at m's place, or in that file.
+  // Takes `count` expressions from m's string arguments, from number `first` on. String number
+  // `file` names the function file; "." means none. It is looked up in the scene's `folder`, then
+  // among Radiance's own. Options of a transform may follow it. Throws InputError at m's place or
+  // in that file.
   RadianceFunctions(const RadianceModifier& m, size_t first, size_t count, size_t file,
                     const std::string& folder);
 
-  // One value per expression for a ray in world space; at m's place InputError where there is none.
-  // A value that is not finite (1/0, log(-1)) counts as 0.
+  // Returns one value per expression, for a ray in world space. A value that is not finite (1/0,
+  // log(-1)) counts as 0. Throws InputError, at m's place, if an expression has no value.
   std::vector<double> values(const CalRay& world);
-  // Whether any value so far depended on the ray.
+  // True if any value so far depended on the ray.
   bool has_used_ray() const { return program_.has_used_ray(); }
-  // InputError where no value so far was a finite number.
+  // Throws InputError if no value so far was finite.
   void check() const;
 
  private:
@@ -45,19 +47,19 @@ class RadianceFunctions {
   bool has_been_finite_ = false;
 };
 
-// The product of the patterns that a material wears.
+// Product of a material's patterns.
 struct RadiancePattern {
-  std::vector<RadianceFunctions> functions;  // of one value, or of three
+  std::vector<RadianceFunctions> functions;  // of one or three values each
 
   static bool is_evaluated(const std::string& type) {
     return type == "brightfunc" || type == "colorfunc";
   }
-  // InputError: as RadianceFunctions.
+  // Adds a pattern. Throws InputError as RadianceFunctions does.
   void add(const RadianceModifier& m, const std::string& folder);
   Rgb value(const CalRay& world);
-  // InputError: one of its functions gives no finite number in any of these directions.
+  // Throws InputError if a function has no finite value in any of these directions.
   void check(const std::vector<Vec3d>& directions);
-  // The same value everywhere, if it is.
+  // Returns the value if it is the same everywhere.
   std::optional<Rgb> constant();
 };
 

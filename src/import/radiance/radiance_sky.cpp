@@ -19,8 +19,8 @@ bool set_axes(Light& e, const Vec3d& up) {
   return is_finite(e.axes[0]) && is_finite(e.axes[2]);
 }
 
-// Light in the cone about the map's z: the pattern at each texel's middle, or 1. Rows across its
-// rim have the part of it that their solid angle has.
+// Image of the light within a cone about the map's z axis: the pattern at each texel's centre, or
+// 1. Rows on the rim are weighted by the share of their solid angle in the cone.
 EnvironmentMap cone_map(RadiancePattern* pattern, double half_angle, const Light& e) {
   EnvironmentMap map;
   map.name = e.name;
@@ -29,7 +29,7 @@ EnvironmentMap cone_map(RadiancePattern* pattern, double half_angle, const Light
   map.texels.resize(size_t(map.width) * size_t(map.height));
   parallel_pieces(map_height, 32, [&](size_t begin, size_t end) {
     RadiancePattern own;
-    if (pattern != nullptr) own = *pattern;  // evaluation keeps state
+    if (pattern != nullptr) own = *pattern;  // evaluation changes the pattern
     for (size_t y = begin; y < end; ++y) {
       const double top = std::cos(pi * double(y) / map_height),
                    bottom = std::cos(pi * double(y + 1) / map_height);
@@ -78,7 +78,7 @@ bool add_radiance_source(const RadianceLook& look, RadiancePattern* pattern, con
     EnvironmentMap map = cone_map(pattern, rad_from_deg(angle_deg) / 2, e);
     const bool is_dark = std::all_of(map.texels.begin(), map.texels.end(),
                                      [](const Rgb& t) { return t.is_black(); });
-    if (is_dark) return true;  // gendaylit's sky of a sun below the horizon
+    if (is_dark) return true;  // a sky of gendaylit with the sun below the horizon
     e.environment = int32_t(scene.environments.size());
     scene.environments.push_back(std::move(map));
   }

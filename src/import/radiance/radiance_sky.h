@@ -1,4 +1,5 @@
-// Radiance's distant sources -> suns, skies and surroundings.
+// Converts Radiance's distant sources to suns, skies and environment lights. Used by
+// RadianceSurfaces.
 #pragma once
 
 #include <string>
@@ -7,10 +8,11 @@
 
 namespace troffer {
 
-// Appends the light of a `source` that lies in the direction `to` (unit) and is `angle_deg` wide,
-// with its pattern where it has one (null: none). Hemispheres and the whole sphere that shine
-// evenly become a sky and an environment, others an image of their cone: 1024 × 512 texels.
-// False: it cannot be used. InputError: its pattern cannot be evaluated.
+// Appends the light of a `source` in the direction `to` (unit) that is `angle_deg` wide. `pattern`
+// may be null. Without pattern, a hemisphere becomes a sky, and the whole sphere a uniform
+// environment. Up to 60 degrees a source becomes a sun. All others become an image of their cone
+// with 1024 × 512 texels. Returns false if the source cannot be used. Throws InputError if its
+// pattern cannot be evaluated.
 bool add_radiance_source(const RadianceLook& look, RadiancePattern* pattern, const Vec3d& to,
                          double angle_deg, const std::string& name, Scene& scene);
 

@@ -10,12 +10,12 @@ namespace troffer {
 
 namespace {
 
-// Factor on areas of a transform; of a similarity, exact.
+// Factor on areas of a transform; exact for similarities.
 double area_scale(const Affine& t) {
   return std::pow(std::abs(t.determinant()), 2.0 / 3);
 }
 
-// Within an angle about z: 1, or of flat surfaces the cosine; beyond it nothing.
+// Web that is 1 (or, for flat surfaces, the cosine) up to an angle from z, and 0 beyond.
 LightWeb beam(double half_angle, bool is_flat, const std::string& name) {
   constexpr int steps = 64;
   LightWeb web;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int round_steps = 64;
 
-// z along `axis`, at `origin`.
+// Frame at `origin` with z along `axis`.
 Affine frame(const Vec3d& origin, const Vec3d& axis) {
   Affine t;
   t.columns[2] = normalize(axis);
@@ -28,7 +28,7 @@ Affine frame(const Vec3d& origin, const Vec3d& axis) {
   return t;
 }
 
-// The mantle about z from 0 to `height`, front outside.
+// Lateral surface of a cone about z from 0 to `height`, front outside.
 Mesh mantle(double height, double r0, double r1) {
   Mesh m;
   const double slope = (r0 - r1) / height;

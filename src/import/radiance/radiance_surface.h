@@ -1,4 +1,5 @@
-// Radiance's surfaces and distant sources -> geometry and lights.
+// Converts Radiance's surfaces and distant sources to geometry and lights. Used by RadianceReader.
+// Polygons that do not emit are merged to one mesh per material.
 //
 // References: [1] "The RADIANCE 5.1 Synthetic Imaging System", §2.1.1 (surfaces).
 #pragma once
@@ -12,22 +13,22 @@ namespace troffer {
 
 class RadianceSurfaces {
  public:
-  // All must outlive this.
+  // All arguments must outlive this object.
   RadianceSurfaces(Scene& scene, PlacedBounds& bounds, RadianceMaterials& materials)
       : scene_(scene), materials_(materials), placer_(scene, bounds) {}
 
   static bool is_surface(const std::string& type);
 
-  // A primitive, moved by its `world`, its front turned to the other side where is_inverted.
-  // InputError at its place: arguments that cannot be used, too much geometry.
+  // Adds a primitive, transformed by its `world`. is_inverted swaps its front and back. Throws
+  // InputError, at its place, for unusable arguments and too much geometry.
   void add(const RadianceModifier& primitive, const std::string& name, bool is_inverted);
   void add_polygon(const RadianceModifier& primitive, const std::string& name,
                    std::vector<Vec3d> corners, bool is_inverted);
-  // Polygons that do not emit are kept by material; this places them.
+  // Adds the polygons that do not emit, which are collected by material. Call it last.
   void finish();
 
  private:
-  // Polygons of one material: mesh with double positions.
+  // Polygons of one material, with positions in double precision.
   struct Collected {
     std::vector<Vec3d> positions;
     std::vector<Triangle> triangles;

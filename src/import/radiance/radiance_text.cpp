@@ -78,7 +78,7 @@ std::string RadianceText::word() {
                                               : !is_radiance_blank(text_[end])))
     ++end;
   at_ = end + (quote != '\0' && end < text_.size() && text_[end] == quote ? 1 : 0);
-  if (end == begin) return " ";  // "": a word all the same
+  if (end == begin) return " ";  // an empty string in quotes is a word too
   return std::string(text_.substr(begin, end - begin));
 }
 

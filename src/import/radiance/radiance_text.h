@@ -1,4 +1,5 @@
-// Words of Radiance's scene files.
+// Tokenizer of Radiance's scene files, and parsers of words and numbers. Used by all readers of
+// this folder.
 //
 // References: [1] G. W. Larson, R. Shakespeare, "Rendering with Radiance", 1998, appendix A (scene
 //   description); [2] "The RADIANCE 5.1 Synthetic Imaging System" (reference manual, refman.pdf).
@@ -12,29 +13,30 @@
 
 namespace troffer {
 
-// What a primitive says after its modifier, type and identifier.
+// Arguments of a primitive, after its modifier, type and identifier.
 struct RadianceArguments {
   std::vector<std::string> strings;
   std::vector<double> reals;
 };
 
-// Takes a file apart. '#' between words begins a comment up to the end of its line, '!' between
-// statements a command up to the end of its line, which a backslash continues.
+// Splits a file into words. '#' between words begins a comment up to the end of the line. '!'
+// between statements begins a command up to the end of the line; a backslash continues it.
 class RadianceText {
  public:
-  // Both must outlive this.
+  // Both must outlive this object.
   RadianceText(std::shared_ptr<const std::string> file, std::string_view text)
       : file_(std::move(file)), text_(text) {}
 
-  // The next word, without its quotes (" or '); empty at the end of the file. Comments go by unless
-  // they hold a view ("-vp"), which is added to views().
+  // Returns the next word, without its quotes (" or '); empty at the end of the file. Comments are
+  // skipped; those with a view ("-vp") are added to views().
   std::string word();
-  // The first word of a statement; "!" where a command begins.
+  // Returns the first word of a statement, or "!" at the start of a command.
   std::string first_word();
-  // The text after '!' up to the end of the line; call where first_word() has returned "!".
+  // Returns the text after '!' up to the end of the line. Call it after first_word() has returned
+  // "!".
   std::string command();
   RadianceArguments arguments();
-  // A finite number.
+  // Reads a finite number.
   double number();
 
   SourcePlace place() const { return {file_, line_of_word_, column_of_word_}; }
@@ -52,10 +54,10 @@ class RadianceText {
   std::string argument(const char* what);
 };
 
-// Words of a command or of a view, separated by blanks; quotes hold words together.
+// Splits a command or view into words, separated by blanks. Quotes keep words together.
 std::vector<std::string> words_of(std::string_view line);
 
-// A finite number, or an error at that place.
+// Parses a finite number. Throws InputError at that place.
 double radiance_number(const std::string& word, const SourcePlace& place);
 
 }  // namespace troffer

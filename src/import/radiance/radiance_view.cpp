@@ -33,7 +33,8 @@ bool read_vector(const std::vector<std::string>& words, size_t& at, Vec3d& v) {
   return read_number(words, at, v.x) && read_number(words, at, v.y) && read_number(words, at, v.z);
 }
 
-// Options that are no part of a view are passed over. False: a view option without its numbers.
+// Skips options that do not belong to a view. Returns false if a view option lacks its numbers, or
+// if there is no position.
 bool parse(const std::string& line, View& view) {
   const std::vector<std::string> words = words_of(line);
   for (size_t at = 0; at < words.size();) {
