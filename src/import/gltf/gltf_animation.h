@@ -1,5 +1,5 @@
-// glTF animations, evaluated at one moment.
-// The result replaces transforms and morph weights of nodes (gltf_nodes.h, gltf.cpp).
+// glTF animations, evaluated at one moment. The result replaces transforms and morph weights of
+// nodes (gltf_nodes.h, gltf.cpp).
 // References: [1] Khronos, glTF 2.0 Specification, §3.11 (Animations) and appendix C (Animation
 //   Sampler Interpolation Modes).
 #pragma once

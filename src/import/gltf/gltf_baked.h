@@ -1,6 +1,6 @@
-// Light baked into a glTF file: MOZ_lightmap, and the images of KHR_materials_unlit.
-// With `--baked` materials become black emitters of the baked radiance. Otherwise a warning says
-// that the file holds baked light.
+// Light baked into a glTF file: MOZ_lightmap, and the images of KHR_materials_unlit. With `--baked`
+// materials become black emitters of the baked radiance. Otherwise a warning says that the file
+// holds baked light.
 // References: [1] Mozilla Hubs, "MOZ_lightmap": texel × intensity is irradiance.
 //   [2] Khronos, "KHR_materials_unlit".
 #pragma once

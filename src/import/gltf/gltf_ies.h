@@ -1,5 +1,5 @@
-// Luminaires with photometric webs in glTF files.
-// gltf.cpp calls this for each node that has the extension.
+// Luminaires with photometric webs in glTF files. gltf.cpp calls this for each node that has the
+// extension.
 // References: [1] glTF extension EXT_lights_ies.
 #pragma once
 

@@ -1,7 +1,6 @@
 // JSON documents, read through typed getters. A value of the wrong type or out of range throws
-// InputError with the value's line and column.
-// Used by the importer of glTF and by other readers of JSON. No other header of this folder
-// includes the JSON library.
+// InputError with the value's line and column. Used by the importer of glTF and by other readers of
+// JSON. No other header of this folder includes the JSON library.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Conversion of glTF mesh primitives to meshes.
-// gltf.cpp calls it once per placed primitive, or once in the mesh's own space for instances.
+// Conversion of glTF mesh primitives to meshes. gltf.cpp calls it once per placed primitive, or
+// once in the mesh's own space for instances.
 // References: [1] Khronos, glTF 2.0 Specification, §3.7 (Geometry).
 #pragma once
 

@@ -1,5 +1,5 @@
-// Decoder of compressed buffer views, by the library meshoptimizer.
-// GltfBuffers uses it when it loads the buffer views of a document.
+// Decoder of compressed buffer views, by the library meshoptimizer. GltfBuffers uses it when it
+// loads the buffer views of a document.
 // References: [1] Khronos extension EXT_meshopt_compression.
 #pragma once
 

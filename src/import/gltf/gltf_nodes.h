@@ -1,5 +1,5 @@
-// The node hierarchy of a glTF file: which nodes are shown, and their world transforms.
-// gltf.cpp places meshes, lights and cameras by it; skins need the transforms of all nodes.
+// The node hierarchy of a glTF file: which nodes are shown, and their world transforms. gltf.cpp
+// places meshes, lights and cameras by it; skins need the transforms of all nodes.
 // References: [1] Khronos, glTF 2.0 Specification, §3.5 (Scenes and Nodes).
 #pragma once
 

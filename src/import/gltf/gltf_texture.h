@@ -1,5 +1,5 @@
-// Conversion of glTF texture references (textureInfo) to textures of the scene.
-// Used by the converters of materials and of baked light.
+// Conversion of glTF texture references (textureInfo) to textures of the scene. Used by the
+// converters of materials and of baked light.
 // References: [1] Khronos, glTF 2.0 Specification, §3.8 (Texture Data);
 //   [2] Khronos extension KHR_texture_transform.
 #pragma once

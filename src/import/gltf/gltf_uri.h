@@ -1,5 +1,5 @@
-// Relative URIs in a glTF document: the files that they name, and the contents of those files.
-// Used for buffers, images and photometric profiles. Data URIs are handled by import/uri.h.
+// Relative URIs in a glTF document: the files that they name, and the contents of those files. Used
+// for buffers, images and photometric profiles. Data URIs are handled by import/uri.h.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Choice of the texture coordinate sets (TEXCOORD_n) that a glTF material uses.
-// A mesh of the scene has two sets at most, so a material with more is approximated.
+// Choice of the texture coordinate sets (TEXCOORD_n) that a glTF material uses. A mesh of the scene
+// has two sets at most, so a material with more is approximated.
 #pragma once
 
 #include "base/log.h"
