@@ -1,4 +1,4 @@
-// The header of a PLY file: which elements and properties follow, and how they are encoded.
+// The header of a PLY file: the elements and properties that follow, and their encoding.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,11 @@ struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
   size_t body = 0;    // offset of the first byte after the header
-  int body_line = 1;  // and its line
+  int body_line = 1;  // line of that byte
 };
 
-// InputError: not a PLY file, unknown formats and types, no end_header.
+// Parses the header. Throws InputError if the file is not PLY, its format or a type is unknown, or
+// end_header is missing.
 PlyHeader parse_ply_header(std::string_view text, const std::string& file);
 
 }  // namespace troffer
