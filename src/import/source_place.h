@@ -1,4 +1,4 @@
-// Where in a text file something stands, for messages.
+// Position of an item in a text file, for error messages.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ struct SourcePlace {
   }
 };
 
-// Text of a file as part of a message: of bounded length.
+// Returns text of a file for use in a message, at most 80 bytes.
 inline std::string shortened(const std::string& text) {
   return text.size() <= 80 ? text : text.substr(0, 77) + "...";
 }

@@ -25,7 +25,8 @@ class PlyCutter {
 
   // Returns pieces without gaps of an element whose first row starts at byte `begin`. In an ascii
   // body each line counts as a row, so a reader must check that its piece holds exactly its rows.
-  // Returns nothing if rows have no fixed size or the file has too few.
+  // Returns nothing if the file has too few rows, the element has no properties, or piece_bytes is
+  // 0.
   std::optional<std::vector<PlyPiece>> cut(const PlyElement& element, size_t begin) const;
 
  private:
