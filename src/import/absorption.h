@@ -1,4 +1,5 @@
-// Absorption coefficients from files, made usable. Used by the importers of several formats.
+// Absorption coefficients from files, made usable. Used by the importers of pbrt and Mitsuba for
+// the media inside glass. Coefficients are per metre.
 #pragma once
 
 #include "base/rgb.h"

@@ -1,5 +1,5 @@
-// Mixtures of two materials by a share, per place on the surface. Importers use it for mix and
-// blend materials where a mixture is exact as one diffuse material.
+// Mixtures of two materials by a share, per place on the surface. The importers of pbrt and Mitsuba
+// use it for mix and blend materials where the mixture is exactly one diffuse material.
 #pragma once
 
 #include "scene/scene.h"

@@ -20,8 +20,8 @@ constexpr size_t max_polygons = 1000;
 constexpr size_t max_corners = 64;
 
 constexpr double flatness = 1e-4;      // distance from the plane, relative to the component's size
-constexpr double straightness = 1e-5;  // distance of a corner from its neighbours' line, likewise
-                                       // relative
+constexpr double straightness = 1e-5;  // distance of a corner from its neighbours' line, relative
+                                       // to the size
 constexpr double area_agreement = 1e-3;  // relative difference between outline and triangles
 constexpr double float_rounding = 4e-7;  // relative rounding of a coordinate in single precision
 

@@ -1,4 +1,6 @@
-// Lights from emissive meshes, by one rule for all formats.
+// Lights from emissive meshes, by one rule for all formats. Polygon lights allow certified
+// visibility and exact irradiance, so meshes become polygons where possible. Radiance is in the
+// scene's unit (Scene::is_photometric).
 #pragma once
 
 #include <string>

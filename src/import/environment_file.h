@@ -1,5 +1,5 @@
-// Environment images from files. Used for `--environment` and by the importers. Radiance keeps the
-// file's values.
+// Environment images from files, for `--environment` and for the lights of pbrt and Mitsuba. Texels
+// are linear RGB radiance in the file's own units. Memory is limited to 8 Mi texels for each image.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
-// Input files: whole files in memory, and paths confined to a folder. All importers read through
-// it, so that FilesRead and KeptFiles see every file of a scene.
+// Input files: whole files in memory, and paths confined to a folder. Importers read through it, so
+// that FilesRead knows every file of a scene and KeptFiles can repeat its contents. Errors are
+// InputError.
 #pragma once
 
 #include <cstdint>

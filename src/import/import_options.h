@@ -1,4 +1,5 @@
-// Options of import_scene: a user's choices among the contents of one file.
+// Options of import_scene: a user's choices among the contents of one file. Most come from the
+// command line (app/load.cpp). Options that a format does not have are a UsageError there.
 #pragma once
 
 #include <optional>

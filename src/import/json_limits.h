@@ -1,5 +1,5 @@
-// Limits on the contents of a JSON text, checked before it is parsed. A parsed text may take a
-// hundred times its memory, and every few bytes may open a new level.
+// Limits on the contents of a JSON text, checked before it is parsed (JsonDocument). A parsed text
+// may take a hundred times its memory, and every few bytes may open a new level.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
-// A cache of file contents, for callers that import a scene again although its files may be gone.
+// A cache of file contents, for callers that read the same files again although they may have
+// changed or disappeared. `troffer view` uses it to light a scene for another time of day.
+// read_file and read_text_file use the cache automatically.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Radius for point and spot lights (`--light-radius`), so that their shadows become soft.
+// Radius for point and spot lights (`--light-radius`), so that their shadows become soft. Applied
+// to a scene after its import.
 #pragma once
 
 #include "scene/scene.h"

@@ -1,4 +1,5 @@
-// Limits on the content of scene files of any format.
+// Limits on the content of scene files of any format. The importers check them before they allocate
+// memory, and report InputError.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // Clean-up of imported meshes: afterwards nothing is NaN or infinite, and no triangle lacks area.
-// All importers call it before a mesh enters the scene.
+// Importers call it before a mesh enters the scene. It also holds small functions on the area of
+// meshes.
 #pragma once
 
 #include "base/log.h"

@@ -1,5 +1,6 @@
 // Placement of shapes with spaces of their own into a scene: geometry and lights in world space.
 // The importers of Mitsuba and Radiance use GeometryPlacer; pbrt uses the functions below it.
+// Repeated meshes become instances (gltf/mesh_instancer.h).
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
-// Triangulation of polygons. Used for the faces of OBJ and Radiance files.
+// Triangulation of polygons, for the faces of OBJ and Radiance files. It handles convex and concave
+// polygons; holes are not supported.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Progress of reading large files, and the parameters of reading them in pieces.
+// Progress of reading large files, and the parameters of reading them in pieces. Used by the
+// importers of OBJ, PLY and STL, which split their files among threads.
 #pragma once
 
 #include <cstddef>

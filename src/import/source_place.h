@@ -1,4 +1,5 @@
-// Position of an item in a text file, for error messages.
+// Position of an item in a text file, for error messages. Used by the importers of text formats,
+// whose parsed items outlive the text.
 #pragma once
 
 #include <memory>

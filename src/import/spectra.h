@@ -26,6 +26,7 @@ struct SampledSpectrum {
 constexpr uint64_t max_spectrum_file_bytes = uint64_t(1) << 24;
 constexpr double sodium_nm = 587.6;  // the line at which single indices of refraction are stated
 
+// Returns the value at a wavelength; 0 outside the samples.
 double value_at(const SampledSpectrum& spectrum, double wavelength_nm);
 
 // Returns the colour of a surface of that spectral reflectance under equal-energy light, relative

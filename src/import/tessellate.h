@@ -1,6 +1,6 @@
 // Tessellation of curved shapes in object space: positions, smooth unit normals and (u,v). The
 // front is the side of dp/du × dp/dv, with pbrt's parametrisations. Used by the importers of pbrt
-// and Mitsuba and by placed_geometry.h.
+// and Radiance and by placed_geometry.h.
 #pragma once
 
 #include <array>

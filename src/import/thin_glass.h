@@ -8,7 +8,7 @@
 namespace troffer {
 
 // Replaces each closed prism of smooth dielectric or transmitting material by a thin sheet in its
-// middle, if its thickness is at most 1/30 of its smaller side. Light passes as through the body,
+// middle. The thickness must be at most 1/30 of the smaller side. Light passes as through the body,
 // with all reflections between its faces, but without the shift, which is less than the thickness.
 // The prism's edges are dropped. A mesh may contain several prisms beside other glass.
 void replace_thin_glass(Scene& scene);

@@ -1,4 +1,5 @@
 // Test for triangles that can be rendered. Importers apply it through clean_mesh or while reading.
+// Each thread may count with an object of its own; add() combines them.
 #pragma once
 
 #include <cstddef>

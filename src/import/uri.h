@@ -23,6 +23,7 @@ struct DataUri {
   std::vector<uint8_t> bytes;
 };
 
+// True if the URI has the scheme "data:", in either case.
 bool is_data_uri(std::string_view uri);
 
 // Decodes "data:[type][;base64],data" [2]; nothing if it is malformed.

@@ -1,4 +1,5 @@
-// Welding of triangle soups: corners at equal positions become shared vertices. Used for STL.
+// Welding of triangle soups: corners at equal positions become shared vertices. The importer of STL
+// uses it. It runs in parallel, and its result does not depend on the number of threads.
 #pragma once
 
 #include <vector>

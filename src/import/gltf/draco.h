@@ -10,6 +10,7 @@
 
 namespace troffer {
 
+// Values of one attribute, converted to floats.
 struct DracoAttribute {
   uint32_t id = 0;          // the encoder's unique number
   uint32_t components = 0;  // 1 to 4
@@ -20,6 +21,7 @@ struct DracoAttribute {
   float largest = 1;
 };
 
+// A decoded mesh, or the reason why there is none.
 struct DracoMesh {
   uint64_t vertex_count = 0;
   std::vector<uint32_t> indices;  // three per triangle, all below vertex_count

@@ -13,6 +13,7 @@
 
 namespace troffer {
 
+// Applies baked light to converted materials.
 class GltfBaked {
  public:
   // All arguments must outlive this object. `is_shown`: show the baked light.

@@ -1,4 +1,6 @@
-// Conversion of glTF cameras, perspective and orthographic.
+// Conversion of glTF cameras, perspective and orthographic, to cameras of the scene. gltf.cpp calls
+// it for each node with a camera. Positions and sizes are in metres; near and far planes are
+// ignored.
 // References: [1] Khronos, glTF 2.0 Specification, §3.10 (Cameras).
 #pragma once
 

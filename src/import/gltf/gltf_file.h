@@ -11,6 +11,7 @@
 
 namespace troffer {
 
+// Contents of a container, split into its chunks.
 struct GltfFile {
   std::string json_text;
   std::optional<std::vector<uint8_t>> binary_chunk;  // only in a GLB that has a binary chunk

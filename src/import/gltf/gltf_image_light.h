@@ -1,4 +1,6 @@
-// Image-based environment lights of glTF files.
+// Image-based environment lights of glTF files. gltf.cpp calls it once, for the scene that is
+// shown. The cube map becomes an equal-area environment image of at most 2048 × 2048 texels, in
+// cd/m².
 // References: [1] glTF extension EXT_lights_image_based.
 #pragma once
 

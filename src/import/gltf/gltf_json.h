@@ -69,6 +69,7 @@ class JsonNode {
   std::string pointer_;
 };
 
+// A parsed JSON text. It must outlive its nodes.
 class JsonDocument {
  public:
   // Parses `text` (UTF-8 without a byte order mark). Throws InputError at the position of a syntax

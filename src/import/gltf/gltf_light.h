@@ -1,4 +1,5 @@
-// Conversion of glTF lights without surface: directional, point and spot.
+// Conversion of glTF lights without surface: directional, point and spot. gltf.cpp calls it for
+// each node with such a light. Illuminance is in lx, intensity in cd.
 // References: [1] Khronos, glTF extension KHR_lights_punctual.
 #pragma once
 

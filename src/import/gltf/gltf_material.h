@@ -19,6 +19,7 @@
 
 namespace troffer {
 
+// A converted material, with what the makers of its meshes and lights need.
 struct GltfMaterial {
   uint32_t material = 0;  // index into Scene::materials
   Rgb emission{0};        // cd/m²

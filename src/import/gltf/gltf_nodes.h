@@ -13,6 +13,7 @@
 
 namespace troffer {
 
+// A node that is shown, with its world transform.
 struct GltfNode {
   uint32_t index = 0;      // into /nodes
   Affine world_from_node;  // metres

@@ -30,6 +30,7 @@ struct GltfJoints {
   AccessorView joints, weights;
 };
 
+// A checked primitive: accessors of its attributes, indices and morph targets.
 struct GltfPrimitive {
   GltfTopology topology = GltfTopology::triangles;
   AccessorView positions;

@@ -9,8 +9,8 @@
 
 namespace troffer {
 
-// Checks the asset's version, the JSON type of everything that the importer reads, the presence of
-// required members, and every index, whether it is used or not.
+// Checks the asset's version, the presence of required members, and the JSON type of everything
+// that the importer reads. Also checks every index, whether it is used or not.
 // Fails at the first wrong value. Warns if the file asks for a later minor version.
 void check_gltf_document(const JsonNode& root, WarningLog& warnings);
 

@@ -14,6 +14,7 @@
 
 namespace troffer {
 
+// A texture of the scene, or the colour that replaces it.
 struct GltfTextureUse {
   int32_t texture = no_texture;  // no_texture also if the image is missing (with a warning)
   Rgb stand_in{1};               // colour to use instead of a missing image

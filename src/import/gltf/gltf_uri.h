@@ -1,5 +1,7 @@
 // Relative URIs in a glTF document: the files that they name, and the contents of those files. Used
-// for buffers, images and photometric profiles. Data URIs are handled by import/uri.h.
+// for buffers, photometric profiles and the images of image-based lights. Data URIs are decoded by
+// import/uri.h, texture images are found by gltf_texture.h. Nothing outside the scene's folder is
+// read.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // Choice of the texture coordinate sets (TEXCOORD_n) that a glTF material uses. A mesh of the scene
-// has two sets at most, so a material with more is approximated.
+// has two sets at most, so a material with more is approximated. Used when a material is read
+// (gltf_material.h) and when its meshes are made (gltf_mesh.h).
 #pragma once
 
 #include "base/log.h"

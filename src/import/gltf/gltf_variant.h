@@ -1,4 +1,5 @@
 // Material variants of glTF (`--variant NAME`): the material of each primitive in a chosen variant.
+// gltf.cpp applies the choice when it reads primitives.
 // References: [1] Khronos extension KHR_materials_variants.
 #pragma once
 

@@ -18,8 +18,10 @@ namespace troffer {
 // Limit on all triangles of a scene, instances counted in full: triangle numbers have 32 bits.
 constexpr uint64_t max_placed_triangles = 4'000'000'000;
 
+// Returns the error message for scenes beyond that limit.
 std::string too_many_by_instances();
 
+// Decides between instances and copies, and stores the shared meshes of a scene.
 class MeshInstancer {
  public:
   // Both must outlive this object.
@@ -33,10 +35,10 @@ class MeshInstancer {
     auto operator<=>(const Key&) const = default;
   };
 
-  // Adds an instance, or returns false if the mesh must or should be copied. That is so for meshes
-  // of few triangles, for the first meshes while all copies together are small, and for glass that
-  // may be thin (thin_glass.h works in world space). It is also so if the transform is nearly
-  // singular, or a triangle loses its area under it.
+  // Adds an instance, or returns false if the mesh must or should be copied. Meshes of few
+  // triangles are copied, and the first meshes while all copies together are small. Glass that may
+  // be thin is copied too, because thin_glass.h works in world space. So are meshes under a nearly
+  // singular transform, or one that takes a triangle's area away.
   // `triangles` is the file's count. `world_from_mesh` counts from Scene::origin. `make` returns
   // the mesh in its own space: cleaned, with its material, its front as without the transform. It
   // is called at most once per stored mesh.

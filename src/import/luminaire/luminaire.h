@@ -25,6 +25,7 @@ struct TiltFactors {
   std::vector<double> angles_deg, factors;  // of equal size; empty: factor 1
 };
 
+// Content of a photometric file.
 struct Luminaire {
   // Luminous intensities, cd.
   LightWeb web;

@@ -14,9 +14,9 @@ namespace troffer {
 // Distance outside a format's range at which an angle is still accepted.
 constexpr double angle_slack_deg = 1;
 
-// Snaps the first and last of monotonic angles to a multiple of 90 if it is less than a degree
-// away, and less than half of the adjacent step. LM-63 and EULUMDAT allow tables to end only there,
-// and the ends tell the symmetry.
+// Snaps the first and last of monotonic angles to a multiple of 90. They must be less than a degree
+// away from it, and less than half of the adjacent step. LM-63 and EULUMDAT allow tables to end
+// only there, and the ends tell the symmetry.
 // Warns if an angle moves by more than a tenth of a degree; `what` names the angles.
 void snap_ends(std::vector<double>& angles, const char* what, const std::string& name,
                WarningLog& warnings);

@@ -1,5 +1,5 @@
 // Readers of the single photometric formats; read_luminaire() in luminaire.h chooses one. Limits on
-// counts and values reject nonsense before memory is allocated.
+// counts and values reject invalid files before memory is allocated. Units are cd, lm and m.
 #pragma once
 
 #include <string>
@@ -16,6 +16,7 @@ constexpr double most_candela = 1e12, most_lumens = 1e12, most_metres = 1e4;
 // Reads LM-63. `folder` may hold a file of tilt factors; empty: none is read.
 Luminaire read_ies(const std::string& path, std::string_view bytes, const std::string& folder,
                    WarningLog& warnings);
+// Reads EULUMDAT.
 Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& warnings);
 
 // Sets negative intensities to 0, with a warning. Fails if all are dark.

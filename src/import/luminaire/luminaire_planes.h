@@ -1,5 +1,6 @@
-// Conversion of the measured planes of a photometric file to a photometric web. It fills in the
-// planes that symmetry omits. Angles are in degrees here and in radians in LightWeb.
+// Conversion of the measured planes of a photometric file to a photometric web, by the readers of
+// LM-63 and EULUMDAT. It fills in the planes that symmetry omits. Angles are in degrees here and in
+// radians in LightWeb; intensities are in cd.
 #pragma once
 
 #include <string>
@@ -18,6 +19,7 @@ struct Planes {
   std::vector<double> candela;  // turns × heights, a plane after the other
 };
 
+// Fails, at the last item read from `text`, unless the angles ascend.
 void check_ascending(const std::vector<double>& angles, const PhotometricText& text,
                      const char* name);
 // Fails unless the angles ascend throughout or descend throughout.

@@ -32,6 +32,7 @@ LuminousOpening ies_opening(double width, double length, double height, bool is_
 // as in LuminousOpening.
 LuminousOpening eulumdat_opening(double length, double width, const std::array<double, 4>& sides);
 
+// A convex flat face of a body.
 struct OpeningFace {
   std::vector<Vec3d> outline;  // convex, relative to the body's centre, in the luminaire's axes
   Vec3d area;                  // outward normal times area, m²

@@ -1,5 +1,6 @@
 // Tokenizer of photometric files: lines and numbers, in the many variants that programs write. The
-// readers of LM-63 and EULUMDAT use it. Errors carry the line and column of the last item read.
+// readers of LM-63 and EULUMDAT use it. Errors are InputError with the line and column of the last
+// item read.
 #pragma once
 
 #include <string>

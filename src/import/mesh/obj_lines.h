@@ -1,4 +1,6 @@
-// Parser of OBJ lines into an ObjPiece. obj.cpp runs it on many pieces in parallel.
+// Parser of OBJ lines into an ObjPiece. obj.cpp first parses many pieces in parallel with
+// read_obj_lines. If one is malformed, it parses that piece again with read_obj_lines_after, which
+// knows the counts before it and reports the error.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // Triangles of an OBJ file, grouped by object, group and material. Each part has vertices of its
-// own; obj.cpp turns parts into meshes.
+// own, one for each combination of position, (u,v) and normal. obj.cpp fills ObjParts in the order
+// of the file and turns each part into a mesh.
 #pragma once
 
 #include <memory>
@@ -11,6 +12,7 @@
 
 namespace troffer {
 
+// Triangles of one object, group and material.
 struct ObjPart {
   std::string name, material;
   std::vector<Triangle> triangles;
@@ -24,6 +26,7 @@ struct ObjPart {
   bool is_painted = false;  // has vertices from after the first coloured one in the file
 };
 
+// Sorts triangles into parts.
 class ObjParts {
  public:
   // Set the names for the triangles that follow.

@@ -42,6 +42,7 @@ struct ObjEvent {
   size_t count = 1;               // number of equal statements in a row
 };
 
+// Parsed statements of a piece. Reused for further pieces, to keep its memory.
 struct ObjPiece {
   std::vector<Vec3d> positions;  // as in the file
   std::vector<Vec3> normals;

@@ -12,6 +12,7 @@
 
 namespace troffer {
 
+// Limits and parameters of reading a PLY file.
 struct PlyLimits {
   size_t max_triangles = 200'000'000;
   PieceReading pieces = {};

@@ -1,4 +1,6 @@
-// Scalars in the body of a PLY file, one after the other, in any of the three encodings.
+// Scalars in the body of a PLY file, one after the other, in any of the three encodings. ply.cpp
+// and ply_attributes.cpp read rows through it. Errors are InputError; they have a line and column
+// only in ascii bodies.
 #pragma once
 
 #include <string>
@@ -8,6 +10,7 @@
 
 namespace troffer {
 
+// A cursor over the scalars of a body.
 class PlyBody {
  public:
   // Starts at byte `begin`, which is on line `line`. The text must outlive this object.

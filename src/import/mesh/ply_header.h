@@ -1,4 +1,5 @@
-// The header of a PLY file: the elements and properties that follow, and their encoding.
+// The header of a PLY file: the elements and properties that follow, and their encoding. PlyBody
+// reads the data that it describes. Counts are those of the file and are not checked here.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@ namespace troffer {
 enum class PlyFormat { ascii, little_endian, big_endian };
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
+// Returns the size of a scalar in a binary body, bytes.
 size_t size_of(PlyType type);
 inline bool is_integer(PlyType type) {
   return type < PlyType::float32;

@@ -1,4 +1,6 @@
-// Division of the rows of a PLY element into pieces that can be read in parallel.
+// Division of the rows of a PLY element into pieces that can be read in parallel. ply.cpp reads
+// each piece with a PlyBody of its own, and falls back to sequential reading where an element
+// cannot be cut. Positions in the file are byte offsets.
 #pragma once
 
 #include <optional>
@@ -10,12 +12,14 @@
 
 namespace troffer {
 
+// A range of rows of an element.
 struct PlyPiece {
   size_t begin = 0, end = 0;  // bytes of the file
   uint64_t first_row = 0, rows = 0;
   int lines = 0;  // line ends in it, of an ascii body
 };
 
+// Cuts the elements of one file into pieces.
 class PlyCutter {
  public:
   // `piece_bytes` is the approximate size of a piece; 0: no cutting. Both texts must outlive this

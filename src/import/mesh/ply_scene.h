@@ -1,4 +1,5 @@
-// Import of PLY files (.ply) as scenes of their own.
+// Import of PLY files (.ply) as scenes of their own, by import_scene(). Other formats that name PLY
+// meshes call read_ply() directly.
 #pragma once
 
 #include <string>

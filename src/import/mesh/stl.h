@@ -1,4 +1,5 @@
-// Import of STL files (.stl), binary and text.
+// Import of STL files (.stl), binary and text, by import_scene(). Equal corners are welded to
+// shared vertices. The length of the file, not the word "solid", tells binary files from texts.
 #pragma once
 
 #include <string>
