@@ -9,6 +9,7 @@
 
 namespace troffer {
 
+// File, line and column of an item; line and column count from 1.
 struct SourcePlace {
   std::shared_ptr<const std::string> file;
   int line = 0, column = 0;
