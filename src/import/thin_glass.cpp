@@ -93,8 +93,7 @@ class Bodies {
     return i;
   }
   const Mesh& mesh_;
-  std::vector<uint32_t> corner_, parent_;  // per vertex: the first one at its position; union-find
-                                           // parent
+  std::vector<uint32_t> corner_, parent_;  // per vertex: the first at its place; set parent
   std::vector<std::vector<uint32_t>> bodies_;
 };
 
