@@ -14,23 +14,24 @@ namespace troffer {
 
 namespace {
 
-// More polygons than this (per mesh) stay in the mesh source, and so does one with more corners:
-// its exact irradiance would cost more than sampling it.
+// Limits per mesh and per polygon. Beyond them triangles stay in the mesh light, because the exact
+// irradiance of a polygon costs more than sampling.
 constexpr size_t max_polygons = 1000;
 constexpr size_t max_corners = 64;
 
-constexpr double flatness = 1e-4;        // distance from the plane, relative to the size
-constexpr double straightness = 1e-5;    // distance of a corner from its neighbours' line, likewise
-constexpr double area_agreement = 1e-3;  // outline against triangles
-constexpr double float_rounding = 4e-7;  // of a coordinate, relative to it
+constexpr double flatness = 1e-4;      // distance from the plane, relative to the component's size
+constexpr double straightness = 1e-5;  // distance of a corner from its neighbours' line, relative
+                                       // to the size
+constexpr double area_agreement = 1e-3;  // relative difference between outline and triangles
+constexpr double float_rounding = 4e-7;  // relative rounding of a coordinate in single precision
 
 using Triangles = std::vector<uint32_t>;  // indices into Mesh::triangles, ascending
 
-// Vertices at the same place get the same number (of the first of them).
+// Returns the first vertex at the same position, for each vertex.
 std::vector<uint32_t> weld(const Mesh& mesh) {
   const auto key = [&](uint32_t v) {
     const Vec3& p = mesh.positions[v];
-    return std::tuple(p.x + 0.0f, p.y + 0.0f, p.z + 0.0f);  // -0 -> 0
+    return std::tuple(p.x + 0.0f, p.y + 0.0f, p.z + 0.0f);  // -0 becomes 0
   };
   std::vector<uint32_t> order;
   std::vector<bool> is_used(mesh.positions.size(), false);
@@ -58,15 +59,15 @@ Vec3d position(const Mesh& mesh, uint32_t v) {
   return Vec3d(mesh.positions[v]);
 }
 
-// Half the cross product of two sides: along the front normal, as long as the area is large.
+// Returns half the cross product of two sides: the area times the front normal.
 Vec3d vector_area(const Mesh& mesh, uint32_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
   const Vec3d a = position(mesh, t[0]);
   return cross(position(mesh, t[1]) - a, position(mesh, t[2]) - a) * 0.5;
 }
 
-// The components of triangles that share edges, in order of their first triangles, each with its
-// edges sorted so that the two sides of an edge stand together.
+// Triangles that are connected by edges. The edges are sorted so that both sides of an edge are
+// adjacent. components_of() orders components by their first triangles.
 struct Component {
   Triangles triangles;
   std::vector<Edge> edges;
@@ -101,9 +102,9 @@ std::vector<Component> components_of(const Mesh& mesh, const Triangles& triangle
   return components;
 }
 
-// Corners of the one closed loop of edges that have a triangle on one side only, in the direction
-// of the triangles' winding; nothing where the boundary is not one simple loop or an edge is shared
-// by more than two triangles or by two that face opposite ways.
+// Returns the corners of the boundary, in the winding of the triangles. Returns nothing unless the
+// boundary is one simple loop, and every edge is shared by at most two triangles of the same
+// orientation.
 std::optional<std::vector<uint32_t>> boundary_loop(const std::vector<Edge>& edges) {
   std::map<uint32_t, uint32_t> next;
   for (size_t i = 0; i < edges.size();) {
@@ -129,11 +130,12 @@ std::optional<std::vector<uint32_t>> boundary_loop(const std::vector<Edge>& edge
   return loop;
 }
 
-// A component's plane: every corner within `flatness` of it, every triangle facing along normal.
+// Plane of a component: every corner lies within `flatness` of it, and every triangle faces along
+// `normal`.
 struct Plane {
   Vec3d normal;  // unit
   double size = 0, area = 0;
-  double rounding = 0;  // of positions, metres
+  double rounding = 0;  // of positions, in the scene's units
 };
 
 std::optional<Plane> plane_of(const Mesh& mesh, const Triangles& triangles) {
@@ -165,7 +167,7 @@ std::optional<Plane> plane_of(const Mesh& mesh, const Triangles& triangles) {
   return plane;
 }
 
-// Whether every corner turns left and the turns add up to one full circle: then the loop is convex
+// True if every corner turns left and the turns add up to one full circle. The loop is then convex
 // and does not cross itself.
 bool goes_round_once(const std::vector<Vec3d>& loop, const Vec3d& normal) {
   const size_t n = loop.size();
@@ -179,18 +181,18 @@ bool goes_round_once(const std::vector<Vec3d>& loop, const Vec3d& normal) {
   return n >= 3 && angle < 3 * pi;
 }
 
-// The corners without those on a straight line between their neighbours; nothing where one turns
-// inwards. One pass with a look back, so that a run of corners on a line goes at once.
+// Returns the corners without those on a straight line between their neighbours, or nothing if a
+// corner turns inwards. A single pass with a look back removes whole runs of collinear corners.
 std::optional<std::vector<Vec3d>> convex_outline(const std::vector<Vec3d>& loop,
                                                  const Plane& plane) {
   const double tolerance = straightness * plane.size + plane.rounding;
-  // Distance of b from the line a c, positive where the loop turns left there.
+  // Distance of b from the line a c; positive where the loop turns left.
   const auto turn = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const double base = length(c - a);
     const double twice_area = dot(cross(b - a, c - b), plane.normal);
     return base > 0 ? twice_area / base : 0;
   };
-  // Start at a corner that is one for sure: the farthest from the first.
+  // Start at a certain corner: the one farthest from the first.
   size_t start = 0;
   for (size_t i = 0; i < loop.size(); ++i)
     if (length_squared(loop[i] - loop[0]) > length_squared(loop[start] - loop[0])) start = i;
@@ -214,8 +216,8 @@ double polygon_area(const std::vector<Vec3d>& corners, const Vec3d& normal) {
   return dot(sum, normal);
 }
 
-// The outline of a component that is one planar convex polygon, counterclockwise seen from the
-// front. The outline's area against the triangles' finds triangles that overlap.
+// Returns the outline of a component that is one planar convex polygon, counterclockwise seen from
+// the front; else nothing. Overlapping triangles fail the comparison of areas.
 std::vector<Vec3> polygon_of(const Mesh& mesh, const Component& component) {
   const auto plane = plane_of(mesh, component.triangles);
   if (!plane) return {};
@@ -232,7 +234,7 @@ std::vector<Vec3> polygon_of(const Mesh& mesh, const Component& component) {
   return polygon;
 }
 
-// The constant that a texture is, if it is one; else it stays a texture.
+// Multiplies a constant texture into the radiance.
 void fold_constant_texture(const Scene& scene, EmissionSpec& spec) {
   if (spec.texture < 0) return;
   const Texture& texture = scene.textures[size_t(spec.texture)];

@@ -48,7 +48,7 @@ std::vector<Rgb> texels_of(const Raster& raster, Cleaned& count) {
   return texels;
 }
 
-// Means over blocks, so that energy stays.
+// Averages blocks of texels, which preserves energy.
 EnvironmentMap reduced(const EnvironmentMap& from, int by) {
   EnvironmentMap to;
   to.name = from.name;
@@ -107,7 +107,7 @@ EnvironmentMap read_environment(const std::string& path, WarningLog& warnings) {
 }
 
 Rgb irradiance_from_above(const EnvironmentMap& map) {
-  // Small images vary within their texels as lights do.
+  // Subdivide the texels of small images, because the cosine varies within them.
   constexpr int least_rows = 256;
   const int parts = (least_rows + map.height - 1) / map.height;
   const int columns = map.width * parts, rows = map.height * parts;

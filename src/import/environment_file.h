@@ -1,4 +1,5 @@
-// Picture files -> images of what lies beyond the scene.
+// Environment images from files, for `--environment` and for the lights of pbrt and Mitsuba. Texels
+// are linear RGB radiance in the file's own units. Memory is limited to 8 Mi texels for each image.
 #pragma once
 
 #include <string>
@@ -8,14 +9,15 @@
 
 namespace troffer {
 
-// EXR, HDR, PFM, PNG or JPEG (made linear). A square one is pbrt's equal-area map, any other covers
-// all directions by azimuth and height (lat_long). What is not a number or negative counts as
-// black, what is infinite as the largest value that half floats hold; both are warnings. Images of
-// more than 8 Mi texels are averaged down. InputError{path, 0, 0, what}: files that cannot be used.
+// Reads an EXR, HDR, PFM, PNG or JPEG file as linear values. A square image is pbrt's equal-area
+// map; any other covers all directions by azimuth and height (lat_long).
+// NaN and negative values become 0, infinite ones the image's largest value, at least 65504; both
+// with a warning. Averages images of more than 8 Mi texels down.
+// Throws InputError{path, 0, 0, what} for files that cannot be used.
 EnvironmentMap read_environment(const std::string& path, WarningLog& warnings);
 
-// Mean cosine-weighted radiance times pi of the image's upper half (z > 0): the irradiance of a
-// horizontal plane.
+// Returns the irradiance of a horizontal plane by the upper half of the image (z > 0): pi times the
+// mean cosine-weighted radiance.
 Rgb irradiance_from_above(const EnvironmentMap& map);
 
 }  // namespace troffer

@@ -73,25 +73,26 @@ Bytes read_whole(const std::string& path, uint64_t max_bytes, ReadFor purpose) {
   if (purpose == ReadFor::scene) FilesRead::note(path);
   Bytes bytes(size_t(size), {});
   in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
-  // A file that shrank since is cut short here and found out by its parser.
+  // A file that has shrunk meanwhile is short here; its parser reports it.
   if (in.bad()) throw InputError(path, 0, 0, "cannot be read");
   bytes.resize(size_t(in.gcount()));
   KeptFiles::keep(path, bytes.data(), bytes.size());
   return bytes;
 }
 
-// Memory in pages of 2 MiB where the machine has them: 4 KiB each would take longer than to read.
+// Allocates memory in pages of 2 MiB if possible: faults of 4 KiB pages would take longer than
+// reading.
 char* large_pages(size_t size) {
   constexpr size_t page = size_t(2) << 20;
   if (size > std::numeric_limits<size_t>::max() - page) throw std::bad_alloc();
   const size_t whole = (size / page + 1) * page;
   void* const bytes = std::aligned_alloc(page, whole);
   if (bytes == nullptr) throw std::bad_alloc();
-  madvise(bytes, whole, MADV_HUGEPAGE);  // whether it is heard does not matter
+  madvise(bytes, whole, MADV_HUGEPAGE);  // only a hint, so the result is ignored
   return static_cast<char*>(bytes);
 }
 
-// Bytes [begin, end) of an open file; returns how many there are, or -1.
+// Reads bytes [begin, end) of an open file. Returns their number, or -1.
 int64_t read_part(int file, char* bytes, size_t begin, size_t end) {
   size_t at = begin;
   while (at < end) {
@@ -104,16 +105,17 @@ int64_t read_part(int file, char* bytes, size_t begin, size_t end) {
   return int64_t(at - begin);
 }
 
-// Scenes are text and numbers, which shrink to a tenth; a bomb by a thousand.
+// Limits on decompression. Text and numbers shrink to about a tenth; decompression bombs shrink to
+// a thousandth.
 constexpr uint64_t always_unpacked = uint64_t(1) << 28, max_gzip_ratio = 200;
 
-// The contents of a file whose name ends in .gz; others as they are. Grows with what comes out, so
-// that a length that lies costs nothing.
+// Decompresses the contents of a file whose name ends in .gz; returns others unchanged. Memory
+// grows with the output, so a false length in the file costs nothing.
 template <class Bytes>
 Bytes unpacked(const std::string& path, Bytes packed, uint64_t max_bytes) {
   if (lower_case_ending(path) != "gz") return packed;
   const auto fail = [&](const std::string& what) { throw InputError(path, 0, 0, what); };
-  constexpr int any_gzip = 15 + 16;  // the largest window, gzip's header
+  constexpr int any_gzip = 15 + 16;  // the largest window, with a gzip header
   z_stream stream{};
   if (inflateInit2(&stream, any_gzip) != Z_OK) fail("cannot start to decompress");
   max_bytes = std::min(max_bytes, std::max(always_unpacked, packed.size() * max_gzip_ratio));
@@ -187,7 +189,7 @@ FileBytes::FileBytes(const std::string& path, uint64_t max_bytes, const TellProg
     progress.add(end - begin);
   });
   close(file);
-  // A file that shrank since is cut short here and found out by its parser.
+  // A file that has shrunk meanwhile is short here; its parser reports it.
   for (size_t i = 0; i < had.size(); ++i) {
     if (had[i] < 0) throw InputError(path, 0, 0, "cannot be read");
     size_ += size_t(had[i]);

@@ -1,4 +1,6 @@
-// Files that scenes are made of: whole files in memory, and paths that stay inside a folder.
+// Input files: whole files in memory, and paths confined to a folder. Importers read through it, so
+// that FilesRead knows every file of a scene and KeptFiles can repeat its contents. Errors are
+// InputError.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +18,24 @@ namespace troffer {
 
 constexpr uint64_t default_max_file_bytes = uint64_t(4) << 30;
 
-// Bytes of a regular file. InputError (line and column 0) where it is missing, unreadable or not a
-// regular file (a folder, a pipe, a device).
+// Returns the size of a regular file, bytes. Throws InputError without a line if the file is
+// missing, unreadable or not regular (a folder, pipe or device).
 uint64_t size_of_file(const std::string& path);
 
-// guess: it may not be needed; FilesRead is told when it is.
+// guess: the file may turn out not to be needed; it is noted in FilesRead when it is.
 enum class ReadFor : uint8_t { scene, guess };
 
-// Contents of a regular file; of one whose name ends in .gz, decompressed. InputError as above,
-// where it is, or becomes, larger than max_bytes, and where compressed data is broken.
+// Reads a regular file and decompresses it if its name ends in .gz. Throws InputError as
+// size_of_file does, if the contents exceed max_bytes, or if compressed data is broken.
 std::vector<uint8_t> read_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes,
                                ReadFor purpose = ReadFor::scene);
 std::string read_text_file(const std::string& path, uint64_t max_bytes = default_max_file_bytes);
 
-// The contents of a file, as they are: what read_text_file reads, on all cores and into pages that
-// are not cleared before. For files of many million numbers.
+// Contents of a large file. Reads the same as read_text_file, but in parallel and into
+// uninitialised large pages, which matters for files of hundreds of megabytes.
 class FileBytes {
  public:
-  // InputError: as read_file. Tells the first file_progress of the whole.
+  // Throws InputError as read_file does. Reports progress from 0 to file_progress.
   explicit FileBytes(const std::string& path, uint64_t max_bytes = default_max_file_bytes,
                      const TellProgress& progress = {});
   std::string_view view() const {
@@ -49,8 +51,8 @@ class FileBytes {
   std::string unpacked_;  // of compressed files
 };
 
-// Names every file that read_file and read_text_file open while it lives, on whatever thread: what
-// a scene was made of. One at a time.
+// Records every file that read_file, read_text_file and FileBytes open while it exists, on any
+// thread: the files that a scene consists of. Only one may exist at a time.
 class FilesRead {
  public:
   FilesRead();
@@ -58,8 +60,8 @@ class FilesRead {
   FilesRead(const FilesRead&) = delete;
   FilesRead& operator=(const FilesRead&) = delete;
 
-  std::vector<std::string> paths() const;  // sorted, each once
-  // What read_file and read_text_file do, whether or not anybody asks.
+  std::vector<std::string> paths() const;  // sorted, without duplicates
+  // Records a file if a FilesRead exists. The reading functions call it.
   static void note(const std::string& path);
 
  private:
@@ -67,29 +69,30 @@ class FilesRead {
   std::set<std::string> paths_;
 };
 
-// The folder a path's file lies in, "." for a bare file name.
+// Returns the folder that contains the file; "." for a bare file name.
 std::string folder_of(const std::string& path);
 
-// The part after the last dot of the last path component, in lower case; "" where there is none.
+// Returns the part after the last dot of the file name, in lower case; "" if there is no dot.
 std::string lower_case_ending(const std::string& path);
 
-// The path without ".gz" at its end.
+// Returns the path without a final ".gz".
 std::string without_gz(const std::string& path);
 
-// `path`, or the reason why it may not be used, in words that finish "cannot use 'NAME': …".
+// A usable path, or the reason against it, phrased to follow "cannot use 'NAME': ".
 struct ConfinedPath {
   std::string path;
-  std::string problem;  // empty = fine
+  std::string problem;  // empty if the path is usable
   bool is_fine() const { return problem.empty(); }
 };
 
-// The path of file `relative` (already percent-decoded, '/' between components) inside `folder`.
-// Refused: an empty name, NUL characters, absolute paths, and whatever ends outside `folder` by
-// ".." or by symbolic links. Whether the file exists is not looked at.
+// Returns the path of file `relative` (percent-decoded, '/' between components) inside `folder`. If
+// there is no such file, tries the variants of reference_notes.h.
+// Rejects an empty name, NUL characters, absolute paths, and paths that leave `folder` by ".." or
+// by symbolic links. The file need not exist.
 ConfinedPath confined_path(const std::string& folder, std::string_view relative);
 
-// Of a name that cannot be used as it is (it comes from another machine): the path of the file of
-// that name, without its folders, in `folder`; "" where there is none.
+// Returns the path of a file in `folder` with the name of `name`, without its folders; "" if there
+// is none. For paths that come from another machine.
 std::string path_beside(const std::string& folder, const std::string& name);
 
 }  // namespace troffer

@@ -8,7 +8,7 @@ namespace troffer {
 
 namespace {
 
-// What the bytes of an image stand for, and the byte that stands for a value.
+// Linear values of an image's bytes, and the byte closest to a value.
 struct ByteCode {
   std::array<float, 256> values{};
   bool is_srgb;
@@ -23,8 +23,8 @@ struct ByteCode {
   }
 };
 
-// Calls write(index of the small image's texel, channel, mean of read(index, channel)) for every
-// channel of every texel of `to`, which is half as large as an image of that size.
+// Calls write(index, channel, mean of read(index, channel)) for every channel of every texel of
+// `to`, which is half as large as the given size.
 template <class Read, class Write>
 void average(int from_width, int from_height, const Texture& to, const Read& read,
              const Write& write) {
@@ -60,7 +60,7 @@ Texture halved(Texture image) {
     return small;
   }
   const ByteCode color(small.is_srgb), plain(false);
-  // Alpha carries no transfer function.
+  // Alpha has no transfer function.
   const size_t alpha = small.channels == 2 ? 1 : 3;
   const auto code = [&](size_t c) -> const ByteCode& { return c == alpha ? plain : color; };
   average(

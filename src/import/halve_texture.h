@@ -1,12 +1,13 @@
-// Images at half their width and height.
+// Images reduced to half their width and height. TextureLoader uses it to stay within its memory
+// limit.
 #pragma once
 
 #include "scene/texture.h"
 
 namespace troffer {
 
-// The same image, each texel the mean, in linear light, of two by two (fewer at the ends of odd
-// sizes). One of a single texel stays as it is.
+// Returns the image with each texel the mean, in linear light, of two by two (fewer at the ends of
+// odd sizes). A single texel stays as it is.
 Texture halved(Texture image);
 
 }  // namespace troffer

@@ -1,12 +1,13 @@
-// Whether an importer reads the images that a scene shows.
+// Choice of whether an importer reads the images of a scene.
 #pragma once
 
 #include <cstdint>
 
 namespace troffer {
 
-// left_out: colours that stand for missing images are there instead, lights of images are not, and
-// Scene::left_out_image_bytes says how much was not read. For whoever wants the shapes at once.
+// left_out: missing images' stand-in colours replace all images, lights made of images are omitted,
+// and Scene::left_out_image_bytes counts the bytes not read. For callers that need only the
+// geometry, quickly.
 enum class ImageUse : uint8_t { read, left_out };
 
 }  // namespace troffer

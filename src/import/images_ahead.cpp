@@ -17,7 +17,7 @@ ImagesAhead::ImagesAhead(int threads, uint64_t most_bytes) : most_bytes_(most_by
   try {
     for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
   } catch (const std::system_error&) {
-    return;  // by those that there are
+    return;  // work with the threads that exist
   }
 }
 
@@ -47,8 +47,8 @@ std::optional<Raster> ImagesAhead::take(const std::string& key) {
   const auto it = images_.find(key);
   if (it == images_.end()) return std::nullopt;
   Image& image = it->second;
-  // Whoever has begun does not wait for room, so that this comes to an end. Meanwhile others are
-  // decoded here, or the first of a row of images would keep this thread idle for each.
+  // Threads that decode do not wait for space, so this loop ends. Decoding other images meanwhile
+  // keeps this thread busy.
   while (image.state == State::begun)
     if (!decode_one(lock)) changed_.wait(lock);
   const State state = std::exchange(image.state, State::gone);
@@ -71,7 +71,7 @@ bool ImagesAhead::decode_one(std::unique_lock<std::mutex>& lock) {
   try {
     raster = decode();
   } catch (...) {
-    // Whoever wants it finds out why: perhaps too many were in memory at once.
+    // The caller decodes it again and gets the error; memory may suffice then.
   }
   lock.lock();
   image.state = raster ? State::done : State::gone;

@@ -1,4 +1,5 @@
-// Images that an importer knows it will ask for, decoded on other threads meanwhile.
+// Decoding of images in advance, on other threads, while an importer works on. TextureLoader uses
+// it.
 #pragma once
 
 #include <condition_variable>
@@ -16,23 +17,24 @@
 
 namespace troffer {
 
-// Changes when images are decoded, and nothing else. Nobody expects while another expects or takes.
+// Decodes expected images in advance. It affects only when images are decoded, not the result.
+// expect() must not run concurrently with expect() or take().
 class ImagesAhead {
  public:
-  // `threads` others decode; 0: none does, and take() has nothing. Of what was decoded and has not
-  // been taken they keep about `most_bytes`, and an image each beyond that.
+  // Starts `threads` threads; with 0, take() returns nothing. The threads stop once decoded images
+  // that were not taken exceed `most_bytes`; each may finish one more image.
   explicit ImagesAhead(int threads, uint64_t most_bytes = uint64_t(512) << 20);
-  ~ImagesAhead();  // what nobody has begun is dropped; what is being decoded is waited for
+  ~ImagesAhead();  // drops images not begun, and waits for those being decoded
   ImagesAhead(const ImagesAhead&) = delete;
   ImagesAhead& operator=(const ImagesAhead&) = delete;
 
-  // `decode` is called once at most, on any thread, before this ends. A key that was expected
-  // before changes nothing.
+  // Announces an image. `decode` is called at most once, on any thread, before this object ends. A
+  // known key changes nothing.
   using Decode = std::function<Raster()>;
   void expect(const std::string& key, Decode decode);
 
-  // What decode() gave; nothing where it threw, or nobody has begun it (nobody will then), or it
-  // was not expected, or has been taken.
+  // Returns the decoded image, waiting if it is being decoded. Returns nothing if decode() threw,
+  // decoding has not begun (it is then cancelled), or the key is unknown or already taken.
   std::optional<Raster> take(const std::string& key);
 
  private:
@@ -44,14 +46,14 @@ class ImagesAhead {
   };
 
   void work();
-  // The next that waits; false: there is none, or too much is kept.
+  // Decodes the next waiting image; false if there is none or too much is kept.
   bool decode_one(std::unique_lock<std::mutex>& lock);
 
   uint64_t most_bytes_;
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::map<std::string, Image> images_;
-  std::deque<Image*> waiting_;  // those that wait, and some that are gone
+  std::deque<Image*> waiting_;  // waiting images, and some that were cancelled
   uint64_t kept_bytes_ = 0;
   bool is_ending_ = false;
   std::vector<std::thread> threads_;

@@ -1,7 +1,7 @@
-// Files -> Scene: glTF 2.0 (.gltf, .glb), pbrt-v4 (.pbrt), Wavefront OBJ (.obj), Mitsuba (.xml),
-// Radiance (.rad), STL and PLY meshes, chosen by ending. Everything that cannot be used throws
-// InputError with file, line and column; everything that is merely odd becomes a counted warning in
-// Scene::warnings.
+// Import of scene files: glTF 2.0 (.gltf, .glb), pbrt-v4 (.pbrt), Wavefront OBJ (.obj), Mitsuba
+// (.xml), Radiance (.rad), STL and PLY meshes. The ending selects the format; a final ".gz" is
+// allowed. Unusable content throws InputError with file, line and column. Unusual content adds a
+// counted warning to Scene::warnings.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@
 
 namespace troffer {
 
-// UsageError where `options` ask for what a format does not have: all are glTF's.
+// Imports a scene, instances repeated meshes, and replaces thin glass bodies by sheets. Throws
+// UsageError if `options` ask for something that only glTF has.
 Scene import_scene(const std::string& path, const ImportOptions& options = {});
 
 }  // namespace troffer

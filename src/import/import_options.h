@@ -1,4 +1,5 @@
-// What a user may choose among what one file holds.
+// Options of import_scene: a user's choices among the contents of one file. Most come from the
+// command line (app/load.cpp). Options that a format does not have are a UsageError there.
 #pragma once
 
 #include <optional>
@@ -13,10 +14,11 @@ struct ImportOptions {
   std::optional<std::string> variant;    // of the materials: KHR_materials_variants
   std::optional<double> time;            // seconds into an animation; none: at rest
   std::optional<std::string> animation;  // by name; none: the first
-  bool shows_baked = false;              // glTF: light that was baked into the file, and no other
-  TellProgress progress;                 // of the file; for .obj .ply .stl
+  bool shows_baked = false;              // glTF: show only the light baked into the file
+  TellProgress progress;                 // of reading .obj, .ply and .stl files
   ImageUse images = ImageUse::read;
-  // Factor on what surfaces emit, but for measured luminaires (import/surface_emission.h).
+  // Factor on the emission of surfaces, except luminaires with a photometric web
+  // (import/surface_emission.h).
   double emission_scale = 1;
 
   bool is_any() const { return variant || time || animation || shows_baked; }

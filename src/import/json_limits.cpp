@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-// Behind the string that begins at `at`.
+// Returns the offset after the string that begins at `at`.
 size_t end_of_string(std::string_view text, size_t at) {
   for (++at; at < text.size() && text[at] != '"'; ++at)
     if (text[at] == '\\') ++at;

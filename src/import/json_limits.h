@@ -1,5 +1,5 @@
-// How much a JSON text may hold. Sent before it is parsed: what a parser makes of a text takes up
-// to a hundred times the memory of the text, and a few bytes open a new level.
+// Limits on the contents of a JSON text, checked before it is parsed (JsonDocument). A parsed text
+// may take a hundred times its memory, and every few bytes may open a new level.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@
 namespace troffer {
 
 struct JsonLimits {
-  size_t depth = 200;  // arrays and objects within each other
+  size_t depth = 200;  // nested arrays and objects
   size_t values =
-      10'000'000;  // of all kinds, arrays and objects too; about 1 GB in memory at worst
+      10'000'000;  // of all kinds, arrays and objects included; at most about 1 GB in memory
 };
 
-// Throws InputError with the place where a level or a value is one too many. The text
-// need not be well formed: of what a parser would take of it before its first error, no more values
-// and levels than are allowed are left.
+// Throws InputError at the first level or value beyond the limits. The text need not be well
+// formed: before its first error, a parser never meets more values and levels than are counted
+// here.
 void check_limits(std::string_view text, const JsonLimits& limits, const std::string& file);
 
 }  // namespace troffer

@@ -26,7 +26,7 @@ uint32_t hex4(std::string_view digits) {
   return value;
 }
 
-// The characters that a JSON string (without its quotes) stands for [2] §7.
+// Decodes the escapes of a JSON string without its quotes [2] §7.
 std::string json_unescaped(std::string_view raw) {
   std::string out;
   for (size_t i = 0; i < raw.size(); ++i) {
@@ -55,14 +55,14 @@ std::string json_unescaped(std::string_view raw) {
   return out;
 }
 
-// A cursor over well-formed JSON; on any other text it stops early but never leaves the text.
+// A cursor over well-formed JSON. On other text it stops early but never leaves the text.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : text_(text) { skip_space(); }
   size_t at() const { return at_; }
 
-  // From the start of a container, moves to the start of the named member's or element's value;
-  // stays where it is and says false if there is none.
+  // Moves from the start of a container to the value of the named member or element. Returns false,
+  // without moving, if there is none.
   bool enter(std::string_view token) {
     const size_t start = at_;
     std::optional<size_t> found;
@@ -79,7 +79,7 @@ class Scanner {
   void skip_space() {
     while (at_ < text_.size() && is_space(text_[at_])) ++at_;
   }
-  // The string at the cursor without its quotes.
+  // Reads the string at the cursor, without its quotes.
   std::string_view read_string() {
     const size_t first = ++at_;
     while (at_ < text_.size() && text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
@@ -87,7 +87,7 @@ class Scanner {
     at_ = std::min(last + 1, text_.size());
     return text_.substr(first, last - first);
   }
-  // Moves behind the value at the cursor. Counts brackets instead of recursing.
+  // Moves past the value at the cursor. Counts brackets instead of recursing.
   void skip_value() {
     size_t depth = 0;
     while (at_ < text_.size()) {
@@ -113,7 +113,7 @@ class Scanner {
       if (depth == 0) return;
     }
   }
-  // Behind a value: moves to the next member or element, or says there is none.
+  // Moves from the end of a value to the next member or element; false if there is none.
   bool next() {
     skip_space();
     if (peek() != ',') return false;
@@ -158,7 +158,7 @@ class Scanner {
   size_t at_ = 0;
 };
 
-// One reference token of a pointer: ~1 is '/', ~0 is '~' [1] §4.
+// Decodes one reference token of a pointer: ~1 is '/', ~0 is '~' [1] §4.
 std::string unescaped_token(std::string_view token) {
   std::string out;
   for (size_t i = 0; i < token.size(); ++i) {

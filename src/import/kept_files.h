@@ -1,4 +1,6 @@
-// Files that are read once, for who may read them again when they are gone.
+// A cache of file contents, for callers that read the same files again although they may have
+// changed or disappeared. `troffer view` uses it to light a scene for another time of day.
+// read_file and read_text_file use the cache automatically.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +12,8 @@
 
 namespace troffer {
 
-// Keeps what read_file and read_text_file read while it lives: the same path gives the same bytes
-// again, whatever becomes of the file. One at a time.
+// Keeps everything that read_file and read_text_file read while it exists. The same path then
+// returns the same bytes, even if the file changes. Only one may exist at a time; thread-safe.
 class KeptFiles {
  public:
   KeptFiles();
@@ -20,7 +22,7 @@ class KeptFiles {
   KeptFiles& operator=(const KeptFiles&) = delete;
 
   using Bytes = std::shared_ptr<const std::vector<uint8_t>>;
-  // Null where nothing is kept under that path, or nobody asks for it.
+  // Returns null if nothing is kept under that path, or no KeptFiles exists.
   static Bytes find(const std::string& path);
   static void keep(const std::string& path, const void* bytes, size_t size);
 

@@ -11,8 +11,8 @@ namespace troffer {
 
 namespace {
 
-// A spot's intensity as a web of its largest: by the angle from its axis alone, in steps that
-// follow its fading.
+// Returns a spot's falloff as a web relative to its largest intensity. The web depends on the angle
+// from the axis alone, with steps that follow the falloff.
 LightWeb web_of_spot(const Light& e, float cross_section) {
   LightWeb web;
   web.name = e.name;
@@ -62,7 +62,7 @@ void give_radius(Scene& scene, double radius) {
       const Frame frame(e.direction);
       e.axes = {frame.tangent, frame.bitangent, frame.normal};
     } else if (e.web != no_web) {
-      LightWeb own = scene.webs[size_t(e.web)];  // others may share it
+      LightWeb own = scene.webs[size_t(e.web)];  // may be shared with other lights
       own.cross_section = cross_section;
       e.web = int32_t(scene.webs.size());
       scene.webs.push_back(std::move(own));

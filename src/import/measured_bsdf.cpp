@@ -24,7 +24,7 @@ constexpr uint64_t max_measured_bytes = uint64_t(1) << 29;
 constexpr size_t max_fields = 256, max_dimensions = 8;
 constexpr uint8_t type_float = 10;  // 32 bits, little-endian
 
-// Floats of one field, which lie in the file.
+// Floats of one field; a view of the file's bytes.
 struct Tensor {
   std::vector<uint64_t> shape;
   const uint8_t* bytes = nullptr;
@@ -54,7 +54,7 @@ class TensorFile {
     for (uint32_t i = 0; i < fields; ++i) read_field();
   }
 
-  // Floats of so many dimensions, none of them empty.
+  // Returns a float field with that number of dimensions, none of them empty.
   const Tensor& field(const char* name, size_t dimensions) const {
     const Tensor* found = find(name, dimensions);
     if (found == nullptr) throw Problem{fmt::format("has no usable field '{}'", name)};
@@ -93,7 +93,7 @@ class TensorFile {
       t.count *= t.shape.back();
     }
     while (t.shape.size() < dimensions) t.shape.push_back(take<uint64_t>());
-    if (type != type_float || t.count == 0) return;  // the description, in bytes
+    if (type != type_float || t.count == 0) return;  // not floats: for example the description
     if (offset > bytes_.size() || t.count > (bytes_.size() - offset) / 4)
       throw Problem{"has a field that lies outside the file"};
     t.bytes = bytes_.data() + offset;
@@ -105,7 +105,8 @@ class TensorFile {
   std::map<std::string, Tensor> fields_;
 };
 
-// The mean of a grid over its square, linear between nodes that begin and end at its edges.
+// Returns the mean of a grid over its square: linear between nodes, the first and last of which lie
+// on the edges.
 double mean_over_square(const Tensor& t, uint64_t first, uint64_t height, uint64_t width) {
   const auto weight = [](uint64_t i, uint64_t n) {
     return n > 1 && (i == 0 || i + 1 == n) ? 0.5 : 1.0;
@@ -120,9 +121,9 @@ double mean_over_square(const Tensor& t, uint64_t first, uint64_t height, uint64
   return sum / total;
 }
 
-// The albedo of each channel under even light from all around. The values are what a direction
-// drawn by the microfacets' density weighs [1, Eq. 12], so that their mean over the square of
-// random numbers is the albedo for a direction of incidence.
+// Returns the albedo of each channel under uniform illumination from the hemisphere. Values are
+// weights of directions drawn from the microfacet density [1, Eq. 12]. Their mean over the square
+// of random numbers is therefore the albedo for one direction of incidence.
 std::vector<double> mean_albedos(const Tensor& values, const Tensor& inclinations) {
   const uint64_t azimuths = values.shape[0], tilts = values.shape[1], channels = values.shape[2],
                  height = values.shape[3], width = values.shape[4];
@@ -168,8 +169,8 @@ Rgb colour_of(const TensorFile& file) {
   return clamp01(reflectance_from_spectrum(spectrum));
 }
 
-// Width and share of the peak among the densities of normals, in the mean over azimuths. Nodes lie
-// at inclinations u² pi / 2. GGX's density times cos⁴ falls to a quarter where the tangent is its
+// Width and share of the peak in the density of normals, averaged over azimuths. Nodes lie at
+// inclinations u² pi / 2. GGX's density times cos⁴ falls to a quarter where the tangent equals its
 // width; 16/17 of its area lie within four times that.
 struct Peak {
   float width = 1, share = 0;

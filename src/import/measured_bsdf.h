@@ -1,5 +1,6 @@
-// Measured reflection (.bsdf, the tensor files that pbrt's and Mitsuba's `measured` name) -> the
-// nearest material that is known: metal of its colour and width, mixed with a diffuse base.
+// Measured reflection: the tensor files (.bsdf) that materials `measured` of pbrt and Mitsuba name.
+// They are approximated by metal of the measured mean colour and lobe width, mixed with a diffuse
+// base.
 // References: [1] Dupuy & Jakob, "An Adaptive Parameterization for Efficient Material Acquisition
 //   and Rendering", SIGGRAPH Asia 2018.
 #pragma once
@@ -11,9 +12,9 @@
 
 namespace troffer {
 
-// The file `name` within `folder`, or beside the scene. Where it cannot be read, is no such file or
-// lies about its own size: grey (0.5), with a warning that says why; else with one that says what
-// the material was taken for.
+// Returns the material of file `name` within `folder`, or beside the scene, and warns of the
+// approximation. If the file cannot be read, is of another kind, or its fields exceed it, returns
+// diffuse grey (0.5) with a warning that gives the reason.
 Material measured_material(const std::string& folder, const std::string& name,
                            WarningLog& warnings);
 

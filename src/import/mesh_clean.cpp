@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t cleaned_at_once = size_t(1) << 16;  // of what is worked on side by side
+constexpr size_t cleaned_at_once = size_t(1) << 16;  // items per parallel task
 
 bool is_good(TriangleCheck& check, const Mesh& mesh, const Triangle& t) {
   return check.is_good(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
@@ -41,7 +41,7 @@ void drop_triangles(Mesh& mesh, WarningLog& warnings) {
   mesh.triangles.resize(kept);
 }
 
-// Whether is_sound(i) for all i in [0, n).
+// True if is_sound(i) for all i in [0, n).
 template <class IsSound>
 bool are_all(size_t n, const IsSound& is_sound) {
   std::atomic<bool> result{true};
@@ -75,7 +75,7 @@ void drop_vertices(Mesh& mesh) {
     for (uint32_t& v : t) v = renumbered[v];
 }
 
-// Whether there was one.
+// Normalises a vector; false if it is zero or not finite.
 bool make_unit(Vec3& normal) {
   const Vec3d n(normal);
   const double size = length(n);
@@ -97,7 +97,8 @@ void repair_normals(Mesh& mesh) {
   for (size_t i = 0; i < mesh.normals.size(); ++i) {
     if (!is_bad[i]) continue;
     const double size = length(replacements[i]);
-    mesh.normals[i] = size > 0 ? Vec3(replacements[i] / size) : Vec3{0, 0, 1};  // no triangle here
+    // no triangle uses the vertex
+    mesh.normals[i] = size > 0 ? Vec3(replacements[i] / size) : Vec3{0, 0, 1};
   }
 }
 

@@ -12,7 +12,7 @@ namespace troffer {
 namespace {
 
 constexpr double circle_tolerance = 1e-5;
-constexpr size_t placed_at_once = size_t(1) << 16;  // of what is worked on side by side
+constexpr size_t placed_at_once = size_t(1) << 16;  // items per parallel task
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Mesh transformed(const AnchoredMesh& local, const Affine& t, bool are_normals_tu
   parallel_pieces(mesh.normals.size(), placed_at_once, [&](size_t first, size_t end) {
     for (size_t i = first; i < end; ++i) {
       const Vec3d turned = covector(t, Vec3d(mesh.normals[i]));
-      // Normalised here, so that small scales do not underflow in float.
+      // Normalise here, so that small scales do not underflow in float.
       const double size = length(turned);
       mesh.normals[i] = size > 0 && std::isfinite(size)
                             ? Vec3(turned * ((are_normals_turned ? -1 : 1) / size))
@@ -100,8 +100,8 @@ int32_t GeometryPlacer::add_light(const PlacedLook& look, LightKind kind, size_t
   return int32_t(scene_.lights.size()) - 1;
 }
 
-// Without normals the front is a matter of the winding in the world, which a transform that mirrors
-// turns: stored so that an instance, whose front stays the front, shows the same.
+// Without normals, the winding in the world decides the front, and a mirroring transform reverses
+// it. Instances keep their front, so the stored mesh is wound to look the same.
 bool GeometryPlacer::add_instance(const AnchoredMesh& local, const Affine& world_from_local,
                                   bool is_turned, const PlacedLook& look) {
   if (look.shape == nullptr || (look.emission && !look.emission->radiance.is_black())) return false;
@@ -153,7 +153,7 @@ void GeometryPlacer::add_sphere(const Affine& world_from_local, const Vec3d& cen
   const bool is_round = keeps_circles(t, 0, 1) && keeps_circles(t, 1, 2) && keeps_circles(t, 2, 0);
   if (!is_round || needs_coordinates(look)) {
     AnchoredMesh mesh{tessellate_sphere(radius, -radius, radius, 2 * pi), {}};
-    for (Vec2& uv : mesh.mesh.uvs) uv.y = 1 - uv.y;  // from the pole +z down
+    for (Vec2& uv : mesh.mesh.uvs) uv.y = 1 - uv.y;  // v runs down from the pole +z
     add_mesh(mesh, t, is_turned, look);
     return;
   }
@@ -185,7 +185,7 @@ void GeometryPlacer::add_disk(const Affine& world_from_local, double radius, boo
   const Vec3d middle = t.translation - scene_.origin;
   const double r = radius * length(t.columns[0]);
   bounds_.add_ball(middle, r);
-  // The axes of its plane are not parallel, so their cross product has a length.
+  // The two columns are not parallel, so their cross product has a length.
   Vec3d axis = normalize(cross(t.columns[0], t.columns[1]));
   if (t.swaps_handedness() != is_turned) axis = -axis;
   Disk disk;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t max_ear_corners = 256;
 
-// Newell's normal: twice the area, exact for planar polygons, robust for others.
+// Returns Newell's normal, twice the area long: exact for planar polygons, robust for others.
 Vec3d newell_normal(std::span<const Vec3> points) {
   Vec3d sum;
   const Vec3d origin(points[0]);
@@ -18,7 +18,8 @@ Vec3d newell_normal(std::span<const Vec3> points) {
   return sum;
 }
 
-// The points seen along the dominant axis of the normal, so that the polygon runs counterclockwise.
+// Projects the points along the dominant axis of the normal, so that the polygon runs
+// counterclockwise.
 std::vector<Vec2d> projected(std::span<const Vec3> points, const Vec3d& normal) {
   const Vec3d size = abs(normal);
   const size_t axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
@@ -45,7 +46,8 @@ bool is_convex(const std::vector<Vec2d>& p) {
   return true;
 }
 
-// Whether corner `at` of the ring can be cut off: convex, with no other corner in its triangle.
+// True if corner `at` of the ring can be cut off: it is convex, and no other corner lies in its
+// triangle.
 bool is_ear(const std::vector<Vec2d>& p, const std::vector<uint32_t>& ring, size_t at) {
   const size_t n = ring.size(), before = (at + n - 1) % n, after = (at + 1) % n;
   const Vec2d &a = p[ring[before]], &b = p[ring[at]], &c = p[ring[after]];
@@ -53,7 +55,7 @@ bool is_ear(const std::vector<Vec2d>& p, const std::vector<uint32_t>& ring, size
   for (size_t i = 0; i < n; ++i) {
     if (i == before || i == at || i == after) continue;
     const Vec2d& q = p[ring[i]];
-    // A corner on the same place as one of the ear's does not stand in the way.
+    // A corner at the same position as one of the ear's is no obstacle.
     if (q == a || q == b || q == c) continue;
     if (is_inside(q, a, b, c)) return false;
   }
@@ -63,7 +65,7 @@ bool is_ear(const std::vector<Vec2d>& p, const std::vector<uint32_t>& ring, size
 void cut_ears(const std::vector<Vec2d>& p, std::vector<uint32_t>& ring,
               std::vector<Triangle>& triangles) {
   size_t at = 0, failures = 0;
-  size_t budget = 8 * p.size();  // tests for ears, each linear
+  size_t budget = 8 * p.size();  // ear tests; each takes linear time
   while (ring.size() > 3 && failures < ring.size() && budget-- > 0) {
     const size_t n = ring.size();
     if (!is_ear(p, ring, at)) {

@@ -1,4 +1,5 @@
-// Polygons of vertex indices -> triangles.
+// Triangulation of polygons, for the faces of OBJ and Radiance files. It handles convex and concave
+// polygons; holes are not supported.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,10 @@
 
 namespace troffer {
 
-// Appends the triangles of the polygon whose corner i has position points[i]; they name corners
-// (0 … points.size() - 1) and wind as the polygon does. Convex polygons become fans; others have
-// their ears cut, as long as that is quick (else the rest is a fan, right only where convex).
-// At least three points.
+// Appends the triangles of a polygon with at least three corners at `points`. They hold corner
+// numbers (0 to points.size() - 1) and keep the polygon's winding.
+// Convex polygons become fans. Others are cut by ears up to a limit on corners and effort; the rest
+// becomes a fan, which is right only where it is convex.
 void triangulate(std::span<const Vec3> points, std::vector<Triangle>& triangles);
 
 }  // namespace troffer

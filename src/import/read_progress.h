@@ -1,4 +1,5 @@
-// How far the reading of a large file is.
+// Progress of reading large files, and the parameters of reading them in pieces. Used by the
+// importers of OBJ, PLY and STL, which split their files among threads.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +8,12 @@
 
 namespace troffer {
 
-// Is told fractions within [0,1], not twice at a time, on whatever thread. A scene that is read
-// again around an origin of its own begins again.
+// Callback that receives fractions in [0,1], one call at a time, on any thread. It starts again
+// from 0 if a scene is read a second time around an origin of its own.
 using TellProgress = std::function<void(double fraction)>;
 
-// Counts what is done by several threads, and tells it as a part [first, last] of the whole.
+// Adds up the work of several threads and reports it as the part [first, last] of the whole.
+// Thread-safe.
 class ReadProgress {
  public:
   ReadProgress(const TellProgress& tell, double first, double last, size_t total)
@@ -31,13 +33,13 @@ class ReadProgress {
   std::mutex mutex_;
 };
 
-// How a file is read in pieces side by side, to the same end whatever these are.
+// Parameters of reading a file in parallel pieces. The result does not depend on them.
 struct PieceReading {
-  size_t piece_bytes = size_t(1) << 18;  // about; 0: all in one
-  TellProgress progress;                 // or none
+  size_t piece_bytes = size_t(1) << 18;  // approximate size; 0: one piece
+  TellProgress progress;                 // may be empty
 };
 
-// What the bytes of a file, and what stands in them, make of the whole.
+// Share of the progress for reading the bytes of a file; the rest is for parsing.
 constexpr double file_progress = 0.2;
 
 }  // namespace troffer

@@ -12,13 +12,13 @@ namespace {
 constexpr double largest_reach = 1e9;  // as for triangles (triangle_check.h)
 constexpr double usual_step = 100, far_step = 10;
 constexpr double anchor_step = 1000;
-// Short of twice the box, and beside the half of a step: boxes and places in round numbers are
-// common, and must not fall to one side or the other by the rounding of doubles.
+// Slightly less than twice the box, and slightly more than half a step. Boxes and positions in
+// round numbers are common, and their result must not depend on rounding.
 constexpr double steps_per_box = 1.9, half_step = 0.501;
 constexpr double coarse_resolution = 1e-3;
 
 bool is_usable(const Vec3d& p) {
-  const Vec3d reach = abs(p);  // false for NaN:
+  const Vec3d reach = abs(p);  // the comparison is false for NaN
   return reach.x <= largest_reach && reach.y <= largest_reach && reach.z <= largest_reach;
 }
 
@@ -27,7 +27,7 @@ double longest_side(const Boxd& box) {
   return std::max({e.x, e.y, e.z});
 }
 
-// The distance of floats at the ends of the box.
+// Returns the spacing of floats at the ends of the box.
 double resolution(const Boxd& box) {
   const Vec3d reach = max(abs(box.lower), abs(box.upper));
   const auto end = float(std::max({reach.x, reach.y, reach.z}));
@@ -65,8 +65,8 @@ Vec3d rounded_middle(const Boxd& box, double least_step) {
   return rounded;
 }
 
-// Far away the step is as fine as the box allows: what is left of the coordinates costs digits, and
-// moves measured points off their surfaces.
+// A finer step than in the test keeps the remaining coordinates small. Large ones would cost digits
+// and move measuring points off their surfaces.
 Vec3d choose_origin(const Boxd& box) {
   const double side = longest_side(box);
   if (rounded_middle(box, usual_step * std::min(1.0, side)) == Vec3d{}) return {};

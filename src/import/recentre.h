@@ -1,5 +1,6 @@
-// Scenes far from the origin: a place of their own from which positions count, chosen before
-// anything is rounded to floats.
+// Origins for scenes far from zero. Georeferenced scenes would lose digits in single precision, so
+// positions are counted from Scene::origin, which is chosen before any rounding. Importers wrap
+// their work in import_recentred() and report their geometry to PlacedBounds.
 #pragma once
 
 #include <array>
@@ -13,18 +14,18 @@
 
 namespace troffer {
 
-// Where the things of a file are, in double precision; grows as an importer places them.
+// Bounding box of a file's geometry, in double precision. Importers extend it as they place shapes.
 class PlacedBounds {
  public:
-  // One without area, or farther from the origin than is ever shown, does not count.
+  // Adds a triangle. Ignores one without area, or farther than 1e9 from the origin.
   void add_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
   void add_box(const Boxd& box);
   void add_ball(const Vec3d& centre, double radius);
   void add(const PlacedBounds& other) { box_.grow(other.box_); }
-  // Those of `count` triangles, on all cores: corners(i) says where their corners are.
+  // Adds `count` triangles in parallel. corners(i) returns the three corners of triangle i.
   template <class Corners>
   void add_triangles(size_t count, const Corners& corners);
-  // at(vertex) says where a vertex is.
+  // Adds triangles. at(vertex) returns the position of a vertex.
   template <class At>
   void add_triangles(const std::vector<Triangle>& triangles, const At& at) {
     add_triangles(triangles.size(), [&](size_t i) {
@@ -53,18 +54,19 @@ void PlacedBounds::add_triangles(size_t count, const Corners& corners) {
   for (const PlacedBounds& part : parts) add(part);
 }
 
-// The middle of the box, rounded along each axis to a multiple of a step that is 1, 5, 10, 50 … and
-// at least `least_step` and about twice as long as the box: so it is zero unless the box lies far
-// from the origin for its size, and moves with a box that is moved by a multiple of the step.
+// Returns the centre of the box, rounded along each axis to a multiple of a step. The step is 1, 5,
+// 10, 50, …, at least `least_step` and about twice the box.
+// The result is zero unless the box is far from the origin for its size. It moves with a box that
+// moves by a multiple of the step.
 Vec3d rounded_middle(const Boxd& box, double least_step);
 
-// The origin (Scene::origin) of a scene whose geometry lies in that box: its rounded_middle(), the
-// step at least 100, or 100 times the box where that is smaller than 1.
+// Returns the origin (Scene::origin) for geometry in that box: a rounded_middle(). It is zero
+// unless the box is farther away than about 100, or 100 times the box if that is smaller than 1.
 Vec3d choose_origin(const Boxd& box);
 
-// Imports a scene with the origin that suits it. `import` fills a new scene, all positions counted
-// from its origin, as the bounds are; it is called again where zero, tried first, is not that
-// origin. A scene too large for floats gets a warning that says how far its ends are rounded.
+// Imports a scene with a suitable origin. `import` fills a new scene and bounds, with all positions
+// counted from Scene::origin. It is called with origin zero, and again if that is not suitable.
+// Warns if a scene is too large for single precision, with the resolution at its ends.
 Scene import_recentred(const std::function<void(Scene& scene, PlacedBounds& bounds)>& import,
                        ImageUse images = ImageUse::read);
 
@@ -73,7 +75,8 @@ struct AnchoredMesh {
   Mesh mesh;
   Vec3d anchor;
 };
-// Sets positions and anchor, which is zero unless they lie hundreds of units from zero.
+// Sets the positions and the anchor. The anchor is zero unless the positions lie hundreds of units
+// away.
 void set_positions(AnchoredMesh& mesh, const std::vector<Vec3d>& positions);
 
 }  // namespace troffer

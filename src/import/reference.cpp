@@ -1,4 +1,5 @@
-// References from one file to another: inside a folder, also as other machines write them.
+// References from one file to another: confined to a folder, and tolerant of names from other
+// machines.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -31,7 +32,8 @@ bool is_file(const fs::path& path) {
   return fs::exists(path, error) && !fs::is_directory(path, error);
 }
 
-// The entry of that name, of whatever case, that comes first; empty: none.
+// Returns the entry of that name in any case, the alphabetically first if there are several; empty
+// if none.
 std::string entry_like(const fs::path& folder, const std::string& name) {
   std::error_code error;
   if (fs::exists(folder / name, error)) return name;
@@ -44,7 +46,8 @@ std::string entry_like(const fs::path& folder, const std::string& name) {
   return best;
 }
 
-// `relative` inside `folder`, component by component in whatever case; empty: no such file.
+// Finds `relative` inside `folder`, ignoring case in each component; empty if there is no such
+// file.
 std::string found_in_any_case(const fs::path& folder, const fs::path& relative) {
   fs::path at;
   for (const fs::path& part : relative.lexically_normal()) {
@@ -58,7 +61,7 @@ std::string found_in_any_case(const fs::path& folder, const fs::path& relative) 
   return is_file(folder / at) ? at.string() : std::string();
 }
 
-// Name under which a file that does not exist may be found here; empty: none.
+// Returns the name under which a missing file can be found; empty if there is none.
 std::string found_under_other_name(const std::string& folder, const std::string& relative) {
   // pbrt reads \f in "textures\floor.png" as one character.
   constexpr std::string_view escaped = "\n\t\r\b\f", letters = "ntrbf";
@@ -81,11 +84,11 @@ std::string found_under_other_name(const std::string& folder, const std::string&
   return "";
 }
 
-// Checks the path by its letters and, with links resolved, on the disk.
+// Checks the path lexically and, with links resolved, on the disk.
 ConfinedPath confined(const std::string& folder, const fs::path& name) {
   if (name.is_absolute()) return {"", "absolute paths are not allowed"};
   const char* const leaves = "it leads out of the scene's folder";
-  // The letters come first, so that "x/../../y" is refused whether or not x exists.
+  // The lexical check comes first, so that "x/../../y" is rejected whether or not x exists.
   const fs::path plain = name.lexically_normal();
   if (plain.empty() || *plain.begin() == "..") return {"", leaves};
 

@@ -1,8 +1,8 @@
-// Notes on files that references found under another name than the one they ask for.
+// Notes about files that were found under another name than the one in the scene.
 //
-// confined_path (file.h) looks for a file under its very name first. Where there is none it tries
-// names as other machines write them: '\' between components, letters of another case, and of a
-// Windows path with a drive or a share its last components.
+// confined_path (file.h) first looks for the exact name. Otherwise it tries names as other machines
+// write them: '\' between components, another case, and the last components of a Windows path with
+// a drive or share.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace troffer {
 
-// Collects what confined_path on this thread notes while it lives: files that were found under
-// another name than the one asked for. The innermost one collects.
+// Collects the notes of confined_path on this thread while it exists. If several exist, the
+// innermost collects.
 class ReferenceNotes {
  public:
   ReferenceNotes();
@@ -19,7 +19,7 @@ class ReferenceNotes {
   ReferenceNotes(const ReferenceNotes&) = delete;
   ReferenceNotes& operator=(const ReferenceNotes&) = delete;
 
-  const std::vector<std::string>& notes() const { return notes_; }  // each once, in order
+  const std::vector<std::string>& notes() const { return notes_; }  // without duplicates, in order
   static void note(const std::string& text);
 
  private:

@@ -1,4 +1,5 @@
-// Where in a text file something stands, for messages.
+// Position of an item in a text file, for error messages. Used by the importers of text formats,
+// whose parsed items outlive the text.
 #pragma once
 
 #include <memory>
@@ -8,6 +9,7 @@
 
 namespace troffer {
 
+// File, line and column of an item; line and column count from 1.
 struct SourcePlace {
   std::shared_ptr<const std::string> file;
   int line = 0, column = 0;
@@ -17,7 +19,7 @@ struct SourcePlace {
   }
 };
 
-// Text of a file as part of a message: of bounded length.
+// Returns text of a file for use in a message, at most 80 bytes.
 inline std::string shortened(const std::string& text) {
   return text.size() <= 80 ? text : text.substr(0, 77) + "...";
 }

@@ -15,7 +15,8 @@ Rgb not_negative(Rgb c) {
   return {std::max(c.r, 0.0f), std::max(c.g, 0.0f), std::max(c.b, 0.0f)};
 }
 
-// Integral of spectrum times matching functions, 1 nm steps over the visible range.
+// Returns the integral of spectrum times matching functions, in steps of 1 nm over the visible
+// range.
 template <class Spectrum>
 Vec3d xyz_integral(const Spectrum& spectrum) {
   Vec3d sum;
@@ -26,7 +27,7 @@ Vec3d xyz_integral(const Spectrum& spectrum) {
 
 Rgb with_unit_luminance(const Vec3d& xyz) {
   if (!(xyz.y > 0)) return Rgb{0};
-  // Saturated colours lie outside sRGB; what is cut off there must not change the luminance.
+  // Saturated colours lie outside sRGB; clipping them must not change the luminance.
   const Rgb color = not_negative(rgb_from_xyz(xyz / xyz.y));
   return color / luminance(color);
 }
@@ -56,8 +57,8 @@ struct Metal {
   Rgb eta, k;
 };
 // Measured indices at about 630, 532 and 465 nm, as commonly tabulated per channel. Chromium,
-// mercury, iridium, molybdenum, rhodium, tantalum, titanium nitride and tungsten: [4], between its
-// rows by lines.
+// mercury, iridium, molybdenum, rhodium, tantalum, titanium nitride and tungsten are interpolated
+// linearly between rows of [4].
 constexpr std::array metals{
     Metal{"Ag", {0.155265f, 0.116723f, 0.138381f}, {4.828343f, 3.122246f, 2.147050f}},
     Metal{"Al", {1.657460f, 0.880369f, 0.521229f}, {9.223869f, 6.269523f, 4.837001f}},
@@ -101,7 +102,8 @@ double value_at(const SampledSpectrum& spectrum, double wavelength_nm) {
 
 Rgb reflectance_from_spectrum(const SampledSpectrum& spectrum) {
   const auto value = [&](double nm) { return value_at(spectrum, nm); };
-  // Per channel relative to the perfect diffuser: takes equal-energy white to sRGB's white.
+  // Division by the perfect diffuser's colour, per channel, maps equal-energy white to sRGB's
+  // white.
   const Rgb white = rgb_from_xyz(xyz_integral([](double) { return 1.0; }));
   return not_negative(rgb_from_xyz(xyz_integral(value)) / white);
 }

@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Vertices in doubles: levels of rounding would show in normals.
+// A mesh in double precision: rounding over several levels would be visible in the normals.
 struct Shape {
   std::vector<Vec3d> positions;
   std::vector<Triangle> triangles;
@@ -17,14 +17,14 @@ struct Shape {
 
 struct LoopEdge {
   uint32_t a = 0, b = 0;
-  std::array<uint32_t, 2> opposite{};  // the third corners of the first two triangles
+  std::array<uint32_t, 2> opposite{};  // third corners of the first two triangles
   uint32_t triangles = 0;
 
   bool is_inside() const { return triangles == 2; }
 };
 
 struct Ring {
-  Vec3d sum, boundary_sum;  // of the neighbours; of those along boundaries
+  Vec3d sum, boundary_sum;  // of all neighbours; of those along boundaries
   uint32_t neighbours = 0, boundary = 0;
 };
 
@@ -32,7 +32,7 @@ uint64_t key_of(uint32_t a, uint32_t b) {
   return (uint64_t(std::min(a, b)) << 32) | std::max(a, b);
 }
 
-// Edges in the order in which triangles meet them, and how to find them.
+// Edges in order of first occurrence, with an index by their ends.
 struct Edges {
   std::vector<LoopEdge> all;
   std::unordered_map<uint64_t, uint32_t> index;
@@ -68,7 +68,7 @@ std::vector<Ring> rings_of(const Shape& shape, const Edges& edges) {
   return rings;
 }
 
-// Warren's weight of one neighbour.
+// Returns Warren's weight of one neighbour.
 double neighbour_weight(uint32_t neighbours) {
   return neighbours == 3 ? 3.0 / 16 : 3.0 / (8.0 * neighbours);
 }
@@ -106,7 +106,7 @@ Shape subdivided(const Shape& coarse) {
   return fine;
 }
 
-// Where vertices tend under endless subdivision.
+// Moves vertices to their limit positions.
 void push_to_limit(Shape& shape) {
   const std::vector<Ring> rings = rings_of(shape, Edges(shape));
   const std::vector<Vec3d> before = shape.positions;
@@ -122,7 +122,7 @@ void push_to_limit(Shape& shape) {
 Mesh subdivide_loop(const Mesh& control, int levels) {
   Shape shape;
   for (const Vec3& p : control.positions) shape.positions.emplace_back(p);
-  // A triangle that repeats a corner has an edge without length, which no rule is for.
+  // A triangle that repeats a corner has an edge of length zero, for which no rule exists.
   for (const Triangle& t : control.triangles)
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) shape.triangles.push_back(t);
   for (int i = 0; i < levels; ++i) shape = subdivided(shape);

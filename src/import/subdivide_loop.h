@@ -1,4 +1,4 @@
-// Loop's subdivision surfaces.
+// Loop subdivision surfaces, for pbrt's `loopsubdiv`.
 // References: [1] C. Loop, "Smooth Subdivision Surfaces Based on Triangles", MSc thesis, University
 //   of Utah, 1987; [2] H. Hoppe et al., "Piecewise Smooth Surface Reconstruction", SIGGRAPH 1994
 //   (boundaries as creases, limit positions).
@@ -8,10 +8,10 @@
 
 namespace troffer {
 
-// The control mesh cut `levels` times into four triangles each, its vertices moved to where they
-// tend in the limit, with smooth normals. Boundaries are curves of their own; where more than two
-// triangles share an edge, or a boundary branches, vertices stay. Only positions and triangles of
-// `control` are looked at; its indices must be in range.
+// Subdivides the control mesh `levels` times and moves its vertices to their limit positions.
+// Normals are those of the resulting triangles, smoothed. Boundaries are curves of their own.
+// Vertices stay where more than two triangles share an edge or a boundary branches.
+// Uses only the positions and triangles of `control`; its indices must be in range.
 Mesh subdivide_loop(const Mesh& control, int levels);
 
 }  // namespace troffer

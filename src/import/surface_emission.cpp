@@ -12,7 +12,7 @@ namespace troffer {
 
 namespace {
 
-// m²; 0 for spheres and disks, which glTF does not have.
+// Returns the area of a light, m²; 0 for spheres and disks, which glTF does not have.
 double emitting_area(const Scene& scene, const Light& e) {
   if (e.kind != LightKind::polygon && e.kind != LightKind::mesh) return 0;
   const Mesh& mesh = scene.meshes[e.geometry];

@@ -1,19 +1,20 @@
-// Surfaces that emit in other units than the lamps beside them.
+// Correction for surfaces whose emission has other units than the lamps beside them.
 //
-// Blender's exporter writes the strength of emission, W/(m² sr), as cd/m² without a factor, and the
-// power of lamps, W, with 683 lm/W (docs/from-blender.md): a panel is 683 times too dark then.
+// Blender's exporter writes the strength of emission, W/(m² sr), as cd/m² without a factor, but
+// converts the power of lamps, W, by 683 lm/W (docs/from-blender.md). A luminous panel is then 683
+// times too dark.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace troffer {
 
-// Multiplies the emission of surfaces by `factor`. Measured luminaires stay as they are. UsageError
-// where it is no number of at least 0.
+// Multiplies the emission of surfaces by `factor`, except luminaires with a photometric web. Throws
+// UsageError unless `factor` is finite and not negative.
 void scale_surface_emission(Scene& scene, double factor);
 
-// Warns of a photometric scene in which surfaces emit as hardly any luminaire does, under 100 cd/m²
-// from more than .05 m², and less than a hundredth of what points and spots send.
+// Warns if a photometric scene has implausibly dim surfaces: below 100 cd/m² on more than 0.05 m²,
+// with less than a hundredth of the flux of points and spots.
 void warn_of_weak_surfaces(Scene& scene);
 
 }  // namespace troffer

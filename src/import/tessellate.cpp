@@ -15,8 +15,8 @@ struct SurfacePoint {
   Vec3 position, normal;
 };
 
-// A (nu+1) × (nv+1) grid of points over (u,v) in [0,1]²; quads that shrink to triangles lose the
-// half without area.
+// Appends a (nu+1) × (nv+1) grid of points over (u,v) in [0,1]². Where a quad shrinks to a
+// triangle, the half without area is left out.
 template <class Point>
 void append_grid(Mesh& mesh, int nu, int nv, const Point& point) {
   const auto first = uint32_t(mesh.positions.size());
@@ -43,7 +43,8 @@ void append_grid(Mesh& mesh, int nu, int nv, const Point& point) {
   }
 }
 
-// Cosine and sine of the azimuth at step i of n; the last step of a full turn is the first one.
+// Returns cosine and sine of the azimuth at step i of n. The last step of a full turn equals the
+// first.
 Vec2d azimuth(int i, int n, double phi_max_rad) {
   const bool closes = phi_max_rad >= 2 * pi * (1 - 1e-12);
   const double phi = closes && i == n ? 0 : phi_max_rad * i / n;
@@ -113,7 +114,7 @@ void append_patch(Mesh& mesh, const BilinearPatch& patch, int cells) {
   const size_t first = mesh.positions.size();
   append_grid(mesh, cells, cells, [&](int i, int j) {
     const float s = float(i) / float(cells), t = float(j) / float(cells);
-    // Corners as they stand, so that patches that share them meet.
+    // Exact corners, so that adjacent patches meet.
     const bool is_corner = (i == 0 || i == cells) && (j == 0 || j == cells);
     const size_t corner = size_t(i == cells) + 2 * size_t(j == cells);
     const Vec3 du = (c[1] - c[0]) * (1 - t) + (c[3] - c[2]) * t;

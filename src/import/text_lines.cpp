@@ -19,7 +19,7 @@ bool is_blank_in_line(char c) {
 
 }  // namespace
 
-// By the number of bytes that each character has; overlong forms are let through.
+// Checks the lengths of multi-byte characters; accepts overlong forms.
 bool is_utf8(std::string_view text) {
   constexpr uint64_t high_bits = 0x8080808080808080u;
   for (size_t i = 0; i < text.size(); ++i) {
@@ -78,14 +78,15 @@ std::string as_utf8(std::string_view text) {
       c = 0x10000 + ((c & 0x3ff) << 10) + (unit_at(i + 2) & 0x3ff);
       i += 2;
     }
-    append_utf8(out, (c & 0xf800) == 0xd800 ? 0xfffd : c);  // half a pair is no character
+    append_utf8(out, (c & 0xf800) == 0xd800 ? 0xfffd : c);  // half a surrogate pair is not a
+                                                            // character
   }
   return out;
 }
 
 std::vector<std::string_view> cut_at_lines(std::string_view text, size_t piece_bytes,
                                            std::string_view first) {
-  // Whether a piece may end behind that "\n".
+  // True if a piece may end after that "\n".
   const auto is_cut = [&](size_t newline) {
     size_t last = newline;
     if (last > 0 && text[last - 1] == '\r') --last;
@@ -118,7 +119,7 @@ std::string_view TextLines::take_physical_line() {
   const void* const newline = std::memchr(begin, '\n', left);
   size_t n = newline ? size_t(static_cast<const char*>(newline) - begin) : left;
   size_t taken = newline ? n + 1 : n;
-  // Files of lone carriage returns.
+  // Lone carriage returns end lines too.
   if (const void* const cr = std::memchr(begin, '\r', n)) {
     const auto at = size_t(static_cast<const char*>(cr) - begin);
     const bool is_pair = at + 1 == n && newline;
@@ -183,7 +184,7 @@ Real TextLines::read_number() {
   const bool is_whole = result.ptr == end_ || is_blank_in_line(*result.ptr);
   if (result.ec == std::errc::invalid_argument || !is_whole) {
     const std::string_view found = word();
-    // What some C libraries print for NaN and infinity: 1.#IND, -1.#INF.
+    // Some C libraries print NaN and infinity as 1.#IND, -1.#INF.
     if (found.substr(0, 4).find("1.#") != std::string_view::npos)
       return std::numeric_limits<Real>::quiet_NaN();
     fail(found.empty() ? "a number is missing"

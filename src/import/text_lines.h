@@ -1,4 +1,5 @@
-// Text files of one statement per line, word by word: what OBJ and MTL share.
+// Reader of text files with one statement per line, word by word. The readers of OBJ, MTL and text
+// STL share it.
 #pragma once
 
 #include <cstdint>
@@ -8,46 +9,47 @@
 
 namespace troffer {
 
-// The text as UTF-8: from UTF-16 where it has a byte order mark; from Latin-1 where it is no UTF-8.
+// Converts text to UTF-8: from UTF-16 if it has a byte order mark, from Latin-1 if it is not valid
+// UTF-8.
 std::string as_utf8(std::string_view text);
-// Whether it is that already.
+// True if the text is UTF-8 already.
 bool is_utf8(std::string_view text);
 
-// Consecutive pieces of a text of about so many bytes, each of whole statements: cut behind a "\n"
-// that no backslash joins with the next line, and only where that begins with `first` ("": any).
-// They view the text.
+// Cuts a text into consecutive pieces of about `piece_bytes`, each of whole statements. Cuts only
+// after a "\n" that no backslash joins with the next line, and only before a line that begins with
+// `first` ("": any). The pieces are views of the text.
 std::vector<std::string_view> cut_at_lines(std::string_view text, size_t piece_bytes,
                                            std::string_view first = "");
 
 // Appends a code point.
 void append_utf8(std::string& out, uint32_t code_point);
 
-// Takes lines apart. A backslash at the end of a line joins it with the next one; lines end with
-// "\n", "\r\n" or "\r".
+// Splits text into lines and words. A backslash at the end of a line joins it with the next one.
+// Lines end with "\n", "\r\n" or "\r".
 class TextLines {
  public:
-  // Both must outlive this. is_whole: the text begins where its file does; else it is told as if it
-  // came after lines_before lines.
+  // Both must outlive this object. `is_whole`: the text begins where its file does, perhaps with a
+  // byte order mark. `lines_before` is added to line numbers.
   TextLines(const std::string& file, std::string_view text, bool is_whole = true,
             int lines_before = 0);
 
-  // Goes to the next line; false at the end.
+  // Moves to the next line; false at the end.
   bool next_line();
 
-  // The next word of the line, "" at its end. A word that begins with '#' begins a comment.
+  // Returns the next word of the line; "" at its end. A word that begins with '#' starts a comment.
   std::string_view word();
-  // All that is left of the line, without blanks around it; '#' counts as text within it.
+  // Returns the rest of the line without surrounding blanks; '#' counts as text.
   std::string_view rest();
-  // Whether a word follows.
+  // True if another word follows.
   bool has_word();
 
-  // A number: InputError where there is none. May be NaN or infinite.
+  // Reads a number, which may be NaN or infinite. Throws InputError if there is none.
   float number();
-  double precise_number();  // the same, not rounded to float
-  // An integer, read up to the first other character; false where there is none or it does not
-  // fit 32 bits.
+  double precise_number();  // in double precision
+  // Reads an integer up to the first other character. Returns false if there is none or it exceeds
+  // 32 bits.
   bool integer(int& value);
-  // The next character, 0 at the end of the line; take() goes past it.
+  // Next character; 0 at the end of the line. take() moves past it.
   char peek() const { return at_ < end_ ? *at_ : '\0'; }
   void take() { ++at_; }
 
@@ -55,7 +57,7 @@ class TextLines {
   int line() const { return line_; }
   int column() const { return int(word_ - begin_) + 1; }
   [[noreturn]] void fail(const std::string& what) const;
-  // How many lines have been gone to, those that others are joined with included.
+  // Number of lines read, joined ones included.
   int lines_taken() const { return next_line_number_ - 1 - lines_before_; }
 
  private:

@@ -16,8 +16,8 @@ namespace {
 
 constexpr uint64_t max_image_file_bytes = uint64_t(1) << 30;
 
-// Equal for requests that give equal textures. Exact bits of the numbers, so that nothing that
-// differs is taken for equal.
+// Returns a key that is equal for requests with equal textures. It contains the exact bits of all
+// numbers.
 std::string request_key(const std::string& image, const Texture& look) {
   std::string key = image;
   key += '\0';
@@ -33,7 +33,7 @@ std::string request_key(const std::string& image, const Texture& look) {
   return key;
 }
 
-// 16-bit files come as floats that still carry the sRGB transfer function.
+// Linearises a 16-bit image, whose floats still carry the sRGB transfer function.
 void linearize(Texture& t) {
   const auto n = size_t(t.channels);
   const bool has_alpha = n == 2 || n == 4;
@@ -55,7 +55,7 @@ uint64_t size_of_left_out(const std::string& path) {
   }
 }
 
-// Of colours in sRGB's primaries; what lies outside of them is cut off.
+// Converts colours to sRGB's primaries and clips negative values.
 Raster TextureLoader::color_raster(const std::string& key, Raster raster) {
   if (obeys_own_colours_ && troffer::obey_own_colours(raster) == ColoursFound::broken)
     scene_.warnings.add(key + broken_colours);
@@ -114,9 +114,9 @@ void TextureLoader::expect_memory(std::span<const uint8_t> bytes, const std::str
   expect(key, [bytes, key] { return decode_raster(bytes, key); });
 }
 
-// Any texture already made of the image whose texels are those that `look` asks for. 8-bit texels
-// stay encoded and serve both readings, unless colours were converted; float texels were linearised
-// or not.
+// Returns a texture of the same image with the texels that `look` requires, if there is one. 8-bit
+// texels stay encoded and serve both readings, unless colours were converted. Float texels exist
+// either linearised or not.
 const Texture* TextureLoader::decoded(const std::string& key, const Texture& look) const {
   for (const bool is_srgb : {look.is_srgb, !look.is_srgb}) {
     const auto it = by_image_.find({key, is_srgb});
@@ -128,7 +128,7 @@ const Texture* TextureLoader::decoded(const std::string& key, const Texture& loo
   return nullptr;
 }
 
-// A single texel always fits: the image's mean.
+// Halves a texture until it fits. A single texel, the image's mean, is always accepted.
 Texture TextureLoader::reduced(Texture texture) {
   const uint64_t left = max_texel_bytes_ - std::min(max_texel_bytes_, texel_bytes_);
   if (texel_bytes(texture) <= left) return texture;

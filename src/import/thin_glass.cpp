@@ -22,9 +22,10 @@ namespace {
 
 constexpr double most_thickness = 1.0 / 30;  // of the smaller side
 constexpr double cap_flatness = 1e-3;        // of the thickness
-constexpr size_t most_triangles = 1 << 17;   // of a mesh that is looked at
+constexpr size_t most_triangles = 1 << 17;   // of a mesh that is examined
 
-// The same glass as a sheet; what tints light tints it at both faces of the body.
+// Returns the same glass as a sheet. The tint is squared, because light crosses both faces of the
+// body.
 Material sheet_of(const Material& solid, float thickness) {
   Material m = solid;
   m.is_thin = true;
@@ -33,7 +34,7 @@ Material sheet_of(const Material& solid, float thickness) {
   return m;
 }
 
-// The sheets of bodies of one material: as many materials as thicknesses, where it absorbs.
+// Sheet materials for solid ones. An absorbing material needs one for each thickness.
 class SheetMaterials {
  public:
   explicit SheetMaterials(Scene& scene) : scene_(scene) {}
@@ -53,7 +54,7 @@ class SheetMaterials {
   std::map<std::pair<uint32_t, int64_t>, uint32_t> made_;
 };
 
-// A mesh in bodies that share no corner.
+// A mesh divided into bodies that share no corner.
 class Bodies {
  public:
   explicit Bodies(const Mesh& mesh) : mesh_(mesh), corner_(mesh.positions.size()) {
@@ -72,7 +73,7 @@ class Bodies {
   }
   const std::vector<std::vector<uint32_t>>& all() const { return bodies_; }
 
-  // Each edge belongs to two triangles, which run along it in opposite directions.
+  // True if each edge belongs to exactly two triangles with opposite directions.
   bool is_closed(const std::vector<uint32_t>& triangles) const {
     std::map<std::pair<uint32_t, uint32_t>, int> edges;
     for (const uint32_t t : triangles)
@@ -92,16 +93,17 @@ class Bodies {
     return i;
   }
   const Mesh& mesh_;
-  std::vector<uint32_t> corner_, parent_;  // per vertex: the first one in its place; …
+  std::vector<uint32_t> corner_, parent_;  // per vertex: the first at its place; set parent
   std::vector<std::vector<uint32_t>> bodies_;
 };
 
 struct Sheet {
-  std::vector<std::array<Vec3, 3>> triangles;  // empty: there is none
+  std::vector<std::array<Vec3, 3>> triangles;  // empty: no sheet
   double thickness = 0;
 };
 
-// The sheet in the middle of a thin prism: one of its faces, shifted.
+// Returns the sheet in the middle of a thin prism: one of its caps, shifted; an empty sheet for
+// other bodies.
 Sheet sheet_in(const Mesh& mesh, const std::vector<uint32_t>& body) {
   const auto corners = [&](uint32_t t) {
     const Triangle& v = mesh.triangles[t];
@@ -126,7 +128,7 @@ Sheet sheet_in(const Mesh& mesh, const std::vector<uint32_t>& body) {
   const double thickness = high[0] - low[0];
   if (!(thickness > 0) || thickness > most_thickness * std::min(high[1] - low[1], high[2] - low[2]))
     return {};
-  double upper = 0, lower = 0;  // areas
+  double upper = 0, lower = 0;  // areas of the caps
   Sheet sheet{{}, thickness};
   for (const uint32_t t : body) {
     auto c = corners(t);
@@ -178,7 +180,7 @@ void replace_thin_glass(Scene& scene) {
     }
     if (panes.empty()) continue;
     const std::string name = scene.meshes[i].name;
-    bool is_free = kept.empty();  // the mesh's place in the scene
+    bool is_free = kept.empty();  // the mesh's slot can be reused
     if (!is_free) scene.meshes[i].triangles = std::move(kept);
     for (auto& [pane_material, mesh] : panes) {
       mesh.name = name;

@@ -1,17 +1,19 @@
-// Glass in sheets: a closed box of clear glass that is thin beside its sides is a pane.
+// Replacement of thin glass bodies by sheets: a closed prism of clear glass that is thin compared
+// with its sides becomes a pane, through which light passes without refraction. import_scene()
+// applies it to all formats.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace troffer {
 
-// Puts a thin sheet in the middle of each closed prism of smooth dielectric or transmitting
-// material whose thickness is at most a thirtieth of its smaller side: light goes through such a
-// body as through one sheet with all reflections between its faces, but for a shift of less than
-// the thickness. Its edges are left out. A mesh may hold several, beside other glass.
+// Replaces each closed prism of smooth dielectric or transmitting material by a thin sheet in its
+// middle. The thickness must be at most 1/30 of the smaller side. Light passes as through the body,
+// with all reflections between its faces, but without the shift, which is less than the thickness.
+// The prism's edges are dropped. A mesh may contain several prisms beside other glass.
 void replace_thin_glass(Scene& scene);
 
-// Whether bodies of that material are looked at.
+// True if bodies of that material are candidates.
 bool may_be_thin_glass(const Material& material);
 
 }  // namespace troffer

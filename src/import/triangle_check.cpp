@@ -14,7 +14,7 @@ bool is_usable(const Vec3& p) {
          std::abs(p.z) <= largest_coordinate;  // false for NaN
 }
 
-// What computes normals in floats must not meet a zero vector either.
+// The first test makes sure that normals computed in floats are not zero.
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   if (!(length_squared(cross(b - a, c - a)) > 0)) return true;
   const Vec3d ab = Vec3d(b) - Vec3d(a), ac = Vec3d(c) - Vec3d(a);

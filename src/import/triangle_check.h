@@ -1,4 +1,5 @@
-// Which triangles can be rendered.
+// Test for triangles that can be rendered. Importers apply it through clean_mesh or while reading.
+// Each thread may count with an object of its own; add() combines them.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +9,15 @@
 
 namespace troffer {
 
-// Sorts out triangles that have no area or a corner that cannot be used, and counts them.
+// Rejects triangles without area or with unusable corners, and counts them.
 class TriangleCheck {
  public:
-  // Whether the triangle may stay. Its corners must lie within 1e9 m of the origin, where the
-  // square of an area is still a float, and its area must not be lost in the rounding of floats.
+  // True if the triangle can be rendered. Its corners must lie within 1e9 m of the origin, so that
+  // the square of an area fits a float. Its area must exceed the rounding of floats.
   bool is_good(const Vec3& a, const Vec3& b, const Vec3& c);
-  void add(const TriangleCheck& other);  // its counts
+  void add(const TriangleCheck& other);  // adds its counts
   size_t bad() const { return not_finite_ + without_area_; }
-  // One warning per kind that occurred.
+  // Adds one warning for each kind of rejected triangles.
   void report(WarningLog& warnings) const;
 
  private:

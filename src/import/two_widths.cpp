@@ -23,7 +23,7 @@ bool are_looked_up_alike(const Texture& a, const Texture& b) {
          a.uv_rotation_rad == b.uv_rotation_rad;
 }
 
-// Value of a texel, or the number where there is no image.
+// Returns the value of a texel, or the constant if there is no image.
 float texel_of(const std::vector<Texture>& textures, const FloatInput& in, size_t i) {
   if (in.texture < 0) return in.value;
   const Texture& t = textures[size_t(in.texture)];
@@ -58,7 +58,7 @@ bool set_two_widths(Scene& scene, Material& m, const FloatInput& along_u,
     t->texels_float.clear();
   }
   narrow.channels = 1;
-  grain.channels = 3;  // the direction in red and green, from -1 to 1; the strength in blue
+  grain.channels = 3;  // direction in red and green, -1 to 1; strength in blue
   const size_t texels = size_t(image->width) * size_t(image->height);
   for (size_t i = 0; i < texels; ++i) {
     const float u = texel_of(scene.textures, along_u, i), v = texel_of(scene.textures, along_v, i);
@@ -76,7 +76,7 @@ bool set_two_widths(Scene& scene, Material& m, const FloatInput& along_u,
   return true;
 }
 
-// The narrower width is the roughness; the wider one alpha + (1 - alpha) × anisotropy².
+// The narrower width becomes the roughness; the wider one is alpha + (1 - alpha) × anisotropy².
 void set_two_widths(Material& m, float along_u, float along_v) {
   const float narrow = std::min(along_u, along_v), wide = std::max(along_u, along_v);
   m.roughness = {narrow, no_texture, m.roughness.channel};

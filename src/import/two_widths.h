@@ -1,16 +1,17 @@
-// Gloss of two widths, as formats with u and v tell it -> Material::anisotropy.
+// Conversion of gloss with different roughness along u and v to Material::roughness and anisotropy.
+// Used by the importers of pbrt, Mitsuba and MTL.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace troffer {
 
-// Sets roughness and anisotropy by the roughness along u and along v, which m.roughness_meaning
-// explains.
+// Sets roughness and anisotropy from the roughness along u and along v, in the meaning of
+// m.roughness_meaning.
 void set_two_widths(Material& m, float along_u, float along_v);
 
-// The same where one or both are images: exact where both are looked up alike, texel by texel.
-// False, and nothing changes, for textures that are no images of one size and look-up.
+// Sets them from images, texel by texel. Exact if both images have the same size and look-up;
+// otherwise, or for textures that are not images, returns false and changes nothing.
 bool set_two_widths(Scene& scene, Material& m, const FloatInput& along_u,
                     const FloatInput& along_v);
 

@@ -24,7 +24,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// Value of each base64 character, -1 for others.
+// Value of each base64 character; -1 for others.
 constexpr std::array<int8_t, 256> base64_values = [] {
   std::array<int8_t, 256> table{};
   table.fill(-1);
@@ -81,7 +81,7 @@ std::optional<DataUri> parse_data_uri(std::string_view uri) {
   DataUri out;
   out.media_type = head.substr(0, head.find(';'));
   if (head.ends_with(";base64")) {
-    // '=' and '/' may come percent-encoded.
+    // '=' and '/' may be percent-encoded.
     std::optional<std::vector<uint8_t>> bytes;
     if (data.find('%') == std::string_view::npos) {
       bytes = base64_decoded(data);
@@ -121,7 +121,7 @@ std::optional<std::vector<uint8_t>> base64_decoded(std::string_view text) {
     out.push_back(uint8_t(bits));
     bits = 0;
   }
-  // 2 left characters hold one byte, 3 hold two; the bits left over are not looked at.
+  // Two remaining characters hold one byte, three hold two; left-over bits are ignored.
   if (rest == 2) out.push_back(uint8_t(bits >> 4));
   if (rest == 3) {
     out.push_back(uint8_t(bits >> 10));

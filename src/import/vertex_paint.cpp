@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Of all images made so: about a gigabyte.
+// Limit for all images together: about a gigabyte.
 constexpr uint64_t max_texels = uint64_t(1) << 26;
 
 float unit(float v) {
@@ -47,7 +47,7 @@ bool has_alpha(const Mesh& mesh, const std::vector<TextureValue>& colors) {
   });
 }
 
-// Vertices of its own for every triangle.
+// Gives every triangle vertices of its own.
 void separate_triangles(Mesh& mesh) {
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uvs;
@@ -90,7 +90,8 @@ uint32_t VertexPainter::tinted(uint32_t material, const TextureValue& factor) {
   return tinted_[{material, key}] = uint32_t(scene_.materials.size() - 1);
 }
 
-// with_uvs: the mesh keeps its (u,v), and the image is a factor on what they show.
+// Adds the image of a mesh's colours and a material that uses it. `with_uvs`: the mesh keeps its
+// (u,v), and the image multiplies the other textures.
 uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& colors,
                                   bool with_uvs) {
   Material m = scene_.materials[mesh.material];
@@ -123,7 +124,7 @@ uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& c
     put(0, 0, c[0].rgb, c[0].alpha);
     put(1, 0, c[1].rgb, c[1].alpha);
     put(0, 1, c[2].rgb, c[2].alpha);
-    // So that the mixed term of the bilinear mean vanishes.
+    // This value makes the mixed term of the bilinear interpolation vanish.
     put(1, 1, c[1].rgb + c[2].rgb - c[0].rgb, c[1].alpha + c[2].alpha - c[0].alpha);
     for (const auto& [dx, dy] : {std::pair{0.5, 0.5}, {1.5, 0.5}, {0.5, 1.5}})
       uvs.emplace_back(float((double(x) + dx) / double(image.width)),
@@ -147,7 +148,8 @@ uint32_t VertexPainter::add_image(Mesh& mesh, const std::vector<TextureValue>& c
   return uint32_t(scene_.materials.size() - 1);
 }
 
-// The material as it is where vertices have alpha and nothing else of it has.
+// Returns a copy of the material with alpha blending, or the material itself if it has alpha
+// already.
 uint32_t VertexPainter::blended(uint32_t material) {
   if (scene_.materials[material].is_alpha_masked) return material;
   const auto [known, is_new] = blended_.emplace(material, uint32_t(scene_.materials.size()));

@@ -1,4 +1,5 @@
-// Colours of vertices -> textures and factors of materials.
+// Conversion of vertex colours to materials and textures, because scenes have no colours per
+// vertex. Used by the importers of glTF and OBJ.
 #pragma once
 
 #include <array>
@@ -10,19 +11,19 @@
 
 namespace troffer {
 
-// Scenes have no colours per vertex. One colour for a whole mesh is a factor on its material's base
-// colour. Where colours differ, the mesh gets vertices and (u,v) of its own for every triangle, and
-// an image in which each triangle has 2 x 2 texels whose bilinear mean is the linear one between
-// its three corners. A mesh that needs its (u,v) for images gets a second set for that one, which
-// is a factor on its base colour; one that needs two sets gets its mean colour, with a warning.
+// Applies vertex colours to meshes. A single colour becomes a factor on the material's base colour.
+// Where colours differ, each triangle gets its own vertices and (u,v), and 2 x 2 texels of an
+// image. Their bilinear interpolation equals the linear one between the three corners.
+// If the mesh needs its (u,v) for other images, the colour image uses the second set and multiplies
+// the base colour. If both sets are needed, the mesh gets its mean colour, with a warning.
 class VertexPainter {
  public:
   // The scene must outlive the painter.
   explicit VertexPainter(Scene& scene) : scene_(scene) {}
 
-  // Colours are linear, one per vertex, and count as factors within [0,1]; their alpha counts where
-  // the material has alpha, or is_blended. `needs_uvs`: an image beyond those of the material uses
-  // the mesh's.
+  // Paints a mesh. Colours are linear factors, one per vertex, clamped to [0,1]. Their alpha is
+  // used if the material has alpha, or if `is_blended`. `needs_uvs` is true if an image outside the
+  // material uses the mesh's (u,v).
   void paint(Mesh& mesh, const std::vector<TextureValue>& colors, bool needs_uvs,
              bool is_blended = false);
 
@@ -33,7 +34,7 @@ class VertexPainter {
 
   Scene& scene_;
   std::map<std::pair<uint32_t, std::array<float, 4>>, uint32_t> tinted_;
-  std::map<uint32_t, uint32_t> blended_;  // by material, its copy with alpha
+  std::map<uint32_t, uint32_t> blended_;  // by material: its copy with alpha
   uint64_t texels_ = 0;
 };
 

@@ -15,7 +15,8 @@ constexpr size_t weld_piece = size_t(3) << 15, weld_buckets = 256;
 constexpr uint32_t no_corner = 0xffffffffu;
 
 uint64_t hash_of_place(const Vec3& p) {
-  const auto bits = [](float x) { return uint64_t(std::bit_cast<uint32_t>(x + 0.0f)); };  // -0 is 0
+  // -0 becomes 0
+  const auto bits = [](float x) { return uint64_t(std::bit_cast<uint32_t>(x + 0.0f)); };
   return mix64((bits(p.x) | bits(p.y) << 32) ^ mix64(bits(p.z)));
 }
 
@@ -23,7 +24,7 @@ size_t bucket_of(const Vec3& p) {
   return size_t(hash_of_place(p) >> 56);
 }
 
-// The corners by buckets of their places, in each as they come.
+// Corners grouped by buckets of their positions, in order within each bucket.
 struct Sorted {
   std::vector<uint32_t> corners;
   std::array<size_t, weld_buckets + 1> begin{};
@@ -31,8 +32,7 @@ struct Sorted {
 
 Sorted sorted(const std::vector<Vec3>& corners) {
   const size_t pieces = corners.size() / weld_piece + 1;
-  std::vector<std::array<size_t, weld_buckets>> at(
-      pieces);  // counts, then where to put the next one
+  std::vector<std::array<size_t, weld_buckets>> at(pieces);  // counts, then next positions
   parallel_pieces(corners.size(), weld_piece, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) ++at[begin / weld_piece][bucket_of(corners[i])];
   });
@@ -55,7 +55,7 @@ Sorted sorted(const std::vector<Vec3>& corners) {
   return result;
 }
 
-// For the corners of one bucket: the first one in the same place, itself where there is none.
+// Sets, for the corners of one bucket, the first corner at the same position (perhaps itself).
 void find_firsts(const std::vector<Vec3>& corners, const uint32_t* begin, const uint32_t* end,
                  std::vector<uint32_t>& firsts) {
   std::vector<uint32_t> table(std::bit_ceil(size_t(end - begin) * 2 + 1), no_corner);
@@ -85,8 +85,8 @@ Mesh weld(const std::vector<Vec3>& corners, const TellProgress& tell, double fir
     find_firsts(corners, all + order.begin[b], all + order.begin[b + 1], firsts);
     progress.add(1);
   });
-  std::vector<uint32_t> numbers = std::move(order.corners);  // of those that are first
-  std::vector<size_t> counts(n / weld_piece + 2);            // of vertices before each weld_piece
+  std::vector<uint32_t> numbers = std::move(order.corners);  // vertex numbers of first corners
+  std::vector<size_t> counts(n / weld_piece + 2);            // vertices before each weld_piece
   parallel_pieces(n, weld_piece, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) counts[begin / weld_piece + 1] += firsts[i] == i ? 1 : 0;
   });

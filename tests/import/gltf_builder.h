@@ -1,4 +1,4 @@
-// Small glTF documents put together in tests.
+// Small glTF documents for tests.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@
 
 namespace troffer {
 
-// The bytes of values, one after the other.
+// Returns the bytes of the values in sequence.
 template <class T>
 std::string bytes_of(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
@@ -35,7 +35,7 @@ inline std::string base64(const std::string& bytes) {
   return out;
 }
 
-// A document from members of the top-level object, in which every ' stands for ".
+// Returns a document from members of the top-level object, with every ' replaced by ".
 inline std::string gltf_text(std::string members) {
   std::string text =
       "{'asset':{'version':'2.0'}" + std::string(members.empty() ? "" : ",\n") + members + "}";
@@ -49,13 +49,13 @@ inline std::string data_buffer(const std::string& bytes) {
          ",'uri':'data:application/octet-stream;base64," + base64(bytes) + "'}";
 }
 
-// Imports a document written to a file of its own.
+// Imports a document from a file of its own.
 inline Scene import_text(const std::string& text) {
   const TempFolder folder;
   return import_gltf(folder.write("scene.gltf", text));
 }
 
-// The error that importing the document gives; fails the test where it gives none.
+// Returns the error that importing the document gives. Fails the test if there is none.
 inline InputError error_of(const std::string& text) {
   try {
     import_text(text);
@@ -66,8 +66,9 @@ inline InputError error_of(const std::string& text) {
   return InputError("", 0, 0, "");
 }
 
-// The unit square in the plane z = 0, front to +z, as buffer 0: 4 float positions, 6 u16 indices
-// (two triangles), 4 float normals (+z), 4 float uvs; accessors 0, 1, 2, 3 in that order.
+// Returns the unit square in the plane z = 0, front to +z, as buffer 0: 4 float positions, 6 u16
+// indices (two triangles), 4 float normals (+z), 4 float uvs. They are accessors 0 to 3 in that
+// order.
 inline std::string square_bytes() {
   return bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) +
          bytes_of<uint16_t>({0, 1, 2, 0, 2, 3}) +
@@ -85,7 +86,8 @@ inline std::string square_data() {
          "{'bufferView':2,'componentType':5126,'count':4,'type':'VEC3'},"
          "{'bufferView':3,'componentType':5126,'count':4,'type':'VEC2'}]";
 }
-// The square as mesh 0 with material 0 (which `more` must define), shown by the nodes in `nodes`.
+// Returns a document with the square as mesh 0 and material 0 (which `more` must define), shown by
+// `nodes`.
 inline std::string square_scene(const std::string& nodes, const std::string& more) {
   return gltf_text(square_data() +
                    ",\n'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':2,"

@@ -1,4 +1,4 @@
-// Files made by changing good ones at random, for tests of importers.
+// Random mutations of valid files, for tests of importers.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -12,8 +12,8 @@
 
 namespace troffer::test {
 
-// `text` with one to four changes: bytes replaced, pieces cut out, doubled or moved, numbers made
-// large. The same for the same generator.
+// Returns `text` with one to four changes: bytes replaced, pieces removed, doubled or moved,
+// numbers enlarged. Deterministic for a given state of `random`.
 inline std::string mutated(std::string text, std::mt19937& random) {
   const auto below = [&](size_t n) { return n > 0 ? size_t(random()) % n : 0; };
   for (size_t changes = 1 + below(4); changes > 0 && !text.empty(); --changes) {
@@ -42,7 +42,7 @@ inline std::string mutated(std::string text, std::mt19937& random) {
   return text;
 }
 
-// Imports `count` mutations of a file: each loads or throws InputError of one line.
+// Imports `count` mutations of a file. Each must load or throw an InputError of one line.
 inline void check_mutations(const std::string& text, size_t count,
                             const std::function<void(const std::string&)>& import) {
   std::mt19937 random(1);

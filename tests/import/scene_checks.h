@@ -1,4 +1,4 @@
-// What tests ask of scenes that were read.
+// Queries on imported scenes, for tests.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ inline bool is_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
   return length(a - b) <= tolerance;
 }
 
-// The unit normal of a flat light's front.
+// Returns the unit normal of a flat light's front.
 inline Vec3 front_of(const Scene& scene, const Light& e) {
   if (e.kind == LightKind::disk) return scene.disks.at(e.geometry).normal;
   const Mesh& mesh = scene.meshes.at(e.geometry);

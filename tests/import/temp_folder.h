@@ -1,4 +1,4 @@
-// A folder that is there as long as the object, for tests of importers.
+// A folder that exists as long as the object, for tests of importers.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class TempFolder {
 
   std::string path(const std::string& name) const { return (path_ / name).string(); }
 
-  // Writes a file, with the folders that it lies in; returns its path.
+  // Writes a file and creates its folders; returns its path.
   std::string write(const std::string& name, const std::string& contents) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream(path_ / name, std::ios::binary) << contents;

@@ -1,5 +1,5 @@
-// Every scene and mesh file of ../shared/badinputs is imported in-process: it loads or throws
-// InputError, as its label says, quickly, and nothing else ever escapes.
+// Imports every scene and mesh file of ../shared/badinputs in-process. Each must load or throw
+// InputError, as its label says, and quickly. No other exception may escape.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -19,7 +19,7 @@ using namespace troffer;
 
 namespace {
 
-// Where we disagree with the label, and why.
+// Files for which we disagree with the label, and why.
 const std::map<std::string, std::string> exceptions{
     {"gltf-validator/base/data/image/invalid_image_data.gltf",
      "nothing shows the broken image, and one that is shown would be a warning"},
@@ -63,8 +63,7 @@ Outcome outcome_of(const std::string& path, const std::string& format, std::stri
   }
 }
 
-// Imports every file of these formats and returns how many there are; 0 where the collection is
-// not here.
+// Imports every file of these formats and returns their number; 0 if the collection is missing.
 size_t check_all(const std::set<std::string>& formats) {
   const std::string folder = std::string(TROFFER_SOURCE_DIR) + "/../shared/badinputs";
   if (!std::filesystem::exists(folder + "/manifest.json")) {

@@ -1,4 +1,4 @@
-// Which emissive meshes become polygons.
+// Tests which emissive meshes become polygon lights.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ double area(const Mesh& mesh) {
   return sum;
 }
 
-// The regular n-gon of radius r as a fan about its centre, which is vertex 0.
+// Returns a regular n-gon of radius r as a fan around its centre, vertex 0.
 Mesh disk(uint32_t n, float r = 1) {
   Mesh mesh;
   mesh.positions.push_back({0, 0, 0});
@@ -152,7 +152,7 @@ TEST_CASE("what is no planar convex polygon stays a mesh") {
   Mesh twice = square;
   twice.triangles.push_back({0, 1, 2});
   CHECK(is_mesh(twice));
-  CHECK(is_mesh(disk(65)));  // more corners than a polygon may have
+  CHECK(is_mesh(disk(65)));  // more corners than a polygon light may have
   // A fan that goes round twice: convex turns, but overlapping triangles.
   Mesh winding = disk(5);
   winding.triangles.clear();

@@ -1,4 +1,5 @@
-// glTF documents as a whole: nodes, transforms, cameras, errors, and the scenes that come along.
+// Tests of whole glTF documents: nodes, transforms, cameras, errors, and the scenes of the
+// repository.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -54,7 +55,7 @@ TEST_CASE("a square is read with its normals, texture coordinates and name") {
 }
 
 TEST_CASE("node transforms compose: translation, rotation, scale, matrix, hierarchy") {
-  // The child doubles, the parent turns +x to +y about z and then lifts by 3.
+  // The child doubles the size; the parent turns +x to +y around z and then lifts by 3.
   const Scene scene = import_text(
       square_scene("[{'children':[1],'translation':[0,0,3],'rotation':[0,0,0.70710678,0.70710678]},"
                    "{'mesh':0,'matrix':[2,0,0,0, 0,2,0,0, 0,0,2,0, 1,0,0,1]}]",
@@ -74,7 +75,7 @@ TEST_CASE("normals under shear and uneven scale stay perpendicular to the surfac
 }
 
 TEST_CASE("a mirrored node keeps its front: winding, normals and emission agree") {
-  // z -> -z would turn the front to -z; x -> -x must leave it at +z.
+  // z -> -z turns the front to -z; x -> -x must leave it at +z.
   for (const bool is_x : {true, false}) {
     const Scene scene = import_text(
         square_scene(is_x ? "[{'mesh':0,'scale':[-1,1,1]}]" : "[{'mesh':0,'scale':[1,1,-1]}]",
@@ -141,7 +142,7 @@ TEST_CASE("cameras: vertical field of view, aspect, orthographic size, names, no
   CHECK(plan.kind == CameraKind::orthographic);
   CHECK(plan.half_extent == 2);
   CHECK(plan.aspect == 2);
-  check_near(plan.forward, {0, -1, 0});  // -90 degrees about x: looks down
+  check_near(plan.forward, {0, -1, 0});  // -90 degrees around x: looks down
   check_near(plan.up, {0, 0, -1});
   check_near(plan.right, {1, 0, 0});
   CHECK(scene.cameras[2].name == "door");
@@ -208,7 +209,7 @@ TEST_CASE("errors name line and column of the offending value") {
   CHECK(e.line() == 3);
   CHECK(e.column() == 22);
   e = error_of("{\n  \"asset\": {\"version\": 2},\n}");
-  CHECK(e.line() == 3);  // a comma that the syntax does not want
+  CHECK(e.line() == 3);  // a trailing comma
   e = error_of("{\n  \"asset\": {\"version\": 2}}");
   CHECK(e.line() == 2);
   CHECK(e.column() == 24);

@@ -1,4 +1,4 @@
-// What a user chooses among what a glTF file holds: a moment of an animation, a variant.
+// Tests of a user's choices in a glTF file: a moment of an animation, a variant.
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +8,8 @@ namespace troffer {
 
 namespace {
 
-// The square moved by an animation of two samplers with keys at 1 s and 3 s. Accessors 4: the keys,
-// 5: translations and 6: rotations at them, 7: a cubic curve of translations.
+// Returns the square moved by an animation of two samplers with keys at 1 s and 3 s. Accessors: 4
+// keys, 5 translations, 6 rotations, 7 a cubic curve of translations.
 std::string animated(const std::string& path, const std::string& output,
                      const std::string& interpolation, const std::string& node = "{'mesh':0}") {
   const float half = std::sqrt(0.5f);
@@ -62,7 +62,7 @@ TEST_CASE("a moment of an animation: translations by steps, lines and curves") {
 }
 
 TEST_CASE("a moment of an animation: rotations keep to the sphere, and matrices give way") {
-  // A quarter turn about z, half of it: the square's corner (1,1) stands above the origin.
+  // Half of a quarter turn around z puts the square's corner (1,1) above the origin.
   const Box box = bounds(at_time(animated("rotation", "6", "LINEAR"), 2));
   CHECK(box.upper.y == doctest::Approx(std::sqrt(2.0)));
   CHECK(box.lower.x == doctest::Approx(-std::sqrt(0.5)));

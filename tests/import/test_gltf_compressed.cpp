@@ -1,4 +1,4 @@
-// Compressed geometry and images in glTF files: meshopt, Draco, WebP.
+// Tests of compressed geometry and images in glTF files: meshopt, Draco, WebP.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
@@ -39,7 +39,7 @@ std::string padded(std::string bytes) {
   return bytes;
 }
 
-// The unit square: positions as floats, normals through the octahedral filter, 16-bit indices.
+// The unit square: float positions, normals through the octahedral filter, 16-bit indices.
 struct MeshoptSquare {
   std::string positions, normals, indices, mode = "TRIANGLES";
 
@@ -96,7 +96,7 @@ void check_square(const Scene& scene) {
   for (const Vec3& n : m.normals) CHECK(n.z > 0.999f);
 }
 
-// A grid of n × n squares over the unit square, with normals and (u,v) = (x,y), compressed.
+// Returns a compressed grid of n × n squares over the unit square, with normals and (u,v) = (x,y).
 std::string draco_grid(int n, int method) {
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(n * n * 2);

@@ -1,4 +1,4 @@
-// Buffers, accessors, primitives, GLB: every way in which glTF stores triangles.
+// Tests of buffers, accessors, primitives and GLB: every way in which glTF stores triangles.
 #include <doctest/doctest.h>
 
 #include "import/gltf_builder.h"
@@ -24,12 +24,12 @@ Scene import_bytes(const std::string& name, const std::string& bytes) {
   return import_gltf(folder.write(name, bytes));
 }
 
-// One mesh of one primitive over the accessors of `data`.
+// Returns a document with one mesh of one primitive over the accessors of `data`.
 std::string one_primitive(const std::string& data, const std::string& primitive) {
   return gltf_text(data + ",\n'meshes':[{'primitives':[" + primitive + "]}],'nodes':[{'mesh':0}]");
 }
 
-// 5 points of a zigzag strip in the plane z = 0, y going 0 1 0 1 0.
+// Returns 5 points of a zigzag strip in the plane z = 0, with y = 0 1 0 1 0.
 std::string zigzag() {
   const std::string bytes = bytes_of<float>({0, 0, 0, 1, 1, 0, 2, 0, 0, 3, 1, 0, 4, 0, 0});
   return "'buffers':[" + data_buffer(bytes) +
@@ -49,7 +49,7 @@ TEST_CASE("triangles, strips and fans; points and lines are left out") {
   Scene scene = import_text(one_primitive(zigzag(), "{'attributes':{'POSITION':0},'mode':5}"));
   REQUIRE(scene.meshes.size() == 1);
   CHECK(scene.meshes[0].triangles.size() == 3);
-  for (size_t i = 0; i < 3; ++i) CHECK(front_z(scene.meshes[0], i) < 0);  // all the same way
+  for (size_t i = 0; i < 3; ++i) CHECK(front_z(scene.meshes[0], i) < 0);  // all on the same side
 
   scene = import_text(one_primitive(zigzag(), "{'attributes':{'POSITION':0},'mode':6}"));
   CHECK(scene.meshes[0].triangles.size() == 3);
@@ -65,7 +65,7 @@ TEST_CASE("triangles, strips and fans; points and lines are left out") {
 }
 
 TEST_CASE("interleaved vertices, offsets, and normalised and plain integers") {
-  // Per vertex 20 bytes: uv as two normalised u16, a position of 3 floats, 4 bytes of nothing.
+  // 20 bytes per vertex: uv as two normalised u16, a position of 3 floats, 4 unused bytes.
   std::string bytes(8, 'x');
   const std::vector<std::vector<float>> positions{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   for (size_t i = 0; i < 3; ++i)
@@ -82,7 +82,7 @@ TEST_CASE("interleaved vertices, offsets, and normalised and plain integers") {
   CHECK(scene.meshes[0].uvs[1] == Vec2{1, 0});
   CHECK(scene.meshes[0].uvs[2] == Vec2{0, 1});
 
-  // The same 12 bytes, read as signed bytes: plain, and normalised.
+  // The same 12 bytes as signed bytes, plain and normalised.
   const std::string small = bytes_of<int8_t>({0, 0, 0, 0, 127, 0, 0, 0, 0, -128, 0, 0});
   for (const bool is_normalized : {false, true}) {
     scene = import_text(one_primitive(
@@ -180,7 +180,7 @@ TEST_CASE("counts and offsets beyond the data are errors, however large") {
     error_of(with("'count':1", bad_view));
   }
   error_of(gltf_text("'buffers':[{'byteLength':5,'uri':'data:;base64,AAAA'}]"));
-  // Zeros cost a file nothing, and must not cost memory either.
+  // Zeros take no space in a file and must not take memory either.
   error_of(one_primitive("'accessors':[{'componentType':5126,'count':4294967295,'type':'VEC3'}]",
                          "{'attributes':{'POSITION':0}}"));
   error_of(
@@ -208,7 +208,7 @@ TEST_CASE("GLB: chunks, extra data, and every cut") {
   const std::string chunks = chunk("JSON", json) + chunk(std::string("BIN\0", 4), square);
   const std::string good = glb(chunks);
   CHECK(import_bytes("a.glb", good).meshes.size() == 1);
-  CHECK(import_bytes("a.GLTF", good).meshes.size() == 1);  // told by content
+  CHECK(import_bytes("a.GLTF", good).meshes.size() == 1);  // recognised by content
   CHECK(import_bytes("a.glb", good + "more").meshes.size() == 1);
   CHECK(import_bytes("a.glb", glb(chunks + chunk("ABCD", "1234"))).meshes.size() == 1);
   const TempFolder folder;

@@ -1,4 +1,4 @@
-// glTF materials and textures.
+// Tests of glTF materials and textures.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -96,7 +96,7 @@ TEST_CASE("negative and odd emission") {
 
 TEST_CASE("textures: sampler, transform, colour or data, and one decoding for all") {
   const TempFolder folder;
-  // A PGM-like format would not do: the smallest image that is read and easy to write is PFM.
+  // PFM is the supported image format that is easiest to write.
   folder.write("a.pfm", "PF\n2 1\n-1.0\n" + bytes_of<float>({1, 0, 0, 0, 0, 1}));
   const std::string path = folder.write(
       "scene.gltf",
@@ -109,7 +109,7 @@ TEST_CASE("textures: sampler, transform, colour or data, and one decoding for al
           "'metallicRoughnessTexture':{'index':1}},'normalTexture':{'index':1,'scale':0.5}}]"));
   const Scene scene = import_gltf(path);
   const Material& m = only_material(scene);
-  REQUIRE(scene.textures.size() == 2);  // the base colour's, and one for both kinds of data
+  REQUIRE(scene.textures.size() == 2);  // one for the base colour, one for both kinds of data
   REQUIRE(m.base_color.texture >= 0);
   const Texture& t = scene.textures[size_t(m.base_color.texture)];
   CHECK(t.kind == TextureKind::image);
@@ -242,7 +242,7 @@ TEST_CASE("sheen and anisotropy: factors and textures") {
   CHECK(m.sheen_roughness.texture >= 0);
   CHECK(with("'extensions':{" + cloth + ",'KHR_materials_transmission':{'transmissionFactor':1}}")
             .warnings.total() == 0);
-  // Without specular reflection it is not Lambert's model all the same.
+  // Sheen rules out the Lambert model even without specular reflection.
   scene = with("'pbrMetallicRoughness':{'metallicFactor':0},'extensions':{" + cloth +
                ",'KHR_materials_specular':{'specularFactor':0}}");
   CHECK(only_material(scene).kind == MaterialKind::metallic_roughness);
@@ -261,7 +261,7 @@ TEST_CASE("sheen and anisotropy: factors and textures") {
       "'KHR_materials_transmission':{'transmissionFactor':1},"
       "'KHR_materials_anisotropy':{'anisotropyStrength':1}}");
   CHECK(has_warning(scene, "anisotropy of what transmits is approximated"));
-  // widths 1/4 and 1: 1/2
+  // geometric mean of the widths 1/4 and 1
   CHECK(sqr(only_material(scene).roughness.value) == doctest::Approx(0.5));
 }
 

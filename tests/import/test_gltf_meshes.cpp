@@ -1,4 +1,4 @@
-// glTF meshes that are bent, repeated, hidden or coloured.
+// Tests of glTF meshes that are skinned, morphed, instanced, hidden or coloured.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -9,8 +9,8 @@ using namespace troffer;
 
 namespace {
 
-// The unit square with more accessors behind its four, from `bytes`, each {type, components, count}
-// tightly after the other.
+// An accessor that square_with() adds after the square's four. Their data follows in `bytes`,
+// tightly packed.
 struct More {
   const char* type;
   int component_type, count, bytes;
@@ -54,13 +54,13 @@ Rgb color_at(const Scene& scene, const Mesh& mesh, size_t triangle, const Vec3& 
 }  // namespace
 
 TEST_CASE("a skin bends a mesh by its joints, wherever its own node stands") {
-  // Vertices 0 and 1 follow joint 0, vertices 2 and 3 joint 1, which is a unit up and turned by a
-  // quarter about x; the second's bind matrix takes y = 1 to its origin.
+  // Vertices 0 and 1 follow joint 0, vertices 2 and 3 joint 1. Joint 1 is one unit up and turned by
+  // a quarter around x; its bind matrix moves y = 1 to the origin.
   std::vector<uint8_t> joints;
   std::vector<float> weights;
   for (const uint8_t j : {0, 0, 1, 1}) {
     joints.insert(joints.end(), {j, 0, 0, 0});
-    weights.insert(weights.end(), {0.5f, 0, 0, 0});  // made to add up to one
+    weights.insert(weights.end(), {0.5f, 0, 0, 0});  // must be normalised
   }
   const std::vector<float> binds{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,
                                  1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1};
@@ -119,7 +119,7 @@ TEST_CASE("EXT_mesh_gpu_instancing: translation, rotation, scale of every instan
   const Scene scene = import_text(text("6"));
   REQUIRE(scene.meshes.size() == 2);
   check_near(scene.meshes[0].positions[2], {1, 1, 1});
-  for (size_t i = 0; i < 3; ++i)  // a quarter about z, twice as large
+  for (size_t i = 0; i < 3; ++i)  // a quarter turn around z, twice as large
     CHECK(scene.meshes[1].positions[2][i] == doctest::Approx(Vec3(-2, 2, 8)[i]).epsilon(1e-3));
   CHECK(error_of(text("0")).reason().find("another count") != std::string::npos);
 }
@@ -197,7 +197,7 @@ TEST_CASE("COLOR_0 of a textured mesh is a factor on what its texture shows") {
       CHECK(c.g == doctest::Approx(corners[t][k] == 3 ? 0.5 : 0));
       CHECK(c.b == doctest::Approx(0));
     }
-  // Both sets are taken: the mean, over six corners.
+  // Both sets are in use, so the mean over six corners applies.
   const Scene two = scene_of("'TEXCOORD_1':3,");
   const Mesh& plain = two.meshes.at(0);
   for (size_t t = 0; t < 2; ++t)

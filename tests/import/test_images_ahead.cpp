@@ -1,4 +1,4 @@
-// Images decoded on other threads beforehand, and scenes without their images.
+// Tests of decoding images in advance, and of importing scenes without their images.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -20,8 +20,8 @@ using namespace troffer;
 
 namespace {
 
-// A scene of `count` materials, each with an image of its own but the third, which is not there,
-// and the fifth, which is none.
+// A scene of `count` materials with an image each. The fourth image is missing; the sixth is not an
+// image.
 struct Images {
   TempFolder folder;
   static constexpr int count = 12;
@@ -119,15 +119,15 @@ TEST_CASE("images ahead: each is decoded once at most, to what it would be, or l
           });
         CHECK(!ahead.take("another"));
         for (int n = 0; n < count; ++n) {
-          const int i = n * 7 % count;  // in another order
+          const int i = n * 7 % count;  // another order
           if (const auto raster = ahead.take(key(i))) {
             ++taken;
-            CHECK(i % 10 != 7);  // whoever wants those finds out what is wrong
+            CHECK(i % 10 != 7);  // those fail to decode
             CHECK(raster->width == i);
             CHECK(raster->texels8 == std::vector<uint8_t>(size_t(100 * i), uint8_t(i)));
           }
           CHECK(!ahead.take(key(i)));
-          ahead.expect(key(i), [] { return Raster(); });  // once more: nothing
+          ahead.expect(key(i), [] { return Raster(); });  // repeated keys have no effect
           CHECK(!ahead.take(key(i)));
         }
       }
@@ -153,7 +153,7 @@ TEST_CASE("images ahead: whoever leaves early waits for no more than what was be
         return raster;
       });
   }
-  CHECK(decoded < 1000);  // there is no limit but the end: all would take a second
+  CHECK(decoded < 1000);  // only the end stops the threads; decoding all would take a second
 }
 
 TEST_CASE("images read on many threads make the scene that one thread makes") {
@@ -173,7 +173,7 @@ TEST_CASE("images read on many threads make the scene that one thread makes") {
       CHECK(one.textures[i].texels_float == many.textures[i].texels_float);
     }
     REQUIRE(one.warnings.entries().size() == many.warnings.entries().size());
-    CHECK(one.warnings.total() >= 2);  // the one that is missing, and the one that is none
+    CHECK(one.warnings.total() >= 2);  // for the missing and the broken image
     for (size_t i = 0; i < one.warnings.entries().size(); ++i)
       CHECK(one.warnings.entries()[i].text == many.warnings.entries()[i].text);
   }
@@ -181,7 +181,7 @@ TEST_CASE("images read on many threads make the scene that one thread makes") {
 
 TEST_CASE("a scene without its images has its shapes, and says how much it lacks") {
   const Images images;
-  uint64_t bytes = 1;  // of the one that is missing
+  uint64_t bytes = 1;  // for the missing image
   for (int i = 0; i < Images::count; ++i)
     if (i != 3) bytes += std::filesystem::file_size(images.folder.path(Images::name(i)));
   ImportOptions options;
@@ -196,7 +196,7 @@ TEST_CASE("a scene without its images has its shapes, and says how much it lacks
     CHECK(shapes.warnings.total() == 0);
     for (const Texture& t : shapes.textures) CHECK(t.kind == TextureKind::constant);
   }
-  // Nothing is left out where there is nothing.
+  // A scene without images leaves nothing out.
   const std::string plain = images.folder.write("p.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   const Scene scene = import_scene(plain, options);
   REQUIRE(scene.left_out_image_bytes);

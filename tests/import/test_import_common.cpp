@@ -1,5 +1,5 @@
-// What all importers share: files, paths, URIs, places in JSON texts, textures, the choice of
-// format.
+// Tests of what all importers share: files, paths, URIs, positions in JSON texts, textures, the
+// choice of format.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ std::string text_of(const std::vector<uint8_t>& bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-// Two pixels, rgb floats, little-endian.
+// Returns two pixels of rgb floats, little-endian.
 std::string pfm() {
   const std::array<float, 6> texels{1, 0, 0, 0, 0, 1};
   std::string bytes(sizeof texels, '\0');
@@ -134,9 +134,9 @@ TEST_CASE("JSON pointers lead to line and column") {
   CHECK(at("/a/2") == std::pair{3, 5});
   CHECK(at("/key/~0/2") == std::pair{4, 30});
   CHECK(at("/a2") == std::pair{5, 9});
-  CHECK(at("/a/9") == std::pair{2, 8});  // the innermost that exists
+  CHECK(at("/a/9") == std::pair{2, 8});  // the innermost existing value
   CHECK(at("/nothing/3") == std::pair{1, 1});
-  // Of equal keys the last one counts, and broken texts do no harm.
+  // The last of equal keys counts, and broken texts do no harm.
   CHECK(position_of_json_value("{\"a\":1,\n\"a\":2}", "/a").line == 2);
   for (size_t n = 0; n <= text.size(); ++n)
     for (const char* const pointer : {"/a/1/b~1c", "/key/~0/2", "/x"})
@@ -159,7 +159,7 @@ TEST_CASE("textures are shared by equal requests and decoded once") {
   CHECK(scene.textures[0].width == 2);
   CHECK(scene.textures[1].wrap_u == WrapMode::clamp);
   CHECK(scene.textures[0].name == path);
-  // Once decoded, the file is not read again.
+  // A decoded file is not read again.
   std::filesystem::remove(path);
   look.is_filtered = false;
   loader.from_file(path, look);
@@ -180,7 +180,7 @@ TEST_CASE("colours of EXR images are brought to sRGB, data are not") {
     return evaluate(scene.textures, uint32_t(index), Vec2{0.5f, 0.5f}).rgb;
   };
   for (size_t c = 0; c < 3; ++c) CHECK(value(true)[c] == doctest::Approx(0.5).epsilon(1e-4));
-  fixture.constants = {0, 1, 0};  // a green that no sRGB reaches
+  fixture.constants = {0, 1, 0};  // a green outside sRGB
   CHECK(value(true).r == 0);
   CHECK(value(true).g > 1.1f);
   CHECK(value(false) == Rgb{0, 1, 0});
@@ -250,7 +250,7 @@ TEST_CASE("images that do not fit together are shown smaller, down to one texel"
   const TempFolder folder;
   const std::string first = folder.write("a.pfm", pfm()), second = folder.write("b.pfm", pfm());
   Scene scene;
-  TextureLoader loader(scene, 30);  // one of them takes 24 bytes
+  TextureLoader loader(scene, 30);  // one image takes 24 bytes
   const auto a = size_t(loader.from_file(first, {})), b = size_t(loader.from_file(second, {}));
   CHECK(scene.textures.at(a).width == 2);
   CHECK(scene.warnings.total() == 1);

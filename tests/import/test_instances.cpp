@@ -1,4 +1,4 @@
-// What files place many times, by instances and by copies.
+// Tests of repeated meshes, as instances and as copies.
 #include "import/import.h"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ using troffer::test::dented_ball;
 
 namespace {
 
-// A ball of so many triangles that a scene shares it from the first on.
+// Returns a ball with so many triangles that a scene shares it from the first placement on.
 const Mesh& large_ball() {
   static const Mesh ball = dented_ball(0, 520);
   return ball;
@@ -48,7 +48,7 @@ std::string ply_of(const Mesh& m, bool has_normals) {
   return text;
 }
 
-// Each instance beside the copy that the second scene has of it, in order.
+// Compares each instance with its copy in the second scene, in order.
 void check_same(const Scene& scene, const Scene& copies, size_t first_copy) {
   REQUIRE(copies.instances.empty());
   REQUIRE(copies.meshes.size() >= first_copy + scene.instances.size());
@@ -131,7 +131,7 @@ TEST_CASE("what cannot be an instance is copied, what stands once is a mesh") {
   REQUIRE(flat.meshes.size() == 1);
   for (const Vec3& p : flat.meshes[0].positions) CHECK(p.z == 0);
 
-  // So small that some triangles lose their area to rounding: those are left out.
+  // Such a small scale that some triangles lose their area to rounding and are left out.
   const Scene tiny = with(one + one + "Translate 100 100 100\nScale 1e-4 1e-4 1e-4\n" + one);
   CHECK(tiny.instances.size() == 2);
   CHECK(tiny.meshes.size() <= 1);
@@ -158,7 +158,7 @@ TEST_CASE("an instancer copies while copies are few, and what has few triangles"
       return ball;
     });
   };
-  CHECK_FALSE(place(0, 60, Affine()));  // as if it had so few
+  CHECK_FALSE(place(0, 60, Affine()));  // claims few triangles
   CHECK_FALSE(place(1, n, Affine()));   // might be a pane
   while (!place(0, n, Affine::translate({5, 0, 0}))) ++copied;
   CHECK(made == 1);
@@ -225,7 +225,7 @@ TEST_CASE("glTF's shared meshes and instances are stored once, what emits is cop
   check_same(nodes, lamps, 0);
   check_same(attributes, lamps, 0);
   CHECK(read("{}", "{'mesh':0}").instances.empty());
-  // 270 000 triangles, 20 000 times: no number of 32 bits, and refused before they are placed.
+  // 270 000 triangles times 20 000 exceed 32 bits and must be refused before placement.
   std::string crowd = by_attributes;
   crowd.replace(crowd.find("'TRANSLATION':3,'SCALE':4"), 25, "'TRANSLATION':5");
   CHECK_THROWS_WITH_AS(read("{}", crowd, 20'000), doctest::Contains("4000000000 by instances"),
@@ -268,7 +268,7 @@ TEST_CASE("Mitsuba's groups, in groups too, are stored once") {
                                   shape(file, transform(outer)) + "</scene>"));
     CHECK(scene.meshes.empty());
     CHECK(scene.instances.size() == 4);
-    // Without normals a mirrored one is stored as its winding says.
+    // Without normals, a mirrored mesh is stored with its own winding.
     CHECK(scene.instanced_meshes.size() == (file == "bare.ply" ? 2 : 1));
     check_same(scene, copies, 0);
   }

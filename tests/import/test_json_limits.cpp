@@ -1,4 +1,4 @@
-// JSON that is small in bytes and large in memory is refused before memory is taken for it.
+// Tests that JSON that is small in bytes but large in memory is refused before memory is allocated.
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
@@ -17,7 +17,7 @@ std::string repeated(const std::string& part, size_t count) {
   return text;
 }
 
-// What is wrong with it; empty if nothing is.
+// Returns the error message; empty if the text is accepted.
 std::string refusal(const std::string& text, const JsonLimits& limits = {}) {
   try {
     const JsonDocument document("a.gltf", text, limits);
@@ -61,7 +61,7 @@ TEST_CASE("ten million open brackets, of which no parser gets to see the end") {
   const std::string what = "JSON with more than 200 arrays and objects within each other";
   CHECK(refusal(arrays) == "a.gltf:1:201: " + what);
   CHECK(refusal(objects) == "a.gltf:1:1001: " + what);
-  CHECK(peak_memory_mb() - before < 64);  // the text, copied: not its arrays
+  CHECK(peak_memory_mb() - before < 64);  // a copy of the text, but not its arrays
 }
 
 TEST_CASE("more tiny values than allowed take no memory; as many as allowed are read") {

@@ -1,4 +1,4 @@
-// Lights without surface: pbrt's and glTF's, and images of environments.
+// Tests of lights without surface in pbrt and glTF, and of environment images.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -34,7 +34,7 @@ bool has_text(const Scene& scene, const std::string& part) {
 
 std::string pfm(int width, int height, const std::vector<float>& rgb) {
   std::string bytes = "PF\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1\n";
-  // Rows of the format run upwards.
+  // PFM stores rows from the bottom up.
   for (int y = height - 1; y >= 0; --y)
     bytes.append(reinterpret_cast<const char*>(rgb.data() + size_t(y) * size_t(width) * 3),
                  size_t(width) * 3 * sizeof(float));
@@ -89,7 +89,7 @@ TEST_CASE("pbrt's point, spot and distant lights") {
   CHECK(e.kind == LightKind::distant);
   CHECK(e.radiance == Rgb{7});
   CHECK(length(e.direction - Vec3{0, 1, 0}) < 1e-6f);
-  // Area lights keep their numbers.
+  // Area lights have numbers of their own.
   const Scene both = import_world(
       "LightSource \"point\" AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape \"sphere\"");
   REQUIRE(both.lights.size() == 2);
@@ -196,7 +196,7 @@ TEST_CASE("images of environments: what is no number, negative, infinite or huge
   CHECK(map.texels[0].g == 1);
   CHECK(map.texels[1].b == 0);
 
-  // Larger than is kept: the mean stays.
+  // A larger image than is kept: the mean must stay.
   constexpr int width = 6000, height = 3000;
   std::vector<float> large(size_t(width) * height * 3, 0.0f);
   for (size_t i = 0; i < large.size() / 2; ++i) large[i] = 2;
@@ -234,7 +234,7 @@ TEST_CASE("KHR_lights_punctual: points, spots and directional lights in their un
   CHECK(e.radiance == Rgb{80, 40, 20});
   CHECK(e.position == Vec3{1, 2, 3});
   CHECK(e.range == 5);
-  // Turned by 90 degrees about x: -z becomes +y.
+  // Turned by 90 degrees around x: -z becomes +y.
   e = only_light(import_light("{'type':'directional','intensity':1000}",
                               ",'name':'sun','rotation':[0.70710678,0,0,0.70710678]"));
   CHECK(e.kind == LightKind::distant);
@@ -263,7 +263,7 @@ TEST_CASE("KHR_lights_punctual: a light that cannot be is left out, with its nam
   const Scene flat = import_light("{'type':'directional'}", ",'scale':[1,1,0]");
   CHECK(flat.lights.empty());
   CHECK(has_text(flat, "left out"));
-  // A kind of light that the extension does not have: the rest of the file is good.
+  // An unknown light type must not affect the rest of the file.
   const Scene other = import_light("{'type':'ambient'}");
   CHECK(other.lights.empty());
   CHECK(has_text(other, "'ambient' is not known; left out"));
@@ -296,7 +296,7 @@ TEST_CASE("pbrt's goniometric and projection lights") {
   CHECK(projected(s, e, {dot(e.axes[0], Vec3{2.1f, 0, 1}), 0, 1}).is_black());
   CHECK(projected(s, e, {0, dot(e.axes[1], Vec3{0, 1.1f, 1}), 1}).is_black());
   CHECK(projected(s, e, {0, 0, -1}).is_black());
-  // A rectangle of 4 × 2 seen from 1 before its middle.
+  // A rectangle of 4 × 2 seen from distance 1 in front of its middle.
   CHECK(double(projected_flux(s, e).g) ==
         doctest::Approx(4 * std::asin(2 * 1 / std::sqrt(5.0 * 2))).epsilon(1e-4));
   CHECK(import("LightSource \"goniometric\" \"string filename\" \"slide.pfm\"").lights.empty());
@@ -304,8 +304,8 @@ TEST_CASE("pbrt's goniometric and projection lights") {
 }
 
 TEST_CASE("illuminance of images of few texels is what lights give") {
-  // Bilinear between two rows, 3 at the top and 1 below: by height h from the zenith over pi,
-  // 3 to 1/4, then down to 1 at 3/4.
+  // Bilinear between two rows, 3 at the top and 1 below. As a function of the zenith angle over pi:
+  // 3 up to 1/4, then down to 1 at 3/4.
   EnvironmentMap map;
   map.width = 4;
   map.height = 2;
@@ -353,7 +353,7 @@ TEST_CASE("glTF's measured luminaires: files, data, buffer views; places and fac
     CHECK(e.axes[1] == Vec3{0, 1, 0});
     CHECK(e.axes[2] == Vec3{0, 0, -1});
   }
-  // A number that names no light is an error of the document.
+  // An index that names no light is an error of the document.
   CHECK_THROWS_AS(import("{'uri':'lamp.ies'}", "'light':1"), InputError);
   const std::array<std::pair<const char*, const char*>, 3> unusable{
       {{"{'uri':'gone.ies'}", "'light':0"},
@@ -373,10 +373,10 @@ std::string data_image(const std::string& bytes) {
   return "{'uri':'data:application/octet-stream;base64," + base64(bytes) + "'}";
 }
 
-// 2 × 2 texels of one grey, but for the upper right one, which is ten times as bright.
+// Returns 2 × 2 texels of one grey; the upper right one is ten times as bright.
 std::string pfm_face(float grey) {
   std::vector<float> texels(12, grey);
-  for (size_t i = 9; i < 12; ++i) texels[i] = 10 * grey;  // rows from below
+  for (size_t i = 9; i < 12; ++i) texels[i] = 10 * grey;  // rows from the bottom up
   return "PF\n2 2\n-1\n" + bytes_of(texels);
 }
 
@@ -403,7 +403,7 @@ TEST_CASE("glTF's image-based light: six faces as they look from within, turned 
   std::string images;
   for (int i = 0; i < 6; ++i) images += (i > 0 ? "," : "") + data_image(pfm_face(float(i + 1)));
   const Scene plain = import_text(image_light(images));
-  // Towards the lower left of each face, whose upper right is brighter: right of +z is -x.
+  // Directions to the lower left of each face, whose upper right is brighter: right of +z is -x.
   const std::array<Vec3, 6> lower_left{Vec3{1, -.3f, -.3f}, {-1, -.3f, .3f}, {.3f, 1, .3f},
                                        {.3f, -1, -.3f},     {.3f, -.3f, 1},  {-.3f, -.3f, -1}};
   const std::array<Vec3, 6> upper_right{Vec3{1, .5f, .5f}, {-1, .5f, -.5f}, {-.5f, 1, -.5f},
@@ -413,11 +413,11 @@ TEST_CASE("glTF's image-based light: six faces as they look from within, turned 
     CHECK(image_towards(plain, lower_left[i]) == doctest::Approx(3 * float(i + 1)).epsilon(1e-4));
     CHECK(image_towards(plain, upper_right[i]) == doctest::Approx(30 * float(i + 1)).epsilon(1e-4));
   }
-  // A quarter turn about y takes +z to +x.
+  // A quarter turn around y maps +z to +x.
   const Scene turned = import_text(image_light(images, ",'rotation':[0,0.70710678,0,0.70710678]"));
   CHECK(image_towards(turned, {1, -.3f, -.3f}) == doctest::Approx(15).epsilon(1e-4));
 
-  // RGBD: grey of 128 over an alpha of 51, a fifth.
+  // RGBD: grey 128 divided by an alpha of 51/255.
   std::string tga(18, '\0');
   tga[2] = 2;
   tga[12] = tga[14] = 1;

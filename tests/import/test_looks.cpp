@@ -1,4 +1,4 @@
-// What several formats say alike: absorption, bumps, patterns, backs.
+// Tests of properties that several formats express: absorption, bumps, patterns, back faces.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Photometric files: what they say, the sins that are forgiven, and ten thousand mutations.
+// Tests of photometric files: their content, tolerated errors, and ten thousand mutations.
 #include "import/luminaire/luminaire.h"
 
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A diffuse disc of 1000 cd: pi 1000 lm.
+// Returns a diffuse disc of 1000 cd, which is 1000 pi lm.
 std::string cosine_ies(const std::string& head = "IESNA:LM-63-2002\n") {
   std::string text = head +
                      "[TEST] none\n[LUMINAIRE] even disc\nTILT=NONE\n1 4000 1 19 1 1 2 0.6 "
@@ -29,7 +29,7 @@ std::string cosine_ies(const std::string& head = "IESNA:LM-63-2002\n") {
   return text + "\n";
 }
 
-// Planes by C angle, two heights each: 100 + the C angle, and nothing at 90 degrees.
+// Returns planes by C angle with two gamma angles each: 100 + C at the nadir, 0 at 90 degrees.
 std::string planes_ies(const std::vector<int>& turns) {
   std::string text =
       "IESNA91\nTILT=NONE\n1 -1 1 2 " + std::to_string(turns.size()) + " 1 1 1 1 0 1 1 10\n0 90\n";
@@ -59,7 +59,7 @@ Luminaire read(const std::string& text, const std::string& name = "a.ies") {
   return read_luminaire(folder.write(name, text), warnings);
 }
 
-// At the nadir, in the plane at `turn_deg`.
+// Returns the intensity at the nadir in the plane at `turn_deg`.
 double nadir(const Luminaire& l, double turn_deg) {
   for (size_t i = 0; i < l.web.turns_rad.size(); ++i)
     if (std::abs(double(l.web.turns_rad[i]) - rad_from_deg(turn_deg)) < 1e-4)
@@ -110,7 +110,7 @@ TEST_CASE("LM-63: the edition tells what a negative dimension means") {
     const Luminaire l =
         read(std::string(head) + "\nTILT=NONE\n1 -1 1 2 1 1 2 -.3 .6 -.2\n1 1 9\n0 90\n0\n5 5\n");
     CAPTURE(head);
-    CHECK(l.opening.is_round[0] == is_old);  // an ellipsoid, or a lying cylinder
+    CHECK(l.opening.is_round[0] == is_old);  // an ellipsoid, or a horizontal cylinder
     CHECK(l.opening.is_round[1]);
   }
 }
@@ -170,7 +170,7 @@ TEST_CASE("planes that symmetry leaves out are there") {
 TEST_CASE("EULUMDAT: symmetries, lumens, decimal commas") {
   Luminaire l = read(ldt(1, 4, {"250,5", "0"}), "a.LDT");
   CHECK(l.description == "name of it");
-  CHECK(l.opening.size.y == doctest::Approx(0.55));  // in C90
+  CHECK(l.opening.size.y == doctest::Approx(0.55));  // along C90
   CHECK(l.opening.size.x == doctest::Approx(0.5));
   CHECK(nadir(l, 0) == 501);
   l = read(ldt(0, 4, {"1", "0", "2", "0", "3", "0", "4", "0"}), "a.ldt");

@@ -1,4 +1,4 @@
-// Luminous openings: shapes by the signs of dimensions, and bodies of the right size.
+// Tests of luminous openings: shapes by the signs of dimensions, and the size of bodies.
 #include "import/luminaire/luminous_opening.h"
 
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@ OpeningBody ies(double width, double length, double height, bool is_old = false)
   return body_of(ies_opening(width, length, height, is_old));
 }
 
-// Of the faces that look towards w.
+// Returns the projected area of the faces that look towards w.
 double seen_from(const OpeningBody& body, const Vec3d& w) {
   double sum = 0;
   for (const OpeningFace& f : body.faces) sum += std::max(0.0, dot(f.area, w));
@@ -52,7 +52,7 @@ TEST_CASE("shapes by the signs of LM-63 of 1995") {
   const auto size_of = [](double width, double length, double height) {
     return ies_opening(width, length, height, true).size;
   };
-  // Lying cylinders: the height is the diameter.
+  // Horizontal cylinders: the height is the diameter.
   CHECK(size_of(0, 1.2, -.04) == Vec3d{1.2, .04, .04});
   CHECK(size_of(1.2, 0, -.04) == Vec3d{.04, 1.2, .04});
   const Vec3d w = normalize(Vec3d{.3, -.5, .7});
@@ -68,7 +68,7 @@ TEST_CASE("shapes by the signs of LM-63 of 1995") {
     CHECK(body.radius == doctest::Approx(.1));
   }
   CHECK(ies(-.12, 0, -.12, true).shape == Shape::sphere);
-  // A box below no plane remains one.
+  // A box without negative dimensions remains a box.
   CHECK(ies(.5, 1, .1, true).faces.size() == 6);
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("bodies are as large as they look from any side") {
   const double box = .6 * .2 * std::abs(w.x) + 1 * .2 * std::abs(w.y) + 1 * .6 * std::abs(w.z);
   CHECK(seen_from(ies(.6, 1, .2), w) == doctest::Approx(box));
   CHECK(seen_from(ies(.6, 1, .2), -w) == doctest::Approx(box));
-  // d h sin + area of the cap × cos; polygons of a circle's area are a little wider at places.
+  // d h sin + area of the cap × cos. Polygons with a circle's area are slightly wider in places.
   const double sine = std::sqrt(1 - w.z * w.z);
   const double upright = .4 * 1 * sine + pi * .04 * std::abs(w.z);
   CHECK(seen_from(ies(-.4, -.4, 1), w) == doctest::Approx(upright).epsilon(.01));

@@ -1,4 +1,4 @@
-// Measured reflection: what of a tensor file is shown, and files that lie.
+// Tests of measured reflection: the approximation of tensor files, and invalid files.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -48,8 +48,9 @@ std::string tensor_file(const std::vector<Field>& fields) {
   return out + data;
 }
 
-// Normals as GGX of width alpha has them, beside a share that is even; every channel reflects
-// `low` at normal incidence and `high` at 60 degrees, of the latter half at one edge of the square.
+// Returns a tensor file with a GGX density of normals of width alpha, plus a uniform share `even`.
+// Every channel reflects `low` at normal incidence and `high` at 60 degrees, half of that at one
+// edge of the square.
 std::string measured(float alpha, float even, float low, float high, size_t normals = 200) {
   std::vector<float> ndf(normals);
   for (size_t i = 0; i < normals; ++i) {
@@ -95,7 +96,7 @@ TEST_CASE("a measured metal keeps its width and its colour, what is even becomes
   }
   CHECK(read(measured(0.1f, 0.6f, 0.4f, 0.4f)).material.metallic.value ==
         doctest::Approx(0.4).epsilon(0.1));
-  // Straight on counts nothing of even light.
+  // Normal incidence has no weight under uniform light.
   CHECK(read(measured(0.2f, 0, 0.1f, 0.6f)).material.base_color.value.g ==
         doctest::Approx(0.6).epsilon(0.01));
 }
@@ -138,7 +139,7 @@ TEST_CASE("measured files that are missing or lie are grey, with one warning") {
     r.material = measured_material(folder.path(""), name, r.warnings);
     check_grey(r, "grey");
   }
-  // An extent that is past all memory.
+  // An extent beyond all memory.
   std::string huge = good;
   const uint64_t most = ~uint64_t(0) / 2;
   std::memcpy(huge.data() + huge.find("theta_i") + 7 + 2 + 1 + 8, &most, sizeof most);

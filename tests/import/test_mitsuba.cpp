@@ -1,4 +1,4 @@
-// Mitsuba's XML: syntax, transforms, cameras, shapes and their fronts, lights.
+// Tests of Mitsuba's XML: syntax, transforms, cameras, shapes and their fronts, lights.
 #include "import/mitsuba/mitsuba.h"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ Scene import_world(const std::string& world, const std::string& version = "3.0.0
       folder.write("scene.xml", "<scene version=\"" + version + "\">\n" + world + "\n</scene>"));
 }
 
-// The message of the error that this world gives.
+// Returns the message of the error that this world gives.
 std::string error_of(const std::string& world) {
   try {
     import_world(world);
@@ -74,7 +74,7 @@ TEST_CASE("versions 0.6 and 3 of one scene are the same") {
 }
 
 TEST_CASE("fields of view along every axis are one camera") {
-  // 40 × 20 pixels; half of the height at distance 1 is 0.5 for all.
+  // 40 × 20 pixels; half of the height at distance 1 is 0.5 in all cases.
   for (const auto& [axis, tangent] : {std::pair{"x", 1.0},
                                       {"y", 0.5},
                                       {"smaller", 0.5},
@@ -140,7 +140,7 @@ TEST_CASE("surfaces emit from the side of their normals, mirrored or not") {
         CHECK(scene.lights[0].radiance == Rgb{2, 3, 4});
         CHECK_FALSE(scene.lights[0].is_two_sided);
         CHECK(is_near(front_of(scene, scene.lights[0]), {0, 0, is_flipped ? -1.0f : 1.0f}));
-        // A source without bsdf reflects nothing.
+        // A light without bsdf reflects nothing.
         CHECK(scene.materials.at(0).base_color.value == Rgb{0});
       }
     }
@@ -224,7 +224,7 @@ TEST_CASE("lights without surface") {
 
 TEST_CASE("an environment image has +y up and -z at its edge") {
   const TempFolder folder;
-  // PFM, grey, 4 × 2: its rows go from the bottom up.
+  // PFM, grey, 4 × 2; rows from the bottom up.
   std::string pfm = "Pf\n4 2\n-1.0\n";
   for (const float v : {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f})
     pfm.append(reinterpret_cast<const char*>(&v), sizeof v);

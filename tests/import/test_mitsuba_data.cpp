@@ -1,4 +1,4 @@
-// Mitsuba's materials, textures and mesh files.
+// Tests of Mitsuba's materials, textures and mesh files.
 #include <doctest/doctest.h>
 #include <zlib.h>
 
@@ -35,7 +35,7 @@ void append(std::string& to, T value) {
   to.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// A file of serialized meshes: a triangle at each of these heights.
+// Returns a file of serialized meshes: a triangle at each height.
 std::string serialized(const std::vector<float>& heights, bool is_double, bool has_normals) {
   std::string file;
   std::vector<uint64_t> offsets;
@@ -107,8 +107,8 @@ TEST_CASE("Mitsuba's smooth and rough materials") {
   CHECK(0.1f + 0.9f * sqr(m.anisotropy.value) == doctest::Approx(0.4));
 }
 
-// Reflectance of the base alone, seen and lit along the normal, times pi: Mitsuba's
-// T² ρ / (η² (1 - ρ F)), with ρ = 1 in the denominator unless nonlinear.
+// Reflectance of the base alone, seen and lit along the normal, times pi. Mitsuba has T² ρ / (η² (1
+// - ρ F)), with ρ = 1 in the denominator unless nonlinear.
 TEST_CASE("plastic has the base that Mitsuba's has") {
   const auto base = [](bool is_nonlinear, float rho) {
     return material_of("<bsdf type='plastic'><boolean name='nonlinear' value='" +
@@ -118,7 +118,7 @@ TEST_CASE("plastic has the base that Mitsuba's has") {
                        std::to_string(rho) + "'/></bsdf>")
         .base_color.value.r;
   };
-  // Mean internal reflectance of index 1.5, as tables have it.
+  // Mean internal reflectance at index 1.5, from tables.
   const double f = 0.5963;
   CHECK(base(true, 0.5f) == 0.5f);
   for (const float rho : {0.1f, 0.5f, 1.0f}) {
@@ -137,7 +137,7 @@ TEST_CASE("combined materials") {
       "<bsdf type='mask'><texture type='checkerboard' name='opacity'><rgb name='color0' value='1'/>"
       "<rgb name='color1' value='0'/></texture><bsdf type='diffuse'/></bsdf>");
   REQUIRE(masked.materials.at(0).is_alpha_masked);
-  CHECK(masked.spheres.empty());  // with (u,v), as triangles
+  CHECK(masked.spheres.empty());  // tessellated, because (u,v) are needed
   const Material& holes = masked.materials[0];
   CHECK(is_cut_out(masked.textures, holes, Vec2{0.2f, 0.2f}));
   CHECK_FALSE(is_cut_out(masked.textures, holes, Vec2{0.7f, 0.2f}));
@@ -145,7 +145,7 @@ TEST_CASE("combined materials") {
       "<bsdf type='mask'><float name='opacity' value='.3'/><bsdf type='diffuse'/></bsdf>";
   CHECK(coverage({}, material_of(veil), Vec2{0, 0}) == 0.3f);
   CHECK(import_bsdf(veil).warnings.total() == 0);
-  CHECK(import_bsdf(veil).spheres.empty());  // exact ones have no holes
+  CHECK(import_bsdf(veil).spheres.empty());  // exact spheres cannot have holes
   CHECK(import_bsdf("<bsdf type='mask'><float name='opacity' value='0'/><bsdf type='diffuse'/>"
                     "</bsdf>")
             .materials.empty());
@@ -164,7 +164,7 @@ TEST_CASE("combined materials") {
   CHECK(m.kind == MaterialKind::metallic_roughness);
   CHECK(m.metallic.value == 0.7f);
   CHECK(m.ior == doctest::Approx(1.5));
-  // A factor on what is reflected, beside the formula; known metals; what emits and is not there.
+  // A factor on the reflectance, known and unknown metals, and an emitter on an invisible surface.
   const Scene factors = import_bsdf(
       "<bsdf type='conductor'><string name='material' value='Cr'/><rgb name='specular_reflectance' "
       "value='.9,.6,.3'/></bsdf>");

@@ -1,4 +1,4 @@
-// Mitsuba's definitions, with values from its documentation and closed forms.
+// Tests of Mitsuba's definitions, with values from its documentation and closed forms.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation"; [2] its plugins' sources for tables.
 #include <doctest/doctest.h>
@@ -29,7 +29,7 @@ Scene import_world(const std::string& world, const std::string& version = "3.0.0
   return import_mitsuba(folder.write("scene.xml", scene_of(world, version)));
 }
 
-// One pixel of three bytes.
+// Returns a bitmap of one pixel of three bytes.
 std::string bmp(uint8_t r, uint8_t g, uint8_t b) {
   std::string s("BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x18\0", 30);
   s.append(24, '\0');
@@ -37,7 +37,7 @@ std::string bmp(uint8_t r, uint8_t g, uint8_t b) {
   return s;
 }
 
-// What a number is where a bitmap of that colour gives it.
+// Returns the number that a bitmap of that colour gives.
 float opacity_of(const std::string& pixel, const std::string& more = "") {
   const TempFolder folder;
   folder.write("t.bmp", pixel);
@@ -86,7 +86,7 @@ TEST_CASE("a camera without fov has a lens of 50 mm on 36 x 24 mm, whose diagona
   CHECK(camera("", 200).half_extent == doctest::Approx(diagonal / std::hypot(1.0, 1.5)));
   CHECK(camera("<string name='focal_length' value='25mm'/>", 200).half_extent ==
         doctest::Approx(2 * diagonal / std::hypot(1.0, 1.5)));
-  // fov_axis concerns fov alone.
+  // fov_axis applies to fov only.
   CHECK(camera("<string name='fov_axis' value='y'/>", 200).half_extent ==
         doctest::Approx(diagonal / std::hypot(1.0, 1.5)));
   CHECK_THROWS_AS(
@@ -117,7 +117,7 @@ TEST_CASE("(u,v) of cylinders and disks: azimuth from +x, distance from the midd
     CHECK(std::abs(std::remainder(double(t.uvs[i].x) - turn, 1.0)) < 1e-5);
     CHECK(t.uvs[i].y == p.z);
   }
-  // An axis along +x begins at -z: Duff's basis.
+  // The azimuth of an axis along +x starts at -z: Duff's basis.
   const Scene lying =
       import_world("<shape type='cylinder'><point name='p1' value='1 0 0'/>" + checks + "</shape>");
   const Mesh& l = lying.meshes.at(0);
@@ -135,7 +135,7 @@ TEST_CASE("(u,v) of cylinders and disks: azimuth from +x, distance from the midd
   }
 }
 
-// [2], cube.cpp: a row per side, the same four (u,v) each.
+// [2], cube.cpp: a row per side, with the same four (u,v).
 TEST_CASE("(u,v) of the cube's sides") {
   const Scene s = import_world("<shape type='cube'>" + checks + "</shape>");
   const Mesh& m = s.meshes.at(0);
@@ -176,7 +176,7 @@ TEST_CASE("bitmaps of numbers are in sRGB unless raw; colours count by their lum
   CHECK(opacity_of(bmp(0, 188, 0)) == doctest::Approx(0.7152 * double(grey)).epsilon(1e-3));
 }
 
-// [2], checkerboard.cpp: eval_1() has the first colour where eval() has the second.
+// [2], checkerboard.cpp: eval_1() returns the first colour where eval() returns the second.
 TEST_CASE("a checkerboard of numbers begins with its second one") {
   const auto at = [](const char* version) {
     const Scene s = import_world(
@@ -191,7 +191,7 @@ TEST_CASE("a checkerboard of numbers begins with its second one") {
 }
 
 TEST_CASE("spectra become the colours of Mitsuba's rgb modes") {
-  // By [2], spectrum_list_to_srgb(), worked out apart from this program.
+  // Values by [2], spectrum_list_to_srgb(), computed independently.
   CHECK(is_near(radiance_of("<spectrum name='radiance' value='400:0, 500:8, 600:15.6, 700:18.4'/>"),
                 {20.7108f, 10.8546f, 2.7712f}, 1e-3f));
   CHECK(is_near(radiance_of("<spectrum name='radiance' value='520:0, 525:1, 545:1, 550:0'/>"),

@@ -1,4 +1,4 @@
-// Mitsuba's spots, projectors, attributes of meshes and folders of files.
+// Tests of Mitsuba's spots, projectors, mesh attributes and folders of files.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Emitters, Textures".
 #include <doctest/doctest.h>
@@ -25,7 +25,7 @@ Scene import_world(const std::string& world, const std::string& version = "3.0.0
   return import_mitsuba(folder.write("scene.xml", scene_of(world, version)));
 }
 
-// One pixel of three bytes.
+// Returns a bitmap of one pixel of three bytes.
 std::string bmp(uint8_t r, uint8_t g, uint8_t b) {
   std::string s("BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x18\0", 30);
   s.append(24, '\0');
@@ -74,8 +74,8 @@ TEST_CASE("the rows of an environment's image reach from pole to pole") {
   CHECK(map.height > 16);
 }
 
-// A plane across the beam at a distance of z gets pi × irradiance / z² everywhere in the picture
-// [1]: intensity pi irradiance / cos³, times cos / d² with d = z / cos.
+// A plane across the beam at distance z receives pi × irradiance / z² everywhere in the picture
+// [1]. The intensity is pi irradiance / cos³, times cos / d² with d = z / cos.
 TEST_CASE("a projector lights planes across its beam evenly") {
   const Scene s = import_world(
       "<emitter type='projector'><float name='fov' value='90'/><float name='scale' value='2'/><rgb "
@@ -130,7 +130,7 @@ const std::string coloured_ply =
 
 struct Coloured {
   Scene scene;
-  // Of a corner or the middle of a triangle.
+  // Returns the base colour at a point of a triangle, by barycentric shares.
   Rgb base(size_t triangle, std::array<float, 3> share) const {
     const Mesh& m = scene.meshes.at(0);
     Vec2 uv{0, 0};

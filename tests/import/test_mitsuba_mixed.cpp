@@ -1,4 +1,5 @@
-// Mitsuba's bsdfs of other bsdfs: blends, mixtures, coats, bumps; textures that are turned.
+// Tests of Mitsuba's bsdfs that contain others: blends, mixtures, coats, bumps; and of rotated
+// textures.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -41,7 +42,7 @@ std::string mixture(const std::string& weights, const std::string& bsdfs) {
 
 TEST_CASE("mixtures have as many parts as weights; what is left of 1 is absorbed") {
   Material m = material_of(mixture("1, .5, .5", diffuse(".8") + diffuse(".4") + diffuse("0")));
-  CHECK(m.base_color.value.r == doctest::Approx(0.5));  // weights of 2 count as of 1
+  CHECK(m.base_color.value.r == doctest::Approx(0.5));  // weights that add up to 2 are normalised
   m = material_of(mixture(".5 .3", diffuse("1 0 0") +
                                        "<bsdf type='difftrans'><rgb name='transmittance' value='0 "
                                        "1 0'/></bsdf>"));
@@ -113,7 +114,7 @@ TEST_CASE("masks within masks, and coats that absorb") {
   CHECK(coat("0").materials.at(0).base_color.value.r == 0.5f);
   const Scene dark = coat(".1 .2 3");
   CHECK(has_warning(dark, "absorbs"));
-  // Between straight ways in and out and the longest ones, at the critical angle.
+  // Between normal passage and the longest one, at the critical angle.
   const Rgb kept = dark.materials.at(0).base_color.value * 2;
   CHECK(double(kept.r) < std::exp(-0.4));
   CHECK(double(kept.r) > std::exp(-0.4 * 1.35));
@@ -165,7 +166,7 @@ TEST_CASE("a texture's to_uv may turn") {
     }
 }
 
-// As Blender's exporter writes them.
+// Values as Blender's exporter writes them.
 TEST_CASE("principled: zeros are not told of, anisotropy is a grain") {
   const auto principled = [](const char* anisotropic, const char* sheen) {
     return import_bsdf(std::string("<bsdf type='principled'><float name='roughness' value='.6'/>"

@@ -1,4 +1,4 @@
-// Mitsuba's files of before 0.4, and what its versions take differently.
+// Tests of Mitsuba files older than 0.4, and of differences between versions.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ Material material_of(const std::string& bsdf, const std::string& version) {
 }  // namespace
 
 TEST_CASE("a file of before 0.3 is one of 0.6 by other names") {
-  // What has no version and has a <camera> is as old.
+  // A file without a version and with <camera> counts as older than 0.3.
   const Scene old = import_world(
       "<camera type='perspective'><float name='fov' value='40'/><transform name='toWorld'>"
       "<lookAt ox='1' oy='2' oz='9' tx='0' ty='0' tz='0' ux='0' uy='1' uz='0'/></transform>"
@@ -149,7 +149,7 @@ TEST_CASE("bsdfs of an OBJ file's materials") {
   CHECK(scene.materials.at(scene.meshes[0].material).base_color.value == Rgb{0.1f});
   CHECK(scene.materials.at(scene.meshes[1].material).base_color.value == Rgb{0.2f});
   CHECK(has_warning(scene, "no bsdf is named after"));
-  // One bsdf is all the file's, whatever its name.
+  // A single bsdf applies to the whole file, whatever its name.
   const Scene one = import_mitsuba(folder.write(
       "t.xml",
       "<scene version='0.6.0'><shape type='obj'><string name='filename' value='m.obj'/><bsdf "
@@ -157,7 +157,7 @@ TEST_CASE("bsdfs of an OBJ file's materials") {
   CHECK(one.meshes.size() == 1);
 }
 
-// Mitsuba takes them from its command line.
+// Mitsuba takes such parameters from its command line.
 TEST_CASE("what asks for a parameter without a default is left out") {
   const Scene scene = import_world(
       "<integrator type='$kind'><integer name='x' value='$depth'/></integrator><sensor "

@@ -1,4 +1,4 @@
-// Options of MTL's maps, and what is made of their images.
+// Tests of the options of MTL's maps, and of the resulting images.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n";
 
-// Of one material; the image is (.25, .5, 1) all over.
+// Imports a triangle with one material; the image is (.25, .5, 1) everywhere.
 Scene import_material(const std::string& statements, const std::string& header = "") {
   const TempFolder folder;
   write_image(folder.path("i.pfm"), Image(1, 1, Rgb{0.25f, 0.5f, 1}));
@@ -29,7 +29,7 @@ float value_of(const Scene& scene, const FloatInput& input) {
   return evaluate(scene.textures, input, Vec2{0.5f, 0.5f});
 }
 
-// One pixel (64, 128, 255) of 255, which are light to the power of 1 / 1.8 (gAMA).
+// One pixel (64, 128, 255) of 255, encoded with gamma 1 / 1.8 (gAMA).
 const std::string png_of_gamma =
     "89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000467414d"
     "410000d904dcb2da020000000c49444154789c637068f80f0002c301c06fd260360000000049454e"
@@ -87,7 +87,7 @@ TEST_CASE("MTL: map_Ns is a factor on the exponent") {
   CHECK(scene.warnings.total() == 0);
   CHECK(double(value_of(scene, only(scene).roughness)) == doctest::Approx(std::sqrt(2.0 / 27)));
   CHECK(has_warning(import_material("Kd 1 1 1\nNs 100\nmap_Ns i.pfm"), "map_Ns"));
-  // Blender's exporter puts its image of roughness there.
+  // Blender's exporter writes roughness images there.
   const Scene blender = import_material("illum 2\nKs .5 .5 .5\nNs 225\nmap_Ns i.pfm",
                                         "# Blender 3.6.0 MTL File: 'None'\n");
   CHECK(value_of(blender, only(blender).roughness) == 0.25f);
@@ -106,7 +106,7 @@ TEST_CASE("MTL: -bm of maps of normals, -t, and maps without their numbers") {
   CHECK(value_of(metal, only(metal).metallic) == 1);
 }
 
-// As a Sponza that many programs come with has it.
+// A widely used Sponza has such a library.
 TEST_CASE("MTL: most of a library, and what has an image, is not invisible") {
   Scene scene = import_material("Kd 1 1 1\nd 0\nmap_Kd i.pfm");
   CHECK(has_warning(scene, "read as opaque"));

@@ -1,4 +1,4 @@
-// OBJ and MTL files.
+// Tests of OBJ and MTL files.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -91,7 +91,7 @@ TEST_CASE("concave polygons keep their area") {
   for (const Triangle& t : triangles) {
     const Vec3d n =
         cross(Vec3d(star[t[1]]) - Vec3d(star[t[0]]), Vec3d(star[t[2]]) - Vec3d(star[t[0]]));
-    CHECK(n.y > -1e-9);  // all wind as the polygon does
+    CHECK(n.y > -1e-9);  // all wind like the polygon
     sum += 0.5 * length(n);
   }
   CHECK(sum == doctest::Approx(area).epsilon(1e-6));
@@ -165,7 +165,8 @@ TEST_CASE("materials of an MTL library") {
   m = material_of("Kd .5 .5 .5\nd .1\nTf .2 .9 1.5\n");  // a pane of coloured glass
   CHECK(m.base_color.value == Rgb(0.2f, 0.9f, 1));
   CHECK(m.transmission.value == doctest::Approx(0.9));
-  m = material_of("Kd .5 .5 .5\nTf 1 1 1\nillum 4\n");  // what some programs write everywhere
+  m = material_of("Kd .5 .5 .5\nTf 1 1 1\nillum 4\n");  // some programs write this for every
+                                                        // material
   CHECK(m.transmission.value == 0);
   CHECK(m.base_color.value == Rgb(0.5f));
 
@@ -209,7 +210,7 @@ TEST_CASE("MTL: gloss of two widths and its direction, sheen, colours and images
   const std::string faces = "mtllib m.mtl\n" + square + "usemtl a\nf 1 2 3\n";
   const Scene lamp = import_obj(folder.write("s.obj", faces));
   CHECK(lamp.materials.at(lamp.meshes.at(0).material).specular_color.texture >= 0);
-  REQUIRE(lamp.lights.size() == 1);  // by the image, where no Ke is given
+  REQUIRE(lamp.lights.size() == 1);  // without Ke the image alone counts
   CHECK(lamp.lights[0].radiance == Rgb{1});
   folder.write("m.mtl", "newmtl a\nKe 0 0 0\nmap_Ke k.pfm\n");
   const Scene dark = import_obj(folder.write("s.obj", faces));
@@ -315,7 +316,7 @@ TEST_CASE("OBJ: colours of vertices, from sRGB") {
   CHECK(color(0, 0) == Rgb{1, 0, 0});
   CHECK(color(0, 1).g == doctest::Approx(linear_from_srgb(0.5f)));
   CHECK(color(0, 2) == Rgb{0, 0, 1});
-  CHECK(color(1, 2) == Rgb{1, 1, 1});  // says none
+  CHECK(color(1, 2) == Rgb{1, 1, 1});  // has no colour
 }
 
 TEST_CASE("kj92room as OBJ has four sources that face into the room") {

@@ -1,5 +1,4 @@
-// pbrt's films that show a window of the picture, and its cameras with real lenses; lights that are
-// left out.
+// Tests of pbrt's film windows, of its cameras with real lenses, and of lights that are left out.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -32,7 +31,7 @@ PbrtLens read(const std::string& text, double aperture_mm) {
 }
 
 const std::string film = "Film \"rgb\" \"integer xresolution\" 300 \"integer yresolution\" 200 ";
-// Two faces of the curvature 1/100 mm, index 1.5: 100 mm.
+// Two faces with a radius of 100 mm and index 1.5: a focal length of 100 mm.
 const std::string thin = "# radius sep n aperture\n0 0 0 40\n100 0 1.5 50\n-100 0 1 50\n";
 
 }  // namespace
@@ -67,7 +66,7 @@ TEST_CASE("lenses focus where thick lenses do") {
   // Lensmaker's formula with thickness: 1/f = (n-1) (1/R1 - 1/R2 + (n-1) d / (n R1 R2)).
   const double f = 1 / (0.5 * (0.02 - 0.5 * 10 / (1.5 * 100 * 100)));
   CHECK(read("100 10 1.5 50\n-100 0 1 50\n", 1).focal_length == doctest::Approx(f / 1000));
-  // Behind a lens the stop is seen larger: by f / (f - distance).
+  // A stop behind a lens appears larger, by f / (f - distance).
   const double seen = 10 * 100.0 / (100 - 20);
   CHECK(read("100 0 1.5 50\n-100 20 1 50\n0 0 0 40\n", 20).pupil_radius ==
         doctest::Approx(seen / 1000));

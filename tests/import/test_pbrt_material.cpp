@@ -1,4 +1,4 @@
-// Materials, textures and spectra of pbrt scenes.
+// Tests of materials, textures and spectra of pbrt scenes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ const std::string triangle = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0
 
 Scene import_world(const std::string& world) {
   const TempFolder folder;
-  // Two texels above two: red, green / blue, white.
+  // Two rows of two texels: red, green / blue, white.
   Image image(2, 2);
   image.at(0, 0) = {1, 0, 0};
   image.at(1, 0) = {0, 1, 0};
@@ -42,7 +42,7 @@ void check_near(Rgb a, Rgb b, float tolerance = 1e-4f) {
   CHECK(std::abs(a.b - b.b) <= tolerance);
 }
 
-// Base colour of the only mesh's material at (u,v).
+// Returns the base colour of the only mesh's material at (u,v).
 Rgb color_at(const Scene& scene, Vec2 uv) {
   return evaluate(scene.textures, scene.materials.at(scene.meshes.at(0).material).base_color, uv);
 }
@@ -147,7 +147,7 @@ TEST_CASE("mixes by textures, and of textures") {
   scene = mix("\"a\" \"b\"", "\"texture amount\" \"f\"");
   CHECK(scene.warnings.total() == 0);
   check_near(color_at(scene, {0.75f, 0.25f}), {0, 0, 0.5f});  // where the share is 1
-  // Of unlike ones the one of more weight: the texture's mean is a half.
+  // Different kinds are replaced by the one of more weight: the texture's mean is a half.
   scene = mix("\"a\" \"m\"", "\"texture amount\" \"f\"");
   CHECK(has_warning(scene, "more weight"));
   CHECK(scene.materials.at(scene.meshes.at(0).material).kind == MaterialKind::conductor);
@@ -225,7 +225,7 @@ TEST_CASE("constant and scaled textures, with images and without") {
   };
   check_near(color_at(scene_with("cf"), {0, 0}), {0.1f, 0.2f, 0.4f});
   check_near(color_at(scene_with("i2"), {0.25f, 0.25f}), {0, 0, 0.25f});
-  // The float image is the mean of the channels: a third at each of the coloured texels.
+  // The float image is the mean of the channels: a third at each coloured texel.
   const Scene product = scene_with("ig");
   check_near(color_at(product, {0.25f, 0.25f}), {0, 0, 1 / 3.0f});
   check_near(color_at(product, {0.75f, 0.25f}), {1, 1, 1});
@@ -323,7 +323,7 @@ TEST_CASE("spectra in linear sRGB") {
   CHECK(red.r > 0.5f);
   CHECK(red.g < 0.1f);
   CHECK(red.b < 0.01f);
-  // Chromaticities: 2856 K is illuminant A, 6504 K is close to D65 (daylight is a little greener).
+  // Chromaticities: 2856 K is illuminant A, 6504 K is close to D65 (daylight is slightly greener).
   check_near(blackbody_emission(2856), *named_illuminant("stdillum-A"), 0.03f);
   check_near(blackbody_emission(6504), Rgb(1), 0.06f);
   for (const double kelvin : {500.0, 1000.0, 2700.0, 6500.0, 20000.0, 1e6})

@@ -1,4 +1,5 @@
-// pbrt's curved shapes that become triangles, and materials and textures made of others.
+// Tests of pbrt's curved shapes that become triangles, and of materials and textures made of
+// others.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -46,8 +47,8 @@ TEST_CASE("loopsubdiv: a closed body becomes smooth, each level four times as fi
   const Scene scene = import_world("Shape \"loopsubdiv\" \"integer levels\" 3 " + octahedron);
   const Mesh& mesh = scene.meshes.at(0);
   CHECK(mesh.triangles.size() == 8 * 64);
-  // The control points' limit: 1 - n γ of the way from the neighbours' mean, which is the centre;
-  // n = 4, β = 3/32, γ = 1/(4 + 4) for each level's vertex alike.
+  // A control point keeps 1 - n β of its distance from the neighbours' mean, which is the centre; n
+  // = 4, β = 3/32. The limit is still closer.
   const double once = 1 - 4 * 3.0 / 32;
   CHECK(double(bounds(scene).upper.x) > 0.3);
   CHECK(double(bounds(scene).upper.x) < once);
@@ -59,14 +60,14 @@ TEST_CASE("subdivision by hand: a triangle's edge points, and limits that do not
   Mesh one;
   one.positions = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}};
   one.triangles = {{0, 1, 2}};
-  // Every vertex has two neighbours along the boundary, a cubic B-spline: 2/3 of its own place, 1/6
-  // of each.
+  // Every vertex has two neighbours along the boundary, a cubic B-spline: 2/3 of its own position,
+  // 1/6 of each neighbour's.
   const Mesh limit = subdivide_loop(one, 0);
   CHECK(is_near(limit.positions.at(0), {4 / 3.0f, 4 / 3.0f, 0}));
-  // The limit of the corner does not depend on how often it was cut before.
+  // The limit of the corner does not depend on the number of subdivisions.
   CHECK(is_near(subdivide_loop(one, 4).positions.at(0), {4 / 3.0f, 4 / 3.0f, 0}, 1e-4f));
   CHECK(subdivide_loop(one, 2).triangles.size() == 16);
-  // Flat stays flat, its front on the same side; corners that repeat are left out.
+  // A flat mesh stays flat with the same front; triangles that repeat a corner are left out.
   one.triangles.push_back({1, 1, 2});
   for (const Vec3& n : subdivide_loop(one, 2).normals) CHECK(is_near(n, {0, 0, 1}));
 }
@@ -84,7 +85,7 @@ TEST_CASE(
     "curves: tubes as wide as the curve from all sides, ribbons on the side of their normals") {
   const std::string straight = "\"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3] \"float width\" 0.2 ";
   const Scene tube = import_world("Shape \"curve\" \"string type\" \"cylinder\" " + straight);
-  // What a round tube shows on average: its surface over pi.
+  // The mean visible area of a round tube is its surface over pi.
   CHECK(area_of(tube.meshes.at(0)) == doctest::Approx(pi * 0.2 * 3).epsilon(1e-4));
   const Mesh& mesh = tube.meshes[0];
   const Triangle& t = mesh.triangles.at(0);
@@ -95,7 +96,7 @@ TEST_CASE(
   CHECK(area_of(ribbon.meshes.at(0)) == doctest::Approx(0.6));
   CHECK(is_near(ribbon.meshes[0].normals.at(0), {1, 0, 0}));
   CHECK(area_vector(ribbon.meshes[0], ribbon.meshes[0].triangles.at(0)).x > 0);
-  // A B-spline of equal steps runs from the second point to the one before the last.
+  // A B-spline of equal steps runs from the second point to the last but one.
   const Scene spline = import_world(
       "Shape \"curve\" \"string basis\" \"bspline\" \"string type\" \"cylinder\" " + straight);
   CHECK(double(bounds(spline).upper.z) == doctest::Approx(2));
@@ -118,7 +119,7 @@ TEST_CASE("curves and subdivisions that cannot be are refused") {
             .find("10 levels make 8388608 triangles of 8; at most 2000000") != std::string::npos);
   CHECK(reason_of("Shape \"loopsubdiv\" \"integer levels\" -1 " + octahedron).find("levels") !=
         std::string::npos);
-  // A point that stays a point, and points that all are one.
+  // A curve whose points all coincide.
   CHECK(import_world("Shape \"curve\" \"point3 P\" [1 1 1 1 1 1 1 1 1 1 1 1]").meshes.size() <= 1);
 }
 
@@ -176,7 +177,7 @@ TEST_CASE("checkerboards and mixes of plain colours are what they say") {
   CHECK(m.roughness.value == 0.75f);
   for (const double u : {0.05, 0.3, 0.55, 0.8, 1.1})
     for (const double v : {0.1, 0.4, 0.6, 0.9}) {
-      // pbrt's v points up, as the mesh has it.
+      // pbrt's v points up, like the mesh's.
       const bool is_first = (int(std::floor(4 * u)) + int(std::floor(2 * v))) % 2 == 0;
       const Rgb c = evaluate(scene.textures, m.base_color, Vec2{float(u), float(v)});
       CHECK(c.r == (is_first ? 1.0f : 0.0f));

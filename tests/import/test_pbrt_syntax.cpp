@@ -1,4 +1,4 @@
-// Tokens, parameters, blocks, includes: what is read, and where errors are found.
+// Tests of pbrt's syntax: tokens, parameters, blocks, includes, and positions of errors.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -220,8 +220,7 @@ TEST_CASE("Attribute gives defaults that a block forgets") {
   CHECK(scene.warnings.entries().empty());
 }
 
-// Whatever becomes of a valid file when bytes are changed, dropped or doubled, it loads or it is
-// an InputError.
+// Changes, drops or doubles bytes of a valid file. The result must load or throw InputError.
 TEST_CASE("damaged pbrt files load or fail cleanly") {
   const std::string text =
       "LookAt 0 0 -5 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" [45]\n"

@@ -1,4 +1,4 @@
-// Cameras, transforms, orientation and emission of pbrt scenes.
+// Tests of cameras, transforms, orientation and emission of pbrt scenes.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -105,8 +105,8 @@ TEST_CASE("pbrt transforms") {
   CHECK(is_near(camera.spheres.at(0).centre, {1, 2, 3}));
 }
 
-// Triangles: winding, turned by ReverseOrientation and by mirrors; per-vertex normals decide where
-// they are given, turned by ReverseOrientation alone.
+// The winding decides the front of triangles; ReverseOrientation and mirrors reverse it. Per-vertex
+// normals override it; only ReverseOrientation reverses them.
 TEST_CASE("the front of meshes") {
   for (const bool is_reversed : {false, true}) {
     for (const bool is_mirrored : {false, true}) {
@@ -121,9 +121,9 @@ TEST_CASE("the front of meshes") {
         CAPTURE(is_reversed);
         CAPTURE(is_mirrored);
         CAPTURE(normals);
-        // pbrt: n = cross of world-space edges, here +z in any case (the mirror leaves z = 0).
+        // pbrt: n = cross of world-space edges, here always +z (the mirror leaves z = 0).
         double expected = is_reversed != is_mirrored ? -1 : 1;
-        // Covector under the mirror.
+        // Normals transform as covectors under the mirror.
         if (normals != 0) expected = normals * (is_mirrored ? -1 : 1) * (is_reversed ? -1 : 1);
         REQUIRE(scene.lights.size() == 1);
         CHECK(front_of(scene, scene.lights[0]).z == doctest::Approx(expected));
@@ -177,7 +177,7 @@ TEST_CASE("spheres and disks stay what they are under similarities") {
   CHECK_FALSE(scene.spheres[0].is_inside_out);
   CHECK(scene.spheres[1].is_inside_out);
   CHECK(scene.disks[0].radius == doctest::Approx(6));
-  CHECK(is_near(scene.disks[0].normal, {0, -1, 0}));  // z turned by 90 degrees about x
+  CHECK(is_near(scene.disks[0].normal, {0, -1, 0}));  // z turned by 90 degrees around x
   CHECK(is_near(scene.disks[0].centre, {1, 0, 3}));
   CHECK(is_near(scene.disks[1].normal, {0, 1, 0}));
   REQUIRE(scene.lights.size() == 4);
@@ -224,7 +224,7 @@ TEST_CASE("partial and stretched quadrics become meshes that agree with them") {
       CHECK(dot(area_vector(mesh, t), Vec3d(mesh.normals[t[0]])) > 0);
     CHECK(scene.lights.size() >= 1);
   }
-  // Outside is the front, inside where it is mirrored or reversed.
+  // The front is outside; inside if mirrored or reversed.
   const auto outward = [](const std::string& world) {
     const Mesh mesh = import_world(world + " Shape \"sphere\" \"float zmin\" -.5").meshes.at(0);
     return dot(mesh.normals.at(70), mesh.positions.at(70)) > 0;
@@ -337,7 +337,7 @@ TEST_CASE("kj92room has four sources that face into the room") {
     REQUIRE(scene.cameras.size() == 1);
     const Camera& c = scene.cameras[0];
     CHECK(is_near(c.position, {2, 0.2f, 1.75f}));
-    CHECK(is_near(c.right, {1, 0, 0}));  // as the right-handed peers see it
+    CHECK(is_near(c.right, {1, 0, 0}));  // as in the right-handed formats
     CHECK(c.width == 256);
     CHECK(triangle_count(scene) == 92);
   }
@@ -382,7 +382,7 @@ TEST_CASE("rgb of other colour spaces becomes linear sRGB by their primaries") {
     const char* name;
     Rgb reflectance;
   };
-  // By published matrices: ITU-R BT.2407, Display P3's of the same primaries, the Academy's.
+  // By published matrices: ITU-R BT.2407, Display P3's with the same primaries, the Academy's.
   for (const Row& row :
        {Row{"srgb", {0.3f, 0.5f, 0.2f}}, Row{"rec2020", {0.190f, 0.527f, 0.168f}},
         Row{"DCI-P3", {0.255f, 0.508f, 0.174f}}, Row{"aces2065-1", {0.112f, 0.584f, 0.153f}}}) {
@@ -394,7 +394,7 @@ TEST_CASE("rgb of other colour spaces becomes linear sRGB by their primaries") {
     CHECK(near(color, row.reflectance));
     for (const Light& l : scene.lights)  // the space ends with its block
       if (l.kind == LightKind::point) CHECK(near(l.radiance, {2, 3, 4}));
-    // A perfect white is one in every space; shining, it has the space's white point.
+    // A perfectly white surface is white in every space; a white light has the space's white point.
     const Scene white = scene_of(row.name, "1 1 1");
     CHECK(white.warnings.entries().empty());
     CHECK(white.materials.at(white.meshes.at(0).material).base_color.value == Rgb(1));

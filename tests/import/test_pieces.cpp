@@ -1,5 +1,5 @@
-// Files read in pieces on several threads: the same meshes, warnings and errors, bit for bit, as
-// from the first byte to the last.
+// Tests that reading files in pieces on several threads gives the same meshes, warnings and errors,
+// bit for bit, as sequential reading.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -71,7 +71,8 @@ Scene import_obj_in_pieces(const std::string& path, const PieceReading& how) {
   return import_obj(path, how);
 }
 
-// Of reading in one piece, which pieces of any size by any number of threads have to equal.
+// Returns the outcome of reading in one piece. Requires the same of pieces of any size on any
+// number of threads.
 std::string piecewise_outcome(Import import, const std::string& path) {
   std::string expected = scene_outcome(import, path, 0, 1);
   for (const size_t bytes : {size_t(1), size_t(90), size_t(1) << 20})
@@ -80,8 +81,9 @@ std::string piecewise_outcome(Import import, const std::string& path) {
   return expected;
 }
 
-// Objects, groups and materials, polygons, both ways to count, colours of vertices in between,
-// indices of what is not there yet, joined lines, and what is left out.
+// Returns a file with objects, groups and materials, polygons, both kinds of indices, and vertex
+// colours in between. It also has indices of later vertices, joined lines, and statements that are
+// left out.
 std::string obj_text(int n) {
   std::string out = "# strips\nmtllib looks.mtl\ncurv2 1 2\ncurv2 3 4\n";
   for (int i = 0; i < n; ++i) {
@@ -105,7 +107,7 @@ std::string obj_text(int n) {
 
 constexpr const char* looks_text = "newmtl shining\nKd .5 .5 .5\nKe 1 2 3\n";
 
-// A strip of quads and triangles, with a face of two vertices and properties that nobody reads.
+// Returns a strip of quads and triangles, with a face of two vertices and unknown properties.
 std::string ply_text(int n, bool has_faces_first) {
   const std::string vertex = fmt::format(
       "element vertex {}\nproperty float x\nproperty float y\nproperty double z\n"
@@ -226,7 +228,7 @@ TEST_CASE("OBJ in pieces: what is read, warned and refused is that of one piece"
   CHECK(errors < 72);
 }
 
-// Errors are told of the first line that is wrong, however it is, wherever pieces begin.
+// The first wrong line is reported, whatever the error and wherever pieces begin.
 TEST_CASE("OBJ in pieces: the first error is told, with its line") {
   const TempFolder folder;
   folder.write("looks.mtl", looks_text);

@@ -1,4 +1,4 @@
-// PLY files: one mesh in many encodings, and files that lie.
+// Tests of PLY files: one mesh in many encodings, and invalid files.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -20,7 +20,7 @@ Mesh read_text(const std::string& text, WarningLog* log = nullptr) {
   return read_ply(folder.write("m.ply", text), log ? *log : ignored).mesh;
 }
 
-// Bytes of a scalar in either order.
+// Returns the bytes of a scalar in either order.
 template <class T>
 std::string bytes_of(T value, bool is_big) {
   std::string out(sizeof(T), '\0');
@@ -29,8 +29,8 @@ std::string bytes_of(T value, bool is_big) {
   return out;
 }
 
-// A quad and a triangle with normals and (u,v), odd types, extra properties and elements, the faces
-// before the vertices.
+// Returns a quad and a triangle with normals and (u,v), unusual types, extra properties and
+// elements, and faces before vertices.
 std::string binary_file(bool is_big) {
   std::string s = std::string("ply\nformat binary_") + (is_big ? "big" : "little") +
                   "_endian 1.0\ncomment hello\nelement face 2\nproperty uchar flag\n"
@@ -121,7 +121,8 @@ TEST_CASE("PLY files cut off anywhere are errors") {
   for (const std::string& whole : {ascii_file, binary_file(false)}) {
     for (size_t n = 0; n < whole.size() - 1; ++n) {
       const std::string cut = whole.substr(0, n);
-      // Without its last digits an ascii file may still be whole: the index 4 is its last byte.
+      // An ascii file without its last digits may still be complete; here the index 4 is the last
+      // byte.
       CAPTURE(n);
       CHECK_THROWS_AS(read_text(cut), InputError);
     }
@@ -142,12 +143,12 @@ TEST_CASE("counts that lie do not make the reader allocate") {
                       InputError);
     }
   }
-  // A list that claims four thousand million entries.
+  // A list that claims four billion entries.
   CHECK_THROWS_AS(read_text("ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list "
                             "uint int vertex_indices\nelement vertex 0\n" +
                             vertex + "end_header\n\xff\xff\xff\xff"),
                   InputError);
-  // No data per element: nothing to read however many there are.
+  // Elements without properties need no data, however many there are.
   const Mesh empty = read_text(
       "ply\nformat ascii 1.0\nelement ghost 18446744073709551615\n"
       "element vertex 0\n" +
@@ -179,7 +180,7 @@ TEST_CASE("errors in PLY files have their places") {
   check("ply\nformat ascii 1.0\nproperty float x\n", 3, 1);
   check("ply\nformat ascii 1.0\nelement face 1\nproperty list float int i\n", 4, 15);
   check("ply\nformat ascii 1.0\nbogus\n", 3, 1);
-  // Index lists of floats, meshes without coordinates.
+  // Index lists of floats, and meshes without coordinates.
   CHECK_THROWS_AS(read_text("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty "
                             "float y\nend_header\n"),
                   InputError);

@@ -1,4 +1,4 @@
-// Radiance's scene files: syntax, surfaces and their fronts, materials, commands, views.
+// Tests of Radiance's scene files: syntax, surfaces and their fronts, materials, commands, views.
 #include "import/radiance/radiance.h"
 
 #include <doctest/doctest.h>
@@ -36,7 +36,7 @@ std::string error_of(const std::string& text) {
 const std::string grey = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
 const std::string bright = "void light bright 0 0 3 10 20 30\n";
 
-// Area and, for closed fronts, volume inside them.
+// Returns the area and, for closed surfaces, the enclosed volume.
 std::pair<double, double> area_and_volume(const Scene& scene) {
   double area = 0, volume = 0;
   for (const Mesh& m : scene.meshes)
@@ -139,9 +139,9 @@ TEST_CASE("Radiance's materials") {
   CHECK(m.specular.value == 0.04f);
   CHECK(m.roughness.value == 0.1f);
   m = material("void plastic m 0 0 5 .1 .2 .3 .04 0");
-  CHECK(m.ior == doctest::Approx(1.5));  // reflects .04 along the normal
+  CHECK(m.ior == doctest::Approx(1.5));  // reflects .04 at normal incidence
   CHECK(m.specular.value == 1);
-  m = material("void plastic m 0 0 5 .1 .2 .3 .01 0");  // below Radiance's least for Fresnel
+  m = material("void plastic m 0 0 5 .1 .2 .3 .01 0");  // below Radiance's minimum for Fresnel
   CHECK(m.ior == 0);
   m = material("void metal m 0 0 5 .8 .7 .6 .9 .05");
   CHECK(m.metallic.value == 0.9f);
@@ -150,7 +150,7 @@ TEST_CASE("Radiance's materials") {
   m = material("void dielectric m 0 0 5 1 1 1 1.33 0");
   CHECK(m.ior == 1.33f);
   CHECK_FALSE(m.is_thin);
-  // The reference manual's example: transmissivity 0.96 is a transmittance of 0.88.
+  // The reference manual's example: a transmissivity of 0.96 is a transmittance of 0.88.
   m = material("void glass m 0 0 3 .96 .96 .96");
   REQUIRE(m.is_thin);
   const double r = sqr(0.52 / 2.52), t = std::exp(-double(m.absorption.r));
@@ -196,7 +196,7 @@ TEST_CASE("views of comments and of the file beside") {
   CHECK(beside.cameras[0].half_extent == 1);
 }
 
-// Programs write materials and surfaces into files of their own.
+// Programs write materials and surfaces into separate files.
 TEST_CASE("a modifier that no file here defines is grey, and told of") {
   const Scene scene = import_text("paint polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n" + grey +
                                   "grey polygon q 0 0 9 0 0 1 1 0 1 0 1 1\nvoid plastic paint 0 0 "
@@ -239,7 +239,7 @@ TEST_CASE("changed Radiance files load or are refused") {
     import_radiance(folder.write("scene.rad", changed));
   };
   test::check_mutations(text, 4000, import);
-  // Skies take as long as their image: fewer of them.
+  // Skies take time in proportion to their images, so there are fewer.
   const std::string sky =
       "void brightfunc sf 2 skybright skybright.cal 0 7 2 8 5 1 0 0 1\nsf glow sg 0 0 4 1 1 1 0\n"
       "sg source sky 0 0 4 0 0 1 180\n";

@@ -1,5 +1,5 @@
-// Radiance's materials that stand for others: mixtures, mirrors with an alternate, glows without
-// light, spotlights; values by the definitions of the reference manual.
+// Tests of Radiance's materials that refer to others: mixtures, mirrors with an alternate, glows
+// without light, spotlights. Values follow the definitions of the reference manual.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -103,7 +103,7 @@ TEST_CASE("spotlight: its focal distance, its beam, whatever surface it is on") 
       CHECK(e.radiance.r == doctest::Approx(1000 * (is_ring ? pi * .04 : .04)));
       CHECK(double(-e.range) == doctest::Approx(f));
       const LightWeb& web = scene.webs.at(size_t(e.web));
-      // The cosine up to 15 degrees, and nothing beyond.
+      // The cosine up to 15 degrees, and zero beyond.
       CHECK(double(web.heights_rad.back()) == doctest::Approx(rad_from_deg(15)));
       for (size_t i = 0; i < web.heights_rad.size(); ++i)
         CHECK(web.intensities[i] == doctest::Approx(std::cos(web.heights_rad[i])));

@@ -1,4 +1,4 @@
-// Skies as gensky and gendaylit print them, and the language of their function files.
+// Tests of skies as gensky and gendaylit print them, and of the language of their function files.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,18 +22,19 @@ Scene import_text(const std::string& text) {
   return import_radiance(folder.write("scene.rad", text));
 }
 
-// The lines that the manual pages of both generators tell to add to what these print.
+// The lines that the manual pages of both generators say to add to their output.
 const std::string glows =
     "\nskyfunc glow sky_glow\n0\n0\n4 1 1 1 0\nsky_glow source sky\n0\n0\n4 0 0 1 180\n"
     "skyfunc glow ground_glow\n0\n0\n4 1 1 1 0\nground_glow source ground\n0\n0\n4 0 0 -1 180\n";
 
-// gendaylit's and gensky's blend of sky and ground about the horizon.
+// Returns gendaylit's and gensky's blend of sky and ground near the horizon.
 double blended(double z, double sky, double ground) {
   const double w = std::pow(z + 1.01, 10);
   return (w * sky + ground / w) / (w + 1 / w);
 }
 
-// Irradiance of a horizontal surface from the hemisphere above it, of a radiance by direction.
+// Returns the irradiance of a horizontal surface by the hemisphere above it, given radiance by
+// direction.
 double irradiance(const std::function<double(const Vec3d&)>& radiance) {
   constexpr int rows = 800, columns = 800;
   double sum = 0;
@@ -46,7 +47,7 @@ double irradiance(const std::function<double(const Vec3d&)>& radiance) {
   return sum * 2 * pi / (double(rows) * columns);
 }
 
-// Irradiance of a surface that faces a light's own axis, W/m².
+// Returns the irradiance of a surface that faces a light's own axis, W/m².
 double irradiance_of(const Scene& scene, size_t light) {
   const Light& e = scene.lights.at(light);
   return double(e.radiance.r) *
@@ -101,7 +102,7 @@ TEST_CASE("gensky's skies, by the formulas that its manual page names") {
   }
 }
 
-// Illuminance that was integrated apart from this program from the published definitions.
+// The illuminances were integrated independently from the published definitions.
 TEST_CASE("illuminance by skies as the generators print them") {
   struct Known {
     const char *pattern, *reals;
@@ -113,8 +114,8 @@ TEST_CASE("illuminance by skies as the generators print them") {
         Known{"2 skybr skybright.cal", "7 1 1.2e+01 3.0e+00 2.5e-01 0.4 -0.6 0.692820", 23507},
         Known{"2 skybright perezlum.cal", "10 3.2 2.1 -0.97 -0.45 9.5 -3.0 0.35 0.4 -0.6 0.692820",
               2044},
-        // A sky of 10 everywhere over a ground of 5: pi 10 179, less .2 % by which the pattern
-        // blends into the ground near the horizon.
+        // A uniform sky of 10 over a ground of 5: 179 × 10 pi, less .2 % because the pattern blends
+        // into the ground near the horizon.
         Known{"2 skybright perezlum.cal", "10 10 5 0 -1 0 -1 0 0.5 0.5 0.7071", 5611.7}}) {
     CAPTURE(k.reals);
     const Scene scene = import_text("void brightfunc skyfunc\n" + std::string(k.pattern) + "\n0\n" +
@@ -138,8 +139,8 @@ TEST_CASE("gendaylit: the sun it prints, its sky of an impossible hour, its sky 
                     "10 0.00 0.00  0.000 0.000 0.000 0.000 0.000  0.4 -0.6 -0.69 \n" +
                     glows)
             .lights.empty());
-  // An overcast sky (clearness 1) has one colour temperature, 6191 K; with coefficients that make
-  // x = y = 1/3 its X, Y and Z are its luminance, and r, g, b the sums of the matrix's rows.
+  // An overcast sky (clearness 1) has a single colour temperature, 6191 K. The coefficients make x
+  // = y = 1/3, so that X, Y and Z equal the luminance. Then r, g, b are the row sums of the matrix.
   const Scene coloured = import_text(
       "void colorfunc skyfunc\n4 skybright_r skybright_g skybright_b perezlum_c.cal\n0\n"
       "22 10 0 0 -1 0 -1 0 0.5 0.5 0.7071 1 0 0 0 .33333333 0 0 0 .33333333 0 0 .33333333\n" +
@@ -154,7 +155,7 @@ TEST_CASE("a sky's function is looked up, turned, or refused by name") {
   folder.write("own.cal",
                "{ brighter to the east }\nbright(d) = if(d, 1 + 3*d, 1);\neast : bright(Dx);");
   const std::string sky = " glow g 0 0 4 1 1 1 0\ng source s 0 0 4 1 0 0 180\n";  // faces east
-  // E over the hemisphere about x: pi (1 + 3 · 2/3).
+  // E over the hemisphere around x: pi (1 + 3 · 2/3).
   const Scene own =
       import_radiance(folder.write("own.rad", "void brightfunc f 2 east own.cal 0 0\nf" + sky));
   CHECK(irradiance_of(own, 0) == doctest::Approx(3 * pi).epsilon(0.001));
@@ -183,7 +184,7 @@ TEST_CASE("a sky's function is looked up, turned, or refused by name") {
       doctest::Contains("does not come to an end"), InputError);
 }
 
-// (1 - cos half) of the sphere's solid angle, seen from its axis: pi sin².
+// A source of full angle 2 h, seen along its axis, gives an irradiance of pi sin² h per radiance.
 TEST_CASE("sources of any width") {
   for (const double angle : {70.0, 100.0, 179.0, 180.0}) {
     CAPTURE(angle);
@@ -214,8 +215,8 @@ TEST_CASE("the language of function files") {
     return *v;
   };
   CHECK(value("1 + 2*3 - 4/8") == 6.5);
-  CHECK(value("2^3^2") == 512);  // to the right
-  CHECK(value("-2^2") == 4);     // a sign binds closer than a power
+  CHECK(value("2^3^2") == 512);  // right-associative
+  CHECK(value("-2^2") == 4);     // a sign binds more tightly than a power
   CHECK(value("1.5e-1 * .5") == doctest::Approx(0.075));
   CHECK(value("fact(5)") == 120);
   CHECK(value("twice(add3, 1)") == 7);

@@ -1,4 +1,4 @@
-// Where a scene's own coordinates begin, and that every importer gets there in double precision.
+// Tests of the choice of a scene's origin, and that every importer applies it in double precision.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -42,7 +42,7 @@ TEST_CASE("the origin is zero near it, and moves with a scene by whole steps") {
     for (const Vec3d& by : {Vec3d{10000, 0, -10000}, Vec3d{5000, 5000, 5000}, Vec3d{0, 1e6, 0}})
       CHECK(choose_origin(box_around(Vec3d{0.3 * side, -0.7 * side, 0} + by, side)) == by);
   }
-  // What floats resolve is in proportion to the size of the scene, wherever it lies.
+  // The distance to the origin is in proportion to the size of the scene, wherever it lies.
   for (const double side : {1e-2, 7.0, 600.0, 40000.0}) {
     const Vec3d middle{1370043.21, -2200017.3, 330037.7};
     const Vec3d left = abs(choose_origin(box_around(middle, side)) - middle);

@@ -1,4 +1,4 @@
-// Files that scenes name as other machines write their names: backslashes, drives, another case.
+// Tests of file names as other machines write them: backslashes, drives, another case.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ using namespace troffer;
 
 namespace {
 
-// A red texel.
+// Returns a red texel.
 std::string red_tga() {
   std::string tga(18, '\0');
   tga[2] = 2;
@@ -25,7 +25,7 @@ std::string red_tga() {
   return tga + std::string("\x00\x00\xff", 3);
 }
 
-// Whether the scene has the red image, and says under which name it was found.
+// Checks that the scene has the red image and reports the name under which it was found.
 void check_red(const Scene& scene, const std::string& found = "is read from 'textures/floor.tga'") {
   bool is_there = false;
   for (const Texture& t : scene.textures)
@@ -52,7 +52,7 @@ TEST_CASE("images are found whatever the separator and the case") {
         "\\\\server\\share\\textures\\floor.tga"}) {
     CAPTURE(std::string(name));
     folder.write("a.mtl", "newmtl m\nmap_Kd " + std::string(name) + "\n");
-    // In .mtl files a backslash alone is as good as a slash and needs no note.
+    // In .mtl files a plain backslash counts as a slash and needs no note.
     if (name[0] != '\\')
       check_red(import_scene(folder.write("s.obj", obj)),
                 std::string(name) == "textures\\floor.tga" ? "" : "textures/floor.tga'");

@@ -1,4 +1,4 @@
-// STL files, and scenes that are compressed as a whole.
+// Tests of STL files, and of scenes that are compressed as a whole.
 #include <doctest/doctest.h>
 #include <zlib.h>
 
@@ -99,7 +99,7 @@ TEST_CASE("files that end in .gz are decompressed: scenes, and meshes that they 
   folder.write("inner.pbrt.gz", gzipped("Shape \"plymesh\" \"string filename\" \"m.ply.gz\"\n"));
   CHECK(import_scene(folder.write("s.pbrt", "WorldBegin\nInclude \"inner.pbrt.gz\"\n"))
             .meshes.size() == 1);
-  // Members one after the other are one text.
+  // Consecutive gzip members form one text.
   CHECK(read_text_file(folder.write("two.gz", gzipped("one ") + gzipped("two"))) == "one two");
 }
 

@@ -1,4 +1,4 @@
-// Two sets of texture coordinates.
+// Tests of two sets of texture coordinates.
 #include <doctest/doctest.h>
 
 #include "import/gltf_builder.h"
@@ -7,8 +7,8 @@ using namespace troffer;
 
 namespace {
 
-// The unit square with two sets of coordinates: TEXCOORD_`a` as in square_bytes(), (x, 1 - y), and
-// TEXCOORD_`b`, (y, x) / 2.
+// Returns the unit square with two sets of coordinates: TEXCOORD_`a` as in square_bytes(), (x, 1 -
+// y), and TEXCOORD_`b`, (y, x) / 2.
 std::string square_with_sets(int a, int b, const std::string& more) {
   const std::string all = square_bytes() + bytes_of<float>({0, 0, 0, 0.5f, 0.5f, 0.5f, 0.5f, 0});
   std::string data = square_data();
@@ -24,7 +24,7 @@ std::string square_with_sets(int a, int b, const std::string& more) {
                    "':4},'indices':1,'material':0}]}],'nodes':[{'mesh':0}]," + more);
 }
 
-// A ramp along u: red and green 8 texels wide, u at their middles.
+// Returns a ramp along u: red and green, 8 texels wide, with u at their centres.
 std::string ramp() {
   std::vector<float> texels;
   for (int i = 0; i < 8; ++i)
@@ -45,7 +45,7 @@ struct Built {
   }
 };
 
-// The place of (x, y): coordinates are linear over the square.
+// Returns the texture coordinates at (x, y); they are linear over the square.
 TexturePlace at(const Mesh& mesh, float x, float y) {
   const auto linear = [&](const std::vector<Vec2>& uvs) {
     return uvs[0] + (uvs[1] - uvs[0]) * x + (uvs[3] - uvs[0]) * y;

@@ -1,5 +1,5 @@
-// Alpha of vertices where the material blends: a factor on the material's own, which may be 1
-// (glTF 2.0 §3.9.2 and §3.9.4: COLOR_0 is a factor on the base colour, alpha with it).
+// Tests of vertex alpha with materials that blend: it multiplies the material's own alpha, which
+// may be 1 (glTF 2.0 §3.9.2 and §3.9.4: COLOR_0 multiplies the base colour, alpha included).
 #include <doctest/doctest.h>
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@ using namespace troffer;
 
 namespace {
 
-// A sheet of four vertices with these alphas; the material's own is `factor`.
+// Returns a sheet of four vertices with these alphas; the material's own alpha is `factor`.
 Scene sheet(const std::vector<float>& alphas, const std::string& mode, double factor) {
   const std::vector<float> places{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   std::vector<float> colors;
@@ -32,7 +32,7 @@ Scene sheet(const std::vector<float>& alphas, const std::string& mode, double fa
       data_buffer(bytes_of(corners)))));
 }
 
-// The share of light that meets the sheet at a corner of its first triangle.
+// Returns the coverage at a corner of the sheet's first triangle.
 float coverage_at_corner(const Scene& s, size_t corner) {
   const Mesh& mesh = s.meshes.at(0);
   const Material& m = s.materials[mesh.material];

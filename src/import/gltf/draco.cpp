@@ -12,7 +12,8 @@ namespace troffer {
 
 namespace {
 
-// A flat grid shrinks to almost nothing; beyond so many triangles data has to be in proportion.
+// Limits on what the header may claim. A flat grid compresses to almost nothing, so small meshes
+// are always allowed; larger ones must be in proportion to the data.
 constexpr uint64_t always_allowed = 1 << 20, triangles_per_byte = 1024;
 constexpr uint64_t max_attribute_values = 400'000'000;
 
@@ -20,8 +21,9 @@ struct Claim {
   uint64_t triangles = 0, vertices = 0;
 };
 
-// What stands before the connectivity in the bitstream, versions 2.0 and later: "DRACO", version,
-// kind of geometry, method, flags, metadata, counts. False: not such data.
+// Reads the triangle and vertex counts from the header of a bitstream of version 2.x: "DRACO",
+// version, geometry type, method, flags, metadata, counts. Returns false if `bytes` is not such
+// data.
 bool read_claim(std::span<const uint8_t> bytes, Claim& claim) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -44,7 +46,7 @@ bool read_claim(std::span<const uint8_t> bytes, Claim& claim) {
   };
   if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING) {
     if (!buffer.Decode(&traversal)) return false;
-    uint32_t added = 0;  // vertices that the encoder made, in older versions
+    uint32_t added = 0;  // vertices added by the encoder, in versions below 2.2
     if (!has_varints && !draco::DecodeVarint(&added, &buffer)) return false;
     if (!draco::DecodeVarint(&first, &buffer) || !draco::DecodeVarint(&second, &buffer))
       return false;

@@ -29,11 +29,12 @@ namespace troffer {
 
 namespace {
 
-// Of all that is stored: about 3 GB of vertices and triangles.
-constexpr uint64_t cost_of_instance = 20;  // in triangles
+// Cost of one instance, in triangles, in the limit on stored triangles.
+constexpr uint64_t cost_of_instance = 20;
 constexpr const char* lights_extension = "KHR_lights_punctual";
 
-// Thirteen members: the file, the readers of its parts, and what they have read.
+// Reads one document into a scene. It has thirteen members: the file, the readers of its parts, and
+// what they have read.
 class Importer {
  public:
   Importer(const JsonNode& root, GltfFile& file, const ImportOptions& options, Scene& scene,
@@ -106,7 +107,8 @@ class Importer {
     }
   }
 
-  // Before anything of that size is made.
+  // Fails if the scene exceeds the limits on triangles and instances. Runs before meshes are
+  // created.
   void check_size() {
     uint64_t placed = 0, stored = 0, instances = 0;
     for (const GltfNode& node : nodes_.shown)
@@ -120,7 +122,7 @@ class Importer {
       instances += n;
       for (const GltfPrimitive& p : meshes_[*mesh].primitives) {
         placed += n * p.triangle_count();
-        // Of what is shared there is one, which counts with each of them a little.
+        // A shared mesh is stored once; its triangles are divided among its uses.
         stored += is_shared(p, *mesh, json)
                       ? n * cost_of_instance + p.triangle_count() / meshes_[*mesh].uses
                       : n * p.triangle_count();
@@ -136,7 +138,8 @@ class Importer {
               " triangles, or more than " + std::to_string(max_placed_triangles) + " by instances");
   }
 
-  // Adds one light or camera; one that cannot be used is left out, with a warning that names it.
+  // Runs `add` for one light or camera. If that throws InputError, leaves the light or camera out
+  // and adds a warning that names it.
   template <class Add>
   void or_left_out(const char* kind, const std::string& name, const Add& add) {
     try {
@@ -189,8 +192,9 @@ class Importer {
     }
   }
 
-  // Whether it stands in several places, alike in all, and does not emit: what is worth it is then
-  // stored once, but where a transform is next to singular.
+  // True if the primitive is stored once and instanced. It must be used several times, keep its
+  // shape in all uses, not emit, and be worth it (MeshInstancer). Single uses may still be copied;
+  // see add_instance.
   bool is_shared(const GltfPrimitive& p, uint32_t mesh, const JsonNode& node) {
     const bool is_bent = !p.targets.empty() || (!p.joints.empty() && node.find("skin"));
     const GltfMaterial& material = materials_.get(p.material);
@@ -198,7 +202,7 @@ class Importer {
            instancer_.is_worth(p.triangle_count(), material.material);
   }
 
-  // False: it is to be copied.
+  // Adds an instance. Returns false if the mesh must be copied instead.
   bool add_instance(const GltfPrimitive& p, const GltfPose& pose, const std::string& name) {
     const GltfMaterial& material = materials_.get(p.material);
     return instancer_.place({&p, material.material, 0}, p.triangle_count(), pose.world_from_mesh,
@@ -231,7 +235,7 @@ class Importer {
     const GltfMaterial& material = materials_.get(p.material);
     Mesh mesh = make_mesh(p, pose, name, material, bounds_);
     const bool is_emissive = !material.emission.is_black();
-    // Counted whether it ends up with a source or not, so that a name depends on the file alone.
+    // Every emitter counts, even one without triangles, so that names depend on the file alone.
     const std::string light_name =
         node_name.empty() ? "emitter" + std::to_string(counts_.emissive) : node_name;
     if (is_emissive) ++counts_.emissive;
@@ -243,7 +247,7 @@ class Importer {
           {light_name, material.emission, material.emission_texture, material.is_two_sided});
   }
 
-  // References are checked before (gltf_schema.h).
+  // gltf_schema.h has already checked the reference.
   void add_light(const JsonNode& node, const JsonNode& reference, const Affine& world_from_node) {
     const JsonNode lights = root_.extension(lights_extension)->member("lights");
     const JsonNode light = lights.element(reference.as_index(lights.size(), "lights"));
@@ -282,7 +286,7 @@ class Importer {
   GltfNodes nodes_;
   struct Counts {
     size_t emissive = 0;
-    uint64_t unshared = 0;  // triangles that were copied though they are shared
+    uint64_t unshared = 0;  // triangles copied because the instancer refused an instance
   } counts_;
 };
 

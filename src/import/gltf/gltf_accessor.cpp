@@ -13,9 +13,10 @@ namespace troffer {
 
 namespace {
 
-// Of accessors without a buffer view, which cost the file nothing.
+// Limit on accessors without a buffer view, whose elements take no space in the file.
 constexpr uint64_t max_elements_without_data = 4u << 20;
-// What many accessors over the same data may cost in all.
+// Limits on the total over all accessors and views. Many accessors may share the same data, so the
+// size of the file does not bound them.
 constexpr uint64_t max_decoded_bytes = uint64_t(4) << 30;
 constexpr uint64_t max_sparse_elements = 100'000'000, max_checked_indices = 1'000'000'000;
 
@@ -56,14 +57,14 @@ const ElementShape& shape_of(const JsonNode& type) {
   type.fail("'" + printable(type.as_string()) + "' is no accessor type");
 }
 
-// From the first to the last byte of an element. Columns of matrices begin at multiples of 4 bytes
-// [1] §3.6.2.4; nothing need follow the last one.
+// Bytes from the first to the last byte of an element. Columns of matrices start at multiples of 4
+// bytes [1] §3.6.2.4; no padding is required after the last column.
 uint64_t size_of_element(const ElementShape& shape, uint32_t component_bytes) {
   const uint64_t column = uint64_t(shape.rows) * component_bytes;
   return (shape.columns - 1) * ((column + 3) / 4 * 4) + column;
 }
 
-// From one element to the next where nothing else is said.
+// Bytes from one element to the next if byteStride is not given.
 uint64_t packed_stride(const ElementShape& shape, uint32_t component_bytes) {
   const uint64_t size = size_of_element(shape, component_bytes);
   return shape.columns == 1 ? size : (size + 3) / 4 * 4;
@@ -72,11 +73,11 @@ uint64_t packed_stride(const ElementShape& shape, uint32_t component_bytes) {
 template <class T>
 T load(const uint8_t* at) {
   T value;
-  std::memcpy(&value, at, sizeof value);  // files are little-endian, and so are our machines
+  std::memcpy(&value, at, sizeof value);  // assumes a little-endian machine, like the file's data
   return value;
 }
 
-// [1] §3.6.2.2 for the normalised ones.
+// Returns a component as a float; normalised integers by the equations of [1] §3.6.2.2.
 float component_as_float(const uint8_t* at, uint32_t type, bool is_normalized) {
   switch (type) {
     case gltf_byte: {
@@ -121,7 +122,7 @@ bool is_unsigned_integer(uint32_t type) {
   return type == gltf_unsigned_byte || type == gltf_unsigned_short || type == gltf_unsigned_int;
 }
 
-// Position of element i in the ascending list, or `count`.
+// Returns the position of element i in the ascending list of sparse indices, or the list's length.
 uint64_t sparse_position(const AccessorView& view, uint64_t i) {
   const uint64_t size = component_size(view.sparse_index_type);
   uint64_t first = 0, last = view.sparse_count;
@@ -148,7 +149,7 @@ std::vector<uint8_t> bytes_of_data_uri(const JsonNode& uri) {
 const uint8_t* AccessorView::element(uint64_t i) const {
   if (sparse_count > 0) {
     const uint64_t at = sparse_position(*this, i);
-    // Substituted values are scalars, vectors or 4x4 floats here: other matrices are never read.
+    // Elements read here have no padding: scalars, vectors or 4x4 floats.
     if (at < sparse_count) return sparse_values + at * components * component_size(component_type);
   }
   return data ? data + i * stride : nullptr;
@@ -191,7 +192,7 @@ void GltfBuffers::load_buffer(const JsonNode& buffer, size_t index, GltfFile& fi
     if (is_data_uri(uri->as_string())) {
       contents = std::make_shared<std::vector<uint8_t>>(bytes_of_data_uri(*uri));
     } else {
-      // By the plain path, so that no spelling makes a second copy.
+      // The normalised path is the key, so that different spellings share one copy.
       const std::string path = path_of_uri(*uri, folder_);
       Contents& cached = files_[std::filesystem::path(path).lexically_normal().string()];
       if (!cached) cached = std::make_shared<std::vector<uint8_t>>(read_file_of_uri(*uri, path));
@@ -243,8 +244,8 @@ void GltfBuffers::check_view(const JsonNode& view) {
   views_.push_back(out);
 }
 
-// Start of `count` elements at `offset` of the buffer view that `where` names, after checking that
-// they lie inside: offset + stride (count - 1) + element_size <= length [1] §3.6.2.4.
+// Returns the first of `count` elements at `offset` of the buffer view that `where` names. Fails
+// unless offset + stride (count - 1) + element_size <= length [1] §3.6.2.4.
 const uint8_t* GltfBuffers::checked_range(const JsonNode& where, uint64_t offset, uint64_t count,
                                           uint64_t element_size, uint64_t stride) const {
   const JsonNode reference = where.member("bufferView");
@@ -252,7 +253,7 @@ const uint8_t* GltfBuffers::checked_range(const JsonNode& where, uint64_t offset
   const View& view = views_[index];
   if (!view.has_data) reference.fail("lies in a buffer without data");
   const uint64_t available = view.bytes.size();
-  // stride <= 252 and element_size <= 64: dividing instead of multiplying keeps this in range.
+  // Division avoids overflow of stride (count - 1).
   const bool fits = count == 0 || (offset <= available && element_size <= available - offset &&
                                    (count - 1) <= (available - offset - element_size) / stride);
   if (!fits)

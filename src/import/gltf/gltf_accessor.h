@@ -1,4 +1,6 @@
-// Buffers, buffer views and accessors: typed, bounds-checked access to binary data.
+// Buffers, buffer views and accessors of glTF: typed, bounds-checked access to binary data.
+// GltfBuffers loads and checks all of them once; AccessorView then decodes single elements on
+// demand.
 // References: [1] Khronos, glTF 2.0 Specification, §3.6 (Binary Data Storage);
 //   [2] Khronos extension EXT_meshopt_compression.
 #pragma once
@@ -17,75 +19,76 @@
 
 namespace troffer {
 
-// What a component is, as files number it [1] §3.6.2.2.
+// Component types, numbered as in files [1] §3.6.2.2.
 enum GltfComponentType : uint32_t {
   gltf_byte = 5120,
   gltf_unsigned_byte = 5121,
   gltf_short = 5122,
   gltf_unsigned_short = 5123,
-  gltf_int = 5124,  // for attributes of an application's own only, which are not read
+  gltf_int = 5124,  // only for application-specific attributes, which are not read
   gltf_unsigned_int = 5125,
   gltf_float = 5126,
-  gltf_double = 5130,  // likewise
+  gltf_double = 5130,  // only for application-specific attributes, which are not read
 };
 
-// A checked accessor: any index below `count` may be read. Elements are decoded when asked for, so
+// A checked accessor: any element below `count` may be read. Elements are decoded on access, so
 // that a view costs no memory, whatever its count.
 struct AccessorView {
-  const uint8_t* data = nullptr;  // null: zeros, but for the sparse elements
+  const uint8_t* data = nullptr;  // null: all elements are zero, except sparse ones
   uint64_t count = 0;
   uint64_t stride = 0;
   uint32_t component_type = 0;  // GltfComponentType
-  uint32_t components = 0;      // 1 … 16
+  uint32_t components = 0;      // 1 to 16
   bool is_normalized = false;
-  // Substituted elements [1] §3.6.2.3; indices ascend.
+  // Sparse elements, which replace those of `data` [1] §3.6.2.3. Their indices ascend.
   uint64_t sparse_count = 0;
   uint32_t sparse_index_type = 0;
   const uint8_t* sparse_indices = nullptr;
   const uint8_t* sparse_values = nullptr;
 
-  // The first components of element i as floats, normalised integers mapped to [0,1] or [-1,1];
-  // zero for components that the accessor does not have.
+  // Returns up to four components of element i as floats; components that the accessor lacks are 0.
+  // Normalised integers are mapped to [0,1] or [-1,1].
   std::array<float, 4> read(uint64_t i) const;
-  // All components of element i of an accessor of 4x4 floats.
+  // Returns all components of element i. The accessor must be of type MAT4 with float components.
   std::array<float, 16> read_matrix(uint64_t i) const;
-  // Element i of an unsigned integer accessor of one component.
+  // Returns element i. The accessor must be an unsigned integer scalar.
   uint32_t read_index(uint64_t i) const;
 
  private:
   const uint8_t* element(uint64_t i) const;
 };
 
-// The binary data of one document, which must outlive it. All lengths are compared in 64 bits
-// before anything is read.
+// Binary data of one document. It must outlive all AccessorViews and spans taken from it. Sizes are
+// compared in 64 bits before anything is read.
 class GltfBuffers {
  public:
-  // Loads every buffer: from its data URI, from a file in the scene's folder, or from the GLB's
-  // binary chunk; then checks all buffer views and accessors, used or not, and decodes views that
-  // are compressed [2]. InputError at the JSON value that is wrong.
+  // Loads every buffer from its data URI, a file in the scene's folder or the GLB's binary chunk.
+  // Then checks all buffer views and accessors, used or not, and decodes compressed views [2].
+  // Takes the binary chunk out of `file`. Throws InputError at the JSON value that is wrong.
   GltfBuffers(const JsonNode& root, GltfFile& file);
 
-  // Of the buffer view that `reference` names; empty where its buffer has no data.
+  // Returns the bytes of the buffer view that `reference` names; empty if its buffer has no data.
   std::span<const uint8_t> buffer_view(const JsonNode& reference) const;
-  // The accessor that `reference` names. Fails where it has no data of its own and is larger than
-  // what is taken for granted.
+  // Returns the accessor that `reference` names. Fails if it has no buffer view and more than 4 Mi
+  // elements, because such an accessor costs the file nothing.
   const AccessorView& accessor(const JsonNode& reference) const;
-  // Of an accessor whose data is elsewhere.
+  // True if the accessor's integers are normalised. Also works for accessors whose data is
+  // compressed elsewhere (Draco).
   bool is_normalized(const JsonNode& reference) const;
-  // Of an accessor of unsigned integer scalars; 0 for an empty one. Remembered. Fails at
-  // `reference` where the file makes too much work of it.
+  // Returns the largest value of accessor `index`, an unsigned integer scalar; 0 if it is empty.
+  // Results are cached. Fails at `reference` if all such accessors together have too many elements.
   uint32_t largest_index(const JsonNode& reference, uint32_t index);
 
  private:
   struct View {
     std::span<const uint8_t> bytes;
-    uint64_t stride = 0;  // 0 = tightly packed
+    uint64_t stride = 0;  // bytes; 0: tightly packed
     bool has_data = true;
   };
   using Contents = std::shared_ptr<const std::vector<uint8_t>>;
 
-  // The bytes that /buffer, /byteOffset and /byteLength of an object name; nothing where the buffer
-  // has no data.
+  // Returns the bytes that `where` names by its buffer, byteOffset and byteLength; nothing if the
+  // buffer has no data.
   std::optional<std::span<const uint8_t>> range(const JsonNode& where) const;
   void load_buffer(const JsonNode& buffer, size_t index, GltfFile& file);
   void check_view(const JsonNode& view);
@@ -99,7 +102,7 @@ class GltfBuffers {
   std::map<std::string, Contents> files_;
   std::vector<Contents> buffers_;  // null: a buffer without data
   std::vector<View> views_;
-  std::vector<Contents> decoded_;  // of compressed views
+  std::vector<Contents> decoded_;  // contents of compressed views
   uint64_t decoded_bytes_ = 0;
   std::vector<AccessorView> accessors_;
   std::map<uint32_t, uint32_t> largest_indices_;  // by accessor

@@ -13,14 +13,15 @@ constexpr uint64_t max_weights = 10'000;
 
 enum class Interpolation { step, linear, cubic };
 
-// One sampler: `width` numbers at each key.
+// One animation sampler: `width` elements of `values` at each key, or three times as many if cubic.
 struct AnimationCurve {
   const AccessorView& times;
   const AccessorView& values;
   Interpolation interpolation;
-  uint64_t width;  // in elements of `values`
+  uint64_t width;  // 1, or the number of morph weights
 
-  // Element k of part (cubic: 0 the tangent in, 1 the value, 2 the tangent out) at a key.
+  // Returns element k at a key. `part` matters for cubic curves: 0 in-tangent, 1 value, 2
+  // out-tangent.
   std::array<float, 4> at(uint64_t key, uint64_t part, uint64_t k) const {
     const bool is_cubic = interpolation == Interpolation::cubic;
     return values.read((is_cubic ? key * 3 + part : key) * width + k);
@@ -35,17 +36,17 @@ Interpolation interpolation_of(const JsonNode& sampler) {
   sampler.member("interpolation").fail("'" + printable(name) + "' is no interpolation");
 }
 
-// Between which keys a time lies, and how far: [1] appendix C.
+// Position of a time between two keys: [1] appendix C.
 struct Moment {
-  uint64_t key = 0;     // and the next one, unless is_at_key
-  double fraction = 0;  // of the way to the next one
-  double seconds = 0;   // between the two
+  uint64_t key = 0;     // key before the time; the time lies before the next key unless is_at_key
+  double fraction = 0;  // of the interval, 0 to 1
+  double seconds = 0;   // length of the interval
   bool is_at_key = true;
 };
 
 Moment find_moment(const AccessorView& times, double time) {
   const auto at = [&](uint64_t i) { return double(times.read(i)[0]); };
-  uint64_t low = 0, high = times.count;  // the first key that is later
+  uint64_t low = 0, high = times.count;  // search for the first key after `time`
   while (low < high) {
     const uint64_t middle = (low + high) / 2;
     if (at(middle) > time)
@@ -76,7 +77,7 @@ Numbers mixed(const Numbers& a, double wa, const Numbers& b, double wb) {
   return out;
 }
 
-// Spherical linear interpolation along the shorter way [1] appendix C.3.
+// Spherical linear interpolation along the shorter arc [1] appendix C.3.
 Numbers slerp(const Numbers& a, Numbers b, double t) {
   double dot = 0, of_a = 0, of_b = 0;
   for (size_t i = 0; i < 4; ++i) {
@@ -105,7 +106,8 @@ Numbers value_at(const AnimationCurve& curve, const Moment& m, uint64_t k, bool 
                mixed(next, -2 * t3 + 3 * t2, in, m.seconds * (t3 - t2)), 1);
 }
 
-// The animation's curve, once its accessors fit each other.
+// Returns the sampler's curve. Fails if the accessors of its times and values do not fit each
+// other. `has_many` allows more than one element per key (morph weights).
 AnimationCurve read_curve(const JsonNode& sampler, const GltfBuffers& buffers, uint32_t components,
                           bool has_many) {
   const JsonNode input = sampler.member("input"), output = sampler.member("output");
@@ -164,7 +166,8 @@ void apply_channel(const JsonNode& animation, const JsonNode& channel, size_t no
   }
 }
 
-// The animation that is asked for; none where the file has none.
+// Returns the requested animation, or the first one; nothing if the file has none. Throws
+// UsageError if there is no animation of that name.
 std::optional<JsonNode> chosen_animation(const JsonNode& root,
                                          const std::optional<std::string>& name) {
   const auto animations = root.find("animations");

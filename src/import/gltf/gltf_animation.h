@@ -1,6 +1,7 @@
-// Animations of glTF: what they make of nodes at one moment.
-// References: [1] Khronos, glTF 2.0 Specification, §3.11 (Animations) and appendix C
-//   (Animation Sampler Interpolation Modes).
+// glTF animations, evaluated at one moment. The result replaces transforms and morph weights of
+// nodes (gltf_nodes.h, gltf.cpp).
+// References: [1] Khronos, glTF 2.0 Specification, §3.11 (Animations) and appendix C (Animation
+//   Sampler Interpolation Modes).
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace troffer {
 
-// What stands in place of the node's own members of these names.
+// Animated properties of a node, which replace the node's own members of the same names.
 struct GltfNodePose {
   std::optional<std::array<double, 3>> translation, scale;
   std::optional<std::array<double, 4>> rotation;  // x y z w, of any length
@@ -27,10 +28,10 @@ struct GltfNodePose {
 
 using GltfPoses = std::map<uint32_t, GltfNodePose>;  // by node
 
-// The poses `time` seconds into the animation of that name, or the first one: before an animation's
-// first key its first value, after its last key its last [1]. UsageError where there is none of
-// that name; InputError where the animation's data is not what [1] says. Targets that are no
-// property of a node are told.
+// Returns the poses of the named animation, or of the first one, `time` seconds after its start.
+// Before the first key the first value holds, after the last key the last one [1].
+// Throws UsageError if there is no animation of that name, InputError if its data violates [1].
+// Warns of targets that are not properties of a node.
 GltfPoses gltf_poses(const JsonNode& root, const GltfBuffers& buffers, double time,
                      const std::optional<std::string>& animation, WarningLog& warnings);
 

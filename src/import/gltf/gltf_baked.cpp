@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-// The key that troffer bake writes to asset.extras.
+// Returns a number that `troffer bake` writes to asset.extras, or `fallback`.
 double note_of(const JsonNode& root, const char* group, const char* name, double fallback) {
   const auto asset = root.find("asset");
   const auto extras = asset ? asset->find("extras") : std::nullopt;
@@ -44,7 +44,7 @@ void GltfBaked::emit(Rgb radiance, int32_t texture, GltfMaterial& material) {
   m = std::move(black);
 }
 
-// Meshes keep two sets of coordinates.
+// Adds the lightmap's set to the material's two sets. If both are taken, warns and uses the first.
 void GltfBaked::choose_set(int set, const JsonNode& node, GltfMaterial& material) {
   GltfUvSets& sets = material.uv_sets;
   if (!material.is_textured)
@@ -68,7 +68,7 @@ void GltfBaked::apply(const JsonNode& node, GltfMaterial& material, TextureLoade
           "its sources (--baked shows it)");
     return;
   }
-  if (!material.emission.is_black()) return;  // a source shows itself
+  if (!material.emission.is_black()) return;  // emitters show their own light
   const Material m = scene_.materials[material.material];
   if (is_unlit) {
     const double white = note_of(root_, "unlit", "white_cd_per_m2", 1);

@@ -1,5 +1,6 @@
-// Light that was baked into a glTF file: MOZ_lightmap, and the pictures of KHR_materials_unlit.
-//
+// Light baked into a glTF file: MOZ_lightmap, and the images of KHR_materials_unlit. With `--baked`
+// materials become black emitters of the baked radiance. Otherwise a warning says that the file
+// holds baked light.
 // References: [1] Mozilla Hubs, "MOZ_lightmap": texel × intensity is irradiance.
 //   [2] Khronos, "KHR_materials_unlit".
 #pragma once
@@ -12,17 +13,18 @@
 
 namespace troffer {
 
+// Applies baked light to converted materials.
 class GltfBaked {
  public:
-  // All must outlive this. is_shown: materials become what was baked; else a warning says that the
-  // file holds it.
+  // All arguments must outlive this object. `is_shown`: show the baked light.
   GltfBaked(const JsonNode& root, const GltfBuffers& buffers, Scene& scene, bool is_shown)
       : root_(root), buffers_(buffers), scene_(scene), is_shown_(is_shown) {}
 
-  // For a material that has been read. Where baked light is shown, it becomes black and emits what
-  // it was seen to send: base colour × E / pi, as from a matt surface.
+  // Call for each converted material. If baked light is shown, the material becomes black and emits
+  // base colour × E / pi, as a Lambertian surface would reflect; unlit materials emit their base
+  // colour.
   void apply(const JsonNode& node, GltfMaterial& material, TextureLoader& loader);
-  // Warns where light was to be shown and there is none. To be called last.
+  // Warns if baked light was requested and the file has none. Call last.
   void finish() const;
 
  private:

@@ -23,8 +23,8 @@ void read_perspective(const JsonNode& perspective, Camera& camera) {
     camera.aspect = float(positive_number(*aspect));
 }
 
-// [1] §3.10.3.3: xmag and ymag are half of the width and height that are seen. Some writers
-// give negative ones; their sign is not looked at.
+// Reads xmag and ymag, half of the visible width and height [1] §3.10.3.3. Ignores their signs,
+// because some exporters write negative ones.
 void read_orthographic(const JsonNode& orthographic, Camera& camera) {
   camera.kind = CameraKind::orthographic;
   const JsonNode xmag = orthographic.member("xmag"), ymag = orthographic.member("ymag");
@@ -47,7 +47,8 @@ std::optional<Camera> gltf_camera(const JsonNode& node, const Affine& world_from
     read_perspective(node.member("perspective"), camera);
   camera.fov_is_vertical = true;
 
-  // Gram-Schmidt, forward first; right keeps its side, so that a mirroring node mirrors.
+  // Gram-Schmidt, forward first. `right` keeps its side, so that a mirroring node mirrors the
+  // picture.
   const Vec3d back = world_from_node.columns[2];
   const double back_length = length(back);
   const Vec3d forward = back * (-1 / back_length);

@@ -1,4 +1,6 @@
-// glTF cameras.
+// Conversion of glTF cameras, perspective and orthographic, to cameras of the scene. gltf.cpp calls
+// it for each node with a camera. Positions and sizes are in metres; near and far planes are
+// ignored.
 // References: [1] Khronos, glTF 2.0 Specification, §3.10 (Cameras).
 #pragma once
 
@@ -12,9 +14,10 @@
 
 namespace troffer {
 
-// The camera that `camera` (an element of /cameras) describes, looking down -Z of its node. Scale
-// and shear of the node are taken out. A node that leaves no direction to look in gives a warning
-// and nothing; impossible angles and sizes fail.
+// Returns the camera that `camera`, an element of /cameras, describes. It looks down -Z of its
+// node; scale and shear of the node are removed.
+// Returns nothing, with a warning, if the node's transform leaves no viewing direction. Fails on
+// angles and sizes that are out of range.
 std::optional<Camera> gltf_camera(const JsonNode& camera, const Affine& world_from_node,
                                   const std::string& name, WarningLog& warnings);
 

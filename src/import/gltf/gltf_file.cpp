@@ -22,7 +22,7 @@ bool has_magic(std::span<const uint8_t> bytes) {
   return bytes.size() >= 4 && little_endian_32(bytes, 0) == magic_gltf;
 }
 
-// The bytes that the header declares [1] §4.4.2.
+// Returns the bytes that the header declares, header included [1] §4.4.2.
 std::span<const uint8_t> checked_extent(const std::string& path, std::span<const uint8_t> bytes) {
   if (bytes.size() < glb_header_size) throw InputError(path, 0, 0, "the GLB header is cut short");
   const uint32_t version = little_endian_32(bytes, 4), length = little_endian_32(bytes, 8);
@@ -66,7 +66,7 @@ GltfFile read_chunks(const std::string& path, std::span<const uint8_t> bytes) {
     } else if (type == chunk_binary && !file.binary_chunk) {
       file.binary_chunk.emplace(content.begin(), content.end());
       file.is_out_of_order = index > 1;
-    }  // chunks of other types are to be ignored [1] §4.4.3
+    }  // clients must ignore chunks of other types [1] §4.4.3
   }
   return file;
 }

@@ -59,7 +59,7 @@ void add_gltf_ies_light(const JsonNode& root, const JsonNode& instance,
   }
   Luminaire luminaire = read_profile(profile, buffers, scene.warnings);
   luminaire.tilt = {};
-  luminaire.opening = {};  // points, by the extension
+  luminaire.opening = {};  // the extension defines point lights
   const int32_t web = add_web(scene, luminaire);
   add_luminaire(scene, name, luminaire, web, factor_of(instance),
                 {world_from_node.translation, axis, x, axis});

@@ -1,4 +1,5 @@
-// glTF's measured luminaires.
+// Luminaires with photometric webs in glTF files. gltf.cpp calls this for each node that has the
+// extension.
 // References: [1] glTF extension EXT_lights_ies.
 #pragma once
 
@@ -11,10 +12,11 @@
 
 namespace troffer {
 
-// Adds the point that a node's extension `instance` asks for: a profile of the document's list, in
-// a file beside it, a data URI or a buffer view, shining down the node's -Z, its half-plane C0
-// towards X [1]. A warning, and nothing, where the node leaves no direction; InputError for
-// profiles that cannot be read.
+// Adds the point light that `instance`, a node's extension object, describes. Its profile comes
+// from the document's list: a file, a data URI or a buffer view. It shines down the node's -Z, with
+// half-plane C0 towards X [1].
+// Adds nothing, with a warning, if the node's transform leaves no direction. Throws InputError if
+// the profile cannot be read.
 void add_gltf_ies_light(const JsonNode& root, const JsonNode& instance,
                         const Affine& world_from_node, const std::string& node_name,
                         const GltfBuffers& buffers, Scene& scene);

@@ -23,7 +23,7 @@ constexpr int fewest_texels_across = 64, most_texels_across = 2048;
 
 struct Face {
   int size = 0;
-  std::vector<Rgb> texels;  // row 0 on top, as seen from within
+  std::vector<Rgb> texels;  // row 0 on top, as seen from inside
 };
 
 std::vector<uint8_t> bytes_of(const JsonNode& image, const GltfBuffers& buffers) {
@@ -40,7 +40,7 @@ std::vector<uint8_t> bytes_of(const JsonNode& image, const GltfBuffers& buffers)
   return std::move(data->bytes);
 }
 
-// With alpha: colour over alpha is the light [1].
+// Decodes a face to linear light; with an alpha channel, light is colour / alpha (RGBD) [1].
 Face read_face(const JsonNode& image, const GltfBuffers& buffers) {
   const std::string name = image.file() + "#" + image.pointer();
   const Raster r = linear_raster(decode_raster(bytes_of(image, buffers), name, max_face_pixels));
@@ -58,8 +58,8 @@ Face read_face(const JsonNode& image, const GltfBuffers& buffers) {
   return face;
 }
 
-// The texel of a cube in a direction. Faces are those of the usual cube maps, each turned about
-// its vertical axis [1]: as they look from within, upright but for above and below.
+// Returns the texel of the cube in direction d. Faces are those of common cube maps, mirrored as
+// seen from inside [1].
 Rgb texel_towards(const std::array<Face, 6>& cube, const Vec3& d) {
   const Vec3 a = abs(d);
   const size_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
@@ -104,7 +104,7 @@ std::array<Vec3, 3> axes_of(const JsonNode& light) {
           Vec3(Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)})};
 }
 
-// Of the scene that is shown: the document's own, or the first.
+// Returns the light of the shown scene: the document's default scene, or the first.
 std::optional<JsonNode> light_of_scene(const JsonNode& root) {
   const auto scenes = root.find("scenes");
   if (!scenes || scenes->size() == 0) return std::nullopt;
@@ -134,7 +134,7 @@ void add_gltf_image_light(const JsonNode& root, const GltfBuffers& buffers, Scen
   e.axes = axes_of(*light);
   e.environment = int32_t(scene.environments.size());
   if (scene.left_out_image_bytes) {
-    *scene.left_out_image_bytes += 6;  // how much they are does not matter
+    *scene.left_out_image_bytes += 6;  // only needs to be positive
     return;
   }
   std::array<Face, 6> cube;

@@ -1,4 +1,6 @@
-// glTF's image-based lights.
+// Image-based environment lights of glTF files. gltf.cpp calls it once, for the scene that is
+// shown. The cube map becomes an equal-area environment image of at most 2048 × 2048 texels, in
+// cd/m².
 // References: [1] glTF extension EXT_lights_image_based.
 #pragma once
 
@@ -8,10 +10,11 @@
 
 namespace troffer {
 
-// Adds the light that the shown scene's extension asks for, from the first of its cube maps: PNG
-// with alpha is RGBD, all else what it looks like, a value of 1 being 1 cd/m². The coefficients of
-// its irradiance are left aside: what the image sends is known. A warning, and nothing, where an
-// image cannot be had.
+// Adds the environment light of the default scene's extension, from the first (sharpest) of its
+// cube maps. PNG with alpha is decoded as RGBD; a value of 1 means 1 cd/m². Ignores the irradiance
+// coefficients, because the image determines them.
+// Adds nothing, with a warning, if an image cannot be read. Throws InputError if the extension is
+// malformed.
 void add_gltf_image_light(const JsonNode& root, const GltfBuffers& buffers, Scene& scene);
 
 }  // namespace troffer

@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-// "[json.exception.parse_error.101] parse error at line 1, column 2: REASON" -> "REASON"
+// Extracts REASON from "[json.exception.parse_error.101] parse error at line 1, column 2: REASON".
 std::string reason_of(const std::string& what) {
   const size_t column = what.find("column ");
   const size_t colon = what.find(": ", column == std::string::npos ? what.find("] ") : column);
@@ -25,7 +25,8 @@ std::string without_control_characters(std::string text) {
   return text;
 }
 
-// Where a number that overflows stands: the parser only says "number overflow parsing '1e999'".
+// Returns the position of a number that overflows. The parser reports only "number overflow parsing
+// '1e999'", so the number is searched for in the text.
 TextPosition position_of_overflow(const std::string& text, const std::string& what) {
   const size_t first = what.find('\''), last = what.rfind('\'');
   if (first == std::string::npos || last <= first + 1) return {};
@@ -60,7 +61,7 @@ std::string printable(std::string_view text) {
   constexpr size_t longest = 100;
   std::string out(text.substr(0, longest));
   if (text.size() > longest) {
-    // Not in the middle of a UTF-8 sequence.
+    // Do not cut inside a UTF-8 sequence.
     while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xc0) == 0x80) out.pop_back();
     if (!out.empty() && static_cast<unsigned char>(out.back()) >= 0xc0) out.pop_back();
     out += "...";
@@ -76,7 +77,7 @@ JsonDocument::JsonDocument(std::string file, std::string text, const JsonLimits&
   try {
     json_ = std::make_unique<Json>(Json::parse(text_));
   } catch (const Json::parse_error& e) {
-    // The parser counts bytes from 1, the one that it could not use included.
+    // The parser counts bytes from 1 and includes the byte that it rejects.
     const TextPosition at = position_of_offset(text_, e.byte > 0 ? e.byte - 1 : 0);
     throw InputError(file_, at.line, at.column,
                      "not valid JSON: " + without_control_characters(reason_of(e.what())));
@@ -177,7 +178,7 @@ uint64_t JsonNode::as_integer(uint64_t max) const {
     const double number = as_number();
     if (number != std::floor(number)) fail("should be an integer, is a fraction");
     if (number < 0) fail("must not be negative");
-    if (number > 9e15) fail("is too large");  // from about here doubles skip integers
+    if (number > 9e15) fail("is too large");  // near 2^53, above which doubles skip integers
     integer = uint64_t(number);
   }
   if (integer > max)

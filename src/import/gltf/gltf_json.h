@@ -1,5 +1,6 @@
-// A JSON document read through typed getters: whatever is not as it should be throws InputError
-// with the line and column of the value. The only door to the JSON library in this room.
+// JSON documents, read through typed getters. A value of the wrong type or out of range throws
+// InputError with the value's line and column. Used by the importer of glTF and by other readers of
+// JSON. No other header of this folder includes the JSON library.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +17,27 @@ namespace troffer {
 
 class JsonDocument;
 
-// A value inside a document, and the way to it. Valid as long as its document.
+// A value inside a document, with its JSON pointer. Valid as long as its document.
 class JsonNode {
  public:
   bool is_object() const;
   bool is_array() const;
-  // "/accessors/3/count"
+  // JSON pointer of the value, for example "/accessors/3/count".
   const std::string& pointer() const { return pointer_; }
-  // The file that the document was read from.
+  // Path of the file that the document was read from.
   const std::string& file() const;
 
-  // Members of an object; each fails where this is no object.
+  // Members of an object. Each function fails if this value is not an object.
   std::optional<JsonNode> find(std::string_view key) const;
-  JsonNode member(std::string_view key) const;  // fails where it is missing
+  JsonNode member(std::string_view key) const;  // fails if it is missing
   std::vector<std::string> keys() const;
 
-  // Elements of an array; each fails where this is no array.
+  // Elements of an array. Each function fails if this value is not an array.
   size_t size() const;
   JsonNode element(size_t i) const;
 
-  // The value, or failure where it is of another type. Numbers are finite; an integer lies in
-  // [0, max]; an index is below `count`, the number of `things`.
+  // Return the value; fail if it has another type. Numbers are finite. An integer lies in [0, max].
+  // An index is below `count`, the number of `things` (a plural noun for the message).
   const std::string& as_string() const;
   bool as_bool() const;
   double as_number() const;
@@ -44,17 +45,17 @@ class JsonNode {
   uint32_t as_index(size_t count, const char* things) const;
   std::vector<double> as_numbers(size_t count) const;
 
-  // Members with defaults.
+  // Return a member's value, or `fallback` if the member is missing.
   std::string string_or(std::string_view key, std::string fallback) const;
   bool bool_or(std::string_view key, bool fallback) const;
   double number_or(std::string_view key, double fallback) const;
   uint64_t integer_or(std::string_view key, uint64_t fallback, uint64_t max) const;
   std::vector<double> numbers_or(std::string_view key, std::vector<double> fallback) const;
 
-  // The object /extensions/NAME of this object.
+  // Returns the object /extensions/NAME of this object, if it is there.
   std::optional<JsonNode> extension(std::string_view name) const;
 
-  // Throws InputError{file, line, column of this value, "POINTER: what"}.
+  // Throws InputError{file, line and column of this value, "POINTER: what"}.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
@@ -68,10 +69,11 @@ class JsonNode {
   std::string pointer_;
 };
 
+// A parsed JSON text. It must outlive its nodes.
 class JsonDocument {
  public:
-  // Parses `text` (UTF-8 without byte order mark); a syntax error throws InputError at its place,
-  // and so does more than the limits allow, before memory is taken for it.
+  // Parses `text` (UTF-8 without a byte order mark). Throws InputError at the position of a syntax
+  // error, or where `limits` are exceeded; limits are checked before memory is allocated.
   JsonDocument(std::string file, std::string text, const JsonLimits& limits = {});
   ~JsonDocument();
   JsonDocument(const JsonDocument&) = delete;
@@ -86,8 +88,8 @@ class JsonDocument {
   std::unique_ptr<nlohmann::json> json_;
 };
 
-// Text of a file as it may stand in a one-line message: control characters become '?', and what
-// is longer than 100 bytes is cut.
+// Returns text from a file in a form that fits a one-line message: control characters become '?',
+// and text longer than 100 bytes is cut.
 std::string printable(std::string_view text);
 
 }  // namespace troffer

@@ -18,7 +18,7 @@ Rgb emission_of(const JsonNode& light) {
   return e;
 }
 
-// 0 <= inner < outer <= pi/2 [1].
+// Reads the cone angles: 0 <= inner < outer <= pi/2 [1]. Equal angles are allowed too.
 void read_cone(const JsonNode& light, Light& e) {
   double inner = 0, outer = pi / 4;
   if (const auto spot = light.find("spot")) {

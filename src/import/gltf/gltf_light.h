@@ -1,4 +1,5 @@
-// glTF's lights without surface.
+// Conversion of glTF lights without surface: directional, point and spot. gltf.cpp calls it for
+// each node with such a light. Illuminance is in lx, intensity in cd.
 // References: [1] Khronos, glTF extension KHR_lights_punctual.
 #pragma once
 
@@ -12,9 +13,10 @@
 
 namespace troffer {
 
-// The light that `light` (an element of the extension's lights) describes, shining down -Z of its
-// node: directional (lx), point or spot (cd) [1]. Nothing, and a warning, where its node leaves no
-// direction; fails on types, colours, angles and ranges that cannot be.
+// Returns the light that `light`, an element of the extension's lights, describes. It shines down
+// -Z of its node: directional (lx), point or spot (cd) [1].
+// Returns nothing, with a warning, if the type is unknown or the node's transform leaves no
+// direction. Fails on colours, angles and ranges that are out of range.
 std::optional<Light> gltf_light(const JsonNode& light, const Affine& world_from_node,
                                 const std::string& name, WarningLog& warnings);
 

@@ -11,7 +11,6 @@
 
 namespace troffer {
 
-// Converts one material.
 class GltfMaterials::Reader {
  public:
   Reader(GltfMaterials& all, const JsonNode& material) : all_(all), node_(material) {}
@@ -37,7 +36,7 @@ class GltfMaterials::Reader {
     tell_what_is_left_out();
     read_emission();
     result_.is_two_sided = node_.bool_or("doubleSided", false);
-    // What shines may show its back: the light, not the surface, is one-sided there.
+    // Emitters keep their backs visible: their light is one-sided, the surface is not.
     if (!result_.is_two_sided && result_.emission.is_black())
       material_.back_faces = BackFaces::unseen;
     reduce_to_diffuse();
@@ -49,7 +48,7 @@ class GltfMaterials::Reader {
  private:
   void warn(const std::string& what) { all_.scene_.warnings.add(node_.pointer() + ": " + what); }
 
-  // A factor that [1] wants in [0,1].
+  // Returns a factor clamped to [0,1]; warns if it lies outside [1].
   float unit_number(const JsonNode& node) {
     const double value = node.as_number();
     if (value < 0 || value > 1) {
@@ -67,7 +66,7 @@ class GltfMaterials::Reader {
             unit_number(list.element(2))};
   }
 
-  // The texture at object/key, or none.
+  // Returns the texture at object/key, or no_texture. Sets stand_in_ to the colour to use instead.
   int32_t texture(const JsonNode& object, const char* key, bool is_srgb) {
     const auto info = object.find(key);
     stand_in_ = Rgb{1};
@@ -97,7 +96,8 @@ class GltfMaterials::Reader {
     material_.roughness.texture = material_.metallic.texture = both;
   }
 
-  // A dielectric of that normal reflectance: KHR_materials_specular with ior 1.5.
+  // Reads the material as a dielectric with that normal reflectance: KHR_materials_specular at IOR
+  // 1.5.
   void read_specular_glossiness(const JsonNode& old) {
     material_.base_color = {Rgb{1}, no_texture};
     material_.metallic = {0, no_texture, 2};
@@ -113,14 +113,14 @@ class GltfMaterials::Reader {
       specular->as_numbers(3);
       f0 = unit_color(*specular);
     }
-    material_.specular_color.value = f0 * 25.0f;  // 1 / 0.04
+    material_.specular_color.value = f0 * 25.0f;  // 1 / 0.04, the normal reflectance at IOR 1.5
     material_.specular_color.texture = texture(old, "specularGlossinessTexture", true);
     const float glossiness = unit_number(old, "glossinessFactor", 1);
     const int32_t image = rough_from_glossy(material_.specular_color.texture, glossiness);
     material_.roughness = {image == no_texture ? 1 - glossiness : 1.0f, image, 0};
   }
 
-  // An image of 1 - glossiness times alpha; none where the image has no alpha.
+  // Adds a texture of 1 - factor × alpha and returns it; no_texture if the image has no alpha.
   int32_t rough_from_glossy(int32_t glossy, float factor) {
     if (glossy == no_texture) return no_texture;
     const Texture& from = all_.scene_.textures[size_t(glossy)];
@@ -139,14 +139,15 @@ class GltfMaterials::Reader {
     return int32_t(all_.scene_.textures.size() - 1);
   }
 
-  // A number times a channel of a texture, whose own channel it keeps.
+  // Reads NAMEFactor and NAMETexture into `input`, whose texture channel stays as it is.
   void read_unit(const JsonNode& object, const std::string& name, FloatInput& input) {
     input.value = unit_number(object, (name + "Factor").c_str(), input.value);
     input.texture = texture(object, (name + "Texture").c_str(), false);
     if (input.texture == no_texture) input.value *= stand_in_[size_t(input.channel)];
   }
 
-  // Without a map of its own the coat lies along the surface, whatever the base's.
+  // Without a normal map of its own the coat follows the geometric surface, not the base's normal
+  // map.
   void read_clearcoat() {
     const auto coat = node_.extension("KHR_materials_clearcoat");
     if (!coat) return;
@@ -306,7 +307,7 @@ class GltfMaterials::Reader {
     if (volume && volume->find("attenuationDistance")) read_attenuation(*volume);
   }
 
-  // That color is left after that distance.
+  // Sets the absorption at which white light becomes attenuationColor after attenuationDistance.
   void read_attenuation(const JsonNode& volume) {
     constexpr double darkest = 1e-6;
     const auto color = volume.numbers_or("attenuationColor", {1, 1, 1});
@@ -316,7 +317,7 @@ class GltfMaterials::Reader {
       return;
     }
     const double thickness = volume.number_or("thicknessFactor", 0);
-    if (thickness <= 0) return;  // a sheet
+    if (thickness <= 0) return;  // a sheet has no interior
     for (size_t c = 0; c < 3; ++c)
       material_.absorption[c] =
           float(std::min(-std::log(std::clamp(color[c], darkest, 1.0)) / distance, 1e6));
@@ -339,7 +340,8 @@ class GltfMaterials::Reader {
     result_.emission_texture = texture(node_, "emissiveTexture", true);
   }
 
-  // Without metal, specular reflection and transmission the model is Lambert's, exactly.
+  // Uses the Lambert model where it is exactly equal: without metal, specular reflection,
+  // transmission, sheen and coat.
   void reduce_to_diffuse() {
     if (material_.metallic.value == 0 && material_.specular.value == 0 &&
         material_.transmission.value == 0 && material_.diffuse_transmission.value == 0 &&
@@ -351,7 +353,7 @@ class GltfMaterials::Reader {
   const JsonNode& node_;
   Material material_;
   GltfMaterial result_;
-  Rgb stand_in_{1};  // for the image that was asked for last, where it is missing
+  Rgb stand_in_{1};  // colour instead of the last requested image; 1 if it exists
 };
 
 const GltfMaterial& GltfMaterials::get(std::optional<uint32_t> index) {
@@ -381,7 +383,7 @@ void GltfMaterials::expect_images() {
     for (size_t i = 0; materials && i < materials->size(); ++i)
       expect_gltf_images(root_, materials->element(i), buffers_, loader_);
   } catch (const InputError&) {
-    return;  // what comes after is read when it is wanted
+    return;  // The remaining images are read on use.
   }
 }
 

@@ -1,4 +1,5 @@
-// glTF materials and textures.
+// Conversion of glTF materials and their textures to materials of the scene. gltf.cpp asks for each
+// material by index; docs/formats.md lists what becomes of each extension.
 // References: [1] Khronos, glTF 2.0 Specification, §3.9 (Materials), §3.8 (Texture Data), and its
 //   extensions KHR_materials_specular, _ior, _transmission, _volume, _emissive_strength,
 //   _clearcoat, _pbrSpecularGlossiness, KHR_texture_transform.
@@ -18,38 +19,39 @@
 
 namespace troffer {
 
+// A converted material, with what the makers of its meshes and lights need.
 struct GltfMaterial {
   uint32_t material = 0;  // index into Scene::materials
   Rgb emission{0};        // cd/m²
   int32_t emission_texture = no_texture;
   bool is_two_sided = false;
   bool is_textured = false;
-  bool is_blended = false;  // its alphaMode is BLEND, which counts where vertices have alpha, too
+  bool is_blended = false;  // alphaMode is BLEND; also applies to vertex alpha
   GltfUvSets uv_sets;
 };
 
-// Converts materials when they are asked for, each once; textures nobody uses are not decoded.
+// Converts each material on first use, so that textures of unused materials are not decoded.
 class GltfMaterials {
  public:
   // All arguments must outlive this object.
   GltfMaterials(const JsonNode& root, const GltfBuffers& buffers, Scene& scene)
       : root_(root), buffers_(buffers), scene_(scene), loader_(scene) {}
 
-  // Called with each material that has been read, before it is used.
+  // Hook that is called with each converted material, before it is used; may change it.
   std::function<void(const JsonNode&, GltfMaterial&, TextureLoader&)> on_read;
 
-  // The material of that index in /materials, or the default material [1] §3.9.6.
+  // Returns the material at `index` of /materials, or the default material [1] §3.9.6.
   const GltfMaterial& get(std::optional<uint32_t> index);
 
-  // Has images that materials will want decoded beforehand.
+  // Asks the texture loader to decode the images of all materials in advance.
   void expect_images();
 
-  // Warns of images that nothing shows and that could not be shown. To be called last.
+  // Warns of images that no material uses and that could not be read. Call last.
   void check_unused_images();
 
  private:
   class Reader;
-  std::map<int64_t, GltfMaterial> done_;  // the default one at -1
+  std::map<int64_t, GltfMaterial> done_;  // by index; -1: the default material
   const JsonNode root_;
   const GltfBuffers& buffers_;
   Scene& scene_;

@@ -12,14 +12,15 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t read_at_once = size_t(1) << 16;  // of what is worked on side by side
+constexpr size_t read_at_once = size_t(1) << 16;  // triangles or vertices per parallel task
 
 Vec3d vec3_of(const std::array<float, 4>& v) {
   return {double(v[0]), double(v[1]), double(v[2])};
 }
 
-// Renumbers the vertices that `triangles` use to 0, 1, … in their old order; returns the old
-// numbers. Costs what is used, however many vertices the accessor has.
+// Renumbers the vertices that `triangles` use to 0, 1, …, in their old order. Returns the old
+// numbers. Time and memory are proportional to the triangles, however many vertices the accessor
+// has.
 std::vector<uint32_t> compact(std::vector<Triangle>& triangles, uint64_t vertex_count) {
   std::vector<uint32_t> used;
   if (vertex_count <= triangles.size() * 16) {
@@ -44,8 +45,8 @@ std::vector<uint32_t> compact(std::vector<Triangle>& triangles, uint64_t vertex_
   return used;
 }
 
-// Where the vertices of a primitive stand: morphed, then bent by joints or moved by the node [1]
-// §3.7.2.2, §3.7.3.
+// World positions and normals of a primitive's vertices: morph targets first, then the skin or the
+// node's transform [1] §3.7.2.2, §3.7.3.
 class Poser {
  public:
   Poser(const GltfPrimitive& p, const GltfPose& pose) : p_(p), pose_(pose) {
@@ -63,14 +64,14 @@ class Poser {
     return is_skinned_ ? joined(vertex).point(at) : pose_.world_from_mesh.point(at);
   }
 
-  // Unit; NaN where it has no direction.
+  // Returns a unit normal; NaN if it has no direction.
   Vec3 normal(uint32_t vertex) const {
     Vec3d n = vec3_of(p_.normals->read(vertex));
     for_each_target([&](const GltfMorphTarget& target, double weight) {
       if (target.normals) n += vec3_of(target.normals->read(vertex)) * weight;
     });
     const Affine world = is_skinned_ ? joined(vertex) : pose_.world_from_mesh;
-    // Affine::normal carries the sign of the determinant, but a normal does not change sides.
+    // Affine::normal carries the sign of the determinant, but a normal must not change sides.
     n = world.normal(n) * (world.swaps_handedness() ? -1.0 : 1.0);
     return Vec3(n * (1 / length(n)));
   }
@@ -83,7 +84,7 @@ class Poser {
       if (pose_.target_weights[i] != 0) visit(p_.targets[i], pose_.target_weights[i]);
   }
 
-  // The mean of the vertex's joints by their weights, which are made to add up to one.
+  // Returns the vertex's joint transforms, averaged by their normalised weights.
   Affine joined(uint32_t vertex) const {
     Affine sum = Affine::scale({0, 0, 0});
     double total = 0;
@@ -109,7 +110,7 @@ class Poser {
   bool is_skinned_ = false, is_mirrored_ = false;
 };
 
-// The triangles worth keeping, in terms of the accessors' vertices.
+// Returns the triangles that pass TriangleCheck, as indices of the accessors' vertices.
 std::vector<Triangle> read_triangles(const GltfPrimitive& p, const Poser& poser,
                                      WarningLog& warnings, PlacedBounds& bounds) {
   struct Piece {
@@ -143,7 +144,7 @@ std::vector<Triangle> read_triangles(const GltfPrimitive& p, const Poser& poser,
   return triangles;
 }
 
-// What `of` gives for each vertex.
+// Returns of(vertex) for each vertex in `used`, computed in parallel.
 template <class T, class Of>
 std::vector<T> for_each_vertex(const std::vector<uint32_t>& used, const Of& of) {
   std::vector<T> out(used.size());
@@ -153,7 +154,8 @@ std::vector<T> for_each_vertex(const std::vector<uint32_t>& used, const Of& of) 
   return out;
 }
 
-// Zeros where the set is not there but `is_needed`.
+// Returns the texture coordinates of `set`. If the set is missing: zeros if `is_needed`, else
+// empty.
 std::vector<Vec2> read_uvs(const GltfPrimitive& p, int set, const std::vector<uint32_t>& used,
                            bool is_needed) {
   const auto found = p.uvs.find(set);
@@ -172,9 +174,8 @@ std::vector<TextureValue> read_colors(const AccessorView& colors,
   });
 }
 
-// Exporters that mirror sometimes leave the winding behind. Where every normal of a mesh lies on
-// the back of its triangles, the normals are believed: the side that is shaded is the side that
-// emits.
+// Reverses the winding if every normal lies on the back of its triangles: some exporters mirror a
+// mesh and keep the winding. The normals win, so that the shaded side is also the emitting side.
 void wind_by_normals(Mesh& mesh, WarningLog& warnings) {
   if (mesh.normals.empty() || mesh.triangles.empty()) return;
   for (const Triangle& t : mesh.triangles) {

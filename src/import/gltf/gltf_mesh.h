@@ -1,4 +1,5 @@
-// glTF mesh primitives -> meshes in world space.
+// Conversion of glTF mesh primitives to meshes. gltf.cpp calls it once per placed primitive, or
+// once in the mesh's own space for instances.
 // References: [1] Khronos, glTF 2.0 Specification, §3.7 (Geometry).
 #pragma once
 
@@ -13,19 +14,19 @@
 
 namespace troffer {
 
-// How a mesh stands in the world.
+// Transform, morph weights and joints of a mesh.
 struct GltfPose {
   Affine world_from_mesh;
   std::vector<double> target_weights;  // of morph targets; missing ones are 0
-  std::vector<Affine> joints;          // per joint of its skin, world from mesh; empty: no skin
+  std::vector<Affine> joints;          // world from mesh, per joint of the skin; empty: no skin
 };
 
-// The primitive in world space, with the vertices that its triangles use. Triangles without area
-// or with vertices that are not finite are left out, with a warning. Under a mirroring transform
-// triangles are turned round, so that the front stays the front [1] §3.7.4; a mesh all of whose
-// normals contradict its winding is wound by them, with a warning. `sets`: which TEXCOORD_n
-// become Mesh::uvs and uvs_2 (none if they are not there). Counts its triangles into `bounds`.
-// `colors` becomes those of the vertices, if they have any.
+// Returns the primitive in world space, with only the vertices that its triangles use.
+// Leaves out triangles without area or with vertices that are not finite, and warns. Under a
+// mirroring transform it reverses the winding, so that fronts stay fronts [1] §3.7.4. If all
+// normals contradict the winding, it follows the normals and warns.
+// `sets` selects the TEXCOORD_n that become Mesh::uvs and uvs_2; missing sets stay empty. `bounds`
+// grows by the triangles. `colors` receives the vertex colours, if there are any.
 Mesh make_gltf_mesh(const GltfPrimitive& primitive, const GltfPose& pose, const GltfUvSets& sets,
                     WarningLog& warnings, PlacedBounds& bounds,
                     std::vector<TextureValue>* colors = nullptr);

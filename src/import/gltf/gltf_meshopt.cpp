@@ -6,8 +6,8 @@ namespace troffer {
 
 namespace {
 
-// Sixteen zeros of one byte of sixteen vertices take two bits, so that data cannot shrink by more
-// than 64; with room.
+// Limit on the ratio of decoded to compressed bytes. The vertex codec stores sixteen zero bytes in
+// two bits, which is a ratio of 64; the rest is margin.
 constexpr uint64_t max_ratio = 256, always_allowed_bytes = 4096;
 
 void decode_mode(const JsonNode& extension, std::span<const uint8_t> in, size_t count,

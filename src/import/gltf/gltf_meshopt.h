@@ -1,4 +1,5 @@
-// Compressed buffer views.
+// Decoder of compressed buffer views, by the library meshoptimizer. GltfBuffers uses it when it
+// loads the buffer views of a document.
 // References: [1] Khronos extension EXT_meshopt_compression.
 #pragma once
 
@@ -11,13 +12,13 @@
 
 namespace troffer {
 
-// The object of [1] in a buffer view, if it has one. (KHR_meshopt_compression is the same but for
-// newer codecs, at which decoding fails.)
+// Returns the object of [1] in a buffer view, if it has one. Accepts KHR_meshopt_compression too,
+// which differs only in newer codecs; decode_meshopt fails on those.
 std::optional<JsonNode> meshopt_extension(const JsonNode& view);
 
-// What `compressed`, the range that the extension names, stands for: `byte_length` bytes, at most
-// 256 times as many as the compressed ones and a few. Fails at the extension where it is malformed
-// or the data is broken.
+// Decodes `compressed`, the range that the extension names, into `byte_length` bytes. These may be
+// at most 256 times as many as the compressed ones, plus 4096.
+// Fails at the extension if it is malformed or the data is broken.
 std::vector<uint8_t> decode_meshopt(const JsonNode& extension, std::span<const uint8_t> compressed,
                                     uint64_t byte_length);
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr uint32_t none = 0xffffffffu;
 
-// A node that an animation moves should have no matrix [1] §3.11; one that has stands as the
-// animation says.
+// Returns the node's transform relative to its parent. [1] §3.11 forbids a matrix on an animated
+// node; if there is one, the animation wins.
 Affine local_transform(const JsonNode& node, const GltfNodePose& pose) {
   const auto matrix = node.find("matrix");
   if (matrix && !pose.moves()) {
@@ -41,12 +41,12 @@ Affine local_transform(const JsonNode& node, const GltfNodePose& pose) {
 
 struct Hierarchy {
   std::vector<std::vector<uint32_t>> children;
-  std::vector<uint32_t> parent;    // none for roots
+  std::vector<uint32_t> parent;    // `none` for roots
   std::vector<uint32_t> in_order;  // parents before children
 };
 
-// A strict tree [1] §3.5.2: with one parent each, whatever no root leads to lies on or below a
-// cycle.
+// Reads the hierarchy and fails unless it is a strict tree [1] §3.5.2. Each node has one parent at
+// most, so a node that no root reaches lies on or below a cycle.
 Hierarchy read_hierarchy(const JsonNode& nodes) {
   const size_t n = nodes.size();
   Hierarchy h{std::vector<std::vector<uint32_t>>(n), std::vector<uint32_t>(n, none), {}};
@@ -102,7 +102,7 @@ std::vector<uint32_t> roots_of_scene(const JsonNode& root, const Hierarchy& hier
     if (!is_listed[i]) roots.push_back(i);
     is_listed[i] = true;
   }
-  // One below another that is listed comes with that.
+  // A listed node below another listed node is shown together with that one.
   std::vector<bool> is_below(hierarchy.parent.size(), false);
   for (const uint32_t i : hierarchy.in_order) {
     const uint32_t parent = hierarchy.parent[i];
@@ -129,13 +129,13 @@ GltfNodes gltf_nodes(const JsonNode& root, const GltfPoses& poses, WarningLog& w
     const uint32_t parent = hierarchy.parent[i];
     out.world[i] = parent == none ? local : out.world[parent] * local;
   }
-  std::vector<uint32_t> stack = roots_of_scene(root, hierarchy, warnings);  // the next one on top
+  std::vector<uint32_t> stack = roots_of_scene(root, hierarchy, warnings);  // next node on top
   std::reverse(stack.begin(), stack.end());
   while (!stack.empty()) {
     const uint32_t next = stack.back();
     stack.pop_back();
     const auto visibility = nodes->element(next).extension("KHR_node_visibility");
-    if (visibility && !visibility->bool_or("visible", true)) continue;  // nor what is below
+    if (visibility && !visibility->bool_or("visible", true)) continue;  // hides descendants too
     out.shown.push_back({next, out.world[next]});
     const auto& below = hierarchy.children[next];
     stack.insert(stack.end(), below.rbegin(), below.rend());

@@ -10,7 +10,8 @@ namespace {
 
 constexpr uint64_t mode_triangles = 4, mode_strip = 5, mode_fan = 6;
 
-// Vertices that the primitive's corners run through: of the index list, or of the vertex list.
+// Number of triangle corners, before strips and fans are unrolled: indices, or vertices if there
+// are no indices.
 uint64_t corner_count(const GltfPrimitive& p) {
   return p.indices ? p.indices->count : p.positions.count;
 }
@@ -31,7 +32,7 @@ AccessorView index_accessor(const JsonNode& reference, GltfBuffers& buffers,
   return view;
 }
 
-// The attributes of one primitive, from accessors or from compressed data.
+// Attributes of one primitive, from accessors or from compressed data.
 class Attributes {
  public:
   Attributes(const JsonNode& primitive, const JsonNode& list, const GltfBuffers& buffers)
@@ -41,7 +42,8 @@ class Attributes {
 
   const std::shared_ptr<DracoMesh>& decoded() const { return decoded_; }
 
-  // The attribute, if there is one; `most_components` where it may have one more than the least.
+  // Returns the attribute if it exists. It must have `components` components, or `most_components`
+  // if that is given. POSITION must be asked for first: it sets the vertex count.
   std::optional<AccessorView> find(const std::string& name, uint32_t components,
                                    uint32_t most_components = 0) {
     const auto node = reference(name);
@@ -51,7 +53,7 @@ class Attributes {
       node->fail("its accessor should be of type VEC" + std::to_string(components));
     if (view.component_type == gltf_unsigned_int)
       node->fail("its accessor may not be of 32-bit integers");
-    if (name == "POSITION") vertex_count_ = view.count;  // asked for first
+    if (name == "POSITION") vertex_count_ = view.count;
     if (view.count != vertex_count_)
       node->fail("its accessor has " + std::to_string(view.count) + " elements, but POSITION " +
                  std::to_string(vertex_count_));
@@ -99,7 +101,7 @@ class Attributes {
   const JsonNode& list_;
   const GltfBuffers& buffers_;
   std::shared_ptr<DracoMesh> decoded_;   // null: not compressed
-  std::map<std::string, uint32_t> ids_;  // in it
+  std::map<std::string, uint32_t> ids_;  // attribute ids in `decoded_`
   uint64_t vertex_count_ = 0;
 };
 
@@ -142,7 +144,7 @@ void read_indices(const JsonNode& primitive, GltfBuffers& buffers, GltfPrimitive
     view.stride = sizeof(uint32_t);
     view.component_type = gltf_unsigned_int;
     p.indices = view;
-    p.topology = GltfTopology::triangles;  // whatever they were before
+    p.topology = GltfTopology::triangles;  // Draco stores strips and fans as single triangles
   } else if (indices) {
     p.indices = index_accessor(*indices, buffers, p.positions.count);
   }

@@ -1,4 +1,5 @@
-// glTF mesh primitives as the file has them: accessors, checked against each other.
+// glTF mesh primitives as the file stores them: accessors that are checked against each other.
+// gltf_mesh.h turns them into meshes. Compressed primitives look the same as plain ones.
 // References: [1] Khronos, glTF 2.0 Specification, §3.7 (Geometry); [2] Khronos extension
 //   KHR_draco_mesh_compression.
 #pragma once
@@ -19,35 +20,36 @@ namespace troffer {
 
 enum class GltfTopology : uint8_t { triangles, strip, fan };
 
-// What a morph target adds to positions and normals.
+// Displacements that a morph target adds to positions and normals.
 struct GltfMorphTarget {
   std::optional<AccessorView> positions, normals;
 };
 
-// Four joints of each vertex, and how much each counts.
+// Four joints per vertex and their weights.
 struct GltfJoints {
   AccessorView joints, weights;
 };
 
+// A checked primitive: accessors of its attributes, indices and morph targets.
 struct GltfPrimitive {
   GltfTopology topology = GltfTopology::triangles;
   AccessorView positions;
   std::optional<AccessorView> normals, indices, colors;
-  std::map<int, AccessorView> uvs;  // by the n of TEXCOORD_n
-  std::vector<GltfJoints> joints;   // JOINTS_0, JOINTS_1 …
+  std::map<int, AccessorView> uvs;  // by n of TEXCOORD_n
+  std::vector<GltfJoints> joints;   // JOINTS_0, JOINTS_1, … with their weights
   std::vector<GltfMorphTarget> targets;
   std::optional<uint32_t> material;
-  std::shared_ptr<const DracoMesh> decoded;  // holds what the views show, where it was compressed
+  std::shared_ptr<const DracoMesh> decoded;  // storage behind the views if [2] is used; else null
 
-  // As the counts say, degenerate ones included.
+  // Number of triangles by the counts of the accessors, degenerate ones included.
   uint64_t triangle_count() const;
-  // The vertices of triangle i, front first [1] §3.7.2.1.
+  // Returns the vertices of triangle i, counter-clockwise seen from its front [1] §3.7.2.1.
   std::array<uint32_t, 3> triangle(uint64_t i) const;
 };
 
-// Nothing (and a warning) for points, lines and primitives without positions. Fails where
-// accessors have the wrong type, their counts differ, an index is out of range, or compressed data
-// is broken.
+// Reads a primitive. Returns nothing, with a warning, for points, lines and primitives without
+// positions. Fails if accessors have the wrong type or different counts, an index is out of range,
+// or compressed data is broken.
 std::optional<GltfPrimitive> read_gltf_primitive(const JsonNode& primitive, GltfBuffers& buffers,
                                                  WarningLog& warnings);
 

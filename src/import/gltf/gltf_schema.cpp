@@ -11,8 +11,9 @@ namespace {
 
 enum class Is { object, array, string, boolean, number, integer, index, numbers };
 
-// A member by its path, '*' for every element or member of what stands there. `argument`: the
-// largest integer, or how many numbers. `things`: the top-level array that an index points into.
+// Requirement on a member of the document. In `path`, '*' stands for every element or member.
+// `argument` is the largest allowed integer, or the count of numbers. `things` names the top-level
+// array that an index refers to.
 struct Rule {
   std::string_view path;
   Is is;
@@ -28,7 +29,7 @@ constexpr Rule index_rule(std::string_view path, const char* things, bool is_req
   return {path, Is::index, is_required, any, things};
 }
 
-// Parents stand before their members.
+// Parents come before their members, so that a parent's type is checked first.
 constexpr auto rules = std::to_array<Rule>({
     {"asset", Is::object, required},
     {"asset/version", Is::string, required},
@@ -200,7 +201,7 @@ void check_value(const Rule& rule, const JsonNode& root, const JsonNode& value) 
   }
 }
 
-// Applies a rule to whatever its remaining path leads to from `node`.
+// Applies the rule to everything that `path`, the rest of the rule's path, leads to from `node`.
 void apply(const Rule& rule, const JsonNode& root, const JsonNode& node, std::string_view path) {
   const size_t slash = path.find('/');
   const bool is_last = slash == std::string_view::npos;
@@ -215,7 +216,7 @@ void apply(const Rule& rule, const JsonNode& root, const JsonNode& node, std::st
     if (const auto child = node.find(token))
       descend(*child);
     else if (is_last && rule.is_required)
-      node.member(token);  // fails, naming it
+      node.member(token);  // fails with the member's name
   } else if (node.is_array()) {
     for (size_t i = 0; i < node.size(); ++i) descend(node.element(i));
   } else {
@@ -223,7 +224,7 @@ void apply(const Rule& rule, const JsonNode& root, const JsonNode& node, std::st
   }
 }
 
-// "2.0" -> (2, 0); fails on anything else.
+// Splits "2.0" into (2, 0); fails on anything else.
 std::pair<int, int> parsed_version(const JsonNode& node) {
   const std::string& text = node.as_string();
   const size_t dot = text.find('.');
@@ -237,7 +238,8 @@ std::pair<int, int> parsed_version(const JsonNode& node) {
   return {std::stoi(text.substr(0, dot)), std::stoi(text.substr(dot + 1))};
 }
 
-// A later minor version is read as 2.0, which is what it extends [1] §3.2.
+// Fails unless the major version is 2. A minVersion above 2.0 gives a warning and is read as 2.0,
+// which it extends [1] §3.2.
 void check_version(const JsonNode& asset, WarningLog& warnings) {
   const JsonNode version = asset.member("version");
   if (parsed_version(version).first != 2)
@@ -260,7 +262,7 @@ void check_cameras(const JsonNode& root) {
   }
 }
 
-// Also of nodes that are not shown.
+// Checks the light index of every node, including nodes that are not shown.
 void check_light_references(const JsonNode& root) {
   for (const char* name : {"KHR_lights_punctual", "EXT_lights_ies"}) {
     const auto extension = root.extension(name);
@@ -272,7 +274,7 @@ void check_light_references(const JsonNode& root) {
   }
 }
 
-// Read, or warned about at what uses them.
+// Extensions that are read, or that give a warning of their own where they are used.
 constexpr auto supported_extensions =
     std::to_array<std::string_view>({"EXT_lights_ies",
                                      "EXT_lights_image_based",

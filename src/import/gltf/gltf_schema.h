@@ -1,4 +1,6 @@
-// What every glTF document must have before it is used: types, required members, references.
+// Structural checks of a glTF document before it is used: JSON types, required members, references.
+// The importer runs them first, so that later code can follow references without checking them
+// again.
 // References: [1] Khronos, glTF 2.0 Specification, §5 (Properties Reference).
 #pragma once
 
@@ -7,12 +9,12 @@
 
 namespace troffer {
 
-// Checks the asset's version, that everything the importer reads has the right JSON type, that
-// required members are there, and that every index names something that exists, used or not.
-// Fails at the first value that is wrong; a later minor version of the format is a warning.
+// Checks the asset's version, the presence of required members, and the JSON type of everything
+// that the importer reads. Also checks every index, whether it is used or not.
+// Fails at the first wrong value. Warns if the file asks for a later minor version.
 void check_gltf_document(const JsonNode& root, WarningLog& warnings);
 
-// Fails on a required extension that is not supported; an optional one becomes a warning.
+// Warns of each extension that is not supported, required or not.
 void check_gltf_extensions(const JsonNode& root, WarningLog& warnings);
 
 }  // namespace troffer

@@ -45,12 +45,12 @@ void read_transform(const JsonNode& transform, Texture& look) {
   look.uv_rotation_rad = float(transform.number_or("rotation", 0));
 }
 
-// An image outside the scene's folder, where nothing is read, may lie beside the scene all the
-// same; else it is missing, as one that is not there.
+// Loads an image file. If its path leads out of the scene's folder, tries a file of the same name
+// beside the scene; otherwise reports the image as missing.
 int32_t load_file(const JsonNode& uri, const std::string& folder, const Texture& look,
                   TextureLoader& loader) {
   const std::string name = percent_decoded(uri.as_string()).value_or(uri.as_string());
-  const bool has_drive = name.size() > 1 && name[1] == ':';  // of a Windows path
+  const bool has_drive = name.size() > 1 && name[1] == ':';  // drive letter of a Windows path
   const bool is_elsewhere = has_uri_scheme(uri.as_string()) && !has_drive;
   const ConfinedPath path = confined_path(folder, name);
   if (!is_elsewhere && path.is_fine()) return loader.from_file(path.path, look);
@@ -69,13 +69,14 @@ int32_t load_image(const JsonNode& image, const Texture& look, const GltfBuffers
   const auto uri = image.find("uri");
   if (!uri) return loader.missing(key, "has neither a uri nor a buffer view", look);
   if (!is_data_uri(uri->as_string())) return load_file(*uri, folder_of(image.file()), look, loader);
-  // Decoding base64 again for a second use is cheaper than keeping it.
+  // Decoding base64 again for a second use is cheaper than keeping the bytes.
   const auto data = parse_data_uri(uri->as_string());
   if (!data) uri->fail("is a malformed data URI");
   return loader.from_memory(data->bytes, key, look);
 }
 
-// Data URIs would have to be decoded and kept: those wait.
+// Asks the loader to decode an image in advance. Skips data URIs, whose decoded bytes would have to
+// be kept.
 void expect_image(const JsonNode& image, const GltfBuffers& buffers, TextureLoader& loader) {
   if (const auto view = image.find("bufferView")) {
     loader.expect_memory(buffers.buffer_view(*view), gltf_image_key(image));
@@ -88,8 +89,8 @@ void expect_image(const JsonNode& image, const GltfBuffers& buffers, TextureLoad
   if (path.is_fine()) loader.expect_file(path.path);
 }
 
-// WebP where there is one; of images that are not read (KHR_texture_basisu) the plain one that may
-// stand beside them.
+// Returns the WebP image if there is one, else the plain image. The latter may accompany a format
+// that is not read (KHR_texture_basisu).
 std::optional<JsonNode> source_of(const JsonNode& texture) {
   if (const auto webp = texture.extension("EXT_texture_webp"))
     if (auto source = webp->find("source")) return source;
@@ -137,7 +138,7 @@ GltfTextureUse gltf_texture(const JsonNode& root, const JsonNode& info, bool is_
   }
   const auto source = source_of(texture);
   if (!source) {
-    // An extension may hold one, in an image format that is not read.
+    // The only image may be in an extension's format.
     scene.warnings.add(printable(texture.pointer()) +
                        ": has no image of a format that is read; grey stands for it");
     use.stand_in = stand_in_for_missing(is_srgb);

@@ -9,7 +9,7 @@ namespace troffer {
 std::string path_of_uri(const JsonNode& uri, const std::string& folder) {
   const std::string& text = uri.as_string();
   const std::string quoted = "'" + printable(text) + "'";
-  const bool has_drive = text.size() > 1 && text[1] == ':';  // of a Windows path
+  const bool has_drive = text.size() > 1 && text[1] == ':';  // drive letter of a Windows path
   if (has_uri_scheme(text) && !has_drive)
     uri.fail(quoted + ": only files in the scene's folder and data URIs are read");
   const auto name = percent_decoded(text);

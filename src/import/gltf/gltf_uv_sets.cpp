@@ -12,9 +12,10 @@ namespace {
 constexpr uint64_t max_uv_set = 1000;
 
 struct Place {
-  const char *extension, *key;  // extension null: the material itself
+  const char *extension, *key;  // null: the material itself
 };
-// The base colour's first: without alpha and emission it says which set is the mesh's first.
+// Textures of a material beside those of pbrMetallicRoughness. The first used texture decides the
+// mesh's first set, so base colours come before others.
 constexpr std::array<Place, 15> places{
     {{"KHR_materials_pbrSpecularGlossiness", "diffuseTexture"},
      {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture"},

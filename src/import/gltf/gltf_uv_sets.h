@@ -1,4 +1,6 @@
-// Which sets of texture coordinates a glTF material looks its textures up by.
+// Choice of the texture coordinate sets (TEXCOORD_n) that a glTF material uses. A mesh of the scene
+// has two sets at most, so a material with more is approximated. Used when a material is read
+// (gltf_material.h) and when its meshes are made (gltf_mesh.h).
 #pragma once
 
 #include "base/log.h"
@@ -6,16 +8,17 @@
 
 namespace troffer {
 
-// A mesh keeps two at most: n of the TEXCOORD_n that becomes Mesh::uvs, and of that which becomes
-// Mesh::uvs_2 (-1: none). Alpha and lights know the first alone.
+// Values of n for the TEXCOORD_n that become Mesh::uvs and Mesh::uvs_2 (-1: none). Alpha and
+// emission use the first set only.
 struct GltfUvSets {
   int first = 0, second = -1;
 };
 
-// The set that a textureInfo names, or its KHR_texture_transform, which overrides it.
+// Returns the set that a textureInfo names; its KHR_texture_transform overrides it.
 int gltf_uv_set(const JsonNode& texture_info);
 
-// What cannot be had with two is told: those textures get the first.
+// Chooses the sets of a material. Warns if two sets do not suffice; the remaining textures then use
+// the first set.
 GltfUvSets gltf_uv_sets(const JsonNode& material, WarningLog& warnings);
 
 }  // namespace troffer

@@ -1,4 +1,5 @@
-// Which material a primitive has in a chosen variant.
+// Material variants of glTF (`--variant NAME`): the material of each primitive in a chosen variant.
+// gltf.cpp applies the choice when it reads primitives.
 // References: [1] Khronos extension KHR_materials_variants.
 #pragma once
 
@@ -11,14 +12,15 @@
 
 namespace troffer {
 
-// The variant of that name: its index in [1]'s list. UsageError that lists the names if there is
-// none. Without a name: none, and a warning if the file has variants.
+// Returns the index of the named variant in [1]'s list. Throws UsageError that lists the names if
+// there is none of that name. Without a name it returns nothing, and warns if the file has
+// variants.
 std::optional<uint32_t> find_gltf_variant(const JsonNode& root,
                                           const std::optional<std::string>& name,
                                           WarningLog& warnings);
 
-// The material that [1] gives the primitive in that variant; none: its own. Fails where an index is
-// out of range.
+// Returns the material of the primitive in that variant; nothing if the primitive keeps its own.
+// Fails if an index is out of range.
 std::optional<uint32_t> gltf_variant_material(const JsonNode& root, const JsonNode& primitive,
                                               uint32_t variant);
 

@@ -14,11 +14,9 @@ namespace troffer {
 
 namespace {
 
-// A ray that enters an instance pays for the way to its space, and an instance takes the memory of
-// some triangles. Halls full of bushes, time of rays by instances over that by copies: 1.4 for
-// meshes of 70 triangles, 1.1 for 250, 0.8 for 1000. So the smallest are copied, small ones while
-// all copies take some hundred MB; one tree is no worse than two levels for what is small as a
-// whole.
+// Thresholds from measured ray times in halls full of bushes, instances relative to copies: 1.4 for
+// meshes of 70 triangles, 1.1 for 250, 0.8 for 1000. The smallest meshes are always copied. Others
+// are copied until all copies together take some hundred MB.
 constexpr size_t fewest_triangles = 64, few_triangles = 512;
 constexpr size_t most_copied = 1 << 18, most_copied_of_few = 1 << 21;
 
@@ -54,7 +52,7 @@ bool MeshInstancer::is_worth(size_t triangles, uint32_t material) const {
   return triangles >= fewest_triangles && !may_be_thin_glass(scene_.materials[material]);
 }
 
-// Counts those that will be copied.
+// True if a new mesh of that size should be shared. Otherwise counts its triangles as copied.
 bool MeshInstancer::wants(size_t triangles) {
   const size_t most = triangles < few_triangles ? most_copied_of_few : most_copied;
   if (copied_triangles_ + triangles > most) return true;
@@ -78,9 +76,9 @@ MeshInstancer::Stored MeshInstancer::store(Mesh mesh) {
   return out;
 }
 
-// Whether all triangles can be rendered where they come to lie (TriangleCheck). Of most meshes that
-// follows from their flattest triangle: under singular values between `least` and `most` a height h
-// over an edge of length l becomes at least h least^2 / most, and rounding takes some of it.
+// True if all triangles pass TriangleCheck in world space. A bound by the flattest triangle settles
+// most meshes. Under singular values between `least` and `most`, a height h over an edge becomes at
+// least h least² / most, less rounding.
 bool MeshInstancer::is_good(const Stored& stored, const Affine& world_from_mesh) const {
   constexpr double rounding = 4 * 0x1p-24, flattest = 1e-8;
   double squares = 0, largest = 0;
@@ -90,7 +88,7 @@ bool MeshInstancer::is_good(const Stored& stored, const Affine& world_from_mesh)
     largest = std::max(largest, farthest[a] + std::sqrt(squares) * length(Vec3d(stored.reach)));
   const double most = std::sqrt(squares), least = std::abs(world_from_mesh.determinant()) / squares;
   const double height = stored.least_height * least * least / most;
-  constexpr double largest_good = 1e8, least_area = 1e-18;  // well within what floats hold
+  constexpr double largest_good = 1e8, least_area = 1e-18;  // well within the range of floats
   if (largest < largest_good &&
       height > rounding * largest + flattest * most * stored.longest_edge &&
       height * height > least_area)

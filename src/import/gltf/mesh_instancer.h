@@ -1,4 +1,6 @@
-// Shapes that a file places many times -> instances of a mesh that is stored once, where that pays.
+// Instancing of meshes that a file places many times: a mesh is stored once if that saves memory
+// without slowing rays. Importers (glTF, pbrt, Mitsuba) offer each placement to
+// MeshInstancer::place and copy the mesh if it declines. docs/formats.md#instances lists the rules.
 #pragma once
 
 #include <compare>
@@ -13,42 +15,45 @@
 
 namespace troffer {
 
-// What a scene may hold by instances, all else included: numbers of triangles are 32 bits.
+// Limit on all triangles of a scene, instances counted in full: triangle numbers have 32 bits.
 constexpr uint64_t max_placed_triangles = 4'000'000'000;
 
+// Returns the error message for scenes beyond that limit.
 std::string too_many_by_instances();
 
+// Decides between instances and copies, and stores the shared meshes of a scene.
 class MeshInstancer {
  public:
-  // Both must outlive this.
+  // Both must outlive this object.
   MeshInstancer(Scene& scene, PlacedBounds& bounds) : scene_(scene), bounds_(bounds) {}
 
-  // What placements have in common that share a mesh.
+  // Identity of a shared mesh: placements with equal keys share it.
   struct Key {
-    const void* shape = nullptr;  // lives as long as this
+    const void* shape = nullptr;  // must outlive this object
     uint32_t material = 0;
-    uint32_t variant = 0;  // any number that tells ways to turn it apart
+    uint32_t variant = 0;  // distinguishes different versions of a shape, for example reversed ones
     auto operator<=>(const Key&) const = default;
   };
 
-  // Adds one more instance: false where a copy is better or the only way, and none was added. That
-  // is so of meshes of few triangles, of the first ones of a scene, while all copies together are
-  // small; where the transform is next to singular, or a triangle has no area under it; and of
-  // glass that may be thin, which is looked at in the world (thin_glass.h). triangles: as the file
-  // counts them. world_from_mesh: from Scene::origin. make: the mesh in its own space, cleaned, its
-  // front as without the transform, material set; called once for each key.
+  // Adds an instance, or returns false if the mesh must or should be copied. Meshes of few
+  // triangles are copied, and the first meshes while all copies together are small. Glass that may
+  // be thin is copied too, because thin_glass.h works in world space. So are meshes under a nearly
+  // singular transform, or one that takes a triangle's area away.
+  // `triangles` is the file's count. `world_from_mesh` counts from Scene::origin. `make` returns
+  // the mesh in its own space: cleaned, with its material, its front as without the transform. It
+  // is called at most once per stored mesh.
   bool place(const Key& key, size_t triangles, const Affine& world_from_mesh,
              const std::string& name, const std::function<Mesh()>& make);
 
-  // Whether a mesh of so many triangles and that material is ever shared.
+  // True if a mesh of that size and material may be shared at all.
   bool is_worth(size_t triangles, uint32_t material) const;
 
  private:
-  // A mesh that is stored, and what says that its triangles keep an area in the world.
+  // A stored mesh, with the bounds that prove that its triangles keep an area in world space.
   struct Stored {
-    uint32_t number = 0;      // of Scene::instanced_meshes
-    Vec3 reach;               // reach_of()
-    double least_height = 0;  // of a triangle, above its longest edge
+    uint32_t number = 0;      // index into Scene::instanced_meshes
+    Vec3 reach;               // reach_of() the mesh
+    double least_height = 0;  // smallest height of a triangle over its longest edge
     double longest_edge = 0;
   };
   bool wants(size_t triangles);
@@ -61,7 +66,7 @@ class MeshInstancer {
   size_t copied_triangles_ = 0;
 };
 
-// Makes a plain mesh of what has only one instance, and removes what has none.
+// Turns meshes with a single instance into plain meshes, and removes meshes without instances.
 void settle_instances(Scene& scene);
 
 }  // namespace troffer

@@ -16,20 +16,21 @@ namespace troffer {
 
 namespace {
 
-constexpr double least_flatness = 0.999;  // of the length of the sum of areas over their sum
+constexpr double least_flatness = 0.999;  // length of the summed area vectors over the summed
+                                          // areas; 1: flat
 
 using Axes = std::array<Vec3, 3>;
 
-// C0 lies along what of `along` is normal to the axis; without any, anywhere. C90 is
-// counterclockwise from it, seen from above.
+// Returns the axes C0, C90 and nadir. C0 is the part of `along` perpendicular to the axis, or
+// arbitrary if there is none. C90 is counterclockwise from C0, seen from above.
 Axes axes_about(const Vec3d& axis, const Vec3d& along) {
   const Vec3d flat = along - axis * dot(along, axis);
   const Vec3d x = length(flat) > 1e-6 * length(along) ? normalize(flat) : Framed(axis).tangent;
   return {Vec3(x), Vec3(cross(x, axis)), Vec3(axis)};
 }
 
-// Of a surface whose longest edge is `longest`: the one of C0 and C90 along which the luminaire's
-// own opening is longer.
+// Returns the axes for a surface whose longest edge is `longest`: the longer side of the
+// luminaire's own opening follows that edge.
 Axes axes_of_surface(const Luminaire& luminaire, const Vec3d& axis, const Vec3d& longest) {
   const Vec3d& size = luminaire.opening.size;
   return axes_about(axis, size.y > size.x * 1.0001 ? cross(axis, longest) : longest);
@@ -76,7 +77,7 @@ void set_web(Light& e, int32_t web, const Axes& axes, Rgb scale) {
   e.radiance = scale;
 }
 
-// A flat opening: its area, once or for both sides.
+// Sets the faces of a flat opening, one or two, and returns true if it shines to both sides.
 bool set_flat_opening(LightWeb& web, double area) {
   const bool is_two_sided = shines_towards(web, {0, 0, -1});
   web.faces = {Vec3{0, 0, float(area)}};
@@ -111,7 +112,7 @@ void attach_to_meshes(Scene& scene, const std::string& node, const Luminaire& lu
   }
 }
 
-// A point, a spot, a disk or a sphere; false for others.
+// Attaches the luminaire to a point, spot, disk or sphere; false for other lights.
 bool attach_to_light(Scene& scene, Light& e, const Luminaire& luminaire, Rgb scale,
                      const Vec3d& down) {
   const auto web = int32_t(scene.webs.size());
@@ -148,7 +149,7 @@ uint32_t add_black(Scene& scene) {
   return uint32_t(scene.materials.size()) - 1;
 }
 
-// Each face is a mesh, so that each is a source of its own and flat.
+// Each face becomes a mesh of its own, so that each is a separate, flat light.
 void add_faces(Scene& scene, const std::string& name, const OpeningBody& body, const LightWeb& web,
                const Axes& axes, const Vec3d& position) {
   const auto world = [&](const Vec3d& p) {
@@ -162,7 +163,7 @@ void add_faces(Scene& scene, const std::string& name, const OpeningBody& body, c
     mesh.name = name;
     mesh.material = black;
     for (const Vec3d& p : face.outline) mesh.positions.push_back(Vec3(position + world(p)));
-    // The luminaire's axes may be of the other hand.
+    // The luminaire's axes may be left-handed.
     const std::vector<Vec3>& v = mesh.positions;
     const Vec3d normal = cross(Vec3d(v[1]) - Vec3d(v[0]), Vec3d(v[2]) - Vec3d(v[0]));
     if (dot(normal, world(face.area)) < 0)
@@ -255,7 +256,7 @@ void add_luminaire(Scene& scene, const std::string& name, const Luminaire& lumin
 
 namespace {
 
-// What shines is no instance.
+// Turns instances of that name into plain meshes, because instances cannot emit.
 void copy_out(Scene& scene, const std::string& name) {
   std::erase_if(scene.instances, [&](const Instance& i) {
     if (i.name != name) return false;

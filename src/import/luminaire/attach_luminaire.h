@@ -1,4 +1,6 @@
-// Measured luminaires take the place of what shines in a scene.
+// Luminaires in a scene: attached to existing geometry or lights, or added as bodies of their own.
+// Used by `--luminaire` and by importers whose formats name photometric files. Intensities are in
+// cd, positions count from Scene::origin.
 #pragma once
 
 #include <string>
@@ -8,26 +10,26 @@
 
 namespace troffer {
 
-// Makes `node` shine as the luminaire does, its intensities times `scale`, which may be a colour: a
-// point or spot of that name, whose direction becomes the nadir (points and spheres: straight down,
-// `down`); flat meshes of that name, or those of lights of that name, disks and spheres among them,
-// whose front becomes the luminous opening, facing the nadir. UsageError where there is nothing of
-// that name, or it is not flat.
+// Makes `node` shine like the luminaire, with intensities times `scale`, which may be a colour.
+// If a point, spot, disk or sphere light has that name, it gets the web. The nadir is a spot's
+// direction or a disk's normal, and `down` for points and spheres. Otherwise the flat meshes of
+// that name, or of lights of that name, become the luminous opening; their front faces the nadir.
+// Throws UsageError if nothing has that name, or if it is not flat.
 void attach_luminaire(Scene& scene, const std::string& node, const Luminaire& luminaire, Rgb scale,
                       const Vec3& down);
 
-// The number in Scene::webs of a luminaire's own, with its opening.
+// Adds the luminaire's web with its own opening and returns the index in Scene::webs.
 int32_t add_web(Scene& scene, const Luminaire& luminaire);
 
-// Where a luminaire that no part of the scene stands for hangs: its middle, from the scene's
-// origin; where its nadir lies; what lies in its half-plane C0 (not parallel to that); the
-// direction straight down, by which it is tilted.
+// Position and orientation of a luminaire without geometry of its own: its centre, its nadir, a
+// direction in half-plane C0 (not parallel to the nadir), and straight down, from which its tilt is
+// measured.
 struct LuminairePlace {
   Vec3d position, nadir, along, down;
 };
 
-// Adds it as what its file says of its opening: a body whose faces shine where light leaves them
-// and are black elsewhere, or a point. `web`: of add_web().
+// Adds the luminaire as the body of its opening: faces shine where light leaves them and are black
+// elsewhere. An opening without extent becomes a point light. `web` is the result of add_web().
 void add_luminaire(Scene& scene, const std::string& name, const Luminaire& luminaire, int32_t web,
                    Rgb scale, const LuminairePlace& place);
 

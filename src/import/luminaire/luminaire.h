@@ -1,4 +1,6 @@
-// Measured luminaires: IES LM-63 and EULUMDAT files.
+// Photometric files of luminaires: IES LM-63 and EULUMDAT. A Luminaire holds the photometric web
+// (cd), the luminous opening (m) and the lamps' data. attach_luminaire.h puts it into a scene.
+// docs/luminaires.md describes both from the user's side.
 //
 // References: [1] ANSI/IES LM-63-19 and its editions of 1986 to 2002, "Standard file format for the
 //   electronic transfer of photometric data".
@@ -18,33 +20,38 @@ namespace troffer {
 
 constexpr size_t max_luminaire_bytes = size_t(64) << 20;
 
-// By what a luminaire's light is multiplied that is tilted, its lamp with it.
+// Factors on the light of a luminaire that is tilted together with its lamp.
 struct TiltFactors {
-  std::vector<double> angles_deg, factors;  // as many; empty: 1
+  std::vector<double> angles_deg, factors;  // of equal size; empty: factor 1
 };
 
+// Content of a photometric file.
 struct Luminaire {
   // Luminous intensities, cd.
   LightWeb web;
   std::string description;
-  double lamp_lumens = 0;    // stated; 0 where the file states none (absolute photometry)
-  double output_ratio = 0;   // … what share of them leaves the luminaire; 0: the file states none
-  bool is_absolute = false;  // photometry that says so: -1 lumens, or lamps, in the file
-  double watts = 0;          // 0: the file states none
+  double lamp_lumens = 0;    // 0: not stated (absolute photometry)
+  double output_ratio = 0;   // share of lamp_lumens that leaves the luminaire; 0: not stated
+  bool is_absolute = false;  // the file declares absolute photometry: -1 lumens (LM-63) or lamps
+                             // (EULUMDAT)
+  double watts = 0;          // 0: not stated
   LuminousOpening opening;
   TiltFactors tilt;
 };
 
-// By ending: .ldt is EULUMDAT, all else LM-63. Repeats planes that symmetry leaves out. Factors of
-// a file that LM-63's TILT names are read from beside it.
-// Warnings: what is odd but has a meaning (decimal commas, planes that do not close, negative
-// intensities, angles that descend or leave out a pole, factors of 0). InputError with line and
-// column: what has none, and files of more than 4 Mi values or 64 MiB.
+// Reads a file: .ldt is EULUMDAT, any other ending LM-63. Repeats the planes that symmetry omits.
+// Reads a file of tilt factors that TILT= names, if it lies in the same folder.
+// Warns of unusual content with a clear meaning: decimal commas, planes that do not close, negative
+// intensities, descending angles, a missing pole, factors of 0.
+// Throws InputError with line and column for content without a clear meaning, and for files of more
+// than 4 Mi values or 64 MiB.
 Luminaire read_luminaire(const std::string& path, WarningLog& warnings);
-// The same of LM-63 text that is no file; `name` stands for its path in messages.
+// Reads LM-63 text that is not a file of its own; `name` replaces the path in messages. Files of
+// tilt factors are not read.
 Luminaire read_luminaire_text(const std::string& name, std::string_view text, WarningLog& warnings);
 
-// Of a luminaire whose nadir is so far from straight down; linear between the angles it gives.
+// Returns the factor at `tilt_deg`, the angle between the nadir and straight down; linear between
+// the listed angles, constant beyond.
 double tilt_factor(const Luminaire& luminaire, double tilt_deg);
 
 }  // namespace troffer

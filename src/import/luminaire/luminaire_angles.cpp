@@ -9,12 +9,13 @@ namespace troffer {
 
 namespace {
 
-constexpr double told_shift = 0.1;  // degrees; less is rounding
-constexpr double most_gap = 5;      // degrees; a usual step of photometric tables
-constexpr double least_gap = 1e-3;  // degrees; nearer angles are one in single precision
-// A gap of half of a step is one of a table by the middles of its zones.
+constexpr double told_shift = 0.1;  // degrees; smaller shifts are rounding
+constexpr double most_gap = 5;      // degrees; a common step of photometric tables
+constexpr double least_gap = 1e-3;  // degrees; closer angles are equal in single precision
+// Largest gap in steps: tables that list the middles of zones begin half a step from the pole. The
+// excess is for rounding.
 constexpr double zone_gap = 0.505;
-constexpr double told_share = 0.01;  // of the largest intensity
+constexpr double told_share = 0.01;  // of the largest intensity; a darker edge needs no warning
 
 double snapped(double angle, double neighbour) {
   const double nearest = 90 * std::round(angle / 90), off = std::abs(angle - nearest);
@@ -46,7 +47,7 @@ void append_height(Planes& planes, double height) {
   planes.candela = std::move(candela);
 }
 
-// Whether any plane has light worth mentioning at one of its heights.
+// True if any plane exceeds told_share of the largest intensity at that vertical angle.
 bool is_lit_at(const Planes& planes, size_t height) {
   const double most = *std::max_element(planes.candela.begin(), planes.candela.end());
   const size_t n = planes.heights_deg.size();
@@ -55,7 +56,7 @@ bool is_lit_at(const Planes& planes, size_t height) {
   return false;
 }
 
-// An angle above 0 whose table is to begin at 0.
+// True if the angles begin above 0, but close enough to be extended to 0.
 bool is_near_zero(const std::vector<double>& angles) {
   const double first = angles.front(), step = angles.size() > 1 ? angles[1] - first : 0;
   return first > least_gap && first <= std::max(most_gap, zone_gap * step);

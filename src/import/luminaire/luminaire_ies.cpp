@@ -21,7 +21,8 @@ std::string upper_case(std::string_view s) {
   return out;
 }
 
-// The value of a line TILT=…, blanks and either case allowed; false for other lines.
+// Extracts the value of a line TILT=…, in either case and with blanks allowed; false for other
+// lines.
 bool take_tilt(std::string_view line, std::string_view& value) {
   constexpr size_t length = 4;
   if (upper_case(line.substr(0, length)) != "TILT") return false;
@@ -31,7 +32,7 @@ bool take_tilt(std::string_view line, std::string_view& value) {
   return true;
 }
 
-// What follows TILT=INCLUDE, and is all that a file of tilt factors holds.
+// Reads the tilt table: the part after TILT=INCLUDE, or a whole file of tilt factors.
 TiltFactors read_tilt(PhotometricText& text) {
   TiltFactors tilt;
   text.number("lamp to luminaire geometry", -1e9, 1e9);
@@ -61,12 +62,12 @@ TiltFactors read_tilt_file(const std::string& path, const std::string& folder,
 }
 
 struct Labels {
-  int edition = 0;  // year, by the file's first line; 0: it names none
+  int edition = 0;  // year, by the file's first line; 0: unknown
   std::string description;
 };
 
-// The year of "IESNA91", "IESNA:LM-63-1995", "IESNA:LM-63-02" and "IES:LM-63-2019"; 0 for other
-// lines. The first edition is of 1986, so two digits below 86 belong to this century.
+// Returns the year of "IESNA91", "IESNA:LM-63-1995", "IESNA:LM-63-02" or "IES:LM-63-2019"; 0 for
+// other lines. The first edition is of 1986, so two digits below 86 mean 20xx.
 int edition_of(std::string_view first_line) {
   const std::string line = upper_case(first_line);
   const size_t label = line.find("LM-63-"), old = line.find("IESNA91");
@@ -80,7 +81,7 @@ int edition_of(std::string_view first_line) {
   return short_year + (short_year < 86 ? 2000 : 1900);
 }
 
-// Up to the line TILT=, whose value is returned; what stands before it is text for people.
+// Reads keyword lines up to the line TILT=, and returns its value.
 std::string_view read_labels(PhotometricText& text, Labels& labels) {
   std::string_view line;
   constexpr size_t most_labels = 10'000;
@@ -98,7 +99,7 @@ std::string_view read_labels(PhotometricText& text, Labels& labels) {
   text.fail("no line begins with TILT=");
 }
 
-// The ten numbers of the two lines before the angles, as far as they are needed.
+// The ten numbers on the two lines before the angles, as far as they are needed.
 struct Header {
   double factor = 1;
   size_t heights = 0, turns = 0;
@@ -106,7 +107,7 @@ struct Header {
   bool has_zero_factor = false;
 };
 
-// LM-63-2019's file generation types are 1 and five binary digits behind the point.
+// True for file generation types of LM-63-2019: 1 and five binary digits after the point.
 bool is_generation_type(double v) {
   const double digits = std::round((v - 1) * 1e5);
   if (std::abs((v - 1) * 1e5 - digits) > 1e-3 || digits < 0 || digits > 11'111) return false;
@@ -115,9 +116,9 @@ bool is_generation_type(double v) {
   return true;
 }
 
-// The number between ballast factor and watts: a factor until 1991 (ballast-lamp photometric
-// factor), reserved in 1995 and 2002, and a code in 2019 (file generation type). Returns what
-// intensities are multiplied by.
+// Reads the number between ballast factor and watts, and returns the factor on intensities. It is
+// the ballast-lamp photometric factor until 1991, reserved in 1995 and 2002, and the file
+// generation type in 2019.
 double take_ballast_lamp_factor(PhotometricText& text, int edition, const std::string& path,
                                 WarningLog& warnings) {
   const double v = text.number("ballast-lamp factor", 0, 1e6);
@@ -163,7 +164,7 @@ Header read_header(PhotometricText& text, Luminaire& l, int edition, const std::
   return h;
 }
 
-// More numbers than the header has announced: one of them is wrong, somewhere.
+// Warns if numbers follow the intensities: some count in the header is wrong.
 void warn_of_more(PhotometricText& text, const std::string& path, WarningLog& warnings) {
   std::string_view line;
   while (text.next_line(line))
@@ -173,7 +174,7 @@ void warn_of_more(PhotometricText& text, const std::string& path, WarningLog& wa
     }
 }
 
-// Angles that descend are turned round, their intensities with them: told.
+// Reverses descending angles and their intensities, with a warning.
 void make_ascend(Planes& planes, const std::string& path, WarningLog& warnings) {
   const size_t n = planes.heights_deg.size(), rows = planes.turns_deg.size();
   const auto descends = [](const std::vector<double>& v) {
@@ -194,7 +195,7 @@ void make_ascend(Planes& planes, const std::string& path, WarningLog& warnings) 
   warnings.add(path + ": its angles descend");
 }
 
-// Angles within [least, most] once their ends are where they are meant to be.
+// Reads angles and snaps their ends. Fails unless all then lie within [least, most].
 std::vector<double> read_angles(PhotometricText& text, size_t count, const char* what, double least,
                                 double most, const std::string& path, WarningLog& warnings) {
   const std::string one = fmt::format("{} angle", what), all = one + "s";
@@ -211,7 +212,7 @@ std::vector<double> read_angles(PhotometricText& text, size_t count, const char*
 
 Planes read_planes(PhotometricText& text, const Header& h, const std::string& path,
                    WarningLog& warnings) {
-  const bool is_round = h.type == 1;  // type C; 2: B, 3: A
+  const bool is_round = h.type == 1;  // type C (1); types B (2) and A (3) are beams
   const double most_turn = is_round ? 360 : 90;
   Planes planes;
   planes.heights_deg = read_angles(text, h.heights, "vertical", is_round ? 0 : -90,
@@ -250,7 +251,7 @@ Luminaire read_text(const std::string& path, PhotometricText& text, const std::s
   return l;
 }
 
-// Whether a comma stands between digits anywhere, and may be a decimal point.
+// True if a comma stands between two digits, so that it may be a decimal point.
 bool has_commas_in_numbers(std::string_view bytes) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   for (size_t i = bytes.find(','); i != bytes.npos; i = bytes.find(',', i + 1))
@@ -261,7 +262,8 @@ bool has_commas_in_numbers(std::string_view bytes) {
 
 }  // namespace
 
-// Commas part numbers by the standard; where the file makes no sense so, they may be decimal ones.
+// By the standard, commas separate numbers. If the file is not valid that way, commas are tried as
+// decimal points.
 Luminaire read_ies(const std::string& path, std::string_view bytes, const std::string& folder,
                    WarningLog& warnings) {
   WarningLog own;
@@ -278,7 +280,7 @@ Luminaire read_ies(const std::string& path, std::string_view bytes, const std::s
     try {
       PhotometricText text(path, bytes, true);
       return finish(read_text(path, text, folder, own));
-    } catch (const InputError&) {  // what is said of the file as it should be is told
+    } catch (const InputError&) {  // report the error of the standard reading
     }
     throw;
   }

@@ -8,7 +8,8 @@ namespace troffer {
 
 namespace {
 
-// Planes that are there [2]: all, one, those of half a turn from C0 or from C90, of a quarter.
+// Returns the angles of the planes in the file by its symmetry number [2]: 0 all planes, 1 a single
+// one, 2 C0 to C180, 3 C270 to C90, 4 C0 to C90.
 std::vector<double> planes_present(int symmetry, const std::vector<double>& turns,
                                    PhotometricText& text) {
   const size_t n = turns.size();
@@ -38,7 +39,7 @@ LuminousOpening read_opening(PhotometricText& text) {
   return eulumdat_opening(length, width, sides);
 }
 
-// Without intensities.
+// Reads the angles; leaves intensities empty.
 Planes read_angles(PhotometricText& text, int symmetry, size_t turn_count, size_t heights,
                    const std::string& path, WarningLog& warnings) {
   Planes planes;
@@ -92,7 +93,7 @@ Luminaire read_ldt(const std::string& path, std::string_view bytes, WarningLog& 
     const double lumens = text.number_of_line("lumens", -1e12, most_lumens);
     skip(2);
     const double watts = text.number_of_line("watts", -1e9, 1e9);
-    if (i == 0) {  // others are alternatives
+    if (i == 0) {  // further sets are alternatives
       l.lamp_lumens = std::max(0.0, lumens);
       l.watts = std::max(0.0, watts);
     }

@@ -24,7 +24,7 @@ void check_monotonic(const std::vector<double>& angles, const PhotometricText& t
 
 namespace {
 
-// unfold_planes().
+// Implementation of unfold_planes().
 class Unfolder {
  public:
   Unfolder(const Planes& planes, WarningLog& warnings, const std::string& name)
@@ -46,7 +46,7 @@ class Unfolder {
       add_all(360, -1);
     } else if ((first == 90 && last == 270) || (first == -90 && last == 90)) {
       add_all(0, +1);
-      add_all(180, -1);  // 90 … -90
+      add_all(180, -1);  // 90 to -90
     } else {
       add_all(0, +1);
       if (last - first < 360) {
@@ -70,7 +70,7 @@ class Unfolder {
   }
 
   LightWeb sorted() {
-    // Within [0, 360), each once; then the first again at 360.
+    // Sort the planes within [0, 360) and remove duplicates; a plane at 360 follows below.
     for (Plane& p : made_) p.turn -= 360 * std::floor(p.turn / 360);
     std::stable_sort(made_.begin(), made_.end(),
                      [](const Plane& a, const Plane& b) { return a.turn < b.turn; });
@@ -89,7 +89,7 @@ class Unfolder {
     LightWeb web;
     web.name = name_;
     for (const double h : planes_.heights_deg) web.heights_rad.push_back(float(rad_from_deg(h)));
-    // The seam is at 0 whatever turn the first plane has: planes there by what lies beside it.
+    // The web's seam is at 0. If no plane lies there, interpolate between the neighbours.
     const double gap = turns.front() + 360 - turns.back();
     const double share = turns.front() > 0 ? (360 - turns.back()) / gap : 1;
     const auto add_row = [&](double turn, const double* a, const double* b, double t) {
@@ -117,7 +117,7 @@ LightWeb unfold_planes(const Planes& planes, const std::string& name, WarningLog
 
 namespace {
 
-// The other side of what begins at 0: angles, and which of the given rows or columns each has.
+// A table together with its mirror image: angles, and the row or column of the original for each.
 struct Mirrored {
   std::vector<double> angles;
   std::vector<size_t> from;
@@ -137,11 +137,12 @@ Mirrored mirrored(const std::vector<double>& angles) {
   return m;
 }
 
-// One plane through the beam: the same all round it, the mean of both sides where there are two.
+// Returns a web of rotational symmetry from one plane through the beam: the mean of both sides if
+// the plane has two.
 LightWeb round_beam(const Planes& planes, const std::string& name) {
   std::vector<double> heights, candela;
   const std::vector<double>& v = planes.heights_deg;
-  const auto value_at = [&](double angle) {  // linear; nothing beyond
+  const auto value_at = [&](double angle) {  // linear; -1 outside the table
     const auto above = std::lower_bound(v.begin(), v.end(), angle - 1e-9);
     if (above == v.end() || (above == v.begin() && *above > angle + 1e-9)) return -1.0;
     const auto i = size_t(above - v.begin());
@@ -174,7 +175,7 @@ LightWeb unfold_beam(const Planes& planes, WebPole pole, const std::string& name
   if (planes.heights_deg.front() == 0)
     warnings.add(name + ": vertical angles begin at 0; what lies below the beam mirrors it");
   const Mirrored v = mirrored(planes.heights_deg), h = mirrored(planes.turns_deg);
-  // Of the two the one that goes up to the pole, and the one that goes round it.
+  // One of the two tables runs to the pole, the other around it.
   const bool is_up = pole == WebPole::up;
   const Mirrored &to_pole = is_up ? v : h, &round = is_up ? h : v;
   const size_t n = planes.heights_deg.size();

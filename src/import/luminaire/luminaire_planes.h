@@ -1,4 +1,6 @@
-// Measured planes of a photometric file -> its web: what symmetry leaves out is filled in.
+// Conversion of the measured planes of a photometric file to a photometric web, by the readers of
+// LM-63 and EULUMDAT. It fills in the planes that symmetry omits. Angles are in degrees here and in
+// radians in LightWeb; intensities are in cd.
 #pragma once
 
 #include <string>
@@ -10,25 +12,27 @@
 
 namespace troffer {
 
-// Planes as a file has them. Types A and B: heights are its vertical angles, turns its horizontal
-// ones, from -90 to 90.
+// Measured planes as in the file. Type C: heights are gamma angles, turns are C angles. Types A and
+// B: heights are vertical angles, turns are horizontal angles from -90 to 90.
 struct Planes {
   std::vector<double> heights_deg, turns_deg;
-  std::vector<double> candela;  // per turn, per height
+  std::vector<double> candela;  // turns × heights, a plane after the other
 };
 
+// Fails, at the last item read from `text`, unless the angles ascend.
 void check_ascending(const std::vector<double>& angles, const PhotometricText& text,
                      const char* name);
-// Fails unless they ascend or descend throughout.
+// Fails unless the angles ascend throughout or descend throughout.
 void check_monotonic(const std::vector<double>& angles, const PhotometricText& text,
                      const char* name);
 
-// Of type C: whole turns, from 0 to 360, of planes that begin anywhere and end with their symmetry:
-// 0 … 90 a quarter, 0 … 180, 180 … 360, 90 … 270 and -90 … 90 halves.
+// Unfolds planes of type C to turns from 0 to 360. The range of the planes tells their symmetry: 0
+// to 90 is a quarter; 0 to 180, 180 to 360, 90 to 270 and -90 to 90 are halves. Other planes may
+// begin anywhere.
 LightWeb unfold_planes(const Planes& planes, const std::string& name, WarningLog& warnings);
 
-// Of type A (pole `up`) or B (`right`). Angles that begin at 0 stand for both sides, and a single
-// horizontal angle for all directions about the beam.
+// Unfolds planes of type A (pole `up`) or B (pole `right`). Angles that begin at 0 describe both
+// sides. A single horizontal angle describes a beam of rotational symmetry.
 LightWeb unfold_beam(const Planes& planes, WebPole pole, const std::string& name,
                      WarningLog& warnings);
 

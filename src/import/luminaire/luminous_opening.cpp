@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-constexpr double least_size = 1e-4;  // m; less is none
+constexpr double least_size = 1e-4;  // m; smaller extents count as 0
 constexpr float least_share = 1e-3f;
 
 Vec3d area_of(const std::vector<Vec3d>& outline) {
@@ -19,7 +19,7 @@ Vec3d area_of(const std::vector<Vec3d>& outline) {
   return sum;
 }
 
-// A face whose normal is on the side of `outward`.
+// Returns the face, oriented towards `outward`.
 OpeningFace face_of(std::vector<Vec3d> outline, const Vec3d& outward) {
   const Vec3d area = area_of(outline);
   if (dot(area, outward) >= 0) return {std::move(outline), area};
@@ -33,7 +33,7 @@ Vec3d axis_of(size_t a) {
   return v;
 }
 
-// The rectangle about `middle` across axis a, of these half extents.
+// Returns the rectangle around `middle`, perpendicular to axis a, with the given half extents.
 OpeningFace rectangle(const Vec3d& middle, const Vec3d& half, size_t a, double sign) {
   Vec3d b, c;
   b[(a + 1) % 3] = half[(a + 1) % 3];
@@ -57,9 +57,9 @@ void add_box(const LuminousOpening& o, OpeningBody& body) {
   }
 }
 
-// Corners of an ellipse's polygon, across axis a.
+// Returns the corners of an ellipse's polygon, perpendicular to axis a.
 std::vector<Vec3d> ellipse(const Vec3d& size, size_t a) {
-  // of the ellipse's area
+  // A factor on the radius gives the polygon the ellipse's area.
   constexpr double step = 2 * pi / circle_corners;
   const double radius = std::sqrt(step / std::sin(step));
   std::vector<Vec3d> outline;
@@ -97,7 +97,7 @@ LuminousOpening ies_opening(double width, double length, double height, bool is_
   bool &x = o.is_round[0], &y = o.is_round[1];
   const bool is_upright = height >= 0;
   if (is_before_2002 && !is_upright && (length > 0 || width > 0)) {
-    // A cylinder whose diameter is the height, or an ellipsoid by one sign.
+    // A cylinder whose diameter is the height, or an ellipsoid marked by a single sign.
     if (width == 0) o.size.y = o.size.z;
     if (length == 0) o.size.x = o.size.z;
     x = length <= 0 || width < 0;
@@ -105,7 +105,7 @@ LuminousOpening ies_opening(double width, double length, double height, bool is_
     o.is_round[2] = x || y;
   }
   if (x != y && (is_upright || (is_before_2002 && o.size[x ? 1 : 0] == 0))) {
-    // One diameter, or an ellipse by one sign.
+    // A circle with one diameter, or an ellipse marked by a single sign.
     if (o.size.x == 0) o.size.x = o.size.y;
     if (o.size.y == 0) o.size.y = o.size.x;
     x = y = true;
@@ -165,7 +165,7 @@ bool shines_towards(const LightWeb& web, const Vec3d& normal) {
   const float least =
       least_share * *std::max_element(web.intensities.begin(), web.intensities.end());
   const size_t heights = web.heights_rad.size();
-  // Of each plane, and between it and the next, which may be all the way round.
+  // Test each plane and the interpolated directions up to the next plane, which may be 360° away.
   constexpr int parts = 36;
   for (size_t i = 0; i + 1 < web.turns_rad.size(); ++i)
     for (size_t j = 0; j < heights; ++j) {

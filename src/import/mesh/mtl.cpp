@@ -14,14 +14,15 @@ namespace troffer {
 
 namespace {
 
-// Finite, for values that a material cannot do without.
+// Reads a number that must be finite.
 float finite_number(TextLines& lines) {
   const float value = lines.number();
   if (!std::isfinite(value)) lines.fail("not finite");
   return value;
 }
 
-// "r", "r g b", or one of the unsupported forms "spectral FILE" and "xyz x y z".
+// Reads "r" or "r g b". Returns false, with a warning, for the unsupported forms "spectral FILE"
+// and "xyz x y z".
 bool read_color(TextLines& lines, Rgb& color, WarningLog& warnings) {
   if (!lines.has_word()) lines.fail("a colour is missing");
   if (lines.peek() == 's' || lines.peek() == 'x') {
@@ -42,7 +43,7 @@ bool read_color(TextLines& lines, Rgb& color, WarningLog& warnings) {
   return true;
 }
 
-// Options of maps and how many words they take; 'n' numbers: up to three.
+// An option of a map, and the number of words that it takes.
 struct MapOption {
   std::string_view name;
   int words;  // -1: one to three numbers
@@ -67,8 +68,8 @@ bool starts_number(TextLines& lines) {
   return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
 }
 
-// One to three numbers; those not given stay as they are. A file name may follow that begins with
-// a digit, so words that are not wholly numbers end the list.
+// Reads one to three numbers; missing ones keep their value. The list ends at a word that is not
+// entirely numeric, because a file name that begins with a digit may follow.
 Vec2 read_vector(TextLines& lines, Vec2 value) {
   for (size_t i = 0; i < 3 && starts_number(lines); ++i) {
     TextLines ahead = lines;
@@ -87,7 +88,7 @@ float number_or(std::string_view word, float fallback) {
   return std::isfinite(v) && end != text.c_str() ? v : fallback;
 }
 
-// The i-th word behind an option.
+// Applies the i-th word after an option.
 void set_option(std::string_view name, int i, std::string_view word, MtlMap& map) {
   constexpr std::string_view channels = "rgbml";
   if (name == "-clamp") map.is_clamped = word == "on";
@@ -111,7 +112,7 @@ void read_option(TextLines& lines, const MapOption& option, MtlMap& map) {
   }
 }
 
-// Options, then the file name, which may contain blanks and may be followed by options again.
+// Reads options and the file name. The name may contain blanks, and more options may follow it.
 MtlMap read_map(TextLines& lines, const std::string& subfolder) {
   MtlMap map;
   std::string name;
@@ -122,7 +123,7 @@ MtlMap read_map(TextLines& lines, const std::string& subfolder) {
       read_option(lines, *option, map);
       continue;
     }
-    // Blanks within a name are kept as they are only where no option follows.
+    // Keep the blanks within a name exactly, unless options follow.
     const std::string_view rest = before.rest();
     if (name.empty() && rest.find(" -") == std::string_view::npos) {
       name = std::string(rest);
@@ -178,7 +179,7 @@ bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
     if (lines_.has_word() && lines_.peek() == '-') lines_.word();  // -halo
     m.opacity = std::clamp(finite_number(lines_), 0.0f, 1.0f);
     m.has_dissolve = true;
-  } else if (keyword == "Tr") {  // which some write as 1 for what is opaque
+  } else if (keyword == "Tr") {  // some programs write Tr 1 for opaque materials
     const float through = std::clamp(finite_number(lines_), 0.0f, 1.0f);
     if (!m.has_dissolve) m.opacity = 1 - through;
   } else if (keyword == "illum") {
@@ -189,7 +190,7 @@ bool MtlReader::read_value(std::string_view keyword, MtlMaterial& m) {
   return true;
 }
 
-// From 0 to 1.
+// Reads a statement whose value lies in [0,1].
 bool MtlReader::read_share(std::string_view keyword, MtlMaterial& m) {
   using Share = std::pair<std::string_view, float MtlMaterial::*>;
   constexpr std::array<Share, 5> shares{{{"Pc", &MtlMaterial::coat},
@@ -223,7 +224,8 @@ bool MtlReader::read_image(std::string_view keyword, MtlMaterial& m) {
   return map != nullptr;
 }
 
-// Programs that take d for its opposite make everything invisible.
+// Sets d 0 to opaque if most materials, or ones with an image, have it: some programs invert d, and
+// everything would be invisible.
 void MtlReader::mend_opacity(const std::vector<std::string>& names) {
   const auto is_unseen = [&](const std::string& name) { return library_[name].opacity == 0; };
   const auto unseen = std::count_if(names.begin(), names.end(), is_unseen);
@@ -251,7 +253,7 @@ void MtlReader::read() {
       names.push_back(name);
       continue;
     }
-    // What concerns ambient light and old renderers needs no mention.
+    // Ambient light and options of old renderers need no warning.
     if (keyword == "Ka" || keyword == "map_Ka" || keyword == "Kt" || keyword == "sharpness" ||
         keyword == "map_aat")
       continue;

@@ -11,7 +11,8 @@ namespace troffer {
 
 namespace {
 
-// Exporters write maps of normals as bumps: bluish where a map of heights is grey.
+// True if a bump map is bluish on average: exporters write normal maps as bump maps, and height
+// maps are grey.
 bool looks_like_normals(const std::vector<Texture>& textures, int32_t image) {
   const Texture& t = textures[size_t(image)];
   if (t.kind != TextureKind::image || t.channels < 3) return false;
@@ -25,7 +26,7 @@ bool looks_like_normals(const std::vector<Texture>& textures, int32_t image) {
   return sum.b > 0.7f && std::abs(sum.r - 0.5f) < 0.15f && std::abs(sum.g - 0.5f) < 0.15f;
 }
 
-// The format does not say how high a height of 1 is: a centimetre, times -bm.
+// Sets a bump map. The format does not define the height of 1; it is taken as 1 cm times -bm.
 void set_bump(const MtlMap& map, const std::string& folder, TextureLoader& loader, Scene& scene,
               Material& m) {
   constexpr float height = 0.01f;
@@ -49,13 +50,13 @@ Rgb clamped_reflectance(Rgb c, WarningLog& warnings) {
   return clamp01(c);
 }
 
-// By the physically based extension.
+// True if the material uses the physically based extension.
 bool is_by_roughness(const MtlMaterial& mtl) {
   return mtl.roughness || mtl.metallic || !mtl.map_roughness.file.empty() ||
          !mtl.map_metallic.file.empty();
 }
 
-// Of what set_surface() made: gloss over a diffuse base, as bright as Ks.
+// True if set_surface() made a glossy coat over a diffuse base, as bright as Ks.
 bool is_gloss_by_color(const MtlMaterial& mtl, const Material& m) {
   return m.kind == MaterialKind::metallic_roughness && !is_by_roughness(mtl) &&
          !mtl.specular.is_black() && m.metallic.value == 0;
@@ -63,7 +64,8 @@ bool is_gloss_by_color(const MtlMaterial& mtl, const Material& m) {
 
 void set_anisotropy(const MtlMaterial& mtl, Material& m) {
   if (!(mtl.anisotropy > 0)) return;
-  // The square root of Burley's ratio: roughness is squared to a width.
+  // The square root of Burley's aspect, because set_two_widths takes roughness, the square root of
+  // a width.
   const float aspect = std::pow(1 - 0.9f * mtl.anisotropy, 0.25f);
   set_two_widths(m, m.roughness.value / aspect, m.roughness.value * aspect);
   m.anisotropy_rotation_rad += 2 * pi_f * mtl.turn;
@@ -97,7 +99,7 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
     m.base_color.value = clamped_reflectance(kd + mtl.specular, warnings);
     const float all = average(kd + mtl.specular);
     m.metallic.value = all > 0 ? average(mtl.specular) / all : 0;
-    // Mirrors without an exponent are perfect ones.
+    // Mirrors without an exponent are perfect.
     if (mtl.exponent == 0 || illum == 3 || illum == 5) m.roughness.value = 0;
   } else if (ks > 0 && (illum == 2 || illum < 0 || illum > 3)) {
     m.kind = MaterialKind::metallic_roughness;
@@ -108,14 +110,14 @@ void set_surface(const MtlMaterial& mtl, Rgb kd, Material& m, WarningLog& warnin
     m.kind = MaterialKind::metallic_roughness;
     m.is_thin = true;
     m.transmission.value = 1 - mtl.opacity;
-    if (!mtl.roughness) m.roughness.value = 0;  // dissolved is not frosted
-    // One colour is for what goes through and for what does not: that of the larger part.
+    if (!mtl.roughness) m.roughness.value = 0;  // d alone does not mean frosted
+    // One base colour serves both transmitted and reflected light; the larger part decides.
     if (mtl.filter && mtl.opacity < 0.5f && !mtl.filter->is_black())
       m.base_color.value = clamp01(*mtl.filter);
   }
 }
 
-// Numbers from images.
+// Loads the images that hold numbers: roughness, metallic, opacity and exponent.
 void set_data_images(const MtlMaterial& mtl, const std::string& folder, TextureLoader& loader,
                      Scene& scene, Material& m) {
   const auto set = [&](const MtlMap& map, FloatInput& input, int32_t fallback) {
@@ -126,7 +128,7 @@ void set_data_images(const MtlMaterial& mtl, const std::string& folder, TextureL
   set(mtl.map_metallic, m.metallic, m.metallic.channel);
   if (!mtl.map_opacity.file.empty()) {
     m.is_alpha_masked = m.is_alpha_blended = true;
-    // The image of the colour itself holds opacity in its alpha channel.
+    // The colour image itself holds opacity in its alpha channel.
     const bool is_color_image = mtl.map_opacity.file == mtl.map_diffuse.file;
     m.alpha.value = 1;
     set(mtl.map_opacity, m.alpha, is_color_image ? 3 : 0);

@@ -25,7 +25,7 @@ bool is_alpha(const Texture& t, size_t texel) {
   return channels % 2 == 0 && texel % channels == channels - 1;
 }
 
-// -mm: from `base` to base + gain instead of 0 to 1, of the numbers that the file has.
+// Applies -mm to the stored values, except alpha: maps 0..1 to base..base + gain.
 Texture ranged(Texture t, float base, float gain) {
   for (size_t i = 0; i < t.texels8.size(); ++i) {
     if (is_alpha(t, i)) continue;
@@ -37,7 +37,8 @@ Texture ranged(Texture t, float base, float gain) {
   return t;
 }
 
-// Each texel's value as `of` gives it from its channels, between 0 and 1 where they are bytes.
+// Returns a grey image. `of` computes a texel's value from its channels, which lie in [0,1] for
+// 8-bit images.
 template <class Of>
 Texture grey(const Texture& t, const Of& of) {
   Texture out = t;
@@ -54,10 +55,10 @@ Texture grey(const Texture& t, const Of& of) {
   return out;
 }
 
-// Where `map` says, or beside the scene.
+// Location of an image: the path in `map`, or beside the scene.
 struct ImagePlace {
-  std::string path;     // empty: nowhere
-  std::string problem;  // then
+  std::string path;     // empty: not found
+  std::string problem;  // reason if the path is empty
   bool is_beside = false;
 };
 

@@ -25,8 +25,8 @@ namespace {
 
 constexpr size_t obj_pieces_per_thread = 8, obj_vertices_at_once = size_t(1) << 16;
 
-// Pieces that are read side by side. Their triangles join the parts, in order, while those of the
-// next wave are read.
+// Pieces that are read in parallel. Their triangles join the parts, in order, while the next wave
+// is being read.
 struct ObjWave {
   size_t first = 0, count = 0;
   std::vector<ObjPiece> pieces;
@@ -49,14 +49,14 @@ class ObjReader {
   std::string path_, folder_;
   const PieceReading& how_;
   Scene& scene_;
-  PlacedBounds& bounds_;                 // of those in triangles
-  std::vector<std::string_view> texts_;  // of the pieces
+  PlacedBounds& bounds_;                 // of positions in triangles
+  std::vector<std::string_view> texts_;  // one per piece
 
   struct Vertices {
-    std::vector<Vec3d> positions;  // from the scene's origin
+    std::vector<Vec3d> positions;  // relative to Scene::origin
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;
-    std::vector<Rgb> colors;  // of the first positions; white of further ones
+    std::vector<Rgb> colors;  // of the first positions; further ones are white
   } vertices_;
   ObjParts parts_;
   ObjCounts counts_;
@@ -71,7 +71,7 @@ class ObjReader {
     MtlLibrary library;
     std::unordered_map<std::string, MtlConverted> converted;
     std::unordered_map<std::string, uint32_t> index;
-    std::unordered_set<std::string> expected;  // whose images are
+    std::unordered_set<std::string> expected;  // materials whose images are expected
   } materials_;
 
   void read_pieces();
@@ -128,7 +128,8 @@ void ObjReader::read_pieces() {
   }
 }
 
-// Of the pieces before the first that is not sound, of which it is known what comes before it.
+// Appends the vertices of the pieces before the first unsound one. The counts before later pieces
+// are unknown.
 void ObjReader::add_vertices(ObjWave& wave) {
   wave.before.clear();
   for (size_t i = 0; i < wave.count; ++i) {
@@ -190,7 +191,8 @@ void ObjReader::add_triangles(const ObjPiece& piece) {
   left_out_.dangling += piece.dangling;
 }
 
-// Something is wrong with the piece, unless with what statements before it bring in.
+// Throws the first error of piece i by parsing it again with the counts before it. Statements
+// before the error are applied first, because a material library may hold an earlier error.
 void ObjReader::fail_in(const ObjWave& wave, size_t i) {
   ObjPiece piece;
   try {
@@ -228,7 +230,8 @@ void ObjReader::expect_images_of(const std::string& material) {
   expect_mtl_images(found->second, folder_, materials_.loader);
 }
 
-// Names may contain blanks, and several may follow: the whole line first, then up to each ".mtl".
+// Reads the libraries of a mtllib statement. Names may contain blanks, so the whole line is tried
+// first, then each part up to ".mtl".
 void ObjReader::read_libraries(std::string names) {
   std::replace(names.begin(), names.end(), '\\', '/');
   if (names.empty() || read_library(names)) return;
@@ -245,7 +248,7 @@ void ObjReader::read_libraries(std::string names) {
   }
 }
 
-// Paths of another machine: the file may lie beside the scene.
+// Reads a library of that file name beside the scene. Paths often refer to another machine.
 bool ObjReader::read_beside(const std::string& name) {
   const std::string path = path_beside(folder_, name);
   if (path.empty()) return false;
@@ -255,7 +258,7 @@ bool ObjReader::read_beside(const std::string& name) {
   return true;
 }
 
-// False: there is no such file, or it must not be read.
+// Returns false if there is no such file or it must not be read.
 bool ObjReader::read_library(const std::string& name) {
   const ConfinedPath path = confined_path(folder_, name);
   if (!path.is_fine()) return false;
@@ -264,7 +267,7 @@ bool ObjReader::read_library(const std::string& name) {
   try {
     read_mtl(path.path, subfolder, materials_.library, scene_.warnings);
   } catch (const InputError& error) {
-    if (error.line() > 0) throw;  // malformed, not missing
+    if (error.line() > 0) throw;  // malformed rather than missing
     return false;
   }
   return true;
@@ -317,7 +320,7 @@ void ObjReader::finish_part(ObjPart& part) {
   const bool is_empty = mesh.triangles.empty();
   if (!is_empty) scene_.meshes.push_back(std::move(mesh));
   if (material.emission.is_black()) return;
-  // A source without area keeps its number, so that names do not depend on what else is wrong.
+  // A source without area keeps its number, so that names depend on the file alone.
   const std::string name = "emitter" + std::to_string(lights_++);
   if (is_empty)
     scene_.warnings.add("area light without area is left out");
@@ -325,9 +328,10 @@ void ObjReader::finish_part(ObjPart& part) {
     add_mesh_lights(scene_, index, {name, material.emission, material.emission_texture, false});
 }
 
-// Colours of vertices are factors on a material's colour, or the colour where there is none.
+// Applies vertex colours: they multiply the material's colour, or replace it if there is no
+// material.
 void ObjReader::paint(const ObjPart& part, Mesh& mesh, bool needs_uvs) {
-  std::vector<TextureValue> colors(part.vertices.size());  // white where there is none
+  std::vector<TextureValue> colors(part.vertices.size());  // white by default
   for (size_t i = 0; i < colors.size(); ++i) {
     const uint32_t position = part.vertices[i].corner.position;
     if (position < vertices_.colors.size()) colors[i].rgb = vertices_.colors[position];

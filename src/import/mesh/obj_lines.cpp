@@ -13,7 +13,7 @@ namespace {
 
 class ObjLineReader {
  public:
-  // before: null where it is not known.
+  // `before` is null if the counts before these lines are unknown.
   ObjLineReader(const std::string& file, std::string_view text, bool is_first,
                 const ObjCounts* before, ObjPiece& piece)
       : lines_(file, text, is_first, before != nullptr ? before->lines : 0),
@@ -92,7 +92,8 @@ void ObjLineReader::add_unsupported(std::string_view keyword) {
     add_event(ObjEvent::Kind::unsupported, keyword);
 }
 
-// x y z, then nothing, a weight (left out), a colour (sRGB, as programs mean it) or both.
+// Reads x y z, followed by nothing, a weight (ignored), a colour (sRGB by convention of programs)
+// or both.
 void ObjLineReader::read_vertex() {
   const double x = lines_.precise_number(), y = lines_.precise_number();
   piece_.positions.emplace_back(x, y, lines_.precise_number());
@@ -120,7 +121,7 @@ void ObjLineReader::read_uv() {
   if (lines_.has_word()) lines_.fail("texture coordinates have at most three numbers");
 }
 
-// Checked here only where it is known what came before.
+// Reads an index. Checks its range only if the counts before these lines are known.
 int ObjLineReader::read_index(size_t ObjCounts::*kind, const char* what) {
   int index = 0;
   if (!lines_.integer(index)) lines_.fail(std::string("expected the index of a ") + what);
@@ -132,11 +133,11 @@ int ObjLineReader::read_index(size_t ObjCounts::*kind, const char* what) {
       lines_.fail(std::string("index ") + std::to_string(index) + " of a " + what +
                   " is out of range (" + std::to_string(count) + " so far)");
   }
-  // As far out of range as the one that stands for none.
+  // not_given is reserved; the replacement is just as far out of range.
   return index == ObjWrittenCorner::not_given ? index + 1 : index;
 }
 
-// v, v/vt, v//vn or v/vt/vn; false at the end of the line.
+// Reads v, v/vt, v//vn or v/vt/vn; false at the end of the line.
 bool ObjLineReader::read_corner() {
   if (!lines_.has_word()) return false;
   ObjWrittenCorner corner;

@@ -1,4 +1,6 @@
-// Lines of an OBJ file -> the statements that they hold.
+// Parser of OBJ lines into an ObjPiece. obj.cpp first parses many pieces in parallel with
+// read_obj_lines. If one is malformed, it parses that piece again with read_obj_lines_after, which
+// knows the counts before it and reports the error.
 #pragma once
 
 #include <string>
@@ -8,12 +10,12 @@
 
 namespace troffer {
 
-// Lines of a file, the first ones (is_first) or further ones; false where something is wrong with
-// them in themselves.
+// Parses lines of a file; `is_first` for the first ones. Returns false if a line is malformed in
+// itself. Indices are not checked.
 bool read_obj_lines(const std::string& file, std::string_view text, bool is_first, ObjPiece& piece);
 
-// The same of lines that come after `before`. InputError: what is wrong first, indices that are out
-// of range and triangles that are too many included; all before it is in the piece.
+// Parses lines that follow `before`. Throws InputError at the first error, including indices out of
+// range and too many triangles. `piece` then holds everything before the error.
 void read_obj_lines_after(const ObjCounts& before, const std::string& file, std::string_view text,
                           ObjPiece& piece);
 

@@ -54,7 +54,7 @@ uint32_t ObjParts::vertex_of(const ObjCorner& corner) {
 void ObjParts::add(const ObjCorner* corners, size_t triangles, size_t positions) {
   if (triangles == 0) return;
   if (current_ == nullptr) select();
-  // Twice as many: not anew with each group of a file that has its vertices between them.
+  // Doubling avoids a reallocation per group in files that interleave groups and vertices.
   if (firsts_.size() < positions) firsts_.resize(std::max(positions, firsts_.size() * 2));
   for (size_t i = 0; i < triangles; ++i, corners += 3) {
     Triangle t;

@@ -1,4 +1,6 @@
-// The triangles of an OBJ file by object, group and material, each part with vertices of its own.
+// Triangles of an OBJ file, grouped by object, group and material. Each part has vertices of its
+// own, one for each combination of position, (u,v) and normal. obj.cpp fills ObjParts in the order
+// of the file and turns each part into a mesh.
 #pragma once
 
 #include <memory>
@@ -10,34 +12,36 @@
 
 namespace troffer {
 
+// Triangles of one object, group and material.
 struct ObjPart {
   std::string name, material;
   std::vector<Triangle> triangles;
-  // Per vertex what it is made of, and the next vertex at the same position.
+  // A vertex: the indices it is made of, and the next vertex with the same position.
   struct Vertex {
     ObjCorner corner;
     uint32_t next = obj_nothing;
   };
   std::vector<Vertex> vertices;
   bool has_uvs = false, has_normals = false;
-  bool is_painted = false;  // has vertices made where colours of vertices had been seen
+  bool is_painted = false;  // has vertices from after the first coloured one in the file
 };
 
+// Sorts triangles into parts.
 class ObjParts {
  public:
-  // Names of what comes next.
+  // Set the names for the triangles that follow.
   void set_object(std::string name);
   void set_group(std::string name);
   void set_material(std::string name);
   void begin_colors() { has_colors_ = true; }
 
-  // Triangles of three corners each, none of them at the number `positions` or beyond.
+  // Adds triangles, three corners each. All position indices must be below `positions`.
   void add(const ObjCorner* corners, size_t triangles, size_t positions);
 
   std::vector<std::unique_ptr<ObjPart>>& all() { return all_; }
 
  private:
-  // First vertex of the current part at a position, valid where the stamp is the part's.
+  // First vertex of the current part at a position; valid if the stamp is the part's.
   struct First {
     uint32_t stamp = 0, vertex = obj_nothing;
   };
@@ -45,7 +49,7 @@ class ObjParts {
   bool has_colors_ = false;
   std::vector<std::unique_ptr<ObjPart>> all_;
   std::unordered_map<std::string, ObjPart*> by_key_;
-  ObjPart* current_ = nullptr;  // where triangles go; null after a change of names
+  ObjPart* current_ = nullptr;  // part of the current names; null after a change of names
   std::vector<First> firsts_;
   uint32_t stamp_ = 0;
 

@@ -69,7 +69,8 @@ class ObjFacePlacer {
   std::vector<Vec3> points_;
   std::vector<Triangle> triangles_;
 
-  // Some files name normals or texture coordinates of which they hold none.
+  // Resolves an optional index. Some files refer to normals or texture coordinates but hold none;
+  // those are counted and ignored.
   bool find_optional(int written, size_t count, uint32_t& index) {
     if (written == ObjWrittenCorner::not_given) return true;
     if (count > 0) return find_obj_index(written, count, index);
@@ -100,7 +101,7 @@ class ObjFacePlacer {
     return true;
   }
 
-  // Of three corners of the face.
+  // Adds a triangle of three corners of the current face.
   void add_triangle(const Triangle& t) {
     for (const uint32_t k : t) piece_.corners.push_back(face_[k]);
     const auto at = [&](size_t k) { return positions_[face_[t[k]].position]; };

@@ -1,5 +1,6 @@
-// The statements of some consecutive lines of an OBJ file, which can be read without those before
-// them, so that files are read in pieces side by side.
+// Statements of consecutive lines of an OBJ file. A piece is parsed without knowing what comes
+// before it, so that pieces can be read in parallel. place_obj_faces resolves the indices once all
+// counts are known.
 #pragma once
 
 #include <cstdint>
@@ -12,45 +13,48 @@
 
 namespace troffer {
 
-// What there is of a file up to some place.
+// Numbers of items in a file up to some position.
 struct ObjCounts {
   size_t positions = 0, uvs = 0, normals = 0, triangles = 0;
   int lines = 0;
   void add(const ObjCounts& more);
 };
 
-// The indices of one corner as written: from 1, or below 0 backwards from the end of what there is.
+// Indices of a corner as written: from 1, or negative, counted backwards from the last item so far.
 struct ObjWrittenCorner {
   static constexpr int not_given = std::numeric_limits<int>::min();
   int position = not_given, uv = not_given, normal = not_given;
 };
 
-// From 0; obj_nothing where there is none.
+// Index that stands for no item.
 constexpr uint32_t obj_nothing = 0xffffffffu;
+// Resolved indices of a corner, from 0.
 struct ObjCorner {
   uint32_t position = obj_nothing, uv = obj_nothing, normal = obj_nothing;
 };
 
-// A statement that says something about the faces after it.
+// A statement that affects the faces after it.
 struct ObjEvent {
   enum class Kind : uint8_t { object, group, material, library, unsupported, colors_begin };
   Kind kind = Kind::unsupported;
   std::string text;
-  size_t face = 0, triangle = 0;  // the number of those before it in the piece
-  size_t count = 1;               // of the same, one after the other
+  size_t face = 0, triangle = 0;  // index of the next face and triangle in the piece
+  size_t count = 1;               // number of equal statements in a row
 };
 
+// Parsed statements of a piece. Reused for further pieces, to keep its memory.
 struct ObjPiece {
   std::vector<Vec3d> positions;  // as in the file
   std::vector<Vec3> normals;
   std::vector<Vec2> uvs;
-  std::vector<Rgb> colors;  // of the first positions; white of further ones
+  std::vector<Rgb> colors;  // of the first positions; further ones are white
   std::vector<ObjEvent> events;
   size_t points_and_lines = 0;
 
-  std::vector<ObjWrittenCorner> written;  // of all faces
+  std::vector<ObjWrittenCorner> written;  // corners of all faces
   std::vector<uint32_t> sizes;            // of faces, in corners
-  // What there is in the piece before a face, where that is more than before the one before.
+  // Counts in the piece before a face. There is an entry for each face whose counts differ from
+  // those before the previous face.
   struct Seen {
     size_t face = 0;
     ObjCounts counts;
@@ -58,20 +62,21 @@ struct ObjPiece {
   std::vector<Seen> seen;
   ObjCounts counts;  // of the whole piece
 
-  // Made of the faces by place_obj_faces.
-  std::vector<ObjCorner> corners;  // three for each triangle
+  // Output of place_obj_faces.
+  std::vector<ObjCorner> corners;  // three per triangle
   PlacedBounds bounds;
   size_t short_faces = 0, dangling = 0;
 
-  void clear();  // keeps memory
+  void clear();  // keeps the memory allocated
 };
 
-// Where an index leads to among `count` things, from 0; or that it leads nowhere.
+// Sets `index` to the position, from 0, of a written index among `count` items. Returns false if it
+// is out of range.
 bool find_obj_index(int written, size_t count, uint32_t& index);
 
-// Triangles of the faces of a piece that comes after `before`; `positions` are those of the file up
-// to the end of the piece, from the scene's origin. False where an index is out of range or there
-// are too many triangles.
+// Triangulates the faces of a piece that follows `before`. `positions` holds all positions of the
+// file up to the end of the piece, relative to Scene::origin. Returns false if an index is out of
+// range or there are too many triangles.
 bool place_obj_faces(const ObjCounts& before, const std::vector<Vec3d>& positions, ObjPiece& piece);
 
 }  // namespace troffer

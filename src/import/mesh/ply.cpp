@@ -17,7 +17,7 @@ namespace troffer {
 
 namespace {
 
-// Where a vertex property goes: x y z nx ny nz u v, or nowhere.
+// Component that a vertex property sets: x y z nx ny nz u v, or none.
 enum Slot : int { slot_x = 0, slot_nx = 3, slot_u = 6, slot_v = 7, slot_count = 8, slot_none = 8 };
 
 int slot_of(const PlyProperty& property) {
@@ -31,7 +31,7 @@ int slot_of(const PlyProperty& property) {
   return slot_none;
 }
 
-// Faces of consecutive rows.
+// Triangles of consecutive face rows.
 struct FaceRows {
   std::vector<Triangle> triangles;
   size_t short_faces = 0;
@@ -81,12 +81,12 @@ class PlyReader {
   void check_indices() const;
 };
 
-// Refuses counts for which the file is too short, before anything is allocated for them.
+// Throws InputError if the file is too short for the element's count, before memory is allocated.
 void PlyReader::check_count(const PlyElement& element) const {
   uint64_t row = 0;
   for (const PlyProperty& p : element.properties)
     row += body_.is_ascii() ? 2 : size_of(p.is_list ? p.count_type : p.type);
-  // The last number of an ascii file needs no blank behind it.
+  // The last number of an ascii file needs no blank after it.
   const uint64_t available = body_.remaining() + (body_.is_ascii() ? 1 : 0);
   if (row > 0 && element.count > available / row)
     throw InputError(file_, 0, 0,
@@ -94,8 +94,8 @@ void PlyReader::check_count(const PlyElement& element) const {
                          element.name + "'");
 }
 
-// Side by side. False where a piece does not hold its rows and nothing else, or anything is wrong
-// with it: what is wrong first, and where, is found out by reading row by row.
+// Reads the pieces in parallel. Returns false if a piece does not hold exactly its rows, or is
+// malformed. The caller then reads row by row, which finds the first error and its position.
 bool PlyReader::read_in_pieces(const std::vector<PlyPiece>& pieces,
                                const std::function<void(size_t, PlyBody&)>& read) {
   std::atomic<bool> is_sound{true};
@@ -113,7 +113,8 @@ bool PlyReader::read_in_pieces(const std::vector<PlyPiece>& pieces,
   return is_sound;
 }
 
-// Of text from its first scalar on, which stands on a line of its own.
+// Cuts an element into pieces. In an ascii body they start at its first scalar, which must be the
+// first on its line.
 std::optional<std::vector<PlyPiece>> PlyReader::cut(const PlyElement& element) {
   if (element.count == 0 || body_.is_done()) return std::nullopt;
   return cutter_.cut(element, body_.at());
@@ -181,7 +182,7 @@ void PlyReader::read_face(PlyBody& body, const PlyProperty& property,
     const double index = body.next(property.type);
     if (!(index >= 0 && index <= double(std::numeric_limits<uint32_t>::max())))
       body.fail("vertex index out of range");
-    // Where the vertices are known already, the message can point at the index.
+    // If the vertices are already read, the message can point at the index.
     if (has_vertices_ && index >= double(mesh_.positions.size()))
       body.fail("vertex index out of range");
     polygon.push_back(uint32_t(index));

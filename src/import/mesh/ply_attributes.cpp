@@ -14,16 +14,16 @@ namespace troffer {
 
 namespace {
 
-// Endings that count the channels of one attribute, in order.
+// Suffixes that name the channels of one attribute, in order.
 constexpr std::array<std::string_view, 4> attribute_endings{"xyzw", "rgba", "0123", "1234"};
 
-// One of the properties of an attribute: which attribute, and its channel there.
+// Attribute and channel of a property.
 struct AttributeColumn {
   std::string attribute;
   size_t channel = 0;
 };
 
-// Empty: no attribute.
+// Returns an empty name if the property belongs to no attribute.
 AttributeColumn column_of(const std::string& name) {
   constexpr std::array<std::string_view, 4> long_names{"red", "green", "blue", "alpha"};
   for (size_t k = 0; k < 4; ++k)
@@ -34,7 +34,7 @@ AttributeColumn column_of(const std::string& name) {
   for (const std::string_view ending : attribute_endings) {
     const size_t k = ending.find(name[at + 1]);
     if (k == std::string_view::npos) continue;
-    // Mitsuba joins them: {prefix}_{r|g|b|a} gets "_color" behind its name.
+    // Mitsuba appends "_color" to the name of {prefix}_{r|g|b|a}.
     return {name.substr(0, at) + (ending == attribute_endings[1] ? "_color" : ""), k};
   }
   return {};
@@ -58,7 +58,7 @@ class AttributeReader {
       size_t& channels = channels_[c.attribute];
       channels = std::max(channels, c.channel + 1);
     }
-    // "1234" counts from 1, which "0123" has as its second.
+    // A suffix of "1234" may be found in "0123" first, as one channel further on.
     for (auto& [name, channels] : channels_) channels = std::min<size_t>(channels, 4);
     for (const auto& [name, channels] : channels_) rows_[name].resize(channels);
   }
@@ -82,7 +82,7 @@ class AttributeReader {
   bool is_of_faces_;
   std::vector<AttributeColumn> columns_;
   std::map<std::string, size_t> channels_;
-  std::map<std::string, std::vector<float>> rows_;  // of the row being read
+  std::map<std::string, std::vector<float>> rows_;  // values of the current row
   std::map<std::string, PlyAttribute> values_;
 
   void read_row(PlyBody& body) {

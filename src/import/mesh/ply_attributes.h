@@ -1,5 +1,5 @@
-// Numbers that PLY files carry per vertex or per face beside places, normals and (u,v), under the
-// names that Mitsuba gives them.
+// Numbers per vertex or per face in PLY files, besides positions, normals and (u,v). Attributes
+// have the names that Mitsuba gives them; its importer uses them as textures.
 //
 // References: [1] W. Jakob et al., "Mitsuba 3 documentation: Shapes" (ply: names of attributes).
 #pragma once
@@ -11,14 +11,15 @@
 namespace troffer {
 
 struct PlyAttribute {
-  std::string name;  // "vertex_color", "face_weight": what the last _ of a name parts is joined
+  std::string name;  // "vertex_color", "face_weight"; properties that differ only after their last
+                     // _ are joined
   bool is_of_faces = false;
-  size_t channels = 1;        // 1, 3 or 4
-  std::vector<float> values;  // per vertex, or per triangle of read_ply(): channels numbers each
+  size_t channels = 1;        // 1 to 4
+  std::vector<float> values;  // `channels` numbers per vertex, or per triangle of read_ply()
 };
 
-// All of them. Integers are read as sRGB, their type's largest number as 1. InputError: as
-// read_ply().
+// Reads all attributes. Integers are decoded from sRGB, with their type's largest value as 1.
+// Throws InputError as read_ply() does.
 std::vector<PlyAttribute> read_ply_attributes(const std::string& path);
 
 }  // namespace troffer

@@ -1,4 +1,6 @@
-// The body of a PLY file: scalars one after the other, in any of the three encodings.
+// Scalars in the body of a PLY file, one after the other, in any of the three encodings. ply.cpp
+// and ply_attributes.cpp read rows through it. Errors are InputError; they have a line and column
+// only in ascii bodies.
 #pragma once
 
 #include <string>
@@ -8,9 +10,10 @@
 
 namespace troffer {
 
+// A cursor over the scalars of a body.
 class PlyBody {
  public:
-  // From the byte `begin`, on that line; the text must outlive this.
+  // Starts at byte `begin`, which is on line `line`. The text must outlive this object.
   PlyBody(std::string_view text, size_t begin, int line, PlyFormat format, const std::string& file)
       : text_(text), at_(begin), line_start_(begin), line_(line), format_(format), file_(file) {}
 
@@ -20,19 +23,20 @@ class PlyBody {
   size_t at() const { return at_; }
   size_t remaining() const { return text_.size() - at_; }
   bool is_ascii() const { return format_ == PlyFormat::ascii; }
-  // Goes on to the next scalar of text; whether there is none.
+  // Moves to the next scalar of an ascii body; true if there is none.
   bool is_done();
-  // On to the byte `at`, past `lines` ends of lines.
+  // Moves to byte `at`, which lies `lines` line ends ahead.
   void go_to(size_t at, int lines) {
     at_ = line_start_ = at;
     line_ += lines;
   }
-  // On to behind the last scalar before the byte `end`, past `lines` ends of lines before that.
+  // Moves to just after the last scalar before byte `end`. There are `lines` line ends up to `end`.
   void go_behind_scalar(size_t end, int lines);
-  // The length of a list. InputError: negative, or the text is too short for as many.
+  // Reads the length of a list. Throws InputError if it is negative or the text is too short for
+  // it.
   size_t list_length(const PlyProperty& property);
   void skip(const PlyProperty& property);
-  // At the scalar read last.
+  // Throws InputError at the scalar read last.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

@@ -55,7 +55,7 @@ class HeaderParser {
   void read_property();
 };
 
-// Splits the next line into words; a line ends with "\n", "\r\n" or a lone "\r".
+// Splits the next line into words. A line ends with "\n", "\r\n" or a lone "\r".
 bool HeaderParser::next_line() {
   words_.clear();
   if (at_ >= text_.size()) return false;

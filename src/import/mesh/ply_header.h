@@ -1,4 +1,5 @@
-// The header of a PLY file: which elements and properties follow, and how they are encoded.
+// The header of a PLY file: the elements and properties that follow, and their encoding. PlyBody
+// reads the data that it describes. Counts are those of the file and are not checked here.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@ namespace troffer {
 enum class PlyFormat { ascii, little_endian, big_endian };
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
+// Returns the size of a scalar in a binary body, bytes.
 size_t size_of(PlyType type);
 inline bool is_integer(PlyType type) {
   return type < PlyType::float32;
@@ -33,10 +35,11 @@ struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
   size_t body = 0;    // offset of the first byte after the header
-  int body_line = 1;  // and its line
+  int body_line = 1;  // line of that byte
 };
 
-// InputError: not a PLY file, unknown formats and types, no end_header.
+// Parses the header. Throws InputError if the file is not PLY, its format or a type is unknown, or
+// end_header is missing.
 PlyHeader parse_ply_header(std::string_view text, const std::string& file);
 
 }  // namespace troffer

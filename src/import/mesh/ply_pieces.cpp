@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-// The byte after the end of the line that `at` lies on.
+// Returns the byte after the end of the line that contains `at`.
 size_t next_line(std::string_view text, size_t at) {
   const size_t found = text.find('\n', at);
   return found == std::string_view::npos ? text.size() : found + 1;
@@ -36,7 +36,7 @@ void PlyCutter::find_lines() {
   const size_t count = (n + piece_bytes_ - 1) / piece_bytes_;
   std::vector<PlyPiece> blocks(count);
   parallel_for(count, 0, [&](size_t i) {
-    // A line belongs to the block that it begins in.
+    // A line belongs to the block in which it begins.
     const size_t from = begin + i * piece_bytes_, to = std::min(text_.size(), from + piece_bytes_);
     PlyPiece& block = blocks[i];
     block.begin = i == 0 ? from : next_line(text_, from - 1);

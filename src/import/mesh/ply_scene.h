@@ -1,4 +1,5 @@
-// PLY files (.ply) as scenes of their own.
+// Import of PLY files (.ply) as scenes of their own, by import_scene(). Other formats that name PLY
+// meshes call read_ply() directly.
 #pragma once
 
 #include <string>
@@ -8,7 +9,8 @@
 
 namespace troffer {
 
-// One diffuse grey mesh without light and camera, in the file's units: what read_ply() reads.
+// Imports one diffuse grey mesh, without lights and cameras, in the file's units. read_ply() lists
+// the content and the errors.
 Scene import_ply(const std::string& path, const TellProgress& progress = {});
 
 }  // namespace troffer

@@ -19,18 +19,18 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t stl_header_size = 84, stl_facet_size = 50;  // of binary files
-constexpr double stl_corners_progress = 0.6;                 // the file's corners, of the whole
+constexpr size_t stl_header_size = 84, stl_facet_size = 50;  // bytes, of binary files
+constexpr double stl_corners_progress = 0.6;  // share of the progress for reading corners
 
-// The corners of all triangles, one after the other, of either kind of file.
+// Corners of all triangles in sequence, for both kinds of file.
 class StlCorners {
  public:
-  // InputError: no STL file, cut short, or of too many triangles.
+  // Throws InputError if the file is not STL, is cut short, or has too many triangles.
   StlCorners(const std::string& path, std::string_view text, const PieceReading& how);
   size_t size() const { return is_binary_ ? 3 * count_ : corners_.size(); }
   Vec3d at(size_t i) const {
     if (!is_binary_) return corners_[i];
-    std::array<float, 3> p{};  // the first one after the normal
+    std::array<float, 3> p{};  // corner 0 follows the facet's normal
     std::memcpy(p.data(),
                 text_.data() + stl_header_size + i / 3 * stl_facet_size + 12 * (1 + i % 3),
                 sizeof p);
@@ -68,8 +68,8 @@ std::vector<Vec3d> read_stl_text(const std::string& path, std::string_view text,
   return corners;
 }
 
-// Pieces that are read side by side. None where one of them does not hold whole facets, or
-// anything is wrong: what is wrong first, and where, is found out by reading from the beginning.
+// Reads pieces in parallel. Returns nothing if a piece does not hold whole facets or is malformed.
+// The caller then reads from the start, which finds the first error and its position.
 std::optional<std::vector<Vec3d>> read_stl_pieces(const std::string& path, std::string_view text,
                                                   const PieceReading& how) {
   const std::vector<std::string_view> pieces = cut_at_lines(text, how.piece_bytes, "facet");
@@ -103,7 +103,7 @@ uint64_t count_of(std::string_view text) {
   return count;
 }
 
-// Binary files may begin with "solid" too: their length tells them.
+// Binary files may begin with "solid" too, so the length decides.
 StlCorners::StlCorners(const std::string& path, std::string_view text, const PieceReading& how)
     : text_(text) {
   const uint64_t count = count_of(text);

@@ -1,4 +1,5 @@
-// STL files (.stl), binary and text -> Scene.
+// Import of STL files (.stl), binary and text, by import_scene(). Equal corners are welded to
+// shared vertices. The length of the file, not the word "solid", tells binary files from texts.
 #pragma once
 
 #include <string>
@@ -8,9 +9,9 @@
 
 namespace troffer {
 
-// One diffuse grey mesh without light and camera, in the file's units; normals in the file are not
-// looked at: the order of the corners says which side is the front. InputError where a text is
-// malformed or a binary file is shorter than its count of triangles says.
+// Imports one diffuse grey mesh, without lights and cameras, in the file's units. Ignores the
+// normals of the file: the order of the corners determines the front. Throws InputError if a text
+// is malformed or a binary file is shorter than its triangle count requires.
 Scene import_stl(const std::string& path, const PieceReading& how = {});
 
 }  // namespace troffer
