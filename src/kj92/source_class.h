@@ -4,7 +4,7 @@
 // References: [1] Kok & Jansen, "Source Selection for the Direct Lighting Computation in Global
 //   Illumination", EG Workshop on Rendering 1991. [2] the same, "Adaptive Sampling of Area Light
 //   Sources in Ray Tracing Including Diffuse Interreflection", Eurographics '92, §2 and §5. [2]
-// states the purpose of the criteria without formulas; the formulas here are ours.
+//   states the purpose of the criteria without formulas; the formulas here are ours.
 #pragma once
 
 #include <cstdint>
