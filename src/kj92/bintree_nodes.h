@@ -40,7 +40,8 @@ enum class BintreeSide : uint8_t { left, right, below, above };  // -u, +u, -v, 
 constexpr std::array<BintreeSide, 4> bintree_sides{BintreeSide::left, BintreeSide::right,
                                                    BintreeSide::below, BintreeSide::above};
 
-// Storage and geometry of the nodes; node indices stay valid until the node's parent is merged.
+// Storage and geometry of the nodes. An index is valid until reset(), or until the parent is
+// merged.
 class BintreeNodes {
  public:
   // 4096 × 4096 cells. Deeper ones would leave too few bits of a float for the jitter.

@@ -41,9 +41,9 @@ int32_t choose_leaf_evenly(const BintreeNodes& nodes);
 // pending, its entry moves to the child with its ray.
 int32_t split_pending(BintreeNodes& nodes, int32_t leaf, Random& jitter, BintreePending& pending);
 
-// [rule 4] Splits larger neighbours of the leaves under `node`, and neighbours of those, until no
-// leaf is more than `difference` levels above a leaf across a side. Corners do not count. Stops at
-// `most_leaves` leaves; `leaves` is the running count.
+// [rule 4] Splits larger neighbours of the leaves under `node`, and then neighbours of those.
+// Afterwards no leaf is more than `difference` levels above a leaf across a side. Corners do not
+// count. Stops at `most_leaves` leaves; `leaves` is the running count.
 void enforce_level_difference(BintreeNodes& nodes, int32_t node, int difference, size_t most_leaves,
                               size_t& leaves, Random& jitter, BintreePending& pending,
                               std::vector<int32_t>& stack);

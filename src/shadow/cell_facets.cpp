@@ -14,7 +14,7 @@ struct Beyond {
   double distance;
 };
 
-// Finds a plane through a and b that touches the hull and has hull and cell on one side, and sets
+// Looks for a plane through a and b that touches the hull and has hull and cell on one side. Sets
 // `out` to the half-space on its other side. Returns false if there is no such plane.
 bool plane_through(const Vec3d& a, const Vec3d& b, const Vec3d& inside, const ReceiverHull& hull,
                    Beyond& out) {

@@ -9,9 +9,9 @@
 
 namespace troffer {
 
-// Sets `out` to the facets that may meet a segment from the hull to the cell. A facet is left out
-// if it lies beyond a plane that passes through an edge of the cell and has all of hull and cell on
-// its other side.
+// Sets `out` to the facets that may meet a segment from the hull to the cell. Planes through an
+// edge of the cell that have hull and cell on one side decide. A facet beyond one of them is left
+// out.
 void facets_before(const ReceiverHull& hull, const FlatCell& cell,
                    std::span<const FacetToAdd> facets, std::vector<FacetToAdd>& out);
 

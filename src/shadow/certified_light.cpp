@@ -96,8 +96,9 @@ struct Waiting {
 // Rays are cast as soon as more pairs than this wait, which limits the memory of the queue.
 constexpr size_t most_waiting = 1 << 16;
 
-// Sets the error allowed to the rays that are cast together. Each receiver's total is divided by
-// its share of unoccluded light, so that variances of several casts add up to the total.
+// Sets the error allowed to the queued rays of each receiver. If the rays of a cluster are cast in
+// several batches, a batch gets the square root of its share of the light. The variances of all
+// batches then add up to the allowed one.
 void set_allowed(const CertifiedOptions& options, CertifiedMemory& m) {
   m.allowed.assign(m.total.size(), 0);
   for (const RayQueue::OpenPair& p : m.queue.open)

@@ -15,7 +15,7 @@ namespace troffer {
 
 namespace {
 
-// Rays traced in one call, at least.
+// Most rays traced in one call, unless a single receiver has more.
 constexpr size_t batch = 4096;
 // Variance of a Sobol sequence behind dense occluders, relative to that of independent rays.
 constexpr double variance_kept = 0.8;

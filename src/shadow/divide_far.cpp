@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-// Limit of nested halvings of a cell: 4 × 4 parts per face of the cube.
+// Limit of nested halvings of a cell: 4 × 4 parts of a whole face of the cube.
 constexpr int most_halvings = 4;
 // Cost of a ray to a source at infinity, in facets of a mask. Proofs may cost about as much as the
 // cluster's rays to all sources would, in proportion to the source's share of the light.

@@ -1,5 +1,5 @@
-// What a caller remembers of one source's shadows from cluster to cluster: the facets that rays
-// hit, the places where facet lists were over budget, and the result of pilot rays.
+// Memory of one source's shadows from cluster to cluster: the facets that rays hit, the places
+// where facet lists were over budget, and the result of pilot rays.
 #pragma once
 
 #include <cstddef>

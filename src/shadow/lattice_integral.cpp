@@ -13,8 +13,8 @@ namespace {
 // Lattices with more samples are evaluated at every other row and column. The offset is random, so
 // each sample is equally likely.
 constexpr int most_samples = 256;
-// Where the integrand is low-variance, every fourth row and column is enough if at least this many
-// samples are open there, for the fine and for the coarse lattice.
+// For low-variance integrands every fourth row and column is enough. At least this many samples
+// must be open there, for the fine and for the coarse lattice.
 constexpr size_t low_variance_samples = 16, coarse_low_variance_samples = 8;
 
 // Sets points, weights and places to the open samples of every stride-th row and column.

@@ -6,9 +6,8 @@
 
 namespace troffer {
 
-// Pairs of samples that are `steps` / n of a side of the source apart, n being the number of
-// samples, which all lie at different places along the side: their number, and how many of them
-// differ.
+// Number of pairs of samples that are `steps` / n of a side of the source apart, and of those that
+// differ. The n samples all lie at different places along the side.
 struct OrderedPairs {
   int all = 0, differing = 0;
 };

@@ -96,8 +96,9 @@ std::span<const double> RaySpread::variances() {
     factor = left;
     shape = k;
   }
-  // All rays of a receiver may have met the same, so its variance is mixed with the mean of all
-  // receivers (weight 1 of n + 1) plus the effect of one ray with another answer.
+  // All rays of a receiver may have met the same. Its variance is therefore mixed with the mean of
+  // all receivers, with weight 1 of n + 1. The mean includes the effect of one ray with another
+  // answer.
   const double mean = least / receivers + 1 / sqr(n * receivers);
   for (const std::array<double, shapes>& v : neighbours_)
     variances_.push_back((n * factor * v[shape] + mean) / (n + 1));
