@@ -10,7 +10,8 @@
 namespace troffer {
 
 // A file cannot be used. Readers throw it; app/ catches it once and prints "error:
-// FILE:LINE:COLUMN: what". Line and column count from 1; 0 means the whole file, printed as 1:1.
+// FILE:LINE:COLUMN: what". Line and column count from 1; 0 means the whole file, printed as 1:1;
+// -1 means that there is no file to point into, printed without a place.
 class InputError : public std::runtime_error {
  public:
   InputError(std::string file, int line, int column, std::string what);

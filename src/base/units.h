@@ -6,7 +6,6 @@ namespace troffer {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr float pi_f = 3.14159265358979323846f;
-inline constexpr float below_one = 0x1.fffffep-1f;  // largest float below 1
 constexpr float inv_pi_f = 0.31830988618379067154f;
 constexpr float one_minus_epsilon = 0x1.fffffep-1f;  // largest float below 1
 

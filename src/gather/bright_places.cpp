@@ -249,14 +249,14 @@ Vec3 GatherAim::direction(const CellHit& at, Vec2 number, float& weight) const {
   if (cones_.empty()) return frame.to_world(cosine_hemisphere_from_square(number));
   Vec3 world;
   if (number.x < by_cosine_) {
-    number.x = std::min(number.x / by_cosine_, below_one);
+    number.x = std::min(number.x / by_cosine_, one_minus_epsilon);
     world = frame.to_world(cosine_hemisphere_from_square(number));
   } else {
     float left = number.x - by_cosine_;
     size_t k = 0;
     while (k + 1 < cones_.size() && left >= cones_[k].share) left -= cones_[k++].share;
     const Cone& c = cones_[k];
-    const Vec2 d = disk_from_square(Vec2{std::clamp(left / c.share, 0.0f, below_one), number.y});
+    const Vec2 d = disk_from_square(Vec2{std::clamp(left / c.share, 0.0f, one_minus_epsilon), number.y});
     const float below = (sqr(d.x) + sqr(d.y)) * c.height;  // the axis, over 1
     const float scale = std::sqrt(c.height * (2 - below));
     world = c.frame.to_world({d.x * scale, d.y * scale, 1 - below});

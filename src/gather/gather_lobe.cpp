@@ -63,14 +63,14 @@ Vec3 GatherLobe::direction(const GatherAim& aim, const CellHit& at, Vec2 number,
   Vec3 world;
   float by_lobe = 0;
   if (number.x < by_lobe_) {
-    number.x = std::min(number.x / by_lobe_, below_one);
+    number.x = std::min(number.x / by_lobe_, one_minus_epsilon);
     BsdfSample s;
     weight = 0;
     if (!sample(specular_, wo_, lobe_number, number, s) || !(s.wi.z > 0)) return at.normal;
     world = frame_.to_world(s.wi);
     by_lobe = s.pdf;
   } else {
-    number.x = std::min((number.x - by_lobe_) / (1 - by_lobe_), below_one);
+    number.x = std::min((number.x - by_lobe_) / (1 - by_lobe_), one_minus_epsilon);
     world = aim.direction(at, number, weight);
     by_lobe = pdf(specular_, wo_, frame_.to_local(world));
   }

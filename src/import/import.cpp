@@ -31,7 +31,7 @@ Scene import_file(const std::string& path, const ImportOptions& options) {
         path, 0, 0,
         "is no scene: its name should end in .gltf, .glb, .pbrt, .obj, .ply, .stl, .xml or .rad");
   if (!is_gltf && options.is_any())
-    throw UsageError("--variant, --time and --animation go with .gltf and .glb");
+    throw UsageError("--variant, --time, --animation and --baked go with .gltf and .glb");
   if (size_of_file(path) == 0) throw InputError(path, 0, 0, "is empty");
   if (ending == "rad") return import_radiance(path);
   if (ending == "xml") return import_mitsuba(path, options.images);

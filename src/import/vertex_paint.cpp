@@ -50,19 +50,21 @@ bool has_alpha(const Mesh& mesh, const std::vector<TextureValue>& colors) {
 // Gives every triangle vertices of its own.
 void separate_triangles(Mesh& mesh) {
   std::vector<Vec3> positions, normals;
-  std::vector<Vec2> uvs;
+  std::vector<Vec2> uvs, uvs_2;
   positions.reserve(3 * mesh.triangles.size());
   for (Triangle& t : mesh.triangles) {
     for (uint32_t& v : t) {
       positions.push_back(mesh.positions[v]);
       if (!mesh.normals.empty()) normals.push_back(mesh.normals[v]);
       if (!mesh.uvs.empty()) uvs.push_back(mesh.uvs[v]);
+      if (!mesh.uvs_2.empty()) uvs_2.push_back(mesh.uvs_2[v]);
       v = uint32_t(positions.size() - 1);
     }
   }
   mesh.positions = std::move(positions);
   mesh.normals = std::move(normals);
   mesh.uvs = std::move(uvs);
+  mesh.uvs_2 = std::move(uvs_2);
 }
 
 bool uses_second_uvs(const Scene& scene, const Material& m) {

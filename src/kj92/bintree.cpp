@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-// Level at which an even tree has at least `rays` leaves, but at most `most_rays`.
+// Returns the level at which an even tree has at least `rays` leaves, but at most `most_rays`.
 int level_of(int rays, int most_rays) {
   int level = std::bit_width(uint32_t(std::max(rays, 1)) - 1);
   while (level > 0 && (level > BintreeNodes::max_level || (1 << level) > most_rays)) --level;
@@ -86,13 +86,13 @@ void Bintree::supply(std::span<const ShadowRayResult> results) {
   ask();
 }
 
-// [rule 2] Strictly under, so that 0 is never met.
+// [rule 2] The comparison is strict, so an allowed error of 0 is never met.
 bool Bintree::is_variance_met() const {
   return estimate_.variance <
          sqr(options_.allowed_variance * allowed_.leniency * allowed_.unoccluded);
 }
 
-// [rule 5]
+// [rule 5] True if the mean has hardly changed over the last iterations.
 bool Bintree::is_mean_settled() const {
   const size_t wanted = size_t(options_.mean_change_iterations);
   if (options_.mean_change <= 0 || options_.allowed_variance <= 0) return false;
@@ -133,7 +133,7 @@ void Bintree::refine() {
 }
 
 void Bintree::shrink() {
-  if (options_.allowed_variance <= 0) return;  // would only be split again
+  if (options_.allowed_variance <= 0) return;  // the even tree would only be split again
   troffer::shrink(nodes_, initial_level_, options_.level_difference, random_, scratch_);
   leaves_ = nodes_[BintreeNodes::root].samples;
 }

@@ -1,14 +1,11 @@
-// Adaptive sampling of one source from one point, and the reuse of its pattern at the next point:
-// the bintree of 1992. A pure algorithm: it sees nothing of the source but (u,v) in [0,1)² and
-// nothing of the scene but the answers to its rays, so it works for any parametrised source, and a
-// tree may belong to any thread.
-//
-// A tree asks in rounds: pending() are the rays it wants now, supply() takes their answers and says
-// what it wants next. So rays of many trees can be traced together; for one tree, sample_source and
-// resample_source below do the rounds. The first round is large (the initial rays, or the whole
-// pattern of the last point), later ones have a ray or a few.
-//
-// The estimate is biased: where rays go, and when they stop, depends on what rays found.
+// The bintree of 1992: adaptive sampling of one source from one point, and reuse of the pattern at
+// the next point. The tree knows only (u,v) in [0,1)² and the answers to its rays, so it works for
+// any parametrised source. Each tree belongs to one thread at a time.
+// A tree asks in rounds: pending() returns the rays that it wants, supply() takes their answers and
+// decides what to ask next. The rays of many trees can thus be traced together. sample_source and
+// resample_source below run the rounds of one tree. The first round is large; later rounds have a
+// few rays.
+// The estimate is biased, because the number and places of rays depend on earlier results.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
 //   Diffuse Interreflection", Eurographics '92, §3 and §4. [rule n], [reuse]: docs/bintree.md.
 #pragma once
@@ -26,75 +23,82 @@
 
 namespace troffer {
 
+// Settings of one bintree; the numbers in brackets are rules of docs/bintree.md.
 struct BintreeOptions {
-  // Rays cast in any case, spread evenly [rule 1]; rounded up to a power of two, at least 1.
+  // Initial rays, spread evenly [rule 1]. Rounded up to a power of two; at least 1.
   int initial_rays = 8;
-  // Allowed standard error of the mean, relative to the unoccluded contribution [rule 2]: the
-  // variance of the root's mean must fall under (allowed_variance × unoccluded)². That variance is
-  // estimated as if rays were independent: half in shadow, a source needs a quarter over the
-  // square of this, 100 rays at 0.05; at 0.01 mostly the second stop or the cap ends it. 0: refine
-  // all cells evenly until most_rays, whatever rays find: full stratified sampling.
+  // Allowed standard error of the mean, relative to the unoccluded light [rule 2]: the root's
+  // variance must fall below (allowed_variance × unoccluded)². The variance is estimated as if rays
+  // were independent. A source that is half in shadow then needs a quarter over the square of this
+  // number: 100 rays at 0.05. At 0.01 the second stop or the cap usually ends the sampling. 0:
+  // refines all cells evenly up to most_rays, which is full stratified sampling.
   float allowed_variance = 0.01f;
-  // Levels that a leaf may be above a leaf beside it [rule 4]; 2 levels halve a cell both ways.
+  // Levels that a leaf may be above its neighbour [rule 4]. Two levels halve a cell both ways.
   int level_difference = 1;
-  // Stop where the mean stayed within an interval of this width, relative to the unoccluded
-  // contribution, over the last mean_change_iterations iterations [rule 5], 1 … 16, once
-  // enough_rays are cast. 0: never.
+  // Second stop [rule 5]: the mean stayed within an interval of this width, relative to the
+  // unoccluded light, over the last mean_change_iterations (1 to 16), and at least enough_rays were
+  // cast. 0: never.
   float mean_change = 0.004f;
   int mean_change_iterations = 8;
   int enough_rays = 32;
-  // Cap on the rays of one point; initial rays are halved until they fit.
+  // Largest number of rays for one point. Initial rays are halved until they fit.
   int most_rays = 128;
-  // [reuse] New positions in the old cells when a pattern is reused, instead of the old positions.
+  // [reuse] Draws new positions in the cells of a reused pattern. If false, keeps the old
+  // positions.
   bool renews_jitter = true;
 };
 
-// Answer to one ray. The value of a ray is kernel where visible, 0 where not; the estimate is
-// Σ cell area × value. kernel = 1 gives the visible share of the source. Another kernel (radiance
-// of a texture, geometry term, both) weighs visibility; it should not be negative, and its mean
-// over the square is the `unoccluded` that start() and resample() are told.
+// Answer to one ray. Its value is kernel if visible, else 0; the estimate is Σ cell area × value.
+// With kernel = 1 it is the visible share of the source. Any other kernel (textured radiance,
+// geometry term, both) must not be negative. Its mean over the square is the `unoccluded` passed to
+// start() and resample().
 struct ShadowRayResult {
   bool is_visible = false;
   float kernel = 1;
 };
 
+// Reason why sampling stopped; finest: a leaf at the deepest level would have to be split.
 enum class BintreeStop : uint8_t { none, variance, mean, cap, finest };
 
 struct BintreeEstimate {
   float mean = 0;      // of visibility × kernel over the square
-  float variance = 0;  // of the mean, as the tree believes
-  uint32_t rays = 0;   // cast at this point
+  float variance = 0;  // variance of the mean, estimated by the tree
+  uint32_t rays = 0;   // cast for this point
   BintreeStop stop = BintreeStop::none;
 };
 
+// Bintree of one source. Call start() or resample(), then answer pending() by supply() until it is
+// empty.
 class Bintree {
  public:
   explicit Bintree(const BintreeOptions& options = {});
 
-  // Begins at a point with nothing known. `stream` seeds the jitter: a hash of pixel, sample and
-  // source. `initial_rays` 0: as in the options.
+  // Starts at a point without a pattern. stream: seed of the jitter, a hash of pixel, sample and
+  // source. initial_rays 0: the number in the options.
   void start(uint64_t stream, float unoccluded = 1, int initial_rays = 0);
-  // [reuse] Begins at the next point with the pattern that is there: all its leaves are pending.
+  // [reuse] Starts at the next point with the present pattern. All its leaves become pending.
   void resample(uint64_t stream, float unoccluded = 1);
 
-  // For points where what a source would send unoccluded is known from the first round alone:
-  // before the first answers, the mean over the square of a kernel given at pending().
+  // Returns the mean over the square of the kernels in `results`, one per ray of pending(). Call it
+  // before supply(), where the unoccluded light is known only from the first round.
   float mean_of_pending(std::span<const ShadowRayResult> results) const;
-  // … and what start() or resample() were told is replaced. `leniency` multiplies what the stops
-  // allow, for light that is a small part of what is seen.
+  // Replaces the value passed to start() or resample(). leniency multiplies the errors that the
+  // stops allow, for light that is only a small part of the total.
   void set_unoccluded(float unoccluded, float leniency = 1) { allowed_ = {unoccluded, leniency}; }
 
-  // Where the rays end that are wanted now; empty when done. Valid until the next call.
+  // Returns the end points (u,v) of the wanted rays; empty when done. Valid until the next call.
   std::span<const Vec2> pending() const { return pending_uv_; }
-  // results[i] answers pending()[i]. Then decides: stop, or split and ask for more.
+  // Takes the answers: results[i] belongs to pending()[i]. Then stops, or splits leaves and asks
+  // for more rays.
   void supply(std::span<const ShadowRayResult> results);
 
-  // [reuse] After the last answer: removes what showed nothing, for the next point. The estimate
-  // stays that of the point.
+  // [reuse] Simplifies the pattern for the next point. Call after the last answer. The estimate
+  // does not change.
   void shrink();
 
   const BintreeEstimate& estimate() const { return estimate_; }
-  // Σ cell area × kernel, of all leaves, hidden ones too: mean / this is a ratio estimate.
+  // Returns Σ cell area × kernel over all leaves, also hidden ones. mean / kernel_mean is a ratio
+  // estimate.
   float kernel_mean() const;
   const BintreeNodes& nodes() const { return nodes_; }
   const BintreeOptions& options() const { return options_; }
@@ -124,12 +128,12 @@ class Bintree {
   int initial_level_ = 0;
   struct Allowed {
     float unoccluded = 1, leniency = 1;
-  } allowed_;  // what errors are measured by
+  } allowed_;  // reference for allowed errors
   BintreeEstimate estimate_;
 };
 
-// Asks until done. query(std::span<const Vec2> uv, std::span<ShadowRayResult> results) answers
-// results[i] for uv[i]. `results` is memory for the answers, kept between calls.
+// Answers rounds until the tree is done. query(std::span<const Vec2> uv, std::span<ShadowRayResult>
+// results) sets results[i] for uv[i]. `results` is memory that is kept between calls.
 template <class Query>
 const BintreeEstimate& answer_all(Bintree& tree, std::vector<ShadowRayResult>& results,
                                   Query&& query) {
@@ -141,7 +145,7 @@ const BintreeEstimate& answer_all(Bintree& tree, std::vector<ShadowRayResult>& r
   return tree.estimate();
 }
 
-// One point by itself.
+// Samples the source from one point, without a pattern.
 template <class Query>
 const BintreeEstimate& sample_source(Bintree& tree, std::vector<ShadowRayResult>& results,
                                      uint64_t stream, Query&& query, float unoccluded = 1) {
@@ -149,7 +153,8 @@ const BintreeEstimate& sample_source(Bintree& tree, std::vector<ShadowRayResult>
   return answer_all(tree, results, std::forward<Query>(query));
 }
 
-// The next point [reuse]: shrinks the last point's pattern, resamples it, refines it.
+// Samples the source from the next point: shrinks the pattern, resamples it, and refines it
+// [reuse].
 template <class Query>
 const BintreeEstimate& resample_source(Bintree& tree, std::vector<ShadowRayResult>& results,
                                        uint64_t stream, Query&& query, float unoccluded = 1) {

@@ -7,9 +7,9 @@ namespace troffer {
 
 namespace {
 
-// Notes in Walk::last_place: a patch, or one of these.
+// Values of Walk::last_place: a patch, or one of these.
 constexpr uint32_t no_place = 0xffffffffu;  // no source was sampled there
-constexpr uint32_t off_mesh = 0xfffffffeu;  // all lights were
+constexpr uint32_t off_mesh = 0xfffffffeu;  // all lights were sampled there
 
 uint64_t tree_stream(const Walk& walk) {
   return hash_combine(walk.stream, (uint64_t(walk.vertex) << 32) + walk.sample + 1);

@@ -1,13 +1,10 @@
-// Direct light by the method of 1992: shadow rays, adaptively, to the sources that were selected
-// for the hit's patch, and what the selection left in the general value of light straight from
-// lights.
-//
-// The diffuse part of a surface is lit by both; rough gloss is sampled by rays to the lights as
-// well as by the walk, and the two are combined. Selected sources may be bright patches, whose
-// light is indirect. Biased by design: where rays go, and when they stop, depends on what rays
-// found; what the preprocessing missed, probe rays may miss too. Patterns are reused from hit to
-// hit in the order given and forgotten at the beginning of a batch: the result depends on what is
-// in the batch, and in which order.
+// Direct light of `--method kj92`: adaptive shadow rays to the sources selected for the hit's
+// patch, plus the direct part of the general radiosity for all other lights. Selected sources may
+// be bright patches, whose light counts as indirect. Rough gloss is sampled by shadow rays and by
+// the walk, combined by multiple importance sampling.
+// Biased by design: rays depend on earlier results, and probe rays may miss what the preprocessing
+// missed. Patterns are reused from hit to hit and forgotten at the start of a batch. The result
+// therefore depends on the content of the batch and its order.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
 //   Diffuse Interreflection", Eurographics '92.
 #pragma once
@@ -21,16 +18,17 @@
 
 namespace troffer {
 
+// Thread safe: each thread uses its own scratch.
 class BintreeDirect final : public DirectLight {
  public:
-  // Solution and selection (of `radiosity`) belong to the scene.
+  // `radiosity` holds the solution and the selection of the same scene.
   BintreeDirect(const PreparedScene& scene, const RadiosityLight& radiosity,
                 const TreeSamplingOptions& options);
 
   std::unique_ptr<DirectLightScratch> make_scratch() const override;
   WalkedPart walked_part() const override { return WalkedPart::specular; }
   void begin(const SampleRequest& request, DirectLightScratch& scratch) const override;
-  // Leaves in the walks, for weigh(), on which patch they were.
+  // Adds direct light at the hits. Stores the patch of each hit in its walk, for weigh().
   void queue(WaveHits& wave, DirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;
   void flush(DirectLightScratch&, RadianceBatch&, Counters&) const override {}
@@ -49,7 +47,7 @@ class BintreeDirect final : public DirectLight {
   TreeSamplingOptions options_;
   std::vector<TreeSource> sources_;
   std::vector<uint32_t> index_of_source_;
-  std::vector<TreatedSource> everywhere_;  // all lights, probed: off the mesh
+  std::vector<TreatedSource> everywhere_;  // all lights, as probed sources: for hits off the mesh
 };
 
 }  // namespace troffer

@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-// Halvings of a cell of this level along u, along v.
+// Returns how often a cell of this level has been halved in u and in v.
 constexpr int u_bits(int level) {
   return (level + 1) / 2;
 }
@@ -20,14 +20,14 @@ constexpr int v_bits(int level) {
 constexpr bool splits_in_u(int level) {
   return level % 2 == 0;
 }
-// 2^bits and its reciprocal: scaling by them is exact.
+// Returns 2^bits and its reciprocal. Scaling by them is exact.
 constexpr float cells_along(int bits) {
   return float(1u << bits);
 }
 constexpr float size_of(int bits) {
   return 1 / cells_along(bits);
 }
-// Uniform in [k, k+1) 2^-bits; rounding must not reach the next cell.
+// Returns a position in [k, k+1) 2^-bits. Rounding must not reach the next cell.
 float jittered(uint32_t k, int bits, float random) {
   const float size = size_of(bits);
   const float upper = float(k + 1) * size;
@@ -118,12 +118,11 @@ void BintreeNodes::set_result(int32_t leaf, bool is_visible, float kernel) {
   n.samples = 1;
 }
 
-// Rule 2: mean, variance of the mean, flag and count of an inner node. The paper leaves open how
-// the variance is estimated. As in [1], it is that of all rays of the subtree taken together, each
-// weighted by its area, divided by their number less one, as if they were independent. That ignores
-// what stratification gains, so it overestimates; and that is what makes the rule work: sums over
-// halves of estimated variances [2] vanish as soon as the flags are wrong, and stop far too early
-// (docs/bintree.md). Variances of halves combine as moments do.
+// [rule 2] Computes the values of an inner node from its children. The paper leaves open how the
+// variance of the mean is estimated. This is the area-weighted variance of all rays of the subtree,
+// divided by their number less one, as if they were independent. It ignores stratification and thus
+// overestimates, which is intended: sums over halves of estimated variances [2] vanish once flags
+// are wrong, and stop far too early (docs/bintree.md).
 void BintreeNodes::summarise(int32_t i) {
   BintreeNode& n = nodes_[size_t(i)];
   const BintreeNode &a = (*this)[n.first_child], &b = (*this)[n.first_child + 1];
@@ -159,7 +158,7 @@ int32_t BintreeNodes::find(int level, uint32_t column, uint32_t row) const {
 
 int32_t BintreeNodes::neighbour(int32_t i, BintreeSide side) const {
   const BintreeNode& n = (*this)[i];
-  // unsigned: -1 becomes the largest number and lies outside like any other
+  // unsigned: -1 wraps to the largest number, which lies outside too
   const uint32_t column = uint32_t(n.column) + uint32_t(side == BintreeSide::right) -
                           uint32_t(side == BintreeSide::left);
   const uint32_t row =

@@ -1,8 +1,7 @@
-// The nodes of a bintree over a parametrised source: storage, cells, neighbours, what inner nodes
-// know of their subtrees. The rules that grow and shrink a tree are in bintree_rules.h.
-//
-// The square [0,1)² is halved alternately: a node of even level in u, one of odd level in v, so
-// that a cell of level L measures 2^-L. A leaf holds one shadow ray. Cells are half-open.
+// Nodes of a bintree over a parametrised source: storage, cells, neighbours, and the values of
+// inner nodes. bintree_rules.h holds the rules that grow and shrink a tree.
+// Nodes of even level halve [0,1)² in u, those of odd level in v, so a cell of level L has the area
+// 2^-L. A leaf holds one shadow ray. Cells are half open.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
 //   Diffuse Interreflection", Eurographics '92, §3.
 //   [2] Cochran, "Sampling Techniques", 3rd ed. 1977, §5A.12 (collapsed strata).
@@ -19,19 +18,20 @@
 
 namespace troffer {
 
+// A node; inner nodes summarise their subtree.
 struct BintreeNode {
   int32_t parent = -1;       // -1: the root
-  int32_t first_child = -1;  // -1: a leaf; the second child stands behind the first
-  uint16_t column = 0;       // of the cell, counted in cells of this level along u
+  int32_t first_child = -1;  // -1: a leaf; the second child follows the first
+  uint16_t column = 0;       // of the cell along u, in cells of this level
   uint16_t row = 0;          // along v
   uint8_t level = 0;
   ShadowFlag flag = ShadowFlag::shadow;
-  bool is_visible = false;  // leaf: what its ray found
-  float mean = 0;           // of visibility × kernel over the cell, weighted by area
-  float variance = 0;       // of that mean, as estimated from its own rays; a leaf: 0, not known
+  bool is_visible = false;  // leaf: result of its ray
+  float mean = 0;           // area-weighted mean of visibility × kernel over the cell
+  float variance = 0;       // estimated variance of `mean`; 0 (unknown) for leaves
   uint32_t samples = 1;     // leaves of the subtree
-  Vec2 uv;                  // leaf: where its ray ends
-  float kernel = 1;         // leaf: value of the ray if visible
+  Vec2 uv;                  // leaf: end point of its ray
+  float kernel = 1;         // leaf: value of its ray if visible
 
   bool is_leaf() const { return first_child < 0; }
 };
@@ -40,18 +40,20 @@ enum class BintreeSide : uint8_t { left, right, below, above };  // -u, +u, -v, 
 constexpr std::array<BintreeSide, 4> bintree_sides{BintreeSide::left, BintreeSide::right,
                                                    BintreeSide::below, BintreeSide::above};
 
+// Storage and geometry of the nodes. An index is valid until reset(), or until the parent is
+// merged.
 class BintreeNodes {
  public:
-  // 4096 × 4096 cells; deeper ones would leave too few of a float's bits for the jitter.
+  // 4096 × 4096 cells. Deeper ones would leave too few bits of a float for the jitter.
   static constexpr int max_level = 24;
   static constexpr int32_t root = 0;
 
-  // Room for trees of `leaves` leaves; growing beyond allocates.
+  // Makes room for `leaves` leaves. Larger trees allocate.
   explicit BintreeNodes(size_t leaves) {
     nodes_.reserve(2 * leaves);
     reset({0.5f, 0.5f});
   }
-  // One leaf, the root, whose ray ends at uv.
+  // Resets to one leaf, the root, whose ray ends at uv.
   void reset(const Vec2& uv);
 
   const BintreeNode& operator[](int32_t i) const { return nodes_[size_t(i)]; }
@@ -60,30 +62,31 @@ class BintreeNodes {
   SourceCell cell(int32_t i) const;
   size_t capacity() const { return nodes_.capacity(); }
 
-  // Halves a leaf above max_level. Its ray goes to the child that contains it; the other child gets
-  // a jittered position and no result yet. Returns that other child.
+  // Halves a leaf above max_level. Its ray goes to the child that contains it. The other child gets
+  // a jittered position without a result, and is returned.
   int32_t split(int32_t leaf, Random& jitter);
-  // Makes a leaf of a node with two leaves; it keeps the ray of one of them, by the toss of a coin:
-  // the ray's position is then uniform over the cell, as a jittered one is.
+  // Turns a node with two leaves into a leaf, which keeps the ray of one of them by a coin toss.
+  // The position is then uniform over the cell, as a jittered one is.
   void merge(int32_t node, Random& coin);
-  // New position of a leaf's ray, uniform over its cell.
+  // Draws a new position of a leaf's ray, uniform over its cell.
   void jitter(int32_t leaf, Random& random);
-  // What the leaf's ray found; kernel as in ShadowRayResult.
+  // Stores the result of a leaf's ray; kernel as in ShadowRayResult.
   void set_result(int32_t leaf, bool is_visible, float kernel = 1);
 
-  // METHOD rule 2, passing results up: recomputes the ancestors of i, or i and all below it.
+  // [rule 2] Recomputes the ancestors of i, or i and its whole subtree.
   void propagate_up(int32_t i);
   void propagate_all(int32_t i = root);
 
-  // The node with the cell (column, row) of `level`, or the leaf that contains that cell.
+  // Returns the node with cell (column, row) of `level`, or the larger leaf that contains that
+  // cell.
   int32_t find(int level, uint32_t column, uint32_t row) const;
-  // What lies across a side of i's cell: the node of i's level, or the larger leaf that reaches
-  // there; -1 at the border of the square.
+  // Returns the neighbour across a side of i's cell: the node of i's level, or the larger leaf
+  // there. Returns -1 at the border of the square.
   int32_t neighbour(int32_t i, BintreeSide side) const;
-  // The deepest level among the leaves under i that touch the given side of i's cell.
+  // Returns the deepest level of the leaves under i that touch the given side of i's cell.
   int deepest_along(int32_t i, BintreeSide side) const;
 
-  // visit(index) for every leaf under i, in the order of the tree.
+  // Calls visit(index) for every leaf under i, in tree order.
   template <class Visit>
   void for_each_leaf(Visit&& visit, int32_t i = root) const {
     if ((*this)[i].is_leaf()) return visit(i);
@@ -97,7 +100,7 @@ class BintreeNodes {
   bool is_second_half(int32_t i, const Vec2& uv) const;
 
   std::vector<BintreeNode> nodes_;
-  int32_t free_pair_ = -1;  // chained by first_child
+  int32_t free_pair_ = -1;  // head of the free list, chained by first_child
 };
 
 }  // namespace troffer

@@ -7,7 +7,7 @@ namespace troffer {
 
 namespace {
 
-// The lattice cells that a source cell covers or lies in.
+// Returns the lattice cells that a source cell covers or lies in.
 uint64_t cells_of(const SourceCell& c) {
   constexpr int side = ShadowPattern::side;
   const auto first = [](float x) {

@@ -1,4 +1,4 @@
-// Reduces a bintree to the 8 × 8 lattice in which neighbouring points are compared.
+// Reduces a bintree to an 8 × 8 lattice, by which image refinement compares neighbouring points.
 // References: [1] Kok & Jansen, "Adaptive Sampling of Area Light Sources in Ray Tracing Including
 //   Diffuse Interreflection", Eurographics '92, §5 (patterns of neighbouring rays are compared).
 #pragma once
@@ -8,8 +8,8 @@
 
 namespace troffer {
 
-// A leaf larger than a lattice cell sets all cells that it covers; a cell with lit and dark leaves
-// is neither lit nor dark.
+// Returns the pattern of a tree. A leaf larger than a lattice cell sets all cells that it covers. A
+// lattice cell with both visible and hidden leaves is neither lit nor dark.
 ShadowPattern pattern_of(const BintreeNodes& nodes);
 
 }  // namespace troffer

@@ -94,7 +94,7 @@ void enforce_level_difference(BintreeNodes& nodes, int32_t node, int difference,
   while (!stack.empty() && leaves < most_leaves) {
     const int32_t i = stack.back();
     stack.pop_back();
-    if (!nodes[i].is_leaf()) continue;  // split meanwhile; its leaves are on the stack
+    if (!nodes[i].is_leaf()) continue;  // has been split; its leaves are on the stack
     const int level = nodes[i].level;
     for (const BintreeSide side : bintree_sides) {
       int32_t n = nodes.neighbour(i, side);
@@ -102,7 +102,7 @@ void enforce_level_difference(BintreeNodes& nodes, int32_t node, int difference,
              leaves < most_leaves) {
         split_pending(nodes, n, jitter, pending);
         ++leaves;
-        // the halves may now lie too deep beside others
+        // the halves may now lie too deep beside other leaves
         stack.insert(stack.end(), {nodes.first_child(n), nodes.first_child(n) + 1});
         n = nodes.neighbour(i, side);
       }
@@ -124,8 +124,8 @@ int largest_level_difference(const BintreeNodes& nodes) {
 
 namespace {
 
-// [reuse] for one node, a child of a uniform node: it has two leaves below it, and would not come
-// to lie too far above a neighbour.
+// [reuse] True if a child of a uniform node can become a leaf: it has two leaves below it, and
+// would not lie too far above a neighbour.
 bool can_become_leaf(const BintreeNodes& nodes, int32_t i, int difference) {
   const BintreeNode& n = nodes[i];
   if (!nodes[n.first_child].is_leaf() || !nodes[n.first_child + 1].is_leaf()) return false;
@@ -135,8 +135,7 @@ bool can_become_leaf(const BintreeNodes& nodes, int32_t i, int difference) {
   });
 }
 
-// Inner nodes, level by level from the root: an order that does not depend on where nodes are
-// stored.
+// Lists inner nodes level by level from the root. The order does not depend on storage.
 void list_inner(const BintreeNodes& nodes, std::vector<int32_t>& out) {
   out.clear();
   if (!nodes[BintreeNodes::root].is_leaf()) out.push_back(BintreeNodes::root);
@@ -152,10 +151,10 @@ void list_inner(const BintreeNodes& nodes, std::vector<int32_t>& out) {
 void shrink(BintreeNodes& nodes, int initial_level, int difference, Random& coin,
             std::vector<int32_t>& order) {
   list_inner(nodes, order);
-  // Under a uniform root all goes, level after level, so that no neighbour is ever in the way.
+  // Under a uniform root all nodes go, level after level, so no neighbour is in the way.
   const bool is_uniform = difference > 0 && nodes[BintreeNodes::root].flag != ShadowFlag::penumbra;
-  // Deepest first: only what lies deeper can keep a node from becoming a leaf, and that is settled
-  // when its turn comes.
+  // Deepest first: only deeper neighbours can keep a node from becoming a leaf, and those have had
+  // their turn.
   for (size_t k = order.size(); k-- > 0;) {
     const BintreeNode& n = nodes[order[k]];
     if (n.level < initial_level || n.parent < 0) continue;

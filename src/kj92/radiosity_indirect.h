@@ -1,6 +1,6 @@
-// Indirect light from the radiosity preprocessing: the general value at the hit's place. The light
-// of patches that the selection took out of that value is added by the method's direct light
-// (bintree_direct.h). The result is as accurate as the solution.
+// Indirect light from the radiosity solution: the general radiosity at the hit. Light of selected
+// patches is not part of it; BintreeDirect adds that (bintree_direct.h). The result is as accurate
+// as the solution.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,10 @@
 
 namespace troffer {
 
+// Thread safe: each thread uses its own scratch.
 class RadiosityIndirect final : public IndirectLight {
  public:
-  // The solution and the selection that `radiosity` holds belong to the scene.
+  // `radiosity` holds the solution and the selection of the same scene.
   RadiosityIndirect(const PreparedScene& scene, const RadiosityLight& radiosity)
       : scene_(scene), radiosity_(radiosity) {}
 
@@ -20,7 +21,8 @@ class RadiosityIndirect final : public IndirectLight {
   void queue(WaveHits& wave, IndirectLightScratch& scratch, RadianceBatch& out,
              Counters& counters) const override;
   void flush(IndirectLightScratch&, RadianceBatch&, Counters&) const override {}
-  // One cosine-distributed ray per sample reads the radiosity of the surface that it hits.
+  // Adds indirect light at sensors: one cosine-distributed ray per sample reads the radiosity of
+  // the surface that it hits.
   void gather(const SensorBatch& sensors, IndirectLightScratch& scratch, RadianceBatch& out,
               Counters& counters) const override;
 

@@ -38,7 +38,7 @@ Rgb RadiosityLight::radiance_seen(const Ray& ray, const Hit& hit) const {
   interpolate(scene_.scene, solution_.mesh, hit.geometry, hit.primitive, hit.u, hit.v,
               v.surface.position, !v.is_front, at);
   Bsdf bsdf = bsdf_at(scene_, v);
-  bsdf.through = Rgb{0};  // not in the exchange
+  bsdf.through = Rgb{0};  // transmission is not part of the exchange
   return albedo(bsdf, v.wo.z) * inv_pi_f *
          (interpolated_irradiance(solution_, at) + solution_.ambient);
 }

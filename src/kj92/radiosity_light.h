@@ -1,4 +1,5 @@
-// The light that the radiosity preprocessing left at a place: the general value, by its parts.
+// Access to the radiosity solution at hits: the general radiosity by its parts, and the radiosity
+// of surfaces. Direct and indirect light of `--method kj92` share it.
 #pragma once
 
 #include "kj92/source_selection.h"
@@ -9,25 +10,26 @@
 
 namespace troffer {
 
-// Solution and selection belong to the scene; all three must outlive it.
+// Refers to scene, solution and selection, which must outlive it.
 class RadiosityLight {
  public:
   RadiosityLight(const PreparedScene& scene, const RadiositySolution& solution,
                  const SourceSelection& selection)
       : scene_(scene), solution_(solution), selection_(selection) {}
 
+  // Returns the place on the radiosity mesh; `point` is no_point off the mesh.
   RadiosityPlace place_of(const Hit& hit, const Vertex& v) const;
-  // Sets wave.places of all hits that scatter light other than mirrors do, if nobody has yet.
+  // Sets wave.places of all diffuse and rough hits, unless they have been set already.
   void places(WaveHits& wave) const;
   uint32_t patch_of(const RadiosityPlace& place) const {
     return solution_.mesh.points[place.point].patch;
   }
-  // Irradiance that is not sampled, W/m² or lx; zero off the mesh.
+  // Returns the irradiance that is not sampled, W/m² or lx; zero off the mesh.
   GeneralIrradiance general(const RadiosityPlace& place) const;
   const RadiositySolution& solution() const { return solution_; }
   const SourceSelection& selection() const { return selection_; }
-  // Radiance that a surface which a ray has hit reflects, all of it, by the solution alone; zero
-  // off the mesh.
+  // Returns the radiance that the surface at a hit reflects, from the solution alone; zero off the
+  // mesh.
   Rgb radiance_seen(const Ray& ray, const Hit& hit) const;
 
  private:

@@ -16,10 +16,10 @@ SourceView view_of(float least, float most, const SelectionThresholds& t) {
 SourceClass classify(std::span<const SourceAtPoint> points, float mean_total,
                      const SelectionThresholds& thresholds) {
   SourceClass c;
-  float largest_unoccluded = 0;  // as a share
+  float largest_unoccluded = 0;  // relative to the point's total
   float least = 1, most = 0;
   for (const SourceAtPoint& p : points) {
-    // In the dark any source is important.
+    // At dark points the mean total stands in, or every source would seem important.
     const float total = std::max(p.total, mean_total);
     const float whole = total > 0 ? total : p.unoccluded;
     if (!(p.unoccluded > thresholds.least_share * whole)) continue;
@@ -36,7 +36,7 @@ SourceClass classify(std::span<const SourceAtPoint> points, float mean_total,
   const bool is_major = c.share >= thresholds.major_share;
   const bool has_edge = (most - least) * largest_unoccluded >= thresholds.shadow_edge;
   const float importance = c.view == SourceView::visible ? c.share : largest_unoccluded;
-  // Of a source that is strong enough even the little that an occluded patch gets can count.
+  // If a source is strong, even the little light that reaches an occluded patch can count.
   if (c.view != SourceView::visible && (is_major || has_edge)) {
     c.treatment = SourceTreatment::sampled;
   } else if (c.view != SourceView::partly && importance >= thresholds.probe_share) {

@@ -9,13 +9,13 @@ namespace troffer {
 
 namespace {
 
-// One side of a fragment that belongs to a patch.
+// A side of a fragment that belongs to a patch.
 struct FragmentSide {
   uint32_t fragment;
   uint32_t side;
 };
 
-// The sides of fragments, by patch.
+// Sides of fragments, grouped by patch.
 struct PatchFragments {
   std::vector<size_t> first;
   std::vector<FragmentSide> sides;
@@ -41,11 +41,11 @@ struct PatchFragments {
 Rgb least(Rgb a, Rgb b) {
   return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)};
 }
-Rgb without(Rgb a, Rgb b) {  // rounding must not leave less than nothing
+Rgb without(Rgb a, Rgb b) {  // clamped at 0 against rounding
   return {std::max(a.r - b.r, 0.0f), std::max(a.g - b.g, 0.0f), std::max(a.b - b.b, 0.0f)};
 }
 
-// Selection for one patch.
+// Selects the sources of one patch; its members are reused from patch to patch.
 class PatchSelector {
  public:
   PatchSelector(const RadiositySolution& solution, const Tracer& tracer,
@@ -69,7 +69,8 @@ class PatchSelector {
   }
 
  private:
-  // The points that interpolation on the patch uses, sorted, and all that they get as general.
+  // Collects the points that interpolation on the patch uses, sorted, and sets their general
+  // radiosity to the total.
   void gather_points(std::span<const FragmentSide> sides) {
     points_.ids.clear();
     for (const FragmentSide& s : sides)
@@ -92,7 +93,7 @@ class PatchSelector {
         (solution_.is_light(c.source) ? g.direct : g.indirect) += c.received;
       }
       points_.totals[i] = luminance(g.direct + g.indirect);
-      // What is still unshot comes from everywhere: nowhere where nothing else comes either.
+      // Unshot light may come from everywhere, but not to points that get no other light.
       if (points_.totals[i] > 0) g.indirect += solution_.ambient;
       points_.mean_total += points_.totals[i] / float(points_.ids.size());
     }
@@ -104,7 +105,7 @@ class PatchSelector {
     return std::find(options_.only.begin(), options_.only.end(), source) != options_.only.end();
   }
 
-  // Sources that any of the points kept and that come near a threshold there.
+  // Collects the sources that any of the points keeps and that come near a threshold there.
   void find_candidates(uint32_t patch) {
     const SelectionThresholds& t = options_.thresholds;
     const float near = 0.5f * std::min({t.major_share, t.shadow_edge, t.probe_share});
@@ -114,7 +115,7 @@ class PatchSelector {
       for (const StoredContribution& c : solution_.contributions(points_.ids[i])) {
         if (c.source == no_source || !is_allowed(c.source)) continue;
         if (!solution_.is_light(c.source)) {
-          // A patch counts where it is partly hidden; elsewhere interpolation serves it as well.
+          // A patch counts only where it is partly hidden; elsewhere interpolation is as good.
           if (solution_.patch_of(c.source) == patch) continue;
           if (luminance(c.received) >= t.visible_above * luminance(c.unoccluded)) continue;
         }
@@ -125,7 +126,7 @@ class PatchSelector {
     candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
   }
 
-  // What the source gives to each point: as kept there, or looked up again.
+  // Sets what the source gives to each point: the stored contribution, or a new computation.
   void look_up(uint32_t source) {
     received_.assign(points_.ids.size(), {});
     lookup_.missing.clear();
@@ -177,7 +178,7 @@ class PatchSelector {
            std::find(options_.only.begin(), options_.only.end(), light) != options_.only.end();
   }
 
-  // The preprocessing knows nothing of them: nobody else adds their light.
+  // Adds the lights without surface, which the radiosity solution does not contain.
   void treat_lights_without_surface(std::vector<TreatedSource>& treated) const {
     for (uint32_t e = 0; e < solution_.light_count; ++e)
       if (is_without_surface(e))
@@ -221,14 +222,14 @@ class PatchSelector {
   Interpolation at_;
   struct Points {  // of the patch
     std::vector<uint32_t> ids;
-    std::vector<GeneralIrradiance> general;  // what is left
+    std::vector<GeneralIrradiance> general;  // not accounted for by treated sources
     std::vector<float> totals;
     float mean_total = 0;
   } points_;
   std::vector<uint32_t> candidates_;
   std::vector<StoredContribution> received_;
   std::vector<SourceAtPoint> at_points_;
-  struct Lookup {  // memory of look_up
+  struct Lookup {  // working memory of look_up
     std::vector<size_t> missing;
     std::vector<uint32_t> points;
     std::vector<StoredContribution> completed;

@@ -1,10 +1,9 @@
-// Source selection: for every patch the sources that deserve shadow rays, and the general radiosity
-// value that all others leave.
-//
-// Nothing is lost and nothing counted twice: at each sample point the general value and what the
-// preprocessing found of the treated sources add up to the irradiance that it found, whichever
-// patch asks. A source that is treated on a patch but was not kept separately at one of the points
-// there is looked up again (source_contributions) and taken out of the point's general value.
+// Source selection: for every patch, the sources that deserve shadow rays, and the general
+// radiosity that all other sources leave. BintreeDirect and RadiosityIndirect use it.
+// At each sample point, the general radiosity and the contributions of treated sources add up to
+// the irradiance of the solution: nothing is lost or counted twice. A treated source that a point
+// does not store separately is computed again (source_contributions) and subtracted from the
+// point's general radiosity.
 // References: as in source_class.h.
 #pragma once
 
@@ -22,45 +21,48 @@
 
 namespace troffer {
 
+// Settings of the selection.
 struct SelectionOptions {
-  // false: every light is sampled on every patch, bright patches nowhere.
+  // If false, every light is sampled on every patch, and bright patches are not selected.
   bool is_enabled = true;
   SelectionThresholds thresholds;
-  // Bright patches may be selected like lights.
+  // Allows the selection of bright patches.
   bool uses_patches = true;
-  // Only these lights, and no patches, may be treated; all others stay in the general value.
+  // If true, only the lights in `only` may be treated, and no patches; all others stay in the
+  // general radiosity.
   bool is_restricted = false;
   std::vector<uint32_t> only;
 };
 
-// A source that is treated on a patch: SourceTreatment::probed or sampled. Lights of the scene,
-// then patches, as in StoredContribution.
+// A source that is probed or sampled on a patch. Numbers as in StoredContribution: lights of the
+// scene, then patches.
 struct TreatedSource {
   uint32_t source = no_source;
   SourceClass source_class;
 };
 
-// Irradiance that is not sampled, W/m² or lx: what comes straight from lights, and all else.
+// Irradiance that is not sampled, W/m² or lx: direct light from lights, and all other light.
 struct GeneralIrradiance {
   Rgb direct, indirect;
 };
 
+// Result of the selection for a whole scene; immutable and thread safe.
 class SourceSelection {
  public:
-  // All arguments belong to one scene and are used here only. Does not depend on `threads`. Of no
-  // use once `stop` is set.
+  // All arguments belong to one scene and are used only by the constructor. The result does not
+  // depend on `threads`. It is unusable if `stop` was set.
   SourceSelection(const RadiositySolution& solution, const Tracer& tracer,
                   const LightPrimitives& primitives, const SelectionOptions& options, int threads,
                   const StopFlag& stop);
 
-  // In increasing order of source.
+  // Returns the treated sources of a patch in increasing order of source.
   std::span<const TreatedSource> of_patch(uint32_t patch) const {
     return {sources_.data() + first_[patch], first_[patch + 1] - first_[patch]};
   }
 
-  // The general value at a place of a fragment's front or back, which must have a sample point.
-  // weights: of the fragment's corners (fragment_at). With the ambient estimate for light that is
-  // still unshot.
+  // Returns the general radiosity at a place on the front or back of a fragment, which must have a
+  // sample point. weights: of the fragment's corners (fragment_at). Includes the ambient estimate
+  // of unshot light.
   GeneralIrradiance general(uint32_t fragment, bool is_back, const Vec3& weights) const {
     const GeneralIrradiance* const at_knots =
         knots_.data() + knots_per_fragment * (2 * size_t(fragment) + (is_back ? 1 : 0));
@@ -77,8 +79,8 @@ class SourceSelection {
 
  private:
   std::vector<TreatedSource> sources_;
-  std::vector<size_t> first_;             // per patch, into sources_; one more at the end
-  std::vector<GeneralIrradiance> knots_;  // fragment × side × knot (interpolation.h)
+  std::vector<size_t> first_;             // per patch: start in sources_; one more at the end
+  std::vector<GeneralIrradiance> knots_;  // by fragment, side and knot (interpolation.h)
 };
 
 }  // namespace troffer

@@ -4,13 +4,14 @@ namespace troffer {
 
 namespace {
 
-// Cosine of the angle within which surfaces count as facing the same way: 25 degrees.
+// Cosine of 25 degrees, within which surfaces count as facing the same way.
 constexpr float cos_same_way = 0.906f;
 
 }  // namespace
 
 void TreePool::forget() {
-  // How many there are decides when patterns make room: it must not depend on the past either.
+  // The number of entries decides when patterns are evicted, so it must not depend on the past
+  // either.
   if (entries_.size() > most_idle) entries_.resize(most_idle);
   for (const auto& e : entries_) {
     e->has_pattern = false;
@@ -32,7 +33,7 @@ TreePool::Entry& TreePool::acquire(const TreeKey& key, const Vec3& normal, bool 
     if (oldest == nullptr || e->last_used < oldest->last_used) oldest = e.get();
   }
   if (found == nullptr) {
-    // Patterns are worth more than memory until there are many of them.
+    // Keeps patterns and allocates new entries until there are many.
     if (oldest == nullptr || (oldest->has_pattern && entries_.size() < most_idle)) {
       entries_.push_back(std::make_unique<Entry>(options_));
       oldest = entries_.back().get();

@@ -1,5 +1,5 @@
-// Bintrees that one thread keeps from viewing ray to viewing ray, so that the pattern found at one
-// point is there for the next on the same object [1, §4].
+// Pool of bintrees that one thread keeps from viewing ray to viewing ray. The pattern found at one
+// point is reused at the next point on the same object [1, §4].
 // References: [1] Kok & Jansen, Eurographics '92.
 #pragma once
 
@@ -12,15 +12,16 @@
 
 namespace troffer {
 
-// For whom a pattern is: a pattern is reused where all of this is the same.
+// Key of a pattern. A pattern is reused only where all fields agree.
 struct TreeKey {
   uint32_t source = 0;
   uint32_t geometry = 0;  // the object, as in Hit
-  uint32_t depth = 0;     // viewing rays are 0, those that they spawn 1, …
+  uint32_t depth = 0;     // 0 for viewing rays, 1 for rays that they spawn, and so on
   bool is_front = true;
   bool operator==(const TreeKey&) const = default;
 };
 
+// Bintrees by key. One per thread.
 class TreePool {
  public:
   struct Entry {
@@ -28,18 +29,18 @@ class TreePool {
     Bintree tree;
     TreeKey key;
     Vec3 normal;               // of the surface where the pattern was found
-    bool has_pattern = false;  // the tree holds one that may be reused
+    bool has_pattern = false;  // the tree holds a reusable pattern
     uint64_t last_used = 0;
   };
 
   explicit TreePool(const BintreeOptions& options) : options_(options) {}
 
-  // Forgets all patterns: what follows does not depend on what was before.
+  // Forgets all patterns, so that later results do not depend on earlier ones.
   void forget();
 
-  // The tree of `key`, with its pattern if `reuses` and the surface faces about the same way; else
-  // without. Entries in use (by `acquire` since the last `release_all`) are never given away; of
-  // the others the one that was not used for longest makes room.
+  // Returns the tree of `key`. It has its pattern only if `reuses` and if the surface faces about
+  // the same way. Entries acquired since the last `release_all` are in use and stay untouched. Of
+  // the others, the least recently used one is recycled.
   Entry& acquire(const TreeKey& key, const Vec3& normal, bool reuses);
   void release_all() { first_free_tick_ = ++tick_; }
 

@@ -10,12 +10,12 @@ namespace troffer {
 
 namespace {
 
-// Sources that fill less (more) of the hemisphere than this start with half (twice) the rays [1,
-// §2: 4 to 16, by size and importance]. In projected solid angle, of pi.
+// Sources below or above these shares of the hemisphere start with half or twice the rays. [1, §2]
+// asks for 4 to 16 rays by size and importance. Shares are in projected solid angle over pi.
 constexpr float small_source = 0.002f, large_source = 0.5f;
-// What is seen by way of a gloss or mirror never counts for less than this in the stops.
+// Lower limit of the throughput that scales allowed errors.
 constexpr float least_throughput = 0.02f;
-// From so many rays on, packets pay.
+// Number of rays from which ray packets are faster.
 constexpr size_t packet_rays = 4;
 
 int initial_rays(const TreeSamplingOptions& o, const TreatedSource& t, float projected) {
@@ -139,9 +139,9 @@ void TreeSampler::ask_tree(const TreeReceiver& r, Task& t) {
   }
 }
 
-// The allowed error is a share of the light of all sources together. Each source may have the part
-// of the variance that is its part of the light: a weak one then takes few rays, and the variances
-// add up to what is allowed.
+// The allowed error is relative to the light of all sources together. Each source gets the part of
+// the variance that equals its part of the light. Weak sources then need few rays, and the
+// variances add up to the allowed one.
 void TreeSampler::share_allowance(const TreeReceiver& r) {
   float sum = 0;
   for (size_t i = 0; i < task_count_; ++i) {
@@ -198,7 +198,7 @@ void TreeSampler::answer_lattice(Task& t) {
     if (is_occluded_[t.first_ray + i] == 0) t.sum += t.values[i] * factors_[t.first_ray + i];
 }
 
-// True if the task asks on.
+// Returns true if the task asks for more rays.
 bool TreeSampler::answer(Task& t) {
   if (t.entry == nullptr) {
     answer_lattice(t);
@@ -215,7 +215,7 @@ bool TreeSampler::answer(Task& t) {
   const bool is_first = t.is_first_round;
   t.is_first_round = false;
   if (is_first && t.treated.source_class.treatment == SourceTreatment::probed) {
-    // What the preprocessing said is taken where no probe contradicts it.
+    // The result of the preprocessing is accepted unless a probe ray contradicts it.
     const ShadowFlag seen = tree.nodes()[BintreeNodes::root].flag;
     if (t.treated.source_class.view == SourceView::occluded && seen == ShadowFlag::shadow)
       return false;
@@ -232,7 +232,8 @@ Rgb TreeSampler::light_of(const TreeReceiver& r, const Task& t) const {
   if (t.entry == nullptr) return t.sum;
   if (t.takes_exact) return t.exact;
   const Bintree& tree = t.entry->tree;
-  // What panes take is in the visible rays alone: no share of what would come without them.
+  // With panes, transmittance is known for visible rays only, so a ratio to the light without panes
+  // is not possible.
   if (options_.uses_ratio && t.has_exact && !scene_.tracer.has_panes()) {
     const float all = tree.kernel_mean();
     return all > 0 ? t.exact * (tree.estimate().mean / all) : Rgb{0};
@@ -253,7 +254,7 @@ Rgb TreeSampler::light_of(const TreeReceiver& r, const Task& t) const {
 }
 
 void TreeSampler::add_record(const TreeReceiver& r, const Task& t) const {
-  if (t.is_single) return;  // nothing to agree about
+  if (t.is_single) return;  // a single ray has no pattern
   SourcePattern p;
   p.source = t.treated.source;
   if (t.entry == nullptr) {

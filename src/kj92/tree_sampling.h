@@ -1,5 +1,5 @@
-// Light from the treated sources at one vertex, by a bintree for each: the trees ask for rays in
-// rounds, and the rays of all of them are traced together.
+// Light of the treated sources at one vertex, by one bintree per source. All trees ask for rays in
+// rounds that are traced together. BintreeDirect runs one sampler per thread.
 // References: [1] Kok & Jansen, Eurographics '92, §2 to §4. [2] Heitz, Hill & McGuire, "Combining
 //   Analytic Direct Illumination and Stochastic Shadows", I3D 2018.
 #pragma once
@@ -16,37 +16,38 @@
 namespace troffer {
 
 struct TreeSamplingOptions {
-  BintreeOptions tree;  // initial_rays: of a source of middling size and importance
-  // Rays that look for surprises where the preprocessing found a source hidden or visible. Where
-  // they agree with it, its word is taken: nothing, or the exact unoccluded light.
+  BintreeOptions tree;  // initial_rays: for a source of medium size and importance
+  // Probe rays for sources that the preprocessing found hidden or fully visible. If all probes
+  // agree, the result is zero or the exact unoccluded light.
   int probe_rays = 4;
-  bool has_coherence = true;  // patterns are reused
-  // Not in [1]: where the unoccluded light is known exactly, a tree gives only the share of it that
-  // is visible (ratio estimator [2]), so that rays' values may differ as they like.
+  bool has_coherence = true;  // reuse of patterns from hit to hit
+  // Extension of [1]: where the unoccluded light is known exactly, the tree estimates only its
+  // visible share (ratio estimator [2]). Variation of ray values then adds no noise.
   bool uses_ratio = false;
 };
 
-// Where light is asked for.
+// A vertex that receives light.
 struct TreeReceiver {
   const Vertex* vertex = nullptr;
   const SurfaceScattering* scattering = nullptr;
-  uint64_t stream = 0;   // names pixel, sample and depth
-  uint32_t depth = 0;    // 0: seen by a viewing ray itself
-  float throughput = 1;  // the share of what is computed here that enters the picture
+  uint64_t stream = 0;   // hash of pixel, sample and depth
+  uint32_t depth = 0;    // 0 for vertices seen by viewing rays
+  float throughput = 1;  // share of the result that enters the picture
   const NeighbourRecords* neighbours = nullptr;
   ShadowRecord* record = nullptr;  // filled if not null
 };
 
+// Result of TreeSampler::run.
 struct TreeLight {
   Rgb from_lights, from_patches;  // radiance towards the viewer
   uint32_t rays = 0;
-  uint32_t sampled = 0, probed_visible = 0, probed_hidden = 0;  // sources
+  uint32_t sampled = 0, probed_visible = 0, probed_hidden = 0;  // numbers of sources
 };
 
-// One for each thread.
+// Samples the sources of one vertex after another. One per thread.
 class TreeSampler {
  public:
-  // sources[i] is the source named i in TreatedSource, where it is treated anywhere.
+  // sources[index_of_source[s]] is the source s of TreatedSource.
   TreeSampler(const PreparedScene& scene, const std::vector<TreeSource>& sources,
               const std::vector<uint32_t>& index_of_source, const TreeSamplingOptions& options)
       : scene_(scene),
@@ -62,18 +63,18 @@ class TreeSampler {
   struct Task {
     const TreeSource* source = nullptr;
     TreatedSource treated;
-    TreePool::Entry* entry = nullptr;  // null: asks the cells of `agreed` that are in doubt …
-    bool is_single = false;            // … or one ray, which tells all
+    TreePool::Entry* entry = nullptr;  // null: samples the doubtful cells of `agreed`
+    bool is_single = false;            // casts one ray, without a tree
     ShadowPattern agreed;
     bool has_exact = false, takes_exact = false;
-    Rgb exact;             // unoccluded radiance towards the viewer, where it is known
-    Rgb colour;            // all values are multiples of it; black: they are not
-    float unoccluded = 0;  // luminance that would enter the picture unoccluded
+    Rgb exact;             // unoccluded radiance towards the viewer, if known
+    Rgb colour;            // common factor of all values; black if there is none
+    float unoccluded = 0;  // luminance of the unoccluded light towards the viewer
     size_t first_ray = 0;
     bool is_first_round = true;
-    Rgb sum;  // without tree: what arrives
+    Rgb sum;  // without tree: light that arrives
     std::vector<ShadowRayResult> results;
-    std::vector<int32_t> ray_of;  // of each result, from first_ray on; -1: nothing can arrive
+    std::vector<int32_t> ray_of;  // ray of each result, after first_ray; -1: no light can arrive
     std::vector<Rgb> values;      // without tree
   };
 

@@ -43,7 +43,7 @@ bool TreeSource::point_towards(const PreparedScene& scene, const Vec2& uv, const
   if (sampled_ != no_primitive)
     return troffer::sample(scene.scene, scene.primitives[size_t(sampled_)], x, uv, out);
   SourcePoint p = surface_.point_at(uv);
-  if (round_radius_ > 0)  // a patch's pieces are chords of it
+  if (round_radius_ > 0)  // the patch's flat pieces are chords of the sphere
     p.point = round_centre_ + normalize(p.point - round_centre_) * round_radius_;
   const Vec3 towards = x - p.point;
   const float distance_squared = length_squared(towards);
@@ -69,7 +69,7 @@ bool TreeSource::sample(const PreparedScene& scene, const Vec2& uv, const Vertex
   const Vec3 wi = v.frame.to_local(p.wi);
   if (!v.is_consistent(p.wi, wi)) return false;
   Rgb f_cos = s.has_diffuse ? evaluate(s.diffuse, v.wo, wi) : Rgb{0};
-  // Patches are seen by the spawned rays alone.
+  // Patches are seen by spawned rays only, so gloss does not sample them.
   if (s.has_rough && !is_patch()) {
     const BsdfValue rough = evaluate_with_pdf(s.specular, v.wo, wi);
     f_cos += rough.f_cos *

@@ -1,10 +1,8 @@
-// A source as a bintree samples it: the unit square laid over it, and what light a point of the
-// square sends to a vertex.
-//
-// Lights of any shape, and bright patches of the radiosity solution. The square is laid over the
-// surface by area (source_surface.h); over a sphere by the solid angle of what the vertex sees of
-// it, or half of the square would lie on the far side; lights without surface have it laid over the
-// directions from which they shine.
+// A source as a bintree samples it: a map from the unit square to the source, and the light from
+// there at a vertex. It works for lights of any shape and for bright patches of the radiosity
+// solution. The square maps to the surface uniformly by area (source_surface.h). For a sphere it
+// maps to the solid angle that the vertex sees, or half of the square would lie on the far side.
+// For lights without surface it maps to their directions.
 #pragma once
 
 #include "light/light.h"
@@ -16,41 +14,43 @@
 
 namespace troffer {
 
-// What the point (u,v) of a source sends on at a vertex if nothing is in the way.
+// Light from the point (u,v) of a source at a vertex, without occlusion.
 struct TreeSourceSample {
-  Rgb value;  // radiance towards the viewer per unit of the square
+  Rgb value;  // radiance towards the viewer per unit area of the square
   Ray shadow_ray;
 };
 
+// A light, or a patch of the radiosity solution.
 class TreeSource {
  public:
   TreeSource(const PreparedScene& scene, uint32_t light);
-  // `patch` sends the radiance that it has shot.
+  // A patch emits the radiance that it has shot.
   TreeSource(const PreparedScene& scene, const RadiositySolution& solution, uint32_t patch);
 
   bool is_patch() const { return light_ < 0; }
-  // Nothing to sample.
+  // True if there is nothing to sample.
   bool is_empty() const {
     return (!(surface_.area() > 0) && sampled_ == no_primitive) || is_black_;
   }
-  // All points are one: a ray tells all.
+  // True if one ray decides, because the source has one point or direction.
   bool is_delta() const { return is_delta_; }
-  // All points send the same radiance in all directions.
+  // True if all points emit the same radiance in all directions.
   bool is_constant() const { return is_constant_; }
   Rgb radiance() const { return radiance_; }  // where is_constant
 
-  // The unoccluded irradiance at a vertex is known exactly, W/m² or lx, for the shading normal:
-  // what is above that horizon.
+  // True if the unoccluded irradiance at a vertex is known exactly, in W/m² or lx. It counts what
+  // lies above the horizon of the shading normal.
   bool has_exact_irradiance() const { return is_constant_ && is_convex_; }
   Rgb exact_irradiance(const PreparedScene& scene, const Vertex& v) const;
 
-  // False where nothing can arrive: then no ray is needed. light_rays: the number of rays with
-  // which the specular part, which spawned rays sample too, reckons (power heuristic).
+  // Computes the light from (u,v) and its shadow ray. Returns false if no light can arrive.
+  // light_rays: number of light rays in the power heuristic against spawned rays, which also sample
+  // the specular part.
   bool sample(const PreparedScene& scene, const Vec2& uv, const Vertex& v,
               const SurfaceScattering& s, float light_rays, TreeSourceSample& out) const;
 
-  // Density per solid angle with which uniform (u,v) choose the direction from `from` in which a
-  // ray has run into this light at v.
+  // Returns the density per solid angle of `direction` from `from` under uniform (u,v), for a ray
+  // that hit this light at v.
   float pdf_of_hit(const PreparedScene& scene, const Vec3& from, const Vec3& direction,
                    const Vertex& v) const;
 
@@ -64,8 +64,8 @@ class TreeSource {
   Rgb radiance_;
   bool is_constant_ = true, is_convex_ = true, is_two_sided_ = false, is_black_ = false,
        is_delta_ = false;
-  Vec3 round_centre_;       // of the sphere on which a patch lies …
-  float round_radius_ = 0;  // … or 0
+  Vec3 round_centre_;       // of the sphere that a patch lies on
+  float round_radius_ = 0;  // 0: the patch is not part of a sphere
 };
 
 }  // namespace troffer

@@ -178,9 +178,13 @@ void ImageMaker::add_textures() {
     if (m.is_alpha_masked) use(m.alpha.texture);
   }
   for (const Light& e : out_.scene.lights) use(e.texture);
-  for (size_t t = all.size(); t-- > 0;)
-    if (is_used[t] && all[t].kind == TextureKind::product)
+  // Operands stand before the textures that use them.
+  for (size_t t = all.size(); t-- > 0;) {
+    if (!is_used[t]) continue;
+    if (all[t].kind == TextureKind::product)
       is_used[all[t].factor_a] = is_used[all[t].factor_b] = true;
+    for (const TextureOperand* o : {&all[t].first, &all[t].second, &all[t].amount}) use(o->texture);
+  }
   out_.scene.textures.resize(all.size());
   for (size_t t = 0; t < all.size(); ++t)
     if (is_used[t]) out_.scene.textures[t] = all[t];

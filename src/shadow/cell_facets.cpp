@@ -8,12 +8,14 @@ namespace troffer {
 
 namespace {
 
+// Half-space normal · p > distance.
 struct Beyond {
   Vec3d normal;
   double distance;
 };
 
-// The plane through a and b that the hull touches, if the hull and the cell lie on one side of it.
+// Looks for a plane through a and b that touches the hull and has hull and cell on one side. Sets
+// `out` to the half-space on its other side. Returns false if there is no such plane.
 bool plane_through(const Vec3d& a, const Vec3d& b, const Vec3d& inside, const ReceiverHull& hull,
                    Beyond& out) {
   for (int r = 0; r < hull.count; ++r) {
@@ -25,7 +27,7 @@ bool plane_through(const Vec3d& a, const Vec3d& b, const Vec3d& inside, const Re
     for (const double c : {a.x, a.y, a.z}) magnitude = std::max(magnitude, std::abs(c));
     for (int h = 0; h < hull.count; ++h) most = std::max(most, dot(n, hull.corners[size_t(h)] - a));
     if (most > 1e-9 * magnitude) continue;
-    // hull and masks round by less
+    // The added distance exceeds the rounding errors of the hull and of the masks.
     out = {n, dot(n, a) + hull.slack + 4e-6 * magnitude};
     return true;
   }

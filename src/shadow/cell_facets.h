@@ -1,4 +1,5 @@
-// The facets that matter for one cell of a source, of those before a larger part of it.
+// Shortens a facet list of a source to the facets that matter for one of its cells. plan_cells.h
+// uses it after it has split a cell. Lengths in metres.
 #pragma once
 
 #include <span>
@@ -8,9 +9,9 @@
 
 namespace troffer {
 
-// Sets `out` to the facets that may meet a segment from the hull's receivers to the cell: leaves
-// out what lies beyond a plane through one of the cell's edges that has all of cell and hull before
-// it.
+// Sets `out` to the facets that may meet a segment from the hull to the cell. Planes through an
+// edge of the cell that have hull and cell on one side decide. A facet beyond one of them is left
+// out.
 void facets_before(const ReceiverHull& hull, const FlatCell& cell,
                    std::span<const FacetToAdd> facets, std::vector<FacetToAdd>& out);
 

@@ -1,4 +1,5 @@
-// Points of a flat cell, evenly by area.
+// Maps the unit square to a flat cell so that equal areas stay equal. Rays to a source use it to
+// choose their end points.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace troffer {
 
-// The cell must stay.
+// Keeps a reference to the cell, which must outlive it.
 class CellPoints {
  public:
   explicit CellPoints(const FlatCell& cell) : cell_(cell) {
@@ -24,9 +25,9 @@ class CellPoints {
       ends_[i] = float(area_);
     }
   }
-  // m²
+  // Returns the area of the cell in m².
   double area() const { return area_; }
-  // For u, v in [0,1).
+  // Returns the point for u, v in [0,1).
   Vec3d at(float u, float v) const {
     const Parallelogram& p = cell_.plane;
     if (cell_.is_disk) {
@@ -49,7 +50,7 @@ class CellPoints {
  private:
   const FlatCell& cell_;
   double area_ = 0;
-  std::array<float, most_source_corners> ends_{};  // of the fan's triangles, in area
+  std::array<float, most_source_corners> ends_{};  // running sum of the fan's triangle areas, m²
 };
 
 }  // namespace troffer

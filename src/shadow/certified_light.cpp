@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-// 1. What the source would send; false if nobody gets any light.
+// Step 1: collects the receivers that the source would reach. Returns false if there are none.
 bool begin_source(const SourceTask& task, CertifiedMemory& m) {
   ++m.counters.clusters;
   const auto n = uint32_t(task.cluster.size());
@@ -32,8 +32,8 @@ RaySource ray_source(const SourceTask& task) {
   return s;
 }
 
-// Rays were queued by cells' own light, whose sum is not quite that of the whole source: scales it
-// as set_answer does. Integrals of an integrand remain sums over cells.
+// Rays were queued with the unoccluded light of cells, whose sum differs slightly from that of the
+// whole source. Scales them as set_answer does. Integrals of an integrand remain sums over cells.
 void scale_rays(size_t first, std::span<const CellSum> sums, std::span<const float> unoccluded,
                 RayQueue& queue) {
   for (size_t i = first; i < queue.open.size(); ++i) {
@@ -42,7 +42,7 @@ void scale_rays(size_t first, std::span<const CellSum> sums, std::span<const flo
   }
 }
 
-// 2. to 5. for flat sources.
+// Steps 2 to 5 for flat sources.
 void settle_flat(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m) {
   const FlatSource& source = *task.request.flat;
   const ReceiverHull hull = hull_of(task.cluster, m.members);
@@ -54,7 +54,7 @@ void settle_flat(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m)
   RaySource target = ray_source(task);
   target.point = source.plane.origin;
   target.normal = source.plane.normal;
-  target.tolerance = 2e-6 * magnitude;  // as the shaft has it
+  target.tolerance = 2e-6 * magnitude;  // the tolerance of the shaft
   m.queue.sources.push_back(target);
   const size_t first_ray = m.queue.open.size();
   if (task.request.far != nullptr)
@@ -74,7 +74,7 @@ void settle_flat(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m)
   scale_rays(first_ray, m.sums, m.unoccluded, m.queue);
 }
 
-// 2. to 5. for spheres.
+// Steps 2 to 5 for spheres.
 void settle_sphere(const SourceTask& task, ShadowScene& scene, CertifiedMemory& m) {
   const SphereSource& source = *task.request.sphere;
   RaySource target = ray_source(task);
@@ -88,16 +88,17 @@ void settle_sphere(const SourceTask& task, ShadowScene& scene, CertifiedMemory& 
   for (SourcePart& part : m.gather.parts.all()) settle_sphere_part(task, part, m.part, results);
 }
 
-// A request whose answers wait for rays.
+// A request whose answers are complete only after rays have been cast.
 struct Waiting {
-  uint32_t request, source;  // `source`: in the queue
-  size_t first;              // of its answers in CertifiedMemory::waiting
+  uint32_t request, source;  // `source`: index in the queue
+  size_t first;              // index of its first answer in CertifiedMemory::waiting
 };
-// When so many pairs wait, their rays are cast.
+// Rays are cast as soon as more pairs than this wait, which limits the memory of the queue.
 constexpr size_t most_waiting = 1 << 16;
 
-// What rays of the pairs at hand may err by, of all that a receiver's rays may: by their share of
-// its unoccluded light.
+// Sets the error allowed to the queued rays of each receiver. If the rays of a cluster are cast in
+// several batches, a batch gets the square root of its share of the light. The variances of all
+// batches then add up to the allowed one.
 void set_allowed(const CertifiedOptions& options, CertifiedMemory& m) {
   m.allowed.assign(m.total.size(), 0);
   for (const RayQueue::OpenPair& p : m.queue.open)
@@ -109,7 +110,7 @@ void set_allowed(const CertifiedOptions& options, CertifiedMemory& m) {
   }
 }
 
-// 6. What rays find completes the answers that wait.
+// Step 6: casts the queued rays and completes the answers that wait for them.
 void finish_by_rays(std::vector<Waiting>& waiting, size_t receivers, ShadowScene& scene,
                     const CertifiedOptions& options, CertifiedMemory& m, const TakeAnswers& take) {
   set_allowed(options, m);
@@ -125,7 +126,7 @@ void finish_by_rays(std::vector<Waiting>& waiting, size_t receivers, ShadowScene
   m.waiting.clear();
 }
 
-// Sets what all requests would send, and their order: the strongest first.
+// Sets the unoccluded light of all requests and orders the requests, strongest first.
 void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest> requests,
                      CertifiedMemory& m) {
   m.all_unoccluded.clear();
@@ -151,9 +152,9 @@ void find_unoccluded(const ShadowCluster& cluster, std::span<const LightRequest>
                    [&](uint32_t a, uint32_t b) { return strength[a] > strength[b]; });
 }
 
-// A ray costs about as much as a dozen facets in a mask. At an error E, a source that gives the
-// share s of the light is worth s / 4 E² rays at most, each with a variance of up to ¼: more facets
-// than that are not worth a mask.
+// Error and cost limits of one source's masks. A ray costs about as much as 12 facets in a mask. A
+// source with the share s of the light is worth at most s / (4 E²) rays, each of variance ¼ or
+// less. A mask with more facets than these rays pay for is not worth its cost.
 Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
                    const CertifiedOptions& options, CertifiedMemory& m) {
   constexpr double facets_per_ray = 12, least_budget = 256, least_far_budget = 64,
@@ -175,7 +176,7 @@ Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
     m.floor[i] = cluster.receivers[i].floor * inverse / std::sqrt(float(m.order.size()));
   }
   const double share = total > 0 ? own / total : 1;
-  // Masks may cost what rays may. Beyond that an error that is too large is told.
+  // Masks may cost as much as rays. Beyond that, the error is too large and is reported.
   p.budget =
       std::clamp(share * facets_per_ray / (4 * sqr(double(p.error))), least_budget, most_budget);
   if (request.far != nullptr)
@@ -183,7 +184,7 @@ Promise promise_of(const ShadowCluster& cluster, const LightRequest& request,
         p.budget, std::max(2 * facets_per_ray * share * rays_for_error(m.far_open, double(p.error)),
                            least_far_budget));
   p.far_open = m.far_open;
-  // The smaller the error, the more a mask's error lies below that of as many rays.
+  // The smaller the error, the more rays a mask replaces, so longer lists pay off.
   constexpr double even_error = 0.1;
   p.longest_list =
       p.budget * (request.far != nullptr ? 2 : std::pow(even_error / double(p.error), 1.5));

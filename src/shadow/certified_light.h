@@ -1,20 +1,21 @@
-// From a cluster of receivers to the light of sources that it sees: the driver of certified
-// visibility. Shadow flags are proved by geometry, masks stand where a shadow's boundary passes,
-// and rays only for what no list of facets settles. One stage after the other, for each source:
-//   1. what it would send if nothing hid it                       shadow_cluster.h
-//   2. the facets in the shaft between the two; too many: the
-//      cluster or the source is halved, a few times at most       gather_facets.h
-//   3. the source in cells over which its light varies little     settle_part.h, cut_cells.h
-//   4. facets proved to hide nothing of a cell are dropped, one
-//      proved to hide all of it makes it dark; none left: lit;
-//      the cluster is halved while that shortens lists            settle_cell.h
-//   5. per receiver and cell a mask of the facets left            mask_cell.h, coverage_mask.h
+// Direct light of a cluster of receivers by certified visibility: the driver of all stages.
+// Visibility is proved by geometry where possible. Coverage masks settle penumbrae, and rays decide
+// only where no facet list is complete. Light is in sr of projected solid angle. Stages for each
+// source:
+//   1. unoccluded light                                     shadow_cluster.h
+//   2. facets in the shaft between cluster and source; if
+//      there are too many, one of the two is halved         gather_facets.h
+//   3. source cells over which the light varies little      settle_part.h, cut_cells.h
+//   4. certificates: facets that hide nothing are dropped;
+//      the cell is dark if one facet hides all of it, lit if
+//      none is left; the cluster is halved if this helps    settle_cell.h
+//   5. masks of the remaining facets                        mask_cell.h, coverage_mask.h
 // and for all sources together
-//   6. where lists are not complete, rays through open samples    residual_rays.h
-// A sphere is the disk that its outline spans, one for each receiver, without steps 3 and 4. What
-// is not Lambert's term times a constant radiance is integrated over points drawn from the mask.
-// Cells and lists depend on geometry and on rays of earlier clusters, never on what is estimated
-// with them, so that the estimate is unbiased: see docs/certified.md.
+//   6. residual rays through open samples                   residual_rays.h
+// A sphere is replaced by the disk that its outline spans, one per receiver; steps 3 and 4 are
+// skipped. Textured lights and glossy surfaces are integrated over points drawn from the masks.
+// Cells and lists depend only on geometry and on rays of earlier clusters, so the estimate is
+// unbiased. References: docs/certified.md.
 #pragma once
 
 #include <cstdint>
@@ -27,40 +28,39 @@
 
 namespace troffer {
 
-// Memory alone, one for each thread, and what has been counted: nothing that a call leaves here
-// changes the next one's answers.
+// Working memory and counters of certified_light, one per thread. Nothing that a call leaves here
+// changes the answers of the next call.
 struct CertifiedMemory {
-  std::vector<float> unoccluded;         // per receiver, of the source at hand
-  std::vector<float> all_unoccluded;     // … of all requests, one after the other
-  std::vector<uint32_t> order;           // of requests
-  std::vector<float> light;              // per receiver: brightness × what has been seen so far
-  std::vector<float> done;               // … what has been asked for so far, nothing hidden
-  std::vector<float> seen, rest, floor;  // per receiver: of the promise at hand
-  std::vector<uint32_t> wanted_points;   // per receiver
-  std::vector<uint32_t> members;         // whom the source lights
+  std::vector<float> unoccluded;      // per receiver, of the current source, sr
+  std::vector<float> all_unoccluded;  // of all requests, one after the other, sr
+  std::vector<uint32_t> order;        // requests, strongest first
+  std::vector<float> light;           // per receiver: brightness × light seen so far, sr
+  std::vector<float> done;  // per receiver: brightness × unoccluded light of requests so far
+  std::vector<float> seen, rest, floor;  // per receiver: Promise of the current source
+  std::vector<uint32_t> wanted_points;   // per receiver: points that its integrand wants
+  std::vector<uint32_t> members;         // receivers that the source reaches
   std::vector<CellSum> sums;             // per receiver
   GatherMemory gather;
   PartMemory part;
   std::vector<float> total;       // per receiver: brightness × unoccluded light of all requests
   std::vector<float> allowed;     // per receiver: error allowed to its rays
-  bool is_cast_in_parts = false;  // the rays of the cluster, some sources after the others
+  bool is_cast_in_parts = false;  // true if the cluster's rays are cast in several batches
   RayQueue queue;
   RayMemory rays;
-  std::vector<SourceVisibility> answers;  // of the source at hand, or of all that wait for rays
-  std::vector<SourceVisibility> waiting;
-  double far_open = 0.5;  // the share of far sources' light that arrives, about
-  std::vector<LeftPart> left;  // of far sources, of the last call: their answers leave these out
+  std::vector<SourceVisibility> answers;  // of the current source
+  std::vector<SourceVisibility> waiting;  // answers of requests that wait for rays
+  double far_open = 0.5;                  // estimated share of the light from infinity that arrives
+  std::vector<LeftPart> left;  // parts at infinity that the last call's answers leave out
   CertifiedCounters counters;
 };
 
-// Takes the finished answers of one request: answers[i] is that of receiver i of the cluster.
+// Receives the finished answers of one request: answers[i] belongs to receiver i of the cluster.
 using TakeAnswers =
     std::function<void(uint32_t request, std::span<const SourceVisibility> answers)>;
 
-// Answers each request once, the strongest first: those that need no ray, then those that wait for
-// rays, which are cast for many of them together. integrand: null if all receivers want
-// visibility alone. Deterministic in the cluster, the requests and what these have found, which is
-// read first and added to at the end.
+// Answers each request once: first those that need no ray, strongest first, then those that wait
+// for rays, which are cast together. integrand: null if all receivers want visibility only. The
+// result depends only on the cluster, the requests and their FoundFacets, to which the rays add.
 void certified_light(const ShadowCluster& cluster, std::span<const LightRequest> requests,
                      ShadowIntegrand* integrand, ShadowScene& scene,
                      const CertifiedOptions& options, CertifiedMemory& memory,

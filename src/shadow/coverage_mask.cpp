@@ -76,7 +76,7 @@ const Kernels& kernels(int instruction_set) {
   return all_kernels[instruction_set < 0 ? best - 1 : std::min(instruction_set, best - 1)];
 }
 
-// Intervals of rows inside the source's outline. corners: relative to sample (0,0).
+// Sets the bits inside the source's outline. k, j: its corners relative to sample (0,0).
 TROFFER_MULTIVERSION
 void fill_outline(const float* __restrict k, const float* __restrict j, int n, int canvas_rows,
                   uint32_t* __restrict rows) {
@@ -88,7 +88,7 @@ void fill_outline(const float* __restrict k, const float* __restrict j, int n, i
   }
   for (int e = 0; e < n; ++e) {
     const int g = e + 1 == n ? 0 : e + 1;
-    // counterclockwise: inside where cross(corner g - corner e, p - corner e) >= 0
+    // corners run counterclockwise: inside where cross(corner g - corner e, p - corner e) >= 0
     const float ek = j[e] - j[g], ej = k[g] - k[e];
     const float constant = -(ek * k[e] + ej * j[e]);
     const float slope = std::abs(ek) < 1e-25f ? 1e-25f : ek;
@@ -111,7 +111,8 @@ void fill_outline(const float* __restrict k, const float* __restrict j, int n, i
   }
 }
 
-// The square's inscribed disk: turned and scaled only, it is a circle on the canvas.
+// The disk inscribed in the source's square. The canvas map only turns and scales, so it is a
+// circle there too.
 void fill_disk(const MaskLattice& lattice, const Vec2& shift, MaskRows& out) {
   const auto rows = float(lattice.rows);
   const float radius2 = 0.25f * float(lattice.samples());
@@ -135,12 +136,12 @@ MaskFrame::MaskFrame(const Parallelogram& source, const MaskLattice& lattice, bo
     : lattice_(lattice), is_disk_(is_disk) {
   map_.centre = centre;
   Vec3d origin = source.origin, u = source.u, v = source.v;
-  if (is_mirrored) {  // from the next corner the other way round: the canvas is mirrored
+  if (is_mirrored) {  // start at the next corner and reverse u, which mirrors the canvas
     origin = origin + u;
     u = -u;
   }
   const double a = lattice.a, b = lattice.b, n = a * a + b * b;
-  // gradients of u and v within the plane, and of the third coordinate, in canvas steps
+  // gradients of u and v within the plane, and of the third coordinate, in canvas units
   const Vec3d normal = cross(u, v);
   const double area2 = length_squared(normal);
   const Vec3d gradient_u = cross(v, normal) / area2, gradient_v = cross(normal, u) / area2;

@@ -1,4 +1,4 @@
-// Facets in space -> batches in canvas coordinates.
+// Fills a FacetList: facets in world space become batches in canvas coordinates.
 #include <algorithm>
 #include <cmath>
 
@@ -37,7 +37,8 @@ void append(std::vector<FacetBatch<edges>>& batches, size_t& count, const Vec3* 
   ++count;
 }
 
-// Lanes that hold no facet are never relevant: the side is 0.
+// Empties the unused lanes of the last batch. Their height is 0, so set_up() treats them as
+// irrelevant.
 template <int edges>
 void pad(std::vector<FacetBatch<edges>>& batches, size_t count) {
   constexpr int lanes = FacetBatch<edges>::lanes;
@@ -71,11 +72,11 @@ void FacetList::add(const MaskFrame& frame, const Quad& quad, bool is_front_only
   const auto is_same = [](const Vec3& a, const Vec3& b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
   };
-  for (const Vec3& v : quad) {  // an edge without length would bound the facet anywhere
+  for (const Vec3& v : quad) {  // an edge of zero length would give an arbitrary bound
     in[n] = frame.to_canvas(Vec3d(v));
     if (n == 0 || (!is_same(in[n], in[n - 1]) && !is_same(in[n], in[0]))) ++n;
   }
-  // clipped at the source's plane: what lies behind it hides nothing
+  // clip at the source's plane: parts behind it hide nothing
   const float height = frame.height();
   int kept = 0;
   for (int i = 0; i < n; ++i) {
@@ -83,7 +84,8 @@ void FacetList::add(const MaskFrame& frame, const Quad& quad, bool is_front_only
     const bool is_p_in = p.z < height, is_q_in = q.z < height;
     if (is_p_in) out[kept++] = p;
     if (is_p_in == is_q_in) continue;
-    // from the inner end to the outer one: neighbours cut a shared edge at the same point
+    // interpolate from the inner end to the outer one, so neighbours cut a shared edge at the same
+    // point
     const Vec3 &from = is_p_in ? p : q, &to = is_p_in ? q : p;
     Vec3 cut = from + (to - from) * ((height - from.z) / (to.z - from.z));
     cut.z = height;
@@ -92,8 +94,7 @@ void FacetList::add(const MaskFrame& frame, const Quad& quad, bool is_front_only
   if (kept < 3) return;
   const float back = frame.is_mirroring() ? -1 : 1;
   const float side = is_front_only ? back : 0;
-  // Rounding may let a sliver cross the plane more than twice: then more than five corners are
-  // left.
+  // Rounding may let a sliver cross the plane more than twice, which leaves more than five corners.
   for (int i = 1; i + 1 < kept; i += 2) {
     const Vec3 part[4] = {out[0], out[i], out[i + 1], out[std::min(i + 2, kept - 1)]};
     add_polygon(part, i + 2 < kept ? 4 : 3, side);
@@ -102,7 +103,7 @@ void FacetList::add(const MaskFrame& frame, const Quad& quad, bool is_front_only
 
 namespace {
 
-// World coordinates (relative to the frame's centre below) of 16 facets, vertex by vertex.
+// World coordinates of 16 facets, vertex by vertex.
 template <int edges>
 struct WorldBatch {
   alignas(64) float x[edges][16];
@@ -110,7 +111,7 @@ struct WorldBatch {
   alignas(64) float z[edges][16];
 };
 
-// Into canvas coordinates, by the rows and the centre of the frame; highest: largest w of a facet.
+// Maps vertices to canvas coordinates. rows: three rows of the map, then its centre.
 TROFFER_MULTIVERSION
 void place_vertices(const float* __restrict x, const float* __restrict y, const float* __restrict z,
                     int n, const double* __restrict rows, float* __restrict k, float* __restrict j,
@@ -124,13 +125,14 @@ void place_vertices(const float* __restrict x, const float* __restrict y, const 
   }
 }
 
-// Supporting planes of 16 facets of 3 or 4 vertices (`diagonal`: index of the last vertex).
+// Computes the supporting planes of 16 facets of 3 or 4 vertices, and the largest w of each. last:
+// index of the last vertex.
 TROFFER_MULTIVERSION
 void support(const float* __restrict k, const float* __restrict j, const float* __restrict w,
              int last, float* __restrict nk, float* __restrict nj, float* __restrict nw,
              float* __restrict distance, float* __restrict highest) {
   for (int i = 0; i < 16; ++i) {
-    // vertices 0, 2, 1, last: the cross product of the diagonals, or of two sides of a triangle
+    // cross product of the diagonals, or of two sides of a triangle, by vertices 0, 2, 1 and last
     const int a = i, b = i + 16, c = i + 32, d = i + 16 * last;
     const int from = last == 2 ? a : b;
     const double pk = double(k[c]) - double(k[a]), pj = double(j[c]) - double(j[a]),
@@ -170,7 +172,7 @@ void FacetList::add_batch(const MaskFrame& frame, const FacetToAdd* const* facet
   for (int r = 0; r < 3; ++r)
     for (size_t a = 0; a < 3; ++a) rows[size_t(3 * r) + a] = frame.row(r)[a];
   for (size_t a = 0; a < 3; ++a) rows[9 + a] = frame.centre()[a];
-  // whole batches only: what is there is filled up with lanes that hold nothing
+  // only whole batches are added: pad the current one
   finish();
   count = batches.size() * lanes;
   FacetBatch<edges>& f = batches.emplace_back();
@@ -256,19 +258,20 @@ void copy_unsettled(const std::vector<FacetBatch<edges>>& from, size_t from_coun
   }
 }
 
-// Lengths of edges: of all, and of those parallel to either side of the source.
+// Summed lengths of edges: of all, and of those parallel to either side of the source.
 struct alignas(64) EdgeLengths {
   static constexpr int lanes = 16;
   float all[lanes] = {}, along_u[lanes] = {}, along_v[lanes] = {};
 };
 
-// Those of a batch. (a, -b) and (b, a), of length 1: where the sides stand on the canvas.
+// Adds the edges of a batch. (a, -b) and (b, a), of length 1, are the directions of the source's
+// sides on the canvas.
 TROFFER_MULTIVERSION
 void add_edge_lengths(const float* __restrict k, const float* __restrict j,
                       const float* __restrict w, int edges, float a, float b,
                       EdgeLengths& __restrict sum) {
   constexpr int lanes = EdgeLengths::lanes;
-  constexpr float tolerance = 1e-3f;  // tangent: less than a sample's share of the side
+  constexpr float tolerance = 1e-3f;  // tangent of the angle, below one sample per side
   for (int e = 0; e < edges; ++e) {
     const int from = e * lanes, to = e + 1 == edges ? 0 : from + lanes;
     for (int i = 0; i < lanes; ++i) {

@@ -1,8 +1,8 @@
-// The loops of coverage_mask.cpp, written for vectors of `width` numbers and compiled once per
-// instruction set: coverage_mask.cpp includes this file, coverage_mask_proofs.h and
-// coverage_mask_weights.h after it, with TROFFER_MASK_WIDTH and TROFFER_MASK_NAMESPACE set, under
-// the pragma that selects the set. No function here may call one from elsewhere, whose code would
-// be the plain one. Results are the same bits for every width.
+// Rasterisation loops of coverage_mask.cpp, written for vectors of `width` numbers.
+// coverage_mask.cpp includes this file, coverage_mask_proofs.h and coverage_mask_weights.h once per
+// instruction set, with TROFFER_MASK_WIDTH and TROFFER_MASK_NAMESPACE defined and under the pragma
+// that selects the set. Functions here must not call functions from elsewhere, which would be
+// compiled without the set. Results have the same bits for every width.
 #ifndef TROFFER_MASK_WIDTH
 #include "shadow/coverage_mask.h"
 #define TROFFER_MASK_WIDTH 4
@@ -20,16 +20,16 @@ using Ints = int32_t __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
 using Bits = uint32_t __attribute__((vector_size(4 * TROFFER_MASK_WIDTH)));
 using Bytes = int8_t __attribute__((vector_size(TROFFER_MASK_WIDTH)));
 
-// What rasterising a facet needs: crossings m j + q + 1 of its edges, once as lower bounds and once
-// as upper bounds of k, far away where an edge bounds the other way.
+// Crossings m j + q + 1 of a facet's edges with rows. Each edge is stored as a lower and as an
+// upper bound of k; the one that does not apply is far away.
 template <int edges>
 struct Crossings {
   alignas(64) float lower_m[edges][lanes];
   alignas(64) float lower_q[edges][lanes];
   alignas(64) float upper_m[edges][lanes];
   alignas(64) float upper_q[edges][lanes];
-  alignas(64) int32_t is_relevant[lanes];  // not 0 where the facet may hide something
-  // Rows in which the facet may hide a sample, and how many.
+  alignas(64) int32_t is_relevant[lanes];  // nonzero if the facet may hide something
+  // First row and number of rows in which the facet may hide a sample.
   alignas(64) int32_t first_row[lanes];
   alignas(64) int32_t row_count[lanes];
 };
@@ -47,7 +47,7 @@ inline __attribute__((always_inline)) void store(const Floats& f, float* to) {
 // Supporting planes of `width` facets.
 struct Planes {
   Floats nk, nj, nw, distance, skipped;
-  // Of the receiver, from the planes.
+  // Returns the receiver's distance from the planes.
   inline __attribute__((always_inline)) Floats height(const MaskPoint& p) const {
     return distance - (nk * p.k + nj * p.j + nw * p.w);
   }
@@ -70,16 +70,17 @@ inline __attribute__((always_inline)) Vertex vertex_of(const FacetBatch<edges>& 
   return {load(f.k[e] + from), load(f.j[e] + from), load(f.w[e] + from)};
 }
 
-// Where the line of edge e crosses rows, for facets `from` to from + width; `side` is the
-// receiver's side of them. Not 0 where some of the source lies inside of the edge.
+// Computes where the line of edge e crosses rows, for facets `from` to from + width. side: the side
+// of the facets that the receiver is on. The result is nonzero where a part of the source lies
+// inside the edge.
 template <int edges>
 inline __attribute__((always_inline)) Ints set_up_edge(const FacetBatch<edges>& f, int from, int e,
                                                        const MaskPoint& p, const Floats& side,
                                                        Crossings<edges>& c) {
   const Floats zero = {}, one = zero + 1.0f, least = zero + 1e-25f;
-  // inside where side * (a × b) · y >= 0. Of a short edge seen from afar a × b would be a small
-  // difference of large products: (a + b) × (b - a) is twice that, with b - a from the facet's
-  // own coordinates. Facets that share the edge get the same numbers, negated.
+  // Inside where side * (a × b) · y >= 0. For a short, distant edge a × b is a small difference of
+  // large products. (a + b) × (b - a) is twice that, and b - a comes from the facet's own
+  // coordinates. Facets that share the edge get the same numbers, negated.
   const Vertex a = vertex_of(f, e, from), b = vertex_of(f, e + 1 == edges ? 0 : e + 1, from);
   const Floats dk = b.k - a.k, dj = b.j - a.j, dw = b.w - a.w;
   const Floats mk = (a.k - p.k) + (b.k - p.k), mj = (a.j - p.j) + (b.j - p.j),
@@ -106,8 +107,7 @@ inline __attribute__((always_inline)) Ints set_up_edge(const FacetBatch<edges>& 
   return most + base > zero;
 }
 
-// The largest whole number not above x, and the least not below it, of numbers that are not
-// negative.
+// Rounds nonnegative numbers down or up.
 inline __attribute__((always_inline)) Ints rounded_down(const Floats& x) {
   return __builtin_convertvector(x, Ints);
 }
@@ -116,8 +116,8 @@ inline __attribute__((always_inline)) Ints rounded_up(const Floats& x) {
   return down - (__builtin_convertvector(down, Floats) < x);  // true is -1
 }
 
-// The rows between the corners as the receiver sees them on the canvas, and some more for what
-// these places may be off by. All rows where a corner is close to the receiver, or behind it.
+// Finds the rows between the projected corners, widened by the possible rounding error. Takes all
+// rows if a corner is close to the receiver or behind it.
 template <int edges>
 inline __attribute__((always_inline)) void set_up_rows(const FacetBatch<edges>& f, int from,
                                                        const MaskPoint& p, Crossings<edges>& c) {
@@ -145,7 +145,7 @@ inline __attribute__((always_inline)) void set_up_rows(const FacetBatch<edges>& 
   __builtin_memcpy(c.row_count + from, &count, sizeof count);
 }
 
-// Sets up facets `from` to from + width.
+// Computes the crossings of facets `from` to from + width.
 template <int edges>
 inline __attribute__((always_inline)) void set_up(const FacetBatch<edges>& f, int from,
                                                   const MaskPoint& p, Crossings<edges>& c) {
@@ -159,7 +159,7 @@ inline __attribute__((always_inline)) void set_up(const FacetBatch<edges>& f, in
   __builtin_memcpy(c.is_relevant + from, &is_relevant, sizeof is_relevant);
 }
 
-// Clears the bits of facet i in some rows; `at` numbers the rows.
+// Clears the bits of facet i in some rows. at: row numbers.
 template <int edges>
 inline __attribute__((always_inline)) void rasterise(const Crossings<edges>& c, int i,
                                                      const Floats& at, float canvas_rows,
@@ -180,9 +180,9 @@ inline __attribute__((always_inline)) void rasterise(const Crossings<edges>& c, 
   open &= ~(all << first) | (all << end);
 }
 
-// Eight lanes of a mask to a word, a byte each.
+// A mask of lanes as bytes, up to eight lanes per word.
 struct LaneWords {
-  static constexpr int lanes = width < 8 ? width : 8;  // of a word
+  static constexpr int lanes = width < 8 ? width : 8;  // per word
   uint64_t word[(width + 7) / 8] = {};
   inline __attribute__((always_inline)) explicit LaneWords(const Ints& mask) {
     const Bytes bytes = __builtin_convertvector(mask, Bytes);
@@ -208,11 +208,11 @@ struct LaneWords {
   }
 };
 
-// Facets that reach so few rows are done side by side, each in its own rows; of others each in all
-// rows side by side.
+// Facets that reach at most this many rows are rasterised side by side, each in its own rows. For
+// larger facets, the rows of one facet are done side by side.
 constexpr int few_rows = 4;
 
-// Sets the bits that facets `from` to from + width hide, of those that reach few rows.
+// Sets the bits that facets `from` to from + width hide, for those that reach few rows.
 template <int edges>
 inline __attribute__((always_inline)) void rasterise_small(const Crossings<edges>& c, int from,
                                                            float canvas_rows, uint32_t* hidden) {
@@ -240,7 +240,7 @@ inline __attribute__((always_inline)) void rasterise_small(const Crossings<edges
   }
 }
 
-// Bits that facets hide, as batches are gone through.
+// Open bits of a mask while batches of facets are rasterised.
 template <int edges, int rows>
 struct Canvas {
   static constexpr int blocks = rows / width;
@@ -273,7 +273,7 @@ struct Canvas {
   }
 };
 
-// A batch of which many facets are expected to reach few rows; whether they do.
+// Rasterises a batch in which many facets are expected to reach few rows. Returns true if they do.
 template <int edges, int rows>
 inline __attribute__((always_inline)) bool cover_small(const FacetBatch<edges>& batch,
                                                        const MaskPoint& p, Crossings<edges>& c,
@@ -295,7 +295,7 @@ inline __attribute__((always_inline)) bool cover_small(const FacetBatch<edges>& 
 template <int edges, int rows>
 inline __attribute__((always_inline)) bool cover_batches(const FacetBatch<edges>* batches, size_t n,
                                                          const MaskPoint& p, uint32_t* open_rows) {
-  constexpr size_t look_every = 8;  // batches
+  constexpr size_t look_every = 8;  // batches between checks for small facets
   Canvas<edges, rows> canvas(open_rows, p.rows);
   bool is_any_open = true, are_small = false;
   for (size_t b = 0; b < n && is_any_open; ++b) {
@@ -314,7 +314,7 @@ inline __attribute__((always_inline)) bool cover_batches(const FacetBatch<edges>
   return is_any_open;
 }
 
-// Clears the bits that facets hide in 16 or 32 rows; false when none is left.
+// Clears the bits that facets hide in 16 or 32 rows. Returns false if none is left.
 bool cover_rows(const MaskPoint& p, int rows, const FacetBatch<4>* quads, size_t quad_batches,
                 const FacetBatch<3>* triangles, size_t triangle_batches, uint32_t* open) {
   if (rows <= 16)

@@ -1,12 +1,12 @@
-// The loops of coverage_mask.cpp that make certificates: see coverage_mask_kernels.h, which comes
-// first.
+// Certificate loops of coverage_mask.cpp. coverage_mask_kernels.h must come first.
 #ifndef TROFFER_MASK_WIDTH
 #include "shadow/coverage_mask_kernels.h"
 #endif
 
 namespace troffer::TROFFER_MASK_NAMESPACE {
 
-// Are all receivers strictly on one side of the facets' planes, and the source on which?
+// Positions relative to the facets' planes: true if all receivers, or all of the source, lie
+// strictly on one side.
 struct Sides {
   Ints is_before, is_behind, is_source_before, is_source_behind;
 };
@@ -35,15 +35,15 @@ inline __attribute__((always_inline)) Sides sides_of(const Planes& planes,
   return s;
 }
 
-// Sum of absolute coordinates.
+// Returns the sum of absolute coordinates.
 inline __attribute__((always_inline)) Floats size_of(const Floats& k, const Floats& j,
                                                      const Floats& w) {
   const Floats zero = {};
   return (k > zero ? k : -k) + (j > zero ? j : -j) + (w > zero ? w : -w);
 }
 
-// Clears is_outside where some of the source may lie inside of the edge from a to b for some
-// receiver, is_inside where some may lie outside.
+// Clears is_outside if a part of the source may lie inside the edge from a to b for some receiver.
+// Clears is_inside if a part may lie outside.
 inline __attribute__((always_inline)) void classify_edge(const Vertex& a, const Vertex& b,
                                                          const Floats& side,
                                                          const MaskPoint* receivers, int count,
@@ -68,7 +68,7 @@ inline __attribute__((always_inline)) void classify_edge(const Vertex& a, const 
   }
 }
 
-// Certificates for facets `from` to from + width, see classify().
+// Flags facets `from` to from + width, as classify() defines.
 template <int edges>
 inline __attribute__((always_inline)) void classify_lanes(const FacetBatch<edges>& f, int from,
                                                           const MaskPoint* receivers, int count,

@@ -1,27 +1,27 @@
-// The loops of coverage_mask.cpp that add up what a mask has left open: see
-// coverage_mask_kernels.h, which comes first.
+// Loops of coverage_mask.cpp that sum the weights of a mask. coverage_mask_kernels.h must come
+// first.
 #ifndef TROFFER_MASK_WIDTH
 #include "shadow/coverage_mask_kernels.h"
 #endif
 
 namespace troffer::TROFFER_MASK_NAMESPACE {
 
-// Pairs of neighbouring samples of which one is open and one is not, each as the bit of one of the
-// two: of the left and the right one in turn, row by row, of the lower and the upper one in turn,
-// column by column. What weights grow along counts as much as what they shrink along.
+// Pairs of neighbours of which exactly one is open, each marked at one of its two samples. The
+// marked sample alternates: left and right along a row, lower and upper along a column. This avoids
+// a preference for the larger or smaller weight where weights have a gradient.
 template <int rows>
 struct Boundary {
   uint32_t in_row[rows], in_column[rows];
 };
 
-// counts: pairs of neighbouring samples inside of which one is open and one is not, in a row, in a
-// column; all pairs; samples inside, and open ones.
+// counts: pairs inside of which exactly one is open, in rows and in columns; all pairs; samples
+// inside; open samples.
 template <int rows>
 inline __attribute__((always_inline)) void count_pairs(const uint32_t* inside, const uint32_t* open,
                                                        int* counts, Boundary<rows>& boundary) {
   constexpr uint32_t lower_one = 0x55555555u;
   for (int i = 0; i < 5; ++i) counts[i] = 0;
-  uint32_t below = 0;                  // pairs of the rows so far with those above them
+  uint32_t below = 0;                  // pairs of the previous row with this one
   for (int j = 0; j < rows; j += 2) {  // two rows in 64 bits
     const uint64_t i0 = inside[j], i1 = inside[j + 1], o0 = open[j], o1 = open[j + 1];
     const uint64_t in = i0 | (i1 << 32), on = o0 | (o1 << 32);
@@ -50,7 +50,7 @@ inline __attribute__((always_inline)) void weigh(const MaskWeights& w, const uin
                                                  float* row_sums) {
   constexpr int blocks = rows / width;
   const Floats zero = {};
-  // over rows, so that their order does not depend on the width
+  // sums over rows, so that the order does not depend on the width
   float all_sum = 0, seen_sum = 0, square_sum = 0;
   for (int block = 0; block < blocks; ++block) {
     Bits inside, open, in_row, in_column;
@@ -99,8 +99,8 @@ inline __attribute__((always_inline)) void weigh_and_count(const MaskWeights& w,
   weigh<rows, columns>(w, inside, open, boundary, sums, row_sums);
 }
 
-// sums: weight of all samples inside, of those open, and squares of weights, one for each pair at
-// the boundary; row_sums: weight of those open, by row; counts: as above.
+// sums: weight of all samples inside, weight of open samples, and squared weights, one per pair at
+// the boundary. row_sums: open weight by row. counts: as in count_pairs.
 void weigh_rows(const MaskWeights& w, int rows, const uint32_t* inside, const uint32_t* open,
                 float* sums, float* row_sums, int* counts) {
   if (rows <= 16)

@@ -9,13 +9,13 @@ namespace troffer {
 
 namespace {
 
-// Convex polygon in (u,v).
+// A convex polygon in (u,v).
 struct Polygon {
   std::array<Vec2d, most_source_corners> v;
   int count = 0;
 };
 
-// The part where a u + b v + c >= 0.
+// Returns the part of p with a u + b v + c >= 0.
 Polygon clipped(const Polygon& p, double a, double b, double c) {
   Polygon out;
   const auto add = [&](const Vec2d& q) {
@@ -54,7 +54,8 @@ Polygon polygon_of(const FlatCell& cell) {
   return p;
 }
 
-// The polygon, given in (u,v) of `plane`, in the parallelogram that bounds it.
+// Returns the polygon, given in (u,v) of `plane`, as a cell with the parallelogram that bounds it.
+// The cell has no corners if the polygon has hardly any area.
 FlatCell cell_of(const Parallelogram& plane, const Polygon& p) {
   FlatCell cell;
   if (p.count < 3) return cell;
@@ -80,9 +81,9 @@ FlatCell cell_of(const Parallelogram& plane, const Polygon& p) {
   return cell;
 }
 
-// The unoccluded term (over pi) as a function of the point y in the source's plane, for a receiver
-// of a flat hull cos cos / r² = h n·d / r⁴, for one that may face anywhere h / r³; d = y - x, h the
-// receiver's height over the plane.
+// The unoccluded term (over pi) of one receiver as a function of the point y in the source's plane.
+// With d = y - x and h the receiver's height over the plane, it is cos cos / r² = h n·d / r⁴ for
+// receivers of a flat hull. For receivers that may face anywhere it is h / r³.
 class Term {
  public:
   Term(const ReceiverHull& hull, const Vec3d& x, const Vec3d& plane_normal, const Vec3d& in_plane)
@@ -100,21 +101,22 @@ class Term {
     if (!is_flat_) return height_ / (square * std::sqrt(square));
     return height_ * std::max(0.0, dot(normal_, d)) / (square * square);
   }
-  // The point of the plane where it is largest: along the slope of n·d = c + m s from the foot of
-  // the receiver, (c + m s) / (s² + h²)² is stationary at 3 m s² + 4 c s = m h².
+  // Returns the point of the plane where the term is largest. It lies on the line of steepest n·d =
+  // c + m s from the receiver's foot, where (c + m s) / (s² + h²)² is stationary: 3 m s² + 4 c s =
+  // m h².
   Vec3d peak() const {
     const Vec3d foot = x_ - plane_ * height_;
     if (!is_flat_) return foot;
     const Vec3d slope = normal_ - plane_ * dot(normal_, plane_);
     const double m = length(slope), c = dot(normal_, foot - x_);
     const double root = std::sqrt(4 * c * c + 3 * m * m * height_ * height_);
-    // the greater root, without a difference of like numbers
+    // the larger root, without cancellation
     const double below = c > 0 ? 2 * c + root : 0;
     const double s = c > 0 ? m * height_ * height_ / below : (m > 0 ? (root - 2 * c) / (3 * m) : 0);
     return m > 0 ? foot + slope * (s / m) : foot;
   }
-  // Its largest value on the segment from p to q. With n·d = a s + b and |d|² = A s² + B s + C it
-  // is stationary at 3 a A s² + (a B + 4 b A) s = a C - 2 b B.
+  // Returns the largest value on the segment from p to q. With n·d = a s + b and |d|² = A s² + B s
+  // + C, the term is stationary at 3 a A s² + (a B + 4 b A) s = a C - 2 b B.
   double most_along(const Vec3d& p, const Vec3d& q) const {
     const Vec3d e = q - p, d = p - x_;
     const double A = length_squared(e), B = 2 * dot(d, e), C = length_squared(d);
@@ -141,7 +143,7 @@ class Term {
   bool is_flat_;
 };
 
-// Solid angle of a convex polygon as seen from x.
+// Returns the solid angle of a convex polygon as seen from x.
 double solid_angle(std::span<const Vec3d> corners, const Vec3d& x) {
   double sum = 0;
   const Vec3d a = corners[0] - x;
@@ -155,7 +157,7 @@ double solid_angle(std::span<const Vec3d> corners, const Vec3d& x) {
   return sum;
 }
 
-// Whether a point of the plane lies in the cell, which is convex.
+// True if a point of the plane lies in the convex cell.
 bool holds(const FlatCell& cell, const Vec3d& y) {
   int left = 0, right = 0;
   const std::span<const Vec3d> c = cell.all_corners();
@@ -174,10 +176,10 @@ double area_of(std::span<const Vec3d> corners) {
   return length(twice) / 2;
 }
 
-// How the term varies over a cell, for some receivers: the hull's corners and its centre.
+// Variation of the term over a cell, for the corners and the centre of the hull.
 struct Terms {
-  double variation = 1;          // largest value by mean, for the worst of them
-  std::array<double, 9> gain{};  // the exact form factor of the cell
+  double variation = 1;          // largest value over mean, for the worst receiver
+  std::array<double, 9> gain{};  // exact form factor of the cell per receiver
 };
 
 Terms terms_of(const FlatCell& cell, const ReceiverHull& hull) {
@@ -201,7 +203,8 @@ Terms terms_of(const FlatCell& cell, const ReceiverHull& hull) {
   return terms;
 }
 
-// The point of the cell's parallelogram nearest to x; exact where its sides are orthogonal.
+// Returns the point of the cell's parallelogram nearest to x. It is exact if the sides are
+// orthogonal.
 Vec3d nearest_point(const Parallelogram& p, const Vec3d& x) {
   const Vec3d d = x - p.origin;
   const double u = std::clamp(dot(d, p.u) / length_squared(p.u), 0.0, 1.0);
@@ -209,7 +212,7 @@ Vec3d nearest_point(const Parallelogram& p, const Vec3d& x) {
   return p.origin + p.u * u + p.v * v;
 }
 
-// So far from the receivers that its term varies little.
+// True if the cell is so far from the receivers that its term varies little.
 bool is_far(const FlatCell& cell, const ReceiverHull& hull) {
   const Parallelogram& p = cell.plane;
   const double size = std::max(length(p.u + p.v), length(p.u - p.v));
@@ -227,7 +230,7 @@ FlatCell visible_part(const FlatSource& source, const ReceiverHull& hull) {
       if (p.count < int(most_outline_corners)) p.v[size_t(p.count++)] = Vec2d(v);
   }
   if (hull.is_flat && !source.is_disk) {
-    // Receivers are some ulps below the origins of their rays: their horizon is lower by that.
+    // Receivers lie some ulps below the origins of their rays, so their horizon is lowered by that.
     const double lowest = hull.lowest - 1e-5 * hull.magnitude;
     const Parallelogram& s = source.plane;
     p = clipped(p, dot(hull.normal, s.u), dot(hull.normal, s.v),
@@ -249,8 +252,8 @@ bool halve(const FlatCell& cell, FlatCell& first, FlatCell& second) {
 
 namespace {
 
-// A quarter of a disk: its middle and an arc of chords. Corners lie so far out that the area is the
-// quarter's.
+// Returns a quarter of a disk as a polygon of its centre and an arc of chords. The chords' ends lie
+// slightly outside the circle, so that the polygon has the quarter's exact area.
 FlatCell quarter(const FlatCell& disk, int which) {
   constexpr int chords = 9;
   constexpr double step = 0.5 * pi / chords;
@@ -265,13 +268,14 @@ FlatCell quarter(const FlatCell& disk, int which) {
   return cell_of(disk.plane, p);
 }
 
+// A leaf of the bintree over a source.
 struct Leaf {
   FlatCell cell;
   Terms terms;
   bool is_final = false;  // cannot be halved
 };
 
-// Puts the parts of `leaf` in its place and behind the others.
+// Splits a leaf: its first part replaces it, the others are appended.
 void split(size_t leaf, const ReceiverHull& hull, std::vector<Leaf>& leaves) {
   const FlatCell whole = leaves[leaf].cell;
   if (whole.is_disk) {
@@ -311,7 +315,7 @@ void cut_cells(const FlatCell& cell, const ReceiverHull& hull, const CellLimits&
     return share > limits.most_share ||
            (l.terms.variation > limits.variation && share > limits.least_share);
   };
-  // What is halved gives more than a given share of what is exact and adds up: the loop ends.
+  // The loop ends because each split cell holds more than a fixed share of the exact form factor.
   for (size_t i = 0; i < leaves.size(); ++i)
     while (!leaves[i].is_final && is_too_large(leaves[i])) split(i, hull, leaves);
   for (const Leaf& l : leaves) out.push_back(l.cell);

@@ -15,16 +15,17 @@ namespace troffer {
 
 namespace {
 
-// Rays are traced when so many have gathered.
+// Most rays traced in one call, unless a single receiver has more.
 constexpr size_t batch = 4096;
-// Behind clutter rays of a sequence keep about so much of the variance of independent ones.
+// Variance of a Sobol sequence behind dense occluders, relative to that of independent rays.
 constexpr double variance_kept = 0.8;
-// Where rays begin that bring nothing, whatever they meet: out of what is traced (Tracer).
+// Origin of rays that carry no light. It is outside of what Tracer traces.
 constexpr float nowhere = 4e18f;
 constexpr uint32_t purpose_direct = 0x64697265u;
 
-// A cell of four right angles, of which points are drawn evenly by solid angle: what a ray brings
-// then varies by the receiver's cosine alone. Nothing for other cells.
+// Returns a rectangular cell as a light primitive, of which points are drawn uniformly by solid
+// angle. The contribution of a ray then varies only with the receiver's cosine. Returns nothing for
+// other cells.
 std::optional<LightPrimitive> rectangle_of(const FlatCell& cell) {
   if (cell.is_disk || cell.count != 0) return {};
   const Parallelogram& p = cell.plane;
@@ -47,7 +48,7 @@ std::optional<LightPrimitive> rectangle_of(const FlatCell& cell) {
   return out;
 }
 
-// Cosine over density; below the horizon `below` times that.
+// Sets weights to cosine over density. Points below the horizon get `below` times that.
 TROFFER_MULTIVERSION
 void weigh_points(size_t n, const float* __restrict x, const float* __restrict y,
                   const float* __restrict z, const float* __restrict inverse_pdf,
@@ -61,7 +62,8 @@ void weigh_points(size_t n, const float* __restrict x, const float* __restrict y
   }
 }
 
-// Makes points as seen from the receiver `end` of the way from an origin that is off it by `shift`.
+// Turns points as seen from the receiver into segments from an origin that differs by `shift`,
+// shortened to the share `end`.
 TROFFER_MULTIVERSION
 void make_ways(size_t n, const Vec3& shift, float end, float* __restrict x, float* __restrict y,
                float* __restrict z) {
@@ -73,7 +75,7 @@ void make_ways(size_t n, const Vec3& shift, float end, float* __restrict x, floa
   }
 }
 
-// What each ray of a receiver brings, f V - b f over `unit`; returns the sum.
+// Sets the contribution f V - b f of each ray of a receiver, times `unit`. Returns the sum.
 TROFFER_MULTIVERSION
 float add_up(size_t n, const float* __restrict weights, const uint8_t* __restrict is_hidden,
              float control, float unit, float* __restrict values) {
@@ -92,7 +94,7 @@ float add_up(size_t n, const float* __restrict weights, const uint8_t* __restric
   return sum;
 }
 
-// One stage for one part, over in one call: hence its members.
+// Casts the rays for one part, in one call of run(); its members share the state of that call.
 class Caster {
  public:
   Caster(const SourceTask& task, const SourcePart& part, std::span<const uint32_t> members,
@@ -149,7 +151,7 @@ class Caster {
     return m_.unoccluded[cell * task_.cluster.size() + member];
   }
 
-  // Of the source's rays a part of it gets its share: one block of a sequence, or three.
+  // Gives the part its share of the source's rays: one block of a sequence, or three.
   void set_rays() {
     double own = 0, part = 0;
     for (const uint32_t m : members_) {
@@ -157,7 +159,7 @@ class Caster {
       for (size_t c = 0; c < m_.cells.size(); ++c) part += double(unoccluded(c, m));
     }
     const double n = direct_rays_of(task_, scene_) * (own > 0 ? part / own : 1);
-    // the nearest of 2^k and 3 · 2^k, in ratio
+    // the nearest 2^k or 3 · 2^k, by ratio
     const unsigned below = std::bit_floor(unsigned(std::max(n * std::sqrt(4 / 3.0), 4.0)));
     blocks_ = n > below * std::sqrt(1.5) ? 3 : 1;
     const uint32_t of_block = blocks_ == 3 ? below / 2 : below;
@@ -167,7 +169,8 @@ class Caster {
     m_.numbers.resize(2 * size_t(rays_));
   }
 
-  // Those of a receiver: the blocks of one viewing ray of a pixel follow those of the one before.
+  // Draws the random numbers of a receiver. Viewing rays of a pixel take successive blocks of one
+  // sequence.
   void draw_numbers(const ShadowReceiver& r) {
     const size_t n = m_.blocks.size();
     for (uint32_t b = 0; b < blocks_; ++b) {
@@ -179,7 +182,7 @@ class Caster {
     }
   }
 
-  // Where a ray goes: which cell, and where on it.
+  // The end point of a ray: a cell and a position in it.
   struct Choice {
     size_t cell;
     double inverse_density;  // m²
@@ -195,10 +198,10 @@ class Caster {
       wanted -= own;
     }
     if (!(own > 0)) return {c, 0, 0};
-    return {c, points_[c].area() * double(all / own), std::min(wanted / own, below_one)};
+    return {c, points_[c].area() * double(all / own), std::min(wanted / own, one_minus_epsilon)};
   }
 
-  // The rays of the batch's receiver i.
+  // Adds the rays of receiver i of the batch.
   void add_rays(size_t i, uint32_t member) {
     const size_t first = i * rays_;
     const ShadowReceiver& r = task_.cluster.receivers[member];
@@ -209,11 +212,11 @@ class Caster {
     else if (!sample_points(*rectangle_, r.position, rays_, m_.numbers.data(),
                             m_.numbers.data() + rays_, p))
       std::fill_n(p.inverse_pdf.begin(), rays_, 0.0f);
-    // A horizon of the receiver's own hides what round sources have below it: such points have
-    // negative weights.
+    // A receiver's own horizon hides points of round sources below it. Such points get negative
+    // weights: they count as hidden.
     weigh_points(rays_, p.x.data(), p.y.data(), p.z.data(), p.inverse_pdf.data(), r.normal,
                  r.horizon, task_.does_horizon_hide() ? -1.0f : 0.0f, m_.weights.data() + first);
-    // as trace_rays.cpp has it
+    // the same end as in trace_rays.cpp
     const double origin_height = dot(source_.normal, Vec3d(r.origin) - source_.point);
     m_.ends[i] = float(std::max(1 - 1.25 * source_.tolerance / origin_height, 1e-3));
     make_ways(rays_, r.position - r.origin, m_.ends[i], p.x.data(), p.y.data(), p.z.data());
@@ -226,6 +229,7 @@ class Caster {
       if (m_.weights[first + k] == 0) m_.segments.from[0][first + k] = nowhere;
   }
 
+  // Draws points in proportion to the unoccluded light of cells, uniformly by area within each.
   void choose_by_area(uint32_t member) {
     const ShadowReceiver& r = task_.cluster.receivers[member];
     const Vec3d x(r.position);
@@ -245,7 +249,7 @@ class Caster {
     }
   }
 
-  // is_hidden of the batch's segments.
+  // Sets is_hidden for the segments of the batch.
   void trace() {
     m_.is_hidden.resize(m_.segments.size());
     scene_.occluded(m_.segments, m_.is_hidden);
@@ -260,7 +264,7 @@ class Caster {
       m_.is_hidden[m_.rest_of[k]] = is_free(source_, m_.rest[k], m_.hits[k], scene_) ? 0 : 1;
   }
 
-  // What is left of a segment that was cut short at `end`.
+  // Adds the remainder of a segment that was shortened at `end`.
   void add_rest(uint32_t at, float end) {
     const SegmentArrays& s = m_.segments;
     const Vec3 from{s.from[0][at], s.from[1][at], s.from[2][at]};
@@ -269,7 +273,7 @@ class Caster {
     m_.rest_of.push_back(at);
   }
 
-  // Keeps what the rays of a member, the batch's receiver i, say, for add_answers.
+  // Stores the result of receiver i of the batch until add_answers.
   void note_answer(size_t i, uint32_t member) {
     double all = 0;
     for (size_t c = 0; c < m_.cells.size(); ++c) all += double(unoccluded(c, member));
@@ -310,7 +314,8 @@ class Caster {
 
 namespace {
 
-// Rays for a source's own visible share, half open: as plan_rays.cpp has them.
+// Returns the rays that a source's own visible share deserves if it is half open, as in
+// plan_rays.cpp.
 double rays_for_share(const SourceTask& task) {
   const RayLimits& limits = task.options.rays;
   const double wanted =

@@ -10,22 +10,23 @@ namespace troffer {
 
 namespace {
 
-// A cell is halved so often at most: a face of the cube comes to 4 × 4 parts.
+// Limit of nested halvings of a cell: 4 × 4 parts of a whole face of the cube.
 constexpr int most_halvings = 4;
-// What the cluster's rays to all lights would cost, in facets of a mask, is what a proof may cost:
-// a few times that, by the share of the light. A gather costs about so many facets, and so many for
-// each that it finds; a large facet is tried once.
+// Cost of a ray to a source at infinity, in facets of a mask. Proofs may cost about as much as the
+// cluster's rays to all sources would, in proportion to the source's share of the light.
 constexpr double facets_per_far_ray = 12;
+// Costs in facets of a mask: of gathering a list, of each facet found, of testing a large facet,
+// and of a mask.
 constexpr double cost_of_gather = 1000, cost_of_found = 10, cost_of_large = 5,
                  cost_of_far_mask = 60;
-// … of which proofs may lose this share where most of the light arrives; where little does they may
-// lose all: rays err by more there than they should.
+// Share of that cost which proofs may lose: least_lost if most of the light arrives, up to all of
+// it if little does, since rays err by more there.
 constexpr double least_lost = 0.05, lost_by_open = 2.5;
-// … and masks, which err by much less than they may, may cost so many times as much.
+// Masks may cost this many times as much as rays, because they err by less.
 constexpr double worth_of_mask = 2;
-constexpr size_t always_masked = 16;  // facets
-// A list costs masks, pilots and halvings of clusters: so many times its length. But blinds and
-// plants before a window are to be masked.
+constexpr size_t always_masked = 16;  // facets; shorter lists are always masked
+// Cost per facet of a list: masks, pilot samples and halvings of clusters. The limits keep lists
+// long enough for blinds and plants in front of a window.
 constexpr double cost_of_list = 120, most_facets = 4096, fewest_far_facets = 64, usual_members = 32;
 
 class FarDivision {
@@ -42,7 +43,7 @@ class FarDivision {
         work_(allowed_),
         most_(longest_list()) {}
 
-  // share: of the whole cell.
+  // Divides a cell. share: its share of the whole cell.
   void divide(const FlatCell& cell, bool is_whole, int halvings, double share = 1) {
     if (!is_whole && !is_worth_more()) return add_over_budget(cell, is_whole);
     gather_facets(hull_, cell.all_corners(), task_.request.flat->plane.normal, most_, scene_,
@@ -74,7 +75,7 @@ class FarDivision {
     }
   }
 
-  // Without a look at anything.
+  // Gives up the whole cell without looking at its facets.
   void leave(const FlatCell& cell) { add_over_budget(cell, true); }
   double work() const { return work_; }
 
@@ -82,7 +83,7 @@ class FarDivision {
   double most_lost() const {
     return std::max(least_lost, 1 - lost_by_open * task_.promise.far_open);
   }
-  // What proofs cost beyond what they have won is to be a small part of what rays would.
+  // True while the net cost of proofs is a small part of what rays would cost.
   bool is_worth_more() const {
     return work_ > 0 && allowed_ - work_ <= most_lost() * allowed_ + won_;
   }
@@ -94,7 +95,7 @@ class FarDivision {
     memory_.candidates.rounds.clear();
   }
 
-  // By the share of the light that all sources would send.
+  // Returns the cost of rays to this cell, by its share of the unoccluded light of all sources.
   double allowed_work() const {
     const Promise& p = task_.promise;
     if (!(p.error > 0)) return 1e30;
@@ -156,10 +157,10 @@ class FarDivision {
   ShadowScene& scene_;
   GatherMemory& memory_;
   CertifiedCounters& counters_;
-  double allowed_;  // what rays to the whole cell would cost, in facets of a mask
-  double work_;     // of that is left
-  double won_ = 0;  // by parts that need no rays
-  size_t most_;     // facets in a list
+  double allowed_;  // cost of rays to the whole cell, in facets of a mask
+  double work_;     // what is left of that
+  double won_ = 0;  // cost of rays saved by settled parts
+  size_t most_;     // facets per list
 };
 
 }  // namespace
@@ -170,7 +171,8 @@ void divide_far(const SourceTask& task, std::span<const uint32_t> members, const
   memory.parts.clear();
   FoundFacets& found = *task.request.found;
   const double radius = hull.radius();
-  // Where a cell has been given up close by, it is not halved again; few receivers do not even ask.
+  // A cell close to one that was over budget is not halved again. A cluster of few receivers is not
+  // even tried.
   const bool is_over_budget = found.is_over_budget_at(hull.centre, radius);
   FarDivision division(task, members, hull, scene, memory, counters);
   if (division.work() < cost_of_gather)

@@ -1,6 +1,6 @@
-// A far cell (light/far_cells.h) against a cluster, divided: what one large facet hides from all of
-// the cluster is dark, what few facets stand before is settled by these, and what stays too dense
-// is left to whoever asked, who draws points of all that is left at a stroke.
+// Divides a sky patch (light/far_cells.h) for one cluster into parts. A part that one large facet
+// hides from the whole cluster is dark. A part with few facets is settled by them. A part that
+// stays over budget is left to the caller, who samples all such parts together.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,8 @@
 
 namespace troffer {
 
-// Sets memory.parts. Walls hide much of a sky from a room, together with all that stands before
-// them: they are tried first. `large`: facets that may hide much, at most some dozens; `most`:
-// facets of a list.
+// Sets memory.parts. Large facets (FarScene::large, at most some dozens) are tried first, because
+// walls hide much of a sky together with everything in front of them.
 void divide_far(const SourceTask& task, std::span<const uint32_t> members, const ReceiverHull& hull,
                 const FlatCell& cell, ShadowScene& scene, GatherMemory& memory,
                 CertifiedCounters& counters);

@@ -1,12 +1,12 @@
-// What is known of how much of a source, or of a cell of it, a point sees.
+// Shadow flag of a source or source cell at a point.
 #pragma once
 
 #include <cstdint>
 
 namespace troffer {
 
-// light: all of it; shadow: nothing; penumbra: some. Of a bintree's node it is what the rays of its
-// subtree say, and therefore a guess; certificates prove it.
+// light: all of it is visible; shadow: nothing; penumbra: some. At a bintree node the flag is a
+// guess from the rays of its subtree. Certificates prove it.
 enum class ShadowFlag : uint8_t { light, shadow, penumbra };
 
 }  // namespace troffer

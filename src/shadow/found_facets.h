@@ -1,5 +1,5 @@
-// What a source's shadows have taught so far: the facets that rays met, and that lists stay too
-// long.
+// Memory of one source's shadows from cluster to cluster: the facets that rays hit, the places
+// where facet lists were over budget, and the result of pilot rays.
 #pragma once
 
 #include <cstddef>
@@ -10,40 +10,40 @@
 
 namespace troffer {
 
-// Occluders of one source that rays met: kept from cluster to cluster by the caller.
+// Occluders of one source that rays hit. The caller keeps one per source. Not thread safe.
 class FoundFacets {
  public:
   struct Entry {
     uint32_t id;
     uint32_t hits;
   };
-  // Rays met these facets; sorts them.
+  // Counts hits of these facets. Sorts `ids`.
   void add(std::vector<uint32_t>& ids);
-  // Keeps the `most` most hit, and halves the counts.
+  // Keeps the `most` facets with most hits and halves their counts.
   void trim(size_t most);
   const std::vector<Entry>& entries() const { return entries_; }
 
-  // A cluster about `centre` within `radius` had lists that stayed too long; and whether one has,
-  // that close.
+  // Notes that lists were over budget for a cluster of `radius` around `centre`. is_over_budget_at
+  // is true for clusters close to such a place. Metres.
   void note_over_budget(const Vec3d& centre, double radius) {
     over_budget_.push_back({centre, radius});
   }
   bool is_over_budget_at(const Vec3d& centre, double radius) const;
   bool is_over_budget() const { return !over_budget_.empty(); }
 
-  // What pilots say of rays straight to the source (direct_rays.h): for all clusters alike, so that
-  // rays of a pixel's hits on several of them share a sequence.
+  // Result of pilot rays straight to the source (direct_rays.h). It is the same for all clusters,
+  // because the viewing rays of a pixel share a sequence across clusters.
   struct Dense {
     double open_share = 0.5;
-    double rays = 0;  // of a receiver; 0: nobody has looked yet
+    double rays = 0;  // per receiver; 0: no pilot rays yet
 
     bool is_known() const { return rays > 0; }
-    // Where much is open no single facet hides it all.
+    // True if so much is open that no single facet can hide all of it.
     bool is_partly_open() const { return is_known() && open_share > 0.05; }
   };
   Dense dense;
-  // Whether anything that rises over the source's plane comes within rounding of the source: rays
-  // must then look at it to its end.
+  // Tells if anything that rises over the source's plane comes within rounding distance of the
+  // source. If so, rays must be traced to their ends.
   enum class Rim : uint8_t { unknown, none, some };
   Rim rim = Rim::unknown;
 

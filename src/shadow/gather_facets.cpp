@@ -19,7 +19,7 @@ SourcePart& SourceParts::add() {
 
 namespace {
 
-// Bounds of points up to `pad` off, for comparison with bounds in single precision.
+// Returns bounds of points that may be off by `pad`, widened for single precision.
 Box padded_bounds(std::span<const Vec3d> points, double pad) {
   Boxd box;
   for (const Vec3d& p : points) box.grow(p);
@@ -28,6 +28,7 @@ Box padded_bounds(std::span<const Vec3d> points, double pad) {
   return {Vec3(box.lower - margin), Vec3(box.upper + margin)};
 }
 
+// A shaft and the two bodies that it joins.
 struct Shot {
   const ReceiverHull& hull;
   const Shaft& shaft;
@@ -69,7 +70,7 @@ double diameter(std::span<const Vec3d> corners) {
   return std::sqrt(most);
 }
 
-// Solid angle of the facet from a point, roughly.
+// Returns the approximate solid angle of the facet from a point.
 float apparent_size(const Quad& q, const Vec3& x) {
   const Vec3 area = cross(q[2] - q[0], q[3] - q[1]) * 0.5f;
   const Vec3 d = (q[0] + q[2]) * 0.5f - x;
@@ -109,17 +110,16 @@ double half_diameter_of(const ReceiverHull& hull) {
   return 0.5 * diameter({hull.corners.data(), size_t(hull.count)});
 }
 
-// Facets and round bodies before a sphere that make halving a cluster worth while.
+// Fewest facets and round bodies before a sphere for which a cluster is halved.
 constexpr size_t fewest_to_halve = 8;
 
-// A ray straight to a source costs as much as so many facets of a mask, a mask with its
-// certificates and pilots as so many rays beside them, a ray as to gather so many facets
-// (docs/certified.md).
+// Relative costs (docs/certified.md): facets of a mask per direct ray; direct rays per mask, its
+// certificates and its pilot samples; facets gathered per ray.
 constexpr double facets_per_ray = 6, rays_per_mask = 25, gathered_per_ray = 4;
-// So many facets are worth a mask whatever is asked.
+// Facets that a mask may always have.
 constexpr double fewest_facets = 384;
 
-// What a division carries along.
+// State of the recursive division of one source.
 struct Division {
   const SourceTask& task;
   ShadowScene& scene;
@@ -130,15 +130,15 @@ struct Division {
     return halvings == 0 ||
            task.request.found->is_over_budget_at(hull.centre, half_diameter_of(hull));
   }
-  // A last try keeps few, for what it finds stays incomplete.
+  // Returns the longest list. The last try keeps few facets, since its list stays incomplete.
   size_t most_facets(bool is_last) const {
     const CertifiedOptions& o = task.options;
     size_t most = o.longest_list;
     if (task.promise.error > 0) most = std::min(most, size_t(task.promise.longest_list));
     return is_last ? std::min(most, o.most_found) : most;
   }
-  // Before a flat source lists may be as long as masks are worth that save a receiver all its rays,
-  // and no longer than gathering them is worth.
+  // Returns the longest list before a flat source. A list is worth gathering only while its masks
+  // cost less than the rays that they replace.
   size_t most_before_flat(size_t members, bool is_last) const {
     const size_t longest = most_facets(is_last);
     if (is_last || !(task.promise.error > 0)) return longest;
@@ -154,7 +154,7 @@ struct Division {
     std::vector<RoundBody>& rounds = memory.candidates.rounds;
     rounds.resize(std::min(rounds.size(), task.options.most_found));
   }
-  // What has been gathered is a part's list.
+  // Adds a part with the gathered list.
   SourcePart& add_part(std::span<const uint32_t> members, const ReceiverHull& hull) {
     SourcePart& part = memory.parts.add();
     part.members.assign(members.begin(), members.end());
@@ -169,7 +169,7 @@ struct Division {
     return part;
   }
 
-  // Nothing is known of what stands before the cell.
+  // Adds a part whose occluders are unknown.
   void add_unknown(std::span<const uint32_t> members, const ReceiverHull& hull,
                    const FlatCell& cell, bool is_whole) {
     memory.candidates.facets.clear();
@@ -187,12 +187,13 @@ struct Division {
   void sphere(std::span<uint32_t> members, const ReceiverHull& hull, int halvings);
 };
 
-// Where there are too many facets, halves the larger of the two, receivers or source.
+// Gathers the facets of members and cell. If they are too many, halves the larger of the two
+// bodies.
 void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const FlatCell& cell,
                     bool is_whole, int halvings) {
   const bool is_last = is_last_try(halvings, hull);
   FoundFacets& found = *task.request.found;
-  // No single facet will prove it all dark: nothing is worth gathering.
+  // No single facet can hide the whole cell, so gathering is not worth its cost.
   if (is_last && halvings > 0 && found.dense.is_partly_open())
     return add_unknown(members, hull, cell, is_whole);
   const auto gather = [&](size_t most) {
@@ -203,7 +204,7 @@ void Division::flat(std::span<uint32_t> members, const ReceiverHull& hull, const
   size_t most = most_before_flat(members.size(), is_last);
   bool is_too_long = gather(most);
   if (is_too_long && !is_last && task.promise.error > 0) {
-    // What rays would cost tells how long lists may be.
+    // The cost of rays decides how long lists may be.
     direct_rays_of(task, scene);
     const size_t worth = most_before_flat(members.size(), is_last);
     if (worth > most) is_too_long = gather(worth);
@@ -241,7 +242,7 @@ void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int
   const SphereSource& source = *task.request.sphere;
   const bool is_too_near = is_near(source, hull);
   ShadowCandidates& c = memory.candidates;
-  if (is_too_near) {  // nothing is known, and rays decide
+  if (is_too_near) {  // no shaft exists: rays decide
     c.facets.clear();
     c.rounds.clear();
     c.is_masked_known = false;
@@ -250,7 +251,7 @@ void Division::sphere(std::span<uint32_t> members, const ReceiverHull& hull, int
     gather_facets(hull, source, most_facets(is_last), scene, c, counters);
   }
   const bool is_long = (is_too_near || c.is_too_long) && !is_last && members.size() >= 2;
-  // Each receiver has a list of its own on its own disk, which costs more than to gather again.
+  // Each receiver rasterises the list on its own disk, which costs more than gathering twice.
   const bool is_worth_halving = !is_too_near && !c.is_too_long &&
                                 c.facets.size() + c.rounds.size() >= fewest_to_halve &&
                                 members.size() >= task.options.smallest_cluster;

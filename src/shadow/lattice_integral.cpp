@@ -10,11 +10,11 @@ namespace troffer {
 
 namespace {
 
-// Lattices of more samples are looked at in every other row and column: which, is random, so that
-// each sample is as probable as any other.
+// Lattices with more samples are evaluated at every other row and column. The offset is random, so
+// each sample is equally likely.
 constexpr int most_samples = 256;
-// … or in every fourth, where what is integrated is gentle and so many are open then: of the fine
-// lattice, and of the coarse one, which is for errors of 2 % and more.
+// For low-variance integrands every fourth row and column is enough. At least this many samples
+// must be open there, for the fine and for the coarse lattice.
 constexpr size_t low_variance_samples = 16, coarse_low_variance_samples = 8;
 
 // Sets points, weights and places to the open samples of every stride-th row and column.
@@ -51,22 +51,23 @@ void set_points(const SourceCellTask& cell, uint32_t member, const OpenSamples& 
 
 struct LatticeSum {
   double weight = 0, r = 0, g = 0, b = 0;
-  // of the four lattices of every other row and column: weights, and luminance by weight
+  // of the four sublattices of every other row and column: weights, and luminance times weight
   double part_weights[4] = {}, parts[4] = {};
-  double squares = 0;  // of weight × what a value differs from the line through its neighbours
+  double squares = 0;  // of weight × second difference along a row
 
   Rgb mean() const { return Rgb{float(r), float(g), float(b)} * float(1 / weight); }
   double variance_of_mean() const;
 };
 
-// The four differ by slopes as much as the mean of all does by where the lattice happens to lie
-// (a slope of s per step: s² / 12), and by independent noise as much as samples do. What bends
-// evenly from sample to sample, such as a lobe of some steps, is summed well, and so they say.
+// Estimates the variance from the four sublattices. For a slope of s per step they differ as much
+// as the mean does by the lattice's position (s² / 12). For independent noise they differ as
+// samples do. A function that bends evenly over some steps is integrated well, and they differ
+// little.
 double LatticeSum::variance_of_mean() const {
   const double mean = (0.2126 * r + 0.7152 * g + 0.0722 * b) / weight;
   double sum = 0;
   for (int i = 0; i < 4; ++i) {
-    // of noise about a line, second differences have six times the variance
+    // second differences of noise have six times its variance
     if (!(part_weights[i] > 0)) return squares / (6 * sqr(weight));
     sum += sqr((parts[i] - part_weights[i] * mean) / weight);
   }
@@ -92,8 +93,8 @@ LatticeSum sum_of(const LatticeMemory& m, int stride) {
   return s;
 }
 
-// Points drawn in proportion to weight, one of each of n equal parts; their places in memory.drawn
-// and values. Returns the mean of the values.
+// Draws points in proportion to weight, one from each of n equal parts, into memory.drawn and
+// memory.values. Returns the mean of the values.
 Rgb draw(const SourceCellTask& cell, const OpenSamples& s, const LatticeSum& sum, uint32_t n,
          uint64_t random, LatticeMemory& m) {
   const MaskFrame& frame = cell.frame;

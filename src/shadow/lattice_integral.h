@@ -1,8 +1,7 @@
-// What a receiver sends on of a cell by a surface that is not matte: the integrand at all of a
-// mask's open samples, or a quarter of them, instead of a few points drawn from them.
-//
-// Where lists are complete that is the answer. Else the sum stands for what is sent on if nothing
-// more is in the way, and rays to a few of the points tell what is hidden of it.
+// Integrates a textured light or a glossy reflection over a mask: evaluates the integrand at all
+// open samples, or at every second or fourth row and column of them. mask_cell.cpp uses it for
+// smooth integrands. With a complete list the sum is the answer. Otherwise the sum assumes that
+// nothing else hides the samples, and rays to a few of the points estimate what is hidden.
 // References: docs/certified.md, "Gloss and textures".
 #pragma once
 
@@ -14,6 +13,7 @@
 
 namespace troffer {
 
+// Working memory of add_lattice_integral.
 struct LatticeMemory {
   PointArrays points;
   std::vector<float> weights;
@@ -22,8 +22,8 @@ struct LatticeMemory {
   std::vector<Rgb> values;
 };
 
-// Adds the integrand over the open samples, which send `light`, in sr. `rays`: points that rays are
-// cast to where the list is not complete.
+// Adds the integrand over the open samples, which send `light` sr. rays: number of points that rays
+// are cast to if the list is incomplete.
 void add_lattice_integral(const SourceCellTask& cell, uint32_t member, const OpenSamples& samples,
                           float light, float share_variance, uint32_t rays, uint64_t random,
                           LatticeMemory& memory, SourceResults& results);

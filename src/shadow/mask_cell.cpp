@@ -11,7 +11,7 @@ namespace troffer {
 
 namespace {
 
-// Random numbers of a pair of receiver and cell, for several purposes and passes.
+// Random numbers of a pair of receiver and cell, distinct for each purpose and pass.
 constexpr uint64_t purpose_shift = 0x5851f42d4c957f2dull, purpose_points = 0x14057b7ef767814full;
 uint64_t numbers_of(const SourceCellTask& cell, uint32_t member, uint64_t pass, uint64_t purpose) {
   return mix64(cell.receiver(member).stream + cell.stream + pass * 0x9e3779b97f4a7c15ull + purpose);
@@ -22,13 +22,13 @@ void add_answer(const SourceCellTask& cell, uint32_t member, const MaskShare& sh
   results.sums[member].add(cell.unoccluded[member], share.share, share.variance, kind);
 }
 
-// Whether all samples are.
+// True if all samples lie above the receiver's horizon.
 bool is_above_horizon(const MaskFrame& frame, const MaskWeights& w) {
   const auto last = float(frame.lattice().rows);
   return w.cosine + std::min(w.cosine_j, 0.0f) * last + std::min(w.cosine_k, 0.0f) * last > 0;
 }
 
-// Hardly any light can come from where no sample stands above the horizon.
+// Answer for cells without a sample above the horizon. Hardly any light can come from there.
 constexpr MaskShare unknown_share{0.5f, 0.25f};
 
 }  // namespace
@@ -55,7 +55,7 @@ MaskShare look_at_cell(const SourceCellTask& cell, uint32_t member, const FacetL
   const bool is_above = is_above_horizon(frame, samples.weights);
   if (!is_above) clip_to_horizon(frame, x, r.normal, samples.shift, mask);
   samples.rows = mask.open;
-  // Where nobody wants to know where the samples are, weights do not matter if all are open.
+  // Without an integrand, weights do not matter if all samples are open.
   const bool is_answer = cell.is_complete && cell.source.wanted_points[member] == 0;
   if (is_answer && is_above &&
       std::equal(mask.open.row, mask.open.row + most_mask_rows, mask.inside.row))
@@ -68,7 +68,8 @@ MaskShare look_at_cell(const SourceCellTask& cell, uint32_t member, const FacetL
 
 namespace {
 
-// Adds the integrand over the samples that are open, which send `light`, in sr: now, or by rays.
+// Adds the integrand over the open samples, which send `light` sr. With an incomplete list it
+// queues rays.
 void add_integral(const SourceCellTask& cell, uint32_t member, float light, float share_variance,
                   MaskMemory& memory, SourceResults& results) {
   const SourceTask& source = cell.source;
@@ -103,7 +104,7 @@ void add_integral(const SourceCellTask& cell, uint32_t member, float light, floa
                           (count * std::max(count - 1, 1.0f));
 }
 
-// What of the samples is open waits for rays.
+// Queues rays through the open samples.
 void queue_samples(const SourceCellTask& cell, uint32_t member, float light, uint32_t pass,
                    uint32_t passes, const MaskMemory& memory, SourceResults& results) {
   results.rays.add(member, cell.receiver(member).origin, memory.samples, light,
@@ -127,9 +128,8 @@ void mask_complete(const SourceCellTask& cell, uint32_t member, const FacetList&
                  results);
 }
 
-// Divides the open samples into those that nothing can hide any more, which become `free`, and
-// memory.samples, whose rays meet what only rays can tell of. Returns the share of the open weight
-// that is free.
+// Splits the open samples by cell.masked: those that nothing else can hide become `free`, and
+// memory.samples keeps those that only rays can decide. Returns the free share of the open weight.
 float divide_open(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,
                   OpenSamples& free) {
   const MaskFrame& frame = cell.frame;
@@ -152,8 +152,8 @@ float divide_open(const SourceCellTask& cell, uint32_t member, MaskMemory& memor
   return std::clamp(free.open / open, 0.0f, 1.0f);
 }
 
-// What a mask of an incomplete list finds dark is dark, and what is clear of all that the list
-// lacks is open; for what else is open rays count.
+// Masks a receiver with an incomplete list. Samples that the mask finds dark are dark, and samples
+// clear of cell.masked are open. Rays decide the others.
 void mask_incomplete(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                      MaskMemory& memory, SourceResults& results) {
   const MaskShare seen = counted_look(cell, member, facets, 0, memory, results);
@@ -181,9 +181,9 @@ void mask_incomplete(const SourceCellTask& cell, uint32_t member, const FacetLis
     queue_samples(cell, member, light, 0, 1, memory, results);
 }
 
-// Where much is left to rays, they must not go through the same few hundred points over and over:
-// masks with several shifts share them. An integrand has a number of points of its own: one mask,
-// whose answer stands even if it finds nothing open.
+// Masks a receiver whose list is over budget. Several masks with different shifts share its many
+// rays, so that these do not repeat the same few hundred points. An integrand has its own number of
+// points and gets one mask, whose answer counts even if it finds nothing open.
 void mask_often(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                 MaskMemory& memory, SourceResults& results) {
   const bool has_integrand = cell.source.wanted_points[member] > 0;

@@ -1,5 +1,6 @@
-// The last stage without rays: what single receivers see of a cell past the facets that are left,
-// by a coverage mask for each.
+// Answers receivers of one source cell by coverage masks, one per receiver, over the facets that
+// certificates leave. This is the last stage without rays. settle_cell.cpp and settle_part.cpp call
+// it.
 #pragma once
 
 #include <cstdint>
@@ -12,28 +13,30 @@
 
 namespace troffer {
 
+// Working memory of the functions below.
 struct MaskMemory {
   CoverageMask mask;
-  OpenSamples samples;  // of the receiver looked at last
+  OpenSamples samples;  // of the last receiver
   std::vector<Vec3> points;
   std::vector<Rgb> values;
   LatticeMemory lattice;
 };
 
-// What a receiver sees of the cell, and what that may err by; share < 0: no sample stands above the
-// horizon. memory.samples are the samples that are open. pass: which of several masks of the pair.
+// Visible share of a cell and its estimated variance. share < 0: no sample lies above the horizon.
 struct MaskShare {
   float share = 0, variance = 0;
 };
+// Computes a mask of `facets`. Sets memory.samples to the open samples. pass: which of several
+// masks of the pair.
 MaskShare look_at_cell(const SourceCellTask& cell, uint32_t member, const FacetList& facets,
                        uint64_t pass, MaskMemory& memory);
 
-// The answer for a receiver that sees all of the cell.
+// Adds the answer of a receiver that sees all of the cell.
 void add_lit(const SourceCellTask& cell, uint32_t member, MaskMemory& memory,
              SourceResults& results);
 
-// Answers by masks, for all members; of an incomplete list by what is dark, and what is open waits
-// for rays.
+// Adds the answers of all members. With an incomplete list, dark samples count as dark, and rays
+// are queued for open ones.
 void mask_cell(const SourceCellTask& cell, std::span<const uint32_t> members,
                const FacetList& facets, MaskMemory& memory, SourceResults& results);
 

@@ -9,14 +9,14 @@ namespace troffer {
 
 namespace {
 
-constexpr int canvas_side = 32;  // of the canvas: most_mask_rows
+constexpr int canvas_side = 32;  // side of the canvas
 static_assert(canvas_side == int(most_mask_rows));
 
 struct CanvasPoint {
   uint8_t k, j;
 };
 
-// Cells of the canvas along a Hilbert curve.
+// Returns the cells of the canvas in the order of a Hilbert curve.
 constexpr std::array<CanvasPoint, size_t(canvas_side* canvas_side)> hilbert_curve() {
   std::array<CanvasPoint, size_t(canvas_side * canvas_side)> curve{};
   for (int d = 0; d < canvas_side * canvas_side; ++d) {
@@ -42,7 +42,7 @@ constexpr std::array<CanvasPoint, size_t(canvas_side* canvas_side)> hilbert_curv
 }
 constexpr auto curve = hilbert_curve();
 
-// Where in the open weight the points are drawn: one after the other, ascending.
+// Positions in the open weight at which points are drawn, in ascending order.
 class Targets {
  public:
   Targets(uint32_t n, uint64_t random, float open)
@@ -66,7 +66,7 @@ class Targets {
   uint32_t n_, drawn_ = 0;
 };
 
-// World position of canvas (0,0) and its steps.
+// World position of canvas (0,0), and the steps to its neighbours.
 struct Canvas {
   Vec3d first, step_k, step_j;
 
@@ -106,7 +106,7 @@ void draw_points(const MaskFrame& frame, const OpenSamples& s, uint32_t n, uint6
     }
     row_start = row_end;
   }
-  // Sums of floats may end short of the last target.
+  // Rounding of the sums may leave the last targets unreached.
   for (; !targets.is_done() && last_k >= 0; targets.advance())
     points.push_back(canvas.at(last_k, last_row));
 }
@@ -117,7 +117,7 @@ void draw_points_compact(const MaskFrame& frame, const OpenSamples& s, uint32_t 
   Targets targets(n, random, s.open);
   float passed = 0;
   const CanvasPoint* last = nullptr;
-  // A curve over the smallest power of two that holds the canvas ends where that ends.
+  // The first rows² cells of the curve fill the smallest power of two that holds the canvas.
   const auto rows = uint32_t(std::bit_ceil(unsigned(frame.lattice().rows)));
   for (uint32_t d = 0; d < rows * rows && !targets.is_done(); ++d) {
     const CanvasPoint& c = curve[d];

@@ -1,4 +1,4 @@
-// Points of a source drawn from a coverage mask's open samples.
+// Draws points of a source from the open samples of a coverage mask. Rays and integrands use them.
 #pragma once
 
 #include <cstdint>
@@ -9,24 +9,24 @@
 
 namespace troffer {
 
-// Open samples of one receiver to one cell, and their weights: what is needed to draw from them.
+// Open samples of one receiver and cell, with their weights.
 struct OpenSamples {
   MaskRows rows;
   MaskWeights weights;
   Vec2 shift;
   float open_by_row[most_mask_rows];
-  float open = 0;  // the sum of open_by_row
+  float open = 0;  // sum of open_by_row
 };
 
-// Appends n points in world space, drawn from the open samples in proportion to weight: of n equal
-// parts of the open weight, along the rows, one point from each, by numbers of its own hashed from
-// `random`. Of any 0 or 1 of the samples the variance of the mean is therefore at most 1/4n. Fewer
-// than n only where there is no open sample.
+// Appends n points in world space, drawn from the open samples in proportion to weight. The open
+// weight is divided along the rows into n equal parts, and each part gives one point by its own
+// hash of `random`. The mean of any 0/1 function therefore has a variance of at most 1/4n. Fewer
+// points are appended only if no sample is open.
 void draw_points(const MaskFrame& frame, const OpenSamples& samples, uint32_t n, uint64_t random,
                  std::vector<Vec3>& points);
 
-// The same along a Hilbert curve through the samples instead of their rows: neighbours in the order
-// are neighbours on the source, and each point stands for a compact part of it. Slower to draw.
+// Does the same along a Hilbert curve through the samples. Each point then stands for a compact
+// part of the source, which matters for many points. Slower than draw_points.
 void draw_points_compact(const MaskFrame& frame, const OpenSamples& samples, uint32_t n,
                          uint64_t random, std::vector<Vec3>& points);
 

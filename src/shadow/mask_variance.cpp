@@ -9,28 +9,28 @@ namespace troffer {
 
 namespace {
 
-// Variance of a count of lattice samples behind an edge, in samples squared per pair of neighbours
-// that the edge parts. The numbers of pairs in rows and in columns tell the edge's direction; it is
-// large along rows or columns of the lattice, and larger than elsewhere along lines through every
-// second sample (measured: docs/certified.md). Along diagonals it is large too, but as many pairs
-// in rows as in columns mostly mean edges along both sides of the source.
+// Returns the variance of the count of lattice samples behind an edge, in samples² per pair of
+// neighbours that the edge separates. The ratio of pairs in rows and in columns gives the edge's
+// direction. The variance is large along rows and columns, and along lines through every second
+// sample (measured: docs/certified.md). Equal numbers usually mean edges along both sides of the
+// source, not diagonals.
 float edge_variance(float least_pairs, float most_pairs) {
-  if (most_pairs < 6) return 0.14f;  // a few pairs do not tell a direction
+  if (most_pairs < 6) return 0.14f;  // too few pairs for a direction
   const float ratio = least_pairs / most_pairs;
   if (ratio < 0.04f) return 0.5f;
   return ratio < 0.08f || std::abs(ratio - 0.5f) < 0.06f || ratio > 0.9f ? 0.075f : 0.045f;
 }
 
-// What stands in rows, as parallel wires do, may be in step with the samples.
+// Factor for occluders in rows, such as parallel wires, which may be in step with the samples.
 constexpr float regularity = 1.2f;
 
-// Of a share: where samples were thrown at random `random` pairs would differ.
+// Returns the variance of a share if samples were random and `random` pairs would differ.
 float random_variance(float n, float spread, float random) {
   return regularity * n * spread * n / ((n - 1) * random);
 }
 
-// How much weights vary along a side: half their difference between the ends of a line, over their
-// mean there, of two lines the one that sends more.
+// Returns how much weights vary along a side: half their difference between the ends of a line,
+// over the mean there. Of two lines, the one with more weight counts.
 float variation_along(const MaskLattice& lattice, const MaskWeights& w, EdgesAlong edges) {
   const auto a = float(lattice.a), b = float(lattice.b), middle = 0.5f * (a + b);
   const Vec2 u{a, -b}, v{b, a};
@@ -47,13 +47,16 @@ float variation_along(const MaskLattice& lattice, const MaskWeights& w, EdgesAlo
   return variation;
 }
 
-// Of the share, in squared weights of samples, of edges along one side of the source. Each parts
-// one pair of neighbours in order, wherever it stands, and errs by 1/12 of a sample squared, and
-// more if others are in step with it. As neighbours in order stand apart along the edge, what
-// weights vary by along it adds to that: where it is all of them, as much as an edge of any
-// direction errs by. And where edges stand closer than samples, without order, it comes to the
-// variance of independent ones: then samples one step apart, and two, differ as if thrown at
-// random, where what is regular makes them differ more, or less.
+// Returns the variance of the share, in squared weights of samples, for edges along one side of the
+// source.
+//
+// Each edge separates one pair of samples that are consecutive across it and errs by 1/12 sample²,
+// or more if other edges are in step with it. Consecutive samples lie apart along the edge, so the
+// variation of weights along it adds to that, up to the error of an edge of any direction.
+//
+// Irregular edges closer together than samples have the variance of independent samples. Pairs one
+// and two steps apart then differ as often as random ones; regular edges make them differ more or
+// less often.
 float ordered_variance(const CoverageMask& mask, EdgesAlong edges, float variation, float n,
                        float spread) {
   constexpr float by_chance = 0.1f, of_edge = 0.15f;
@@ -71,8 +74,8 @@ float ordered_variance(const CoverageMask& mask, EdgesAlong edges, float variati
   return parted * of_pair + sqr(variation) * std::min(1.2f * parted, 0.4f * n * spread);
 }
 
-// Pairs of samples `rows` rows apart, and so many columns to the right or the left: all inside, and
-// those that differ.
+// Counts pairs of samples that are `rows` rows and some columns to the right or left apart: all
+// pairs inside, and those that differ.
 TROFFER_MULTIVERSION
 void count_apart(const uint32_t* __restrict inside, const uint32_t* __restrict open, uint32_t rows,
                  uint32_t right, uint32_t left, int* __restrict counts) {
@@ -89,8 +92,8 @@ void count_apart(const uint32_t* __restrict inside, const uint32_t* __restrict o
 }  // namespace
 
 OrderedPairs ordered_pairs(const CoverageMask& mask, EdgesAlong edges, uint32_t steps) {
-  // With 25 · 1 - 6 · 4 = 13 · 1 - 3 · 4 = 1, (k + 1, j + 4) is the next sample in u, and
-  // (k - 4, j + 1) in v.
+  // For both lattices a - 4 b = 1. Therefore (k + 1, j + 4) is the next sample in u, and (k - 4, j
+  // + 1) the next in v.
   static_assert(fine_lattice.a - 4 * fine_lattice.b == 1);
   static_assert(coarse_lattice.a - 4 * coarse_lattice.b == 1);
   int counts[2];
@@ -101,8 +104,9 @@ OrderedPairs ordered_pairs(const CoverageMask& mask, EdgesAlong edges, uint32_t 
   return {counts[0], counts[1]};
 }
 
-// The more of all neighbours differ, from as few as in one piece to as many as if samples were
-// thrown at random, the closer the variance comes to that of independent samples, and some more.
+// Interpolates between the variance of an edge and that of independent samples. The fraction of
+// neighbours that differ measures the disorder: it is least for a shape in one piece and largest
+// for random samples.
 float mask_variance(const MaskFrame& frame, const MaskWeight& sums, const CoverageMask& mask,
                     const MaskWeights& weights, EdgesAlong edges) {
   const auto rows = float(sums.row_pairs), columns = float(sums.column_pairs);
@@ -115,7 +119,7 @@ float mask_variance(const MaskFrame& frame, const MaskWeight& sums, const Covera
     return ordered_variance(mask, edges, variation_along(frame.lattice(), weights, edges), n,
                             spread) /
            pairs * scale;
-  const float fewest = 4 * std::sqrt(n * std::min(share, 1 - share));  // of a square
+  const float fewest = 4 * std::sqrt(n * std::min(share, 1 - share));  // for a square
   const float random = 2 * float(sums.neighbours) * spread;
   const float disorder = std::clamp((pairs - fewest) / std::max(random - fewest, 1.0f), 0.0f, 1.0f);
   const float of_edge = edge_variance(std::min(rows, columns), std::max(rows, columns));

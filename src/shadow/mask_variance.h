@@ -1,19 +1,21 @@
-// What a coverage mask's share may err by, told from the mask itself.
+// Estimates the variance of a coverage mask's visible share from the mask itself. mask_cell.cpp
+// uses it for estimated errors and for refinement.
 #pragma once
 
 #include "shadow/coverage_mask.h"
 
 namespace troffer {
 
-// Pairs of samples that are `steps` / n of one side of the source apart, n the lattice's samples,
-// which all stand at different places along it; how many there are, and how many of them differ.
+// Number of pairs of samples that are `steps` / n of a side of the source apart, and of those that
+// differ. The n samples all lie at different places along the side.
 struct OrderedPairs {
   int all = 0, differing = 0;
 };
-// edges: which side they run along; pairs are those across it.
+// Counts ordered pairs across the edges. edges: the side that the edges are parallel to.
 OrderedPairs ordered_pairs(const CoverageMask& mask, EdgesAlong edges, uint32_t steps);
 
-// Expected variance of the mask's share. edges: what most edges of the facets run along.
+// Returns the expected variance of the mask's share. edges: the side that most edges are parallel
+// to.
 float mask_variance(const MaskFrame& frame, const MaskWeight& sums, const CoverageMask& mask,
                     const MaskWeights& weights, EdgesAlong edges);
 

@@ -1,5 +1,5 @@
-// How much of a source a receiver sees: the answer for a pair of the two, and the sum over the
-// source's cells that it is made of.
+// Answers for pairs of receiver and source. CellSum adds up the cells of a source; SourceVisibility
+// is the finished answer. All stages of certified visibility write them.
 #pragma once
 
 #include <algorithm>
@@ -9,18 +9,18 @@
 
 namespace troffer {
 
-// How a pair was answered. below: no light can arrive, the source is behind the horizon or the
-// receiver behind the source.
+// Kind of answer of a pair. below: no light can arrive, since the source is below the horizon or
+// the receiver behind the source.
 enum class ShadowAnswer : uint8_t { below, lit, dark, masked, mixed };
 
-// The finished answer, rays included.
+// The finished answer, including rays.
 struct SourceVisibility {
   float unoccluded = 0;      // projected solid angle, sr
-  float visible = 0;         // share of it that is not hidden
-  float variance = 0;        // of `visible`, estimated
-  Rgb value;                 // of the integrand, where the receiver has one
+  float visible = 0;         // visible share of it
+  float variance = 0;        // estimated variance of `visible`
+  Rgb value;                 // of the integrand, if the receiver has one
   float value_variance = 0;  // of its luminance
-  uint32_t rays = 0;         // that it took
+  uint32_t rays = 0;         // rays cast for it
   ShadowAnswer answer = ShadowAnswer::below;
 };
 
@@ -28,15 +28,15 @@ constexpr uint8_t answer_bit(ShadowAnswer a) {
   return uint8_t(1u << uint32_t(a));
 }
 
-// What the cells of a source come to without rays.
+// Sum over the cells of a source, without rays.
 struct CellSum {
   float light = 0;       // unoccluded light of a cell × its visible share, sr
   float variance = 0;    // of `light`, sr²
   float unoccluded = 0;  // light of the cells that have an answer, sr
   Rgb value;
   float value_variance = 0;
-  uint8_t kinds = 0;  // a bit for each answer of a cell
-  uint32_t rays = 0;  // cast already
+  uint8_t kinds = 0;  // answer_bit of each cell's answer
+  uint32_t rays = 0;  // rays cast so far
 
   void add(float cell_unoccluded, float share, float share_variance, ShadowAnswer kind) {
     light += cell_unoccluded * share;
@@ -46,9 +46,9 @@ struct CellSum {
   }
 };
 
-// Makes `a` the whole source's answer, but for rays; unoccluded: exact, of the whole source, to
-// which the sum over cells is scaled. Written where it stays: copying it takes as long as making
-// it.
+// Sets `a` to the answer for the whole source, without queued rays. unoccluded: exact value for the
+// whole source, to which the sum over cells is scaled. Writes in place, since copying would take as
+// long as computing.
 inline void set_answer(const CellSum& sum, float unoccluded, SourceVisibility& a) {
   a = {};
   a.unoccluded = unoccluded;
@@ -64,21 +64,23 @@ inline void set_answer(const CellSum& sum, float unoccluded, SourceVisibility& a
   } else {
     const float square = sum.unoccluded * sum.unoccluded;
     a.visible = sum.light / sum.unoccluded;
-    if (sum.rays == 0) a.visible = std::min(a.visible, 1.0f);  // of rays the mean would suffer
-    a.variance = square > 0 ? sum.variance / square : 0;  // squares of tiny lights are none
+    if (sum.rays == 0)
+      a.visible = std::min(a.visible, 1.0f);              // with rays, clamping would bias the mean
+    a.variance = square > 0 ? sum.variance / square : 0;  // squares of tiny lights may be 0
     a.answer = (sum.kinds & answer_bit(ShadowAnswer::mixed)) != 0 ? ShadowAnswer::mixed
                                                                   : ShadowAnswer::masked;
   }
 }
 
-// What rays of a pair found beyond its masks.
+// Result of the rays of a pair, in addition to its masks.
 struct RayAnswer {
   uint32_t source = 0, member = 0, rays = 0;
-  float light = 0;           // projected solid angle that they found open, sr
+  float light = 0;           // open projected solid angle that they found, sr
   float light_variance = 0;  // sr²
   Rgb value;                 // of an integrand
   float value_variance = 0;  // of its luminance
 };
+// Adds the result of rays to an answer.
 inline void add_rays(const RayAnswer& rays, SourceVisibility& a) {
   const float square = a.unoccluded * a.unoccluded;
   a.visible += rays.light / a.unoccluded;

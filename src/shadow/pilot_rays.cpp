@@ -14,7 +14,7 @@ namespace {
 constexpr size_t most_rays = 128, most_far_rays = 64, rays_of_receiver = 4;
 constexpr uint64_t purpose_pilot = 0x7069'6c6f'7400;
 
-// Whether the ray from x along d meets a convex quadrilateral.
+// True if the ray from x along d hits a convex quadrilateral.
 bool meets(const Quad& q, const Vec3d& x, const Vec3d& d) {
   int left = 0, right = 0;
   for (size_t i = 0; i < 4; ++i) {
@@ -27,11 +27,11 @@ bool meets(const Quad& q, const Vec3d& x, const Vec3d& d) {
   return dot(n, d) * dot(n, Vec3d(q[0]) - x) > 0;
 }
 
-// Rays to points of sources, and what these would send.
+// Rays to points of sources, weighted by the unoccluded light of these points.
 class Pilots {
  public:
-  // To the point y of a source of normal n; inverse_density: of the choice of source and point;
-  // frame: LightRequest.
+  // Adds a ray to the point y of a source with normal n. inverse_density: of the choice of source
+  // and point. frame: see LightRequest.
   void add(const ShadowReceiver& r, const Vec3d& y, const Vec3d& n, double inverse_density,
            std::span<const FacetToAdd> frame = {}) {
     const Vec3d d = y - Vec3d(r.position);
@@ -49,7 +49,7 @@ class Pilots {
     weights_[count_++] = weight;
   }
 
-  // As if two rays more had met one of each.
+  // Traces the rays and returns the open share, as if two more rays had given one answer each.
   double share(ShadowScene& scene) {
     std::array<uint8_t, most_rays> is_hidden{};
     scene.occluded(segments_, {is_hidden.data(), count_});
@@ -102,7 +102,7 @@ double far_open_share(const ShadowCluster& cluster, std::span<const LightRequest
     const Parallelogram& p = requests[chosen].flat->plane;
     const uint64_t place = mix64(random);
     const Vec3d y = p.origin + p.u * unit_double(place << 32) + p.v * unit_double(place);
-    // of the light that the choice stands for
+    // light that the choice represents
     const auto light = double(unoccluded[chosen * n + i]);
     if (!(light > 0)) continue;
     const double inverse_density = length(cross(p.u, p.v)) / light;

@@ -10,18 +10,18 @@ namespace troffer {
 
 namespace {
 
-// So many receivers have a pilot, and there are at most so many pilots.
+// Receivers per pilot receiver, and limits of the number of pilot receivers.
 constexpr size_t receivers_per_pilot = 24, fewest_pilots = 3, most_pilots = 8;
-// A source of which pilots see nothing, though no facet hides all of it, is searched in so many
-// cells more.
+// Further cells that are searched if pilots see nothing of a source, although no facet hides all of
+// it.
 constexpr size_t cells_of_search = 12;
-// Masks of pilots take other random numbers than those that count.
+// Pass numbers of pilot masks, which keep their random numbers apart from those of final masks.
 constexpr uint64_t first_pilot_pass = 1000;
 // Variance of the coarse lattice over that of the fine one: (661 / 178)^1.5.
 constexpr double coarse_variance = 7.2;
-// Masks err by less than they tell, by a third and more as a rule.
+// Estimated over actual error of masks.
 constexpr double told_over_made = 1.3;
-// What a mask costs, in facets of the fine lattice: itself, and each of them by the coarse one.
+// Cost of a mask in facets of the fine lattice, and cost of a facet by the coarse lattice.
 constexpr double cost_of_mask = 10, coarse_cost = 0.6;
 
 std::span<const FacetToAdd> facets_of(const SourcePart& part, const PilotMemory& memory,
@@ -29,7 +29,7 @@ std::span<const FacetToAdd> facets_of(const SourcePart& part, const PilotMemory&
   return memory.has_own_facets[cell] != 0 ? memory.facets[cell] : part.facets;
 }
 
-// The plan as it grows: entries of `cells`, which coarse lattices lie over. Sums go along with it.
+// The growing plan: cells with their lattices, and sums over them.
 class Plan {
  public:
   Plan(const SourceTask& task, const SourcePart& part, uint64_t stream, PilotMemory& memory,
@@ -53,7 +53,8 @@ class Plan {
     most_dark_ = first + cells_of_search;
   }
 
-  // Makes the worst cell finer; false where all is well, or more would cost too much.
+  // Refines the worst cell. Returns false if the error is small enough, or if more would cost too
+  // much.
   bool refine() {
     const size_t cell = worst();
     if (cell == m_.cells.size() || cost_ > task_.promise.budget) return false;
@@ -79,7 +80,7 @@ class Plan {
     return pilot.variance[cell] * (m_.is_coarse[cell] != 0 ? coarse_variance : 1);
   }
 
-  // Adds the cell to all sums, or takes it off them.
+  // Adds the cell to all sums (sign 1), or removes it (sign -1).
   void count(size_t cell, double sign) {
     cost_ += sign * m_.costs[cell] * (m_.is_coarse[cell] != 0 ? coarse_cost : 1);
     for (PilotMemory::Pilot& p : m_.pilots) {
@@ -88,8 +89,8 @@ class Plan {
     }
   }
 
-  // Of the pilot whose error is too large by the largest factor, the cell that adds most; the
-  // number of cells where none is.
+  // Returns the cell with the largest variance for the pilot that exceeds its limit most. Returns
+  // the number of cells if no pilot exceeds its limit.
   size_t worst() const {
     const size_t n = m_.cells.size();
     double largest = 1;
@@ -113,7 +114,8 @@ class Plan {
   double allowed_variance(uint32_t member, double light) const {
     const Promise& p = task_.promise;
     const double seen = double(p.seen[member]), floor = double(p.floor[member]);
-    // Where a pilot sees nothing, what others send, or may send, tells how much that matters.
+    // If a pilot sees nothing of this source, the light of other sources decides how much that
+    // matters.
     constexpr double usual_share = 0.1;
     const double others = std::max(seen, usual_share * double(p.rest[member]));
     const double least = light > 0 ? floor : std::max(floor, others), all = seen + light;
@@ -121,7 +123,7 @@ class Plan {
            std::max(all * std::max(light, all / (2 * p.sources)), least * least);
   }
 
-  // The halves of a cell have lists of their own.
+  // Gives the halves of a cell their own lists.
   void divide_facets(size_t cell, const FlatCell& first, const FlatCell& second) {
     const size_t n = m_.cells.size();
     if (m_.facets.size() <= n) m_.facets.resize(n + 1);
@@ -132,7 +134,7 @@ class Plan {
     m_.has_own_facets[cell] = 1;
   }
 
-  // Adds what pilots see of a cell.
+  // Masks a cell for all pilots and adds the results.
   void look(size_t cell, bool is_coarse);
 
   const SourceTask& task_;
@@ -179,7 +181,7 @@ void Plan::look(size_t c, bool is_coarse) {
     if (share.share < 0) continue;  // hardly any light
     p.light[c] = all * double(share.share);
     p.variance[c] = all * all * double(share.variance);
-    // Between samples that are all dark there may be light, of a sample or so.
+    // A part of about one sample between dark samples may be lit.
     if (certificate == Certificate::none && share.share == 0)
       p.variance[c] = sqr(all / fine_lattice.samples());
   }

@@ -1,9 +1,7 @@
-// Cells and lattices with which the masks of a part keep the error that is asked for: where a mask
-// is too coarse for what is open, the source is cut finer there.
-//
-// A few receivers of the part, the pilots, are looked at first, by masks of their own whose answers
-// are then thrown away: what is found with the cells does not depend on what they were chosen by,
-// and stays unbiased. How much they may err by: Promise, in source_task.h.
+// Chooses cells and lattices for the masks of a part so that they meet the asked error. Where a
+// mask would be too coarse, it takes the fine lattice or halves the cell. Pilot masks of a few
+// receivers decide. These masks are discarded, so the final estimate stays unbiased. Promise in
+// source_task.h defines the allowed error. settle_part.cpp uses the plan.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +13,31 @@
 
 namespace troffer {
 
+// A cell with the lattice of its masks.
 struct PlannedCell {
   FlatCell cell;
   MaskLattice lattice;
-  std::span<const FacetToAdd> facets;  // of the part, those that may hide some of the cell
+  std::span<const FacetToAdd> facets;  // facets of the part that may hide some of the cell
 };
 
+// Working memory of plan_cells.
 struct PilotMemory {
   struct Pilot {
     uint32_t member = 0;
-    // Per cell, by masks of the fine lattice, sr and sr²; and over all cells, by their lattices.
+    // Per cell, by masks of the fine lattice, in sr and sr²; and sums over all cells, each by its
+    // own lattice.
     std::vector<double> light, variance;
     double all_light = 0, all_variance = 0;
   };
   std::vector<Pilot> pilots;
-  std::vector<double> costs;  // per cell: of its masks by the fine lattice, in facets
+  std::vector<double> costs;  // per cell: cost of its masks by the fine lattice, in facets
   std::vector<uint8_t> is_coarse;
   std::vector<FlatCell> cells;
-  std::vector<std::vector<FacetToAdd>> facets;  // per cell that was halved from another
+  std::vector<std::vector<FacetToAdd>> facets;  // per cell with its own list
   std::vector<uint8_t> has_own_facets;
 };
 
-// Sets `out` to the cells of a flat part. stream: hash of the part's own.
+// Sets `out` to the cells of a flat part. stream: a hash that is unique to the part.
 void plan_cells(const SourceTask& task, const SourcePart& part, uint64_t stream,
                 PilotMemory& memory, SettleMemory& settle, std::vector<PlannedCell>& out);
 

@@ -9,10 +9,11 @@ namespace troffer {
 
 namespace {
 
-// So many rays of one receiver are worth an order in which packets are compact.
+// Number of rays of one receiver above which a compact order pays off for ray packets.
 constexpr uint32_t fewest_compact = 96;
 
-// From x towards p: where the segment first meets the sphere; p itself where it does not.
+// Returns the point where the segment from x to p first meets the sphere, or the nearest point if
+// it misses.
 Vec3 near_end(const RaySource& s, const Vec3& x, const Vec3& p) {
   const Vec3d d = normalize(Vec3d(p) - Vec3d(x)), to_centre = s.centre - Vec3d(x);
   const double along = dot(to_centre, d);
@@ -26,21 +27,22 @@ void add_segments(const Vec3& origin, const RaySource& source, std::span<const V
     segments.push_back({origin, source.is_round ? near_end(source, origin, p) : p, source.own});
 }
 
-// Rays for a pair's own visible share.
+// Returns the number of rays that a pair's own visible share deserves.
 float rays_for_share(float light, float unoccluded, const RayLimits& limits) {
   return std::min(sqr(0.5f * light / unoccluded / limits.pair_error), float(limits.most_pair_rays));
 }
 
-// Of a pair; open, for_shares: sums over the pairs of its receiver.
+// Returns the number of rays of a pair. open, for_shares: sums over the pairs of its receiver.
 uint32_t number_of_rays(const RayQueue::OpenPair& p, float brightness, float allowed, float open,
                         float for_shares, const RayLimits& limits) {
-  // Rays of the receiver altogether, were numbers not whole. Quotients before squares: those of
-  // brightness may overflow, and a source may have none.
+  // `all` is the real-valued number of rays of the receiver. Quotients come before squares, because
+  // squares of brightness may overflow and may be zero.
   const float all = allowed > 0 ? sqr(open / (2 * allowed)) : float(limits.most_rays);
   const float own = brightness * p.light;
   const float share = own > 0 ? own / open : 0;
   const float wanted = share * std::min(all, float(limits.most_rays));
-  // One of hundreds of sources is not worth as many rays as one of a few.
+  // The limit is shared by all pairs, so one of hundreds of sources gets fewer rays than one of a
+  // few.
   const float scale = std::min(float(limits.most_share_rays) / for_shares, 1.0f);
   const float for_share = rays_for_share(p.light, p.unoccluded, limits) * scale;
   return uint32_t(std::max(std::ceil(std::max(wanted, for_share) - 1e-3f), 1.0f));

@@ -1,5 +1,5 @@
-// What masks leave open and lists of facets cannot settle: pairs of receiver and cell that wait for
-// rays, gathered over all sources of a cluster.
+// Queue of pairs of receiver and source cell that only rays can settle, over all sources of a
+// cluster. mask_cell.cpp fills it; residual_rays.h empties it.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@
 
 namespace troffer {
 
-// What rays to one source need to know of it.
+// A source as its rays need it.
 struct RaySource {
-  Vec3d point, normal;   // of its plane; flat sources only: normal towards the receivers
-  double tolerance = 0;  // metres above the plane that still belong to it
+  Vec3d point, normal;   // of its plane, for flat sources; normal towards the receivers
+  double tolerance = 0;  // height above the plane that still counts as the source, metres
   bool is_round = false;
-  Vec3d centre;  // round: rays end where they first meet this sphere
+  Vec3d centre;  // round sources: rays end where they first meet this sphere
   double radius = 0;
   uint64_t own = no_round_source;
   FoundFacets* found = nullptr;
-  float brightness = 1;  // luminance of its radiance, for the numbers of rays
+  float brightness = 1;  // luminance of its radiance; weights the numbers of rays
 };
 
 struct RayQueue {
-  // `light`, in sr, is open, of `unoccluded` of the whole source; how many rays that is worth is
-  // decided over the whole cluster. `random` is the receiver's and the cell's own.
-  // passes > 1: one of so many masks of the pair, which follow each other; those that found nothing
-  // open may be left out.
+  // A receiver and a cell with open samples. light: open light of the cell, in sr, out of
+  // `unoccluded` of the whole source. The number of rays is decided over the whole cluster. random:
+  // unique to receiver and cell. passes > 1: one of that many masks of the pair, which follow each
+  // other; masks without open samples may be left out.
   struct OpenPair {
     uint32_t member, source, frame;
     Vec3 origin;
@@ -39,17 +39,18 @@ struct RayQueue {
     uint32_t passes;
     OpenSamples samples;
   };
-  // One ray to each of some points; `light` × the mean of the values of those that are free is the
-  // answer.
+  // A receiver and some points with one ray each. The answer is `light` × the mean of the values
+  // whose rays are free.
   struct PointPair {
     uint32_t member, source, first, count;
     Vec3 origin;
     float light;
-    bool is_difference;  // of a sum that has been added already: what is hidden varies, not what
-                         // is free
+    // The pair corrects a sum that has been added already, so the hidden values make up the
+    // variance, not the free ones.
+    bool is_difference;
   };
 
-  std::vector<RaySource> sources;  // all of the cluster, those without rays too
+  std::vector<RaySource> sources;  // all of the cluster, also those without rays
   std::vector<MaskFrame> frames;   // of cells with rays
   std::vector<OpenPair> open;
   std::vector<PointPair> by_points;
@@ -60,7 +61,7 @@ struct RayQueue {
   bool is_empty() const { return open.empty() && by_points.empty(); }
   size_t size() const { return open.size() + by_points.size(); }
 
-  // To the last source, and for open samples to a cell with the last frame.
+  // Queues rays to the last source; those through open samples belong to the last frame.
   void add(uint32_t member, const Vec3& origin, const OpenSamples& samples, float light,
            float unoccluded, uint64_t random, uint32_t passes = 1);
   void add(uint32_t member, const Vec3& origin, std::span<const Vec3> at,

@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Sum of the squared differences of a[i] and b[i].
+// Returns the sum of squared differences of a[i] and b[i].
 TROFFER_MULTIVERSION
 float squared_differences(size_t n, const float* __restrict a, const float* __restrict b) {
   constexpr size_t lanes = 16;
@@ -29,7 +29,8 @@ float squared_differences(size_t n, const float* __restrict a, const float* __re
   return sum;
 }
 
-// Of values `steps` apart, as if there were as many such pairs as neighbours.
+// Returns the squared differences of values `steps` apart, scaled to the number of neighbouring
+// pairs.
 double changes(std::span<const float> values, size_t steps) {
   if (values.size() <= steps) return 0;
   const size_t n = values.size() - steps;
@@ -37,9 +38,9 @@ double changes(std::span<const float> values, size_t steps) {
   return sum * double(values.size() - 1) / double(n);
 }
 
-// Of the variance that strata tell so much is left by the sequence, which has strata of other
-// shapes and sizes as well: the less, the more of it goes with smaller strata. kept: what
-// neighbours differ by, of what samples a few strata apart do (measured: docs/certified.md).
+// Share of a shape's variance that the sequence leaves, since it has strata of other shapes and
+// sizes too. kept: squared difference of neighbours over that of samples a few strata apart
+// (measured: docs/certified.md).
 double left_by_squares(double kept) {
   const double fine = std::clamp((kept - 0.6) / 0.38, 0.0, 1.0);
   return 0.3 + 0.7 * fine * fine * fine;
@@ -57,8 +58,8 @@ void RaySpread::begin(uint32_t blocks, uint32_t of_block) {
   apart_ = {};
 }
 
-// Of the rays in the order of one of their numbers, of which each block has one in each of so many
-// equal parts.
+// Sorts the rays by one of their random numbers, of which each block has one in each of of_block
+// equal strata.
 void RaySpread::sort_along(std::span<const float> values, const float* numbers) {
   sorted_.resize(values.size());
   for (uint32_t b = 0, i = 0; b < blocks_; ++b)
@@ -82,7 +83,7 @@ std::span<const double> RaySpread::variances() {
   variances_.clear();
   const auto receivers = double(neighbours_.size());
   const auto n = double(blocks_) * double(of_block_);
-  // All together tell which strata fit, and how well: a receiver's own rays are few.
+  // The rays of all receivers decide which shape fits and how well, because one receiver has few.
   size_t shape = 0;
   double factor = 1, least = 0;
   for (size_t k = 0; k < shapes; ++k) {
@@ -95,8 +96,9 @@ std::span<const double> RaySpread::variances() {
     factor = left;
     shape = k;
   }
-  // A receiver's own rays may all have met the same: the spread of all receivers' counts for one of
-  // n + 1, and a ray of another answer for one of all.
+  // All rays of a receiver may have met the same. Its variance is therefore mixed with the mean of
+  // all receivers, with weight 1 of n + 1. The mean includes the effect of one ray with another
+  // answer.
   const double mean = least / receivers + 1 / sqr(n * receivers);
   for (const std::array<double, shapes>& v : neighbours_)
     variances_.push_back((n * factor * v[shape] + mean) / (n + 1));

@@ -40,7 +40,7 @@ void cluster_receivers(std::span<const Vec3> positions, std::span<const Vec3> no
     ++seeds[c].count;
     cluster[i] = c;
   }
-  // what is alone in its plane joins others that are, if they are near
+  // receivers that share their plane with few others form curved clusters
   constexpr uint32_t alone = 4;
   std::vector<Seed> curved;
   std::vector<uint32_t> joined(seeds.size(), 0);

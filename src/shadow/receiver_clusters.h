@@ -1,4 +1,4 @@
-// Hits -> clusters of receivers that can be certified together.
+// Groups the hits of a tile into clusters of receivers that are certified together.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace troffer {
 
-// Cuts receivers (of one tile, in any order) into clusters: those of one plane together; on curved
-// surfaces those whose normals differ by less than about 20 degrees and that lie close to each
-// other. order: a permutation of the receivers; starts: where clusters begin in it, and its size.
+// Clusters of receivers: those of one plane, or those of a curved surface that are close to each
+// other and whose normals differ by less than about 20 degrees. order: a permutation of the
+// receivers; starts: where each cluster begins in it, then its size.
 struct ReceiverClusters {
   std::vector<uint32_t> order, starts;
   size_t size() const { return starts.empty() ? 0 : starts.size() - 1; }
@@ -20,8 +20,8 @@ struct ReceiverClusters {
   }
 };
 
-// positions, normals (unit): of all receivers. `reach`: metres by which receivers of a curved
-// cluster may lie apart.
+// Sets `out` to the clusters. positions, normals (unit): of all receivers, in any order. reach:
+// largest distance in a curved cluster, in metres.
 void cluster_receivers(std::span<const Vec3> positions, std::span<const Vec3> normals, float reach,
                        ReceiverClusters& out);
 

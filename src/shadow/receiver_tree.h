@@ -1,5 +1,5 @@
-// Receivers halved and halved again, each half with the body that holds it: made where somebody
-// asks, and shared by all cells of a source.
+// Binary tree of receivers with the hull of each node. Nodes are halved on demand and shared by all
+// cells of a source. settle_cell.cpp descends it.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,21 @@
 
 namespace troffer {
 
+// Nodes are numbered; the root is 0. Not thread safe.
 class ReceiverTree {
  public:
-  // Becomes the tree of these, which `hull` holds, and keeps its memory; the cluster must stay.
+  // Resets the tree to `members`, which lie in `hull`, and keeps its memory. The cluster must
+  // outlive it.
   void set(const ShadowCluster& cluster, std::span<const uint32_t> members,
            const ReceiverHull& hull);
 
-  // Nodes are numbered, the root is 0. Spans stay valid until a node is halved.
+  // Returns the members of a node. The span is valid until a node is halved.
   std::span<const uint32_t> members(uint32_t node) const {
     return {members_.data() + nodes_[node].first, nodes_[node].count};
   }
   const ReceiverHull& hull(uint32_t node) const { return nodes_[node].hull; }
-  // The first of a node's two halves; the other one follows it. For nodes of two members and more.
+  // Returns the first half of a node; the second follows it. The node must have at least two
+  // members.
   uint32_t halves_of(uint32_t node);
 
  private:

@@ -6,10 +6,10 @@ namespace troffer {
 
 namespace {
 
-// Variance that a change from one ray to the next stands for, in squares of what a ray stands for.
-// Two neighbouring strata that are open with probabilities p and q differ with probability
-// p (1 - q) + q (1 - p), which is p (1 - p) + q (1 - q) + (p - q)²: half the number of changes is,
-// on average, no less than the variance, but for half of that of the first and the last one.
+// Variance per change from one ray to the next, in squares of one ray's light. Neighbouring strata
+// that are open with probabilities p and q differ with probability p (1 - q) + q (1 - p) = p (1 -
+// p) + q (1 - q) + (p - q)². Half the number of changes is therefore, on average, no less than the
+// variance, except for half of that of the first and the last stratum.
 constexpr float variance_of_change = 0.5f;
 
 void add_light(const RayGroup& g, const TracedRays& traced, RayAnswer& a) {
@@ -28,7 +28,7 @@ void add_value(const RayGroup& g, std::span<const Rgb> values, const TracedRays&
                RayAnswer& a) {
   const auto n = float(g.count);
   Rgb sum;
-  float varying = 0, squares = 0;  // luminances of what is free, or of what is hidden
+  float varying = 0, squares = 0;  // luminances of free values, or of hidden ones
   for (uint32_t i = 0; i < g.count; ++i) {
     const Rgb& value = values[g.first_value + i];
     const bool is_free = traced.is_free[g.first + i] != 0;
@@ -42,15 +42,15 @@ void add_value(const RayGroup& g, std::span<const Rgb> values, const TracedRays&
   a.value_variance = sqr(g.light) * spread / (n * std::max(n - 1, 1.0f));
 }
 
-// Whether both are masks of one receiver and one cell.
+// True if both groups belong to masks of one receiver and cell.
 bool is_same_pair(const RayGroup& a, const RayGroup& b) {
   return a.frame == b.frame && a.member == b.member && a.passes == b.passes &&
          a.has_values == b.has_values;
 }
 
-// Several masks of a pair, by different shifts, each with rays of its own, are as many independent
-// estimates: their spread tells what masks and rays err by together. Where the first of them stands
-// at `first`.
+// Sets the variance of several masks of a pair. Each has its own shift and its own rays, so their
+// spread estimates the error of masks and rays together. first: index of the first mask; the others
+// follow it.
 void tell_passes(std::span<const RayGroup> groups, size_t first, std::span<RayAnswer> answers) {
   float sum = 0, squares = 0;
   for (size_t i = first; i < groups.size() && is_same_pair(groups[i], groups[first]); ++i) {

@@ -1,5 +1,6 @@
-// Shadow rays for what lists of facets leave open, of all sources of a cluster at a stroke: as many
-// as each pair could be wrong by (plan_rays.h), traced (trace_rays.h), and added up here.
+// Casts residual rays: shadow rays through samples that incomplete facet lists leave open, for all
+// sources of a cluster together. plan_rays.h chooses their number, trace_rays.h traces them, and
+// this module sums their answers. certified_light.cpp calls it.
 // References: docs/certified.md, "Residual rays".
 #pragma once
 
@@ -13,15 +14,16 @@
 
 namespace troffer {
 
+// Working memory of cast_residual_rays.
 struct RayMemory {
   RayPlan plan;
   TracedRays traced;
   std::vector<RayAnswer> answers;
 };
 
-// One answer for each entry of the queue; valid until the next call. allowed[i]: standard error of
-// receiver i, in brightness × sr. Facets that were met are noted with their sources; the
-// `most_found` most hit are kept.
+// Returns one answer per entry of the queue, valid until the next call. allowed[i]: standard error
+// of receiver i, in brightness × sr. Adds the facets that rays hit to their sources' FoundFacets,
+// which keep the `most_found` most hit.
 std::span<const RayAnswer> cast_residual_rays(const RayQueue& queue, ShadowScene& scene,
                                               std::span<const float> allowed,
                                               const RayLimits& limits, size_t most_found,

@@ -8,11 +8,12 @@ namespace troffer {
 
 namespace {
 
-// Corners of receivers and cell, from the body's centre; a cell may be far away.
+// Corners of receivers and cell relative to the body's centre. The cell may be far away.
 struct Corners {
   std::array<Vec3d, 8 + most_source_corners> at;
   size_t receivers = 0, count = 0;
-  double slack = 0, cell_slack = 0;  // how far off receivers, and corners of the cell, may lie
+  // Possible displacement of receivers, and of the cell's corners.
+  double slack = 0, cell_slack = 0;
 
   Corners(const RoundBody& body, const MaskFrame& frame, const ReceiverHull& hull) {
     const Vec3d centre(body.centre);
@@ -38,7 +39,7 @@ struct Corners {
   std::span<const Vec3d> of_cell() const { return {at.data() + receivers, count - receivers}; }
 };
 
-// How far the body reaches along a unit vector.
+// Returns the extent of the body along a unit vector.
 double reach(const RoundBody& body, const Vec3d& n) {
   const double radius = body.radius;
   if (!body.is_disk()) return radius;
@@ -46,7 +47,8 @@ double reach(const RoundBody& body, const Vec3d& n) {
          std::sqrt(std::max(1 - dot(n, Vec3d(body.normal)) * dot(n, Vec3d(body.normal)), 0.0));
 }
 
-// Whether a plane across n, unit, parts the body from all corners, and so from every segment.
+// True if a plane with unit normal n separates the body from all corners, and so from every
+// segment.
 bool parts(const RoundBody& body, const Corners& c, const Vec3d& n) {
   const double least = reach(body, n);
   for (size_t i = 0; i < c.count; ++i)
@@ -54,8 +56,8 @@ bool parts(const RoundBody& body, const Corners& c, const Vec3d& n) {
   return true;
 }
 
-// Looks for such a plane: across the way to the point of the hull that lies nearest, to which steps
-// towards corners lead. Any plane is a proof.
+// Looks for a separating plane, across the direction to the nearest point of the convex hull. Steps
+// towards corners approach that point. Any separating plane is a proof.
 bool hides_nothing(const RoundBody& body, const Corners& c) {
   if (body.is_disk())
     for (const double sign : {1.0, -1.0})
@@ -79,7 +81,7 @@ bool hides_nothing(const RoundBody& body, const Corners& c) {
   return false;
 }
 
-// Whether the segment surely passes through the body, were its ends moved by as much as they may.
+// True if the segment passes through the body even if its ends are displaced as far as possible.
 bool passes_through(const RoundBody& body, const Vec3d& x, const Vec3d& y, const Corners& c) {
   const Vec3d d = y - x;
   const double radius = body.radius;
@@ -97,8 +99,9 @@ bool passes_through(const RoundBody& body, const Vec3d& x, const Vec3d& y, const
   return length(p) < radius - 2 * slack * (1 + length(d) / across);
 }
 
-// The receivers from which a convex body hides a point are convex, and so are the points that it
-// hides from a receiver: corners speak for all. A sphere must lie before all of the cell.
+// True if the body hides the whole cell from all receivers. The receivers from which a convex body
+// hides a point form a convex set, and so do the points that it hides from a receiver. Corners
+// therefore suffice. A sphere must lie in front of the whole cell.
 bool hides_all(const RoundBody& body, const Corners& c) {
   if (!body.is_disk()) {
     Vec3d normal;

@@ -1,4 +1,4 @@
-// Certificates of spheres and disks in the way: what they surely hide nothing of, and what all of.
+// Certificates for spheres and disks as occluders.
 // References: docs/certified.md, "Spheres and disks in the way".
 #pragma once
 
@@ -13,7 +13,7 @@ namespace troffer {
 
 enum class RoundFlag : uint8_t { unknown, hides_nothing, hides_all };
 
-// Of all of the cell that the frame lies over, from all receivers in the hull.
+// Returns what the body provably does to the frame's cell, for all receivers in the hull.
 RoundFlag classify(const RoundBody& body, const MaskFrame& frame, const ReceiverHull& hull);
 
 }  // namespace troffer

@@ -11,34 +11,34 @@ namespace {
 
 constexpr double far_away = 1e9;  // beyond any canvas
 
-// From the receiver to sample (0,0), and from sample to sample.
+// Direction from the receiver to sample (0,0), and the steps between samples.
 struct Grid {
   Vec3d first, step_k, step_j;
   int rows;
 };
 
-// at + j per_j + k per_k >= 0
+// Half-plane at + j per_j + k per_k >= 0.
 struct Linear {
   double at, per_j, per_k;
 };
 
-// a k² + 2 (b + j b_j) k + c + j c_j + j² c_jj <= 0
+// Region a k² + 2 (b + j b_j) k + c + j c_j + j² c_jj <= 0.
 struct Quadratic {
   double a, b, b_j, c, c_j, c_jj;
 };
 
-// Of each row the samples lower < k <= upper.
+// Samples lower < k <= upper of each row.
 struct Spans {
   alignas(64) double lower[most_mask_rows];
   alignas(64) double upper[most_mask_rows];
 };
 
-// d · normal >= offset over directions d to samples.
+// Returns d · normal >= offset as a condition on samples in direction d.
 Linear linear(const Grid& g, const Vec3d& normal, double offset) {
   return {dot(normal, g.first) - offset, dot(normal, g.step_j), dot(normal, g.step_k)};
 }
 
-// A symmetric matrix by its action: s I + n mᵀ + m nᵀ + t n nᵀ.
+// The symmetric matrix s I + n mᵀ + m nᵀ + t n nᵀ, given by its action.
 struct Form {
   double s = 0;
   Vec3d n, m;
@@ -50,13 +50,13 @@ struct Form {
   }
 };
 
-// d · Form · d <= 0
+// Returns d · Form · d <= 0 as a condition on samples.
 Quadratic quadratic(const Grid& g, const Form& form) {
   return {form(g.step_k, g.step_k), form(g.first, g.step_k),     form(g.step_j, g.step_k),
           form(g.first, g.first),   2 * form(g.first, g.step_j), form(g.step_j, g.step_j)};
 }
 
-// |d - w|² <= radius²
+// Returns |d - w|² <= radius² as a condition on samples.
 Quadratic ball_on_plane(const Grid& g, const Vec3d& w, double radius) {
   const Vec3d first = g.first - w;
   return {dot(g.step_k, g.step_k),  dot(first, g.step_k),
@@ -88,9 +88,9 @@ void clip(const Linear& line, double* __restrict lower, double* __restrict upper
     }
 }
 
-// Sets spans to where the quadratic is not positive. Where a < 0 the row runs inside the cone's two
-// halves and out of them between its roots: `is_forwards` where greater k lie in the one that
-// counts.
+// Sets spans to where the quadratic is not positive. If a < 0, the row leaves one half of the cone
+// at one root and enters the other half at the other root. is_forwards: larger k lie in the half
+// that counts.
 TROFFER_MULTIVERSION
 void solve(const Quadratic& form, bool is_forwards, double* __restrict lower,
            double* __restrict upper) {
@@ -113,7 +113,7 @@ void solve(const Quadratic& form, bool is_forwards, double* __restrict lower,
   }
 }
 
-// Bits of the spans, set in `out`.
+// Sets the bits of the spans in `out`.
 TROFFER_MULTIVERSION
 void fill(const double* __restrict lower, const double* __restrict upper, int rows,
           uint32_t* __restrict out) {
@@ -126,8 +126,8 @@ void fill(const double* __restrict lower, const double* __restrict upper, int ro
   }
 }
 
-// Samples where the form is not positive and all lines are not negative; the first line is the one
-// that tells which way a cone opens.
+// Returns the samples where the form is not positive and `forwards` is not negative. `forwards`
+// selects the half of the cone.
 MaskRows covered(const Grid& g, const Quadratic& form, const Linear& forwards) {
   Spans spans;
   solve(form, forwards.per_k > 0, spans.lower, spans.upper);
@@ -137,13 +137,13 @@ MaskRows covered(const Grid& g, const Quadratic& form, const Linear& forwards) {
   return rows;
 }
 
-// Samples that ball B, w from the receiver, lies before: within the cone about it and beyond the
-// plane through the circle where that touches it, or inside the ball.
+// Returns the samples hidden by a ball with centre w, relative to the receiver. They lie in the
+// cone around it beyond the circle of contact, or inside the ball.
 MaskRows hidden_by_ball(const Grid& g, const Vec3d& w, double radius) {
   const double outside = length_squared(w) - radius * radius;
   const Quadratic inside = ball_on_plane(g, w, radius);
   const Linear everywhere{1, 0, 0};
-  if (!(outside > 0)) {  // from within all but what is within
+  if (!(outside > 0)) {  // from inside, the ball hides what is outside
     MaskRows rows = covered(g, inside, everywhere);
     for (uint32_t& row : rows.row) row = ~row;
     return rows;
@@ -158,8 +158,8 @@ MaskRows hidden_by_ball(const Grid& g, const Vec3d& w, double radius) {
   return rows;
 }
 
-// Samples that the ray to which meets the plane through p, normal n, within the ball at w: what the
-// plane cuts from it is a disk.
+// Returns the samples whose rays meet the plane with normal n inside the ball at w. The plane cuts
+// a disk from the ball.
 MaskRows through_slice(const Grid& g, const Vec3d& n, double height, const Vec3d& w,
                        double radius) {
   const double side = height < 0 ? -1 : 1;
@@ -167,8 +167,9 @@ MaskRows through_slice(const Grid& g, const Vec3d& n, double height, const Vec3d
   return covered(g, quadratic(g, form), linear(g, n * side, 0));
 }
 
-// Where the ray to a sample meets a sphere that is not clear of the source before it meets that
-// one: nearly at the same place counts as behind, as what lies in a flat source's plane does.
+// Sets the samples whose rays meet a sphere before the source, for a sphere that intersects a
+// spherical source. Nearly equal distances count as behind, as for facets in the plane of a flat
+// source.
 TROFFER_MULTIVERSION
 void cover_intersecting(const Vec3d& first, const Vec3d& step_k, const Vec3d& step_j, int rows,
                         const Vec3d& source, double source_outside, const Vec3d& ball,
@@ -194,7 +195,7 @@ void cover_intersecting(const Vec3d& first, const Vec3d& step_k, const Vec3d& st
   }
 }
 
-constexpr double relative_tolerance = 2e-6;  // as shafts have it
+constexpr double relative_tolerance = 2e-6;  // as for shafts
 
 class Covering {
  public:
@@ -226,7 +227,7 @@ class Covering {
     return rows;
   }
 
-  // Of a facet what lies outside the source.
+  // Returns the samples hidden by the part of a facet outside the spherical source.
   MaskRows hidden_by(const Quad& q) const {
     const Vec3d corners[4] = {Vec3d(q[0]) - x_, Vec3d(q[1]) - x_, Vec3d(q[2]) - x_,
                               Vec3d(q[3]) - x_};
@@ -237,11 +238,11 @@ class Covering {
     const double height = dot(n, corners[0]), side = height < 0 ? -1 : 1;
     Spans spans;
     set_all(-far_away, far_away, spans.lower, spans.upper);
-    // before the source: d · n reaches beyond the plane
+    // in front of the source: d · n reaches beyond the plane
     clip(linear(grid_, n * side, std::abs(height)), spans.lower, spans.upper);
     for (size_t i = 0; i < 4; ++i) {
       const Vec3d &a = corners[i], &b = corners[(i + 1) % 4];
-      // as masks have it: (a + b) × (b - a) = 2 a × b
+      // as in coverage masks: (a + b) × (b - a) = 2 a × b
       const Vec3d inwards = cross(a + b, b - a) * side;
       if (length_squared(b - a) > 0) clip(linear(grid_, inwards, 0), spans.lower, spans.upper);
     }

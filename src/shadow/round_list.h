@@ -1,5 +1,5 @@
-// What a list of occluders holds beside facets that are clear of the source: spheres, disks, and
-// facets that may enter a sphere that is the source.
+// Occluders that are not ordinary facets: spheres, disks, and facets that may enter a spherical
+// source. FacetList holds one such list; round_cover.h rasterises it.
 #pragma once
 
 #include <vector>
@@ -17,8 +17,8 @@ struct Ball {
 
 struct RoundList {
   std::vector<RoundBody> bodies;
-  // Of a sphere as source: the sphere, within which nothing hides anything, and the facets that may
-  // enter it. Frames are then the disk that its outline spans from the receiver.
+  // For a spherical source: the sphere, inside which nothing hides anything, and the facets that
+  // may enter it. Frames then cover the disk that the sphere's outline spans from the receiver.
   bool is_source_round = false;
   Ball source;
   std::vector<Quad> entering;

@@ -1,5 +1,5 @@
-// A cell's list of facets -> answers: by certificates for the receivers together, the cluster
-// halved while that shortens lists, and masks for what is left.
+// Answers a cluster for one source cell and its facet list. Certificates come first. The cluster is
+// halved while that shortens lists, and masks answer the rest. settle_part.cpp calls it.
 #pragma once
 
 #include <array>
@@ -11,20 +11,23 @@
 
 namespace troffer {
 
+// Working memory of settle_cell.
 struct SettleMemory {
-  static constexpr size_t most_depth = 8;       // of halvings of the cluster
-  std::array<FacetList, most_depth + 2> lists;  // by depth; the first is the cell's
+  static constexpr size_t most_depth = 8;       // halvings of the cluster
+  std::array<FacetList, most_depth + 2> lists;  // by depth; the first holds the cell's facets
   FacetFlags flags;
   MaskMemory masks;
 };
 
-// What the facets prove for all receivers in the hull; where it is neither, `left` are the facets
-// that may hide some of the cell from some receiver.
+// Proof about all receivers of a hull: all of the cell is visible (lit), nothing is (dark), or
+// neither.
 enum class Certificate : uint8_t { none, lit, dark };
+// Tries to prove the cell lit or dark for all receivers in the hull. Without a proof, sets `left`
+// to the facets that may hide some of the cell from some receiver.
 Certificate certify(const SourceCellTask& cell, const ReceiverHull& hull, const FacetList& facets,
                     FacetFlags& flags, FacetList& left);
 
-// Answers the receivers by memory.lists[0].
+// Answers all receivers of the tree for the cell; memory.lists[0] holds its facets.
 void settle_cell(const SourceCellTask& cell, ReceiverTree& receivers, SettleMemory& memory,
                  SourceResults& results);
 

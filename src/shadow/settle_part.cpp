@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Whether the lattice is turned the other way, by the random numbers of a receiver.
+// True if the lattice is mirrored, by the random numbers of a receiver.
 bool is_mirrored(uint64_t stream, const SourceTask& task, uint32_t member) {
   return (mix64(stream + task.cluster.receivers[member].stream) & 1) != 0;
 }
@@ -22,7 +22,8 @@ void set_list(const MaskFrame& frame, const SourcePart& part, std::span<const Fa
   list.finish();
 }
 
-// The list of what only rays can tell of; null where there is nothing, or it is not known whole.
+// Fills the list of occluders that only rays can decide. Returns null if there are none, or if they
+// are not fully known.
 const FacetList* set_masked(const MaskFrame& frame, const SourcePart& part, FacetList& list) {
   if (part.masked.empty() || !part.is_masked_known || part.is_over_budget) return nullptr;
   list.clear();
@@ -31,7 +32,8 @@ const FacetList* set_masked(const MaskFrame& frame, const SourcePart& part, Face
   return &list;
 }
 
-// The whole source's light, or that of the cell alone, set in `memory`.
+// Returns the unoccluded light of the whole source, or that of the cell, which is stored in
+// `memory`.
 std::span<const float> unoccluded_of(const SourceTask& task, const SourcePart& part,
                                      const FlatCell& cell, PartMemory& memory) {
   const bool is_all = memory.cells.size() == 1 && (part.is_whole || cell.is_disk);
@@ -68,7 +70,7 @@ void settle_by_masks(const SourceTask& task, const SourcePart& part, uint64_t& s
   }
 }
 
-// Whether one of the facets hides all of the part from all of its members.
+// True if one facet hides all of the part from all of its members.
 bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memory) {
   const MaskFrame frame(part.cell.plane, coarse_lattice, false, part.hull.centre,
                         part.cell.all_outline(), part.cell.is_disk);
@@ -77,7 +79,7 @@ bool is_dark(const SourceTask& task, const SourcePart& part, SettleMemory& memor
                  memory.flags, memory.lists[1]) == Certificate::dark;
 }
 
-// What is dark, or left out, without a look at it.
+// Answers a part that is dark, or leaves it to the caller, without masks or rays.
 void set_aside(const SourceTask& task, const SourcePart& part, PartMemory& memory,
                SourceResults& results) {
   memory.cells.assign(1, {part.cell, coarse_lattice, {}});
@@ -99,7 +101,7 @@ void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& 
     return set_aside(task, part, memory, results);
   if (!part.is_over_budget || is_dark(task, part, memory.settle))
     return settle_by_masks(task, part, stream, memory, results);
-  // An integrand wants to know which points are open.
+  // Receivers with an integrand need masks, because it is evaluated at open points.
   SourcePart others = part;
   const auto with_values =
       std::stable_partition(others.members.begin(), others.members.end(),
@@ -112,8 +114,8 @@ void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& 
 
 namespace {
 
-// The facets that reach into the sphere; they leave the part, and so does what lies within it and
-// hides nothing.
+// Moves the facets that reach into the sphere out of the part and returns them. Removes what lies
+// within the sphere, since it hides nothing.
 std::vector<Quad> take_entering(const SphereSource& sphere, SourcePart& part) {
   std::vector<Quad> entering;
   for (const FacetToAdd& f : part.facets)

@@ -1,6 +1,6 @@
-// A part of a source and its list of facets -> answers and what waits for rays. A flat source is
-// cut into cells over which its light does not vary much; of a sphere each receiver has its own
-// disk.
+// Answers a cluster for one part of a source and its facet list, and queues what needs rays. A flat
+// source is divided into cells over which its light varies little. A spherical source becomes one
+// disk per receiver. certified_light.cpp calls it.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,24 @@
 
 namespace troffer {
 
+// Working memory of the functions below.
 struct PartMemory {
   std::vector<PlannedCell> cells;
   PilotMemory pilots;
-  std::vector<float> unoccluded;  // per receiver, of a cell
-  std::vector<uint32_t> members;  // whom the cell lights
+  std::vector<float> unoccluded;  // of a cell, per receiver, sr
+  std::vector<uint32_t> members;  // receivers that the cell reaches
   FacetList masked;
-  ReceiverTree receivers, some_receivers;  // of the part, and of the cell where these are fewer
+  ReceiverTree receivers, some_receivers;  // of the part; of a cell that reaches fewer of them
   SettleMemory settle;
   DirectRayMemory rays;
 };
 
-// stream: hash that each cell of the source takes on. Of parts whose lists were too long, one facet
-// may prove that all is dark; else rays are cast now.
+// Answers a flat part. stream: hash that is advanced for each cell of the source. If the part's
+// list was too long, one facet may still prove it dark; otherwise rays are cast at once.
 void settle_flat_part(const SourceTask& task, const SourcePart& part, uint64_t& stream,
                       ShadowScene& scene, PartMemory& memory, SourceResults& results);
-// Facets that may enter the sphere leave the part's list: what of them lies outside is covered.
+// Answers a part of a sphere. Facets that may enter the sphere are removed from the part's list and
+// handled by round_cover.h.
 void settle_sphere_part(const SourceTask& task, SourcePart& part, PartMemory& memory,
                         SourceResults& results);
 

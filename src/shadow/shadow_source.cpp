@@ -16,7 +16,7 @@ std::vector<Vec3d> FlatSource::corners() const {
 
 namespace {
 
-// The rectangle along a side of the polygon that bounds it, as what the sides' directions span.
+// The rectangle along one side of the polygon that bounds it, in coordinates along x and y.
 struct Bounding {
   Vec3d x, y;
   Vec2d lower, upper;

@@ -13,7 +13,7 @@ double largest_coordinate(const Vec3d& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 }
 
-// Direction of the largest spread of the points within the plane of the frame.
+// Returns the direction of the largest spread of the points within the frame's plane.
 Vec3d main_direction(std::span<const Vec3> points, const Framed& frame, const Vec3d& centre) {
   double xx = 0, xy = 0, yy = 0;
   for (const Vec3& p : points) {
@@ -102,10 +102,9 @@ struct Bodies {
   std::span<const Vec3d> a, b;
 };
 
-// Adds the plane through edge (p, q) of one body and a corner of the other if both lie on one side
-// of it. Of the two planes about the edge that touch the other body, the one that leaves the own
-// body on the same side is wanted: wrapping turns the plane from corner to corner, away from
-// `inner`, a point of the own body off the edge.
+// Adds the plane through edge (p, q) of one body and a corner of the other, if both bodies lie on
+// one side of it. `inner` is a point of the own body off the edge. Of the two tangent planes at the
+// edge, the loop turns to the one that has both bodies on the same side.
 void add_tangent(const Bodies& bodies, const Vec3d& p, const Vec3d& q, const Vec3d& inner,
                  std::span<const Vec3d> other, double margin, double tolerance, Shaft& shaft) {
   const Vec3d e = q - p;
@@ -137,9 +136,8 @@ Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const
   const std::span<const Vec3d> corners(hull.corners.data(), size_t(hull.count));
   double lowest = dot(normal, outline[0]);
   for (const Vec3d& v : outline) lowest = std::min(lowest, dot(normal, v));
-  // What does not rise 2e-6 of the largest coordinate over the source's plane (the source itself,
-  // the ceiling it is set into) hides nothing; for rays it does not count either
-  // (residual_rays.cpp).
+  // Occluders that rise less than 2e-6 of the largest coordinate over the source's plane hide
+  // nothing: the source itself, or the ceiling around it. Rays ignore them too (trace_rays.cpp).
   double largest = hull.magnitude;
   for (const Vec3d& v : outline) largest = std::max(largest, largest_coordinate(v));
   shaft.planes[0] = {Vec3(-normal), float(-lowest - 2e-6 * largest)};
@@ -154,7 +152,8 @@ Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const
   for (size_t i = 0; i < n; ++i)
     add_tangent(bodies, outline[i], outline[(i + 1) % n], outline[(i + 2) % n], corners, slack,
                 tolerance, shaft);
-  // Of a box no corner tells the inside for all planes about an edge: both sides are tried.
+  // For a box, no single corner tells the inner side of every plane at an edge, so both sides are
+  // tried.
   for (const auto& e : hull.edges()) {
     const Vec3d &p = corners[size_t(e[0])], &q = corners[size_t(e[1])];
     if (hull.is_flat) {

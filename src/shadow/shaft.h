@@ -1,4 +1,5 @@
-// Shafts: convex regions that hold every segment from a cluster of receivers to a source.
+// Shafts: convex regions that contain every segment from a cluster of receivers to a source.
+// gather_facets.h collects the facets inside. Lengths in metres.
 // References: [1] Haines & Wallace, "Shaft Culling for Efficient Ray-Traced Radiosity", 1991.
 #pragma once
 
@@ -10,26 +11,28 @@
 
 namespace troffer {
 
-// A convex body that holds the receivers of a cluster: a rectangle where they lie in one plane and
-// share a normal, else a box.
+// Convex body that contains the receivers of a cluster: a rectangle if they share a plane and a
+// normal, else a box.
 struct ReceiverHull {
   std::array<Vec3d, 8> corners;
   int count = 0;     // 4 or 8
-  double slack = 0;  // metres that receivers may lie off the rectangle
+  double slack = 0;  // distance that receivers may lie off the rectangle
   Vec3d centre;
   bool is_flat = false;
-  Vec3d normal;          // flat: the common normal
-  double lowest = 0;     // flat: least normal · origin
-  double magnitude = 0;  // largest coordinate
+  Vec3d normal;          // common normal, if is_flat
+  double lowest = 0;     // least normal · origin, if is_flat
+  double magnitude = 0;  // largest absolute coordinate
 
-  double radius() const;  // about the centre, without slack
-  // Pairs of corners.
+  double radius() const;  // around the centre, without slack
+  // Returns pairs of corner indices.
   std::span<const int[2]> edges() const;
 };
 
-// origins: where rays of the receivers start; normals: unit, of their horizons; at least one.
+// Returns the hull of receivers. origins: where their rays start; normals: unit, of their horizons.
+// There must be at least one.
 ReceiverHull bound_receivers(std::span<const Vec3> origins, std::span<const Vec3> normals);
 
+// A convex region, given by planes whose normals point outwards.
 struct Shaft {
   static constexpr int most_planes = 24;
   std::array<Plane, most_planes> planes;
@@ -37,23 +40,24 @@ struct Shaft {
   std::span<const Plane> all() const { return {planes.data(), size_t(count)}; }
 };
 
-// The shaft from receivers to a flat source. `outline`: its corners; normal: unit, on the side of
-// the receivers. scene_magnitude: largest coordinate of what will be tested, for rounding. Leaves
-// out what lies behind the source's plane, behind the common horizon of flat receivers, and outside
-// the hull [1], whose planes pass through an edge of one body and a corner of the other.
+// Returns the shaft from receivers to a flat source. outline: its corners; normal: unit, towards
+// the receivers; scene_magnitude: largest coordinate of anything tested, for rounding. The planes
+// exclude what lies behind the source, behind the common horizon of flat receivers, and outside the
+// convex hull of both bodies. Planes of that hull pass through an edge of one body and a corner of
+// the other [1].
 Shaft make_shaft(const ReceiverHull& hull, std::span<const Vec3d> outline, const Vec3d& normal,
                  double scene_magnitude);
 
-// The shaft from receivers to what they see of a sphere: it holds the convex hull of receivers and
-// sphere, but for what lies deeper than the caps that any of them sees and behind their common
-// horizon. All receivers lie outside the sphere.
+// Returns the shaft from receivers to the visible part of a sphere. It contains the convex hull of
+// both, except what lies behind the receivers' common horizon or deeper than the caps that they
+// see. All receivers must lie outside the sphere.
 Shaft make_shaft(const ReceiverHull& hull, const Vec3d& centre, double radius,
                  double scene_magnitude);
 
-// How far planes are pushed outwards, as a share of the largest coordinate M, for their rounding
-// and that of the test in single precision, u = 2^-24: the normal's components round by u each and
-// the test's three products by 3 u, together 4 u (|nx| + |ny| + |nz|) M <= 4 sqrt(3) u M, and the
-// distance, at most sqrt(3) M, by u of itself: 5 sqrt(3) u = 5.2e-7.
+// Distance by which planes are moved outwards, relative to the largest coordinate M, for single
+// precision with u = 2^-24. The normal's components round by u each and the test's three products
+// by 3 u, together 4 u (|nx| + |ny| + |nz|) M <= 4 sqrt(3) u M. The distance is at most sqrt(3) M
+// and rounds by u of itself. Sum: 5 sqrt(3) u = 5.2e-7.
 constexpr double shaft_margin = 6e-7;
 
 }  // namespace troffer

@@ -1,6 +1,6 @@
-// Shafts to spheres (shaft.h). Every plane is a supporting plane of the convex hull of receivers
-// and sphere, whichever direction it has: directions are chosen for closeness, and the proof does
-// not depend on them (docs/certified.md, "Spheres").
+// Shafts to spheres (shaft.h). Every plane supports the convex hull of receivers and sphere, so any
+// choice of directions is correct. The directions are chosen for a tight shaft (docs/certified.md,
+// "Spheres").
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +12,13 @@ namespace troffer {
 
 namespace {
 
+// The corners of a receiver hull and a sphere.
 struct HullAndBall {
   std::span<const Vec3d> corners;
   Vec3d centre;
   double radius;
 
-  // Largest n · p over the corners, from the centre.
+  // Returns the largest n · p over the corners, relative to the centre.
   double most_of_corners(const Vec3d& n) const {
     double most = dot(n, corners[0] - centre);
     for (const Vec3d& c : corners) most = std::max(most, dot(n, c - centre));
@@ -25,7 +26,7 @@ struct HullAndBall {
   }
 };
 
-// n: unit. Only planes that touch both bodies are worth their time.
+// Adds the supporting plane with unit normal n. must_touch: skip it unless it touches the sphere.
 void add_support(const HullAndBall& bodies, const Vec3d& n, double slack, bool must_touch,
                  Shaft& shaft) {
   const double most = bodies.most_of_corners(n);
@@ -35,8 +36,8 @@ void add_support(const HullAndBall& bodies, const Vec3d& n, double slack, bool m
   shaft.planes[size_t(shaft.count++)] = {Vec3(n), float(dot(n, bodies.centre) + reach + slack)};
 }
 
-// About the line from the centre to the receivers: the plane that touches the sphere on the side
-// `across`, leaning towards the line until it meets a corner of the hull.
+// Adds the plane that touches the sphere on the side `across` of the axis from the centre to the
+// receivers. It leans towards the axis until it meets a corner of the hull.
 void add_side(const HullAndBall& bodies, const Vec3d& along, const Vec3d& across, double slack,
               Shaft& shaft) {
   double angle = pi / 2;
@@ -49,7 +50,7 @@ void add_side(const HullAndBall& bodies, const Vec3d& along, const Vec3d& across
   add_support(bodies, across * std::cos(angle) + along * std::sin(angle), slack, false, shaft);
 }
 
-// The planes through an edge of the hull that touch the sphere.
+// Adds the planes through an edge of the hull that touch the sphere.
 void add_edge(const HullAndBall& bodies, const Vec3d& p, const Vec3d& q, double slack,
               Shaft& shaft) {
   const double size = length(q - p);
@@ -64,9 +65,9 @@ void add_edge(const HullAndBall& bodies, const Vec3d& p, const Vec3d& q, double 
     add_support(bodies, side * (sign * cosine) - w * sine, slack, true, shaft);
 }
 
-// How deep into the sphere the caps reach that receivers see: the least height over the centre,
-// along the unit vector towards the middle of the receivers' ball. From a receiver at distance d,
-// `off` off that line, the cap ends acos(radius / d) from the receiver's own direction.
+// Returns the depth of the visible caps: their least height over the centre along the axis to the
+// receivers' bounding ball. For a receiver at distance d, `off` away from the axis, the cap ends
+// acos(radius / d) from the receiver's direction.
 double depth_of_caps(const ReceiverHull& hull, double reach, double distance, double radius) {
   const double off = std::asin(std::min(reach / distance, 1.0));
   const double cap = std::acos(std::min(radius / (distance + reach), 1.0));

@@ -1,5 +1,4 @@
-// One cell of a source against some receivers of a cluster: what the stages that settle it want to
-// know.
+// One source cell and some receivers of a cluster: the input of the stages that settle the cell.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +9,16 @@
 
 namespace troffer {
 
+// Input of settle_cell and of the masks; refers to data of the caller.
 struct SourceCellTask {
   const SourceTask& source;
   const MaskFrame& frame;
-  std::span<const float> unoccluded;  // per receiver of the cluster, of the cell, sr
-  uint64_t stream;                    // hash that tells its random numbers from other cells'
-  bool is_complete;                   // of the list of facets
-  bool is_over_budget;                // lists of this source are too long: masks share the rays
+  std::span<const float> unoccluded;  // of the cell, per receiver of the cluster, sr
+  uint64_t stream;                    // hash that is unique to the cell, for random numbers
+  bool is_complete;                   // of the facet list
+  bool is_over_budget;  // lists of this source are too long, so several masks share the rays
 
-  // Of a list that is not complete all that it lacks; null where that is not known.
+  // All occluders that an incomplete list lacks; null if they are not known.
   const FacetList* masked = nullptr;
 
   const ShadowReceiver& receiver(uint32_t member) const { return source.cluster.receivers[member]; }

@@ -19,7 +19,7 @@ bool add_piece(std::span<const Vec3> outline, uint32_t primitive, std::vector<So
   return true;
 }
 
-// A polygon with many corners, as parts of a fan about its first one.
+// Adds a polygon with many corners as parts of a fan around its first corner.
 bool add_parts(std::span<const Vec3> outline, uint32_t primitive, std::vector<SourcePiece>& out) {
   std::vector<Vec3> part;
   for (size_t first = 1; first + 1 < outline.size(); first += most_outline_corners - 2) {
@@ -32,7 +32,7 @@ bool add_parts(std::span<const Vec3> outline, uint32_t primitive, std::vector<So
   return true;
 }
 
-// Polygons that may merge.
+// Polygons that may be merged.
 struct Polygons {
   std::vector<Vec3> positions;
   std::vector<uint32_t> corners;  // of the polygon that is being added

@@ -1,5 +1,5 @@
-// A light's flat pieces as few convex flat sources: what tessellation has cut is put together
-// again, so that a rectangle of 10 000 triangles is one source (base/merge_polygons.h).
+// Merges the flat pieces of a light into few convex flat sources, so that a tessellated rectangle
+// of 10 000 triangles is one source (base/merge_polygons.h).
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,18 @@
 
 namespace troffer {
 
+// A flat source and the pieces of a light that it covers.
 struct SourcePiece {
-  FlatSource shape;                  // its front
-  std::vector<uint32_t> primitives;  // what it covers, ascending; a polygon with too many corners
-                                     // is covered by several pieces
+  FlatSource shape;  // its front
+  // Indices of the covered pieces, ascending. A polygon with too many corners is covered by several
+  // sources.
+  std::vector<uint32_t> primitives;
 };
 
-// Sets `out` to sources that together cover what the light's pieces cover, each once, to the
-// rounding of the pieces' vertices. False, with `out` empty, where a piece is a sphere or textured:
-// such a light is not flat, or not of one radiance. Polygons merge where they share an edge
-// between exactly equal vertices. Deterministic; O(n log n).
+// Sets `out` to sources that cover each piece of the light once, to the rounding of the pieces'
+// vertices. Polygons merge where they share an edge between exactly equal vertices. Returns false,
+// with `out` empty, if a piece is a sphere or textured: the light is then not flat, or not uniform.
+// Deterministic; O(n log n).
 bool merge_sources(const LightPrimitives& primitives, uint32_t light,
                    std::vector<SourcePiece>& out);
 

@@ -1,4 +1,4 @@
-// One source against one cluster: what every stage between the two wants to know.
+// Input and output of the stages of certified visibility for one source and one cluster.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,7 @@
 
 namespace troffer {
 
-// Points of a source, as seen from a receiver, and what is sent on from there, coordinate by
-// coordinate.
+// Points of a source relative to a receiver, and the values there, as separate coordinates.
 struct PointArrays {
   std::vector<float> x, y, z;  // from the receiver, metres
   std::vector<float> r, g, b;
@@ -31,90 +30,92 @@ struct PointArrays {
   }
 };
 
-// What is sent on to a receiver through points of a source, per unit of projected solid angle:
-// radiance × BRDF, where either varies. request: the source's number in the cluster's list.
+// Interface to a textured light or glossy surface: the light that a receiver reflects from points
+// of a source, per unit of projected solid angle (radiance × BRDF). request: index of the source in
+// the cluster's requests; member: index of the receiver.
 class ShadowIntegrand {
  public:
   virtual ~ShadowIntegrand() = default;
-  // At how many points of the whole source; 0: not at all, the receiver wants its visibility.
+  // Returns the number of points on the whole source; 0 if the receiver wants its visibility only.
   virtual uint32_t points(uint32_t request, uint32_t member) = 0;
+  // Sets values[i] for points[i] in world space.
   virtual void evaluate(uint32_t request, uint32_t member, std::span<const Vec3> points,
                         std::span<Rgb> values) = 0;
-  // Whether the receiver's points of this source are better looked at all at a stroke: then as many
-  // as the mask has.
+  // True if all open samples of a mask should be evaluated together, by evaluate_many.
   virtual bool is_smooth(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
-  // … and varies over the source so slowly that a few of them are enough.
+  // True if, in addition, the integrand varies so slowly that a few samples are enough.
   virtual bool is_low_variance(uint32_t /*request*/, uint32_t /*member*/) const { return false; }
+  // Sets r, g, b of all points.
   virtual void evaluate_many(uint32_t /*request*/, uint32_t /*member*/, PointArrays& /*points*/) {}
 };
 
-// What is known of a scene before sources that are far away: facets that may hide much of them. Of
-// such a source, parts that facets are too dense before are left to whoever asked.
+// The scene as seen from sources at infinity: large facets, which may hide much of them.
 struct FarScene {
   std::vector<FacetToAdd> large;
 };
 
-// A source whose light a cluster wants: one of the two shapes.
+// A source whose light a cluster requests: either flat or a sphere.
 struct LightRequest {
   const FlatSource* flat = nullptr;
   const SphereSource* sphere = nullptr;
-  uint64_t stream = 0;            // hash that tells its random numbers from others'
+  uint64_t stream = 0;            // hash that is unique to the source, for random numbers
   float brightness = 1;           // luminance of its radiance
-  FoundFacets* found = nullptr;   // what earlier clusters have learnt; this one adds to it
-  const FarScene* far = nullptr;  // of a flat source at infinity
-  // … what hides it besides the scene's facets, and hides no other source.
+  FoundFacets* found = nullptr;   // results of earlier clusters; this one adds to it
+  const FarScene* far = nullptr;  // for flat sources at infinity, else null
+  // Facets that hide this source only, in addition to the scene's.
   std::span<const FacetToAdd> frame{};
-  // Receivers that this cluster is one of several of: rays straight to the source are as many for
-  // all of them. None: the cluster's own.
+  // All receivers of the batch that this cluster belongs to. They share the number of direct rays.
+  // Empty: the cluster's own receivers.
   std::span<const ShadowReceiver> batch{};
 };
 
-// What the masks of one of n sources may err by, and may cost. Where receivers see the light `seen`
-// of sources that came before, in sr of this one, and o of this one, together s, the variance may
-// be error² s max(o, s / 2n), or error² floor² where that is more: over all sources, in any
-// order, 1.5 times error² of the square of all light at most.
+// Error and cost limits for the masks of one of n sources. Let a receiver see the light `seen` of
+// earlier sources, in sr of this source, and o of this one, s in total. The variance may be error²
+// s max(o, s / 2n), or error² floor² if that is more. Over all sources, in any order, this sums to
+// at most 1.5 error² times the squared total light.
 struct Promise {
-  float error = 0;                 // relative to the light that arrives; 0: nothing is asked
-  double budget = 0;               // facets over which a receiver's masks may go
-  std::span<const float> seen{};   // per receiver
-  std::span<const float> rest{};   // … and what those that come after would send, nothing hidden
-  std::span<const float> floor{};  // … and the least that errors are compared with, / √n
+  float error = 0;                // relative to the light that arrives; 0: no limit
+  double budget = 0;              // facets in the masks of one receiver
+  std::span<const float> seen{};  // per receiver: light of earlier sources
+  std::span<const float> rest{};  // per receiver: unoccluded light of later sources
+  std::span<const float> floor{};  // per receiver: least light that errors are relative to, over √n
   double sources = 1;              // n
-  double far_open = 0.5;           // what share of all far sources' light arrives, about
-  double longest_list = 0;         // facets that are worth gathering before the source
+  double far_open = 0.5;           // estimated share of the light from infinity that arrives
+  double longest_list = 0;         // facets that are worth gathering for the source
 };
 
+// One source and one cluster.
 struct SourceTask {
   const CertifiedOptions& options;
   const ShadowCluster& cluster;
   LightRequest request;
-  uint32_t number;                          // of the request
+  uint32_t number;                          // index of the request
   std::span<const float> unoccluded;        // per receiver, of the whole source, sr
-  ShadowIntegrand* integrand;               // null: nobody has one
-  std::span<const uint32_t> wanted_points;  // per receiver, of the integrand
+  ShadowIntegrand* integrand;               // null if no receiver has an integrand
+  std::span<const uint32_t> wanted_points;  // per receiver, for the integrand
   Promise promise{};
 
   bool is_disk() const { return request.flat != nullptr && request.flat->is_disk; }
-  // Unoccluded light of polygons knows every horizon, that of round shapes that of the normal only:
-  // the receiver's own one hides.
+  // True if a receiver's own horizon acts as an occluder. The unoccluded light of polygons accounts
+  // for each horizon, that of round sources only for the horizon of the normal.
   bool does_horizon_hide() const {
     return cluster.has_own_horizons && (request.sphere != nullptr || is_disk());
   }
 };
 
-// A part of a far source that its answer leaves out.
+// A part of a source at infinity that the answers leave out, for the caller to sample.
 struct LeftPart {
   uint32_t request;
   FlatCell cell;
   std::vector<float> unoccluded;  // per receiver, sr
 };
 
-// Where the stages put what they find.
+// Output of the stages.
 struct SourceResults {
   std::span<CellSum> sums;  // per receiver
-  RayQueue& rays;           // what only rays can tell
+  RayQueue& rays;           // what only rays can settle
   CertifiedCounters& counters;
-  std::vector<LeftPart>* left = nullptr;  // null: nothing may be left
+  std::vector<LeftPart>* left = nullptr;  // null: no part may be left out
 };
 
 }  // namespace troffer

@@ -14,7 +14,6 @@ bool is_near(const SphereSource& s, const ReceiverHull& hull) {
   return !(length(s.centre - hull.centre) > reach + 1.05 * s.radius);
 }
 
-// The disk that the sphere's outline spans from x, as its bounding square.
 Parallelogram outline_of(const SphereSource& s, const Vec3d& x) {
   const Vec3d axis = s.centre - x;
   const double distance = length(axis), sine = s.radius / distance;
@@ -25,14 +24,13 @@ Parallelogram outline_of(const SphereSource& s, const Vec3d& x) {
   return {centre - (u + v) * 0.5, u, v, -frame.normal};
 }
 
-// Whether a facet may reach into the sphere, where it would hide the disk but not the cap.
 bool may_enter(const Quad& q, const SphereSource& s) {
   const double radius = s.radius * (1 + 1e-6) + 1e-6 * length(s.centre);
   Vec3d corners[4];
   for (size_t i = 0; i < 4; ++i) corners[i] = Vec3d(q[i]) - s.centre;
   const Vec3d area = cross(corners[2] - corners[0], corners[3] - corners[1]);
   const double size = length(area);
-  bool is_inside_edges = size > 0;  // what is nearest in the plane lies on the facet
+  bool is_inside_edges = size > 0;  // the plane's nearest point lies on the facet
   for (size_t i = 0; i < 4; ++i) {
     const Vec3d &a = corners[i], b = corners[(i + 1) % 4], way = b - a;
     const double square = length_squared(way);

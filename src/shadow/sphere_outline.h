@@ -1,6 +1,6 @@
-// Spheres: seen from a point outside, a sphere of uniform radiance is the disk that its outline
-// spans, and what hides the one hides the other. Each receiver has its own disk; lists of facets
-// are shared by a cluster.
+// Spherical sources. From a point outside, a sphere of uniform radiance looks like the disk that
+// its outline spans, and the same occluders hide both. Each receiver has its own disk; facet lists
+// are shared by the cluster. settle_part.cpp and gather_facets.cpp use this.
 // References: docs/certified.md, "Spheres".
 #pragma once
 
@@ -11,15 +11,15 @@
 
 namespace troffer {
 
-// Whether receivers may touch the sphere, or nearly so: there is no shaft to it.
+// True if receivers may touch the sphere, or nearly so. No shaft to it exists then.
 bool is_near(const SphereSource& sphere, const ReceiverHull& hull);
 
-// The disk that the sphere's outline spans from x, as its bounding square.
+// Returns the disk that the sphere's outline spans from x, as its bounding square.
 Parallelogram outline_of(const SphereSource& sphere, const Vec3d& x);
 
-// Whether a facet may reach into the sphere, where it would hide the disk but not the cap.
+// True if a facet may reach into the sphere, where it would hide the disk but not the visible cap.
 bool may_enter(const Quad& facet, const SphereSource& sphere);
-// Whether all of it lies within the sphere, where it hides nothing.
+// True if all of it lies within the sphere, where it hides nothing.
 bool is_within(const Quad& facet, const SphereSource& sphere);
 bool is_within(const RoundBody& body, const SphereSource& sphere);
 

@@ -2,8 +2,8 @@
 
 namespace troffer {
 
-// What lies in the source's plane hides nothing of it: the source itself, and what it is set into.
-// The shaft and the masks draw the line at the same height.
+// Occluders in the source's plane hide nothing: the source itself, and the surface around it.
+// Shafts and masks use the same height.
 bool is_free(const RaySource& source, const ShadowSegment& segment, const ShadowHit& hit,
              const ShadowScene& scene) {
   if (hit.id == ray_is_free) return true;
@@ -17,8 +17,8 @@ bool is_free(const RaySource& source, const ShadowSegment& segment, const Shadow
 
 namespace {
 
-// Any occluder will do where nobody wants to know which one it was: rays that end just before the
-// source. Those that are free go the rest of the way if there is anything in it.
+// Traces rays of over-budget sources to just before the source, with the cheap test for any
+// occluder: their facets need no ids. Free rays are traced to the end only if a rim exists.
 void trace_without_names(std::span<const RaySource> sources, RayPlan& plan, ShadowScene& scene,
                          TracedRays& t) {
   t.before.clear();
@@ -64,6 +64,7 @@ void trace_open(const RayPlan& plan, ShadowScene& scene, TracedRays& t) {
   for (size_t k = 0; k < t.picked.size(); ++k) t.hits[t.picked[k]] = t.picked_hits[k];
 }
 
+// Decides which rays are free, and notes the facets that others hit.
 void look_at_hits(std::span<const RaySource> sources, const RayPlan& plan, const ShadowScene& scene,
                   TracedRays& t) {
   t.is_free.resize(plan.segments.size());

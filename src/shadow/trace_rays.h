@@ -1,4 +1,4 @@
-// Which of the planned rays reach their source.
+// Traces planned residual rays and decides which ones reach their source.
 #pragma once
 
 #include <cstdint>
@@ -10,27 +10,27 @@
 
 namespace troffer {
 
-// What all rays of a cluster to one source say of a single one.
+// Totals of a cluster's rays to one source.
 struct RayTally {
   double rays = 0, free = 0;
 
-  // p (1 - p) is concave: the share of all rays bounds, on average, what the shares of the single
-  // groups would give.
+  // Returns the variance of one ray. p (1 - p) is concave, so the share of all rays gives, on
+  // average, at least the mean over single groups.
   double spread() const {
     const double p = (free + 1) / (rays + 2);
     return p * (1 - p);
   }
 };
 
-enum class RayState : uint8_t { open, free, hidden };  // open: what it meets has a name
+enum class RayState : uint8_t { open, free, hidden };  // open: not yet decided
 
 struct TracedRays {
   std::vector<uint8_t> is_free;   // per segment
   std::vector<RayTally> tallies;  // per source
-  // memory
+  // working memory
   std::vector<RayState> states;
   std::vector<ShadowHit> hits;
-  std::vector<uint32_t> picked;  // indices of segments that go into one call
+  std::vector<uint32_t> picked;  // indices of segments in one call
   std::vector<ShadowSegment> picked_segments;
   SegmentArrays picked_arrays;
   std::vector<ShadowHit> picked_hits;
@@ -38,12 +38,12 @@ struct TracedRays {
   std::vector<uint8_t> is_hidden, has_rim;
 };
 
-// Whether a ray that first met this has arrived.
+// True if a ray with this first hit reaches the source.
 bool is_free(const RaySource& source, const ShadowSegment& segment, const ShadowHit& hit,
              const ShadowScene& scene);
 
-// Cuts the plan's segments short by what is known to be free. Facets that were met are noted with
-// their sources.
+// Traces the rays of the plan. Sets `first` of segments whose beginning is known to be free. Adds
+// hit facets to their sources' FoundFacets.
 void trace_rays(std::span<const RaySource> sources, RayPlan& plan, ShadowScene& scene,
                 TracedRays& out);
 

@@ -17,12 +17,12 @@ namespace {
 
 constexpr size_t block = 16;
 
-// What a block of receivers sees of a polygon that stands above their horizons.
+// Sums over the edges of a polygon for a block of receivers with all corners above the horizon.
 template <class T>
 struct alignas(64) BlockSums {
-  T sum[block];     // Lambert's [1]
-  T least[block];   // the lowest corner's height
-  T angles[block];  // sum of the edges' lengths times angle / |v × e|: see is_exact
+  T sum[block];     // Lambert's sum [1]
+  T least[block];   // height of the lowest corner
+  T angles[block];  // edge length × angle / |v × e|, summed: see is_exact
 };
 
 // Receivers relative to the polygon's first corner.
@@ -46,7 +46,7 @@ TROFFER_ALWAYS_INLINE void add_lambert_edges(const T* __restrict corners, const 
     const T ax = a[0], ay = a[1], az = a[2], size = sizes[e];
     for (size_t i = 0; i < block; ++i) {
       const T vx = ax - r.x[i], vy = ay - r.y[i], vz = az - r.z[i];
-      // with the edge, not with the other end: accurate where both are nearly parallel
+      // cross product with the edge, not with the other end: accurate if both are nearly parallel
       const T cx = vy * ez - vz * ey, cy = vz * ex - vx * ez, cz = vx * ey - vy * ex;
       const T sine = std::sqrt(cx * cx + cy * cy + cz * cz);
       const T cosine = vx * (vx + ex) + vy * (vy + ey) + vz * (vz + ez);
@@ -73,7 +73,7 @@ void lambert_float(const float* __restrict corners, const float* __restrict size
   add_lambert_edges(corners, sizes, n, r, out);
 }
 
-// Differences that cancel are taken in double.
+// Subtracts in double precision, because the difference may cancel.
 TROFFER_MULTIVERSION
 void to_floats(const double* __restrict from, double origin, float* __restrict to) {
   for (size_t i = 0; i < block; ++i) to[i] = float(from[i] - origin);
@@ -85,8 +85,8 @@ void to_doubles(const double* __restrict from, double origin, double* __restrict
 
 constexpr size_t most_corners = 16;
 
-// Clipped to the horizon of unit normal h through x first. Relative to x, as crossings far from the
-// origin would lose digits.
+// Returns the irradiance of the polygon clipped to the horizon with unit normal h. Coordinates are
+// relative to x, since crossings far from the origin would lose digits.
 double clipped_irradiance(std::span<const Vec3d> outline, const Vec3d& x, const Vec3d& n,
                           const Vec3d& h) {
   std::array<Vec3d, 2 * most_corners> kept;
@@ -119,7 +119,7 @@ void ReceiverArrays::assign(size_t n) {
 }
 
 void ReceiverArrays::set(size_t i, const Vec3& p, const Vec3& n) {
-  // the last one also fills its block up
+  // the last receiver also fills up its block
   const size_t end = i + 1 == size ? position[0].size() : i + 1;
   for (size_t a = 0; a < 3; ++a)
     for (size_t k = i; k < end; ++k) {
@@ -167,13 +167,13 @@ class PolygonSums {
     double_.set_polygon(outline);
   }
 
-  // In single precision where that may be exact enough.
+  // Starts a block, in single precision if that may be exact enough.
   void begin_block(const ReceiverArrays& receivers, size_t first) {
     receivers_ = &receivers;
     first_ = first;
     is_double_ = false;
-    // Terms of the size of the polygon's angle d add up to its square: from single precision
-    // remains a relative error of about 1e-6 / d.
+    // Terms of the size of the polygon's angle d add up to d². Single precision leaves a relative
+    // error of about 1e-6 / d.
     const double near2 = 100 * sqr(diameter_);
     if (!(length_squared(receivers.position_at(first) - outline_[0]) < near2 &&
           length_squared(receivers.position_at(first + block - 1) - outline_[0]) < near2))
@@ -187,7 +187,7 @@ class PolygonSums {
     return is_double_ ? double_.sums.least[i] <= 0 : single_.sums.least[i] <= 0;
   }
 
-  // Lambert's sum for receiver i of the block.
+  // Returns Lambert's sum for receiver i of the block.
   double sum(size_t i) {
     if (!is_double_) {
       if (is_exact(i)) return double(single_.sums.sum[i]);
@@ -197,11 +197,10 @@ class PolygonSums {
   }
 
  private:
-  // An edge e seen from v errs by some roundings of its angle and of v × e, by u |v| |e| of |v × e|
-  // (u = 2^-24), together by a few u |v| |e| angle / |v × e|: never less than u times its angle.
-  // Moving a receiver that lies h over the polygon's plane by a rounding u |v| changes the whole by
-  // u |v| / h, which these sums are large against the result for, too. Where Lambert's sum is under
-  // 1e-3 of them, errors may come to 1e-4 of it.
+  // True if single precision is exact enough. An edge e seen from v has rounding errors of a few u
+  // |v| |e| angle / |v × e|, with u = 2^-24, and never less than u times its angle. Moving a
+  // receiver at height h over the plane by u |v| changes the result by u |v| / h, which these sums
+  // exceed too. If Lambert's sum is less than 1e-3 of them, the error may reach 1e-4 of it.
   bool is_exact(size_t i) const {
     const BlockReceivers<float>& r = single_.receivers;
     const float distance = std::sqrt(sqr(r.x[i]) + sqr(r.y[i]) + sqr(r.z[i])) + float(diameter_);

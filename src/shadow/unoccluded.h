@@ -1,4 +1,4 @@
-// Exact unoccluded irradiance of a flat polygon at many receivers at a stroke.
+// Exact unoccluded irradiance of a flat polygon at many receivers. shadow_cluster.h uses it.
 // References: [1] Lambert's formula, as in light/irradiance.h.
 #pragma once
 
@@ -11,25 +11,24 @@
 
 namespace troffer {
 
-// Positions and unit normals of receivers, coordinate by coordinate; horizons as in the function
-// below, empty where they are the normals.
+// Positions and unit normals of receivers as separate coordinates. horizons: unit normals of their
+// horizons; empty if they equal the normals.
 struct ReceiverArrays {
   std::vector<double> position[3], normal[3];
   std::vector<Vec3> horizons;
   size_t size = 0;
 
-  void assign(size_t n);  // room for n, without horizons
+  void assign(size_t n);  // makes room for n receivers without horizons
   void set(size_t i, const Vec3& p, const Vec3& n);
   Vec3d position_at(size_t i) const { return {position[0][i], position[1][i], position[2][i]}; }
   Vec3d normal_at(size_t i) const { return {normal[0][i], normal[1][i], normal[2][i]}; }
 };
 
-// out[i] = projected solid angle (steradians) of the convex polygon `outline` at receiver i,
-// between 0 and pi: of the part above the horizon of its normal and, where there are horizons,
-// above that of horizons[i] too. 0 behind the polygon's plane, whose unit normal is
-// `plane_normal`, on either side of the polygon, and in it: up to 2^-21 of the largest coordinates
-// above it, which is where rounding may put what lies on the source itself. Relative error under
-// 1e-4 wherever the value is over 3e-10, mostly under 1e-6. At most 16 corners.
+// Sets out[i] to the projected solid angle of the convex polygon `outline` at receiver i, in sr,
+// from 0 to pi. Only the part above the horizon of the normal, and of horizons[i] if given, counts.
+// The result is 0 behind and in the polygon's plane, whose unit normal is `plane_normal`: up to
+// 2^-21 of the largest coordinate above it, where rounding may put points of the source itself.
+// Relative error below 1e-4 for values over 3e-10, mostly below 1e-6. At most 16 corners.
 void unoccluded_irradiance(std::span<const Vec3d> outline, const Vec3d& plane_normal,
                            const ReceiverArrays& receivers, float* out);
 

@@ -11,13 +11,14 @@ namespace troffer {
 
 namespace {
 
-// Rooms, not the boxes in them.
+// Limits that keep rooms rather than the boxes in them: number of shells, grid cells per side, and
+// triangles.
 constexpr size_t most_shells = 64;
 constexpr int most_cells = 512;
 constexpr size_t most_triangles = 1 << 19;
-// Triangles are crossed along (slant, 1), in which no edge of a building lies.
+// Crossings are counted along (slant, 1), a direction that no edge of a building has.
 constexpr double slant_x = 0.37139067635410375, slant_y = 0.18490138027430116;
-// Of determinants of two and three differences of coordinates that are at most 1: some dozen
+// Rounding bound of determinants of two and three coordinate differences of at most 1: some dozen
 // roundings of 2^-53.
 constexpr double rounding = 0x1p-44;
 
@@ -31,7 +32,7 @@ double largest(const Vec3d& v) {
 
 enum class Crossing { none, once, unknown };
 
-// Of the ray from p and a triangle.
+// Crossing of a triangle by the ray from p.
 Crossing crossing(const std::array<Vec3, 3>& triangle, const Vec3& p) {
   std::array<Vec3d, 3> d;
   std::array<Vec2d, 3> q;
@@ -52,14 +53,14 @@ Crossing crossing(const std::array<Vec3, 3>& triangle, const Vec3& p) {
   if (has_left && has_right) return Crossing::none;
   if (!is_sure) return Crossing::unknown;
   const Vec3d n = cross(d[1] - d[0], d[2] - d[0]);
-  // The normal goes up the slant where the corners run to the left.
+  // the normal points up the slant if the corners run counterclockwise
   const double height = dot(n, d[0]) * (has_left ? 1 : -1);
   if (std::abs(height) <= rounding * size * size * size) return Crossing::unknown;
   return height > 0 ? Crossing::once : Crossing::none;
 }
 
-// Opaque meshes, in order: as many as have most_triangles together, those of fewest triangles
-// first. Walls have few; what is left out is not proved.
+// Returns the opaque meshes of fewest triangles, up to most_triangles in total, in scene order.
+// Walls have few triangles. Omitted meshes only make proofs fail.
 std::vector<uint32_t> meshes_of_rooms(const Scene& scene, const PaneGlass* glass) {
   std::vector<uint32_t> meshes;
   for (uint32_t i = 0; i < scene.meshes.size(); ++i) {
@@ -100,7 +101,7 @@ ClosedShells::Shell::Shell(std::vector<Corners> all) : triangles(std::move(all))
   cells = std::clamp(int(std::sqrt(double(triangles.size()))), 1, most_cells);
   per_cell = {(to.x - from.x) / cells, (to.y - from.y) / cells};
   const auto n = size_t(cells) * size_t(cells);
-  // A cell more on either side: roundings do not matter.
+  // one more cell on either side absorbs rounding
   const auto each_cell = [&](const Corners& t, const auto& visit) {
     std::array<int, 2> low{cells, cells}, high{0, 0};
     for (const Vec3& c : t) {

@@ -1,4 +1,5 @@
-// Whether a place is closed off from all that lies outside the scene: proved, without a ray.
+// Proves that a point is enclosed by opaque surfaces, without rays. Light from infinity is skipped
+// for such points.
 #pragma once
 
 #include <array>
@@ -12,26 +13,26 @@
 
 namespace troffer {
 
-// The inside of closed surfaces of opaque triangles, as a room's floor, walls and ceiling are where
-// they meet in the same vertices.
+// The insides of closed surfaces of opaque triangles, such as a room whose floor, walls and ceiling
+// share vertices. Immutable and thread safe after construction.
 class ClosedShells {
  public:
   ClosedShells() = default;
-  // glass: null: there are no panes.
+  // glass: null if there are no panes.
   ClosedShells(const Scene& scene, const PaneGlass* glass);
 
   bool is_empty() const { return shells_.empty(); }
-  // True: every way from p to infinity meets a triangle. False: that is not known.
+  // True if every path from p to infinity provably meets a triangle. False if that is not known.
   bool hold(const Vec3& p) const;
 
  private:
   using Corners = std::array<Vec3, 3>;
 
-  // The triangles by where they lie, seen along one direction.
+  // A closed surface, with its triangles in a grid across one direction.
   struct Shell {
     Vec3d lower, upper;
-    Vec2d from, per_cell;  // of the grid: coordinate of its corner, size of a cell
-    int cells = 1;         // along either side
+    Vec2d from, per_cell;  // of the grid: lower corner, and size of a cell
+    int cells = 1;         // per side
     std::vector<uint32_t> first, of_cell;
     std::vector<Corners> triangles;
 
@@ -39,7 +40,7 @@ class ClosedShells {
     bool holds(const Vec3& p) const;
     std::array<int, 2> cell_of(const Vec2d& at) const;
   };
-  std::vector<Shell> shells_;  // the largest first
+  std::vector<Shell> shells_;  // largest first
 };
 
 }  // namespace troffer

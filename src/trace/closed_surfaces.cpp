@@ -10,15 +10,15 @@ namespace troffer {
 
 namespace {
 
-// A piece of an edge between vertices low < high, of a triangle.
+// A piece of a triangle's edge, between vertices low < high.
 struct Piece {
   uint32_t low, high, triangle;
 };
 
-// Edges that so many vertices lie on, on average, are no room's.
+// Limit of the pieces in total. Rooms do not have that many vertices on their edges.
 constexpr size_t most_pieces_of_triangle = 64, pieces_for_nothing = 1 << 20;
 
-// Along each axis, the vertices line by line.
+// The vertices ordered along lines parallel to each axis.
 class Lines {
  public:
   Lines(std::span<const Vec3> positions, std::span<const std::array<uint32_t, 3>> triangles)
@@ -33,7 +33,7 @@ class Lines {
                 [&](uint32_t a, uint32_t b) { return key(a, axis) < key(b, axis); });
   }
 
-  // Calls add(low, high) for each piece of the edge; false: there are more than `most` of them.
+  // Calls add(low, high) for each piece of the edge. Returns false if there are more than `most`.
   template <class Add>
   bool divide(uint32_t a, uint32_t b, size_t most, const Add& add) const {
     const Vec3 &p = positions_[a], &q = positions_[b];
@@ -56,7 +56,7 @@ class Lines {
   }
 
  private:
-  // Welded vertices differ in it.
+  // Returns a sort key. It is unique, because vertices are welded.
   std::tuple<float, float, float> key(uint32_t v, size_t axis) const {
     const Vec3& p = positions_[v];
     return {p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]};
@@ -70,7 +70,7 @@ bool is_same_edge(const Piece& a, const Piece& b) {
   return a.low == b.low && a.high == b.high;
 }
 
-// All pieces of all edges, those of one edge together; empty where there are too many.
+// Returns all pieces of all edges, grouped by edge; empty if there are too many.
 std::vector<Piece> pieces_of(std::span<const Vec3> positions,
                              std::span<const std::array<uint32_t, 3>> triangles) {
   const Lines lines(positions, triangles);
@@ -89,11 +89,11 @@ std::vector<Piece> pieces_of(std::span<const Vec3> positions,
   return pieces;
 }
 
-// Edges as runs of pieces, and back.
+// Edges as runs of pieces, and the edges of each triangle.
 struct Edges {
-  std::vector<size_t> first;              // of each run, and the end
-  std::vector<uint32_t> count;            // of triangles that are left
-  std::vector<std::vector<uint32_t>> of;  // per triangle
+  std::vector<size_t> first;              // start of each run, and the end
+  std::vector<uint32_t> count;            // remaining triangles per edge
+  std::vector<std::vector<uint32_t>> of;  // edges per triangle
   std::vector<bool> is_left;              // per triangle
 
   Edges(const std::vector<Piece>& pieces, size_t triangles)
@@ -109,6 +109,7 @@ struct Edges {
     first.push_back(pieces.size());
   }
 
+  // Removes triangles with an open edge until none is left.
   void leave_out_open(const std::vector<Piece>& pieces) {
     std::vector<uint32_t> open;
     const auto note = [&](uint32_t edge) {

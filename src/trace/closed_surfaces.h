@@ -1,8 +1,7 @@
-// Which triangles close something off: sets of them without an open edge.
-//
-// A set in which every piece of every edge belongs to an even number of triangles divides space
-// into an inside and an outside, whichever way they are wound: a way that crosses an odd number of
-// them leads from one to the other.
+// Finds closed surfaces: sets of triangles without an open edge. If every piece of every edge
+// belongs to an even number of triangles, the set divides space into inside and outside, whatever
+// the winding. A path that crosses the set an odd number of times leads from one to the other.
+// closed_shells.h uses it.
 #pragma once
 
 #include <array>
@@ -14,10 +13,10 @@
 
 namespace troffer {
 
-// Triangles of welded vertices (base/polygon_list.h). Returns sets of them that hang together by
-// edges and have no open one; what has open edges is left out, triangle by triangle, until nothing
-// is open. Edges along an axis may end at each other's inner points, where these lie on them
-// exactly. Deterministic; about O(n log n).
+// Returns sets of triangles that are connected by edges and have no open edge. Vertices must be
+// welded (base/polygon_list.h). Triangles with open edges are removed one by one until no edge is
+// open. Edges along an axis may end at inner points of each other, if these lie on them exactly.
+// Deterministic; about O(n log n).
 std::vector<std::vector<uint32_t>> closed_surfaces(
     std::span<const Vec3> positions, std::span<const std::array<uint32_t, 3>> triangles);
 

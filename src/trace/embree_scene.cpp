@@ -24,8 +24,8 @@ float coverage_at(const HitTest& test, uint32_t primitive, float u, float v) {
   return coverage(test.scene->textures, test.scene->materials[test.mesh->material], uv);
 }
 
-// Uniform in [0,1), a hash of a ray and a triangle: the same however often and in whatever company
-// Embree asks. Rays must differ from sample to sample, so shadow rays never depend on it.
+// Returns a number in [0,1) that is a hash of ray and triangle, so it does not depend on how often
+// or in which packet Embree asks. Rays must differ from sample to sample.
 float draw_of(const RTCFilterFunctionNArguments* args, unsigned i) {
   const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
   const auto pair = [&](float f, float g) { return bits(f) << 32 | bits(g); };
@@ -44,14 +44,14 @@ float coverage_at(const HitTest& test, const RTCFilterFunctionNArguments* args, 
                      RTCHitN_v(args->hit, args->N, i));
 }
 
-// Whether the hit is in a hole, or the ray is one of those that go through.
+// True if the ray passes through the hit: it is in a hole, or partly covered and drawn to pass.
 bool is_in_hole(const HitTest& test, const RTCFilterFunctionNArguments* args, unsigned i) {
   if (!test.has_holes) return false;
   const float share = coverage_at(test, args, i);
   return share <= 0 || (share < 1 && draw_of(args, i) >= share);
 }
 
-// Whether the hit is on a pane that lets light through there.
+// True if the hit lies on a pane that transmits light there.
 bool is_passed(const HitTest& test, const RTCFilterFunctionNArguments* args, unsigned i) {
   return test.is_pane_at(RTCHitN_primID(args->hit, args->N, i)) &&
          (!test.hides_in_places || coverage_at(test, args, i) < 1);
@@ -136,9 +136,9 @@ void Tracer::Embree::attach_pane(RTCGeometry geometry, uint32_t id) {
   rtcAttachGeometryByID(panes, geometry, id);
 }
 
-// Coincident surfaces are told apart by the order of primitives in the tree's leaves, which is the
-// same for any number of threads only when the tree is built on one. Large scenes, where that would
-// take long, are built on all cores.
+// Commits a scene. The order of primitives in the tree's leaves decides between coincident
+// surfaces, and it is reproducible only if one thread builds the tree. Large scenes would take too
+// long and are built on all cores.
 void Tracer::Embree::commit(RTCScene to_build, size_t triangles) const {
   constexpr size_t large = 400'000;
   if (triangles > large)
@@ -163,8 +163,8 @@ void Tracer::Embree::set_filters(RTCGeometry g, uint32_t id) {
   if (test.has_holes || test.has_panes) rtcSetGeometryOccludedFilterFunction(g, occluded_filter);
 }
 
-// Ours, where there is room behind them (with_room_for_tracer): Embree reads vertices in 16-byte
-// loads, past the last one's end. Else copies.
+// Shares the mesh's own vertices if memory follows them (with_room_for_tracer), because Embree
+// reads them in 16-byte loads. Otherwise copies them.
 void Tracer::Embree::set_vertices(RTCGeometry g, const std::vector<Vec3>& positions) {
   static_assert(sizeof(Vec3) == 3 * sizeof(float));
   if (positions.capacity() > positions.size()) {
@@ -204,8 +204,8 @@ void Tracer::Embree::add_mesh(const Scene& s, uint32_t id, const PaneGlass* glas
   if (!s.meshes[id].triangles.empty()) attach(make_mesh(s, s.meshes[id], id, glass), id);
 }
 
-// Filters of an instance's mesh see rays in its space, where the sides of a triangle are the same:
-// under a transform that mirrors, its vertices run the other way round.
+// Adds the instances. Filters of an instanced mesh see rays in the mesh's space, where front and
+// back are the same. Under a mirroring transform the vertices run the other way.
 void Tracer::Embree::add_instances(const Scene& s, const PaneGlass* glass) {
   const uint32_t first_test = instances.first;
   std::vector<RTCScene> spaces;
@@ -240,7 +240,7 @@ void Tracer::Embree::add_instances(const Scene& s, const PaneGlass* glass) {
   for (RTCScene space : spaces) rtcReleaseScene(space);  // instances keep them
 }
 
-// Of the shapes of one geometry, which are panes.
+// Marks the panes among the shapes of one geometry.
 template <class Shapes>
 void Tracer::Embree::mark_panes(RTCGeometry g, uint32_t id, const Shapes& shapes,
                                 const PaneGlass* glass) {

@@ -1,4 +1,4 @@
-// The scene as Embree has it: of the tracer's own files alone.
+// The scene in Embree. Only tracer.cpp and embree_scene.cpp include this header.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -11,11 +11,11 @@
 
 namespace troffer {
 
-// Of all rays: filters get it with each hit.
+// Context of a query. Embree passes it to the filters with each hit.
 struct Context {
-  RTCIntersectContext embree;  // the first member: Embree knows the address of this
+  RTCIntersectContext embree;  // must be the first member: Embree gets its address
   Meeting meeting;
-  bool is_through = false;  // every pane is met, but for its holes: to ask what panes take
+  bool is_through = false;  // every pane is hit, except in its holes: for transmittance
 
   explicit Context(Meeting what, bool goes_through = false)
       : meeting(what), is_through(goes_through) {
@@ -23,13 +23,13 @@ struct Context {
   }
 };
 
-// What of a geometry is not there for some rays, or has holes.
+// Data of the filters of one geometry: holes, invisible back faces and panes.
 struct HitTest {
   const Scene* scene = nullptr;
   const Mesh* mesh = nullptr;  // null: spheres or disks
   bool has_holes = false, hides_backs = false, has_panes = false;
   bool hides_in_places = false;  // panes are opaque where alpha is 1
-  std::vector<uint8_t> is_pane;  // per primitive; empty: all are, where it has any
+  std::vector<uint8_t> is_pane;  // per primitive; empty: all are panes, if any is
   std::vector<uint8_t> has_coincident_front;  // per triangle (coincident_fronts); empty: none has
 
   bool is_pane_at(uint32_t primitive) const {
@@ -37,13 +37,13 @@ struct HitTest {
   }
 };
 
-// From what Embree says of instances to our numbers.
+// Translates Embree's instance numbers to those of Hit.
 struct InstanceNumbers {
-  uint32_t first = 0;  // geometry of the first one
+  uint32_t first = 0;  // geometry number of the first instance
   std::vector<uint8_t> is_mirrored;
 
-  // instance: geometry number, or RTC_INVALID_GEOMETRY_ID. In a mirrored one vertices 1 and 2
-  // change places.
+  // Sets geometry and barycentric weights of a hit. instance: geometry number, or
+  // RTC_INVALID_GEOMETRY_ID. In a mirrored instance, vertices 1 and 2 change places.
   void apply(uint32_t instance, Hit& hit) const {
     if (instance == RTC_INVALID_GEOMETRY_ID || !hit.is_valid()) return;
     hit.geometry = instance;
@@ -59,12 +59,12 @@ struct EmbreeStatus {
 struct Tracer::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  RTCScene panes = nullptr;  // alone, by the same numbers; null: there are none
+  RTCScene panes = nullptr;  // panes only, with the same numbers; null: none
   EmbreeStatus status;
-  std::vector<HitTest> tests;  // per mesh, of all spheres, of all disks, per instanced mesh
+  std::vector<HitTest> tests;  // per mesh, then spheres, disks, and instanced meshes
   InstanceNumbers instances;
   size_t pane_triangles = 0;
-  size_t packet_size = 8;  // of rays: 8, or 16 where Embree has these as they are
+  size_t packet_size = 8;  // rays per packet: 16 where Embree supports that natively, else 8
 
   // Throws EnvironmentError if memory runs out.
   Embree(const Scene& scene, const PaneGlass* glass);

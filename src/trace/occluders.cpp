@@ -16,8 +16,7 @@ namespace {
 
 constexpr uint32_t leaf_size = 4;
 
-// The tree as rtcBuildBVH makes it; children of a node lie where its allocator put them. Leaves,
-// which are most of it, take as little as they can.
+// Nodes of the tree as rtcBuildBVH makes it. Leaves are the majority, so they take little memory.
 struct RawNode {
   uint32_t child_count = 0;  // 0: a leaf
   uint32_t item_count = 0;
@@ -89,7 +88,7 @@ Box bounds_of(const Quad& q) {
   return b;
 }
 
-// Embree's tree over the boxes; it lives as long as `embree`.
+// Builds Embree's tree over the boxes. It lives as long as `embree`.
 const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive> boxes) {
   if (embree.device == nullptr) throw EnvironmentError("cannot start Embree");
   embree.bvh = rtcNewBVH(embree.device);
@@ -99,8 +98,8 @@ const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive> box
   args.maxDepth = 64;
   args.minLeafSize = 1;
   args.maxLeafSize = leaf_size;
-  // Many facets: full leaves, in a quarter of the nodes; shafts that cross curved surfaces are
-  // asked for up to a third faster. Few large ones are told apart better one by one.
+  // With many facets, full leaves save nodes and time (docs/log/trace.md). A few large facets are
+  // separated better one by one.
   constexpr size_t many = 100'000;
   args.sahBlockSize = boxes.size() > many ? leaf_size : 1;
   args.traversalCost = 1;
@@ -113,8 +112,8 @@ const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive> box
   args.setNodeChildren = set_children;
   args.setNodeBounds = set_bounds;
   args.createLeaf = create_leaf;
-  // Embree would take all cores. Lists are cut short in the order of the tree: on one thread
-  // nothing of it can depend on how many there are.
+  // One thread builds the tree: Embree would use all cores, and lists that are cut short depend on
+  // the tree's order.
   const RawNode* root = nullptr;
   run_on_one_thread([&] { root = static_cast<const RawNode*>(rtcBuildBVH(&args)); });
   if (root == nullptr || rtcGetDeviceError(embree.device) != RTC_ERROR_NONE)
@@ -122,7 +121,7 @@ const RawNode& build_raw_tree(Device& embree, std::vector<RTCBuildPrimitive> box
   return *root;
 }
 
-// Child i of a node, but for where it is; a place without a child has nothing in it.
+// Copies bounds and count of child i. A slot without a child is marked as empty.
 template <class Node>
 void copy_child(const RawInner& raw, uint32_t i, Node& node) {
   const bool is_used = i < raw.child_count;
@@ -137,7 +136,7 @@ void copy_child(const RawInner& raw, uint32_t i, Node& node) {
   node.count[i] = is_used ? uint8_t(raw.child[i]->item_count) : 255;
 }
 
-// The first of the leaf's items in the list.
+// Appends the leaf's items and returns the index of the first.
 uint32_t copy_leaf(const RawLeaf& raw, std::vector<uint32_t>& items) {
   const auto first = uint32_t(items.size());
   items.insert(items.end(), raw.items, raw.items + raw.item_count);
@@ -151,7 +150,7 @@ size_t count_inner(const RawNode& node) {
   return n;
 }
 
-// Copied depth first: the layout then does not depend on who allocated what.
+// Copies the tree depth first, so that the layout does not depend on Embree's allocations.
 template <class Node>
 void copy_tree(const RawNode& root, std::vector<Node>& nodes, std::vector<uint32_t>& leaf_items) {
   nodes.reserve(count_inner(root));
@@ -209,7 +208,7 @@ void Occluders::build_tree() {
 uint32_t Occluders::facet_of(uint32_t geometry, uint32_t primitive) const {
   if (geometry < facet_of_.size())
     return primitive < facet_of_[geometry].size() ? facet_of_[geometry][primitive] : no_facet;
-  const size_t first = facet_of_.size() + 2;  // behind spheres and disks
+  const size_t first = facet_of_.size() + 2;  // after spheres and disks
   if (geometry < first || geometry - first >= instanced_.stands.size()) return no_facet;
   const Stand& stand = instanced_.stands[geometry - first];
   if (stand.space == no_space) return no_facet;

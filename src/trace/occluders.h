@@ -1,12 +1,10 @@
-// Everything in a scene that can hide a light, as flat convex facets in a bounding-volume hierarchy
-// that is asked for what meets a convex region (a shaft).
-//
-// Triangles of a mesh that lie in one plane are merged to larger triangles and convex
-// quadrilaterals where that is exact to rounding (base/merge_polygons.h), so that a tessellated
-// wall is one facet. Each triangle with area belongs to one facet, whole. Spheres and disks are
-// reported as they are, triangles with an alpha mask apart from the others: only rays can tell what
-// these hide. Instances share the facets and the hierarchy of their mesh: theirs have numbers of
-// their own, behind all others, and their corners are computed when they are asked for.
+// All occluders of a scene as convex facets in a bounding volume hierarchy, which is queried with
+// convex regions (shafts). Certified visibility gathers its facet lists here.
+// Coplanar triangles of a mesh are merged into larger triangles and convex quadrilaterals where
+// that is exact to rounding (base/merge_polygons.h). Each triangle with area belongs to exactly one
+// facet. Spheres and disks are reported as such, and triangles with an alpha mask separately,
+// because only rays can decide what they hide. Instances share facets and hierarchy of their mesh.
+// Their facets have numbers after all others, and their corners are computed on demand.
 #pragma once
 
 #include <array>
@@ -27,16 +25,17 @@ namespace troffer {
 
 constexpr uint32_t no_facet = 0xffffffffu;
 
+// Immutable and thread safe after construction.
 class Occluders {
  public:
-  // Throws EnvironmentError if memory or numbers of facets run out. The scene is not kept. Works on
-  // the calling thread alone; what is built, the order of gathered lists too, depends on the scene
-  // alone.
+  // Builds the hierarchy on the calling thread. Does not keep a reference to the scene. The result,
+  // including the order of gathered lists, depends on the scene alone. Throws EnvironmentError if
+  // memory or facet numbers run out.
   explicit Occluders(const Scene& scene) : Occluders(scene, nullptr) {}
-  // … and what panes are, which hide nothing: none if null.
+  // Does the same with panes, which hide nothing; glass: null if there are none.
   Occluders(const Scene& scene, const PaneGlass* glass);
 
-  // Those of instances, whose numbers follow, do not count.
+  // Returns the number of facets without those of instances, whose numbers follow.
   size_t facet_count() const { return component_.size(); }
   Quad facet(uint32_t id) const {
     if (id >= component_.size()) return instance_facet(id);
@@ -44,13 +43,13 @@ class Occluders {
     const Corners& c = corners_[id];
     return {vertices_[c[0]], vertices_[c[1]], vertices_[c[2]], vertices_[c[3]]};
   }
-  // The facet that a hit (trace/ray.h) lies on; no_facet for what is none.
+  // Returns the facet of a hit (trace/ray.h), or no_facet if there is none.
   uint32_t facet_of(uint32_t geometry, uint32_t primitive) const;
 
-  // Facets of one connected piece of surface. Where it is closed (each edge of a triangle belongs
-  // to exactly two triangles that run along it in opposite directions), a segment with both ends
-  // outside `bounds` crosses as many facets from the front as from the back: facets of one side
-  // suffice to tell whether it is hidden.
+  // A connected piece of surface. It is closed if each edge belongs to exactly two triangles that
+  // run along it in opposite directions. A segment with both ends outside `bounds` then crosses as
+  // many facets from the front as from the back. Facets of one orientation suffice to decide if it
+  // is hidden.
   struct Component {
     Box bounds;
     bool is_closed = false;
@@ -62,37 +61,37 @@ class Occluders {
     return uint64_t(geometry) << 32 | primitive;
   }
 
-  // Appends to `facets` the ids of all facets of which a point may lie inside all planes, and to
-  // `rounds` spheres and disks, until more than `most` have been found; counts triangles with an
-  // alpha mask in `others`, of which the first most_masked are in `masked`. Where it stops early
-  // the list is incomplete. A facet is left out only if one plane has all of it outside.
+  // Appends the ids of all facets that may have a point inside all planes to `facets`, and such
+  // spheres and disks to `rounds`. Counts triangles with an alpha mask in `others`; the first
+  // most_masked of them go to `masked`. Stops at more than `most` of a kind and then clears
+  // is_complete. A facet is left out only if all of it lies outside one plane.
   static constexpr size_t most_masked = 256;
   struct Found {
     std::vector<uint32_t> facets;
     std::vector<RoundBody> rounds;
     std::vector<Quad> masked;
     uint32_t others = 0;
-    // A sphere or disk that does not count: key() of what a hit on it says; none by default.
+    // Sphere or disk that is ignored: key() of a hit on it; none by default.
     uint64_t own = no_key;
     bool is_complete = true;
     uint64_t visited_nodes = 0;
   };
   void gather(std::span<const Plane> planes, size_t most, Found& found) const;
 
-  // Whether some point of the facet may lie inside all planes, in the sense of gather.
+  // True if some point of the facet may lie inside all planes, as in gather.
   bool may_meet(uint32_t facet, std::span<const Plane> planes) const;
 
  private:
-  // Bounds of eight children side by side; a child is a node, a leaf, or nothing.
+  // Bounds of eight children in separate arrays. A child is a node, a leaf or nothing.
   struct alignas(64) Node {
     float lower[3][8], upper[3][8];
-    uint32_t child[8];  // node index; leaf: first entry of leaf_items_
-    uint8_t count[8];   // leaf: items; 0: a node; 255: nothing
+    uint32_t child[8];  // node index; for a leaf its first entry of leaf_items_
+    uint8_t count[8];   // items of a leaf; 0: a node; 255: no child
   };
   struct PlaneSet;
   struct Other;
   struct Stand;
-  // Of one mesh, in its own space.
+  // Builds the hierarchy of one mesh in its own space.
   Occluders(const Mesh& mesh, bool is_alpha_masked);
   void join_and_add(const Mesh& mesh, std::vector<uint32_t>& facet_of);
   void add_masked(const Mesh& mesh);
@@ -108,8 +107,8 @@ class Occluders {
   static bool look_at_other(const Other& other, const PlaneSet& set, size_t most, Found& found);
   bool look_at_stand(const Stand& stand, const PlaneSet& set, size_t most, Found& found) const;
 
-  // Facets, in one way or the other: with their vertices, or, of large scenes, by their numbers,
-  // which take a third of the memory and more time to look at.
+  // Facets in one of two forms: quads_ holds vertices; corners_ holds vertex indices and serves
+  // large scenes, with a third of the memory and slower access.
   std::vector<Quad> quads_;
   using Corners = std::array<uint32_t, 4>;  // a triangle repeats its last
   std::vector<Corners> corners_;
@@ -117,26 +116,26 @@ class Occluders {
   bool is_large_ = false;
   std::vector<uint32_t> component_;  // per facet
   std::vector<Component> components_;
-  // What is no facet: its bounds, and where it is flat a facet that covers it.
+  // An occluder that is not a facet: its bounds, and a covering quadrilateral if it is flat.
   struct Other {
     Box bounds;
     Quad cover;
     bool is_flat;
-    RoundBody round;  // of no radius: it is neither sphere nor disk
+    RoundBody round;  // radius 0: neither a sphere nor a disk
     uint64_t key;     // of a hit on it
   };
   std::vector<Other> others_;
   std::vector<std::vector<uint32_t>> facet_of_;  // per mesh, per triangle
   std::vector<Node> nodes_;
-  // facet, or facet_count() + other, or that + number of others + stand
+  // Item numbers: facets, then others, then instances.
   std::vector<uint32_t> leaf_items_;
-  uint32_t root_leaf_count_ = 0;                     // no nodes: everything is one leaf
-  static constexpr uint32_t no_space = 0xffffffffu;  // of panes
-  // An instance.
+  uint32_t root_leaf_count_ = 0;                     // without nodes, everything is one leaf
+  static constexpr uint32_t no_space = 0xffffffffu;  // instances of panes
+  // An instance of a mesh.
   struct Stand {
     Affine world_from_space;
-    Vec3d reach;  // per axis: no coordinate on the way to the world is larger
-    Box bounds;   // in the world
+    Vec3d reach;  // upper bound per axis of coordinates during the transform
+    Box bounds;   // in world space
     uint32_t space = no_space, first_facet = 0;
     bool is_mirrored = false;
 

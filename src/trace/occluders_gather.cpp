@@ -1,4 +1,4 @@
-// What meets a shaft: the tree is walked, through instances in the spaces of their meshes.
+// Queries of Occluders: descends the tree, and the trees of instanced meshes in their own space.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,7 +41,7 @@ const Kernels kernels = best_kernels();
 
 }  // namespace
 
-// Planes side by side, padded with ones that nothing is outside of.
+// Planes in separate arrays, padded with planes that exclude nothing.
 struct Occluders::PlaneSet {
   alignas(64) float x[most_planes];
   alignas(64) float y[most_planes];
@@ -54,8 +54,8 @@ struct Occluders::PlaneSet {
     pad();
   }
 
-  // The same planes, in the space of an instance's mesh: n·(L p + t) <= d is (L^T n)·p <= d - n·t.
-  // Each a little farther out than it is, by what rounding there and in the world comes to.
+  // Transforms planes to the space of an instance's mesh: n·(L p + t) <= d becomes (L^T n)·p <= d -
+  // n·t. Each plane is moved outwards by the rounding errors in both spaces.
   PlaneSet(const PlaneSet& world, const Stand& stand) {
     constexpr double rounding = 2e-6;
     const std::array<Vec3d, 3>& columns = stand.world_from_space.columns;
@@ -74,7 +74,7 @@ struct Occluders::PlaneSet {
   bool has_outside(const Quad& q) const {
     return kernels.facet(&q[0].x, x, y, z, distance, padded);
   }
-  // Of a sphere, up to `radius` from the centre.
+  // True if a ball around `centre` lies outside one plane.
   bool has_outside(const Vec3& centre, float radius) const {
     for (int p = 0; p < count; ++p)
       if (centre.x * x[p] + centre.y * y[p] + centre.z * z[p] - radius > distance[p]) return true;
@@ -97,8 +97,8 @@ struct Occluders::PlaneSet {
   }
 };
 
-// The front stays the front: in a mirrored one corners run the other way round. A triangle goes on
-// repeating its last corner.
+// Returns the facet in world space. In a mirrored instance the corners are reversed, so that the
+// front stays the front. A triangle still repeats its last corner.
 Quad Occluders::Stand::placed(const Quad& own) const {
   Quad q;
   for (size_t k = 0; k < 4; ++k) q[k] = Vec3(world_from_space.point(Vec3d(own[k])));
@@ -122,7 +122,7 @@ Occluders::Component Occluders::component_of(uint32_t facet) const {
   if (facet < facet_count()) return components_[component_[facet]];
   const Stand& stand = stand_of(facet);
   const Component own = instanced_.spaces[stand.space]->component_of(facet - stand.first_facet);
-  // Of the box around the box, with room for rounding.
+  // bounds of the transformed box, with room for rounding
   constexpr double rounding = 1e-6;
   const Vec3d middle = stand.world_from_space.point(Vec3d(own.bounds.centre()));
   const Vec3d half = Vec3d(own.bounds.extent()) * 0.5;
@@ -131,7 +131,7 @@ Occluders::Component Occluders::component_of(uint32_t facet) const {
   return {{Vec3(middle - reach), Vec3(middle + reach)}, own.is_closed};
 }
 
-// Calls look(item) for what the tree has inside all planes, until that says false; false then.
+// Calls look(item) for the items that may be inside all planes. Returns false as soon as look does.
 template <class Look>
 bool Occluders::walk(const PlaneSet& set, uint64_t& visited, const Look& look) const {
   const auto look_at_leaf = [&](uint32_t first, uint32_t count) {
@@ -140,7 +140,7 @@ bool Occluders::walk(const PlaneSet& set, uint64_t& visited, const Look& look) c
     return true;
   };
   if (nodes_.empty()) return look_at_leaf(0, root_leaf_count_);
-  std::array<uint32_t, 64 * 8> stack;  // depth × children: it cannot overflow
+  std::array<uint32_t, 64 * 8> stack;  // depth × children: cannot overflow
   size_t size = 0;
   stack[size++] = 0;
   while (size > 0) {
@@ -159,7 +159,7 @@ bool Occluders::walk(const PlaneSet& set, uint64_t& visited, const Look& look) c
   return true;
 }
 
-// False when the list has become too long.
+// Adds an occluder that is not a facet. Returns false if the list has become too long.
 bool Occluders::look_at_other(const Other& o, const PlaneSet& set, size_t most, Found& found) {
   if (o.key == found.own && o.key != no_key) return true;
   if (o.is_flat ? set.has_outside(o.cover)
@@ -175,14 +175,15 @@ bool Occluders::look_at_other(const Other& o, const PlaneSet& set, size_t most, 
   return true;
 }
 
-// The same, through an instance: what may be inside in the mesh's space is looked at in the world.
-// All triangles of a mesh have a mask, or none has.
+// Adds the occluders of an instance. Candidates from the mesh's space are tested again in world
+// space. Either all triangles of a mesh have a mask or none has. Returns false if the list has
+// become too long.
 bool Occluders::look_at_stand(const Stand& stand, const PlaneSet& set, size_t most,
                               Found& found) const {
   const Occluders& space = *instanced_.spaces[stand.space];
   const PlaneSet own(set, stand);
   if (space.facet_count() == 0) {
-    // More than most_masked are as good as any number.
+    // beyond most_masked, the exact number does not matter
     space.walk(own, found.visited_nodes, [&](uint32_t item) {
       if (found.others > most_masked) return false;
       Other o = space.others_[item];

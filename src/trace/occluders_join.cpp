@@ -1,5 +1,4 @@
-// Scene -> facets: which triangles hang together, which surfaces are closed, which triangles are
-// one quadrilateral.
+// Builds the facets of Occluders: connected components, closed surfaces, and merged triangles.
 #include <algorithm>
 #include <array>
 
@@ -14,7 +13,7 @@ namespace troffer {
 
 namespace {
 
-// A pane hides nothing, except where the texture of its alpha is 1.
+// True if a material hides something. A pane does so only where its alpha texture is 1.
 bool hides_something(const Scene& scene, const PaneGlass* glass, uint32_t material) {
   const Material& m = scene.materials[material];
   return glass == nullptr || !glass->is_pane(material) ||
@@ -36,7 +35,7 @@ void Occluders::join_and_add(const Mesh& mesh, std::vector<uint32_t>& facet_of) 
     triangles.add(corners);
   }
 
-  // Components, closed unless an edge says otherwise.
+  // components count as closed until an edge disproves it
   std::vector<uint32_t> component(mesh.positions.size(), no_facet);
   const auto component_at = [&](uint32_t vertex) -> uint32_t {
     uint32_t& c = component[parts.find(vertex)];
@@ -96,7 +95,7 @@ void Occluders::add_round(const Scene& scene, const PaneGlass* glass) {
   for (uint32_t i = 0; i < scene.spheres.size(); ++i) {
     const Sphere& s = scene.spheres[i];
     if (is_pane(s.material)) continue;
-    // with room for the rounding of Embree's intersections
+    // room for the rounding of Embree's intersections
     const float slack = 1e-5f * (length(s.centre) + s.radius);
     const Vec3 reach = Vec3{1, 1, 1} * (s.radius + slack);
     Box b;
@@ -114,8 +113,7 @@ void Occluders::add_round(const Scene& scene, const PaneGlass* glass) {
   }
 }
 
-// Room for the most there can be: what is not needed of it is never touched, and growing would
-// copy.
+// Reserves the largest possible size. Unused pages are never touched, while growing would copy.
 void Occluders::reserve(std::span<const Mesh> meshes) {
   constexpr size_t large = 1 << 18;
   size_t triangles = 0, vertices = 0;

@@ -1,6 +1,7 @@
-// The loops of occluders.cpp for vectors of `width` numbers: occluders.cpp includes this file once
-// per instruction set, with TROFFER_CULL_WIDTH and TROFFER_CULL_NAMESPACE set, under the pragma
-// that selects the set. No function here may call one from elsewhere. Same results for every width.
+// Inner loops of occluders_gather.cpp for vectors of `width` numbers. That file includes this one
+// once per instruction set, with TROFFER_CULL_WIDTH and TROFFER_CULL_NAMESPACE defined and under
+// the pragma that selects the set. Functions here must not call functions from elsewhere. All
+// widths give the same results.
 #ifndef TROFFER_CULL_WIDTH
 #include <cstdint>
 #define TROFFER_CULL_WIDTH 4
@@ -12,7 +13,7 @@ namespace troffer::TROFFER_CULL_NAMESPACE {
 using Floats = float __attribute__((vector_size(4 * TROFFER_CULL_WIDTH)));
 using Ints = int32_t __attribute__((vector_size(4 * TROFFER_CULL_WIDTH)));
 
-// Bit i is set where box i of 8 lies outside one plane. lower, upper: x, y, z of the boxes.
+// Returns bit i set if box i of 8 lies outside one plane. lower, upper: x, y, z of the boxes.
 uint32_t boxes_outside(const float* lower, const float* upper, const float* x, const float* y,
                        const float* z, const float* distance, int planes) {
   constexpr int width = TROFFER_CULL_WIDTH;
@@ -20,7 +21,7 @@ uint32_t boxes_outside(const float* lower, const float* upper, const float* x, c
   for (int first = 0; first < 8; first += width) {
     Ints is_outside = {};
     for (int p = 0; p < planes; ++p) {
-      // the corner that lies farthest inwards
+      // the corner that is farthest inwards
       Floats bx, by, bz;
       __builtin_memcpy(&bx, (x[p] > 0 ? lower : upper) + first, sizeof bx);
       __builtin_memcpy(&by, (y[p] > 0 ? lower : upper) + 8 + first, sizeof by);
@@ -32,7 +33,7 @@ uint32_t boxes_outside(const float* lower, const float* upper, const float* x, c
   return outside;
 }
 
-// Whether the facet v (four vertices) lies outside one plane; planes are padded to 8.
+// True if the facet v (four vertices) lies outside one plane. Planes are padded to a multiple of 8.
 bool facet_outside(const float* v, const float* x, const float* y, const float* z,
                    const float* distance, int padded_planes) {
   constexpr int width = TROFFER_CULL_WIDTH;

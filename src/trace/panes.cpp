@@ -10,14 +10,14 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t most_simple_triangles = 8;  // of a pane that is simple
+constexpr size_t most_simple_triangles = 8;  // limit for a pane that is simple
 
-// Places that are not simple, joined to so few boxes: one of them between two places is enough to
-// ask rays.
+// Panes that are not simple are joined to at most this many boxes. If light may meet one of them,
+// rays decide.
 constexpr size_t most_boxes = 64;
 
-// Halves the boxes along the axis on which their middles are spread the most, until each part is
-// one box.
+// Joins the boxes to `parts` boxes by halving them along the axis on which their centres are spread
+// most.
 void join_boxes(std::span<Box> boxes, size_t parts, std::vector<Box>& out) {
   if (boxes.empty()) return;
   if (parts <= 1 || boxes.size() == 1) {
@@ -47,7 +47,7 @@ PanePlaces::PanePlaces(const Scene& scene, const PaneGlass& glass) {
     Box box;
     const Material& m = scene.materials[mesh.mesh().material];
     const bool is_large = mesh.size() > most_simple_triangles;
-    // Leaves and copies may be very many.
+    // leaves and instances may be very many
     if ((m.is_alpha_masked && (is_large || m.alpha.texture >= 0)) ||
         (is_large && mesh.instance() != nullptr)) {
       if (mesh.instance() != nullptr) {
@@ -109,7 +109,8 @@ PanePlaces::Place& PanePlaces::add(const Box& bounds, const Vec3& normal,
   return p;
 }
 
-// Flat and even, of few triangles, seen as it lies.
+// Marks a place as simple if its pane is flat, uniform, of few triangles and without varying
+// normals.
 void PanePlaces::make_simple(const Scene& scene, const MeshInWorld& in_world,
                              const PaneGlass& glass, Place& place) {
   constexpr int steps = 1024;
@@ -134,7 +135,7 @@ void PanePlaces::make_simple(const Scene& scene, const MeshInWorld& in_world,
 
 namespace {
 
-// Both ends of a box along a direction.
+// Returns the extent of a box along a direction.
 void extent_along(const Box& box, const Vec3& n, float& least, float& most) {
   least = most = 0;
   for (size_t a = 0; a < 3; ++a) {
@@ -171,8 +172,8 @@ void PanePlaces::between(const Box& a, const Box& b, PanesBetween& out) const {
 
 namespace {
 
-// Whether a ray from x in the direction w goes through the triangle's inside: the three volumes
-// that it spans with the edges agree.
+// True if a ray from x in direction w passes through the triangle: the three volumes that it spans
+// with the edges have one sign.
 bool goes_through(const std::array<Vec3, 3>& t, const Vec3& x, const Vec3& w) {
   const Vec3 a = t[0] - x, b = t[1] - x, c = t[2] - x;
   const float p = dot(cross(a, b), w), q = dot(cross(b, c), w), r = dot(cross(c, a), w);
@@ -188,7 +189,7 @@ Rgb PanePlaces::transmittance(const PanesBetween& panes, const Vec3& x, const Ve
   for (const uint32_t i : panes.places) {
     const Place& p = places_[i];
     const float cosine = dot(w, p.normal), height = p.height - dot(x, p.normal);
-    // Not where x lies on it, where it lies behind, or beyond the way's end.
+    // skips panes that x lies on, that lie behind x, or beyond the end
     if (std::abs(height) <= p.slack || !(height * cosine > 0) ||
         !(std::abs(height) < std::abs(cosine) * distance))
       continue;

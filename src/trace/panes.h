@@ -1,5 +1,5 @@
-// Panes: surfaces that hide nothing of a light, but take of it: clear thin glass. Shadow rays pass
-// them; what of the light is left is asked for separately.
+// Panes: clear thin glass, which transmits light without bending it. Shadow rays pass panes, and
+// their transmittance is computed separately.
 #pragma once
 
 #include <array>
@@ -15,50 +15,53 @@
 
 namespace troffer {
 
-// Which surfaces are panes, and what they do: the tracer knows nothing of materials.
+// Tells which materials are panes, and their transmittance. The tracer itself knows nothing of
+// materials.
 class PaneGlass {
  public:
   virtual ~PaneGlass() = default;
   virtual bool is_pane(uint32_t material) const = 0;
-  // … of which the same can be said everywhere on it: transmittance_at() holds.
+  // True if the pane is uniform, so that transmittance_at() holds everywhere on it.
   virtual bool is_even(uint32_t material) const = 0;
+  // Returns the transmittance of a uniform pane by the cosine of incidence.
   virtual Rgb transmittance_at(uint32_t material, float cosine) const = 0;
-  // The share of its light that the pane which a ray has hit lets through straight on.
+  // Returns the transmittance of a pane along `ray`, at its hit.
   virtual Rgb transmittance(const Ray& ray, const Hit& hit) const = 0;
 };
 
-// What panes leave of the light of each of some rays.
+// Transmittance of the panes on each of some rays.
 struct PaneFactors {
-  std::vector<Rgb> values;  // empty: everything
+  std::vector<Rgb> values;  // empty: 1 for all rays
   Rgb operator[](size_t i) const { return values.empty() ? Rgb{1} : values[i]; }
 };
 
 // Panes that light between two boxes may meet.
 struct PanesBetween {
   bool are_any = false;
-  bool are_simple = true;        // PanePlaces::transmittance() holds
-  std::vector<uint32_t> places;  // where they are
+  bool are_simple = true;        // PanePlaces::transmittance() is exact
+  std::vector<uint32_t> places;  // indices of places
 };
 
-// Where panes are, and what flat even ones do, without rays.
+// Positions of panes, and the transmittance of flat uniform ones, without rays. Immutable and
+// thread safe after construction.
 class PanePlaces {
  public:
   PanePlaces() = default;
   PanePlaces(const Scene& scene, const PaneGlass& glass);
   bool is_empty() const { return places_.empty(); }
-  // Sets `out` to all that a segment between a point of each may meet.
+  // Sets `out` to all panes that a segment between a point of `a` and a point of `b` may meet.
   void between(const Box& a, const Box& b, PanesBetween& out) const;
-  // What simple panes leave of light that comes to x over the way from x.
+  // Returns the transmittance of simple panes for light that reaches x from x + way.
   Rgb transmittance(const PanesBetween& panes, const Vec3& x, const Vec3& way) const;
 
  private:
   struct Place {
     Box bounds;
-    Vec3 normal;       // of a flat one; 0: it is not flat
+    Vec3 normal;       // of a flat pane; 0: not flat
     float height = 0;  // along the normal
-    float slack = 0;   // metres by which it may be off that
-    // Of a simple one, else empty: its triangles, and transmittance by the cosine of incidence at
-    // even steps.
+    float slack = 0;   // possible distance from that plane, metres
+    // Triangles of a simple pane, and its transmittance at even steps of the cosine of incidence.
+    // Empty for other panes.
     std::vector<std::array<Vec3, 3>> triangles;
     std::vector<Rgb> by_cosine;
   };

@@ -1,4 +1,4 @@
-// Rays and what they hit.
+// Rays, segments and hits: input and output of Tracer. Distances are multiples of the direction.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace troffer {
 
-// Points origin + t direction with t_min <= t <= t_max. The direction need not be unit.
+// The points origin + t direction with t_min <= t <= t_max. The direction need not be unit.
 struct Ray {
   Vec3 origin;
   float t_min = 0;
@@ -19,7 +19,7 @@ struct Ray {
   float t_max = std::numeric_limits<float>::infinity();
 };
 
-// What lies between two points: t from 0 to 1.
+// Returns the ray from one point to another, with t from 0 to 1.
 inline Ray segment(const Vec3& from, const Vec3& to) {
   Ray r;
   r.origin = from;
@@ -28,27 +28,26 @@ inline Ray segment(const Vec3& from, const Vec3& to) {
   return r;
 }
 
-// What a ray stands for: a cone around it, as wide as this where the ray begins, wider by `spread`
-// with every metre.
+// Cone around a ray: its width at the origin in metres, and the growth of the width per metre.
 struct RayCone {
   float width = 0, spread = 0;
 };
 
-// Rays with t in [0, 1], as plain arrays: those that ask whether two points see each other. Only
-// the first size() entries of the arrays count.
+// Segments (t from 0 to 1) in separate arrays, for shadow rays. Only the first size() entries
+// count.
 class Segments {
  public:
   static constexpr size_t coordinates = 6;  // of the origin, then of the direction
 
   size_t size() const { return size_; }
   const float* coordinate(size_t c) const { return arrays_[c].data(); }
-  // Room for n more after the last, for the caller to write them to end(c)[0 … n - 1] …
+  // Makes room for n more segments, which the caller writes to end(c)[0] … end(c)[n - 1].
   void make_room(size_t n) {
     if (arrays_[0].size() >= size_ + n) return;
     for (auto& a : arrays_) a.resize(2 * (size_ + n));
   }
   float* end(size_t c) { return arrays_[c].data() + size_; }
-  // … of which the first n now count.
+  // Adds the first n segments written to end(c).
   void grow(size_t n) { size_ += n; }
   void clear() { size_ = 0; }
 
@@ -59,9 +58,10 @@ class Segments {
 
 constexpr uint32_t no_geometry = 0xffffffffu;
 
-// geometry: a mesh's index, or mesh count (all spheres), or mesh count + 1 (all disks), or mesh
-// count + 2 + an instance's index (scene/mesh_in_world.h); primitive: the triangle, sphere or disk;
-// u, v: barycentric weights of vertices 1 and 2.
+// The closest hit of a ray. geometry: a mesh's index; mesh count for all spheres; mesh count + 1
+// for all disks; mesh count + 2 + an instance's index (scene/mesh_in_world.h). primitive: index of
+// the triangle, sphere or disk. u, v: barycentric weights of vertices 1 and 2. t: in units of the
+// ray's direction.
 struct Hit {
   float t = 0;
   float u = 0, v = 0;

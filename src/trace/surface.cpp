@@ -17,7 +17,8 @@ float largest_coordinate(const Vec3& p) {
   return std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z)));
 }
 
-// Tangent along increasing u, from the triangle's texture coordinates; false if they are singular.
+// Computes the unit tangent along increasing u. Returns false if the texture coordinates are
+// singular.
 bool tangent_from_uvs(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& uv, Vec3& tangent,
                       bool& is_mirrored) {
   const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
@@ -31,7 +32,7 @@ bool tangent_from_uvs(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& u
   return true;
 }
 
-// The corners' texture coordinates in the set by which a texture is looked up.
+// Texture coordinates of the corners, in both sets; a texture uses one of them.
 using CornerUvs = std::array<Vec2, 3>;
 struct UvSets {
   CornerUvs first, second;
@@ -41,7 +42,7 @@ struct UvSets {
   }
 };
 
-// The tangent along growing u about the normal n, unit; false where there is none.
+// Computes the unit tangent along increasing u, orthogonal to n. Returns false if there is none.
 bool tangent_about(const Vec3& n, const std::array<Vec3, 3>& p, const CornerUvs& uv, Vec3& t,
                    bool& is_mirrored) {
   if (!tangent_from_uvs(p, uv, t, is_mirrored)) return false;
@@ -52,14 +53,15 @@ bool tangent_about(const Vec3& n, const std::array<Vec3, 3>& p, const CornerUvs&
   return true;
 }
 
-// Normal map: tangent-space normal, x along u, y up the image (against v), z outwards (glTF).
+// Returns the shading normal of a tangent-space normal map: x along u, y up the image (against v),
+// z outwards (glTF).
 Vec3 mapped_normal(const Scene& scene, int32_t texture, float scale, const Surface& s,
                    const std::array<Vec3, 3>& p, const CornerUvs& uv) {
   Vec3 t;
   bool is_mirrored = false;
   const Vec3 n = s.shading_normal;
   if (!tangent_about(n, p, uv, t, is_mirrored)) return n;
-  // The bitangent runs up the image: against v, or with it where the lookup flips v.
+  // The bitangent runs up the image: against v, or along v if the lookup flips it.
   const bool is_v_up = scene.textures[uint32_t(texture)].uv_scale.y < 0;
   const Vec3 b = is_mirrored != is_v_up ? cross(n, t) : cross(t, n);
   const Rgb c = evaluate(scene.textures, uint32_t(texture), s.uv).rgb;
@@ -70,7 +72,7 @@ Vec3 mapped_normal(const Scene& scene, int32_t texture, float scale, const Surfa
   return mapped / ml;
 }
 
-// How positions and texture coordinates of a triangle change together.
+// Derivatives of positions by texture coordinates within a triangle.
 struct TriangleUvs {
   Vec3 along_u, along_v;  // metres per unit
   bool is_fine = false;
@@ -84,7 +86,7 @@ struct TriangleUvs {
     along_v = (e2 * d1.x - e1 * d2.x) * (1 / det);
     is_fine = length_squared(cross(along_u, along_v)) > 0;
   }
-  // The change of (u,v) over a way in the plane.
+  // Returns the change of (u,v) along a vector in the plane.
   Vec2 over(const Vec3& way) const {
     const float uu = dot(along_u, along_u), uv = dot(along_u, along_v), vv = dot(along_v, along_v);
     const float a = dot(way, along_u), b = dot(way, along_v), inverse = 1 / (uu * vv - uv * uv);
@@ -92,8 +94,8 @@ struct TriangleUvs {
   }
 };
 
-// What a cone of that width meets of a plane [1]: as wide across as it is, longer along its way,
-// but no longer than `most`.
+// Sets the footprint of a cone in the surface [1]: its width across, and longer along its
+// direction, by at most the factor `most`.
 void set_footprint(const TriangleUvs& uvs, const Vec3& normal, const Vec3& direction, float width,
                    Vec2& axis_a, Vec2& axis_b) {
   constexpr float most = 64;
@@ -107,8 +109,8 @@ void set_footprint(const TriangleUvs& uvs, const Vec3& normal, const Vec3& direc
   if (!std::isfinite(axis_a.x + axis_a.y + axis_b.x + axis_b.y)) axis_a = axis_b = {};
 }
 
-// The shading normal on heights that are looked up [2]: their gradient in the plane, by differences
-// over the footprint, or over a texel where that is less.
+// Returns the shading normal of a bump map [2]. The gradient of the height comes from differences
+// over the footprint, or over a texel if that is larger.
 Vec3 bumped_normal(const Scene& scene, const Material& m, const TriangleUvs& uvs,
                    const Surface& s) {
   const auto height = [&](const Vec2& d) {
@@ -133,7 +135,8 @@ Vec3 bumped_normal(const Scene& scene, const Material& m, const TriangleUvs& uvs
   return bumped / l;
 }
 
-// The grain of anisotropic gloss: growing u, turned as the material and its texture say.
+// Returns the direction of the grain of anisotropic gloss: increasing u, rotated by the material
+// and its texture.
 Vec2 grain_of(const Scene& scene, const Material& m, const Surface& s, const std::array<Vec3, 3>& p,
               const UvSets& uvs) {
   const int32_t texture = m.anisotropy.texture;
@@ -155,7 +158,7 @@ Vec2 grain_of(const Scene& scene, const Material& m, const Surface& s, const std
   return l > 1e-6f ? Vec2{grain.x / l, grain.y / l} : Vec2{1, 0};
 }
 
-// Whether look-ups at the surface want more than its (u,v): by its material, or by its light.
+// True if lookups at the surface need more than (u,v), for its material or its light.
 bool is_textured_at_all(const Scene& scene, const Surface& s) {
   const Material& m = scene.materials[s.material];
   return m.normal_texture >= 0 || m.bump.texture >= 0 || m.anisotropy.value > 0 ||
@@ -163,7 +166,7 @@ bool is_textured_at_all(const Scene& scene, const Surface& s) {
          (s.light >= 0 && scene.lights[size_t(s.light)].texture >= 0);
 }
 
-// What textures make of the surface; places for those that are looked up later.
+// Applies normal and bump maps, and sets the data for later texture lookups.
 void set_textured(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
                   const std::array<Vec3, 3>& p, const UvSets& uv, bool has_second_uv, Surface& s) {
   if (!is_textured_at_all(scene, s)) return;
@@ -194,14 +197,14 @@ void set_textured(const Scene& scene, const Ray& ray, const Hit& hit, const RayC
   }
 }
 
-// Of shapes without texture coordinates: where they are, for textures in space.
+// Sets position and cone width of shapes without texture coordinates, for textures in space.
 void set_place(const RayCone& cone, const Hit& hit, Surface& s) {
   s.uv = {};
   s.uv.position = s.position;
   s.uv.width = cone.width + cone.spread * hit.t;
 }
 
-// The triangle as it stands in the world: its vertices in the order in which they show the front.
+// A triangle in world space, with vertices in the order that shows the front.
 struct TriangleHit {
   const Mesh& mesh;
   Triangle vertices;
@@ -275,15 +278,15 @@ void instance_surface(const Scene& scene, const Ray& ray, const Hit& hit, const 
 void sphere_surface(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone,
                     Surface& s) {
   const Sphere& sphere = scene.spheres[hit.primitive];
-  const Vec3 from_centre =
-      normalize(ray.origin + ray.direction * hit.t - sphere.centre);  // re-projected: accurate
+  // Projected again, for accuracy.
+  const Vec3 from_centre = normalize(ray.origin + ray.direction * hit.t - sphere.centre);
   s.geometry = hit.geometry;
   s.primitive = hit.primitive;
   s.position = sphere.centre + from_centre * sphere.radius;
   s.geometric_normal = sphere.is_inside_out ? -from_centre : from_centre;
   s.shading_normal = s.geometric_normal;
   set_place(cone, hit, s);
-  // Embree solves a quadratic: its t errs more than a triangle's.
+  // Embree solves a quadratic for spheres, so t is less accurate than for triangles.
   s.offset = 4 * ray_offset(largest_coordinate(sphere.centre) + sphere.radius);
   s.material = sphere.material;
   s.light = sphere.light;

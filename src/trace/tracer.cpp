@@ -12,8 +12,8 @@ namespace troffer {
 
 namespace {
 
-// Packets of N rays, by Embree's names. It takes those as they are that fill the processor's
-// registers, and packs others anew.
+// Packets of N rays in Embree's types. Packets that fill the processor's registers are used as they
+// are; Embree repacks others.
 template <size_t N>
 struct Packets;
 template <>
@@ -64,13 +64,13 @@ void fill(RTCRay& r, const Ray& ray) {
   r.flags = 0;
 }
 
-// Embree asserts that rays are finite and within some 1.8e18; false for NaN.
+// True if Embree accepts the ray: finite and within some 1.8e18. False for NaN.
 bool is_traceable(const Ray& ray) {
   const Vec3 reach = abs(ray.origin) + abs(ray.direction);
   return reach.x + reach.y + reach.z < 1e18f;
 }
 
-// Lanes beyond n and untraceable ones stay inactive through `valid`, but are given finite values.
+// Fills a packet. Lanes beyond n and untraceable rays are inactive, but get finite values.
 template <size_t N>
 void fill(typename Packets<N>::Rays& p, std::span<const Ray> rays, std::array<int, N>& valid) {
   static constexpr Ray harmless{{0, 0, 0}, 0, {0, 0, 1}, 0};
@@ -111,8 +111,8 @@ void closest_packets(RTCScene scene, const InstanceNumbers& instances, Context& 
   }
 }
 
-// Not told that they are coherent: Embree's frusta of rays pay in scenes of few large triangles (a
-// tenth), and cost up to twice the time behind wires and leaves.
+// Shadow rays are not flagged as coherent: Embree's ray frusta are slow behind wires and leaves
+// (docs/log/trace.md).
 template <size_t N>
 void occluded_packets(RTCScene scene, Context& context, std::span<const Ray> rays,
                       std::span<uint8_t> is_occluded) {
@@ -126,7 +126,7 @@ void occluded_packets(RTCScene scene, Context& context, std::span<const Ray> ray
   }
 }
 
-// N segments from `first` on; lanes without one, and untraceable ones, as in the fill above.
+// Fills a packet with N segments from `first` on. Other lanes are treated as above.
 template <size_t N>
 void fill(typename Packets<N>::Rays& p, const Segments& s, size_t first,
           std::array<int, N>& valid) {
@@ -189,7 +189,7 @@ Ray ray_of(const Segments& s, size_t i) {
           1};
 }
 
-// act(N) with the packets' size as a constant.
+// Calls act(N) with the packet size as a constant.
 template <class Act>
 void in_packets(size_t size, const Act& act) {
   if (size == 16)
@@ -272,8 +272,8 @@ Rgb Tracer::transmittance(const Ray& ray) const {
     const Hit hit = closest_of(embree_->panes, embree_->instances, context, rest);
     if (!hit.is_valid()) return left;
     left *= glass_->transmittance(ray, hit);
-    // Clear of this pane: where two of its triangles meet it counts once. By the ray's own
-    // coordinates too, for its rounding: the pane may lie where all coordinates are zero.
+    // Steps clear of this pane, which counts once where two of its triangles meet. The ray's own
+    // coordinates matter too: the pane may lie where all coordinates are zero.
     const Vec3 at = max(abs(ray.origin), abs(ray.origin + ray.direction * hit.t));
     rest.t_min = hit.t + per_metre * ray_offset(std::max({at.x, at.y, at.z}));
     if (left.is_black() || !(rest.t_min < rest.t_max)) return left;

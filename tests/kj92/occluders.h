@@ -1,4 +1,4 @@
-// Analytic visibility of a source over (u,v), with exact areas: what the shadow tests look at.
+// Occluders of a source in (u,v) with exact areas, for tests of the bintree.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace troffer {
 
-// Convex polygon, counterclockwise, in (u,v); hides what is inside.
+// A convex polygon in (u,v), counterclockwise. It hides its inside.
 struct ConvexOccluder {
   std::vector<Vec2d> vertices;
 
@@ -25,7 +25,7 @@ struct ConvexOccluder {
     }
     return true;
   }
-  // Area of the part inside the unit square, clipped exactly.
+  // Returns the area of the part inside the unit square, clipped exactly.
   double area() const {
     std::vector<Vec2d> p = vertices;
     for (size_t side = 0; side < 4; ++side) {
@@ -50,19 +50,19 @@ struct ConvexOccluder {
   }
 };
 
-// Rectangle about `centre`, turned by `angle`.
+// Returns a rectangle around `centre`, rotated by `angle`.
 inline ConvexOccluder turned_rectangle(const Vec2d& centre, double width, double height,
                                        double angle) {
   const Vec2d x{std::cos(angle) * width / 2, std::sin(angle) * width / 2};
   const Vec2d y{-std::sin(angle) * height / 2, std::cos(angle) * height / 2};
   return {{centre - x - y, centre + x - y, centre + x + y, centre - x + y}};
 }
-// Everything on the left of the line through p with direction (cos, sin) of angle.
+// Returns the half-plane to the left of the line through p with direction (cos, sin) of angle.
 inline ConvexOccluder half_plane(const Vec2d& p, double angle) {
   const Vec2d left{-std::sin(angle), std::cos(angle)};
   return turned_rectangle(p + left * 10.0, 20, 20, angle);
 }
-// Regular polygon of 256 corners: a disk to 1e-4 of its area.
+// Returns a regular polygon of 256 corners: a disk to 1e-4 of its area.
 inline ConvexOccluder disk_occluder(const Vec2d& centre, double radius) {
   ConvexOccluder o;
   for (int i = 0; i < 256; ++i) {
@@ -72,7 +72,7 @@ inline ConvexOccluder disk_occluder(const Vec2d& centre, double radius) {
   return o;
 }
 
-// Any predicate hides(uv) as a query for a bintree, kernel 1.
+// Turns a predicate hides(uv) into a query for a bintree, with kernel 1.
 template <class Hides>
 auto query_of(Hides hides) {
   return [hides](std::span<const Vec2> uv, std::span<ShadowRayResult> results) {

@@ -1,4 +1,4 @@
-// Sampling one source against analytic occluders: stops, full sampling, errors, density, kernels.
+// Samples one source behind analytic occluders: stops, full sampling, errors, density, kernels.
 #include "kj92/bintree.h"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ struct Errors {
   double bias = 0, rms = 0, rays = 0, standard_error = 0;
 };
 
-// Estimates over seeds against the exact visible share.
+// Compares estimates over seeds with the exact visible share.
 template <class Query>
 Errors errors_of(const BintreeOptions& o, const Query& query, double truth, int seeds) {
   Bintree tree(o);
@@ -115,7 +115,7 @@ TEST_CASE("bintree: full stratified sampling is unbiased, adaptive sampling with
     o.allowed_variance = 0;
     o.most_rays = 64;
     const Errors full = errors_of(o, query, truth, 2000);
-    // 6 tests here: 4 standard errors keep false alarms under 4e-4
+    // 6 checks with 4 standard errors keep the rate of false alarms under 4e-4
     CHECK(std::abs(full.bias) < 4 * full.standard_error + 2e-5);
     o.allowed_variance = 0.05f;
     o.most_rays = 128;
@@ -123,8 +123,8 @@ TEST_CASE("bintree: full stratified sampling is unbiased, adaptive sampling with
     MESSAGE(std::string(name) << ": visible " << truth << "; adaptive, allowed 0.05: bias "
                               << e.bias << ", rms error " << e.rms << ", rays " << e.rays
                               << "; stratified 64: rms error " << full.rms);
-    // Light is overestimated where thin shadows fall between the initial rays: the leg is missed
-    // by most trees. The checkerboard is finer than what the rules can follow.
+    // Light is overestimated where thin shadows fall between the initial rays: most trees miss the
+    // table leg. The checkerboard is too fine for the rules.
     CHECK(std::abs(e.bias) < 0.055);
     CHECK(e.rms < 0.09);
     CHECK(e.rays < 128);
@@ -145,7 +145,7 @@ TEST_CASE("bintree: a refinement sequence, round by round") {
   o.mean_change = 0;
   Bintree tree(o);
   std::vector<ShadowRayResult> results;
-  // whether the leaf over (u,v) has this cell
+  // true if the leaf with this cell exists
   const auto has_leaf = [&](float u0, float u1, float v0, float v1) {
     bool is_found = false;
     tree.nodes().for_each_leaf([&](int32_t i) {
@@ -163,23 +163,23 @@ TEST_CASE("bintree: a refinement sequence, round by round") {
     tree.start(stream);
     CHECK(tree.pending().size() == 4);
     answer();
-    // The left half is mixed; in it the dark quarter differs from its neighbour on the right.
+    // The left half is mixed. In it, the dark quarter differs from its right neighbour.
     CHECK(tree.pending().size() == 1);
     CHECK(has_leaf(0, 0.25f, 0, 0.5f));
     CHECK(has_leaf(0.25f, 0.5f, 0, 0.5f));
     answer();
-    // The dark quarter again; both halves differ from something and have one ray: the first. It
-    // comes to level 4, so the quarter above it, of level 2, is split too.
+    // The dark quarter again. Both halves differ from a neighbour and have one ray, so the first is
+    // split, to level 4. The quarter above it, of level 2, must then be split too.
     CHECK(tree.pending().size() == 2);
     CHECK(has_leaf(0, 0.25f, 0.25f, 0.5f));
     CHECK(has_leaf(0, 0.25f, 0.5f, 1));
     CHECK(tree.leaves() == 7);
     answer();
-    // Now the second half, with fewer rays; and with it the quarter on its right.
+    // The second half has fewer rays and is split, and with it the quarter to its right.
     CHECK(tree.pending().size() == 2);
     CHECK(has_leaf(0.25f, 0.5f, 0.25f, 0.5f));
     CHECK(has_leaf(0.5f, 0.75f, 0, 0.5f));
-    CHECK(has_leaf(0.5f, 1, 0.5f, 1));  // touches no leaf of level 4 but at a corner
+    CHECK(has_leaf(0.5f, 1, 0.5f, 1));  // touches leaves of level 4 only at a corner
     CHECK(tree.leaves() == 9);
   }
 }
@@ -239,7 +239,7 @@ TEST_CASE("bintree: what it believes when it stops, and the cap") {
     const bool is_met = std::sqrt(e.variance) < o.allowed_variance;
     CHECK(is_met == (e.stop == BintreeStop::variance));
     if (e.stop == BintreeStop::cap) CHECK(e.rays == uint32_t(o.most_rays));
-    if (e.rays < uint32_t(o.most_rays)) {  // the cap ends the enforcement, too
+    if (e.rays < uint32_t(o.most_rays)) {  // the cap also ends the enforcement
       CHECK(largest_level_difference(tree.nodes()) <= o.level_difference);
     }
   }
@@ -318,7 +318,7 @@ TEST_CASE("bintree: kernels weigh visibility; the allowance is relative to the u
   }
   CHECK(mean == doctest::Approx(0.25).epsilon(0.02));
   CHECK(kernel == doctest::Approx(1).epsilon(0.01));
-  // all visible: a strong kernel alone asks for more rays, a constant one does not
+  // all visible: a varying kernel needs more rays, a constant one does not
   const auto near = [](std::span<const Vec2> uv, std::span<ShadowRayResult> out) {
     for (size_t i = 0; i < uv.size(); ++i) out[i] = {true, 2 * uv[i].x};
   };
@@ -340,12 +340,12 @@ TEST_CASE("bintree: depends on the stream alone; no memory is taken after the fi
     const BintreeEstimate b = sample_source(used, results, hash_of(2, s), query_of(edge));
     CHECK(a.mean == b.mean);
     CHECK(a.rays == b.rays);
-    // the pattern is the same, too, wherever its nodes are stored
+    // the pattern must be the same, too, wherever its nodes are stored
     const BintreeEstimate c = resample_source(fresh, results, hash_of(3, s), query_of(edge));
     const BintreeEstimate d = resample_source(used, results, hash_of(3, s), query_of(edge));
     CHECK(c.mean == d.mean);
     CHECK(c.rays == d.rays);
-    if (s % 2 == 0) {  // another history
+    if (s % 2 == 0) {  // gives `used` another history
       resample_source(used, results, hash_of(4, s), query_of(edge));
     }
   }

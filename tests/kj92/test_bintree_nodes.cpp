@@ -1,4 +1,4 @@
-// The tree's bookkeeping, on random trees: cells, samples in their cells, neighbours, sums.
+// Tests the nodes of random trees: cells, samples inside their cells, neighbours, sums.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::vector<int32_t> leaves_of(const BintreeNodes& t, int32_t i = BintreeNodes::
   return out;
 }
 
-// `splits` splits of random leaves and some merges, results at random.
+// Returns a tree after `splits` splits of random leaves and some merges, with random results.
 BintreeNodes random_tree(Random& r, int splits, int deepest = BintreeNodes::max_level) {
   BintreeNodes t(size_t(splits) + 1);
   t.reset(r.next_vec2());
@@ -42,7 +42,7 @@ BintreeNodes random_tree(Random& r, int splits, int deepest = BintreeNodes::max_
   return t;
 }
 
-// What summarise() keeps, from the leaves alone, in double precision.
+// Computes the values of summarise() from the leaves alone, in double precision.
 void check_against_leaves(const BintreeNodes& t, int32_t i) {
   const std::vector<int32_t> leaves = leaves_of(t, i);
   const double area = double(t.cell(i).measure());
@@ -93,7 +93,7 @@ void check_nodes(const BintreeNodes& t, int32_t i = BintreeNodes::root) {
   check_nodes(t, b);
 }
 
-// Whether two cells share a piece of a side, b on the given side of a.
+// True if two cells share a part of a side, with b on the given side of a.
 bool touches(const SourceCell& a, const SourceCell& b, BintreeSide side) {
   const bool v_overlap = a.v0 < b.v1 && b.v0 < a.v1, u_overlap = a.u0 < b.u1 && b.u0 < a.u1;
   switch (side) {
@@ -194,7 +194,7 @@ TEST_CASE("bintree: neighbours agree with geometry") {
         for (const int32_t other : leaves) {
           if (!touches(t.cell(i), t.cell(other), side)) continue;
           deepest = std::max(deepest, int(t[other].level));
-          // a leaf no deeper than i is the neighbour itself
+          // a leaf no deeper than i must be the neighbour itself
           if (t[other].level <= t[i].level) CHECK(n == other);
         }
         CHECK((n < 0) == (deepest < 0));

@@ -1,4 +1,4 @@
-// The lattice in which patterns of neighbouring points are compared.
+// Tests of the lattice in which patterns of neighbouring points are compared.
 #include "kj92/bintree_pattern.h"
 
 #include <doctest/doctest.h>
@@ -54,12 +54,12 @@ TEST_CASE("leaves larger than cells speak for all of them") {
     CHECK(dark.dark == ~uint64_t(0));
     CHECK(dark.lit == 0);
   }
-  // 2 leaves: the left half and the right half, along u.
+  // 2 leaves: the left and the right half in u
   const ShadowPattern halves =
       pattern_of(tree_over(2, [](Vec2 uv) { return uv.x < 0.5f; }).nodes());
   CHECK(halves.lit == 0x0f0f0f0f0f0f0f0full);
   CHECK(halves.dark == 0xf0f0f0f0f0f0f0f0ull);
-  // 4 leaves: quarters; v counts rows.
+  // 4 leaves: quarters; v counts rows
   const ShadowPattern below = pattern_of(tree_over(4, [](Vec2 uv) { return uv.y < 0.5f; }).nodes());
   CHECK(below.lit == 0x00000000ffffffffull);
   CHECK(below.dark == 0xffffffff00000000ull);
@@ -79,7 +79,7 @@ TEST_CASE("leaves as large as cells: each its own; smaller ones agree or are mix
       CHECK(p.mixed() == 0);
     }
   }
-  // A finer checkerboard than the lattice: with 4 leaves in a cell, every cell is mixed.
+  // A checkerboard finer than the lattice: each cell has 4 leaves and is mixed.
   const auto fine = [](Vec2 uv) { return (int(uv.x * 16) + int(uv.y * 16)) % 2 == 0; };
   const ShadowPattern p = pattern_of(tree_over(256, fine).nodes());
   CHECK(p.mixed() == ~uint64_t(0));
@@ -111,7 +111,7 @@ TEST_CASE("doubt and difference: symmetric, bounded, nothing against itself") {
     CHECK(pattern_difference(a, a) == 0);
     CHECK(pattern_difference(a, c) <= d + pattern_difference(b, c) + 1e-6f);  // a metric
     if (d > 0) CHECK(cells_in_doubt(a, b) != 0);
-    // Where there is no doubt, both say the same, definite thing.
+    // Without doubt, both patterns are definite and equal.
     const uint64_t sure = ~cells_in_doubt(a, b);
     CHECK((a.lit & sure) == (b.lit & sure));
     CHECK((a.dark & sure) == (b.dark & sure));
@@ -133,7 +133,7 @@ TEST_CASE("cells of the lattice: together the square, in the order of the bits")
     CHECK(c.u1 <= 1);
     CHECK(c.u0 == float(i % 8) / 8);
     CHECK(c.v0 == float(i / 8) / 8);
-    // Light in this cell alone lights this bit alone.
+    // A light region of one cell sets only this bit.
     const auto is_visible = [&](Vec2 uv) {
       return uv.x >= c.u0 && uv.x < c.u1 && uv.y >= c.v0 && uv.y < c.v1;
     };

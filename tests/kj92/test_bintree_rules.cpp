@@ -1,4 +1,4 @@
-// Each rule of docs/bintree.md on trees small enough to say what must come out.
+// Tests each rule of docs/bintree.md on trees small enough to know the result.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int32_t root = BintreeNodes::root;
 
-// A tree of one level, and the means to write down others.
+// A tree of one level, with functions to build others.
 struct Planted {
   BintreeNodes t{64};
   Random random{1};
@@ -22,13 +22,13 @@ struct Planted {
 
   explicit Planted(int level) { plant(t, level, random, pending); }
 
-  // The node with the cell of `level` that contains (u,v).
+  // Returns the node with the cell of `level` that contains (u,v).
   int32_t at(int level, float u, float v) const {
     return t.find(level, uint32_t(u * float(1 << ((level + 1) / 2))),
                   uint32_t(v * float(1 << (level / 2))));
   }
   void split(int level, float u, float v) { split_pending(t, at(level, u, v), random, pending); }
-  // Results by what is at the middle of each leaf's cell.
+  // Sets results by the visibility at the centre of each leaf's cell.
   template <class IsVisible>
   void answer(IsVisible is_visible) {
     t.for_each_leaf([&](int32_t i) {
@@ -57,13 +57,13 @@ TEST_CASE("rule 1: initial rays are even, one to a cell, all pending") {
 
 TEST_CASE("rule 3a: the only child in penumbra is taken") {
   Planted p(3);
-  // left half light, right half mixed: its upper right cell is dark
+  // left half light, right half mixed: the upper right cell is dark
   p.answer([](float u, float v) { return !(u > 0.75f && v > 0.5f); });
   const int32_t a = p.t.first_child(root), b = a + 1;
   CHECK(choose_only_penumbra(p.t, a, b) == b);
   CHECK(choose_only_penumbra(p.t, b, a) == b);
-  // of the right half the upper quarter is the mixed one; its left cell is light, its right one
-  // dark, and only the dark one differs from a neighbour (below)
+  // The upper quarter of the right half is mixed. Its left cell is light and its right one dark,
+  // and only the dark one differs from a neighbour (the one below).
   CHECK(choose_leaf(p.t) == p.at(3, 0.9f, 0.9f));
 }
 
@@ -81,17 +81,17 @@ TEST_CASE("rule 3b: of two in penumbra the one with fewer samples is taken") {
 
 TEST_CASE("rule 3c: of two without penumbra the one that differs from its neighbours is taken") {
   Planted p(4);
-  // one dark cell of 16 in the left lower quarter's right upper place
+  // of 16 cells only the upper right one in the lower left quarter is dark
   p.answer([](float u, float v) { return !(u > 0.25f && u < 0.5f && v > 0.25f && v < 0.5f); });
-  // cells right of it and above it are light and have it for a neighbour
+  // the cells to its right and above it are light and have it as a neighbour
   const int32_t right = p.at(4, 0.6f, 0.3f), below_right = p.at(4, 0.6f, 0.1f);
   CHECK(p.t.sibling(right) == below_right);
   CHECK(differs_from_neighbours(p.t, right));
   CHECK(!differs_from_neighbours(p.t, below_right));
   CHECK(choose_by_neighbours(p.t, right, below_right) == right);
   CHECK(choose_by_neighbours(p.t, below_right, right) == right);
-  // the dark one and its sibling: both parents' halves differ in flag; only the dark one differs
-  // from others than its sibling
+  // Both children of the parent differ in flag, but only the dark one differs from a neighbour
+  // other than its sibling.
   const int32_t dark = p.at(4, 0.3f, 0.3f), sibling = p.t.sibling(dark);
   CHECK(differs_from_neighbours(p.t, dark));
   CHECK(!differs_from_neighbours(p.t, sibling));
@@ -102,7 +102,8 @@ TEST_CASE("rule 3c: without a difference the one with fewer samples is taken, le
   Planted p(2);
   p.split(2, 0.1f, 0.1f);
   p.answer([](float, float) { return true; });
-  // left half has 3 rays, right half 2: right; there both have one: the first
+  // The left half has 3 rays and the right half 2, so the right half is taken. Its children have
+  // one ray each: the first is taken.
   CHECK(choose_leaf(p.t) == p.at(2, 0.9f, 0.1f));
   CHECK(choose_leaf_evenly(p.t) == p.at(2, 0.9f, 0.1f));
 }
@@ -110,7 +111,7 @@ TEST_CASE("rule 3c: without a difference the one with fewer samples is taken, le
 TEST_CASE("rule 3c: a larger leaf counts as neighbour of its smaller ones") {
   Planted p(2);
   p.split(2, 0.1f, 0.1f);
-  p.split(3, 0.3f, 0.1f);  // level 4 beside the leaf (0.5…1, 0…0.5) of level 2
+  p.split(3, 0.3f, 0.1f);  // level 4 beside a leaf of level 2 in [0.5, 1) × [0, 0.5)
   p.answer([](float u, float v) { return u < 0.5f || v > 0.5f; });
   CHECK(differs_from_neighbours(p.t, p.at(4, 0.3f, 0.1f)));
   CHECK(!differs_from_neighbours(p.t, p.at(3, 0.1f, 0.1f)));
@@ -124,10 +125,10 @@ TEST_CASE("rule 4: larger leaves beside deep ones are split, and no others") {
   CHECK(largest_level_difference(p.t) == 2);
   size_t leaves = p.leaves();
   const int32_t where = p.at(2, 0.1f, 0.1f);
-  // two levels allowed: nothing to do
+  // two levels allowed: nothing to split
   enforce_level_difference(p.t, where, 2, 64, leaves, p.random, p.pending, p.scratch);
   CHECK(p.pending.empty());
-  // one: the right lower quarter and the left upper one, which lie beside the leaves of level 4
+  // one level: the lower right and the upper left quarter, which are beside leaves of level 4
   enforce_level_difference(p.t, where, 1, 64, leaves, p.random, p.pending, p.scratch);
   CHECK(largest_level_difference(p.t) == 1);
   CHECK(leaves == 8);
@@ -145,7 +146,7 @@ TEST_CASE("rule 4: holds after any sequence of splits; difference 0 means one le
       p.answer([](float, float) { return true; });
       size_t leaves = p.leaves();
       for (int s = 0; s < 20; ++s) {
-        const Vec2 uv = random.next_vec2() * 0.3f;  // always about one corner
+        const Vec2 uv = random.next_vec2() * 0.3f;  // always near one corner
         const int32_t leaf = p.t.find(12, uint32_t(uv.x * 64), uint32_t(uv.y * 64));
         if (p.t[leaf].level == 12) continue;
         split_pending(p.t, leaf, p.random, p.pending);
@@ -155,7 +156,7 @@ TEST_CASE("rule 4: holds after any sequence of splits; difference 0 means one le
         CHECK(largest_level_difference(p.t) <= difference);
         if (leaves > 3000) break;
       }
-      // every pending entry is a leaf, once, and they are all that came by splitting
+      // each pending entry is a leaf, occurs once, and came from a split
       std::vector<int32_t> sorted = p.pending;
       std::sort(sorted.begin(), sorted.end());
       CHECK(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
@@ -175,15 +176,15 @@ TEST_CASE("rule 4: stops at the cap") {
 }
 
 TEST_CASE("reuse: shrink, before and after") {
-  // 32 leaves in 8 columns: six columns light, the two on the right dark
+  // 32 leaves in 8 columns: six light columns, the two on the right dark
   Planted p(5);
   p.answer([](float u, float) { return u < 0.7f; });
   shrink(p.t, 2, 100, p.random, p.scratch);
-  // left half (level 1) is all light: its children, the quarters of level 2, become leaves
+  // The left half (level 1) is all light, so its children (level 2) become leaves.
   CHECK(p.is_leaf(2, 0.1f, 0.1f));
   CHECK(p.is_leaf(2, 0.1f, 0.9f));
-  // the right half is mixed, and so are its quarters; of each quarter the left half (level 3) is
-  // all light, the right one all dark: their children become leaves of level 4
+  // The right half and its quarters are mixed. In each quarter the left half (level 3) is all light
+  // and the right one all dark, so their children become leaves of level 4.
   CHECK(p.t[p.at(2, 0.6f, 0.1f)].flag == ShadowFlag::penumbra);
   for (const float v : {0.1f, 0.9f}) {
     CHECK(!p.t[p.at(3, 0.6f, v)].is_leaf());
@@ -193,7 +194,7 @@ TEST_CASE("reuse: shrink, before and after") {
   }
   CHECK(p.leaves() == 2 + 2 * 2 * 2);
   CHECK(p.t[root].mean == 0.75f);
-  // a second time there is nothing left to remove
+  // a second call has nothing to remove
   shrink(p.t, 2, 100, p.random, p.scratch);
   CHECK(p.leaves() == 10);
 }
@@ -203,13 +204,13 @@ TEST_CASE("reuse: shrink stops at the initial level, and at a mixed parent") {
     Planted p(5);
     p.answer([](float, float) { return false; });
     shrink(p.t, initial, 100, p.random, p.scratch);
-    // the root's two children could be leaves: level 1 at the highest
+    // only the root's children may become leaves: level 1 at the highest
     CHECK(p.leaves() == size_t(1) << std::max(initial, 1));
   }
   Planted p(2);
   p.answer([](float u, float) { return u < 0.5f; });
   shrink(p.t, 0, 100, p.random, p.scratch);
-  CHECK(p.leaves() == 4);  // the halves are uniform, but what they are part of is not
+  CHECK(p.leaves() == 4);  // the halves are uniform, but their parent is not
 }
 
 TEST_CASE("reuse: shrink keeps the level difference") {

@@ -1,4 +1,4 @@
-// Reuse of the pattern from point to point (docs/bintree.md) under shadows that move.
+// Tests pattern reuse from point to point (docs/bintree.md) under moving shadows.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ struct Result {
   double rms = 0, rays = 0, bias = 0;
 };
 
-// Scanlines of points over which the occluder crosses the source; each starts anew.
+// Scans lines of points while the occluder crosses the source. Each line starts without a pattern.
 Result scan(const BintreeOptions& o, bool is_coherent, Moving kind) {
   constexpr int lines = 24, points = 96;
   Bintree tree(o);
@@ -74,15 +74,15 @@ TEST_CASE("coherence: the same point again takes no more rays than the pattern h
     const BintreeEstimate again = answer_all(tree, results, query_of(edge));
     CHECK(again.rays == first);
     CHECK(again.stop == BintreeStop::variance);
-    // Shrunk in between: about as many. The variance of the mean falls with the number of rays, so
-    // for those that were removed others are cast, at the edge.
+    // With shrinking the number is about the same. The variance falls with the number of rays, so
+    // removed rays are replaced by others at the edge.
     const uint32_t shrunk = resample_source(tree, results, hash_of(4, k), query_of(edge)).rays;
     CHECK(double(shrunk) <= 1.15 * first + 4);
   }
 }
 
 TEST_CASE("coherence: a pattern resampled without refinement is unbiased") {
-  // the cells were chosen at another point, so the new rays owe nothing to themselves
+  // The cells come from another point, so the new rays are independent of them.
   BintreeOptions o;
   o.allowed_variance = 0.05f;
   const ConvexOccluder before = half_plane({0.43, 0.5}, 1.2), now = half_plane({0.5, 0.5}, 1.2);
@@ -94,7 +94,8 @@ TEST_CASE("coherence: a pattern resampled without refinement is unbiased") {
   for (int s = 0; s < n; ++s) {
     sample_source(tree, results, hash_of(5, s), query_of(before));
     tree.shrink();
-    tree.resample(hash_of(6, s), 1e6f);  // an allowance so large that the first round ends it
+    // The allowed error is so large that the first round ends the sampling.
+    tree.resample(hash_of(6, s), 1e6f);
     const BintreeEstimate& e = answer_all(tree, results, query_of(now));
     CHECK(e.rays == tree.leaves());
     const double d = double(e.mean) - truth;
@@ -122,7 +123,7 @@ TEST_CASE("coherence: moving shadows, error and rays with and without") {
                                 << "; old positions kept: rms error " << kept.rms << ", rays "
                                 << kept.rays);
       CHECK(with.rms < without.rms / 1.25);
-      // a thin leg is often missed altogether without coherence, which takes no rays
+      // without coherence a thin leg is often missed, which costs no rays
       if (kind != Moving::leg) CHECK(with.rays < 1.2 * without.rays);
     }
   }

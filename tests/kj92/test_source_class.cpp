@@ -1,4 +1,4 @@
-// The classification of a source as seen from a patch: thresholds, and what must always hold.
+// Tests the classification of sources: thresholds, and properties that always hold.
 #include "kj92/source_class.h"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,8 @@ SourceClass class_of(const Points& points, float mean = -1, SelectionThresholds 
   return classify(points, mean, t);
 }
 
-// Points that get `rest` of other sources, and `unoccluded` × a visibility each of this one.
+// Returns points that receive `rest` from other sources and `unoccluded` × visibility from this
+// one.
 Points seen(float unoccluded, const std::vector<float>& visibilities, float rest = 1) {
   Points points;
   for (const float r : visibilities)
@@ -53,7 +54,7 @@ TEST_CASE("hidden at all points: a strong source is probed, a weak one is left a
   const SourceClass strong = class_of(seen(5, {0, 0, 0.003f}));
   CHECK(strong.view == SourceView::occluded);
   CHECK(strong.treatment == SourceTreatment::probed);
-  // Of a very strong one even two hundredths are an edge that can be seen.
+  // If a source is very strong, a visibility of 2 % makes a visible edge.
   const SourceClass blinding = class_of(seen(50, {0, 0.02f}));
   CHECK(blinding.view == SourceView::occluded);
   CHECK(blinding.treatment == SourceTreatment::sampled);
@@ -77,7 +78,7 @@ TEST_CASE("a weak source with a visible shadow edge is sampled, one without is n
   CHECK(edge.share < SelectionThresholds{}.major_share);
   CHECK(edge.treatment == SourceTreatment::sampled);
   CHECK(is_general(class_of(seen(0.04f, {0.4f, 0.5f}))));                        // no spread
-  CHECK(is_general(class_of(seen(0.015f, {0, 1}))));                             // no light
+  CHECK(is_general(class_of(seen(0.015f, {0, 1}))));                             // too weak
   CHECK(class_of(seen(2, {0.5f, 0.5f})).treatment == SourceTreatment::sampled);  // strong
 }
 
@@ -103,7 +104,7 @@ TEST_CASE("thresholds hold at their very values") {
   CHECK(is_general(at({{0, 0.12499f, 1}})));
   CHECK(at({{0.125f, 0.125f, 1}}).treatment == SourceTreatment::probed);
   CHECK(is_general(at({{0.12499f, 0.12499f, 1}})));
-  // A point counts only above least_share.
+  // a point counts only above least_share
   CHECK(at({{0, 0.0625f, 1}, {1, 1, 1}}).view == SourceView::visible);
   CHECK(at({{0, 0.0626f, 1}, {1, 1, 1}}).view == SourceView::partly);
 }
@@ -118,14 +119,14 @@ TEST_CASE("points that do not count, and none that does") {
     CHECK(c.least_visibility == 0);
     CHECK(c.most_visibility == 0);
   }
-  // A horizon through the patch is no shadow: points below it do not count.
+  // A horizon that crosses the patch is not a shadow, so points below it do not count.
   CHECK(class_of({{0, 0, 1}, {2, 2, 3}, {2, 2, 3}}).view == SourceView::visible);
 }
 
 TEST_CASE("dark points are measured against the patch's mean, dark patches against themselves") {
-  // All that a dark corner of a bright patch gets is not much.
+  // A dark corner of a bright patch receives little in total.
   CHECK(is_general(class_of({{0.004f, 0.008f, 0.004f}, {0.004f, 0.008f, 1}, {0, 0, 2}}, 1)));
-  // The same on a patch that is dark everywhere is all there is.
+  // The same light on a patch that is dark everywhere is important.
   CHECK(class_of({{0.004f, 0.008f, 0.004f}, {0.004f, 0.008f, 0.005f}}).treatment ==
         SourceTreatment::sampled);
 }
@@ -147,7 +148,7 @@ TEST_CASE("what holds for any points") {
     sampled += c.treatment == SourceTreatment::sampled;
     probed += c.treatment == SourceTreatment::probed;
     general += c.treatment == SourceTreatment::general;
-    // Order does not matter, nor the unit of light.
+    // Neither the order nor the unit of light matters.
     Points other = points;
     std::reverse(other.begin(), other.end());
     for (SourceAtPoint& p : other) p = {4 * p.received, 4 * p.unoccluded, 4 * p.total};

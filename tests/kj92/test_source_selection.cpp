@@ -1,4 +1,4 @@
-// Source selection on small rooms: nothing lost, nothing twice, and the sources that were meant.
+// Tests source selection in small rooms: sums of light, and the expected sources.
 #include "kj92/source_selection.h"
 
 #include <doctest/doctest.h>
@@ -43,7 +43,7 @@ void add_table(Scene& s, float height = 1) {
             {2.5f, 1, height - 0.05f}});
 }
 
-// A 4 × 3 × 2.5 m room: light 0 large, 1 and 2 weaker and coloured; a table.
+// A room of 4 × 3 × 2.5 m with a table: light 0 is large, 1 and 2 are weaker and coloured.
 Scene three_lamps() {
   Scene s = lit_room(0.5f);
   add_lamp(s, {0.2f, 0.3f, 2.3f}, 0.4f, {9, 3, 1});
@@ -52,7 +52,7 @@ Scene three_lamps() {
   return s;
 }
 
-// A floor lit indirectly: the lamp shines up at the ceiling from a bowl; a table below.
+// A room lit indirectly: a lamp in a bowl shines at the ceiling, above a table.
 Scene uplight() {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.7f}), {0, 0, 0}, {4, 3, 2.5f});
@@ -78,7 +78,7 @@ struct Selected {
   SourceSelection selection;
 };
 
-// The patch of the side of the fragment that a place on a mesh lies in.
+// Returns the patch at one side of a triangle.
 uint32_t patch_at(const Selected& s, uint32_t mesh, uint32_t triangle, bool is_back = false) {
   Vec3 weights;
   const uint32_t f =
@@ -96,7 +96,7 @@ const TreatedSource* find(const SourceSelection& s, uint32_t patch, uint32_t sou
   return nullptr;
 }
 
-// What a source gave to a point, and whether the list of the point holds it.
+// Returns what a source gives to a point. is_kept: true if the point's list contains it.
 StoredContribution given(const Selected& s, uint32_t source, uint32_t point, bool& is_kept) {
   for (const StoredContribution& c : s.solution.contributions(point))
     if (c.source == source) {
@@ -115,7 +115,8 @@ struct Sums {
   uint32_t corners = 0, treated = 0, patches = 0, inexact = 0;
 };
 
-// Every knot of every fragment's side: general value + what treated sources gave = all there was.
+// Checks at every knot of every fragment side that general radiosity plus treated sources equal the
+// total.
 Sums check_sums(const Selected& s, const SourceSelection& selection) {
   Sums sums;
   const RadiosityMesh& mesh = s.solution.mesh;
@@ -153,7 +154,8 @@ Sums check_sums(const Selected& s, const SourceSelection& selection) {
           CHECK(general.indirect[c] >= 0);
           const double scale = double(wanted[c]) + double(s.solution.mean_irradiance);
           CHECK(double(sum[c]) >= double(wanted[c]) - 1e-5 * scale);
-          // What patches give is computed anew where it was not kept: it may differ by noise.
+          // Contributions of patches that are not stored are computed again and may differ by
+          // noise.
           CHECK(double(sum[c]) <= double(wanted[c]) + (is_exact ? 1e-5 : 0.05) * scale);
         }
       }
@@ -224,7 +226,7 @@ TEST_CASE("lists are in order, name existing sources, and leave out what is gene
 }
 
 TEST_CASE("a strong source that is wholly hidden is never sampled, only probed") {
-  // Under a slab that reaches from wall to wall sits a lamp of its own; above, a brighter one.
+  // Under a slab that reaches from wall to wall hangs a lamp; a brighter one hangs above it.
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {4, 3, 2.5f});
   const uint32_t slab = add_diffuse(s, Rgb{0.5f});
@@ -251,15 +253,15 @@ TEST_CASE("a strong source that is wholly hidden is never sampled, only probed")
 }
 
 TEST_CASE("a weak source that throws an edge that can be seen is sampled") {
-  // The weak lamp stands close above a screen's edge; the strong one lights all of the floor alike.
+  // The weak lamp is just above a screen's edge; the strong one lights the whole floor evenly.
   Scene s;
   const uint32_t floor =
       add_quad(s, add_diffuse(s, Rgb{0}), {Vec3{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
   add_lamp(s, {0, 0, 30}, 4, Rgb{100});
   add_lamp(s, {1.95f, 1.95f, 2}, 0.1f, Rgb{20});
   add_quad(s, 0, {Vec3{2, 0, 1}, {4, 0, 1}, {4, 4, 1}, {2, 4, 1}});
-  // Of the strong lamp the screen hides as much; this one is sampled for that. The weak one's share
-  // is what counts here.
+  // The screen hides as much of the strong lamp, which is sampled for that reason. Only the weak
+  // lamp's share matters here.
   RadiosityOptions o = coarse(4);
   o.meshing = sizes(0.5f, 1);
   const Selected r(std::move(s), o);
@@ -306,7 +308,7 @@ TEST_CASE("restriction and switching off") {
     }
   }
   CHECK(found > 0);
-  // All lights sampled: nothing of their light is left in the general value.
+  // If all lights are sampled, none of their light remains in the general radiosity.
   for (uint32_t f = 0; f < s.solution.mesh.fragments.size(); ++f)
     CHECK(all.general(f, false, {0.2f, 0.3f, 0.5f}).direct.is_black());
 }

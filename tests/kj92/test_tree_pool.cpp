@@ -1,4 +1,4 @@
-// Which bintree goes to whom: reuse by key, nothing in use given away, a past that does not matter.
+// Tests TreePool: reuse by key, entries in use, and independence of the past.
 #include "kj92/tree_pool.h"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ TreeKey key(uint32_t source, uint32_t geometry = 0, uint32_t depth = 0, bool is_
   return {source, geometry, depth, is_front};
 }
 
-// As the sampler does: whether a pattern was there, and there is one now.
+// Acquires a tree as the sampler does. Returns true if it had a pattern, and leaves one in it.
 bool use(TreePool& pool, const TreeKey& k, const Vec3& normal = up, bool reuses = true) {
   TreePool::Entry& e = pool.acquire(k, normal, reuses);
   const bool had = e.has_pattern;
@@ -26,7 +26,8 @@ bool use(TreePool& pool, const TreeKey& k, const Vec3& normal = up, bool reuses 
   return had;
 }
 
-// Vertices of random numbers of sources on random objects; which of the trees had a pattern.
+// Simulates vertices with random numbers of sources on random objects. Returns which trees had a
+// pattern.
 std::vector<bool> run_batch(TreePool& pool, uint64_t seed, uint32_t most_sources, int vertices) {
   Random random(seed);
   std::vector<bool> had;
@@ -56,7 +57,7 @@ TEST_CASE("a pattern comes back to the same source, object, depth and side, and 
   CHECK(!next(key(1, 0, 0, false)));
   CHECK(next(key(1)));
   CHECK(next(key(1, 0, 0, false)));
-  // Round surfaces: a little turned, it is reused; a lot, it is not.
+  // On curved surfaces the pattern is reused after a small rotation, not after a large one.
   CHECK(next(key(1), normalize(Vec3{0.3f, 0, 1})));
   CHECK(!next(key(1), normalize(Vec3{-0.6f, 0, 1})));
   CHECK(!next(key(1), up, false));
@@ -76,7 +77,7 @@ TEST_CASE("trees in use are never given away") {
       e.has_pattern = true;
     }
   }
-  // The same source twice at one vertex: two trees.
+  // The same source twice at one vertex gets two trees.
   pool.release_all();
   TreePool::Entry& first = pool.acquire(key(0), up, true);
   CHECK(&first != &pool.acquire(key(0), up, true));
@@ -92,7 +93,7 @@ TEST_CASE("an address stays what it is while others are acquired") {
 
 TEST_CASE("after forget() the past does not matter") {
   for (uint64_t seed = 0; seed < 30; ++seed) {
-    // What this thread did before: nothing, a little, or vertices of hundreds of sources.
+    // The thread's past: nothing, few vertices, or vertices of hundreds of sources.
     for (const uint32_t past : {0u, 20u, 130u, 400u}) {
       TreePool fresh{BintreeOptions{}}, used{BintreeOptions{}};
       fresh.forget();

@@ -1,4 +1,5 @@
-// A scene of facets answered by brute force in double precision, for tests of certified visibility.
+// A scene of facets that answers by brute force in double precision, for tests of certified
+// visibility.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +11,8 @@
 
 namespace troffer::test {
 
-// 1: the open segment passes through the facet's inside, clear of its edges by a relative margin;
-// 0: it passes clear of it; -1: too close to tell.
+// Returns 1 if the open segment passes through the facet, clear of its edges by a relative margin,
+// 0 if it clearly misses it, and -1 if it is too close to decide.
 inline int meets(const Vec3d& from, const Vec3d& to, const Quad& q, double margin) {
   const int n = is_triangle(q) ? 3 : 4;
   const Vec3d a(q[0]), normal = cross(Vec3d(q[1]) - a, Vec3d(q[2]) - a);
@@ -86,7 +87,7 @@ class BruteForceScene final : public ShadowScene {
     return m;
   }
 
-  // As `meets` over all facets.
+  // Returns the result of `meets` for all facets together.
   int is_hidden(const Vec3d& from, const Vec3d& to, double margin) const {
     int answer = 0;
     for (const Quad& q : facets) {
@@ -107,7 +108,7 @@ inline Quad parallelogram_facet(const Vec3& corner, const Vec3& u, const Vec3& v
   return {corner, corner + u, corner + u + v, corner + v};
 }
 
-// A light of random shape about (0,0,2), facing down, more or less.
+// Returns a source of random shape around (0,0,2), facing roughly down.
 inline FlatSource random_source(Random& r) {
   FlatSource s;
   const double size = std::pow(10.0, -1.5 + 2 * r.next_double());
@@ -122,7 +123,7 @@ inline FlatSource random_source(Random& r) {
   return s;
 }
 
-// Receivers near (0,0,0) that look up: in one plane, or scattered with normals of their own.
+// Returns receivers near (0,0,0) that look up: in one plane, or scattered with individual normals.
 inline std::vector<ShadowReceiver> random_receivers(Random& r, size_t n) {
   const float size = std::pow(10.0f, -3 + 3 * r.next_float());
   const bool is_flat = r.next_float() < 0.7f;
@@ -145,8 +146,8 @@ inline std::vector<ShadowReceiver> random_receivers(Random& r, size_t n) {
   return receivers;
 }
 
-// Anything that may stand in a light's way: plates, wires, specks, long walls, what touches the
-// receivers or crosses the source, duplicates, combs.
+// Adds occluders of all kinds: plates, wires, specks, long walls, facets that touch the receivers
+// or cross the source, duplicates and combs.
 inline void add_random_facets(Random& r, BruteForceScene& scene) {
   const int n = 1 + int(r.next_float() * 8);
   for (int i = 0; i < n; ++i) {
@@ -159,7 +160,7 @@ inline void add_random_facets(Random& r, BruteForceScene& scene) {
     } else if (kind < 0.35f) {  // speck
       u = u * 0.01f;
       v = v * 0.01f;
-    } else if (kind < 0.5f) {  // plate, level, near the receivers or the source
+    } else if (kind < 0.5f) {  // level plate near the receivers or the source
       corner.z = r.next_float() < 0.5f ? 1e-3f + 0.05f * r.next_float() : 1.95f;
       u.z = v.z = 0;
       u = u * 2.0f;
@@ -197,7 +198,7 @@ inline LightRequest request_for(const SphereSource& source, FoundFacets& found) 
   return {nullptr, &source, 1, 1, &found};
 }
 
-// What one source alone comes to for a cluster, rays included; and what was counted.
+// Evaluates one source for a cluster, rays included. Sets `out` and returns the counters.
 template <class Source>
 CertifiedCounters evaluate_alone(const CertifiedOptions& options, const Source& source,
                                  std::span<const ShadowReceiver> receivers, ShadowScene& scene,

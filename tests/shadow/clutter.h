@@ -1,4 +1,4 @@
-// Things in disorder before ceiling_source().
+// Random occluders in front of ceiling_source().
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace troffer::test {
 
-// Within 17 degrees of level or so.
+// Returns a direction within about 17 degrees of level.
 inline Vec3 levelish(Random& random) {
   for (;;) {
     const Vec3 d{2 * random.next_float() - 1, 2 * random.next_float() - 1,
@@ -22,7 +22,7 @@ inline Vec3 before_source(Random& random, float lower, float upper) {
   return {0.9f * x, 0.9f * y, lower + (upper - lower) * random.next_float()};
 }
 
-// Flat ones of 2 m, all one way or each its own.
+// Returns flat wires of 2 m, parallel or in random directions.
 inline std::vector<Quad> wires(Random& random, int n, float half_width, bool are_parallel = false) {
   std::vector<Quad> out;
   Vec3 way = levelish(random);
@@ -46,7 +46,7 @@ inline std::vector<Quad> leaves(Random& random, int n, float size) {
   return out;
 }
 
-// Hanging flat wires, within 4 degrees or so of upright.
+// Returns hanging flat wires, within about 4 degrees of upright.
 inline std::vector<Quad> curtain(Random& random, int n, float width) {
   std::vector<Quad> out;
   const auto off = [&] {
@@ -61,7 +61,7 @@ inline std::vector<Quad> curtain(Random& random, int n, float width) {
   return out;
 }
 
-// n strips of `width`, `step` apart, turned by `angle` from the source's second side.
+// Returns n strips of `width`, `step` apart, rotated by `angle` from the source's second side.
 inline std::vector<Quad> slats(Random& random, int n, float step, float width, float angle) {
   std::vector<Quad> out;
   const Vec3 way{-std::sin(angle), std::cos(angle), 0}, across{std::cos(angle), std::sin(angle), 0};
@@ -73,7 +73,7 @@ inline std::vector<Quad> slats(Random& random, int n, float step, float width, f
   return out;
 }
 
-// What lies on one side of a line.
+// Returns a facet that covers everything on one side of a random line.
 inline Quad half_plane(Random& random) {
   const Vec3 way = levelish(random), p = before_source(random, 1, 1.2f);
   return parallelogram_facet(p - way * 3, way * 6, normalize(cross(way, Vec3{0, 0, 1})) * 3);

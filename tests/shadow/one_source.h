@@ -1,4 +1,4 @@
-// One source against one cluster, ready for any stage of certified visibility.
+// One source and one cluster, prepared for any stage of certified visibility.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ inline std::vector<ShadowReceiver> receivers_on_floor(int side, float spacing) {
   return r;
 }
 
-// One metre square, two above the floor.
+// A square of one metre, two metres above the floor.
 inline FlatSource ceiling_source() {
   return {{{-0.5, -0.5, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}};
 }

@@ -1,5 +1,5 @@
-// Cells follow the light: sources that are enormous, or touch their receivers nearly, whose light
-// comes from a small part, or most of whose light is hidden.
+// Tests that cells follow the light: sources that are huge or almost touch the receivers, so that
+// little of them gives most light, or whose light is mostly hidden.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A level square of `side` metres about (x, y, z).
+// Returns a level square of `side` metres around (x, y, z).
 Quad square(float x, float y, float z, float side) {
   const float h = 0.5f * side;
   return {Vec3{x - h, y - h, z}, {x + h, y - h, z}, {x + h, y + h, z}, {x - h, y + h, z}};
@@ -29,11 +29,11 @@ double light_behind(const Quad& q, const ShadowReceiver& r) {
 }
 
 struct Made {
-  double bias = 0, rms = 0, told = 0;  // over the visible light
+  double bias = 0, rms = 0, told = 0;  // relative to the visible light
 };
 
-// Facets before the source's middle that hide nothing twice take their own light out of it: what is
-// left is known exactly.
+// Measures errors over seeds. Facets between source and receivers must not overlap as seen from
+// there, so that the visible light is known exactly.
 Made made_over_seeds(const FlatSource& source, const std::vector<Quad>& facets, int seeds) {
   BruteForceScene scene;
   scene.facets = facets;
@@ -67,7 +67,7 @@ Made made_over_seeds(const FlatSource& source, const std::vector<Quad>& facets, 
 
 TEST_CASE("cells: sky panels of half a kilometre and two, seen past a table") {
   for (const double side : {500.0, 2000.0}) {
-    for (const float table : {2.0f, 16.0f, 40.0f}) {  // the last leaves a fiftieth of the light
+    for (const float table : {2.0f, 16.0f, 40.0f}) {  // 40 m leaves a fiftieth of the light
       CAPTURE(side);
       CAPTURE(table);
       const Made made = made_over_seeds(level_panel(side, 10), {square(0.3f, 0.2f, 3, table)}, 30);

@@ -97,7 +97,7 @@ TEST_CASE("a shaft leaves out what is beside, behind and below") {
   CHECK(is_inside({0, 0, 1}));
   CHECK(is_inside({0.45f, 0.45f, 1}));
   CHECK_FALSE(is_inside({0.6f, 0, 1}));    // beside
-  CHECK_FALSE(is_inside({0, 0, 2}));       // in the source's plane, such as the source itself
+  CHECK_FALSE(is_inside({0, 0, 2}));       // in the source's plane
   CHECK_FALSE(is_inside({0, 0, 2.1f}));    // behind
   CHECK_FALSE(is_inside({0, 0, -1e-5f}));  // below
   CHECK(is_inside({0, 0, 1.999f}));
@@ -125,9 +125,9 @@ TEST_CASE("classification: clear cases are settled, doubtful ones are not") {
     return Quad{Vec3{lower, lower, z}, {upper, lower, z}, {upper, upper, z}, {lower, upper, z}};
   };
   CHECK(flag(plate(-2, 2, 1)) == 2);        // hides all
-  CHECK(flag(plate(-0.5f, 0.6f, 1)) == 0);  // exactly what is needed: in doubt
-  CHECK(flag(plate(-0.6f, 0.7f, 1)) == 2);  // a little more
-  CHECK(flag(plate(-0.4f, 0.5f, 1)) == 0);  // some
+  CHECK(flag(plate(-0.5f, 0.6f, 1)) == 0);  // exactly the needed size: not proved
+  CHECK(flag(plate(-0.6f, 0.7f, 1)) == 2);  // a little larger
+  CHECK(flag(plate(-0.4f, 0.5f, 1)) == 0);  // hides a part
   CHECK(flag(plate(0.7f, 2, 1)) == 1);      // beside
   CHECK(flag({Vec3{-9, -9, 1}, {9, -9, 1}, {0, 20, 1}, {0, 20, 1}}) == 2);
   CHECK(flag({Vec3{0.7f, -9, 0}, {0.7f, 9, 0}, {2, 9, 2}, {2, -9, 2}}) == 1);

@@ -12,7 +12,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Visible share by a fine grid over the source; weights as the irradiance's.
+// Returns the visible share by a fine grid over the source, weighted by irradiance.
 double reference_share(const BruteForceScene& scene, const FlatSource& s, const ShadowReceiver& x,
                        int n) {
   double all = 0, seen = 0;
@@ -61,8 +61,8 @@ TEST_CASE("visible shares against a grid of rays on random scenes") {
   CHECK(pairs > 300);
   CHECK(std::sqrt(error2 / pairs) < 0.006);
   CHECK(std::abs(mean / pairs) < 0.001);
-  // Close to large sources, where weights vary most over a cell, the error that is told may be
-  // below the one that is made.
+  // Close to large sources, where weights vary most within a cell, the estimated error may be less
+  // than the actual one.
   CHECK(error2 < 2 * predicted2);
   CHECK(predicted2 < 6 * error2);
   MESSAGE("rms error ", std::sqrt(error2 / pairs), ", told ", std::sqrt(predicted2 / pairs));
@@ -82,7 +82,7 @@ TEST_CASE("unbiased over seeds, whether masks are complete or rays fill in") {
     for (const MaskLattice& lattice : {coarse_lattice, fine_lattice}) {
       CertifiedOptions options;
       options.lattice = lattice;
-      options.longest_list = is_complete ? 64 : 1;  // one facet known, two left to rays
+      options.longest_list = is_complete ? 64 : 1;  // one facet is known, rays decide two
       options.most_halvings = 0;
       options.rays.most_rays = options.rays.most_pair_rays = 4;
       double sum = 0, sum2 = 0, bound = 0;
@@ -220,7 +220,7 @@ TEST_CASE("of closed surfaces, outside of which both ends lie, the front is enou
         if ((with.inside.row[row] >> k & 1u) == 0) continue;
         ++compared;
         hidden += (with.open.row[row] >> k & 1u) == 0;
-        // a sample on an outline within rounding may differ
+        // a sample within rounding of an outline may differ
         if ((with.open.row[row] >> k & 1u) != (without.open.row[row] >> k & 1u)) --hidden;
         CHECK((with.open.row[row] >> k & 1u) <= (without.open.row[row] >> k & 1u));
       }

@@ -15,7 +15,7 @@ using namespace troffer::test;
 
 namespace {
 
-// Visible share of the sphere's irradiance by n² directions, uniform in the cone that holds it.
+// Returns the visible share of the sphere's irradiance, by n² directions uniform in its cone.
 double reference_share(const BruteForceScene& scene, const SphereSource& s, const ShadowReceiver& x,
                        int n) {
   const Vec3d axis = s.centre - Vec3d(x.position);
@@ -121,7 +121,7 @@ TEST_CASE("a shaft to a sphere holds every segment to what receivers see of it")
 TEST_CASE("a wide cluster sees past the plane through a sphere's centre: a plate there hides") {
   const SphereSource source{{0, 0, 2.5}, 0.1};
   for (const float size : {0.3f, 1.0f, 2.5f, 6.0f}) {
-    BruteForceScene scene;  // 5 mm over the centre, about the sphere
+    BruteForceScene scene;  // a plate 5 mm in front of the centre
     scene.facets = {parallelogram_facet({-0.3f, -0.3f, 2.505f}, {0.6f, 0, 0}, {0, 0.6f, 0})};
     std::vector<ShadowReceiver> receivers;
     for (int i = 0; i < 64; ++i) {
@@ -144,7 +144,7 @@ TEST_CASE("a wide cluster sees past the plane through a sphere's centre: a plate
 TEST_CASE("a sphere is not hidden by what is stuck into it") {
   const SphereSource source{{0, 0, 2}, 0.5};
   BruteForceScene scene;
-  // A socket: a plate through the sphere's middle, as wide as the sphere.
+  // a socket: a plate through the sphere's middle, as wide as the sphere
   scene.facets = {parallelogram_facet({-0.45f, -0.2f, 2}, {0.9f, 0, 0}, {0, 0.4f, 0})};
   const ShadowReceiver x{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 4e-6f}, 5};
   const CertifiedOptions options;
@@ -156,7 +156,7 @@ TEST_CASE("a sphere is not hidden by what is stuck into it") {
 
 namespace {
 
-// A lobe about a direction, and a source that is brighter on one side.
+// A lobe around a direction, times a source that is brighter on one side.
 class Lobe final : public ShadowIntegrand {
  public:
   Vec3 x, axis;
@@ -241,7 +241,7 @@ class Constant final : public ShadowIntegrand {
 
 TEST_CASE("a slit that most masks miss counts in an integral with its width, not more") {
   const FlatSource source{{{-0.5, -0.5, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}, {}};
-  constexpr double edge = 0.497;  // of the plate's shadow; the slit is less than a sample wide
+  constexpr double edge = 0.497;  // of the plate's shadow; the slit is narrower than a sample
   const auto plate_edge = float(edge * 1.9 / 2);
   BruteForceScene scene;
   scene.facets = {parallelogram_facet({-4, -4, 1.9f}, {4 + plate_edge, 0, 0}, {0, 8, 0}),
@@ -273,7 +273,7 @@ TEST_CASE("a slit that most masks miss counts in an integral with its width, not
     const double mean = sum / seeds, variance = sum2 / seeds - mean * mean;
     CAPTURE(has_integrand);
     CAPTURE(mean);
-    if (has_integrand) CHECK(misses > 0);  // rays go anywhere
+    if (has_integrand) CHECK(misses > 0);  // rays have random end points
     CHECK(std::abs(mean - expected) < 4 * std::sqrt(variance / seeds) + 2e-3 * expected);
   }
 }

@@ -159,7 +159,7 @@ TEST_CASE("small facets, of which many are looked at together, hide what each hi
     const MaskLattice lattice = trial % 2 == 0 ? fine_lattice : coarse_lattice;
     const MaskFrame frame(source, lattice, trial % 3 == 1, {0, 0, 0});
     const Vec3 x = frame.to_canvas({0.2 * r.next_double(), 0.2 * r.next_double(), 0});
-    // specks, some large facets among them, some beside, close before or behind the receiver
+    // specks, with a few large facets; some beside, just in front of or behind the receiver
     FacetList all;
     std::vector<FacetList> single;
     const float most_size = std::exp(-4 + 3.5f * r.next_float());
@@ -228,7 +228,7 @@ TEST_CASE("only the front of a facet hides when asked to") {
   for (const bool is_mirrored : {false, true}) {
     for (const double flip : {1.0, -1.0}) {
       Parallelogram p = source;
-      if (flip < 0) {  // sides given the other way round: the canvas has the other handedness
+      if (flip < 0) {  // sides in the other order: the canvas has the other handedness
         std::swap(p.u, p.v);
       }
       const MaskFrame frame(p, coarse_lattice, is_mirrored, {0, 0, 0});

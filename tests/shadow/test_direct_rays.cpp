@@ -1,4 +1,4 @@
-// Rays straight to sources behind more facets than lists are worth.
+// Tests of direct rays: sources behind more facets than lists are worth.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,8 @@ using namespace troffer::test;
 
 namespace {
 
-// side × side level plates at height z, `part` of the area of [-size, size]² about `middle`.
+// Returns side × side level plates at height z, which cover `part` of [-size, size]² around
+// `middle`.
 std::vector<Quad> plates(int side, float size, float part, float z, float middle = 0) {
   std::vector<Quad> q;
   const float step = 2 * size / float(side), edge = step * std::sqrt(part);
@@ -38,7 +39,7 @@ struct Made {
   double bias = 0, rms = 0, told = 0, pixel_rms = 0, rays = 0;
 };
 
-// Four receivers are a pixel's viewing rays.
+// Measures errors over seeds. The four receivers are the viewing rays of one pixel.
 Made made_over_seeds(const FlatSource& source, const std::vector<Quad>& facets, int seeds,
                      float error) {
   BruteForceScene scene;
@@ -82,7 +83,8 @@ Made made_over_seeds(const FlatSource& source, const std::vector<Quad>& facets, 
   return made;
 }
 
-// What of the source's light arrives, by rays on a fine grid; below 0: none could.
+// Returns the visible share of the source's light by rays on a fine grid, or a negative value if no
+// light can arrive.
 double share_by_brute_force(const FlatSource& source, const BruteForceScene& scene,
                             const ShadowReceiver& r) {
   constexpr int side = 300;
@@ -121,16 +123,15 @@ TEST_CASE("rays straight to a source: unbiased, and better than as many independ
     CHECK(made.told < 2 * 2 * made.pixel_rms);
   };
   check(ceiling_source(), plates(8, 0.2f, 0.5f, 1), 0.5);
-  // three blocks of 32 for each viewing ray
+  // three blocks of 32 per viewing ray
   check(ceiling_source(), plates(8, 0.2f, 0.5f, 1), 0.5, 0.09f, 96);
   check(triangle, plates(4, 0.05f, 0.3f, 0.8f, -0.06f), 0.9);
   check(disk, plates(5, 0.12f, 0.4f, 1), 0.8);
   check(near_one, plates(4, 0.1f, 0.6f, 0.1f), 0.7);
 }
 
-// Whatever is learnt of the share that is open (here one half, for all), single receivers have
-// their own right mean: those from which all is hidden a mean of 0, so that about every other
-// answer is less than that.
+// All receivers share one estimate of the open share (here one half), but the mean of each must be
+// right. Where everything is hidden the mean is 0, so about half of the answers are negative.
 TEST_CASE("rays straight to a source: no bias where little or nothing is open") {
   constexpr int seeds = 1500, count = 16;
   const FlatSource source = ceiling_source();
@@ -182,7 +183,7 @@ TEST_CASE(
     "rays straight to a source: where nothing hides it, what is learnt takes the noise away") {
   const FlatSource source = ceiling_source();
   BruteForceScene scene;
-  scene.facets = plates(8, 5, 0.0001f, 1.2f);  // all but open
+  scene.facets = plates(8, 5, 0.0001f, 1.2f);  // almost everything is open
   OneSource one(receivers_on_floor(8, 0.01f));
   one.options.longest_list = 0;
   one.options.most_halvings = 0;
@@ -212,13 +213,13 @@ TEST_CASE("rays straight to a source: as many for a whole batch, by its error an
   CHECK(one.found.dense.open_share < 0.7);
   CHECK(scene.segments > 0);
   const uint64_t pilots = scene.segments;
-  CHECK(rays_at(0.05f, 0) == n);  // of another cluster of the batch
+  CHECK(rays_at(0.05f, 0) == n);  // from another cluster of the batch
   CHECK(scene.segments == pilots);
   one.found = {};
   CHECK(rays_at(0.05f, 0) == doctest::Approx(4 * n).epsilon(1e-5));
   one.found = {};
   CHECK(rays_at(0.05f, 1) == doctest::Approx(2 * n).epsilon(1e-5));
-  // a weak source's visible share is worth some, too
+  // the visible share of a weak source deserves some rays, too
   one.found = {};
   CHECK(rays_at(0.1f, 1000) == 64);
   one.options.rays.pair_error = 0.1f;
@@ -244,9 +245,9 @@ TEST_CASE("rays straight to a source: where clutter leaves much open nothing els
     divide_flat(task, members, hull, visible_part(one.source, hull), scene, memory, one.counters);
     return std::pair(one.counters.gathers, memory.parts.all().size());
   };
-  // a lattice of plates that hides half of the source: at once, and as one part
+  // plates that hide half of the source: given up at once, as one part
   CHECK(gathers_behind(plates(24, 0.4f, 0.5f, 1)) == std::pair<uint64_t, size_t>(1, 1));
-  // the same over a sheet: something may prove it dark, so halves are looked at
+  // the same in front of a sheet, which may be proved dark: halves are examined
   std::vector<Quad> closed = plates(24, 0.4f, 0.5f, 1);
   closed.push_back(parallelogram_facet({-2, -2, 1.1f}, {4, 0, 0}, {0, 4, 0}));
   CHECK(gathers_behind(closed).first > 1);

@@ -1,4 +1,4 @@
-// What masks tell of their error, beside what they make.
+// Compares the estimated error of masks with the actual one.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,10 +16,10 @@ using namespace troffer::test;
 namespace {
 
 struct Errors {
-  double made = 0, told = 0;  // root mean squares, of the share
+  double made = 0, told = 0;  // root mean squares of the share
 };
 
-// Of a receiver with such a normal, over scenes and shifts of the lattice.
+// Measures the errors for a receiver with this normal, over scenes and shifts of the lattice.
 Errors errors_of(const MaskLattice& lattice, const Vec3& normal,
                  const std::function<std::vector<Quad>(Random&)>& make) {
   constexpr int scenes = 40, passes = 100;
@@ -52,7 +52,7 @@ Errors errors_of(const MaskLattice& lattice, const Vec3& normal,
 
 }  // namespace
 
-// A receiver that the source's plane rises over steeply sees a sliver of it, with a few samples.
+// A receiver that sees the source at a grazing angle gets only a sliver of it, with few samples.
 TEST_CASE("masks: the error that is told is the error that is made, behind whatever") {
   const auto check = [](const MaskLattice& lattice, const Vec3& normal, double least) {
     const auto is_told = [&](const char* name, const auto& make) {
@@ -79,8 +79,8 @@ TEST_CASE("masks: the error that is told is the error that is made, behind whate
   check(fine_lattice, {1, 0.3f, -0.21f}, 0.75);
 }
 
-// Along a side of the source all samples stand at different places: what is parallel to it errs by
-// far less than what is not.
+// Along a side of the source all samples have different positions, so parallel edges err far less
+// than others.
 TEST_CASE("masks: the error that is told is the error that is made, behind blinds") {
   const auto check = [](const MaskLattice& lattice, const Vec3& normal) {
     const auto is_told = [&](const char* name, const auto& make, double most = 2) {
@@ -94,7 +94,7 @@ TEST_CASE("masks: the error that is told is the error that is made, behind blind
     };
     const auto blinds = [](int n, float open, float angle) {
       return [=](Random& r) {
-        // the plates' distance, seen on the source, is about 1 / n of it
+        // the distance of the slats, projected to the source, is about 1 / n of it
         const float step = (1.0f + 0.3f * r.next_float()) * 0.6f / float(n);
         return slats(r, 3 * n, step, step * (1 - open), angle);
       };
@@ -124,8 +124,8 @@ TEST_CASE("masks: the error that is told is the error that is made, behind blind
     is_told("20 bars", bars(20, 0.015f));
     is_told("100 bars", bars(100, 0.004f));
     is_told("400 bars", bars(400, 0.001f));
-    // What is parallel, but not to a side, errs by less than is told, and never by more:
-    // half a degree off, along a line through every fourth sample of every row
+    // Edges that are parallel, but not to a side, err less than estimated, never more. Half a
+    // degree off, an edge passes through every fourth sample of each row.
     is_told("60 turned slats", blinds(60, 0.5f, 0.0094f), 4);
     is_told("5 turned slats", blinds(5, 0.5f, 0.0094f), 4);
     is_told("60 slats at 30 degrees", blinds(60, 0.5f, 0.52f), 5);

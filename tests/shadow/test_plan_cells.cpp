@@ -1,4 +1,4 @@
-// Masks as fine as the asked error takes them: cells where a source's light comes from.
+// Tests that masks meet the asked error: cells are refined where a source's light comes from.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A level plane at height z with a square hole about (x, y).
+// Returns a level plane at height z with a square hole around (x, y).
 std::vector<Quad> plane_with_hole(float x, float y, float side, float z) {
   const float far = 20, h = side / 2;
   const auto plate = [&](float x0, float x1, float y0, float y1) {
@@ -25,7 +25,7 @@ std::vector<Quad> plane_with_hole(float x, float y, float side, float z) {
 }
 
 struct Made {
-  double bias = 0, rms = 0, told = 0;  // over the light that arrives
+  double bias = 0, rms = 0, told = 0;  // relative to the light that arrives
   double light = 0;                    // mean, sr
   uint64_t masks = 0;
 };
@@ -91,7 +91,7 @@ TEST_CASE("masks: what is far below the floor may err by more, and costs less") 
   CHECK(loose.masks < strict.masks / 2);
   CHECK(loose.rms * loose.light < 1.2 * 0.003 * double(floor));
   CHECK(std::abs(loose.bias) < 0.01);
-  // A floor below the light changes nothing.
+  // a floor below the light changes nothing
   const Made same = made_through_hole(0.1f, 0.003f, 40, 0.5f * float(strict.light));
   CHECK(same.masks == strict.masks);
 }

@@ -1,4 +1,4 @@
-// What rays straight to a source tell of their error, beside what they make.
+// Compares the estimated error of direct rays with the actual one.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct Errors {
   double made = 0, told = 0;  // root mean squares over scenes and seeds
 };
 
-// Of 16 receivers on 15 cm of floor, four viewing rays of each of four pixels.
+// Measures the errors of 16 receivers on 15 cm of floor: four viewing rays of each of four pixels.
 Errors errors_of(float error, const std::function<std::vector<Quad>(Random&)>& make) {
   constexpr int scenes = 4, seeds = 20, count = 16;
   Random random(3);
@@ -32,7 +32,7 @@ Errors errors_of(float error, const std::function<std::vector<Quad>(Random&)>& m
     options.mask_error = error;
     options.viewing_rays = 4;
     options.rays.most_direct_rays = 1024;
-    double sums[4] = {}, squares[4] = {};  // of pixels
+    double sums[4] = {}, squares[4] = {};  // per pixel
     for (uint64_t seed = 0; seed < seeds; ++seed) {
       for (uint32_t i = 0; i < count; ++i) {
         receivers[i].stream = hash_of(seed, i);
@@ -72,7 +72,7 @@ TEST_CASE("rays straight to a source: what is told is what is made, behind whate
       CHECK(e.told > (error < 0.05f ? 0.88 : 0.85) * e.made);
       CHECK(e.told < 2 * e.made);
     };
-    // both kinds at once: the edge goes with smaller strata, the wires do not
+    // both kinds at once: the edge gains from smaller strata, the wires do not
     is_told("edge and thin wires", [](Random& r) {
       std::vector<Quad> out = curtain(r, 120, 0.0012f);
       out.push_back(half_plane(r));

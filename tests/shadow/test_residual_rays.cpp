@@ -1,5 +1,5 @@
-// Rays of certified visibility: how many, which arrive, what they add; and the driver that hands
-// finished answers out.
+// Tests of residual rays: their number, which of them arrive, and their contribution; and of the
+// driver that returns finished answers.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ using namespace troffer::test;
 
 namespace {
 
-// All samples of the source open, seen from receiver 0, as `light` of the pair.
+// Queues all samples of the source as open from receiver 0, with `light` for the pair.
 void queue_open(OneSource& one, float light, uint32_t passes = 1) {
   const MaskFrame frame = one.frame();
   const SourceTask task = one.task();
@@ -31,7 +31,7 @@ TEST_CASE("rays: numbers keep the bound, in proportion to what a pair could be w
   queue_open(one, 0.2f);
   queue_open(one, 0.1f);
   RayLimits limits;
-  limits.pair_error = 1e3f;  // no bound but the receiver's
+  limits.pair_error = 1e3f;  // only the receiver's own bound
   RayPlan plan;
   for (const float allowed : {0.02f, 0.01f, 0.005f}) {
     plan_rays(one.queue, {&allowed, 1}, limits, plan);
@@ -78,7 +78,7 @@ TEST_CASE("rays: what is met in the way is noted, what lies in the source's plan
     }
     CHECK(free > 30);
     CHECK(traced.tallies[0].free == double(free));
-    // nobody asks for names where lists are hopeless
+    // facets are not recorded where lists are over budget
     CHECK(one.found.entries().size() == (is_over_budget ? 0 : 1));
     if (!is_over_budget) CHECK(one.found.entries()[0].id == 1);
   }
@@ -102,11 +102,11 @@ TEST_CASE("rays: sums of light, of values, and of masks that share a pair") {
   double light = 0;
   for (size_t i = 1; i < 5; ++i) light += double(answers[i].light);
   CHECK(light == doctest::Approx(0.1).epsilon(0.1));
-  CHECK(answers[1].light_variance > 0);  // the first one tells for all
+  CHECK(answers[1].light_variance > 0);  // the first holds the variance of all
   for (size_t i = 2; i < 5; ++i) CHECK(answers[i].light_variance == 0);
   CHECK(answers[5].value.g == doctest::Approx(0.5 * 4 / 4));
   CHECK(answers[5].rays == 4);
-  // into a finished answer
+  // adding rays to a finished answer
   SourceVisibility v;
   v.unoccluded = 0.4f;
   v.visible = 0.25f;

@@ -1,5 +1,5 @@
-// Spheres, disks and facets that enter a round source: masks and certificates against the ray to
-// each sample, met in double precision by other formulas.
+// Compares masks and certificates of spheres, disks and facets that enter a round source with rays
+// to each sample, in double precision and by other formulas.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,8 @@ Vec3d in_cube(Random& r) {
   return {2 * r.next_double() - 1, 2 * r.next_double() - 1, 2 * r.next_double() - 1};
 }
 
-// How far from the answer's change: positive where the segment surely meets the body.
+// Returns a signed margin: positive if the segment meets the body, near 0 if the answer is in
+// doubt.
 double meets(const RoundBody& body, const Vec3d& x, const Vec3d& y) {
   const Vec3d c(body.centre), d = y - x;
   const double radius = body.radius;
@@ -28,7 +29,7 @@ double meets(const RoundBody& body, const Vec3d& x, const Vec3d& y) {
     const double off = radius - length(x + d * (from / (from - to)) - c);
     return std::min({off, std::abs(from), std::abs(to)});
   }
-  // nearest point of the segment, unless both ends lie within
+  // nearest point of the segment, unless both ends are inside
   const double t = std::clamp(dot(c - x, d) / length_squared(d), 0.0, 1.0);
   const double inside = radius - length(x + d * t - c);
   const double ends = std::max(length(x - c), length(y - c)) - radius;
@@ -48,7 +49,7 @@ double meets(const Quad& q, const Vec3d& x, const Vec3d& y) {
   return inside;
 }
 
-// Where the segment from x first meets the sphere.
+// Returns the point where the segment from x first meets the sphere.
 Vec3d near_end(const SphereSource& s, const Vec3d& x, const Vec3d& through) {
   const Vec3d d = normalize(through - x), c = s.centre - x;
   const double along = dot(c, d), square = s.radius * s.radius - length_squared(c - d * along);
@@ -107,7 +108,7 @@ TEST_CASE("spheres and disks before flat sources: each sample as by its ray") {
     const MaskFrame frame(random_source(r), i % 2 == 0 ? coarse_lattice : fine_lattice, i % 3 == 0,
                           {0, 0, 1}, {}, i % 5 == 0);
     RoundList round;
-    // between the two, through the source's plane, about the receiver
+    // between the two, through the source's plane, or around the receiver
     const Vec3d about = i % 4 == 0 ? Vec3d{0, 0, 2} : i % 4 == 1 ? x : (x + Vec3d{0, 0, 2}) * 0.5;
     round.bodies.push_back(random_body(r, about, 0.6));
     const RoundBody& body = round.bodies[0];
@@ -152,12 +153,12 @@ TEST_CASE("what enters a round source hides what of it lies outside") {
     tally.compare(frame, shift, mask, [&](const Vec3d& y) {
       const Vec3d end = near_end(source, x, y);
       if (!round.entering.empty()) {
-        // in single precision the corners of a quadrilateral lie in no plane
+        // in single precision the corners of a quadrilateral are not quite coplanar
         const double by = meets(round.entering[0], x, end);
         return std::abs(by) < 1e-6 ? 0 : by;
       }
       const double by = meets(round.bodies[0], x, end);
-      return std::abs(by) < 1e-5 ? 0 : by;  // what lies at the source counts as behind
+      return std::abs(by) < 1e-5 ? 0 : by;  // contact at the source counts as behind
     });
   }
   MESSAGE(tally.hidden, " hidden of ", tally.samples, ", wrong ", tally.wrong);

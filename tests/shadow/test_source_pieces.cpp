@@ -1,4 +1,4 @@
-// Tessellated lights put together again.
+// Tests of merging tessellated lights into sources.
 #include "shadow/source_pieces.h"
 
 #include <doctest/doctest.h>
@@ -39,7 +39,8 @@ Scene scene_with(const Tessellation& t, const Place& place) {
   return s;
 }
 
-// Each primitive is covered, and areas and irradiances agree; returns how many sources there are.
+// Checks that each primitive is covered and that areas and irradiances agree. Returns the number of
+// sources.
 size_t check_sources(const Scene& scene, uint64_t seed, double tolerance = 1e-6) {
   const LightPrimitives lights(scene);
   std::vector<SourcePiece> pieces;
@@ -103,7 +104,7 @@ TEST_CASE("a tessellated panel is one source") {
     CHECK(check_sources(grid, seed) == 1);
     std::vector<SourcePiece> pieces;
     REQUIRE(merge_sources(LightPrimitives(grid), 0, pieces));
-    CHECK(pieces[0].shape.outline.empty());  // a parallelogram, nothing cut off
+    CHECK(pieces[0].shape.outline.empty());  // a parallelogram without clipping
     CHECK(pieces[0].primitives.size() == 90);
 
     const auto corner = [](uint32_t i, uint32_t j) { return i >= 4 && j >= 3; };

@@ -1,5 +1,4 @@
-// The stages of certified visibility, each alone: cluster, lists of facets, cells, certificates,
-// masks.
+// Tests each stage of certified visibility alone: cluster, facet lists, cells, certificates, masks.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +19,7 @@ Quad plate(float x0, float x1, float y0, float y1, float z) {
   return {Vec3{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
 }
 
-// Small squares in rows, half a metre over the floor.
+// Returns small squares in rows, half a metre above the floor.
 std::vector<Quad> crumbs(int n, float spacing) {
   std::vector<Quad> q;
   for (int i = 0; i < n * n; ++i) {
@@ -121,7 +120,7 @@ TEST_CASE("gathering: a short list is one part, with what stands between and not
 }
 
 TEST_CASE("gathering: too long lists divide receivers and source; each pair stays in one part") {
-  for (const float spacing : {0.3f, 0.001f}) {  // receivers wide apart, and close together
+  for (const float spacing : {0.3f, 0.001f}) {  // receivers far apart, and close together
     OneSource one(receivers_on_floor(8, spacing));
     BruteForceScene scene;
     scene.facets = crumbs(24, 0.1f);
@@ -140,7 +139,7 @@ TEST_CASE("gathering: too long lists divide receivers and source; each pair stay
       const double cell = length(cross(part.cell.plane.u, part.cell.plane.v));
       for (const uint32_t m : part.members) area[m] += cell;
     }
-    // close together there is nothing to gain by halving receivers: the source is
+    // close together, halving receivers gains nothing, so the source is halved
     if (spacing < 0.1f) CHECK_FALSE(is_any_whole);
     for (const double a : area) CHECK(a == doctest::Approx(1));
     CHECK_FALSE(one.found.is_over_budget());
@@ -167,7 +166,7 @@ TEST_CASE("gathering: hopeless lists are cut, keep what rays have met, and are r
   CHECK_FALSE(memory.parts.all()[0].is_complete);
   CHECK(memory.parts.all()[0].is_over_budget);
   CHECK(one.found.is_over_budget());
-  // the next time nobody tries to halve
+  // no further halving is tried the next time
   one.options.most_halvings = 3;
   one.counters = {};
   divide_flat(one.task(), one.members, one.cluster.hull, whole, scene, memory, one.counters);
@@ -224,7 +223,7 @@ TEST_CASE("cells: they cover the source once, and light varies little over each"
   CHECK(area == doctest::Approx(16));
   for (size_t i = 0; i < 16; ++i)
     CHECK(sum[i] == doctest::Approx(double(one.unoccluded[i])).epsilon(1e-5));
-  // far away one is enough, and below a flat cluster's horizon there is none
+  // far away one cell is enough; below the horizon of a flat cluster there is none
   OneSource far(receivers_on_floor(4, 0.01f));
   cells.clear();
   cut_cells(visible_part(far.source, far.cluster.hull), far.cluster.hull, limits, cells);
@@ -247,10 +246,10 @@ TEST_CASE("certificates: lit, dark, or what is left") {
   const Quad all = plate(-2, 2, -2, 2, 1), beside = plate(1, 2, 1, 2, 1);
   const Quad some = plate(-0.1f, 0.1f, -0.1f, 0.1f, 1);
   CHECK(answer({}, true) == Certificate::lit);
-  CHECK(answer({}, false) == Certificate::none);  // others may hide it
+  CHECK(answer({}, false) == Certificate::none);  // other facets may hide it
   CHECK(answer({beside}, true) == Certificate::lit);
   CHECK(answer({beside, all}, true) == Certificate::dark);
-  CHECK(answer({some, all}, false) == Certificate::dark);  // whatever is missing
+  CHECK(answer({some, all}, false) == Certificate::dark);  // despite missing facets
   CHECK(answer({beside, some, beside}, true) == Certificate::none);
   CHECK(left.size() == 1);
 }

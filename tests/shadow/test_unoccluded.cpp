@@ -1,5 +1,5 @@
-// Unoccluded light of many receivers at a stroke, against quadrature: slivers, grazing horizons,
-// low over the source's plane, far away, and far from the origin.
+// Compares unoccluded light of many receivers with quadrature: slivers, grazing horizons, receivers
+// near the source's plane, far away, and far from the origin.
 #include "shadow/unoccluded.h"
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-constexpr double least = 1e-10 * pi;  // irradiance that counts
+constexpr double least = 1e-10 * pi;  // smallest irradiance that is compared
 
 float alone(const std::vector<Vec3d>& outline, const Vec3d& m, const Vec3& x, const Vec3& n) {
   ReceiverArrays receivers;
@@ -45,7 +45,7 @@ TEST_CASE("unoccluded light holds its digits") {
     std::vector<Vec3d> outline;
     for (const Vec3d& c : p.corners) outline.push_back(c + Vec3d{offset, offset, 0});
     const Vec3d m = p.m, origin = outline[size_t(r.next_double() * 3)];
-    // one block: receivers that are easy and hard next to each other
+    // one block: easy and hard receivers side by side
     constexpr size_t n = 16;
     ReceiverArrays receivers;
     receivers.assign(n);
@@ -58,7 +58,7 @@ TEST_CASE("unoccluded light holds its digits") {
     unoccluded_irradiance(outline, m, receivers, values);
     for (const size_t i : {size_t(r.next_double() * n), size_t(r.next_double() * n)}) {
       const Vec3d x(hard[i].position);
-      // what is taken to lie in the source's plane gets no light (light/polygon.h)
+      // receivers in the source's plane, up to rounding, get no light (light/polygon.h)
       if (dot(m, x - outline[0]) < 1.01 * plane_rounding(x, outline[0])) continue;
       const double expected = polygon_reference(outline, m, x, Vec3d(hard[i].normal));
       if (!(expected > least)) continue;

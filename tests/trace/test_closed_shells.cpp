@@ -1,4 +1,4 @@
-// Places that are closed off: proofs against rays, and which rooms are found.
+// Tests proofs that a place is enclosed: against rays, and by the rooms that are found.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -28,7 +28,7 @@ void add_triangles(Scene& s, uint32_t material, const std::vector<Corners>& tria
   s.meshes.push_back(std::move(m));
 }
 
-// A box whose faces are grids of n × n squares with bumps, without thickness.
+// Returns a box whose faces are grids of n × n squares with bumps.
 std::vector<Corners> bumpy_box(Random& r, int n, const Vec3& lower, const Vec3& size, float bump) {
   const auto at = [&](int i, int j, int k) {
     Random own(hash_of(uint64_t(i), uint64_t(j), uint64_t(k)));
@@ -42,7 +42,7 @@ std::vector<Corners> bumpy_box(Random& r, int n, const Vec3& lower, const Vec3& 
       out.push_back({a, b, c});
       out.push_back({c, a, d});
     } else {
-      out.push_back({a, d, b});  // wound either way
+      out.push_back({a, d, b});  // either winding
       out.push_back({b, c, d});
     }
   };
@@ -56,8 +56,8 @@ std::vector<Corners> bumpy_box(Random& r, int n, const Vec3& lower, const Vec3& 
   return out;
 }
 
-// Boxes in one another, tables, sheets: what of it is closed is chance.
-// targets: the boxes as they were whole.
+// Returns a scene of nested boxes, tables and sheets, closed or open by chance. targets: the
+// triangles of the boxes before damage.
 Scene random_scene(Random& r, std::vector<Corners>& targets) {
   targets.clear();
   Scene s;
@@ -77,7 +77,7 @@ Scene random_scene(Random& r, std::vector<Corners>& targets) {
       else if (r.next_u32() % 2 == 0)
         box[at][0] += random_direction(r) * 0.01f;  // a slit
       else
-        box.push_back(box[at]);  // twice: crossed or not at all
+        box.push_back(box[at]);  // twice: crossed twice or not at all
     }
     add_triangles(s, m, box);
   }
@@ -108,7 +108,7 @@ TEST_CASE("what is proved to be closed off, no ray leaves") {
         continue;
       }
       ++held;
-      // half of them aimed at what may be missing, and at edges
+      // half of the rays aim at possible gaps and at edges
       for (int k = 0; k < 32; ++k) {
         Ray& ray = rays.emplace_back();
         ray.origin = p;
@@ -160,7 +160,7 @@ TEST_CASE("rooms whose walls meet are found, whatever they are made of; open one
 }
 
 TEST_CASE("edges along an axis may end at others' inner points, slanted ones may not") {
-  // a wall in four panels about a window, which a shutter closes
+  // a wall of four panels around a window that a shutter closes
   const auto room = [](bool has_shutter, float lean) {
     Scene s;
     const uint32_t m = add_diffuse(s, Rgb{0.5f});

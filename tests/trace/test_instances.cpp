@@ -1,4 +1,4 @@
-// Rays and shafts through instances, against copies of them.
+// Compares rays and shafts through instances with those through copies of the meshes.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -29,13 +29,13 @@ std::vector<Ray> rays_in_room(size_t n) {
   return rays;
 }
 
-// The copy's number of what has been hit in the scene of instances.
+// Returns the number that a hit geometry has in the scene of copies.
 uint32_t number_of_copy(const Scene& scene, uint32_t geometry) {
   return is_instance(scene, geometry) ? geometry - 2 : geometry;
 }
 
-// How many rays meet something else, or look on it in another way; `on_instances` becomes how many
-// meet an instance.
+// Returns how many rays hit another surface in the two scenes, or see it differently. Sets
+// `on_instances` to the number of rays that hit an instance.
 size_t differences(const Scene& scene, const Scene& copies, const PaneGlass* glass,
                    Coherence coherence, Meeting meeting, size_t& on_instances) {
   const Tracer a(scene, glass), b(copies, glass);
@@ -61,7 +61,7 @@ size_t differences(const Scene& scene, const Scene& copies, const PaneGlass* gla
     CHECK(s.geometry == h.geometry);
     CHECK(s.offset >= t.offset);
     CHECK(s.offset < 1e-4f);
-    // Small triangles: their barycentric weights err by what a place does, over their size.
+    // Triangles are small, so an error of position makes a larger one in barycentric weights.
     n += length(s.position - t.position) > 1e-5f ||
          length(s.shading_normal - t.shading_normal) > 1e-3f ||
          std::abs(s.uv.uv.x - t.uv.uv.x) + std::abs(s.uv.uv.y - t.uv.uv.y) > 1e-3f;
@@ -81,7 +81,7 @@ class GlassOf : public PaneGlass {
   uint32_t material_;
 };
 
-// Holes in a chequered pattern.
+// Adds a chequered pattern of holes.
 void punch(Scene& s) {
   Texture t;
   t.kind = TextureKind::image;
@@ -142,7 +142,7 @@ TEST_CASE("holes and backs of instances, mirrored ones too, are where those of c
   Scene scene = room_of_instances(places_in_room());
   size_t on_instances = 0;
   punch(scene);
-  // Rays that meet the edge of a hole may tell it apart.
+  // Rays at the edge of a hole may differ.
   CHECK(differences(scene, copied_out(scene), nullptr, Coherence::none, Meeting::all,
                     on_instances) < 40);
   CHECK(on_instances > 500);
@@ -232,7 +232,7 @@ TEST_CASE("facets of instances face as copies do, and say of which closed surfac
       const Occluders::Component c = a.component_of(f), d = b.component_of(g);
       CHECK(c.is_closed);
       CHECK(d.is_closed);
-      // A box around a turned box: not smaller than what is in it.
+      // The box around a transformed box is not smaller than its content.
       for (size_t axis = 0; axis < 3; ++axis) {
         CHECK(c.bounds.lower[axis] <= d.bounds.lower[axis]);
         CHECK(c.bounds.upper[axis] >= d.bounds.upper[axis]);

@@ -1,4 +1,4 @@
-// Facets that stand for many triangles: neither more nor less than those.
+// Tests that merged facets cover exactly their triangles.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ double largest_coordinate(const Mesh& m) {
   return largest;
 }
 
-// How far p lies outside a flat convex facet.
+// Returns the distance of p from a flat convex facet.
 double distance_outside(const Quad& q, const Vec3d& p) {
   const Vec3d n = normalize(cross(Vec3d(q[2]) - Vec3d(q[0]), Vec3d(q[3]) - Vec3d(q[1])) +
                             cross(Vec3d(q[1]) - Vec3d(q[0]), Vec3d(q[2]) - Vec3d(q[0])));
@@ -51,7 +51,7 @@ double distance_outside(const Quad& q, const Vec3d& p) {
   return most;
 }
 
-// How far p is from the triangle's edges.
+// Returns the distance of p from the triangle's edges.
 double distance_to_edges(const Quad& triangle, const Vec3d& p) {
   double least = 1e30;
   for (size_t i = 0; i < 3; ++i) {
@@ -63,7 +63,7 @@ double distance_to_edges(const Quad& triangle, const Vec3d& p) {
   return least;
 }
 
-// The segment from x to y crosses the facet.
+// True if the segment from x to y crosses the facet.
 bool is_crossed(const Quad& q, const Vec3d& x, const Vec3d& y) {
   const Vec3d d = y - x;
   int sides = 0;
@@ -76,7 +76,8 @@ bool is_crossed(const Quad& q, const Vec3d& x, const Vec3d& y) {
   return sides != 3 && dot(n, x - Vec3d(q[0])) * dot(n, y - Vec3d(q[0])) < 0;
 }
 
-// All that facets promise, for a mesh whose triangles do not overlap; returns how many there are.
+// Checks all guarantees of facets for a mesh without overlapping triangles. Returns the number of
+// facets.
 size_t check_facets(const Mesh& mesh, uint64_t seed) {
   const Scene scene = scene_of(mesh);
   const Occluders o(scene);
@@ -103,14 +104,14 @@ size_t check_facets(const Mesh& mesh, uint64_t seed) {
     double perimeter = 0;
     for (size_t i = 0; i < 4; ++i) perimeter += double(length(q[(i + 1) % 4] - q[i]));
     CHECK(counts[f] > 0);
-    // its triangles lie in it and do not overlap: they fill it
+    // its triangles lie in it without overlap, so they fill it
     CHECK(std::abs(area_of(q) - areas[f]) <= 2 * ulp * perimeter);
     facet_area += area_of(q);
   }
   CHECK(facet_area == doctest::Approx(all).epsilon(1e-5));
 
-  // Segments through points of triangles and near them, but for those that graze them or pass an
-  // edge within rounding.
+  // Segments through triangles and near them, except those that graze a triangle or pass an edge
+  // within rounding.
   Random r(seed);
   int differences = 0, crossings = 0, tried = 0;
   for (int i = 0; i < 2000 && tried < 300; ++i) {
@@ -157,7 +158,7 @@ TEST_CASE("a rectangle is one facet, however it is cut") {
     CHECK(check_facets(mesh_of(random_grid(r, n, m, width, height), place), seed) == 1);
     const std::vector<Vec2d> corners{{0, 0}, {width, 0}, {width, height}, {0, height}};
     CHECK(check_facets(mesh_of(random_splits(r, corners, 60, 0.2), place), seed) == 1);
-    // a triangle, and a trapezium
+    // a triangle and a trapezium
     const std::vector<Vec2d> three{{0, 0}, {width, 0.2}, {0.3, height}};
     CHECK(check_facets(mesh_of(random_splits(r, three, 60, 0.2), place), seed) == 1);
     const std::vector<Vec2d> four{{0, 0}, {width, 0}, {0.7 * width, height}, {0.1, height}};
@@ -178,7 +179,7 @@ TEST_CASE("walls with windows and L-shapes are few facets") {
     CHECK(check_facets(mesh_of(random_grid(r, 10, 8, 4, 3, window), place), seed) == 4);
     CHECK(check_facets(mesh_of(random_grid(r, 9, 7, 4, 3, corner), place), seed) == 2);
     CHECK(check_facets(mesh_of(random_grid(r, 11, 8, 4, 3, two), place), seed) == 5);
-    // holes anywhere
+    // random holes
     const auto any = [&](uint32_t, uint32_t) { return r.next_u32() % 5 == 0; };
     const Mesh sieve = mesh_of(random_grid(r, 12, 12, 4, 3, any), place);
     CHECK(check_facets(sieve, seed) < sieve.triangles.size() / 3);
@@ -188,7 +189,7 @@ TEST_CASE("walls with windows and L-shapes are few facets") {
 TEST_CASE("a wall cut without order: about pairs of triangles at worst") {
   for (uint64_t seed = 0; seed < 60; ++seed) {
     Random r(seed);
-    // a ring of triangles about a window, then split at random
+    // a ring of triangles around a window, then random splits
     Tessellation t;
     t.points = {{0, 0}, {4, 0}, {4, 3}, {0, 3}, {1, 1}, {2.5, 1}, {2.5, 2}, {1, 2}};
     t.triangles = {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5},
@@ -221,7 +222,7 @@ TEST_CASE("a tessellated box is six facets and stays closed") {
     constexpr uint32_t n = 5;
     const Place place = random_place(r, 3);
     Mesh m;
-    // six sides of n × n squares; vertices of neighbours are the same numbers
+    // six sides of n × n squares; vertices of neighbours have identical coordinates
     for (uint32_t side = 0; side < 6; ++side) {
       const auto base = uint32_t(m.positions.size());
       for (uint32_t j = 0; j <= n; ++j)
@@ -249,7 +250,7 @@ TEST_CASE("a tessellated box is six facets and stays closed") {
         CHECK(p.x <= b.upper.x);
       }
     }
-    // one triangle short: the facets cover less, and the surface is open
+    // without one triangle, facets cover less and the surface is open
     m.triangles.pop_back();
     const Occluders open(scene_of(m));
     CHECK(open.facet_count() > 6);
@@ -271,14 +272,14 @@ TEST_CASE("what must not merge does not") {
   const Occluders o(two);
   CHECK(o.facet_count() == 2);
   CHECK(o.facet_of(0, 0) != o.facet_of(1, 0));
-  // exact duplicates of triangles, and their back sides
+  // exact duplicates of triangles, and their reversed copies
   Mesh copies = m;
   for (const Triangle& t : m.triangles) copies.triangles.push_back(t);
   CHECK(Occluders(scene_of(copies)).facet_count() == copies.triangles.size());
   Mesh both = m;
   for (const Triangle& t : m.triangles) both.triangles.push_back({t[0], t[2], t[1]});
   CHECK(Occluders(scene_of(both)).facet_count() >= 2);
-  // a cylinder so fine that neighbours are nearly flat
+  // a cylinder whose neighbouring faces are nearly coplanar
   Mesh round;
   constexpr uint32_t n = 20000;
   for (uint32_t i = 0; i < n; ++i) {

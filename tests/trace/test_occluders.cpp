@@ -40,7 +40,7 @@ Scene soup(uint64_t seed, int triangles) {
   return s;
 }
 
-// A box of 12 triangles about a centre.
+// Adds a box of 12 triangles around a centre.
 void add_box(Mesh& m, const Vec3& c, float h) {
   const auto base = uint32_t(m.positions.size());
   for (int i = 0; i < 8; ++i)
@@ -100,7 +100,7 @@ TEST_CASE("gathering never misses a facet with a point inside the planes") {
         ++expected;
         CHECK(ids.count(f) == 1);
       }
-      // an early stop keeps what it has and says so
+      // an early stop keeps the found facets and marks the list as incomplete
       Occluders::Found some;
       occluders.gather(planes, ids.size() / 2, some);
       CHECK(some.is_complete == ids.empty());
@@ -114,14 +114,14 @@ TEST_CASE("gathering never misses a facet with a point inside the planes") {
 
 namespace {
 
-// All facets in the tree's order, and how many nodes it has.
+// Returns all facets in tree order, and the number of nodes.
 Occluders::Found all_of(const Occluders& occluders) {
   Occluders::Found found;
   occluders.gather({}, occluders.facet_count(), found);
   return found;
 }
 
-// Many facets in few places, where no split is better than another.
+// Returns many facets in few places, where all splits are equally good.
 Scene piles() {
   Scene s = soup(3, 30'000);
   Mesh& m = s.meshes[0];
@@ -136,7 +136,7 @@ double seconds_of(clockid_t clock) {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-// Waits until threads that have had work before have gone to sleep.
+// Waits until other threads of the process are idle.
 void wait_for_other_threads() {
   for (int i = 0; i < 500; ++i) {
     const double all = seconds_of(CLOCK_PROCESS_CPUTIME_ID),
@@ -198,7 +198,7 @@ TEST_CASE("the tree is the same, whatever threads there are") {
 TEST_CASE("occluders are built on the thread that asks for them, and on no other") {
   const Scene scene = soup(3, 100'000);
   wait_for_other_threads();
-  // Clocks of a busy machine may be off by some percent now and then.
+  // clocks of a busy machine may be off by some percent
   double least = 1;
   for (int i = 0; i < 5; ++i) {
     const double all = seconds_of(CLOCK_PROCESS_CPUTIME_ID),
@@ -260,7 +260,7 @@ TEST_CASE("triangles of a flat face become one quadrilateral, others stay") {
   b.triangles = {{0, 1, 2}, {0, 2, 3}};
   bent.meshes.push_back(b);
   CHECK(Occluders(bent).facet_count() == 2);
-  // flat, but not convex together
+  // coplanar, but not convex together
   b.positions = {{0, 0, 0}, {1, 0, 0}, {0.1f, 0.1f, 0}, {0, 1, 0}};
   bent.meshes[0] = b;
   CHECK(Occluders(bent).facet_count() == 2);

@@ -1,4 +1,4 @@
-// What rays stand for of a textured surface, bumps, and backs that the eye does not see.
+// Tests footprints of rays on textured surfaces, bump maps, and invisible back faces.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A square of 4 × 4 m in the plane z = 0, (u,v) = (x, y) / 2, its front up.
+// Returns a square of 4 × 4 m in the plane z = 0 with (u,v) = (x, y) / 2 and its front up.
 Scene square(const Material& material, const Texture& texture) {
   Scene s;
   s.textures.push_back(texture);
@@ -26,7 +26,7 @@ Scene square(const Material& material, const Texture& texture) {
   return s;
 }
 
-// Heights .3 u + .1 v, as texels of a ramp.
+// Returns a ramp of heights .3 u + .1 v.
 Texture ramp() {
   Texture t = grey_image(64, 64, [](int x, int y) {
     return 0.3f * (float(x) + 0.5f) / 32 + 0.1f * (float(y) + 0.5f) / 32;
@@ -55,12 +55,12 @@ TEST_CASE("a footprint is as wide as the cone, and longer where it leans") {
   Material m;
   m.base_color.texture = 0;
   const Scene scene = square(m, ramp());
-  // from straight above, 5 m: 5 cm wide, and .025 in (u,v)
+  // from 5 m above: 5 cm wide, 0.025 in (u,v)
   Surface s = hit_from(scene, {2, 2, 5}, {2, 2, 0}, {0, 0.01f});
   CHECK(s.uv.width == doctest::Approx(0.05));
   CHECK(std::sqrt(dot(s.uv.axis_a, s.uv.axis_a)) == doctest::Approx(0.025));
   CHECK(std::sqrt(dot(s.uv.axis_b, s.uv.axis_b)) == doctest::Approx(0.025));
-  // 60 degrees off along x: twice as long there
+  // 60 degrees from the normal along x: twice as long there
   s = hit_from(scene, {2 - std::sqrt(3.0f), 2, 1}, {2, 2, 0}, {0.05f, 0});
   CHECK(std::abs(s.uv.axis_a.x) == doctest::Approx(0.05));
   CHECK(std::abs(s.uv.axis_a.y) < 1e-5f);
@@ -150,7 +150,7 @@ TEST_CASE("of one-sided triangles back to back, every ray meets the one that fac
 }
 
 TEST_CASE("what shines by a texture is seen with its mean over the footprint") {
-  // Columns of 1 and 3, each 1/64 of (u,v), which is 1/32 m.
+  // Columns of 1 and 3, each 1/64 of (u,v) wide, which is 1/32 m.
   Texture columns = grey_image(64, 1, [](int x, int) { return x % 2 == 0 ? 1.0f : 3.0f; });
   build_levels(columns);
   Scene scene = square(Material{}, columns);
@@ -180,9 +180,9 @@ TEST_CASE("a grain lies along growing u, turned as it is told, in the frame of t
   for (int i = 0; i < 3; ++i) {
     Material m;
     m.anisotropy.value = 0.5f;
-    // counterclockwise with v downwards: from +u towards -v, which is -y here
+    // counterclockwise with v downwards: from +u to -v, which is -y here
     if (i == 1) m.anisotropy_rotation_rad = float(pi / 2);
-    Texture up;  // by a texture the same way round: red and green 0.5, 0 is down the image
+    Texture up;  // direction from a texture: red .5 and green 0 point down the image
     up.value = {0.5f, 0, 1};
     if (i == 2) m.anisotropy.texture = 0;
     const Scene scene = square(m, up);
@@ -200,7 +200,7 @@ TEST_CASE("a second set of coordinates: its place, its footprint, and the axes o
   Scene scene = square(m, ramp());
   for (const Vec3& p : scene.meshes[0].positions)
     scene.meshes[0].uvs_2.push_back({p.y / 4, p.x / 4});
-  Texture lean;  // red .75: towards growing u
+  Texture lean;  // red .75: towards increasing u
   lean.value = {0.75f, 0.5f, 1};
   scene.textures.push_back(lean);
   for (const bool is_second : {false, true}) {

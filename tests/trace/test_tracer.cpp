@@ -13,7 +13,7 @@ using namespace troffer;
 
 namespace {
 
-// A unit cube's inside, a sphere and a disk in it.
+// Returns the inside of a unit cube with a sphere and a disk.
 Scene box_scene() {
   Scene s;
   s.materials.resize(1);
@@ -104,7 +104,7 @@ TEST_CASE("a ray that leaves a surface does not meet it again") {
     const Surface s = surface_at(scene, next[i], again[i]);
     if (is_convex)
       CHECK(again[i].geometry != hits[i].geometry);
-    else if (again[i].geometry == 0) {  // another face, not the one it left
+    else if (again[i].geometry == 0) {  // another face than the one it left
       const bool is_parallel =
           std::abs(dot(s.geometric_normal, surfaces[i].geometric_normal)) > 0.5f;
       const float apart = std::abs(dot(s.geometric_normal, s.position - surfaces[i].position));
@@ -229,7 +229,7 @@ TEST_CASE("normal maps tilt shading normals: red along u, green up the image") {
   CHECK(length(surface_at(s, ray, hit).shading_normal - Vec3{h, 0, h}) < 1e-5f);
   hit.geometry = 1;
   CHECK(length(surface_at(s, ray, hit).shading_normal - Vec3{0, h, h}) < 1e-5f);
-  // Mirrored texture coordinates: the image is seen from behind, and so is its relief.
+  // With mirrored texture coordinates the image and its relief are seen from behind.
   for (Vec2& uv : s.meshes[0].uvs) uv.x = 1 - uv.x;
   hit.geometry = 0;
   CHECK(length(surface_at(s, ray, hit).shading_normal - Vec3{-h, 0, h}) < 1e-5f);

@@ -16,7 +16,7 @@ struct Place {
 };
 // Textures of a material beside those of pbrMetallicRoughness. The first used texture decides the
 // mesh's first set, so base colours come before others.
-constexpr std::array<Place, 15> places{
+constexpr std::array<Place, 17> places{
     {{"KHR_materials_pbrSpecularGlossiness", "diffuseTexture"},
      {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture"},
      {nullptr, "emissiveTexture"},
@@ -24,6 +24,8 @@ constexpr std::array<Place, 15> places{
      {"KHR_materials_specular", "specularTexture"},
      {"KHR_materials_specular", "specularColorTexture"},
      {"KHR_materials_transmission", "transmissionTexture"},
+     {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture"},
+     {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture"},
      {"KHR_materials_anisotropy", "anisotropyTexture"},
      {"KHR_materials_sheen", "sheenColorTexture"},
      {"KHR_materials_sheen", "sheenRoughnessTexture"},

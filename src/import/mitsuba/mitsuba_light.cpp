@@ -86,6 +86,10 @@ void MitsubaLightReader::add(Light e) {
     scene_.warnings.add(label() + "too bright for a number: left out");
     return;
   }
+  if (!is_finite(e.position)) {
+    scene_.warnings.add(label() + "its position cannot be used: left out");
+    return;
+  }
   e.name = !node_.id.empty() ? node_.id : "light" + std::to_string(scene_.lights.size());
   scene_.lights.push_back(std::move(e));
 }
@@ -106,7 +110,7 @@ void MitsubaLightReader::point() {
   e.radiance = color("intensity", Rgb{1});
   const Vec3d at = get_vector(node_, "position").value_or(Vec3d{0});
   e.position = Vec3(world_.point(at) - scene_.origin);
-  if (is_finite(e.position)) add(std::move(e));
+  add(std::move(e));
 }
 
 // Intensity falls linearly with the angle from beam_width to cutoff_angle. A texture spans the
@@ -131,7 +135,7 @@ void MitsubaLightReader::spot() {
     else
       scene_.warnings.add(label() + "its texture is not supported where it is 180 degrees wide");
   }
-  if (turn(e, world_.columns[2]) && is_finite(e.position)) add(std::move(e));
+  if (turn(e, world_.columns[2])) add(std::move(e));
 }
 
 // Projects a picture of that half width and height at distance 1, with its first row at -y. The
@@ -171,7 +175,7 @@ void MitsubaLightReader::projector() {
   e.position = Vec3(world_.translation - scene_.origin);
   // The picture's left is at +x and its top at +y, as for cameras.
   throw_picture(e, c.texture, -half_height * aspect, -half_height);
-  if (e.texture >= 0 && is_finite(e.position)) add(std::move(e));
+  if (e.texture >= 0) add(std::move(e));
 }
 
 bool MitsubaLightReader::is_checkerboard(const MitsubaNode& texture) const {
@@ -212,7 +216,8 @@ void MitsubaLightReader::envmap() {
     *scene_.left_out_image_bytes += size_of_left_out(path.path);
     return;
   }
-  if (path.is_fine() && set_axes(e)) {
+  if (!set_axes(e)) return;
+  if (path.is_fine()) {
     try {
       EnvironmentMap map = read_environment(path.path, scene_.warnings);
       map.projection = SphereMap::lat_long;

@@ -82,7 +82,8 @@ class PbrtLightReader {
     const double fov = params_.get_float("fov", 90);
     if (!(fov > 0 && fov < 180)) fail_at(params_.find("fov")->place, "fov must lie in (0, 180)");
     const ConfinedPath path = confined_path(context_.folder, file);
-    if (!path.is_fine() || !set_axes(e)) {
+    if (!set_axes(e)) return std::nullopt;
+    if (!path.is_fine()) {
       context_.warnings.add("image '" + file + "' of a projection light: " + path.problem +
                             "; the light is left out");
       return std::nullopt;
