@@ -123,8 +123,8 @@ namespace {
 const std::string coloured_ply =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
     "z\nproperty float red\nproperty float green\nproperty float blue\nproperty float heat_0\n"
-    "element face 2\nproperty list uchar int vertex_indices\nproperty float tone_0\nproperty float "
-    "tone_1\nproperty float tone_2\nend_header\n"
+    "element face 2\nproperty list uchar int vertex_indices\nproperty float tone_1\nproperty float "
+    "tone_2\nproperty float tone_3\nend_header\n"
     "0 0 0 1 0 0 .5\n1 0 0 0 1 0 .5\n1 1 0 0 0 1 .25\n0 1 0 0 0 0 1\n"
     "3 0 1 2 .1 .2 .3\n3 0 2 3 .4 .5 .6\n";
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "base/error.h"
@@ -14,13 +15,17 @@ namespace troffer {
 
 namespace {
 
+constexpr size_t most_channels = 4;
+
 // Suffixes that name the channels of one attribute, in order.
-constexpr std::array<std::string_view, 4> attribute_endings{"xyzw", "rgba", "0123", "1234"};
+// Numbers count from 0 or from 1.
+constexpr std::array<std::string_view, 3> attribute_endings{"xyzw", "rgba", "01234"};
 
 // Attribute and channel of a property.
 struct AttributeColumn {
   std::string attribute;
   size_t channel = 0;
+  bool is_numbered = false;
 };
 
 // Returns an empty name if the property belongs to no attribute.
@@ -35,7 +40,8 @@ AttributeColumn column_of(const std::string& name) {
     const size_t k = ending.find(name[at + 1]);
     if (k == std::string_view::npos) continue;
     // Mitsuba appends "_color" to the name of {prefix}_{r|g|b|a}.
-    return {name.substr(0, at) + (ending == attribute_endings[1] ? "_color" : ""), k};
+    return {name.substr(0, at) + (ending == attribute_endings[1] ? "_color" : ""), k,
+            ending == attribute_endings[2]};
   }
   return {};
 }
@@ -54,12 +60,16 @@ class AttributeReader {
     for (const PlyProperty& p : element.properties) {
       const AttributeColumn c = p.is_list ? AttributeColumn{} : column_of(p.name);
       columns_.push_back(c);
+      if (c.is_numbered && c.channel == 0) counts_from_0_.insert(c.attribute);
+    }
+    for (AttributeColumn& c : columns_) {
+      if (c.attribute.empty()) continue;
+      if (c.is_numbered && counts_from_0_.count(c.attribute) == 0) --c.channel;
+      if (c.channel >= most_channels) c = {};  // a fifth number
       if (c.attribute.empty()) continue;
       size_t& channels = channels_[c.attribute];
       channels = std::max(channels, c.channel + 1);
     }
-    // A suffix of "1234" may be found in "0123" first, as one channel further on.
-    for (auto& [name, channels] : channels_) channels = std::min<size_t>(channels, 4);
     for (const auto& [name, channels] : channels_) rows_[name].resize(channels);
   }
 
@@ -80,6 +90,7 @@ class AttributeReader {
  private:
   const PlyElement& element_;
   bool is_of_faces_;
+  std::set<std::string> counts_from_0_;  // names of attributes
   std::vector<AttributeColumn> columns_;
   std::map<std::string, size_t> channels_;
   std::map<std::string, std::vector<float>> rows_;  // values of the current row
