@@ -1,4 +1,4 @@
-// The texts of options, taken apart.
+// Parsing of option texts.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace troffer {
 
-// A finite number and nothing else, or none.
+// Returns the finite number that is all of the text, or nothing.
 std::optional<double> parse_number(const std::string& text);
 
-// One part more than there are separators.
+// Splits a text. The result has one part more than there are separators.
 std::vector<std::string> split_text(const std::string& text, char separator);
 
 }  // namespace troffer
