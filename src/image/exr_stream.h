@@ -1,4 +1,4 @@
-// OpenEXR's view of a file that lies in memory.
+// OpenEXR input stream over a file in memory.
 #pragma once
 
 #include <Iex.h>
