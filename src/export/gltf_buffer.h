@@ -1,4 +1,4 @@
-// The binary data of a glTF file that is being written, with the views and accessors into it.
+// Binary data of a glTF file that is being written, with its views and accessors.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ class GltfBuffer {
  public:
   using Json = nlohmann::ordered_json;
 
-  // Index of a buffer view with these bytes.
+  // Adds a buffer view with these bytes; returns its index.
   size_t add_view(std::span<const uint8_t> bytes);
-  // Index of an accessor of vectors or of indices.
+  // Add an accessor of vectors or indices; return its index.
   size_t add(const std::vector<Vec3>& values, bool has_bounds);
   size_t add(const std::vector<Vec3>& colors, const std::vector<float>& alphas);
   size_t add(const std::vector<Vec2>& values);
