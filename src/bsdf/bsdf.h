@@ -1,6 +1,7 @@
 // Reflection and transmission at a hit: evaluates, samples and gives densities of a material's
 // scattering function. All integrators use it; make_bsdf() builds one per hit. A Bsdf is plain data
-// that points into BsdfTables.
+// that points into BsdfTables. docs/materials.md describes each model and how well it conserves
+// energy.
 //
 // Directions are unit vectors in the local shading frame and point away from the surface. z is the
 // shading normal on the viewer's side, so wo.z > 0; wo.z <= 0 scatters nothing. wi.z > 0 is
@@ -11,48 +12,6 @@
 // 1/eta², eta = n(wi's side) / n(wo's side); a path that enters and leaves glass ends with a factor
 // of 1. f(wo,wi) n(wi's side)² is symmetric in wo and wi. Without the factor n², no model scatters
 // more energy than arrives.
-//
-// Models (all rgb inputs are clamped to [0,1]):
-// - FacetModel: the compensation of lost energy below applies to balanced facets. Facets that
-//   scatter once (bsdf/facet_lobe.h) lose that energy, as Mitsuba defines them.
-// - Smooth glossy lobes (alpha < smooth_alpha) are delta lobes. evaluate and pdf leave them out.
-// - Rough glossy lobes are GGX with height-correlated Smith masking. Energy lost between
-//   microfacets returns as a reciprocal diffuse lobe [1]. For metals it is scaled by the mean
-//   Fresnel reflectance. For glass it leaves in both half spaces, split by the mean transmittance.
-// - Gloss with a grain has two GGX widths. Lost energy returns by a fit to the albedo over cosine
-//   and azimuth if the widths are constant over the surface; otherwise it stays lost.
-// - A thin film over glTF's gloss (bsdf/thin_film.h) replaces Schlick's or the glass's reflectance
-//   on the share of the surface that it covers. The diffuse base below keeps what a Schlick curve
-//   leaves that lies nowhere below the film's reflectance.
-// - A clear coat lies over everything else, sheen included: bsdf/clear_coat.h. Solid glass has it
-//   on the outside, a sheet of glass on both sides: bsdf/coated_glass.h.
-// - Sheen lies over everything but the clear coat and leaves p = 1 - its albedo × its largest
-//   colour channel. Gloss keeps the smaller p of both directions (KHR_materials_sheen). The diffuse
-//   lobe and returned lost energy keep the product of both, divided by its mean, so that white ones
-//   reflect all that is left. Solid glass has sheen on the outside, sheets on both sides. Light
-//   that leaves glass loses what the sheen takes.
-// - coated_diffuse: a dielectric coat over a Lambertian base, with all inter-reflections below the
-//   coat: f = T(wo) T(wi) rho / (pi eta² (1 - rho F)). T = 1 - E, with E the coat's directional
-//   albedo. F = 1 - (1 - E_avg) / eta² is the coat's mean reflectance from below [2]. A white base
-//   reflects everything.
-// - metallic_roughness: glTF's mix of a Schlick metal and a Schlick coat over a Lambertian base.
-//   The base is (1 - E(wo)) (1 - E(wi)) / (1 - E_avg) rho / pi, so that a white one reflects
-//   everything [1]. E takes the largest channel of a coloured specular (KHR_materials_specular).
-//   The transmitting share is glass with exact Fresnel reflectance scaled by specular and
-//   specular_color, and base_color tints what it transmits. The compensation of its lost energy
-//   ignores that scaling.
-// - Diffuse transmission: light that arrives on the far side leaves this side by the diffuse lobe's
-//   law, coat included, with `through` instead of `diffuse`. Of the functions below only albedo()
-//   includes it. Callers treat such a surface as two sides with a part each
-//   (transport/two_sides.h).
-// - Thin sheets reflect R = 2r / (1 + r) for each polarisation and transmit the rest straight on.
-//   Rough thin sheets transmit GGX's reflection lobe, mirrored to the other side, as glTF viewers
-//   do.
-//
-// Energy conservation in the white furnace tests, for cosines of 0.02 and more and all alpha: white
-// opaque surfaces reflect 0.9985 to 1.001 of the light. Lossless glass scatters 0.998 to 1.001 seen
-// from the thinner side, and 0.995 to 1.006 from the denser side. There the kink at total
-// reflection limits the tables.
 //
 // References: [1] Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH
 //   2017 course. [2] Wolff, "Diffuse-Reflectance Model for Smooth Dielectric Surfaces", JOSA A
@@ -191,8 +150,8 @@ inline bool sample(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u
 // Returns the share of energy from a direction of cosine cos_o that is scattered, delta lobes and
 // transmission included (without the n² of radiance). Exact up to the tables for Lambertian, coated
 // and glTF's opaque surfaces, smooth lobes and clear glass. An estimate for rough conductors and
-// gloss under a clear coat (off by some percent) and for rough tinted glass (the tint may be off by
-// the share that reflects).
+// gloss under a clear coat, off by some percent. Also an estimate for rough tinted glass, whose
+// tint may be off by the share that reflects.
 Rgb albedo(const Bsdf& bsdf, float cos_o);
 
 // Returns the diffuse lobe of a Bsdf, attenuated by its coat. diffuse_part and specular_part add up

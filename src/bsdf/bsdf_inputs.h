@@ -1,4 +1,6 @@
-// A material at a hit: input of make_bsdf.cpp and lost_light.cpp.
+// Input of make_bsdf.cpp and lost_light.cpp: a material with its textures and tables at one hit,
+// and helpers on it. Texture values are clamped to [0,1]. Not part of the public interface; other
+// code calls make_bsdf() (bsdf.h).
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // Energy that each lobe of a Bsdf scatters from one direction, and the probability with which
-// sample() chooses each lobe.
+// sample() chooses each lobe. bsdf.cpp samples and computes albedo() with it. Energies are shares
+// of the incident energy; estimates suffice for probabilities.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// Evaluates a Bsdf for many directions at once with vector instructions.
+// Evaluates a Bsdf for many directions at once with vector instructions. The certified light
+// integrals use it, where one receiver has many source samples. Conventions are those of bsdf.h.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // Directional albedo of rough solid glass under a uniform thin film, from both sides: the channels'
-// mean over the cosine, and the total loss of each channel. add_glass_compensation uses it.
+// mean over the cosine, and the total loss of each channel. BsdfTables owns the tables, and
+// add_glass_compensation() uses them to return lost energy.
 #pragma once
 
 #include <array>

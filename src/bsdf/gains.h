@@ -1,4 +1,6 @@
-// Attenuation of the separable lobes of a Bsdf and of its covers for one direction.
+// Attenuation of light in one direction by the coat, sheen and clear coat of a Bsdf. The separable
+// lobes multiply the factors g of both directions. Evaluation (bsdf.cpp), sampling (choice.h) and
+// construction (make_bsdf.cpp) use it. All factors are shares in [0,1].
 #pragma once
 
 #include "bsdf/bsdf.h"

@@ -1,5 +1,5 @@
-// GGX with two widths: along the x axis of the local frame and across it. With equal widths the
-// functions agree with those of ggx.h.
+// GGX with two widths: along the x axis of the local frame and across it. Bsdfs with a grain use
+// it. With equal widths the functions agree with those of ggx.h, whose conventions apply.
 // References: as in ggx.h; [2] has Smith's Lambda for two widths, Eq. 86; [4] their bound.
 #pragma once
 

@@ -1,4 +1,5 @@
-// Properties of a Bsdf's lobes that depend on wo only; evaluate_many() uses them.
+// Properties of a Bsdf's lobes that depend on the viewing direction only. evaluate_many() computes
+// them once and then evaluates many directions. Probabilities and factors are in [0,1].
 #pragma once
 
 #include "bsdf/bsdf.h"

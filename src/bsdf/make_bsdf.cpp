@@ -195,8 +195,8 @@ void set_coated_diffuse(Bsdf& b, const Inputs& in) {
   b.has_separable = !b.diffuse.is_black();
 }
 
-// Returns the f0 of a Schlick curve with this f90 that lies nowhere below the reflectance of the
-// coat under its film, at the cosines tested.
+// Returns the f0 of a Schlick curve with this f90 that bounds the reflectance of the filmed coat
+// from above, at the cosines tested.
 float hull_below_film(const Bsdf& b, float f0, float f90) {
   float least = f0;
   for (const float c : {1.0f, 0.85f, 0.7f, 0.55f, 0.4f, 0.25f, 0.1f}) {

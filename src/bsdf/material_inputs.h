@@ -1,4 +1,6 @@
-// Material parameters that make_bsdf.cpp and table_needs.cpp read, clamped to valid ranges.
+// Material parameters in the form that make_bsdf.cpp, tables.cpp and table_needs.cpp use: clamped
+// to valid ranges, with roughness converted to a GGX width. NaN becomes 0. Lengths of films are in
+// nanometres.
 #pragma once
 
 #include <algorithm>

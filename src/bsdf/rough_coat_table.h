@@ -1,6 +1,7 @@
 // A rough coat of one width over a diffuse base, whose microfacets scatter once
 // (FacetModel::single_ggx, single_beckmann): Mitsuba's roughplastic. Light is lost between facets
-// on the way in and on the way out.
+// on the way in and on the way out. BsdfTables owns the tables; values are shares of energy over
+// the cosine.
 #pragma once
 
 #include <array>

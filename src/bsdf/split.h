@@ -1,4 +1,6 @@
-// Division of light by one microfacet of a Bsdf's glossy lobe.
+// Division of light by one microfacet of a Bsdf's glossy lobe into reflected and transmitted
+// shares, thin films and absorbing sheets included. bsdf.cpp uses it to evaluate and sample,
+// choice.h for albedos. Cosines are those of incidence on the microfacet.
 #pragma once
 
 #include <algorithm>

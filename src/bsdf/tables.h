@@ -1,5 +1,6 @@
 // Scene-wide tables for Bsdfs: directional albedos for each index of refraction in the scene, and
-// averages of Fresnel terms. Built once per scene; make_bsdf() reads them at each hit.
+// averages of Fresnel terms. Built once per scene; make_bsdf() reads them at each hit. Thread-safe
+// once built.
 #pragma once
 
 #include <array>
@@ -59,10 +60,10 @@ bool is_pane(const Material& material);  // table_needs.cpp
 // Immutable once built. Bsdfs point into it, so it must outlive them and stay in place.
 class BsdfTables {
  public:
-  // Takes some ten milliseconds, and about as much for each distinct index of refraction of rough
-  // dielectrics and coats, each pair of grain widths, and each film over rough glass. Sheen takes a
-  // tenth of a second. Beyond `max_iors` distinct indices of a kind, the nearest tabulated one is
-  // used. Beyond as many pairs of widths or films, there is no table.
+  // Takes some ten milliseconds. Each distinct index of refraction of rough dielectrics and coats,
+  // pair of grain widths and film over rough glass takes about as much. Sheen takes a tenth of a
+  // second. Beyond `max_iors` distinct indices of a kind, the nearest tabulated one is used. Beyond
+  // as many pairs of widths or films, there is no table.
   explicit BsdfTables(const std::vector<Material>& materials);
   explicit BsdfTables(const Scene& scene) : BsdfTables(scene.materials) {}
 

@@ -1,4 +1,6 @@
-// Compares an image with a reference: figures of the `compare` command.
+// Compares an image with a reference: means, root mean squared error, 8-bit difference and FLIP.
+// The `compare` command and the Python module report these figures. Values are linear and in the
+// images' unit unless stated.
 #pragma once
 
 #include <cstddef>

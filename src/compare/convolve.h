@@ -1,4 +1,5 @@
-// Convolution with short kernels along rows and columns, used by FLIP.
+// Convolution of one channel with short kernels along rows and columns. FLIP uses it for its
+// separable filters. Results do not depend on the number of threads.
 #pragma once
 
 #include <cstddef>

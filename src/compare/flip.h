@@ -1,4 +1,5 @@
-// LDR-FLIP: the visible difference of two images when alternating between them.
+// LDR-FLIP: the visible difference of two images when alternating between them, for each pixel in
+// [0,1]. compare_images() averages it and flip_map() shows it.
 // References: [1] Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild, "FLIP: A
 //   Difference Evaluator for Alternating Images", Proc. ACM CGIT 3(2) (HPG), 2020.
 #pragma once

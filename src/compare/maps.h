@@ -1,4 +1,5 @@
-// Pictures of the differences of two images.
+// Pictures of the differences of two images, which the `compare` command writes. All results are
+// linear images.
 // References: [1] Smith & van der Walt, "A Better Default Colormap for Matplotlib", SciPy 2015
 //   (the colour map "magma", released under CC0).
 #pragma once

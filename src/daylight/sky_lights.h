@@ -1,4 +1,6 @@
-// Adds a sky, the ground below it and the sun to a scene as lights.
+// Adds a sky, the ground below it, the sun, or an environment image to a scene as lights. The
+// command line (lighting/daylight_options.h) and Python use it. Angles are in degrees, illuminances
+// in lx; sky_model.h provides luminance and illuminance.
 #pragma once
 
 #include <optional>

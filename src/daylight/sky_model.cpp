@@ -139,7 +139,7 @@ SkyShape cie_sky(int type) {
 }
 
 // Midpoint rule in the squared sine of the zenith angle, in which the cosine weight is uniform, and
-// in azimuth over one of two mirrored halves.
+// in azimuth. By symmetry half of the azimuths suffice.
 double horizontal_integral(const SkyShape& shape, double sun_zenith_rad) {
   constexpr int n = 400;
   const double sun_up = std::cos(sun_zenith_rad), sun_along = std::sin(sun_zenith_rad);

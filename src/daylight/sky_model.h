@@ -1,5 +1,5 @@
-// Luminance distributions of skies, and illuminance by sky and sun. Used by sky_lights.h.
-//
+// Luminance distributions of skies, and illuminance by sky and sun. sky_lights.h uses them.
+// Irradiances are in W/m² of all wavelengths, illuminances in lx.
 // References: [1] CIE S 011/E:2003 (ISO 15469:2004), "Spatial distribution of daylight: CIE
 // standard
 //   general sky".

@@ -1,5 +1,5 @@
 // Bakes textures times factors into plain images. A look (texture_look.h) determines size and
-// placement. Both exporters use it.
+// placement. The glTF and pbrt exporters use it for every texture that they write.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Exports scenes to pbrt-v4 (.pbrt) or glTF 2.0 (.gltf, .glb), chosen by extension. The output has
-// the structure of the scene in memory.
+// Exports scenes to pbrt-v4 (.pbrt) or glTF 2.0 (.gltf, .glb), chosen by extension. The `convert`
+// and `bake` commands use it. The output has the structure of the scene in memory. Properties that
+// a format cannot express become warnings.
 #pragma once
 
 #include <optional>

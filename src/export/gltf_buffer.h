@@ -1,4 +1,6 @@
-// Binary data of a glTF file that is being written, with its views and accessors.
+// Binary data of a glTF file that is being written, with its buffer views and accessors. The glTF
+// exporter adds vertex data and images to it. The add functions return the index of the new entry.
+// Data are little endian.
 #pragma once
 
 #include <cstdint>

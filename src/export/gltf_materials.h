@@ -1,4 +1,5 @@
-// Writes materials, textures and emission as glTF.
+// Writes materials, textures and emission as glTF, each combination once. GltfWriter uses it.
+// Emission is in cd/m²; material models that glTF lacks are approximated, with a warning.
 #pragma once
 
 #include <map>

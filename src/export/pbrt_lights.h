@@ -1,4 +1,6 @@
-// Writes lights without a surface as pbrt's LightSource.
+// Writes lights without a surface (points, spots, distant lights, skies, environments) as pbrt's
+// LightSource. PbrtWriter uses it; emitting surfaces are written there. Images go to the output
+// folder.
 #pragma once
 
 #include <string>

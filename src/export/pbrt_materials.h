@@ -1,4 +1,6 @@
-// Writes materials and textures as directives of pbrt files.
+// Writes materials and textures as directives of pbrt files. PbrtWriter calls begin() and use() for
+// each shape. Images go to the output folder; properties that pbrt lacks are approximated, with a
+// warning.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// Writes scenes as pbrt-v4 files.
+// Writes scenes as pbrt-v4 files. export_scene() uses it. Emission is in W/(m² sr).
 //
 // References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
 #pragma once

@@ -1,4 +1,5 @@
-// Writes meshes as PLY files, binary, little endian.
+// Writes meshes as PLY files, binary, little endian, with normals and texture coordinates if the
+// mesh has them. PbrtWriter uses it. Positions are in metres.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// A scene as other formats store it: meshes with one material and at most one light. Both exporters
-// use it.
+// A scene as other formats store it: meshes with one material and at most one light. The glTF and
+// pbrt exporters and the baker use it. It also converts spheres and disks to triangles.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,6 @@
-// Output files that are complete or absent.
+// Output files that are complete or absent. Commands write their outputs through it, so that an
+// interrupted run never leaves a partial file or destroys an old one. OutputReservation checks an
+// output before long work.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +15,10 @@ namespace troffer {
 
 // Writes to a temporary file in the target's folder; commit() renames it to the target. Without
 // commit() the temporary file is removed and the target stays unchanged, even if a signal handler
-// ends the process (temporary_files.h). A target that exists and is not a regular file (a pipe, a
-// device), or is an open file of this process (/dev/stdout), is written directly. A link keeps
-// pointing to its file, which is replaced. A replaced file keeps its permissions. Every failure
-// throws EnvironmentError{"cannot write PATH: reason"}.
+// ends the process (temporary_files.h). A pipe, a device or an open file of this process
+// (/dev/stdout) is written directly. A link keeps pointing to its file, which is replaced. A
+// replaced file keeps its permissions. Every failure throws EnvironmentError{"cannot write PATH:
+// reason"}.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);

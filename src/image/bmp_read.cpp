@@ -170,7 +170,7 @@ class BmpReader {
   }
 
   // Reads pairs of a count and a colour. A count of 0 ends a row or the picture, moves the
-  // position, or starts a sequence of literal colours, padded to an even number of bytes.
+  // position, or starts literal colours, padded to an even number of bytes.
   void read_runs() {
     const auto width = size_t(h_.width), height = size_t(h_.height);
     for (size_t row = 0; row < height; ++row)

@@ -1,5 +1,6 @@
 // Decoders behind decode_raster(), one per format. Each takes a whole file, checks the size against
-// max_pixels before it allocates memory, and throws InputError for any defect.
+// max_pixels before it allocates memory, and throws InputError for any defect. The is_png() and
+// similar functions test a file's first bytes.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Encoders behind write_image(), one per format: from pixels to file bytes. Equal pixels give equal
-// bytes.
+// Encoders behind write_image(), one per format: from pixels to the bytes of a file. Exporters and
+// the baker also call them directly. Equal pixels give equal bytes. Images are linear; rows run
+// from the top.
 #pragma once
 
 #include <cstdint>

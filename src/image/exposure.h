@@ -1,4 +1,5 @@
-// Exposure for showing a picture.
+// Automatic exposure for showing a picture on a display. Picture previews, baking and reports use
+// it. Exposures are in stops: powers of two of linear light.
 #pragma once
 
 #include "image/image.h"

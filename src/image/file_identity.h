@@ -1,4 +1,5 @@
-// Identity of the file that a path refers to, independent of its name, links or spelling.
+// Identity of the file that a path refers to, independent of its name, links or spelling. The
+// output guard (app/output_guard.h) uses it to prevent a command from overwriting its own inputs.
 #pragma once
 
 #include <cstdint>

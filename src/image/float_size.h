@@ -1,4 +1,6 @@
-// Limits the memory of a decoded picture relative to the size of its file.
+// Limits the memory of a decoded picture relative to the size of its file, so that a small
+// malicious file cannot exhaust memory. Picture readers call it before they allocate. Sizes are in
+// bytes.
 #pragma once
 
 #include <cstddef>

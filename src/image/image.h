@@ -1,5 +1,5 @@
-// Images of linear float channels, in named layers. Renderers write them and write_image() saves
-// them.
+// Images of linear float channels, in named layers. Renderers fill them, write_image() saves them
+// and read_image() loads them. Each layer has its own unit.
 #pragma once
 
 #include <cstddef>

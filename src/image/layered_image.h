@@ -1,4 +1,5 @@
-// Reads EXR files with all their layers.
+// Reads EXR files with all their layers, window and note, as write_image() wrote them. The `merge`
+// command uses it. For single pictures of any format see read_image.h.
 #pragma once
 
 #include <string>

@@ -1,4 +1,6 @@
-// Several output files of one command that are replaced together.
+// Several output files of one command that are replaced together. Commands use it for files that
+// belong together, such as a picture and its side files or the maps of a comparison. After a
+// failure all old files are unchanged.
 #pragma once
 
 #include <cstdint>

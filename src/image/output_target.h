@@ -1,5 +1,6 @@
 // Kind of an output path, and how to open it: a regular file to be replaced, or a stream that is
-// written directly.
+// written directly. AtomicFile uses it. Errors are EnvironmentErrors of the form "cannot write
+// PATH: reason".
 #pragma once
 
 #include <string>

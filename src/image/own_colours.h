@@ -1,4 +1,6 @@
-// Colour information of picture files, and its conversion to sRGB.
+// Colour information of picture files (PNG gamma, ICC profiles), and its conversion to sRGB.
+// Importers of textures call obey_own_colours() after decode_raster().
+// References: [1] ICC.1:2022, "Image technology colour management".
 #pragma once
 
 #include <cstdint>
@@ -29,7 +31,6 @@ constexpr const char* broken_colours =
 
 // Converts the picture to sRGB, or keeps linear values and clears is_srgb. Alpha is unchanged.
 // 8-bit pictures stay 8-bit, clipped to sRGB. ICC profiles use relative colorimetry [1].
-// References: [1] ICC.1:2022, "Image technology colour management".
 ColoursFound obey_own_colours(Raster& raster);
 
 }  // namespace troffer

@@ -1,4 +1,6 @@
-// Decodes picture files of any supported format from memory to arrays of texels.
+// Decodes picture files of any supported format from memory to arrays of texels. Texture import and
+// read_image() use it. Texels keep the file's encoding; linear_raster() and rec709_raster() convert
+// them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Reads picture files as linear images.
+// Reads whole files, and picture files as linear Rec. 709 images. Commands use it for references,
+// pictures and solutions. See raster.h for textures, whose encoding and alpha matter.
 #pragma once
 
 #include <cstdint>

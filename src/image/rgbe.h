@@ -1,4 +1,5 @@
-// Ward's shared-exponent pixels (RGBE) of Radiance HDR files.
+// Ward's shared-exponent pixels (RGBE) of Radiance HDR files: three 8-bit mantissas and a common
+// exponent. The HDR reader and writer use it.
 // References: [1] Ward, "Real Pixels", Graphics Gems II, 1991.
 #pragma once
 

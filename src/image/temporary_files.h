@@ -1,4 +1,5 @@
-// Temporary files that are removed when the process ends, except by SIGKILL.
+// Temporary files that are removed when the process ends, except by SIGKILL. AtomicFile registers
+// its files, and the signal handlers (app/signals.cpp) remove them. Thread-safe.
 #pragma once
 
 #include <cstddef>

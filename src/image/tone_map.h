@@ -1,4 +1,5 @@
-// Converts linear light to 8-bit display values.
+// Converts linear light to 8-bit display values: exposure, optional filmic curve, sRGB encoding.
+// PNG output and image comparison use it.
 // References: [1] Hable, "Filmic Tonemapping Operators", filmicworlds.com, 2010 (the curve of
 //   "Uncharted 2": Filmic Tonemapping for Games, GDC 2010).
 #pragma once

@@ -1,4 +1,5 @@
-// Writes linear images to picture files.
+// Writes linear images to picture files: EXR with layers, HDR, PFM or PNG. All commands that make
+// pictures use it. Values are written in the image's unit; only PNG applies exposure and tone map.
 // References: [1] Ward, "Radiance File Formats", "Picture File Format (.hdr)".
 //   [2] Debevec, "PFM Portable FloatMap Image Format".
 #pragma once

@@ -1,4 +1,5 @@
-// --portal: rectangles that are the only way for environment light into a scene.
+// --portal: rectangles that are the only way for environment light into a scene. add_daylight()
+// uses it after all lights are added. Coordinates are those of the scene file, in metres.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// --luminaire: measured luminaires that replace parts of a scene.
+// --luminaire: measured luminaires that replace parts of a scene. add_daylight() and the list of
+// luminaires (luminaire_list.h) use it. Fluxes are in lm, colour temperatures in K, powers in W.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// --dim: scales lights of a scene by name. Also tests whether any light emits.
+// --dim: scales lights of a scene by name. Also tests whether any light emits. add_daylight() uses
+// it, and the report command for the power of dimmed luminaires.
 #pragma once
 
 #include <string>

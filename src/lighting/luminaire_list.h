@@ -1,4 +1,5 @@
-// --luminaires: many measured luminaires from a list.
+// --luminaires: many measured luminaires from a CSV list. add_daylight() uses it, and the report
+// command for their power. Positions are in metres, angles in degrees, powers in W.
 #pragma once
 
 #include <string>

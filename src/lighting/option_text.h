@@ -1,4 +1,5 @@
-// Parsing of option texts.
+// Parsing of numbers and lists in option texts. The lighting options and some commands use it.
+// Numbers use a decimal point, independent of the locale.
 #pragma once
 
 #include <optional>

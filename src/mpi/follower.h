@@ -1,5 +1,6 @@
 // Every process but rank 0 (leader.h): requests items of work, does them and sends the results.
-// Used by troffer-mpi; thread-safe unless stated.
+// Only troffer-mpi (main.cpp) makes one. It implements ProcessGroup (base/process_group.h), through
+// which renderers share work.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,6 @@
-// Log of the cost of shared work per job, to predict the gain of more processes (experiments/mpi).
+// Log of the cost of shared work per job, one line of JSON each, to predict the gain of more
+// processes (experiments/mpi). Rank 0 writes it if TROFFER_MPI_JOURNAL names a file. Times are in
+// seconds, sizes in bytes.
 #pragma once
 
 #include <cstddef>

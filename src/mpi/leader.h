@@ -4,7 +4,7 @@
 // A process that dies loses only the items it was working on. When nothing else is left, items that
 // take much longer than usual are handed out again. All processes compute the same result, so the
 // first answer counts. Results that all need travel along a binomial tree (tree.h), and directly to
-// processes that ask because they did not arrive.
+// processes that report them missing.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// The one thread of a process that sends and receives messages.
+// The one thread of a process that sends and receives messages. Leader and Follower each own one.
+// It polls, because MPI offers no blocking wait that does not use a processor.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,5 @@
-// Messages between processes (leader.h, follower.h).
+// Messages between processes: their kinds, header and layout. Leader (leader.h) and Follower
+// (follower.h) exchange them through a Post. Headers are in native byte order.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Messages by MPI. No other code calls MPI.
+// Post (post.h) over MPI; no other code calls MPI. troffer-mpi makes one per process. Messages are
+// non-blocking; messages to dead processes are dropped.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
 // Transport of messages between processes: a small interface, so that the scheduling can be tested
-// without MPI.
+// without MPI. MpiPost implements it with MPI; tests implement it with threads
+// (tests/mpi/office.h).
 #pragma once
 
 #include <cstdint>

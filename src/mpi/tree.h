@@ -1,4 +1,5 @@
-// Binomial tree along which rank 0 sends results to all processes.
+// Binomial tree along which rank 0 sends results to all processes. Leader and Follower forward
+// result messages to their children. A message reaches all n processes after about log2(n) steps.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// Joins small adjacent triangles of one surface that are nearly coplanar. plan_joining uses it.
+// Joins small adjacent triangles of one surface that are nearly coplanar. plan_joining() uses it to
+// make sheets and elements of bounded number. Sizes are in metres.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@ namespace troffer {
 
 constexpr uint32_t no_cluster = 0xffffffffu;
 
-// Up to two neighbours across each edge. Where more than two triangles share an edge, each one
-// knows only the previous and the next, so that flood fill stays linear on any mesh.
+// Up to two neighbours across each edge. If more triangles share an edge, each one knows only the
+// previous and the next, so that flood fill stays linear on any mesh.
 class Adjacency {
  public:
   explicit Adjacency(const BaseGeometry& geometry);

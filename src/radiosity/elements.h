@@ -1,4 +1,5 @@
-// Elements of a cut mesh: their fragments, areas and centroids. make_points uses them.
+// Elements of a cut mesh: their fragments, areas and centroids. make_points() uses them to place
+// sample points. Areas are in m², positions in world space.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,12 @@
 // Interpolation weights of sample points at a surface position, for any quantity that points carry.
-// RadiositySolution's callers use it to read smooth irradiance.
+// interpolated_irradiance() and the `kj92` renderer read solutions through it.
 //
 // A fragment has four knots: its three corners and its centre. Weights are linear over the three
 // triangles between two corners and the centre. The value at a corner is the area-weighted mean of
 // the surrounding elements on the same side whose normals differ by less than 30 degrees. If the
-// fragment is a whole element, the value at the centre is that of its sample point, because a mean
-// of means would flatten steep gradients. If an element has several fragments, the value at the
-// centre is the mean of the corners.
+// fragment is a whole element, the centre has the value of its sample point, because a mean of
+// means would flatten steep gradients. If an element has several fragments, the value at the centre
+// is the mean of the corners.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Transfer of one light to all sample points, and the share of its light that leaves the scene.
+// Transfer of one light to all sample points, and the share of its light that leaves the scene. The
+// solver shoots each light once with it. Power is in W or lm, as the lights'.
 #pragma once
 
 #include <span>

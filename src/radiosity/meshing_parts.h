@@ -1,4 +1,5 @@
-// Steps of mesh_for_radiosity().
+// Steps of mesh_for_radiosity(), in order: choose sizes and joins (join_plan.cpp), cut surfaces
+// (cut.cpp), make sample points and patches (points.cpp). Not for use elsewhere.
 #pragma once
 
 #include "radiosity/cluster.h"

@@ -1,5 +1,6 @@
 // Transfer from a patch to nearby blocks of receivers: the exact unoccluded term and rays
-// (form_factors.h). Results are stored per point and per part of the patch at the ray ends.
+// (form_factors.h). PatchRows uses it. Results are stored per point and per part of the patch at
+// the ray ends.
 #pragma once
 
 #include "radiosity/patch_row.h"

@@ -2,7 +2,7 @@
 //
 // The surfaces of a scene are cut into *sheets*, and sheets into *elements*. Diffuse surfaces
 // reflect alike on both sides. Each side of a sheet that light can reach is therefore a separate
-// *patch*, which shoots, and each side of an element has a separate *sample point*, which receives.
+// *patch*, which shoots. Each side of an element has a separate *sample point*, which receives.
 // Sides that light cannot reach (the inside of closed solids, the outside of a room) have neither.
 #pragma once
 

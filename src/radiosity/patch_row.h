@@ -1,4 +1,5 @@
-// Storage of a row of patch_rows.h, and the context in which one is computed.
+// Storage of one row of patch_rows.h, and the context in which a row is computed. NearBlocks,
+// FarBlocks and PatchRows share it. Values are per unit of the patch's mean radiance.
 #pragma once
 
 #include <cstdint>

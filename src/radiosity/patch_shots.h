@@ -1,5 +1,5 @@
-// Transfers of one patch's unshot power to all sample points. Rows (patch_rows.h) are kept from
-// shot to shot. The solver uses it.
+// Transfers of one patch's unshot power to all sample points. The solver uses it for every shot of
+// a patch. Rows (patch_rows.h) are kept from shot to shot, up to a limit of memory.
 #pragma once
 
 #include <span>

@@ -1,5 +1,6 @@
-// Vectorised operations of a patch's shot on blocks of receivers. Arrays are indexed by slot
-// (receivers.h); padding slots have no area. The solver uses them.
+// Vectorised operations of a patch's shot on blocks of receivers: received power, reflection and
+// irradiance. The solver uses them. Arrays are indexed by slot (receivers.h); padding slots have no
+// area.
 #pragma once
 
 #include <array>

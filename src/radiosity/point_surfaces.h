@@ -1,5 +1,6 @@
-// Division of the light that arrives at sample points: diffuse, specular and absorbed. The solver
-// uses it.
+// Division of the light that arrives at sample points: reflected diffusely, scattered by other
+// lobes, absorbed. The solver and UnshotPower use it. Areas are in m²; reflectances are
+// hemispherical.
 #pragma once
 
 #include <cstdint>

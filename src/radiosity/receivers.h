@@ -1,5 +1,6 @@
-// Sample points as arrays, in blocks of one patch, for loops over many receivers (far_blocks.cpp,
-// patch_rows.cpp).
+// Sample points as arrays, in blocks of one patch, for vectorised loops over many receivers. Rows
+// and shots of patches (patch_rows.h, patch_shots.h) use it. Positions are in world space, offsets
+// in metres.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,6 @@
 // Shooter of the radiosity solution: a light, or a patch with the relative radiosity of its
-// elements.
+// elements. form_factors.h computes the transfer from it to sample points. Areas are in m²;
+// radiance has the scene's unit.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Result of the radiosity preprocessing: irradiance at sample points, by source. The `kj92`
-// renderer reads it, and it can be saved in a file.
+// Result of the radiosity preprocessing: irradiance at sample points, by source. Renderers with
+// radiosity (`kj92`, `--indirect radiosity`) read it, and it can be saved in a file.
 //
 // The solution stores irradiance E, in W/m² or lx, and not radiosity B = reflectance × E. A texture
 // can then vary within an element, and the ratio of received to unoccluded light is the same.

@@ -1,10 +1,11 @@
 // Progressive radiosity with substructuring [1]: patches shoot, sample points of elements receive.
 // `troffer radiosity` and `kj92` run it before rendering.
 //
-// Each light shoots once. Then the patch with the largest unshot power shoots, repeatedly, until
-// the unshot power falls below a fraction of the light that reached diffuse surfaces directly from
-// lights. Every shot is corrected (closure.h) so that no more power arrives than was sent, and
-// surfaces absorb at least a thousandth of it. The unshot power therefore falls with every shot.
+// Each light shoots once. Then the patch with the largest unshot power shoots, repeatedly. This
+// ends when the unshot power is below a fraction of the light that reached diffuse surfaces
+// directly from lights. Every shot is corrected (closure.h) so that no more power arrives than was
+// sent, and surfaces absorb at least a thousandth of it. The unshot power therefore falls with
+// every shot.
 //
 // References:
 // [1] Cohen, Chen, Wallace & Greenberg, "A Progressive Refinement Approach to Fast

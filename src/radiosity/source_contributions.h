@@ -1,4 +1,5 @@
-// Contributions of one source, looked up or recomputed after the shots.
+// Contributions of one source to sample points, looked up or recomputed after the shots. `kj92`
+// uses it to select the sources that it samples again. Irradiance is in W/m² or lx.
 #pragma once
 
 #include <span>

@@ -1,4 +1,6 @@
-// The most important contributions to one sample point, updated as they arrive.
+// The most important contributions to one sample point, updated as they arrive. StoredLists keeps
+// one list per point, and the solution stores them. Contributions that do not fit go to the point's
+// general value.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Stored contributions of all sample points during the solution, with summaries for quick
-// rejection. The solver uses it.
+// rejection. The solver adds each shot's contributions to it. Importance is luminance of irradiance
+// (stored_list.h).
 #pragma once
 
 #include <array>

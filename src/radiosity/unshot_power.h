@@ -1,4 +1,5 @@
-// Unshot power of the patches, and the energy balance of light that arrives. The solver uses it.
+// Unshot power of the patches, and the energy balance of light that arrives. The solver passes on
+// the light of each shot and obtains from it the next patch to shoot. Power is in W or lm.
 #pragma once
 
 #include <algorithm>
