@@ -11,21 +11,21 @@ namespace {
 constexpr size_t facet_azimuths = 24, facet_heights = 32,
                  facet_count = facet_azimuths * facet_heights;
 
-// Microfacets seen from a direction in the plane y = 0, for integrals over visible normals: one
-// array per field, as these loops are what building the tables costs.
+// Microfacets seen from a direction in the plane y = 0, for integrals over visible normals. One
+// array per field, because loops over them dominate the time to build the tables.
 struct Facets {
   float alpha = 0, view_z = 0, lambda = 0;         // of the viewing direction
   std::array<float, facet_count> cos_o, normal_z;  // wo·m, m.z
   std::array<float, facet_count> weight;           // share of the visible area; sum 1
   std::array<float, facet_count> reflect;          // weight G2 / G1 of the mirror direction
 
-  // G2 / G1(o) = (1 + Lambda(o)) / (1 + Lambda(o) + Lambda(i)), multiplied through with the cosine
-  // of i so that it is 0 from the horizon downwards.
+  // G2 / G1(o) = (1 + Lambda(o)) / (1 + Lambda(o) + Lambda(i)). Numerator and denominator are
+  // multiplied by the cosine of i, so that the result is 0 at and below the horizon.
   float masking(float cos_i) const {
     const float z = std::max(cos_i, 0.0f), a2 = alpha * alpha;
     return (1 + lambda) * z / ((0.5f + lambda) * z + 0.5f * std::sqrt(a2 + (1 - a2) * z * z));
   }
-  // Σ f(i); in lanes, which a compiler may run side by side.
+  // Returns Σ f(i), summed in eight lanes so that the compiler can vectorise.
   template <class F>
   float sum(const F& f) const {
     std::array<float, 8> lanes{};
@@ -37,9 +37,9 @@ struct Facets {
   }
 };
 
-// Midpoint rule over the square of ggx_sample_visible_normal with bound 1, whose steps this
-// repeats. By symmetry half the azimuths suffice; u.y = 1 - (1 - v)² crowds nodes at the tail of
-// the distribution, where reflections run into the horizon.
+// Midpoint rule over the unit square of ggx_sample_visible_normal with bound 1, whose steps it
+// repeats. By symmetry half of the azimuths suffice. u.y = 1 - (1 - v)² concentrates nodes at the
+// tail of the distribution, where reflections reach the horizon.
 void set_visible_facets(Facets& f, float cosine, float alpha) {
   f.alpha = alpha;
   f.view_z = cosine;
@@ -69,7 +69,7 @@ void set_visible_facets(Facets& f, float cosine, float alpha) {
   }
 }
 
-// Reflection and refraction of glass with relative index eta.
+// Returns the albedo of glass with relative index eta: reflection plus refraction.
 float glass_albedo(const Facets& f, float eta) {
   return f.sum([&f, eta](size_t i) {
     const float c = f.cos_o[i], r = fresnel_dielectric(c, eta);
@@ -102,8 +102,8 @@ float hemisphere_average(const F& f) {
 
 }  // namespace
 
-// Of the piecewise linear interpolant in the fourth root t of c: 2 ∫ E c dc = 8 ∫ E t⁷ dt.
-// Three-point Gauss quadrature errs by less than rounding on such short intervals.
+// Integrates the piecewise linear interpolant in the fourth root t of c: 2 ∫ E c dc = 8 ∫ E t⁷ dt.
+// On such short intervals the error of three-point Gauss quadrature is below rounding.
 float row_average(const float* row) {
   constexpr std::array<double, 3> node{0.11270166537925831, 0.5, 0.88729833462074169};
   constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};

@@ -1,7 +1,8 @@
-// Directional albedos of rough surfaces, tabulated over the cosine and the GGX width alpha.
-// Grids are uniform in the fourth roots of cosine and alpha, which resolves the corner where both
-// are small, and begin at cosine 0 and alpha = smooth_alpha. The stored averages are those of the
-// interpolant itself, so that energy identities built from a table hold exactly for the table.
+// Tables of the directional albedo of rough surfaces over the cosine and the GGX width alpha.
+// BsdfTables owns them, and a Bsdf reads one row at its own alpha. Grids are uniform in the fourth
+// roots of cosine and alpha, which resolves the corner where both are small. They begin at cosine 0
+// and alpha = smooth_alpha. The stored averages are those of the interpolant, so that energy
+// identities built from a table hold exactly for that table.
 // References: [1] Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH
 //   2017 course. [2] Karis, "Real Shading in Unreal Engine 4", SIGGRAPH 2013 course (the split of
 //   Schlick's term).
@@ -22,7 +23,7 @@ constexpr float smooth_alpha = 1e-3f;
 
 constexpr size_t table_cosines = 80, table_alphas = 56;
 
-// Where a value falls on an axis of a table: between `index` and index + 1.
+// Position of a value on a table axis: between `index` and `index` + 1.
 struct TableCoordinate {
   size_t index = 0;
   float fraction = 0;
@@ -43,9 +44,9 @@ struct AlphaCoordinate : TableCoordinate {
                         table_alphas) {}
 };
 
-// A table at one alpha: what a Bsdf keeps. Points into the table.
+// A table at one alpha, as a Bsdf keeps it. Points into the table.
 struct AlbedoRow {
-  const float* values = nullptr;  // row of the smaller alpha; that of the larger follows it
+  const float* values = nullptr;  // row of the smaller alpha; the row of the larger alpha follows
   float fraction = 0;
   float average = 0;  // cosine-weighted mean over the hemisphere: 2 ∫ E(c) c dc
 
@@ -68,16 +69,16 @@ struct AlbedoTable {
   }
 };
 
-// Cosine-weighted mean of a row of table_cosines values, as AlbedoRow reads between them.
+// Returns the cosine-weighted mean of a row of table_cosines values, interpolated as AlbedoRow
+// does.
 float row_average(const float* row);
 
-// GGX reflection with Fresnel factor 1, and with Schlick's (1 - cos)^5 in its place: a lobe with
-// Schlick's f0, f90 has the albedo f0 (one - grazing) + f90 grazing [2].
+// GGX reflection with Fresnel factor 1 (`one`) and with factor (1 - cos)^5 (`grazing`). A lobe with
+// Schlick's f0 and f90 has the albedo f0 (one - grazing) + f90 grazing [2].
 struct GgxTables {
   AlbedoTable one, grazing;
 };
-// Reflection and refraction together by a rough interface, for light that comes from outside and
-// from inside.
+// Reflection plus refraction by a rough interface, for light from outside and from inside.
 struct GlassTables {
   float ior = 1;
   AlbedoTable outside, inside;
@@ -88,24 +89,25 @@ struct CoatTable {
   AlbedoTable reflected;
 };
 
-// All tables at once, since they share the microfacets. `coats` and `glasses` come with their
-// `ior` set. All single scattering: what a table lacks to 1 is lost behind other microfacets.
+// Builds all tables at once, because they share the microfacets. The `ior` of `coats` and `glasses`
+// must be set. Tables hold single scattering only: 1 - value is lost between microfacets.
 void build_albedo_tables(GgxTables& ggx, std::vector<CoatTable>& coats,
                          std::vector<GlassTables>& glasses);
 
-// A reflectance at even steps of the square root of the cosine, from 0 to 1.
+// Reflectance at equal steps of the square root of the cosine, from 0 to 1.
 using ReflectanceCurve = std::array<Rgb, 512>;
 
-// Per cosine of the tables what glass of relative index eta reflects and refracts together at one
-// alpha where its facets reflect by a curve in place of Fresnel's formula: by the cosine outside,
-// be the light there or (is_inside) within, beside total reflection.
+// Returns, for each cosine of the tables, the albedo (reflection plus refraction) of glass with
+// relative index eta and width alpha. Facets reflect by `curve` instead of Fresnel's formula. The
+// curve is read at the cosine outside the glass; is_inside says that the light comes from within.
+// Total internal reflection is added.
 std::array<Rgb, table_cosines> glass_albedos(float alpha, float eta, bool is_inside,
                                              const ReflectanceCurve& curve);
 
-// Cosine-weighted mean of fresnel_dielectric over the hemisphere, and of plate_reflectance.
+// Cosine-weighted means over the hemisphere of fresnel_dielectric, plate_reflectance and
+// fresnel_conductor.
 float fresnel_dielectric_average(float eta);
 float plate_reflectance_average(float eta);
-// The same of fresnel_conductor.
 float fresnel_conductor_average(float eta, float k);
 
 }  // namespace troffer

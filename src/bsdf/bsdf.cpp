@@ -16,7 +16,7 @@ namespace troffer {
 
 namespace {
 
-// u_lobe in [0,1) chooses among all ways but those of gloss.
+// Draws a direction from the separable lobes, chosen by u_lobe in [0,1).
 Vec3 sample_separable(const Choice& c, float u_lobe, const Vec2& u) {
   const float sum = c.cosine + c.uniform + c.cosine_through + c.uniform_through;
   float x = u_lobe * sum;
@@ -34,12 +34,12 @@ Vec3 sample_separable(const Choice& c, float u_lobe, const Vec2& u) {
   return w;
 }
 
-// What a clear coat lets through of gloss in direction w.
+// Returns the share of gloss in direction w that the clear coat passes.
 float coat_pass(const Bsdf& b, const Vec3& w) {
   return b.clear.gloss_pass(b.clear.has_normal ? dot(w, b.clear.normal) : w.z);
 }
 
-// Between the viewer's frame and that whose x axis is the grain.
+// Convert between the viewer's frame and the frame whose x axis is the grain.
 Vec3 to_grain(const Bsdf& b, const Vec3& w) {
   return {b.grain.x * w.x + b.grain.y * w.y, b.grain.x * w.y - b.grain.y * w.x, w.z};
 }
@@ -47,18 +47,19 @@ Vec3 from_grain(const Bsdf& b, const Vec3& w) {
   return {b.grain.x * w.x - b.grain.y * w.y, b.grain.x * w.y + b.grain.y * w.x, w.z};
 }
 
-// Only lobes that reflect alone can leave out the normals that send light below the horizon.
+// Only lobes that reflect and do not transmit may skip normals that send light below the horizon.
 float bound_of(const Bsdf& b, const Vec3& wo) {
   return b.has_transmission ? 1.0f : ggx_bound(wo, b.alpha);
 }
 
-// pi f of a sheen, below a clear coat.
+// Returns pi f of the sheen below a clear coat.
 Rgb sheen(const Bsdf& b, const Vec3& wo, const Vec3& wi, const Gains& at_o, const Gains& at_i) {
   return b.cover.colour * (pi_f * sheen_value(wo, wi, b.cover.alpha)) *
          std::min(at_o.coat, at_i.coat);
 }
 
-// Sheen, the soft lobe and the cosine-shaped ones at wi; cos_i > 0 on the viewer's side.
+// Returns f cos of the sheen, the soft lobe and the separable lobes towards wi; wi.z > 0 is the
+// viewer's side.
 Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) {
   const float cos_i = wi.z;
   if (cos_i > 0) {
@@ -74,7 +75,8 @@ Rgb separable(const Bsdf& b, const Gains& at_o, const Vec3& wo, const Vec3& wi) 
 }
 
 // Glossy reflection, or transmission through a thin sheet with wi mirrored to the viewer's side.
-// pass: what a clear coat lets through of gloss; glass has its own.
+// `pass` is the share of gloss that the clear coat passes; coated glass computes its own for
+// reflection.
 BsdfValue glossy_mirrored(const Bsdf& b, const Vec3& wo, const Vec3& wi, bool is_transmission,
                           float pass = 1) {
   const Vec3 h = wo + wi;
@@ -126,7 +128,7 @@ BsdfValue glossy(const Bsdf& b, const Vec3& wo, const Vec3& wi) {
                    : glossy_refracted(b, wo, wi);
 }
 
-// Below a clear coat.
+// The glossy lobe below a clear coat.
 BsdfValue glossy_below(const Bsdf& b, const Vec3& wo, const Vec3& wi, float pass) {
   if (b.has_transmission) return glossy(b, wo, wi);
   if (!(wi.z > 0)) return {};
@@ -172,7 +174,8 @@ BsdfValue evaluate_chosen(const Bsdf& b, const Gains& g, const Choice& choice, c
   return v;
 }
 
-// pass: what a sheen leaves of a mirror; above: what the mirror of a clear coat adds.
+// Samples a smooth glossy lobe. `pass`: share of a mirror's light that the sheen leaves. `above`:
+// reflectance of the clear coat's mirror, added to it.
 bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass, float above,
                    float u_side, BsdfSample& out) {
   Split s = facet_split(b, std::min(wo.z, 1.0f));
@@ -197,7 +200,7 @@ bool sample_smooth(const Bsdf& b, const Vec3& wo, float probability, float pass,
   return out.wi.z < 0 && !out.weight.is_black();
 }
 
-// What gloss that is a mirror reflects at a cosine, below whatever covers it.
+// Returns the mirror reflectance of the glossy lobe at a cosine, below its covers.
 Rgb mirror_below(const Bsdf& b, const Gains& g, float c) {
   if (is_coated_glass(b)) return facet_split(b, c).reflected * g.pass;
   const float in = b.clear.share > 0 ? b.clear.cosine_below(c) : c;
@@ -205,12 +208,13 @@ Rgb mirror_below(const Bsdf& b, const Gains& g, float c) {
   return r * b.clear.kept(g.coat_gloss, r) * g.pass;
 }
 
-// Whether the mirror of a clear coat and that below it send light the same way.
+// True if the clear coat's mirror and the mirror below it send light the same way.
 bool are_one_mirror(const Bsdf& b) {
   return b.clear.has_mirror() && b.is_smooth && !b.clear.has_normal;
 }
 
-// The mirror of a clear coat, or that below it; both at once where they are one. Not below glass's.
+// Samples the mirror of the clear coat or the mirror below it, or both if they coincide. Not for
+// mirrors of coated glass.
 bool sample_mirrors(const Bsdf& b, const Vec3& wo, const Gains& g, const Choice& choice,
                     bool is_clear, BsdfSample& out) {
   const bool are_one = are_one_mirror(b);
@@ -237,7 +241,7 @@ bool sample_clear_rough(const Bsdf& b, const Vec3& wo, const Vec2& u, Vec3& wi) 
   return i.z > 0 && wi.z > 0;
 }
 
-// A direction of the rough glossy lobe.
+// Samples a direction of the rough glossy lobe.
 bool sample_rough(const Bsdf& b, const Vec3& viewer, float u_side, const Vec2& u, Vec3& wi) {
   const bool is_bent = b.clear.share > 0 && b.clear.bend > 1;
   const Vec3 wo = is_bent ? b.clear.below(viewer) : viewer;

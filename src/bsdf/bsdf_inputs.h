@@ -1,4 +1,6 @@
-// A material at a hit, for make_bsdf.cpp and what it calls.
+// Input of make_bsdf.cpp and lost_light.cpp: a material with its textures and tables at one hit,
+// and helpers on it. Texture values are clamped to [0,1]. Not part of the public interface; other
+// code calls make_bsdf() (bsdf.h).
 #pragma once
 
 #include <array>
@@ -21,22 +23,23 @@ struct Inputs {
   Rgb base() const { return safe01(evaluate(textures, material.base_color, uv)); }
 };
 
-// Light that passes it goes straight on.
+// True if transmitted light goes straight on.
 inline bool is_sheet(const Inputs& in) {
   return in.material.is_thin || std::abs(in.prepared.ior - 1) < index_matched;
 }
 
-// The table of rough solid glass under a film, where it has both and there is one.
+// Returns the albedo table of rough solid glass under a film, or null.
 inline const FilmGlassTable* film_glass_of(const Bsdf& b, const Inputs& in) {
   const bool has_one = b.film.share > 0 && !b.is_thin && in.prepared.film_glass >= 0;
   return has_one ? &in.tables.film_glass(in.prepared.film_glass) : nullptr;
 }
 
-// A lobe's missing mean energy under which compensation is left out: rounding outweighs it.
+// Mean missing energy of a lobe below which compensation is left out, because rounding outweighs
+// it.
 constexpr float negligible = 1e-5f;
 
-// 2 ∫ f c dc by Gauss's rule in the fourth root t of the cosine, where tables are smooth: 8 ∫ f t⁷
-// dt.
+// Returns 2 ∫ f c dc by eight-point Gauss quadrature in the fourth root t of the cosine, in which
+// the tables are smooth: 8 ∫ f t⁷ dt.
 template <class F>
 float hemisphere_mean(const F& f) {
   constexpr std::array<float, 4> node{0.1834346f, 0.5255324f, 0.7966665f, 0.9602899f},
@@ -50,10 +53,11 @@ float hemisphere_mean(const F& f) {
   return sum;
 }
 
-// Lobes for what microfacets scatter more than once (lost_light.cpp), after all that lies over them
-// is set. Of conducting microfacets of mean reflectance f, `weight` their share of the surface.
+// Adds the lobe for light that conducting microfacets of mean reflectance f scatter more than once
+// (lost_light.cpp). `weight` is their share of the surface. Call after sheen and clear coat are
+// set.
 void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight);
-// Of glass, after its rows; tint: of what it lets through.
+// Adds the same for glass. Call after its rows are set. `tint` multiplies the transmitted part.
 void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint);
 
 }  // namespace troffer

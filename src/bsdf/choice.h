@@ -1,5 +1,6 @@
-// How much of the light each lobe of a Bsdf sends on from one direction, and with what probability
-// sample() takes each.
+// Energy that each lobe of a Bsdf scatters from one direction, and the probability with which
+// sample() chooses each lobe. bsdf.cpp samples and computes albedo() with it. Energies are shares
+// of the incident energy; estimates suffice for probabilities.
 #pragma once
 
 #include <cmath>
@@ -11,7 +12,7 @@
 
 namespace troffer {
 
-// Energy from a direction of cosine c that leaves through the glossy lobe.
+// Returns the share of energy from a direction of cosine c that leaves through the glossy lobe.
 inline Rgb glossy_albedo(const Bsdf& b, float c) {
   if (b.fresnel == Bsdf::Fresnel::none) return Rgb{0};
   if (b.is_smooth) {
@@ -20,28 +21,29 @@ inline Rgb glossy_albedo(const Bsdf& b, float c) {
   }
   const CosineCoordinate at(c);
   if (b.fresnel == Bsdf::Fresnel::coat) return b.coat_gloss.at(at) * b.reflected_share;
-  // A film's colours at the angle of the mirror's direction stand for those of all facets.
+  // Approximation: the film's colour at the mirror direction stands for all facets.
   if (b.film.share > 0 && b.fresnel == Bsdf::Fresnel::schlick)
     return split_at(b, c).reflected * b.one.at(at);
   const float grazing = b.grazing.at(at), steep = b.one.at(at) - grazing;
-  // A conductor is taken as Schlick's of the same reflectance at normal incidence.
+  // Approximation: a conductor counts as a Schlick lobe of the same reflectance at normal
+  // incidence.
   if (b.fresnel == Bsdf::Fresnel::conductor)
     return (fresnel_conductor(1, b.f0, b.f90) * steep + Rgb{grazing}) * b.reflected_share;
   const Rgb opaque = b.f0 * steep + b.f90 * grazing;
   if (b.fresnel == Bsdf::Fresnel::schlick) return opaque;
-  // Glass loses its share as a whole; how the rest divides is taken from the mirror's.
+  // Glass loses energy as a whole. Approximation: the rest divides as for a mirror.
   const Split s = split_at(b, c);
   return opaque + (s.reflected - fresnel_schlick(c, b.f0, b.f90) + s.transmitted) * b.near.at(at);
 }
 
-// … through a clear coat.
+// Returns the same below a clear coat.
 inline Rgb glossy_albedo_below(const Bsdf& b, float pass, float c) {
   if (!(b.clear.share > 0) || b.fresnel == Bsdf::Fresnel::none) return glossy_albedo(b, c) * pass;
-  // Of smooth glass it is all in there.
+  // For smooth glass, glossy_albedo already includes the coat.
   if (b.has_transmission) return b.is_smooth ? glossy_albedo(b, c) : glossy_albedo(b, c) * pass;
   const float inside = b.clear.cosine_below(c);
   const Rgb all = glossy_albedo(b, inside);
-  // What of it is not held back below the coat, where that is known.
+  // Share of light that leaves the coat again, where the albedo table under the coat exists.
   const bool is_known = b.soft.kind != SoftLobe::Kind::none && !b.is_smooth;
   const float out = is_known ? b.soft.glossy.at(CosineCoordinate(c)) /
                                    std::max(b.one.at(CosineCoordinate(inside)), 1e-3f)
@@ -49,7 +51,7 @@ inline Rgb glossy_albedo_below(const Bsdf& b, float pass, float c) {
   return all * b.clear.kept(pass, all) * std::min(out, 1.0f);
 }
 
-// Energies of the lobes: clear coat, glossy, diffuse, and lost energy that returns on either side.
+// Energies of the lobes: clear coat, glossy, diffuse, and lost energy returned on either side.
 struct Energies {
   float clear = 0;
   Rgb glossy, diffuse, again, through;
@@ -66,9 +68,9 @@ inline Energies energies_at(const Bsdf& b, const Gains& g, float cos_o) {
   return e;
 }
 
-// Probabilities of the ways to sample, in proportion to the energies: the clear coat, the glossy
-// lobe, and directions with cosine or uniform density on either side. What returns of lost energy
-// is uniform-like: the smoother the surface, the closer to grazing it keeps.
+// Probabilities of the sampling techniques, proportional to the energies: clear coat, glossy lobe,
+// and directions of cosine or uniform density on either side. Returned lost energy is more uniform
+// than a cosine: on smoother surfaces it lies closer to grazing.
 struct Choice {
   float clear = 0, glossy = 0, cosine = 0, uniform = 0, cosine_through = 0, uniform_through = 0;
 };
@@ -91,7 +93,7 @@ inline Choice choice_at(const Bsdf& b, const Gains& g, float cos_o) {
           through * uniform * s};
 }
 
-// Density of all ways but those of gloss.
+// Returns the density of all techniques except the clear coat and the glossy lobe.
 inline float separable_pdf(const Choice& c, float cos_i) {
   constexpr float uniform = 0.5f * inv_pi_f;
   return cos_i > 0 ? c.cosine * cos_i * inv_pi_f + c.uniform * uniform

@@ -12,7 +12,7 @@ namespace troffer {
 
 namespace {
 
-// What does not change from direction to direction of a rough glossy lobe.
+// Constants of a rough glossy lobe that do not depend on wi.
 struct Glossy {
   float ox, oy, oz;    // wo
   float alpha, share;  // share: probability with which the lobe is sampled
@@ -39,7 +39,7 @@ TROFFER_ALWAYS_INLINE void add_glossy(const Glossy& constants, size_t n, const f
     const float distribution = 1 / (pi_f * a2 * t * t);
     const float zi = std::max(z[i], 1e-9f);
     const float visibility = 0.5f / (c.oz * std::sqrt(a2 + b2 * zi * zi) + zi * root_o);
-    // the least of what must be positive: no branches
+    // one comparison of the smallest value that must be positive avoids branches
     const float seen = std::min(std::min(z[i], len2 - 1e-20f), std::min(cosine, mz));
     const float f = seen > 0 ? distribution * visibility * zi : 0.0f;
     if constexpr (fresnel == Bsdf::Fresnel::coat) {
@@ -97,7 +97,7 @@ void add_row(const float* __restrict row, float fraction, float scale, size_t n,
   }
 }
 
-// gain[i] = max(0, 1 - gain[i]), of what was added up there.
+// gain[i] = max(0, 1 - gain[i]).
 TROFFER_MULTIVERSION
 void to_missing(size_t n, float* __restrict gain) {
   for (size_t i = 0; i < n; ++i) gain[i] = std::max(0.0f, 1 - gain[i]);
@@ -125,7 +125,7 @@ void add_separable_pdf(float cosine, float uniform, size_t n, const float* __res
 
 constexpr size_t block = 64;
 
-// gain[i]: 1 less what the coat over the diffuse lobe reflects.
+// Sets gain[i] to 1 - the reflectance of the coat over the diffuse lobe.
 void diffuse_gains(const Bsdf& b, size_t n, const float* z, float* gain) {
   std::fill(gain, gain + n, 0.0f);
   switch (b.coat) {

@@ -1,4 +1,5 @@
-// A Bsdf towards many directions at a stroke, several to a vector register.
+// Evaluates a Bsdf for many directions at once with vector instructions. The certified light
+// integrals use it, where one receiver has many source samples. Conventions are those of bsdf.h.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +8,15 @@
 
 namespace troffer {
 
-// Directions wi, unit and local as in bsdf.h, coordinate by coordinate, and what comes out there.
+// Unit directions wi in the frame of bsdf.h, one array per coordinate, and the results for them.
 struct BsdfLanes {
   const float *x, *y, *z;
   float *r, *g, *b;  // f |cos wi|
   float* pdf;
 };
 
-// evaluate_with_pdf() for n directions, but for rounding; 0 where z <= 0. Those that transmit go
-// one by one.
+// Computes evaluate_with_pdf() for n directions, up to rounding; 0 where z <= 0. Bsdfs with
+// transmission, grain, covers, films or unbalanced facets are evaluated one by one.
 void evaluate_many(const Bsdf& bsdf, const Vec3& wo, size_t n, const BsdfLanes& lanes);
 
 }  // namespace troffer

@@ -1,7 +1,7 @@
 // Distribution of a Bsdf's microfacets with shadowing and masking, by its FacetModel.
 //
-// Those that scatter once are drawn by GGX's visible normals as well: of one width, GGX has more
-// steep facets than Beckmann, so that no weight exceeds 4/e of the exact draw's.
+// Facets that scatter once are also sampled by GGX's visible normals. For equal width GGX has more
+// steep facets than Beckmann, so that no weight exceeds 4/e times that of exact sampling.
 //
 // References: [1] Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR
 //   2007 (Eq. 25 and 33).
@@ -27,7 +27,7 @@ inline float beckmann_distribution(const Vec3& m, const GgxWidths& a) {
   return std::exp(-tan2) / (pi_f * a.along * a.across * z2 * z2);
 }
 
-// G1(o) G1(i) / (4 cos cos), for directions above the surface.
+// Returns G1(o) G1(i) / (4 cos cos), for directions above the surface.
 inline float separate_visibility(FacetShape shape, const Vec3& o, const Vec3& i,
                                  const GgxWidths& a) {
   const auto g1 = [&](const Vec3& w) {
@@ -36,7 +36,7 @@ inline float separate_visibility(FacetShape shape, const Vec3& o, const Vec3& i,
   return g1(o) * g1(i) / std::max(4 * o.z * i.z, 1e-30f);
 }
 
-// D(m) G(o, i) / (4 cos cos), for directions above the surface.
+// Returns D(m) G(o, i) / (4 cos cos), for directions above the surface.
 inline float facet_density(const Bsdf& b, const Vec3& m, const Vec3& o, const Vec3& i) {
   if (b.facets == FacetModel::balanced)
     return b.is_grained ? ggx_distribution(m, b.widths) * ggx_visibility(o, i, b.widths)

@@ -20,8 +20,8 @@ inline float refracted_cosine(float cos_i, float eta) {
   return cos2_t > 0 ? std::sqrt(cos2_t) : -1.0f;
 }
 
-// Reflectance between two dielectrics [1]; 1 on total internal reflection. Free of branches: total
-// reflection is what the formula gives for a refracted cosine of 0.
+// Returns the reflectance between two dielectrics [1]; 1 on total internal reflection. Branch-free:
+// a refracted cosine of 0 gives total reflection.
 inline float fresnel_dielectric(float cos_i, float eta) {
   const float c = std::max(cos_i, 1e-9f);
   const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (eta * eta)));
@@ -30,9 +30,9 @@ inline float fresnel_dielectric(float cos_i, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// A plate with two parallel interfaces, all inter-reflections summed [3]: for each of the two
-// polarisations, of reflectance r at one interface, 2 r / (1 + r). Their mean is not that of the
-// mean reflectance: at 60 degrees glass transmits 0.848 and not 0.836.
+// Returns the reflectance of a plate with two parallel interfaces, all inter-reflections summed
+// [3]: 2 r / (1 + r) for each polarisation, r being the reflectance of one interface. Averaging the
+// polarisations first would be wrong: at 60 degrees glass transmits 0.848, not 0.836.
 inline float plate_reflectance(float cos_i, float eta) {
   const float c = std::max(cos_i, 1e-9f);
   const float cos_t = std::sqrt(std::max(0.0f, 1 - (1 - c * c) / (eta * eta)));
@@ -41,11 +41,12 @@ inline float plate_reflectance(float cos_i, float eta) {
   return parallel / (1 + parallel) + perpendicular / (1 + perpendicular);
 }
 
-// The same with an absorbing inside that leaves the share `a` of light on each way through it.
+// Shares of light that a plate with an absorbing inside reflects and transmits. The share `a` of
+// light is left after each passage through the inside.
 struct PlateShares {
   float reflected, transmitted;
 };
-// … of which each face reflects r of either polarisation.
+// Plate whose faces each reflect r of either polarisation.
 inline PlateShares absorbing_plate_of(float r, float a) {
   const float through = (1 - r) * (1 - r) * a / std::max(1 - r * r * a * a, 1e-6f);
   return {r + r * a * through, through};
@@ -78,8 +79,8 @@ inline float fresnel_conductor(float cos_i, float eta, float k) {
   return std::clamp(0.5f * (parallel + perpendicular), 0.0f, 1.0f);
 }
 
-// An index, or what it absorbs, that a texture or a file may have got wrong:
-// beyond these bounds it is a mirror to all digits; NaN reads as 0.
+// Clamps an index or extinction from a texture or file. Above 1e4 the surface is a mirror to float
+// precision. NaN becomes 0.
 inline Rgb safe_index(Rgb v) {
   const auto safe = [](float x) { return x > 0 ? std::min(x, 1e4f) : 0.0f; };
   return {safe(v.r), safe(v.g), safe(v.b)};
@@ -90,8 +91,8 @@ inline Rgb fresnel_conductor(float cos_i, Rgb eta, Rgb k) {
           fresnel_conductor(cos_i, eta.b, k.b)};
 }
 
-// The k that gives a conductor with eta = 1 the reflectance r at normal incidence. r above 0.9999
-// counts as 0.9999.
+// Returns the k for which a conductor with eta = 1 has reflectance r at normal incidence. r is
+// clamped to 0.9999.
 inline float k_from_reflectance(float r) {
   const float c = std::clamp(r, 0.0f, 0.9999f);
   return 2 * std::sqrt(c / (1 - c));
@@ -101,7 +102,8 @@ inline float pow5(float x) {
   const float x2 = x * x;
   return x2 * x2 * x;
 }
-// f0 at normal, f90 at grazing incidence [2]. Its cosine-weighted mean is f0 + (f90 - f0) / 21.
+// Schlick's reflectance: f0 at normal, f90 at grazing incidence [2]. Its cosine-weighted mean is f0
+// + (f90 - f0) / 21.
 inline Rgb fresnel_schlick(float cos_i, Rgb f0, Rgb f90) {
   return f0 + (f90 - f0) * pow5(std::max(0.0f, 1 - cos_i));
 }

@@ -1,4 +1,6 @@
-// What the separable lobes of a Bsdf keep of a direction, and what lies over them all.
+// Attenuation of light in one direction by the coat, sheen and clear coat of a Bsdf. The separable
+// lobes multiply the factors g of both directions. Evaluation (bsdf.cpp), sampling (choice.h) and
+// construction (make_bsdf.cpp) use it. All factors are shares in [0,1].
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -6,13 +8,13 @@
 
 namespace troffer {
 
-// The g of each separable lobe at a direction on the viewer's side.
+// Factors g of the separable lobes for a direction on the viewer's side.
 struct Gains {
   float diffuse = 1, soft = 0, glass = 0;
-  // What a sheen and a clear coat leave for what lies below them, in the three above already.
+  // Shares that the sheen and the clear coat pass. The three factors above already contain them.
   float pass = 1, coat = 1;
   float sheen = 0;       // albedo of a white sheen
-  float coat_gloss = 1;  // what a clear coat leaves of gloss
+  float coat_gloss = 1;  // share of gloss that the clear coat passes
 };
 
 inline float missing(const AlbedoRow& row, const CosineCoordinate& at) {
@@ -63,19 +65,20 @@ inline Gains gains_at(const Bsdf& b, const Vec3& w) {
   return g;
 }
 
-// Whether what covers glass lies on its far side (too).
+// True if the covers of glass lie on its far side (for a sheet: also there).
 inline bool is_worn_beyond(const Bsdf& b) {
   return b.is_thin || b.is_within;
 }
 
-// The g of glass for a direction on the far side whose cosine there is so much.
+// Returns g of glass for a direction on the far side of the given cosine.
 inline float far_glass_gain(const Bsdf& b, float cosine) {
   const CosineCoordinate at(cosine);
   const float lost = missing(b.far, at);
   return is_worn_beyond(b) ? lost * b.cover.pass(at) * b.clear.pass(cosine) : lost;
 }
 
-// What a sheen leaves of gloss between two directions: the smaller pass of both, where it is worn.
+// Returns the share of gloss that the sheen leaves: the smaller pass of the directions on covered
+// sides.
 inline float sheen_pass(const Bsdf& b, float cos_o, float cos_i) {
   const auto pass = [&b](float c) { return b.cover.pass(CosineCoordinate(std::abs(c))); };
   const float near = b.is_within ? 1.0f : pass(cos_o);
@@ -83,7 +86,7 @@ inline float sheen_pass(const Bsdf& b, float cos_o, float cos_i) {
   return is_worn_beyond(b) ? std::min(near, pass(cos_i)) : near;
 }
 
-// The same, not worked out where nothing asks for it.
+// Returns gains_at(), or defaults without computing them if the Bsdf does not need them.
 inline Gains gains_of(const Bsdf& b, const Vec3& w) {
   return b.has_separable || b.clear.share > 0 || b.cover.share > 0 ? gains_at(b, w) : Gains{};
 }

@@ -35,8 +35,8 @@ inline float ggx_visibility(float o, float i, float alpha) {
   return 0.5f / (o * std::sqrt(a2 + b2 * i * i) + i * std::sqrt(a2 + b2 * o * o));
 }
 
-// The share of the spherical cap that bounds reflections above the horizon [4]; 1 keeps the
-// whole cap [3].
+// Returns the bound of the spherical cap that excludes most reflections below the horizon [4]; 1
+// keeps the whole cap [3].
 inline float ggx_bound(const Vec3& wo, float alpha) {
   const float a2 = alpha * alpha;
   const float s2 = sqr(1 + std::sqrt(wo.x * wo.x + wo.y * wo.y));
@@ -51,7 +51,7 @@ inline float ggx_pdf_reflected(const Vec3& wo, const Vec3& m, float alpha, float
   return ggx_distribution(m, alpha) / (2 * (bound * wo.z + t));
 }
 
-// A unit normal visible from wo (wo.z > 0) [3; 4].
+// Samples a unit normal visible from wo (wo.z > 0) [3; 4].
 inline Vec3 ggx_sample_visible_normal(const Vec3& wo, const Vec2& u, float alpha, float bound) {
   const Vec3 w = normalize(Vec3{alpha * wo.x, alpha * wo.y, wo.z});
   const float b = bound * w.z;

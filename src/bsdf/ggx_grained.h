@@ -1,5 +1,5 @@
-// GGX of two widths: along the x axis of the local frame, and across it. As ggx.h, whose functions
-// these are where both widths are one.
+// GGX with two widths: along the x axis of the local frame and across it. Bsdfs with a grain use
+// it. With equal widths the functions agree with those of ggx.h, whose conventions apply.
 // References: as in ggx.h; [2] has Smith's Lambda for two widths, Eq. 86; [4] their bound.
 #pragma once
 
@@ -15,8 +15,8 @@ struct GgxWidths {
   float along = 1, across = 1;
 };
 
-// The length of w where the surface is stretched to a hemisphere: sqrt(cos² + (alpha sin)²), alpha
-// the width in the direction of w. Lambda = (this / |cos| - 1) / 2.
+// Length of w after stretching the surface to a hemisphere: sqrt(cos² + (alpha sin)²), alpha being
+// the width in the direction of w. Lambda = (length / |cos| - 1) / 2.
 inline float ggx_stretched(const Vec3& w, const GgxWidths& a) {
   return std::sqrt(w.z * w.z + sqr(a.along * w.x) + sqr(a.across * w.y));
 }

@@ -14,7 +14,7 @@ float table_cosine(size_t i) {
   return std::max(sqr(sqr(float(i) / float(table_cosines - 1))), 1e-6f);
 }
 
-// Midpoint rule over the numbers that visible normals are drawn by; nodes crowd as in
+// Midpoint rule over the random numbers of visible normals, with nodes placed as in
 // albedo_table.cpp.
 float grained_albedo(const Vec3& wo, const GgxWidths& a) {
   constexpr int n = 32;
@@ -34,9 +34,10 @@ float grained_albedo(const Vec3& wo, const GgxWidths& a) {
   return std::min(sum / float(n * n), 1.0f);
 }
 
-// The same through a clear coat, over what that lets in; seen from outside it.
+// Returns the same below a clear coat, relative to the light that the coat passes; `seen` is the
+// direction outside.
 float grained_albedo_below(const Vec3& seen, const GgxWidths& a, const ClearCoat& over) {
-  // More than above, and no two rows alike: where light cannot get out, there is an edge.
+  // More nodes than above, and each row shifted: the critical angle makes an edge in the integrand.
   constexpr int n = 80;
   constexpr float golden = 0.618034f;
   const Vec3 wo = over.below(seen);
@@ -59,7 +60,7 @@ float grained_albedo_below(const Vec3& seen, const GgxWidths& a, const ClearCoat
   return std::min(sum / float(n * n), 1.0f);
 }
 
-// White sheen from a cosine; by symmetry half the azimuths.
+// Returns the albedo of white sheen at a cosine. By symmetry half of the azimuths suffice.
 float sheen_albedo(float cosine, float alpha) {
   constexpr int heights = 32, azimuths = 24;
   const Vec3 wo{std::sqrt(1 - cosine * cosine), 0, cosine};
@@ -78,7 +79,7 @@ float sheen_albedo(float cosine, float alpha) {
 }  // namespace
 
 GrainTable make_grain_table(const GgxWidths& widths, const ClearCoat& over) {
-  // Without a grain they are all alike.
+  // Without a grain all azimuths are equal.
   const int azimuths = widths.along > widths.across ? 4 : 1;
   GrainTable table;
   table.widths = widths;

@@ -1,6 +1,7 @@
-// Directional albedo of white gloss that is wider along a grain than across it, over the cosine
-// and, to the first harmonic, the azimuth: even(c) + twice(c) cos 2φ. Under a clear coat, of what
-// that lets through: 1 less what stays between microfacets and below the coat.
+// Directional albedo of white gloss that is wider along a grain than across it, over the cosine and
+// the first harmonic of the azimuth: even(c) + twice(c) cos 2φ. Under a clear coat it is relative
+// to the light that the coat passes: 1 minus what stays between microfacets and below the coat.
+// add_metal_compensation uses it.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@ namespace troffer {
 struct GrainTable {
   GgxWidths widths;
   ClearCoat over;  // without its row
-  // Two equal rows each, as AlbedoRow reads them.
+  // Two equal rows each, because AlbedoRow interpolates between two.
   std::array<float, 2 * table_cosines> even{}, twice{};
   float average = 0;  // of even
 
@@ -24,7 +25,7 @@ struct GrainTable {
 
 GrainTable make_grain_table(const GgxWidths& widths, const ClearCoat& over);
 
-// Of white sheen (bsdf/sheen.h), by its width; below least_sheen_alpha as there.
+// Fills the albedo table of white sheen (bsdf/sheen.h) by its width, clamped to least_sheen_alpha.
 void build_sheen_table(AlbedoTable& table);
 
 }  // namespace troffer

@@ -1,4 +1,5 @@
-// What the lobes of a Bsdf have in common for all directions of incidence, seen from one direction.
+// Properties of a Bsdf's lobes that depend on the viewing direction only. evaluate_many() computes
+// them once and then evaluates many directions. Probabilities and factors are in [0,1].
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -6,14 +7,14 @@
 namespace troffer {
 
 struct LobeConstants {
-  // Probabilities with which sample() takes the glossy lobe, and directions by a cosine or evenly
-  // on the viewer's side.
+  // Probabilities with which sample() chooses the glossy lobe, and cosine-weighted or uniform
+  // directions on the viewer's side.
   float glossy = 0, cosine = 0, uniform = 0;
-  // What the coat lets through of the diffuse lobe, and of the soft lobe.
+  // Factors g of the diffuse lobe and of the soft lobe at wo.
   float diffuse_gain = 1, soft_gain = 0;
 };
 
-// cos_o > 0: of the direction seen from. For Bsdfs that do not transmit.
+// Precondition: cos_o > 0, and the Bsdf does not transmit.
 LobeConstants lobe_constants(const Bsdf& bsdf, float cos_o);
 
 }  // namespace troffer

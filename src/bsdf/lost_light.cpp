@@ -1,4 +1,5 @@
-// What microfacets scatter more than once.
+// Compensation of the energy lost to single scattering: light that microfacets scatter more than
+// once.
 // References: [1] Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH 2017
 //   course.
 #include <algorithm>
@@ -10,7 +11,8 @@
 namespace troffer {
 
 // Multiple scattering between conducting microfacets of mean reflectance f [1]: the geometric
-// series of reflections after the second, f² E / (1 - f (1 - E)). `weight` is the metal's share.
+// series of reflections after the first, f² E / (1 - f (1 - E)). `weight` is the metal's share of
+// the surface.
 void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight) {
   if (b.is_smooth || weight == 0 || b.facets != FacetModel::balanced) return;
   const bool is_clear = b.clear.share > 0 && !b.is_within;
@@ -33,12 +35,12 @@ void add_metal_compensation(Bsdf& b, const Inputs& in, Rgb f, float weight) {
   b.soft.colour *= stay / b.soft.mean;
 }
 
-// Glass's lost energy leaves on both sides. Shares transmitted from the near and the far side must
-// satisfy t_near M_near = t_far M_far eta² for reciprocity (M: mean missing energy); mean Fresnel
-// transmittances do so where M_near = M_far, so the geometric mean corrects them.
+// Lost energy of glass leaves on both sides. Reciprocity requires t_near M_near = t_far M_far eta²
+// of the shares transmitted from the near and far side (M: mean missing energy). Mean Fresnel
+// transmittances satisfy it where M_near = M_far; the geometric mean below corrects them elsewhere.
 void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint) {
   const FilmGlassTable* film = film_glass_of(b, in);
-  // Without a table a film's reflectance is not known in the mean: what is lost stays lost.
+  // Without a table the film's mean reflectance is unknown, and the lost energy stays lost.
   if (b.is_smooth || b.facets != FacetModel::balanced) return;
   if (b.film.share > 0 && !b.is_thin && !film) return;
   b.near_mean = 1 - b.near.average;
@@ -49,7 +51,7 @@ void add_glass_compensation(Bsdf& b, const Inputs& in, Rgb tint) {
   }
   if (b.near_mean < negligible || b.far_mean < negligible) return;
   const float ior = in.prepared.ior;
-  // Of each channel: what is lost over the mean of all, and what of it leaves on the other side.
+  // Per channel: lost energy over the channels' mean, and its share that leaves on the other side.
   Rgb lost{1}, far_lost{1}, through{1 - in.prepared.plate_average};
   if (film) {
     lost = (in.is_front ? film->outside : film->inside).lost;

@@ -1,4 +1,4 @@
-// From material data to a Bsdf.
+// Builds a Bsdf from a material at a hit: one function per material model.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ void set_lambertian(Bsdf& b, Rgb rho) {
   b.diffuse = rho;
 }
 
-// Of what falls on a surface, the share that diffuse transmission takes, and what passes of it.
+// Share of incident light that diffuse transmission takes, and the transmitted colour.
 struct Passing {
   float share = 0;
   Rgb through;
@@ -28,7 +28,7 @@ Passing passing(const Inputs& in) {
   return {share, safe01(evaluate(in.textures, m.diffuse_transmission_color, in.uv)) * share};
 }
 
-// Light from beyond comes beside what is reflected: together no more than all.
+// Scales reflection and diffuse transmission so that their sum is at most 1 per channel.
 void set_diffuse(Bsdf& b, const Inputs& in) {
   Rgb rho = in.base(), through = passing(in).through;
   if (!through.is_black()) {
@@ -42,13 +42,13 @@ void set_diffuse(Bsdf& b, const Inputs& in) {
   set_lambertian(b, rho);
 }
 
-// Two widths, where there is a grain.
+// Sets two widths if there is a grain.
 void set_grain(Bsdf& b, const Inputs& in, float strength) {
   b.widths = widths_of(b.alpha, strength);
   if (!(b.widths.along > b.widths.across)) return;
   b.is_grained = true;
   b.alpha = std::sqrt(b.widths.along * b.widths.across);
-  // The grain is told in the frame of the front; that of the back has the same x axis.
+  // The grain is given in the front side's frame; the back side's frame has the same x axis.
   b.grain = in.is_front ? in.uv.grain : Vec2{in.uv.grain.x, -in.uv.grain.y};
   const Vec3 n = b.clear.normal;
   b.clear.normal = {b.grain.x * n.x + b.grain.y * n.y, b.grain.x * n.y - b.grain.y * n.x, n.z};
@@ -65,7 +65,7 @@ void set_roughness(Bsdf& b, const Inputs& in, bool can_have_grain = false) {
   b.grazing = in.tables.ggx().grazing.row(b.alpha);
 }
 
-// Before all that lies under it.
+// Call before the layers below are set: their widths and means depend on the coat.
 void set_clear_coat(Bsdf& b, const Inputs& in) {
   const Material& m = in.material;
   if (!has_clear_coat(m)) return;
@@ -74,13 +74,13 @@ void set_clear_coat(Bsdf& b, const Inputs& in) {
   in.tables.set_rows(b.clear, in.prepared);
   b.clear.is_shown = !b.is_within;
   if (!has_own_coat_normal(m)) return;
-  // Sent in the frame of the front; that of the back has the same x axis.
+  // The normal is given in the front side's frame.
   const Vec2 n = in.is_front ? in.uv.coat_normal : Vec2{-in.uv.coat_normal.x, in.uv.coat_normal.y};
   b.clear.has_normal = true;
   b.clear.normal = {n.x, n.y, std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y))};
 }
 
-// The mean that diffuse lobes divide by.
+// Returns the cosine-weighted mean of the diffuse lobe's g.
 float mean_coat_gain(const Bsdf& b) {
   return hemisphere_mean([&b](float c) { return gains_at(b, {0, 0, c}).diffuse; });
 }
@@ -92,7 +92,7 @@ Rgb metal_mean(Rgb eta, Rgb k) {
   return mean;
 }
 
-// A share `weight` of the surface becomes glass that reflects F × scale and transmits tint × the
+// Makes a share `weight` of the surface glass that reflects scale × F and transmits tint × the
 // rest.
 void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
   b.fresnel = Bsdf::Fresnel::glass;
@@ -107,7 +107,7 @@ void add_glass(Bsdf& b, const Inputs& in, float weight, Rgb scale, Rgb tint) {
     b.absorbed = safe_depth(in.material.absorption);
   else
     b.is_absorbing = !in.material.absorption.is_black();
-  // A thin sheet has the same on both of its sides and reflects as a plate of its own index.
+  // A thin sheet has equal sides and reflects as a plate of its own index.
   b.eta = in.is_front || b.is_thin ? ior : 1 / ior;
   if (!b.is_smooth && b.is_thin) b.near = b.far = b.one;
   if (!b.is_smooth && !b.is_thin) {
@@ -142,7 +142,7 @@ void set_conductor(Bsdf& b, const Inputs& in) {
     set_reflected_share(b, in);
     average *= b.reflected_share;
   }
-  if (b.clear.share > 0) {  // as seen from within the coat
+  if (b.clear.share > 0) {  // indices relative to the coat
     b.f0 *= 1 / b.clear.bend;
     b.f90 *= 1 / b.clear.bend;
     average = safe01(metal_mean(b.f0, b.f90)) * b.reflected_share;
@@ -154,11 +154,11 @@ void set_dielectric(Bsdf& b, const Inputs& in) {
   b.is_within = !in.is_front && !is_sheet(in);
   set_clear_coat(b, in);
   set_roughness(b, in);
-  // Nothing bends or scatters at an interface between equal indices.
+  // An interface between equal indices neither refracts nor scatters.
   b.is_smooth |= std::abs(in.prepared.ior - 1) < index_matched;
   set_reflected_share(b, in);
   add_glass(b, in, 1, Rgb{1}, in.base());
-  b.glass_reflect = b.reflected_share;  // the rest is lost, not let through
+  b.glass_reflect = b.reflected_share;  // the rest is absorbed, not transmitted
 }
 
 void set_coated_diffuse(Bsdf& b, const Inputs& in) {
@@ -195,7 +195,8 @@ void set_coated_diffuse(Bsdf& b, const Inputs& in) {
   b.has_separable = !b.diffuse.is_black();
 }
 
-// Schlick's f0 with which a coat of that f90 reflects nowhere less than one under a film does.
+// Returns the f0 of a Schlick curve with this f90 that bounds the reflectance of the filmed coat
+// from above, at the cosines tested.
 float hull_below_film(const Bsdf& b, float f0, float f90) {
   float least = f0;
   for (const float c : {1.0f, 0.85f, 0.7f, 0.55f, 0.4f, 0.25f, 0.1f}) {
@@ -207,7 +208,8 @@ float hull_below_film(const Bsdf& b, float f0, float f90) {
   return std::min(least, f90);
 }
 
-// Over metal, and over a coat of that reflectance, by their shares of the surface; over glass.
+// Sets the film over the metal and the coat, each with its reflectance and share of the surface.
+// add_glass covers the glass.
 void set_film(Bsdf& b, const Inputs& in, Rgb metal_f0, float metal, Rgb coat_f0, float coat) {
   const Material& m = in.material;
   if (!(m.iridescence.value > 0)) return;
@@ -219,17 +221,18 @@ void set_film(Bsdf& b, const Inputs& in, Rgb metal_f0, float metal, Rgb coat_f0,
   b.film.coat = coat;
 }
 
-// Mean reflectance of the metal, film and all.
+// Returns the metal's mean reflectance, film included.
 Rgb metal_average(const Bsdf& b, Rgb f0) {
   const Rgb plain = f0 + (Rgb{1} - f0) * (1.0f / 21);
   if (!(b.film.share > 0)) return plain;
   Rgb sum{0};
-  for (const float c : {0.408248f, 0.707107f, 0.912871f})  // of equal parts of the irradiance
+  // medians of equal parts of the irradiance
+  for (const float c : {0.408248f, 0.707107f, 0.912871f})
     sum += film_reflectance(b.film, f0, c) * (1.0f / 3);
   return plain + (sum - plain) * b.film.share;
 }
 
-// Before all that lies under it.
+// Call before the layers below are set: their means depend on the sheen.
 void cover_with_sheen(Bsdf& b, const Inputs& in) {
   const Rgb color = safe01(evaluate(in.textures, in.material.sheen_color, in.uv));
   const float alpha = std::max(sqr(in.value(in.material.sheen_roughness)), least_sheen_alpha);
@@ -293,7 +296,7 @@ Bsdf make_bsdf(const BsdfTables& tables, const std::vector<Material>& materials,
                bool is_front) {
   const Inputs in{tables, textures, materials[material], tables.material(material), uv, is_front};
   Bsdf b;
-  // The part of a blended surface that a ray has met is opaque.
+  // A ray that hits a blended surface has already met its opaque part.
   b.is_pane = in.prepared.is_pane && is_pane(in.material);
   if (!is_front && in.material.back_faces == BackFaces::black) {
     set_lambertian(b, Rgb{0});

@@ -1,4 +1,6 @@
-// What make_bsdf.cpp and table_needs.cpp read from a material, made safe.
+// Material parameters in the form that make_bsdf.cpp, tables.cpp and table_needs.cpp use: clamped
+// to valid ranges, with roughness converted to a GGX width. NaN becomes 0. Lengths of films are in
+// nanometres.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +46,8 @@ inline bool has_clear_coat(const Material& m) {
   return m.coat.value > 0 && m.kind != MaterialKind::diffuse;
 }
 
-// The film of given share, so far from the thinnest to the thickest; but for what lies below.
+// Returns the film with the given share and thickness parameter in [0,1], without the reflectances
+// below it.
 inline ThinFilm film_of(const Material& m, float share, float thickness,
                         const InterferenceTable& table) {
   ThinFilm film;
@@ -55,8 +58,8 @@ inline ThinFilm film_of(const Material& m, float share, float thickness,
   return film;
 }
 
-// The clear coat of given share and roughness, but for its table and normal. That over a conductor
-// is a layer over all of it.
+// Returns the clear coat with the given share and roughness, without table and normal. Over a
+// conductor it is a layer on the whole surface.
 inline ClearCoat clear_coat_of(const Material& m, float share, float roughness, float ior) {
   ClearCoat c;
   c.share = m.kind == MaterialKind::conductor ? 1 : share;
@@ -67,7 +70,7 @@ inline ClearCoat clear_coat_of(const Material& m, float share, float roughness, 
   return c;
 }
 
-// GGX width of the gloss below it.
+// Returns the GGX width of the gloss below the clear coat.
 inline float base_alpha(const Material& m, float roughness, const ClearCoat& clear) {
   const float alpha = alpha_of(roughness, m.roughness_meaning);
   return clear.share > 0 && clear.bend > 1 && !clear.is_smooth

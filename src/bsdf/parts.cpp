@@ -1,4 +1,4 @@
-// A Bsdf taken apart: its diffuse lobe and all else, and what lies over the lobes.
+// Parts of a Bsdf: the diffuse lobe and everything else. Covers stay over both parts.
 #include "bsdf/bsdf.h"
 #include "bsdf/gains.h"
 

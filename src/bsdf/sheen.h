@@ -1,5 +1,5 @@
-// The sheen of cloth: fibres that stand up from the surface [1], with the shadowing that
-// KHR_materials_sheen tells in its appendix, fitted to that of [1].
+// The sheen of cloth: fibres that stand up from the surface [1], with the shadowing of
+// KHR_materials_sheen's appendix, which is fitted to [1].
 // References: [1] Estevez & Kulla, "Production Friendly Microfacet Sheen BRDF", SIGGRAPH 2017
 //   course.
 #pragma once
@@ -14,8 +14,8 @@
 
 namespace troffer {
 
-// Widths below this are taken as this: narrower lobes send on more than comes in (1.1 of it at
-// 0.0225, 1.4 at 0.01), all of it at the horizon.
+// Smaller widths are clamped to this. Narrower lobes scatter more energy than arrives (1.1 times at
+// 0.0225, 1.4 times at 0.01); at this width the lobe scatters all of it at the horizon.
 constexpr float least_sheen_alpha = 0.04f;
 
 // Density of normals whose sine of inclination is s [1, Eq. 2].
@@ -36,8 +36,8 @@ inline float sheen_lambda(float c, float alpha) {
   return std::exp(c < 0.5f ? fit(c) : 2 * fit(0.5f) - fit(1 - c));
 }
 
-// What a white lobe scatters from i towards o (both above the surface) per solid angle; at most
-// pi f cos of a mirror's neighbourhood, as the extension clamps it.
+// Returns f of a white sheen for directions o and i above the surface. The factor 1 / (4 cos cos)
+// with shadowing is at most 1, as the extension clamps it.
 inline float sheen_value(const Vec3& o, const Vec3& i, float alpha) {
   const Vec3 h = o + i;
   const float len2 = length_squared(h);
@@ -47,12 +47,12 @@ inline float sheen_value(const Vec3& o, const Vec3& i, float alpha) {
   return sheen_distribution(s, alpha) * std::min(1 / (shadowing * 4 * o.z * i.z), 1.0f);
 }
 
-// A sheen over all that a Bsdf does, of which it leaves 1 - its albedo: that of its strongest
-// colour, as the extension has it. Solid glass wears it outside, a sheet of glass on both sides.
+// A sheen over all lobes of a Bsdf. It leaves 1 - its albedo in its largest colour channel, as the
+// extension defines. Solid glass has it on the outside, a sheet of glass on both sides.
 struct SheenCover {
-  float share = 0;       // the strongest of its colours; 0: there is none
-  bool is_shown = true;  // its own lobe counts, beside what it takes
-  AlbedoRow white;       // its albedo where it is white
+  float share = 0;       // largest colour channel; 0: no sheen
+  bool is_shown = true;  // its own lobe counts, not only its attenuation
+  AlbedoRow white;       // albedo of a white sheen
   Rgb colour;
   float alpha = 1;
 

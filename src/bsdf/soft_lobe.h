@@ -1,12 +1,12 @@
-// Lobes that only reflect, and are neither Lambert's nor a mirror's blur: all that is known of each
-// kind stands here. Each is so soft that directions by a cosine, or evenly spread, sample it well:
-// it says what it scatters, and bsdf.cpp does the rest. A Bsdf has one of them at most.
+// Reflecting lobes that are neither Lambertian nor glossy. A Bsdf has at most one of them. Each is
+// soft enough that cosine-weighted or uniform directions sample it well. This header defines what
+// each kind scatters; bsdf.cpp samples and evaluates it.
 //
-// lost_light: what microfacets of a conductor scatter more than once [1]: colour × g(wo) g(wi) /
-// pi, g the share that the glossy lobe loses at a cosine.
+// lost_light: light that microfacets of a conductor scatter more than once [1], colour × g(wo)
+// g(wi) / pi. g is the share that the glossy lobe loses at a cosine.
 //
-// lost_grained_light: the same where gloss is wider along a grain than across it: g is 1 - even(c)
-// - twice(c) cos 2φ, φ the azimuth from the grain.
+// lost_grained_light: the same for gloss that is wider along a grain than across it. g = 1 -
+// even(c) - twice(c) cos 2φ, with φ the azimuth from the grain.
 //
 // References: [1] Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH 2017
 //   course.
@@ -32,7 +32,7 @@ struct SoftLobe {
   AlbedoRow twice;
 };
 
-// A direction as soft lobes know it: its cosine, and cos 2φ.
+// A direction in the parameters of soft lobes: its cosine, and cos 2φ.
 struct SoftDirection {
   CosineCoordinate cosine;
   float twice = 0;
@@ -41,11 +41,11 @@ struct SoftDirection {
     const float sine2 = w.x * w.x + w.y * w.y;
     if (sine2 > 1e-12f) twice = (w.x * w.x - w.y * w.y) / sine2;
   }
-  // In the mean over azimuths.
+  // Averages over azimuths.
   explicit SoftDirection(float c) : cosine(c) {}
 };
 
-// What the lobe keeps of a direction on the viewer's side.
+// Returns g for a direction on the viewer's side.
 inline float soft_gain(const SoftLobe& l, const SoftDirection& w) {
   switch (l.kind) {
     case SoftLobe::Kind::none:
@@ -58,20 +58,20 @@ inline float soft_gain(const SoftLobe& l, const SoftDirection& w) {
   return 0;
 }
 
-// pi f for directions on the viewer's side, with soft_gain of both.
+// Returns pi f for directions on the viewer's side, given soft_gain of both.
 inline Rgb soft_value(const SoftLobe& l, float gain_o, float gain_i) {
   if (l.kind == SoftLobe::Kind::none) return Rgb{0};
   return l.colour * (gain_o * gain_i);
 }
 
-// Share of the energy from a direction that it scatters.
+// Returns the share of energy from a direction that the lobe scatters.
 inline Rgb soft_energy(const SoftLobe& l, float gain_o) {
   if (l.kind == SoftLobe::Kind::none) return Rgb{0};
   return l.colour * (gain_o * l.mean);
 }
 
-// Whether soft_value is colour × gain_o × gain_i, each gain as of lost_light: then evaluate_many
-// takes several directions to a vector register.
+// True if soft_value is colour × gain_o × gain_i with gains as for lost_light. evaluate_many can
+// then use vector instructions.
 inline bool is_product(const SoftLobe& l) {
   return l.kind == SoftLobe::Kind::none || l.kind == SoftLobe::Kind::lost_light;
 }

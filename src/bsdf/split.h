@@ -1,4 +1,6 @@
-// How one microfacet of a Bsdf's glossy lobe divides the light that meets it.
+// Division of light by one microfacet of a Bsdf's glossy lobe into reflected and transmitted
+// shares, thin films and absorbing sheets included. bsdf.cpp uses it to evaluate and sample,
+// choice.h for albedos. Cosines are those of incidence on the microfacet.
 #pragma once
 
 #include <algorithm>
@@ -9,17 +11,18 @@
 
 namespace troffer {
 
-// What a microfacet reflects and transmits at a cosine of incidence on it.
+// Shares that a microfacet reflects and transmits at a cosine of incidence on it.
 struct Split {
   Rgb reflected, transmitted;
-  // Probability of following the reflection.
+  // Returns the probability with which sampling follows the reflection.
   float reflection_share() const {
     const float r = average(reflected), t = average(transmitted);
     return t > 0 ? r / (r + t) : 1.0f;
   }
 };
 
-// A thin film over glass that reflects r without it; the same from inside at the angle over there.
+// Returns the reflectance of glass under a thin film; r is its reflectance without the film. From
+// inside, the film's reflectance is that at the refracted angle outside.
 inline Rgb glass_or_film(const Bsdf& b, float c, float r) {
   const bool is_inside = !b.is_thin && b.eta < 1;
   const Rgb f0{normal_reflectance(b.eta)};
@@ -27,8 +30,8 @@ inline Rgb glass_or_film(const Bsdf& b, float c, float r) {
   return Rgb{r} + (filmed - Rgb{r}) * b.film.share;
 }
 
-// Through an absorbing sheet the way is longer the more it leans. Where reflection is scaled, what
-// is not reflected goes through.
+// Absorbing thin sheet: the path inside is longer at oblique angles. If reflection is scaled down,
+// the unreflected part is transmitted.
 inline Split absorbing_sheet(const Bsdf& b, float c) {
   const float way = 1 / std::max(refracted_cosine(c, b.eta), 1e-4f);
   const Rgb face = b.film.share > 0 ? glass_or_film(b, c, fresnel_dielectric(c, b.eta)) : Rgb{0};
@@ -44,7 +47,7 @@ inline Split absorbing_sheet(const Bsdf& b, float c) {
   return s;
 }
 
-// A thin film over opaque gloss, in place of a share of what it would reflect without.
+// Returns the reflectance of opaque gloss, of which the film replaces its share.
 inline Rgb schlick_or_film(const Bsdf& b, float c) {
   const Rgb plain = fresnel_schlick(c, b.f0, b.f90);
   if (!(b.film.share > 0)) return plain;
@@ -75,7 +78,7 @@ inline Split split_at(const Bsdf& b, float c) {
       Rgb r{b.is_thin ? plate_reflectance(c, b.eta) : plain};
       if (b.film.share > 0) {
         r = glass_or_film(b, c, plain);
-        if (b.is_thin) r = r * 2 / (r + Rgb{1});  // both sides wear it
+        if (b.is_thin) r = r * 2 / (r + Rgb{1});  // film on both sides
       }
       return {opaque + b.glass_reflect * r, b.glass_transmit * (Rgb{1} - r * b.glass_scale)};
     }

@@ -1,4 +1,4 @@
-// What a material asks of the tables, and whether it is a pane.
+// Tables that a material needs, and whether it is a pane.
 #include <algorithm>
 
 #include "bsdf/material_inputs.h"

@@ -16,7 +16,8 @@ float safe_ior(float ior) {
   return std::isfinite(ior) && ior > 0 ? std::clamp(ior, 0.01f, 100.0f) : 1.5f;
 }
 
-// Index of the table of this ior, making one while there is room, else of the nearest.
+// Returns the index of the table for this ior. Makes one while there is room; otherwise returns the
+// nearest.
 template <class Table>
 int32_t table_for(std::vector<Table>& tables, float ior, size_t max_tables) {
   size_t nearest = 0;
@@ -49,7 +50,7 @@ int32_t grain_for(std::vector<GrainTable>& tables, const GgxWidths& a, const Cle
   return int32_t(tables.size() - 1);
 }
 
-// Whether alpha lets a share of the light straight through: shadow rays pass it as they do panes.
+// True if alpha lets a share of the light straight through. Shadow rays then pass it like a pane.
 bool is_blended(const Material& m) {
   return m.is_alpha_masked && m.is_alpha_blended && (m.alpha.texture >= 0 || m.alpha.value < 1);
 }
@@ -102,7 +103,7 @@ void BsdfTables::set_rows(ClearCoat& clear, const PreparedMaterial& p) const {
   if (clear.bend > 1) clear.inner = coat(p.clear_inside).reflected.row(clear.alpha);
 }
 
-// Past max_iors of them, the coat is balanced: -1.
+// Beyond max_iors tables it returns -1, and the coat is treated as balanced.
 int32_t BsdfTables::rough_coat_for(const Material& m, float alpha, float ior) {
   const FacetShape shape = shape_of(m.facets);
   for (size_t i = 0; i < rough_coats_.size(); ++i)
@@ -114,7 +115,7 @@ int32_t BsdfTables::rough_coat_for(const Material& m, float alpha, float ior) {
   return int32_t(rough_coats_.size() - 1);
 }
 
-// Those under clear coats ask the tables of these.
+// Runs after the other tables are built: tables under a clear coat read them.
 void BsdfTables::build_grain_tables(const std::vector<Material>& materials) {
   for (size_t i = 0; i < materials.size(); ++i) {
     PreparedMaterial& p = materials_[i];

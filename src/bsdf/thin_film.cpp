@@ -26,7 +26,7 @@ InterferenceTable make_interference_table() {
 
 namespace {
 
-// The angles on both sides of an interface, and the index of the second over the first.
+// Cosines on both sides of an interface, and the index of the second side over the first.
 struct Interface {
   float cos_1, cos_2, eta;
   float perpendicular() const { return (cos_1 - eta * cos_2) / (cos_1 + eta * cos_2); }
@@ -63,7 +63,7 @@ Rgb film_reflectance(const ThinFilm& film, Rgb f0, float cosine) {
       out[k] += 0.5f * (1 - passed * series);
     }
   }
-  // Colours of narrow bands lie outside sRGB.
+  // Colours of narrow bands can lie outside sRGB.
   return {std::clamp(out.r, 0.0f, 1.0f), std::clamp(out.g, 0.0f, 1.0f),
           std::clamp(out.b, 0.0f, 1.0f)};
 }

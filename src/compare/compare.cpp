@@ -13,10 +13,10 @@ namespace troffer {
 
 namespace {
 
-// Sums over one row; rows are added in order, so that threads do not matter.
+// Sums over one row. Rows are added in order, so that the result does not depend on threads.
 struct RowSums {
   double image = 0, reference = 0, squares = 0, flip = 0;
-  uint64_t steps = 0;  // of 8-bit values
+  uint64_t steps = 0;  // differences of 8-bit values
   size_t pixels = 0;
 
   void add(const RowSums& o) {

@@ -1,4 +1,5 @@
-// Convolution with short kernels along rows and columns.
+// Convolution of one channel with short kernels along rows and columns. FLIP uses it for its
+// separable filters. Results do not depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +18,11 @@ struct PixelPlane {
   const float* row(int y) const { return values.data() + size_t(y) * size_t(width); }
 };
 
-// Odd number of taps 2r + 1, the middle one at offset 0.
+// Kernel with an odd number of taps 2r + 1; the middle one has offset 0.
 using Kernel = std::vector<float>;
 
-// out(x,y) = sum_i kernel[r + i] in(x + i, y), and the same along columns: kernels are not
-// mirrored. Pixels beyond the border repeat the border's.
+// out(x,y) = sum_i kernel[r + i] in(x + i, y), and the same along columns; kernels are not
+// mirrored. Pixels beyond the border repeat the border pixel.
 PixelPlane convolve_rows(const PixelPlane& in, const Kernel& kernel, int threads);
 PixelPlane convolve_columns(const PixelPlane& in, const Kernel& kernel, int threads);
 

@@ -14,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-// Constants of [1]: colour pipeline, feature pipeline.
+// Constants of [1]: colour and feature pipelines.
 constexpr float q_c = 0.7f, p_c = 0.4f, p_t = 0.95f;  // compression of colour differences
 constexpr float q_f = 0.5f;                           // exponent of feature differences
 constexpr double feature_width_deg = 0.082;
@@ -31,7 +31,7 @@ constexpr double widest_b = 0.04;
 
 using Planes = std::array<PixelPlane, 3>;
 
-// CIE XYZ of linear Rec. 709 (white D65), each component relative to that of white.
+// Converts linear Rec. 709 (white D65) to CIE XYZ, each component relative to white.
 Vec3 xyz_from_rgb(const Vec3& c) {
   return {0.433895389f * c.x + 0.376242373f * c.y + 0.189862239f * c.z,
           0.212636822f * c.x + 0.715182982f * c.y + 0.072180196f * c.z,
@@ -43,7 +43,7 @@ Vec3 rgb_from_xyz(const Vec3& c) {
           0.052881293f * c.x - 0.204011206f * c.y + 1.151129913f * c.z};
 }
 
-// The linear opponent space in which images are filtered [1, spatial filtering].
+// Converts to the linear opponent space in which images are filtered [1, spatial filtering].
 Vec3 ycxcz_from_xyz(const Vec3& c) {
   return {116 * c.y - 16, 500 * (c.x - c.y), 200 * (c.y - c.z)};
 }
@@ -52,7 +52,7 @@ Vec3 xyz_from_ycxcz(const Vec3& c) {
   return {y + c.y / 500, y, y - c.z / 200};
 }
 
-// CIE L*a*b* with chroma scaled by lightness, after Hunt [1, colour pipeline].
+// Converts to CIE L*a*b* with chroma scaled by lightness, after Hunt [1, colour pipeline].
 Vec3 hunt_lab_from_xyz(const Vec3& c) {
   constexpr float delta = 6.0f / 29;
   const auto f = [](float t) {
@@ -68,8 +68,8 @@ float hyab(const Vec3& a, const Vec3& b) {
   return std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);
 }
 
-// The HyAB distance of two filtered colours, compressed and spread over [0,1] so that the first
-// p_c of its range takes p_t of it [1, colour pipeline: redistribution]. The largest is that of
+// HyAB distance of two filtered colours, compressed and mapped to [0,1] so that the first p_c of
+// its range takes p_t of it [1, colour pipeline: redistribution]. The largest distance is that of
 // green and blue.
 class ColourDifference {
  public:
@@ -98,10 +98,9 @@ PixelPlane blur(const PixelPlane& in, const Kernel& kernel, int threads) {
   return convolve_columns(convolve_rows(in, kernel, threads), kernel, threads);
 }
 
-// The plane seen through the contrast sensitivity function. The filter is the sum over both
-// Gaussians of a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees, cut to a square of three standard
-// deviations of the widest Gaussian and normalised there [1, spatial filtering]. Each Gaussian is
-// separable.
+// Filters a plane by the contrast sensitivity function. The filter is the sum of two Gaussians a
+// sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees. It is cut to a square of three standard deviations
+// of the widest Gaussian and normalised there [1, spatial filtering]. Each Gaussian is separable.
 PixelPlane contrast_filter(const PixelPlane& in, const Sensitivity& s, double pixels_per_degree,
                            int threads) {
   const int radius = int(std::ceil(3 * std::sqrt(widest_b / (2 * pi * pi)) * pixels_per_degree));
@@ -123,7 +122,7 @@ PixelPlane contrast_filter(const PixelPlane& in, const Sensitivity& s, double pi
   return out;
 }
 
-// Clamped linear colour -> YCxCz planes.
+// Converts clamped linear colours to YCxCz planes.
 Planes opponent_planes(const Image& image, int threads) {
   Planes planes;
   planes.fill(PixelPlane(image.width, image.height));
@@ -138,8 +137,8 @@ Planes opponent_planes(const Image& image, int threads) {
   return planes;
 }
 
-// What remains of an image's colours after filtering, clamped to the display's colours, as
-// Hunt-adjusted L*a*b*; the argument is overwritten.
+// Filters an image's colours, clamps them to the display's gamut and converts them to Hunt-adjusted
+// L*a*b*, in place.
 void perceived_colours(Planes& planes, double pixels_per_degree, int threads) {
   planes[0] = contrast_filter(planes[0], achromatic, pixels_per_degree, threads);
   planes[1] = contrast_filter(planes[1], red_green, pixels_per_degree, threads);
@@ -155,12 +154,13 @@ void perceived_colours(Planes& planes, double pixels_per_degree, int threads) {
   });
 }
 
-// Strengths of edges and of points (and lines): lengths of the first and of the second derivatives.
+// Strength of edges, and of points and lines: lengths of the first and of the second derivatives.
 struct Features {
   PixelPlane edges, points;
 };
 
-// Scales a kernel's positive weights to sum to 1 and its negative ones to -1 [1, feature pipeline].
+// Scales a kernel's positive weights to the sum 1 and its negative ones to -1 [1, feature
+// pipeline].
 void normalise_by_sign(Kernel& kernel) {
   float positive = 0, negative = 0;
   for (const float v : kernel) (v > 0 ? positive : negative) += std::abs(v);
@@ -178,8 +178,8 @@ PixelPlane gradient_length(const PixelPlane& lightness, const Kernel& derivative
   return out;
 }
 
-// Features of the achromatic plane, by derivatives of a Gaussian whose standard deviation is half
-// the width of a feature [1, feature pipeline].
+// Computes features of the achromatic plane by derivatives of a Gaussian whose standard deviation
+// is half the width of a feature [1, feature pipeline].
 Features detect_features(const PixelPlane& achromatic_plane, double pixels_per_degree,
                          int threads) {
   PixelPlane lightness = achromatic_plane;

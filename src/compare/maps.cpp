@@ -66,7 +66,7 @@ Image absolute_difference_map(const Image& image, const Image& reference, float 
 Image signed_difference_map(const Image& image, const Image& reference, float gain) {
   return map_pixels(image, reference, [&](Rgb a, Rgb b) {
     const float d = (luminance(a) - luminance(b)) * gain;
-    if (!(std::abs(d) > 0)) return Rgb{0};  // NaN too
+    if (!(std::abs(d) > 0)) return Rgb{0};  // also NaN
     const float v = std::fmin(std::abs(d), 1.0f);
     return d > 0 ? Rgb{v, 0.25f * v, 0} : Rgb{0, 0.25f * v, v};
   });

@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-constexpr double usual_lx = 10'000;  // of skies without a sun to go by
+constexpr double usual_lx = 10'000;  // illuminance of skies without a sun
 
 struct Amounts {
   SkyShape shape;
@@ -94,7 +94,7 @@ void add_sky(Scene& scene, const SkyRequest& request, const Compass& compass) {
   sun.kind = LightKind::sun;
   sun.direction = Vec3(-to_sun);
   sun.angular_radius = float(rad_from_deg(sun_angular_radius_deg) / request.sun->distance_au);
-  // A disc of radius r about the normal: irradiance pi L sin² r.
+  // Disc of angular radius r about the normal: irradiance pi L sin² r.
   const double sine = std::sin(double(sun.angular_radius));
   sun.radiance = Rgb{float(a.direct_lx * unit / (pi * sine * sine))};
   scene.lights.push_back(sun);
@@ -110,7 +110,7 @@ void add_environment(Scene& scene, EnvironmentMap map, double scale, double rota
   const double turn = rad_from_deg(rotation_deg);
   const Vec3d ahead = compass.east * std::cos(turn) - compass.north * std::sin(turn);
   const Vec3d left = compass.north * std::cos(turn) + compass.east * std::sin(turn);
-  // Azimuths of an image grow towards its right: its middle is at half a turn.
+  // Azimuths of an image grow to the right, so its middle is at half a turn.
   if (map.projection == SphereMap::lat_long)
     e.axes = {Vec3(-ahead), Vec3(left), Vec3(compass.up)};
   else

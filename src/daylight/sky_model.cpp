@@ -112,7 +112,7 @@ constexpr double water_cm = 2;
 constexpr double solar_constant = 1367;        // W/m² [3]
 constexpr double solar_illuminance = 127'500;  // lx [4]
 
-// Kasten & Young 1989.
+// Returns the relative air mass (Kasten & Young 1989).
 double air_mass(double altitude_deg) {
   return 1 / (std::sin(rad_from_deg(altitude_deg)) +
               0.50572 * std::pow(altitude_deg + 6.07995, -1.6364));
@@ -138,8 +138,8 @@ SkyShape cie_sky(int type) {
   return s;
 }
 
-// Midpoints in the sine of the zenith angle squared, where cosines weigh evenly, and in azimuth,
-// half of which mirrors the other.
+// Midpoint rule in the squared sine of the zenith angle, in which the cosine weight is uniform, and
+// in azimuth. By symmetry half of the azimuths suffice.
 double horizontal_integral(const SkyShape& shape, double sun_zenith_rad) {
   constexpr int n = 400;
   const double sun_up = std::cos(sun_zenith_rad), sun_along = std::sin(sun_zenith_rad);
@@ -157,7 +157,7 @@ double horizontal_integral(const SkyShape& shape, double sun_zenith_rad) {
 PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_zenith_rad,
                    double sun_distance_au) {
   const double z = sun_zenith_rad, z3 = 1.041 * z * z * z;
-  // Infinite without diffuse light: as clear as the model goes.
+  // Infinite without diffuse light; clamped to the model's clearest sky.
   const double clearness =
       std::clamp((1 + direct_normal / diffuse_horizontal + z3) / (1 + z3), 1.0, 12.0);
   const double extraterrestrial = solar_constant / (sun_distance_au * sun_distance_au);
@@ -166,7 +166,7 @@ PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_z
   const auto bin =
       size_t(std::upper_bound(clearness_bins.begin(), clearness_bins.end(), clearness) -
              clearness_bins.begin());
-  // Thin skies between clear and overcast are outside of what was measured (erratum of [2]).
+  // Dark skies between clear and overcast lie outside the measured data (erratum of [2]).
   const double delta =
       clearness > 1.065 && clearness < 2.8 ? std::max(brightness, 0.2) : brightness;
   const auto& row = perez_table[bin];
@@ -183,7 +183,7 @@ PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_z
     sky.shape.d = float(at(row[3], z, delta));
   }
   if (!(horizontal_integral(sky.shape, z) > 0))
-    sky.shape = even_sky();  // far from what is measured
+    sky.shape = even_sky();  // outside the measured range
   const Row &f = diffuse_efficacy[bin], &r = direct_efficacy[bin];
   sky.diffuse_lx = diffuse_horizontal *
                    (f[0] + f[1] * water_cm + f[2] * std::cos(z) + f[3] * std::log(brightness));
@@ -200,7 +200,7 @@ Irradiance clear_irradiance(double turbidity, double altitude_deg, double sun_di
   const double thickness_of_dry_air =
       m <= 20 ? 1 / (6.6296 + m * (1.7513 + m * (-0.1202 + m * (0.0065 - m * 0.00013))))
               : 1 / (10.4 + 0.718 * m);
-  // At the zenith, and by altitude.
+  // Diffuse transmittance at the zenith, and its dependence on altitude.
   const double at_zenith = -1.5843e-2 + t * (3.0543e-2 + t * 3.797e-4);
   const double a0 = std::max(2.6463e-1 + t * (-6.1581e-2 + t * 3.1408e-3), 2e-3 / at_zenith);
   const double a1 = 2.0402 + t * (1.8945e-2 - t * 1.1161e-2);

@@ -1,5 +1,5 @@
-// Luminance distributions of skies, and how much light they and the sun bring.
-//
+// Luminance distributions of skies, and illuminance by sky and sun. sky_lights.h uses them.
+// Irradiances are in W/m² of all wavelengths, illuminances in lx.
 // References: [1] CIE S 011/E:2003 (ISO 15469:2004), "Spatial distribution of daylight: CIE
 // standard
 //   general sky".
@@ -19,15 +19,15 @@ namespace troffer {
 
 constexpr double sun_angular_radius_deg = 0.533 / 2;
 
-// One of the 15 standard general skies [1, table 1]; type within [1, 15].
+// Returns one of the 15 standard general skies [1, table 1]; type is in [1, 15].
 SkyShape cie_sky(int type);
-// Equally bright everywhere.
+// Returns a sky of uniform luminance.
 inline SkyShape even_sky() {
   return {};
 }
 
-// What the sky sends to a horizontal plane, relative to a luminance of its formula of 1: for the
-// sun at that angle from the zenith. Quadrature; errors under 2e-5.
+// Returns the horizontal illuminance of the sky for a relative luminance formula without scale,
+// with the sun at the given zenith angle. Quadrature error below 2e-5.
 double horizontal_integral(const SkyShape& shape, double sun_zenith_rad);
 
 struct PerezSky {
@@ -35,21 +35,23 @@ struct PerezSky {
   double diffuse_lx = 0;  // on a horizontal plane
   double direct_lx = 0;   // on a plane that faces the sun
 };
-// Sky and sun by the irradiances of all wavelengths [2, 3], W/m²: direct on a plane that faces the
-// sun, diffuse on a horizontal one, not both 0. The sun's zenith angle is under pi/2. Air holds 2
-// cm of water. Clearness and brightness outside the model's range are moved to its ends.
+// Returns sky and sun from the irradiances of all wavelengths [2, 3] in W/m²: direct on a plane
+// facing the sun, diffuse on a horizontal plane. They must not both be 0, and the zenith angle must
+// be below pi/2. Assumes 2 cm of precipitable water. Clearness and brightness are clamped to the
+// model's range.
 PerezSky perez_sky(double direct_normal, double diffuse_horizontal, double sun_zenith_rad,
                    double sun_distance_au);
 
 struct Irradiance {
   double direct_normal = 0, diffuse_horizontal = 0;  // W/m² of all wavelengths
 };
-// Under a cloudless sky whose air weakens the sun as `linke_turbidity` (1 to 10) times as much dry
-// clean air would [5]; the sun is above the horizon.
+// Returns the irradiances under a cloudless sky with a Linke turbidity of 1 to 10 [5]: the ratio of
+// its extinction to that of clean dry air. The sun must be above the horizon.
 Irradiance clear_irradiance(double linke_turbidity, double altitude_deg, double sun_distance_au);
 
-// Illuminance by type of sky (1 to 5 overcast, to 10 partly cloudy, to 15 clear) and the sun's
-// altitude [4]: diffuse on a horizontal plane, and direct on one that faces the sun.
+// Return the typical illuminance for a type of sky (1 to 5 overcast, 6 to 10 partly cloudy, 11 to
+// 15 clear) and the sun's altitude [4]: diffuse on a horizontal plane, direct on a plane facing the
+// sun.
 double typical_diffuse_lx(int cie_type, double altitude_deg);
 double typical_direct_lx(int cie_type, double altitude_deg, double sun_distance_au);
 

@@ -22,7 +22,7 @@ void fill(const Texture& look, BakedImage& out, const Value& value) {
     for (int x = 0; x < out.width; ++x) value(uv_of_texel(look, x, y));
 }
 
-// An image whose file can be written as it was read.
+// True for an image whose texels can be written unchanged.
 bool is_whole(const Texture& t, const Texture& look) {
   return t.kind == TextureKind::image && !t.texels8.empty() && !t.is_inverted &&
          t.value == Rgb{1} && t.width == look.width && t.height == look.height &&
@@ -87,7 +87,7 @@ BakedImage baked_color(const Scene& scene, const ColorInput& input, const Textur
     const bool has_alpha = t->channels == 2 || t->channels == 4;
     const bool is_alpha_its_own =
         alpha && has_alpha && alpha->texture == input.texture && alpha->channel == 3;
-    // An alpha that nobody asks for does no harm: readers ignore it.
+    // A surplus alpha channel is harmless: readers ignore it.
     if (is_alpha_its_own || !alpha) return copy_of(*t, true);
   }
   BakedImage out;

@@ -1,4 +1,5 @@
-// Light that was computed for the surfaces of a scene, as a glTF file is to hold it.
+// Computed light for the surfaces of a scene, in the form that a glTF file stores. `bake` makes it,
+// and write_gltf() writes it.
 //
 // References: [1] Mozilla Hubs, "MOZ_lightmap" (a lightmap by a second set of texture coordinates).
 //   [2] Khronos, "KHR_materials_unlit", "KHR_materials_emissive_strength".
@@ -13,17 +14,17 @@
 namespace troffer {
 
 enum class BakedShading : uint8_t {
-  lightmap,  // materials as they are, each with a lightmap [1]: texel × white is irradiance, lx
-  unlit,     // [2]: pictures of what surfaces send, shown as they are
-  emissive,  // black surfaces that emit: texel × white is luminance, cd/m²
-  vertex_colors,  // [2]: colours of vertices, by which base colours are multiplied
+  lightmap,       // materials plus a lightmap [1]: texel × white is irradiance, lx
+  unlit,          // [2]: pictures of the surfaces' radiance, shown unshaded
+  emissive,       // black emitting surfaces: texel × white is luminance, cd/m²
+  vertex_colors,  // [2]: colours of vertices, factors on base colours
 };
 
-// What one mesh (or instance) gets.
+// Baked light of one mesh or instance.
 struct BakedSurface {
-  int32_t page = -1;        // of BakedLight::pages; none: it is written as it is
-  std::vector<Vec2> uvs;    // per vertex, in [0,1], v down; of a page
-  std::vector<Rgb> colors;  // vertex_colors: per vertex, linear; empty: it is written as it is
+  int32_t page = -1;        // index in BakedLight::pages; -1: not baked into a page
+  std::vector<Vec2> uvs;    // per vertex, in [0,1], v down; coordinates in the page
+  std::vector<Rgb> colors;  // vertex_colors: per vertex, linear; empty: none
   bool is_baked() const { return page >= 0 || !colors.empty(); }
 };
 
@@ -32,7 +33,7 @@ struct BakedLight {
   std::vector<std::vector<uint8_t>> pages;  // PNG
   double white = 1;
   std::vector<BakedSurface> meshes, instances;  // of Scene::meshes, Scene::instances
-  // Numbers and words for asset.extras: names and JSON values.
+  // Entries of asset.extras: names and JSON values.
   std::vector<std::pair<std::string, std::string>> notes;
 };
 

@@ -20,14 +20,14 @@ std::string ending_of(const std::string& path) {
   return std::filesystem::path(path).extension().string();
 }
 
-// Measured luminaires become even ones of the same flux; returns how many there were.
+// Replaces measured luminaires by uniform ones of the same flux; returns their number.
 size_t make_even(Scene& scene) {
   size_t count = 0;
   for (Light& e : scene.lights) {
     if (e.web == no_web) continue;
     ++count;
     const LightWeb& web = scene.webs[size_t(e.web)];
-    double over = 4 * pi;  // a point: steradians
+    double over = 4 * pi;  // point light: solid angle
     if (has_surface(e.kind)) {
       double area = 4 * double(web.cross_section);
       for (const Vec3& face : web.faces) area += double(length(face));
@@ -39,7 +39,7 @@ size_t make_even(Scene& scene) {
   return count;
 }
 
-// Mean over all directions of what a light's image multiplies its intensity by.
+// Returns the mean over all directions of the image that multiplies a light's intensity.
 Rgb mean_of_image(const Scene& scene, const Light& e) {
   if (e.texture >= 0) return projected_flux(scene, e) / float(4 * pi);
   const EnvironmentMap& map = scene.environments[size_t(e.environment)];
@@ -56,7 +56,7 @@ Rgb mean_of_image(const Scene& scene, const Light& e) {
   return sum / float(weights);
 }
 
-// glTF's lights throw no pictures; returns how many there were.
+// Replaces images that lights project by their mean, because glTF has none; returns their number.
 size_t drop_images_of_lights(Scene& scene) {
   size_t count = 0;
   for (Light& e : scene.lights) {

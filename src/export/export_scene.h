@@ -1,5 +1,6 @@
-// Scenes -> files: pbrt-v4 (.pbrt), glTF 2.0 (.gltf, .glb), chosen by ending. The layout of what is
-// written follows the scene as it is in memory: instances have become copies.
+// Exports scenes to pbrt-v4 (.pbrt) or glTF 2.0 (.gltf, .glb), chosen by extension. The `convert`
+// and `bake` commands use it. The output has the structure of the scene in memory. Properties that
+// a format cannot express become warnings.
 #pragma once
 
 #include <optional>
@@ -12,15 +13,15 @@
 
 namespace troffer {
 
-// UsageError where the ending is none that is written.
+// Throws UsageError if the extension is not supported.
 void check_scene_format(const std::string& path);
 
-// Writes the scene, emission, lights, cameras and materials included, with the files it needs
-// beside it. Returns what the format cannot hold, in words. UsageError as above; EnvironmentError:
-// what cannot be written.
-// baked: of .gltf and .glb, light for its surfaces; null: none.
-// up: of .gltf and .glb, the direction that becomes y; none: as scene/orientation.h decides.
-// files: the folder of `path` with what has been written there already; null: nothing has.
+// Writes the scene with emission, lights, cameras and materials, and the files that it needs next
+// to it. Returns warnings about what the format cannot express. Throws UsageError as above,
+// EnvironmentError if a file cannot be written.
+// - baked: light for the surfaces, glTF only; null: none.
+// - up: direction that becomes y, glTF only; none: decided by scene/orientation.h.
+// - files: folder of `path` with files that were already written there; null: none.
 std::vector<Warning> export_scene(Scene scene, const std::string& path,
                                   const BakedLight* baked = nullptr,
                                   const std::optional<Vec3>& up = std::nullopt,

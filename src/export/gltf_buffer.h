@@ -1,4 +1,6 @@
-// The binary data of a glTF file that is being written, with the views and accessors into it.
+// Binary data of a glTF file that is being written, with its buffer views and accessors. The glTF
+// exporter adds vertex data and images to it. The add functions return the index of the new entry.
+// Data are little endian.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +16,9 @@ class GltfBuffer {
  public:
   using Json = nlohmann::ordered_json;
 
-  // Index of a buffer view with these bytes.
+  // Adds a buffer view with these bytes; returns its index.
   size_t add_view(std::span<const uint8_t> bytes);
-  // Index of an accessor of vectors or of indices.
+  // Add an accessor of vectors or indices; return its index.
   size_t add(const std::vector<Vec3>& values, bool has_bounds);
   size_t add(const std::vector<Vec3>& colors, const std::vector<float>& alphas);
   size_t add(const std::vector<Vec2>& values);

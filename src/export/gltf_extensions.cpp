@@ -25,7 +25,7 @@ void GltfMaterialWriter::add_number(const FloatInput& input, float power, const 
     extension[name + "Factor"] = power == 1 ? value : std::pow(value, power);
     return;
   }
-  // The value stays a factor where it can be one.
+  // Keeps the value as a factor if glTF allows it.
   const bool is_factor = power == 1 && input.value <= 1;
   const FloatInput baked{is_factor ? 1 : input.value, input.texture, input.channel};
   const std::string key = fmt::format("number {} {} {} {} {}", baked.texture, baked.channel,
@@ -65,7 +65,7 @@ void GltfMaterialWriter::add_glass(const Material& m, Json& out) {
   Json& volume = out["extensions"]["KHR_materials_volume"];
   volume["thicknessFactor"] = 1;
   if (m.absorption.is_black()) return;
-  // The colour left at the distance where the strongest channel falls to 1/e.
+  // Colour at the distance where the most absorbed channel falls to 1/e.
   const float most = max_component(m.absorption);
   volume["attenuationDistance"] = 1 / most;
   volume["attenuationColor"] = {std::exp(-m.absorption.r / most), std::exp(-m.absorption.g / most),
@@ -105,7 +105,7 @@ void GltfMaterialWriter::add_clear_coat(const Material& m, Json& out) {
   if (m.coat.value <= 0 || m.kind == MaterialKind::diffuse) return;
   if (m.kind == MaterialKind::coated_diffuse || std::abs(m.coat_ior - 1.5f) > 0.01f)
     warnings_.add("clear coats are written as glTF's, of index 1.5");
-  // glTF's roughness is the root of the width of ggx.
+  // glTF's roughness is the square root of the GGX width.
   const float power = m.roughness_meaning == RoughnessMeaning::alpha           ? 0.5f
                       : m.roughness_meaning == RoughnessMeaning::alpha_is_sqrt ? 0.25f
                                                                                : 1;
@@ -135,8 +135,9 @@ void GltfMaterialWriter::add_film(const Material& m, Json& out) {
   out["extensions"]["KHR_materials_iridescence"] = film;
 }
 
-// The base is what does not come through. A diffuse material has both shares side by side: glTF's
-// base has to give what passes.
+// glTF's base reflects only the light that is not transmitted, while a diffuse material states
+// reflection and transmission separately. Its base colour is therefore divided by the share of
+// light that glTF leaves to the base.
 void GltfMaterialWriter::add_diffuse_transmission(const Material& m, Json& out) {
   if (m.diffuse_transmission.value <= 0) return;
   Json passing = Json::object();

@@ -21,7 +21,7 @@ int wrap_code(WrapMode mode) {
   return mode == WrapMode::repeat ? 10497 : mode == WrapMode::mirror ? 33648 : 33071;
 }
 
-// glTF's roughness is the root of the width of ggx.
+// glTF's roughness is the square root of the GGX width.
 float power_for_gltf(RoughnessMeaning meaning) {
   return meaning == RoughnessMeaning::alpha           ? 0.5f
          : meaning == RoughnessMeaning::alpha_is_sqrt ? 0.25f
@@ -82,16 +82,16 @@ size_t GltfMaterialWriter::add_texture(std::vector<uint8_t> png, const Texture& 
   return textures_.size() - 1;
 }
 
-// How alpha counts, and its factor; what of it lies in an image is add_base()'s.
+// Writes alpha mode and cutoff. add_base() writes the alpha image and factor.
 void GltfMaterialWriter::add_alpha(const Material& m, Json& out) {
   if (!m.is_alpha_masked) return;
   out["alphaMode"] = m.is_alpha_blended ? "BLEND" : "MASK";
   if (!m.is_alpha_blended) out["alphaCutoff"] = m.alpha_cutoff;
 }
 
-// Base colour, and with it alpha.
+// Writes base colour and alpha.
 void GltfMaterialWriter::add_base(const Material& m, Json& out) {
-  // All that `out` gets itself before a reference into it is held: it moves what it has.
+  // Complete `out` before taking a reference into it: adding entries moves its contents.
   out["pbrMetallicRoughness"] = Json();
   add_alpha(m, out);
   Json& pbr = out["pbrMetallicRoughness"];
@@ -113,7 +113,7 @@ void GltfMaterialWriter::add_base(const Material& m, Json& out) {
     base.texture = no_texture;
     change = {};
   }
-  // The value stays a factor where it can be one.
+  // Keeps the value as a factor if glTF allows it.
   const bool is_factor = !change && max_component(base.value) <= 1;
   const Rgb factor = is_factor ? base.value : Rgb{1};
   if (is_factor) base.value = Rgb{1};
@@ -137,7 +137,7 @@ void GltfMaterialWriter::add_roughness(const Material& m, Json& pbr) {
   const bool is_mixed = m.kind == MaterialKind::metallic_roughness;
   const float power = power_for_gltf(m.roughness_meaning);
   FloatInput rough = m.roughness;
-  // Straight on, light that leaves a coat in which it bends spreads by its index.
+  // Light that leaves a refracting coat at normal incidence is spread by the coat's index.
   if (m.kind == MaterialKind::conductor && m.coat.value > 0)
     rough.value *= std::pow(m.coat_ior, power > 0 ? 0.5f / power : 1.0f);
   FloatInput metal = is_mixed ? m.metallic : FloatInput{0, no_texture, 0};
@@ -170,7 +170,7 @@ Json GltfMaterialWriter::surface(const Material& m) {
   add_base(m, out);
   add_normal(m.normal_texture, m.normal_scale, "normalTexture", out);
   Json& pbr = out["pbrMetallicRoughness"];
-  if (m.kind == MaterialKind::diffuse) {  // without specular reflection: Lambert's model
+  if (m.kind == MaterialKind::diffuse) {  // no specular reflection: Lambertian
     pbr["metallicFactor"] = 0;
     out["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
     add_diffuse_transmission(m, out);
@@ -210,7 +210,8 @@ void GltfMaterialWriter::add_emission(const Light& light, Rgb radiance, Json& ou
   if (light.is_two_sided) out["doubleSided"] = true;
 }
 
-// Texels of lightmaps stand for themselves alone: no neighbour across an edge, no smaller copies.
+// Returns the texture of a lightmap page. Its texels must not blend with a neighbour across an
+// edge, nor in smaller copies.
 size_t GltfMaterialWriter::page_texture(int32_t page) {
   const std::string key = fmt::format("baked {}", page);
   const auto found = texture_by_key_.find(key);
@@ -228,7 +229,7 @@ void GltfMaterialWriter::add_baked(const Material& m, const GltfPlace& place, Js
     texture["intensity"] = baked_->white;
     out["extensions"]["MOZ_lightmap"] = texture;
   } else if (baked_->shading == BakedShading::emissive) {
-    // Holes stay where the base colour's image has them.
+    // Keeps the holes of the base colour's image.
     for (size_t k = 0; k < 3; ++k) out["pbrMetallicRoughness"]["baseColorFactor"][k] = 0;
     out["pbrMetallicRoughness"]["metallicFactor"] = 0;
     out["pbrMetallicRoughness"].erase("metallicRoughnessTexture");
@@ -245,7 +246,7 @@ void GltfMaterialWriter::add_baked(const Material& m, const GltfPlace& place, Js
     pbr["roughnessFactor"] = 1;
     pbr.erase("metallicRoughnessTexture");
     if (baked_->shading == BakedShading::unlit) {
-      pbr["baseColorFactor"] = {1, 1, 1, 1};  // alpha too is in the page
+      pbr["baseColorFactor"] = {1, 1, 1, 1};  // the page contains alpha as well
       pbr["baseColorTexture"] = texture;
     }
   }

@@ -1,4 +1,5 @@
-// Materials, textures and emission -> glTF's.
+// Writes materials, textures and emission as glTF, each combination once. GltfWriter uses it.
+// Emission is in cd/m²; material models that glTF lacks are approximated, with a warning.
 #pragma once
 
 #include <map>
@@ -11,21 +12,22 @@
 
 namespace troffer {
 
-// Attributes of a mesh that change its material.
+// Properties of a mesh that change its material.
 struct GltfPlace {
-  int32_t page = -1;                   // of BakedLight::pages
-  int set = 1;                         // of the page's texture coordinates
-  bool has_light_colors = false;       // baked into colours of vertices
-  int32_t vertex_colors = no_texture;  // factor that the mesh's COLOR_0 stands for
+  int32_t page = -1;                   // index in BakedLight::pages
+  int set = 1;                         // index of the page's texture coordinates
+  bool has_light_colors = false;       // light is baked into vertex colours
+  int32_t vertex_colors = no_texture;  // texture that the mesh's COLOR_0 replaces
   bool is_baked() const { return page >= 0 || has_light_colors; }
 };
 
-// Thirteen members: the scene and its options, and the tables of what the file holds already.
+// Thirteen members: the scene and its options, and the tables of what the file already contains.
 class GltfMaterialWriter {
  public:
   using Json = nlohmann::ordered_json;
 
-  // All must outlive this. `unit`: cd/m² per the scene's radiance. baked: may be null.
+  // All arguments must outlive the writer. `unit`: cd/m² per unit of the scene's radiance. baked:
+  // may be null.
   GltfMaterialWriter(const Scene& scene, GltfBuffer& buffer, double unit, const BakedLight* baked,
                      WarningLog& warnings)
       : scene_(scene),
@@ -35,11 +37,11 @@ class GltfMaterialWriter {
         warnings_(warnings),
         mesh_uvs_(scene) {}
 
-  // Index of the material with the emission of a light (null: none), of that radiance, as it is on
-  // a mesh of that place.
+  // Returns the index of the material with the emission of a light (null: none) of this radiance,
+  // for a mesh with the properties of `place`. Adds the material if it is new.
   size_t index_of(uint32_t material, const Light* light, Rgb radiance, const GltfPlace& place);
 
-  // Adds "materials", "textures", "images", "samplers" to a file.
+  // Adds "materials", "textures", "images" and "samplers" to a file.
   void finish(Json& file) const;
 
  private:
@@ -49,7 +51,7 @@ class GltfMaterialWriter {
   const BakedLight* baked_;
   WarningLog& warnings_;
   MaterialUvs mesh_uvs_;
-  uint32_t material_ = 0;  // that is being written
+  uint32_t material_ = 0;  // being written
   std::map<std::pair<uint32_t, std::string>, size_t> made_;
   std::map<std::string, size_t> texture_by_key_;
   Json materials_ = Json::array(), textures_ = Json::array(), images_ = Json::array(),
@@ -71,14 +73,15 @@ class GltfMaterialWriter {
   void add_film(const Material& m, Json& out);
   void add_diffuse_transmission(const Material& m, Json& out);
 
-  // The name's factor and texture. is_alpha: the number is read from the fourth channel.
+  // Adds the factor and texture of this name. is_alpha: glTF reads the number from the fourth
+  // channel.
   void add_number(const FloatInput& input, float power, const std::string& name, bool is_alpha,
                   Json& extension);
   void add_color(const ColorInput& input, const std::string& name, Json& extension);
 
-  // A look for all images in these textures; none where there are none.
+  // Returns a common look for all images in these textures; nothing if there are none.
   std::optional<Texture> look_of_all(std::span<const int32_t> textures);
-  // A reference to the texture of that key and look, made by `bake` where it is new.
+  // Returns a reference to the texture with this key and look; `bake` makes it if it is new.
   Json texture(const std::string& key, const Texture& look,
                const std::function<BakedImage(const Texture&)>& bake);
   size_t add_texture(std::vector<uint8_t> png, const Texture& look, const std::string& name);

@@ -36,7 +36,7 @@ class GltfWriter {
   const Scene& scene_;
   const Vec3 up_;
   const BakedLight* baked_;  // may be null
-  double unit_;              // cd/m² per the scene's radiance
+  double unit_;              // cd/m² per unit of the scene's radiance
   WarningLog warnings_;
   GltfBuffer buffer_;
   GltfMaterialWriter materials_;
@@ -44,13 +44,13 @@ class GltfWriter {
        lights_ = Json::array();
 
   void add_part(const ScenePart& part, Rgb radiance);
-  // Data that all instances of a mesh share.
+  // Data shared by all instances of a mesh.
   struct Primitive {
     Json json;
     uint32_t material = 0;
-    int sets = 0;  // of texture coordinates
+    int sets = 0;  // number of texture coordinate sets
     int32_t vertex_colors = no_texture;
-    std::vector<TextureValue> colors;  // of vertices
+    std::vector<TextureValue> colors;  // per vertex
   };
   Primitive primitive_of(Mesh mesh, const Light* light);
   void add_colors(const Primitive& p, const BakedSurface* baked, Json& attributes);
@@ -64,7 +64,7 @@ class GltfWriter {
   void write_text(OutputFolder& files, Json json);
 };
 
-// From scene's origin; columns are the images of the axes.
+// Returns a column-major matrix from the images of the axes and of the origin.
 template <class T>
 Json matrix(const Vec3T<T>& x, const Vec3T<T>& y, const Vec3T<T>& z, const Vec3T<T>& at) {
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, at.x, at.y, at.z, 1};
@@ -75,7 +75,7 @@ void GltfWriter::add_node(const std::string& name, Json node) {
   nodes_.push_back(std::move(node));
 }
 
-// The mesh with colours of its vertices in place of the image that holds them.
+// Returns the mesh with vertex colours instead of the image that contains them.
 GltfWriter::Primitive GltfWriter::primitive_of(Mesh m, const Light* light) {
   Primitive out;
   out.vertex_colors = vertex_color_texture(scene_, m);
@@ -97,7 +97,7 @@ GltfWriter::Primitive GltfWriter::primitive_of(Mesh m, const Light* light) {
   return out;
 }
 
-// Colours of vertices times light that is baked into them; pages of pictures hold them already.
+// Adds vertex colours times baked light. Pages of pictures already contain the colours.
 void GltfWriter::add_colors(const Primitive& p, const BakedSurface* baked, Json& attributes) {
   const bool has_light = baked && !baked->colors.empty();
   const bool is_in_page = baked && baked->page >= 0 && baked_->shading == BakedShading::unlit;
@@ -124,7 +124,7 @@ void GltfWriter::add_mesh(Primitive primitive, const Light* light, Rgb radiance,
   Json& attributes = primitive.json["attributes"];
   if (baked && baked->page >= 0) {
     const size_t uvs = buffer_.add(baked->uvs);
-    // Sets are numbered without gaps: a mesh that has none gets this one twice.
+    // Sets are numbered without gaps: a mesh without coordinates gets the page's twice.
     if (primitive.sets == 0) attributes["TEXCOORD_0"] = uvs;
     place.page = baked->page;
     place.set = primitive.sets == 2 ? 2 : 1;
@@ -147,7 +147,8 @@ void GltfWriter::add_part(const ScenePart& part, Rgb radiance) {
   add_node(light ? light->name : part.mesh.name, {{"mesh", meshes_.size() - 1}});
 }
 
-// A node each, which share their mesh; or, where light is baked for each, its data.
+// Adds one node per instance. Instances share a mesh, or only its data if each has its own baked
+// light.
 void GltfWriter::add_instances() {
   const size_t first = meshes_.size();
   std::vector<Primitive> shared;
@@ -245,7 +246,7 @@ Json GltfWriter::file() {
   const std::array<Vec3d, 3> turn = turn_to_y(up_);
   const bool is_turned = turn[1] != Vec3d{0, 1, 0};
   if (scene_.origin != Vec3d{} || is_turned) {
-    // One node that turns all so that y is up, and moves what lies far from the file's origin.
+    // A top node turns the scene so that y is up, and moves it by its origin.
     const Vec3d& o = scene_.origin;
     const Vec3d at = turn[0] * o.x + turn[1] * o.y + turn[2] * o.z;
     nodes_.push_back(is_turned ? Json{{"matrix", matrix(turn[0], turn[1], turn[2], at)}}
@@ -282,7 +283,7 @@ void append_number(std::string& to, uint32_t n) {
   for (int i = 0; i < 4; ++i) to += char((n >> (8 * i)) & 255);
 }
 
-// [1] §4.4: a header, the JSON padded by blanks, the data padded by zeros.
+// [1] §4.4: a header, the JSON padded with blanks, and the data padded with zeros.
 void GltfWriter::write_glb(const std::string& path, OutputFolder& files, Json json) {
   std::vector<uint8_t> data = buffer_.bytes();
   data.resize((data.size() + 3) / 4 * 4);

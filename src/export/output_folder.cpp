@@ -18,9 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr uintmax_t most_read = uintmax_t(256) << 20;  // bytes of a scene's file
+// limit on the size of a scene file that is read back
+constexpr uintmax_t most_read = uintmax_t(256) << 20;
 
-// Quotes and line ends would not survive in the scene's file.
+// Replaces quotes and line ends, which would break the scene file.
 std::string plain(std::string name) {
   for (char& c : name)
     if (static_cast<unsigned char>(c) < 32 || c == '"' || c == '\\') c = '_';
@@ -59,15 +60,16 @@ OutputFolder::OutputFolder(const std::string& path)
       path_((fs::path(path).parent_path() / folder_).string()) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return;
-  // A longer one is not used for removal: the old data keep their names anyway.
+  // A larger file is not read, and its old data files are not removed. They keep their names
+  // anyway.
   if (fs::file_size(path, error) <= most_read) before_ = content_of(path);
 }
 
 OutputFolder::~OutputFolder() {
   if (is_finished_) return;
-  std::error_code ignored;  // there is another failure to tell
+  std::error_code ignored;  // another error is already being reported
   for (const Written& w : written_) fs::remove(w.file, ignored);
-  if (is_new_) fs::remove(path_, ignored);  // not empty: it stays
+  if (is_new_) fs::remove(path_, ignored);  // fails if it is not empty
 }
 
 void OutputFolder::make_folder() {

@@ -1,8 +1,9 @@
-// A scene's file and the files beside it, in a folder of its name, as one output.
+// A scene file and its data files, in a folder of the same name, as one output. Both exporters use
+// it.
 //
-// Files in the folder get names that the scene's file, as it was before, does not mention, and the
-// scene's file comes last. So whoever is stopped at any moment leaves the old file with its old
-// data, or the new one with its own.
+// Data files get names that the previous scene file does not mention, and the scene file is written
+// last. An interruption at any moment leaves either the old scene with its data or the new one with
+// its data.
 #pragma once
 
 #include <cstdint>
@@ -18,22 +19,22 @@ namespace troffer {
 
 class OutputFolder {
  public:
-  // Of the scene file `path`: "room.pbrt" -> "room_files". Nothing is made before the first write.
+  // Folder of the scene file `path`: "room.pbrt" -> "room_files". It is created at the first write.
   explicit OutputFolder(const std::string& path);
-  // Removes what was written where finish() was not reached.
+  // Removes the written files unless finish() completed.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  // Writes a file of that (simple) name, or where the name is taken by other bytes, of a similar
-  // one. Returns how the scene's file names it. EnvironmentError: what cannot be written.
+  // Writes a file of this simple name, or a similar one if another file has the name. Returns the
+  // name by which the scene file refers to it. Throws EnvironmentError if it cannot be written.
   std::string write(const std::string& name, std::span<const uint8_t> bytes);
-  // Writes the scene's file itself, and removes files of the folder that it alone mentioned before
-  // and mentions no more.
+  // Writes the scene file, and removes files in the folder that only its previous version
+  // mentioned.
   void finish(std::span<const uint8_t> bytes);
   void finish(std::string_view text);
 
-  // After finish(): makes `name` too stand for what write() returned as `reference`.
+  // After finish(): makes `name` another name of the file that write() returned as `reference`.
   void link(const std::string& name, const std::string& reference) const;
 
  private:
@@ -43,10 +44,10 @@ class OutputFolder {
   };
 
   std::string main_, folder_, path_;
-  std::string before_;  // the scene's file as it was
+  std::string before_;  // previous content of the scene file
   bool is_made_ = false, is_new_ = false, is_finished_ = false;
   std::vector<Written> written_;
-  std::set<std::string> names_;  // in use by what is written
+  std::set<std::string> names_;  // used by written files
 
   void make_folder();
   bool is_mentioned(const std::string& name) const;
@@ -54,10 +55,10 @@ class OutputFolder {
   void remove_replaced() const;
 };
 
-// A relative path as a URI reference: what is not plain is percent-encoded.
+// Returns a relative path as a URI reference; special characters are percent-encoded.
 std::string uri_of(const std::string& path);
 
-// A name as part of a one-line comment.
+// Returns a name as part of a one-line comment.
 std::string printable_comment(std::string_view name);
 
 }  // namespace troffer

@@ -80,7 +80,7 @@ std::string Writer::environment(const Light& e) {
   return image(e, picture);
 }
 
-// In a space whose axes are those, at the light.
+// Returns the light in a coordinate system at the light with these axes.
 std::string Writer::placed(const std::array<Vec3, 3>& a, const Light& e, const std::string& light) {
   const Vec3d at = Vec3d(e.position) + scene_.origin;
   return fmt::format(
@@ -90,7 +90,7 @@ std::string Writer::placed(const std::array<Vec3, 3>& a, const Light& e, const s
       a[2].z, at.x, at.y, at.z, light);
 }
 
-// pbrt's image has the light's y for its own z.
+// pbrt's image uses the light's y as its z.
 std::string Writer::goniometric(const Light& e) {
   const EnvironmentMap& map = scene_.environments[size_t(e.environment)];
   Image picture(map.width, map.height);
@@ -101,7 +101,7 @@ std::string Writer::goniometric(const Light& e) {
                 "\"goniometric\"" + rgb("I", e) + fmt::format(" \"string filename\" \"{}\"", file));
 }
 
-// `fov` is that of the shorter side; the picture's top is towards the light's y.
+// `fov` is that of the shorter side. The picture's top points along the light's y.
 std::string Writer::projection(const Light& e) {
   const Texture& t = scene_.textures[size_t(e.texture)];
   if (e.lights_plane_evenly)
@@ -120,7 +120,7 @@ std::string Writer::projection(const Light& e) {
                                 deg_from_rad(2 * std::atan(half_x)), file));
 }
 
-// Complete where it throws an image, else what follows LightSource.
+// Returns a complete directive for a light with an image, else the text after LightSource.
 std::string Writer::point_light(const Light& e) {
   if (e.environment >= 0 &&
       scene_.environments[size_t(e.environment)].projection == SphereMap::equal_area)
@@ -132,7 +132,7 @@ std::string Writer::point_light(const Light& e) {
   return "\"point\"" + rgb("I", e) + point("from", Vec3d(e.position) + scene_.origin);
 }
 
-// As an image of what the formula says, white.
+// Writes a sky as an image, white.
 std::string Writer::sky(const Light& e) {
   warnings_.add("skies are written as images of 1024 x 512");
   Image picture(sky_width, sky_height);
@@ -187,7 +187,7 @@ std::string Writer::text(const Light& e) {
                        i + 1 == e.portal.size() ? " ]" : "");
   }
   if (e.range != 0) warnings_.add("the range of lights is left out: pbrt has none");
-  // The image's axes, for those that have one.
+  // Axes of the image, if there is one.
   const bool has_axes =
       (e.kind == LightKind::environment && e.environment >= 0) || e.kind == LightKind::sky;
   if (!has_axes) return fmt::format("# {}\nLightSource {}\n", printable_comment(e.name), out);

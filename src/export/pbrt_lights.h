@@ -1,4 +1,6 @@
-// Lights without surface -> pbrt's LightSource.
+// Writes lights without a surface (points, spots, distant lights, skies, environments) as pbrt's
+// LightSource. PbrtWriter uses it; emitting surfaces are written there. Images go to the output
+// folder.
 #pragma once
 
 #include <string>
@@ -8,8 +10,8 @@
 
 namespace troffer {
 
-// The directives of all lights of the scene that have no surface, their radiance times `unit`; what
-// cannot be written is a warning that names it.
+// Returns the directives of all lights without a surface, with radiance times `unit`. Adds a
+// warning for each property that cannot be written.
 std::string pbrt_lights(const Scene& scene, double unit, OutputFolder& files, WarningLog& warnings);
 
 }  // namespace troffer

@@ -24,15 +24,15 @@ float power_for_pbrt(RoughnessMeaning meaning) {
                                                       : 1;
 }
 
-// The values that decide which texels a look shows.
+// Returns the values of a look that determine its texels.
 std::string key_of(const Texture& t) {
   return fmt::format(" {} {} {} {} {} {} {} {} {} {}", t.width, t.height, int(t.wrap_u),
                      int(t.wrap_v), t.uv_scale.x, t.uv_scale.y, t.uv_offset.x, t.uv_offset.y,
                      t.uv_rotation_rad, int(t.mapping));
 }
 
-// Of a metal of that reflectance seen from within a coat of that index: what pbrt, which tells a
-// metal as seen from air, calls its reflectance.
+// Converts the reflectance of a metal seen from within a coat of this index to its reflectance in
+// air, which pbrt expects.
 float reflectance_in_air(float r, float index) {
   const float c = std::clamp(r, 0.0f, 0.9999f), eta = 1 / index;
   const float k2 = std::max((c * sqr(eta + 1) - sqr(eta - 1)) / (1 - c), 0.0f) * sqr(index);
@@ -51,8 +51,8 @@ const PbrtUvs& PbrtMaterialWriter::begin(uint32_t material, const Light* light) 
   return *placing_;
 }
 
-// The name of a texture that holds what `bake` makes by a look: PNG, or floats where values are
-// beyond it.
+// Returns the name of a texture with the image that `bake` makes: PNG, or floats if values exceed
+// its range.
 template <class Bake>
 std::string PbrtMaterialWriter::texture(const std::string& key, const PbrtUvs::Placing& placing,
                                         bool is_number, const Bake& bake) {
@@ -85,7 +85,7 @@ std::string PbrtMaterialWriter::color(const char* parameter, const ColorInput& i
                      }));
 }
 
-// As the width of ggx itself.
+// Writes the GGX width itself.
 std::string PbrtMaterialWriter::roughness(const Material& m, float power) {
   return width("roughness", m.roughness, power) + " \"bool remaproughness\" false";
 }
@@ -104,7 +104,7 @@ std::string PbrtMaterialWriter::width(const char* parameter, const FloatInput& i
                      }));
 }
 
-// Of a conductor; prefix: of the names of index and extinction.
+// Returns the parameters of a conductor; prefix: of the names of index and extinction.
 std::string PbrtMaterialWriter::metal_text(const Material& m, const std::string& prefix) {
   if (m.is_reflectance) return color("reflectance", m.base_color);
   if (m.specular_color.texture < 0 && m.specular_color.value == Rgb{1})
@@ -116,8 +116,8 @@ std::string PbrtMaterialWriter::metal_text(const Material& m, const std::string&
   return color("reflectance", factor);
 }
 
-// A conductor, or glTF's metal, into whose coat light does not bend: its gloss spreads by the index
-// where it leaves pbrt's.
+// Returns a conductor, or glTF's metal under a coat that does not refract. pbrt's coat refracts and
+// widens the gloss by its index, so the width is divided by that.
 std::string PbrtMaterialWriter::coated_metal_text(const Material& m) {
   const float power = power_for_pbrt(m.roughness_meaning);
   const bool bends = m.kind == MaterialKind::conductor;
@@ -135,7 +135,7 @@ std::string PbrtMaterialWriter::coated_metal_text(const Material& m) {
          width("interface.roughness", m.coat_roughness, power) + " \"bool remaproughness\" false";
 }
 
-// What comes back and what comes through; base: the former.
+// Returns diffuse reflection (`base`) and transmission.
 std::string PbrtMaterialWriter::translucent_text(const Material& m, const ColorInput& base) {
   ColorInput through = m.diffuse_transmission_color;
   through.value *= m.diffuse_transmission.value;
@@ -144,7 +144,7 @@ std::string PbrtMaterialWriter::translucent_text(const Material& m, const ColorI
   return "\"diffusetransmission\"" + color("reflectance", base) + color("transmittance", through);
 }
 
-// glTF's mixture by the part of it that has most weight.
+// Returns the dominant part of glTF's mixture.
 std::string PbrtMaterialWriter::mixed_text(const Material& m) {
   const float metallic = evaluate(scene_.textures, m.metallic, Vec2{0.5f, 0.5f});
   const float transmission = evaluate(scene_.textures, m.transmission, Vec2{0.5f, 0.5f});
@@ -169,10 +169,10 @@ std::string PbrtMaterialWriter::mixed_text(const Material& m) {
     return translucent_text(m, base);
   }
   if (m.specular.value <= 0) return "\"diffuse\"" + color("reflectance", m.base_color);
-  // An index of 0 stands for gloss that is the same at all angles.
+  // An index of 0 stands for gloss that is equal at all angles.
   const float even = std::sqrt(std::clamp(m.specular.value, 0.0f, 0.9f));
   const float ior = m.ior > 0 ? m.ior : (1 + even) / (1 - even);
-  // glTF's base reflects as if all that comes back to it met a white one.
+  // glTF's base reflects as if all light that returns to it met a white base.
   const float f = mean_reflectance_inside(double(ior));
   return fmt::format("\"coateddiffuse\" \"float eta\" {}", ior) +
          color("reflectance", m.base_color, [f](float v) { return from_white_base(v, f); }) +
@@ -206,7 +206,7 @@ std::string PbrtMaterialWriter::material_text(const Material& m) {
   return "\"diffuse\"";
 }
 
-// What glass absorbs inside. Shapes are within AttributeBegin and AttributeEnd.
+// Returns the medium inside absorbing glass. Shapes lie between AttributeBegin and AttributeEnd.
 std::string PbrtMaterialWriter::medium_text(const Material& m) {
   if (m.absorption.is_black()) return "";
   if (m.is_thin) {
@@ -219,7 +219,7 @@ std::string PbrtMaterialWriter::medium_text(const Material& m) {
          fmt::format("\nMediumInterface \"{}\" \"\"\n", name);
 }
 
-// pbrt's map lies as its coordinates do; its y is normal × x (pbrt_uvs.h).
+// pbrt's normal map uses the mesh's coordinates; its y is normal × x (pbrt_uvs.h).
 std::string PbrtMaterialWriter::normal_map(const Material& m, bool is_turned) {
   if (!placing_->has_normals()) return "";
   const bool is_v_up = scene_.textures[size_t(m.normal_texture)].uv_scale.y < 0;
@@ -235,7 +235,7 @@ std::string PbrtMaterialWriter::normal_map(const Material& m, bool is_turned) {
   return fmt::format(" \"string normalmap\" \"{}\"", file);
 }
 
-// Heights of an image, which pbrt shows as bumps too.
+// Writes an image of heights. pbrt, too, treats displacement as bumps.
 std::string PbrtMaterialWriter::displacement(const Material& m) {
   const auto placing = placing_->placing(std::array{m.bump.texture});
   if (!placing) return "";
@@ -252,7 +252,7 @@ std::string PbrtMaterialWriter::use(bool is_turned) {
   std::string text = "Material " + material_text(m) + normal_map(m, is_turned) + displacement(m);
   tell_what_is_left_out(scene_, m, false, warnings_);
   text = medium_text(m) + text;
-  alpha();  // its texture is defined before
+  alpha();  // defines its texture first
   std::string out = std::move(definitions_);
   definitions_.clear();
   return out + text;
@@ -264,8 +264,8 @@ bool PbrtMaterialWriter::is_nothing() const {
          coverage(scene_.textures, m, Vec2{0, 0}) <= 0;
 }
 
-// pbrt's alpha is the share of rays that hit. A mask is written as what its cutoff leaves, finer
-// than its image, so that the edges of its holes stay.
+// pbrt's alpha is the share of rays that hit. A mask is written after its cutoff, at a higher
+// resolution than its image, to keep the edges of holes.
 std::string PbrtMaterialWriter::alpha() {
   constexpr int finer = 4, most_texels_across = 4096;
   const Material& m = scene_.materials[material_];

@@ -1,4 +1,6 @@
-// Materials and textures -> directives of pbrt files.
+// Writes materials and textures as directives of pbrt files. PbrtWriter calls begin() and use() for
+// each shape. Images go to the output folder; properties that pbrt lacks are approximated, with a
+// warning.
 #pragma once
 
 #include <map>
@@ -13,22 +15,22 @@ namespace troffer {
 
 class PbrtMaterialWriter {
  public:
-  // All must outlive this.
+  // All arguments must outlive the writer.
   PbrtMaterialWriter(const Scene& scene, OutputFolder& files, WarningLog& warnings)
       : scene_(scene), files_(files), warnings_(warnings), mesh_uvs_(scene) {}
 
-  // Begins a material and the light on it (null: none). Returns the coordinates
-  // that its meshes are to be written with.
+  // Begins a material and the light on it (null: none). Returns the texture coordinates for its
+  // meshes.
   const PbrtUvs& begin(uint32_t material, const Light* light);
 
-  // The directives that make what follows wear the material: its textures, where they are asked
-  // for the first time, and Material. is_turned: PbrtUvs::is_turned() of all its triangles.
+  // Returns the directives that select the material for the following shapes: Material, and
+  // textures at their first use. is_turned: PbrtUvs::is_turned() of all triangles.
   std::string use(bool is_turned);
-  // The parameter of a Shape that says what covers, or nothing.
+  // Returns the Shape parameter for alpha, or nothing.
   std::string alpha();
-  // Whether its alpha leaves nothing there.
+  // True if alpha makes the surface invisible.
   bool is_nothing() const;
-  // File and factor of an emission's image.
+  // Returns file and factor of an emission image.
   std::pair<std::string, float> emission_image(const ColorInput& emission);
 
  private:
@@ -37,9 +39,9 @@ class PbrtMaterialWriter {
   WarningLog& warnings_;
   MaterialUvs mesh_uvs_;
   std::map<std::pair<uint32_t, int32_t>, PbrtUvs> uvs_;  // by material and texture of the light
-  uint32_t material_ = 0;                                // what begin() was called for
+  uint32_t material_ = 0;                                // argument of begin()
   PbrtUvs* placing_ = nullptr;
-  std::map<std::string, std::string> textures_;  // by what they hold -> name
+  std::map<std::string, std::string> textures_;  // content -> name
   std::string definitions_;                      // of textures, not yet written
   size_t images_ = 0, media_ = 0;
 

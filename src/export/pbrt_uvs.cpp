@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rounding = 1e-6;
 
-// Position in the image, v up, of a mesh's (u,v).
+// Returns the map from a mesh's (u,v) to the position in the image, v up.
 UvMap map_of(const Texture& look) {
   const Vec2d at(place_in_image(look, {0, 0}));
   Vec2d u = Vec2d(place_in_image(look, {1, 0})) - at, v = Vec2d(place_in_image(look, {0, 1})) - at;
@@ -28,7 +28,7 @@ bool is_one(const Texture& look, WrapMode wrap) {
   return look.wrap_u == wrap && look.wrap_v == wrap;
 }
 
-// Within the image mirroring is clamping; repeating blends its opposite edges.
+// Within the image, mirroring equals clamping; repeating blends opposite edges.
 bool is_clamped_within(const Texture& look, const UvBox& places) {
   const auto is_clamped = [&](WrapMode w) {
     return !look.is_filtered || w == WrapMode::clamp || w == WrapMode::mirror;
@@ -86,11 +86,11 @@ void PbrtUvs::lead(const Texture& look) {
   if (std::abs(area) > 1e-12 && std::isfinite(area)) written_ = map;
 }
 
-// The images that pbrt cannot place: those of normals and of emission.
+// Places the images that pbrt cannot place: normals and emission.
 void PbrtUvs::place_fixed(const std::vector<int32_t>& others) {
   const UvBox box = uvs_.of(material_, is_second_);
   if (!normal_ && !emission_) {
-    // Nothing but a rotation that all share cannot be said.
+    // Only a rotation shared by all images is a problem: no texture has one.
     std::optional<Texture> first;
     bool is_rotated = false;
     for (const int32_t t : others) {
@@ -103,7 +103,7 @@ void PbrtUvs::place_fixed(const std::vector<int32_t>& others) {
     if (is_rotated) lead(*first);
     return;
   }
-  // Both are always blended: texels that are not are made larger.
+  // pbrt always filters both: unfiltered images are enlarged.
   for (std::optional<Texture>* look : {&normal_, &emission_}) {
     if (!*look || (*look)->is_filtered) continue;
     const int times = std::clamp(2048 / std::max((*look)->width, (*look)->height), 1, 16);
@@ -116,7 +116,7 @@ void PbrtUvs::place_fixed(const std::vector<int32_t>& others) {
   const bool is_clamped = is_clamped_within(first, places);
   const bool is_plain = normal_ ? !emission_ && is_one(first, WrapMode::repeat)
                                 : is_clamped || is_one(first, WrapMode::clamp);
-  // A normal map's frame turns with (u,v).
+  // The frame of a normal map turns with (u,v).
   if (is_one_place && is_plain && !(normal_ && first.uv_rotation_rad != 0)) {
     lead(first);
     return;
@@ -127,7 +127,7 @@ void PbrtUvs::place_fixed(const std::vector<int32_t>& others) {
       (normal_->width == emission_->width && normal_->height == emission_->height);
   const bool is_exact = whole && is_one_place && is_one_size;
   if (!whole) whole = look_over(first, box);
-  // The image keeps its own resolution, over the area that all of them cover.
+  // Each image keeps its resolution over the area that all of them cover.
   const auto over_whole = [&](std::optional<Texture>& look) {
     if (!look) return;
     const Texture own = look_over(*look, box);
@@ -155,8 +155,8 @@ bool PbrtUvs::is_turned(const Mesh& mesh, const Triangle& t) const {
   return a.x * b.y - a.y * b.x < 0;
 }
 
-// A map's y runs up the image on the surface (trace/surface.cpp); pbrt's is normal × x, where x is
-// along growing u of what is written.
+// The y of a map points up in the image on the surface (trace/surface.cpp). pbrt's y is normal × x,
+// with x along increasing written u.
 Vec2 PbrtUvs::normal_signs(bool is_turned, bool is_v_up) const {
   const float x = written_.along_u.x < 0 ? -1.0f : 1.0f;
   return {x, is_turned != is_v_up ? x : -x};
@@ -167,7 +167,7 @@ std::vector<Vec2> PbrtUvs::of(const Mesh& mesh) const {
   std::vector<Vec2> out;
   if (!is_used_) return mesh.uvs;
   if (uvs.empty()) {
-    // Else pbrt would give each triangle coordinates of its own.
+    // Otherwise pbrt gives each triangle its own coordinates.
     out.assign(mesh.positions.size(), Vec2(written_({0, 0})));
     return out;
   }
@@ -176,12 +176,12 @@ std::vector<Vec2> PbrtUvs::of(const Mesh& mesh) const {
   return out;
 }
 
-// From what is written to the position in the image, v up.
+// Returns the map from written coordinates to the position in the image, v up.
 UvMap PbrtUvs::relative(const Texture& look) const {
   const UvMap to = map_of(look);
   const Vec2d &u = written_.along_u, &v = written_.along_v;
   const double area = u.x * v.y - u.y * v.x;
-  // Columns of the inverse of what is written.
+  // Columns of the inverse of the written map.
   const Vec2d x{v.y / area, -u.y / area}, y{-v.x / area, u.x / area};
   UvMap out;
   out.along_u = to.along_u * x.x + to.along_v * x.y;

@@ -1,9 +1,9 @@
-// Texture coordinates for pbrt, which has one set of them per mesh, with v up.
+// Texture coordinates for pbrt, which has one set per mesh, with v up.
 //
-// pbrt looks up a normal map at (u, 1 - v), repeated, and an emission's image at (u, 1 - v),
-// clamped [1]; only "imagemap" textures have a scale and an offset, none has a rotation. So the
-// coordinates that are written are those of the image that cannot be moved, and other images are
-// placed by them.
+// pbrt looks up a normal map at (u, 1 - v), repeated, and an emission image at (u, 1 - v), clamped
+// [1]. Only "imagemap" textures have scale and offset, and none has a rotation. The coordinates are
+// therefore written to fit the image that cannot be moved, and other images are placed relative to
+// them.
 //
 // References: [1] pbrt-v4, materials.h (NormalMap), lights.h (DiffuseAreaLight::L), textures.h
 //   (ImageTextureBase), util/image.h (BilerpChannel).
@@ -18,7 +18,7 @@
 
 namespace troffer {
 
-// Linear map of (u,v), and an offset.
+// Linear map of (u,v) with an offset.
 struct UvMap {
   Vec2d along_u{1, 0}, along_v{0, 1}, offset;
 
@@ -29,26 +29,26 @@ struct UvMap {
 
 class PbrtUvs {
  public:
-  // For a material and the light on it (null: none). Warnings: what one set cannot hold.
+  // Chooses coordinates for a material and the light on it (null: none). Warns of what one set
+  // cannot express.
   PbrtUvs(const Scene& scene, const MaterialUvs& uvs, uint32_t material, const Light* light,
           WarningLog& warnings);
 
-  // The coordinates of a mesh as they are written; empty where nothing looks at them and it has
-  // none.
+  // Returns the coordinates to write for a mesh; empty if nothing uses them and the mesh has none.
   std::vector<Vec2> of(const Mesh& mesh) const;
   bool is_second() const { return is_second_; }
   bool has_normals() const { return normal_.has_value(); }
 
-  // Looks of the images of normals and of emission, to be written so that no placing is left.
+  // Looks of the normal and emission images; written with them, these images need no placement.
   const Texture& normal() const { return *normal_; }
   const Texture& emission() const { return *emission_; }
-  // Sign of the normal map's x and y in pbrt's tangent frame (x along u, y = normal × x).
-  // is_turned: on triangles whose (u,v) run clockwise.
+  // Returns the signs of the normal map's x and y in pbrt's tangent frame (x along u, y = normal ×
+  // x). is_turned: for triangles whose (u,v) run clockwise.
   Vec2 normal_signs(bool is_turned, bool is_v_up) const;
-  // Whether a triangle's (u,v), of the set that is written, run clockwise.
+  // True if a triangle's (u,v) in the written set run clockwise.
   bool is_turned(const Mesh& mesh, const Triangle& t) const;
 
-  // An image texture's look, such that its placing can be said, and the parameters that say it.
+  // Look of an image texture that pbrt can place, and the parameters of the placement.
   struct Placing {
     Texture look;
     std::string parameters;
@@ -61,7 +61,7 @@ class PbrtUvs {
   uint32_t material_;
   WarningLog& warnings_;
   bool is_second_ = false, is_used_ = false;
-  UvMap written_;                             // of a mesh's (u,v), of the set that is used
+  UvMap written_;                             // maps a mesh's (u,v) of the used set
   std::optional<Texture> normal_, emission_;  // looks
 
   void choose_set(const std::vector<int32_t>& textures);

@@ -34,7 +34,7 @@ class PbrtWriter {
   WarningLog warnings_;
   OutputFolder& files_;
   PbrtMaterialWriter materials_;
-  double unit_;  // radiance in W/(m² sr) per the scene's unit
+  double unit_;  // radiance in W/(m² sr) per unit of the scene
   std::string text_;
   size_t meshes_ = 0;
 
@@ -47,7 +47,7 @@ class PbrtWriter {
   void add_round();
 };
 
-// camera_from_world, column after column.
+// Writes camera_from_world, column by column.
 void PbrtWriter::add_camera() {
   if (scene_.cameras.empty()) return;
   const Camera& c = scene_.cameras[0];
@@ -99,7 +99,7 @@ void PbrtWriter::add_emission(const Light& e, Rgb radiance) {
   text_ += e.is_two_sided ? " \"bool twosided\" true\n" : "\n";
 }
 
-// Triangles whose (u,v) run clockwise, and the others, apart: pbrt's normal maps know no mirrored
+// Separates triangles whose (u,v) run clockwise: pbrt's normal maps do not support mirrored
 // coordinates.
 std::vector<std::pair<Mesh, bool>> PbrtWriter::sides_of(const Mesh& mesh, const PbrtUvs& uvs) {
   std::array<std::vector<Triangle>, 2> triangles;
@@ -132,7 +132,7 @@ void PbrtWriter::add_part(const ScenePart& part, Rgb radiance) {
   }
 }
 
-// Objects, and where they stand.
+// Writes objects and their instances.
 void PbrtWriter::add_instances() {
   for (size_t i = 0; i < scene_.instanced_meshes.size(); ++i) {
     const Mesh& whole = scene_.instanced_meshes[i];

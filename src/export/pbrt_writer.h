@@ -1,4 +1,4 @@
-// Scenes -> pbrt-v4 files.
+// Writes scenes as pbrt-v4 files. export_scene() uses it. Emission is in W/(m² sr).
 //
 // References: [1] pbrt-v4 Input File Format, pbrt.org/fileformat-v4.
 #pragma once
@@ -11,9 +11,9 @@
 
 namespace troffer {
 
-// Writes a scene's file, with meshes (PLY) and images in the folder beside it.
-// Returns what pbrt's format or materials cannot hold, in words. EnvironmentError: files that
-// cannot be written.
+// Writes the scene file, with meshes (PLY) and images in its folder. Returns warnings about what
+// pbrt's format or materials cannot express. Throws EnvironmentError for files that cannot be
+// written.
 std::vector<Warning> write_pbrt(const Scene& scene, OutputFolder& files);
 
 }  // namespace troffer

@@ -1,5 +1,5 @@
-// A scene as files of other formats hold it: meshes that are of one material and of one light, or
-// of none.
+// A scene as other formats store it: meshes with one material and at most one light. The glTF and
+// pbrt exporters and the baker use it. It also converts spheres and disks to triangles.
 #pragma once
 
 #include <vector>
@@ -11,24 +11,24 @@ namespace troffer {
 constexpr uint32_t no_mesh = 0xffffffffu;
 
 struct ScenePart {
-  Mesh mesh;  // only vertices that its triangles use; no lights
+  Mesh mesh;  // only vertices that its triangles use; without lights
   int32_t light = no_light;
-  uint32_t number = no_mesh;  // of Scene::meshes, where the part is one of them as it is
+  uint32_t number = no_mesh;  // index in Scene::meshes, if the part is a whole mesh
 };
 
-// All meshes but instanced ones, those of lights first, in the order of the lights. With
-// `with_round`, spheres and disks too, as triangles: a light's radiance grows by what its area has
-// shrunk, so that its power stays.
+// Returns all meshes except instanced ones, those of lights first, in the order of the lights. With
+// `with_round`, also spheres and disks as triangles; the radiance of a light is scaled to keep its
+// power.
 struct SceneParts {
   std::vector<ScenePart> parts;
-  std::vector<Rgb> radiances;  // of the lights
+  std::vector<Rgb> radiances;  // per light
 };
 SceneParts parts_of(const Scene& scene, bool with_round);
 
-// Spheres and disks as triangles: 96 around.
+// Return spheres and disks as triangles, with 96 segments around.
 Mesh sphere_mesh(const Sphere& sphere);
 Mesh disk_mesh(const Disk& disk);
-// Those triangles of a mesh, with the vertices that they use.
+// Returns a mesh of these triangles, with the vertices that they use.
 Mesh extracted(const Mesh& from, const std::vector<Triangle>& triangles);
 
 }  // namespace troffer

@@ -7,8 +7,8 @@ namespace troffer {
 
 namespace {
 
-constexpr int most_texels_across = 8192;  // of tiled images: 64 Mi texels
-constexpr float texel_rounding = 1e-4f;   // of a texel coordinate: on an edge, not beyond it
+constexpr int most_texels_across = 8192;  // limit on tiled images: 64 Mi texels
+constexpr float texel_rounding = 1e-4f;   // in texels: within this of an edge counts as on it
 
 Vec2 turned(const Texture& t, const Vec2& way) {
   const Vec2 uv{way.x * t.uv_scale.x, way.y * t.uv_scale.y};
@@ -22,7 +22,7 @@ void collect_images(const Scene& scene, int32_t texture, std::vector<const Textu
   const Texture& t = scene.textures[size_t(texture)];
   if (t.kind == TextureKind::image) out.push_back(&t);
   if (t.kind != TextureKind::product) return;
-  // Factors have lower indices, so this ends.
+  // Factors have lower indices, so the recursion ends.
   collect_images(scene, int32_t(t.factor_a), out);
   collect_images(scene, int32_t(t.factor_b), out);
 }

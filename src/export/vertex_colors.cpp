@@ -9,7 +9,7 @@ namespace troffer {
 
 namespace {
 
-// Images within a texture, and by which sets of coordinates they are looked up.
+// Collects the images within a texture.
 void collect(const Scene& scene, int32_t texture, std::vector<int32_t>& images) {
   if (texture < 0) return;
   const Texture& t = scene.textures[size_t(texture)];
@@ -44,7 +44,8 @@ TextureValue between(const TextureValue& a, const TextureValue& b) {
   return {(a.rgb + b.rgb) * 0.5f, (a.alpha + b.alpha) * 0.5f};
 }
 
-// Corners at the middles of texels of one block of 2 × 2, whose bilinear mean is linear.
+// True if the corners lie at texel centres of one 2 × 2 block, over which bilinear interpolation is
+// linear.
 bool is_linear_over(const Scene& scene, int32_t texture, const std::array<Vec2, 3>& uv) {
   constexpr float off = 0.02f;  // texels
   const Texture& t = scene.textures[size_t(texture)];
@@ -85,7 +86,7 @@ bool is_linear(const Scene& scene, const Mesh& mesh, int32_t texture) {
   });
 }
 
-// The texture with one direct factor left out.
+// Returns the texture without one of its direct factors.
 int32_t without(const Scene& scene, int32_t texture, int32_t factor) {
   if (texture == factor) return no_texture;
   if (texture < 0 || scene.textures[size_t(texture)].kind != TextureKind::product) return texture;

@@ -20,7 +20,7 @@ std::string folder_of(const std::string& path) {
   return slash == path.npos ? std::string("./") : path.substr(0, slash + 1);
 }
 
-// Of the names of temporary files.
+// Prefix and suffix of the names of temporary files.
 constexpr const char *beginning = ".troffer-", *ending = ".tmp";
 
 }  // namespace
@@ -31,13 +31,14 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(outpu
     return;
   }
   open_temporary();
-  // A file that was private stays private. Where this is not allowed the default will do.
+  // Keeps the permissions of the replaced file. If that is not allowed, the default applies.
   struct stat info {};
   if (stat(target_.path.c_str(), &info) == 0 && fchmod(descriptor_, info.st_mode & 0777) != 0)
     errno = 0;
 }
 
-// A hidden file in the target's folder; its name does not grow with the target's.
+// Creates a hidden file in the target's folder. Its name does not depend on the target's, so it
+// cannot become too long.
 void AtomicFile::open_temporary() {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     temporary_ = folder_of(target_.path) + beginning + std::to_string(getpid()) + "-" +
@@ -52,7 +53,7 @@ void AtomicFile::open_temporary() {
     temporary_.clear();
     fail_to_write(path_, error);
   }
-  // As long as this is open, it is not abandoned. (Not every file system knows.)
+  // The lock marks the file as in use. Not every file system supports locks.
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) errno = 0;
   if (are_temporary_files_removed()) {
     discard();
@@ -87,7 +88,7 @@ void AtomicFile::finish(bool to_disk) {
   const int result = close(std::exchange(descriptor_, -1));
   if (result != 0) fail_to_write(path_, errno);
   if (temporary_.empty()) return;
-  // Held on, so that nobody takes it for abandoned.
+  // Reopened and locked, so that remove_abandoned_files() leaves it alone.
   descriptor_ = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) errno = 0;
 }
@@ -97,7 +98,7 @@ void AtomicFile::commit_to_disk() {
   finish(true);
   commit();
   if (!is_file) return;
-  // The new name is in the folder. Not every file system can sync a folder, or needs to.
+  // Syncs the folder, which contains the new name. Not every file system can, or needs to.
   const int folder = open(folder_of(target_.path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return;
   fsync(folder);

@@ -1,4 +1,6 @@
-// Output files that are whole or absent.
+// Output files that are complete or absent. Commands write their outputs through it, so that an
+// interrupted run never leaves a partial file or destroys an old one. OutputReservation checks an
+// output before long work.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +13,12 @@
 
 namespace troffer {
 
-// Writes to a temporary file beside the target; commit() renames it. Without commit() the
-// temporary goes and the target stays as it was, also where a signal's handler ends the process
-// (temporary_files.h). A target that exists and is no regular file (a pipe, a device), and an open
-// file of this process (/dev/stdout), is written directly; a link keeps pointing to its file, which
-// is replaced; a replaced file keeps its permissions.
-// Every failure throws EnvironmentError{"cannot write PATH: reason"}.
+// Writes to a temporary file in the target's folder; commit() renames it to the target. Without
+// commit() the temporary file is removed and the target stays unchanged, even if a signal handler
+// ends the process (temporary_files.h). A pipe, a device or an open file of this process
+// (/dev/stdout) is written directly. A link keeps pointing to its file, which is replaced. A
+// replaced file keeps its permissions. Every failure throws EnvironmentError{"cannot write PATH:
+// reason"}.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -27,34 +29,34 @@ class AtomicFile {
   void write(std::span<const uint8_t> bytes);
   void write(std::string_view text);
   void commit();
-  // The first half of commit(): all bytes are there, errors of writing have been told. to_disk: the
-  // disk has them. What follows can fail only as renaming does.
+  // First half of commit(): writes all bytes and reports errors of writing. to_disk also flushes
+  // them to the disk. After it, commit() can fail only in renaming.
   void finish(bool to_disk = false);
-  // As commit(), once the disk has the bytes: whole even where the power fails.
+  // Same as commit(), but the new file is complete even after a power failure.
   void commit_to_disk();
 
  private:
   void open_temporary();
   void discard() noexcept;
 
-  std::string path_;  // as the caller gave it
+  std::string path_;  // as given by the caller
   OutputTarget target_;
-  std::string temporary_;  // empty: none, the target is written directly
+  std::string temporary_;  // empty: the target is written directly
   TemporaryFile cleaner_;
   int descriptor_ = -1;
   bool is_written_ = false;  // finish() was called
 };
 
-// Temporary files beside `path` that programs left which were killed: those of AtomicFile that
-// nobody holds any more and that are older than a minute.
+// Removes temporary files next to `path` that killed programs left: files of AtomicFile that no
+// process holds and that are older than a minute.
 void remove_abandoned_files(const std::string& path);
 
-// The whole of a small file in one call.
+// Writes a small file in one call.
 void write_file(const std::string& path, std::string_view text);
 
-// An output that can be written, to be made before long work and kept until it is written: throws
-// as AtomicFile would if the file cannot be begun. A pipe is held open, as its reader would take it
-// for ended else.
+// Checks that an output can be written. Make it before long work and keep it until the output is
+// written. Throws like AtomicFile if the file cannot be created. A pipe is held open, because its
+// reader would otherwise see the end of the data.
 class OutputReservation {
  public:
   explicit OutputReservation(const std::string& path);

@@ -26,14 +26,14 @@ uint32_t bmp_number(std::span<const uint8_t> b, size_t at, size_t bytes) {
 }
 
 struct BmpHeader {
-  size_t size = 0, pixels = 0;  // of the second header; where the texels begin
+  size_t size = 0, pixels = 0;  // size of the second header; offset of the texels
   int64_t width = 0, height = 0;
   bool is_top_down = false;
   uint32_t depth = 0, compression = bmp_plain, colours = 0;
   std::array<uint32_t, 4> masks{};  // red, green, blue, alpha
 };
 
-// A channel of 1 to 32 bits anywhere in a number, as 8 bits.
+// Returns a channel of 1 to 32 bits at any position in a number, as 8 bits.
 uint8_t bmp_channel(uint32_t value, uint32_t mask) {
   if (mask == 0) return 0;
   const int shift = std::countr_zero(mask);
@@ -54,7 +54,7 @@ class BmpReader {
     raster_.channels = h_.masks[3] != 0 ? 4 : 3;
     raster_.is_srgb = true;
     if (h_.compression == bmp_rle8 || h_.compression == bmp_rle4) {
-      allocate(b_.size() * 255);  // a pair of bytes stands for 255 texels at most
+      allocate(b_.size() * 255);  // a pair of bytes encodes 255 texels at most
       read_runs();
     } else {
       allocate(b_.size() * 8);
@@ -132,7 +132,7 @@ class BmpReader {
     palette_.resize(all);  // black
   }
 
-  // Not more memory than the file can fill.
+  // Rejects files that are too short for their size before memory is allocated.
   void allocate(size_t most_texels) {
     const size_t texels = size_t(h_.width) * size_t(h_.height);
     if (texels > most_texels) encoded_.fail("broken BMP: the file ends early");
@@ -169,8 +169,8 @@ class BmpReader {
     }
   }
 
-  // Pairs of a count and a colour; a count of 0 ends a row or the picture, moves on, or begins so
-  // many colours as they are, filled up to an even number of bytes.
+  // Reads pairs of a count and a colour. A count of 0 ends a row or the picture, moves the
+  // position, or starts literal colours, padded to an even number of bytes.
   void read_runs() {
     const auto width = size_t(h_.width), height = size_t(h_.height);
     for (size_t row = 0; row < height; ++row)

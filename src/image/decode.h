@@ -1,5 +1,6 @@
-// The decoders behind decode_raster(), one per format. Each takes a whole file, checks its size
-// against max_pixels before it takes memory, and throws InputError for whatever is wrong.
+// Decoders behind decode_raster(), one per format. Each takes a whole file, checks the size against
+// max_pixels before it allocates memory, and throws InputError for any defect. The is_png() and
+// similar functions test a file's first bytes.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace troffer {
 
-// What every decoder gets.
+// Input of every decoder.
 struct EncodedImage {
   std::span<const uint8_t> bytes;
   const std::string& name;  // for errors
@@ -29,7 +30,7 @@ bool is_pfm(std::span<const uint8_t> bytes);
 bool is_exr(std::span<const uint8_t> bytes);
 bool is_webp(std::span<const uint8_t> bytes);
 bool is_bmp(std::span<const uint8_t> bytes);
-bool is_tga(std::span<const uint8_t> bytes);  // by guess: to be asked last
+bool is_tga(std::span<const uint8_t> bytes);  // heuristic: test it last
 
 Raster decode_png(const EncodedImage& encoded);
 Raster decode_jpeg(const EncodedImage& encoded);

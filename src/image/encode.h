@@ -1,5 +1,6 @@
-// The encoders behind write_image(), one per format: pixels -> the bytes of a file. The same
-// pixels always give the same bytes.
+// Encoders behind write_image(), one per format: from pixels to the bytes of a file. Exporters and
+// the baker also call them directly. Equal pixels give equal bytes. Images are linear; rows run
+// from the top.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@ std::vector<uint8_t> encode_hdr(const Image& image);
 std::vector<uint8_t> encode_pfm(const Image& image);
 std::vector<uint8_t> encode_png(const Image& image, const Display& display, int threads);
 
-// Texels as they are, channels interleaved (1 grey, 2 with alpha, 3 rgb, 4 with alpha), row 0 on
-// top: of 8 bits, or of numbers in [0,1] at 16 bits.
+// Encode texels unchanged, channels interleaved (1 grey, 2 grey + alpha, 3 rgb, 4 rgb + alpha), row
+// 0 on top: 8-bit texels, or values in [0,1] as 16 bits.
 std::vector<uint8_t> encode_png_texels(int width, int height, int channels,
                                        std::span<const uint8_t> texels);
 std::vector<uint8_t> encode_png_texels(int width, int height, int channels,

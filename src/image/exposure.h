@@ -1,18 +1,18 @@
-// How bright a picture should be shown.
+// Automatic exposure for showing a picture on a display. Picture previews, baking and reports use
+// it. Exposures are in stops: powers of two of linear light.
 #pragma once
 
 #include "image/image.h"
 
 namespace troffer {
 
-// What a picture is when shown without exposure.
+// Brightness of a picture without exposure.
 struct Brightness {
   bool is_black = true;   // no pixel has light
-  double auto_stops = 0;  // by which the mean of the logarithm of its luminance comes to mid-grey
+  double auto_stops = 0;  // brings the mean log luminance to mid-grey
 };
 
-// Of the pixels that are finite and have light; the darkest and the brightest twentieth of them do
-// not count.
+// Uses pixels that are finite and not black, without the darkest and the brightest twentieth.
 Brightness brightness(const Image& image);
 
 }  // namespace troffer

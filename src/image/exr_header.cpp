@@ -16,7 +16,7 @@ constexpr uint32_t tiled_flag = 0x200, deep_flag = 0x800, multipart_flag = 0x100
 constexpr uint64_t max_buffer_bytes = uint64_t(1) << 28;
 constexpr size_t max_channels = 1024;
 
-// The attributes of one part that decide how much memory a reader reserves.
+// Attributes of one part that determine how much memory a reader allocates.
 struct PartHeader {
   std::optional<std::array<int32_t, 4>> data_window;  // x0 y0 x1 y1, inclusive
   std::optional<std::array<uint32_t, 2>> tile_size;
@@ -40,7 +40,7 @@ class HeaderScanner {
     at_ += n;
     return encoded_.bytes.subspan(at_ - n, n);
   }
-  // A zero-terminated name of at most 255 characters.
+  // Reads a zero-terminated name of at most 255 characters.
   std::string_view name() {
     const size_t reach = std::min<size_t>(left(), 256);
     const uint8_t* begin = encoded_.bytes.data() + at_;
@@ -59,7 +59,7 @@ class HeaderScanner {
   size_t at_ = 0;
 };
 
-// Bytes of one pixel over all channels of a chlist attribute that ends at `end` [1].
+// Returns the bytes per pixel over all channels of a chlist attribute that ends at `end` [1].
 uint64_t channel_bytes(const EncodedImage& encoded, HeaderScanner& scanner, size_t end) {
   uint64_t bytes = 0;
   for (size_t n = 0; !scanner.name().empty(); ++n) {
@@ -105,7 +105,7 @@ PartHeader read_part(const EncodedImage& encoded, HeaderScanner& scanner, std::s
   return part;
 }
 
-// Scan lines that are compressed together, by the compression's number [1].
+// Returns the number of scan lines that are compressed together, by the compression's number [1].
 uint64_t lines_per_chunk(uint8_t compression) {
   constexpr std::array<uint64_t, 10> lines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
   return compression < lines.size() ? lines[compression] : 256;
@@ -133,13 +133,13 @@ void check_part(const EncodedImage& encoded, const PartHeader& part, bool is_til
     if (tile_x == 0 || tile_y == 0 || tile_x > max_buffer_bytes || tile_y > max_buffer_bytes)
       encoded.fail("EXR with a bad tile size");
     const uint64_t across = (width + tile_x - 1) / tile_x;
-    check_buffer(across * tile_x);           // no overflow in the product below
-    check_buffer(across * tile_x * tile_y);  // OpenEXR keeps a row of tiles
+    check_buffer(across * tile_x);           // prevents overflow below
+    check_buffer(across * tile_x * tile_y);  // OpenEXR buffers a row of tiles
     const uint64_t tiles = across * ((height + tile_y - 1) / tile_y);
-    // Whether such a file is tiled is said twice; believe neither if they differ.
+    // A file states twice whether it is tiled. If the statements differ, take the smaller count.
     chunks = is_tiled_file || part.type == "tiledimage" ? tiles : std::min(chunks, tiles);
   }
-  // The table holds 8 bytes for each chunk, and each chunk says at least its place and its size.
+  // The table has 8 bytes per chunk, and each chunk stores at least its position and its size.
   if (chunks > encoded.bytes.size() / 8) encoded.fail("truncated EXR");
 }
 

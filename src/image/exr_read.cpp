@@ -18,13 +18,13 @@ namespace troffer {
 
 namespace {
 
-// The channels that a picture is made of: one or three colours, and perhaps alpha.
+// Channels that form a picture: one or three colours, optionally alpha.
 struct Selection {
   std::vector<std::string> names;
   bool is_luminance_chroma = false;
 };
 
-// The colours of the layer with this prefix ("" or "name."), if it has any.
+// Selects the colours of the layer with this prefix ("" or "name."). Returns false if it has none.
 bool select_rgb(const Imf::ChannelList& channels, const std::string& prefix, Selection& out) {
   bool has_any = false;
   for (const char* c : {"R", "G", "B"}) has_any |= channels.findChannel(prefix + c) != nullptr;
@@ -53,7 +53,7 @@ Selection select_channels(const Imf::ChannelList& channels) {
   return out;
 }
 
-// Half precision: the conversion from luminance and subsampled chroma is OpenEXR's.
+// Reads luminance and subsampled chroma, which OpenEXR converts in half precision.
 void read_luminance_chroma(const EncodedImage& encoded, Raster& raster) {
   MemoryIStream stream(encoded);
   Imf::RgbaInputFile file(stream, 0);
@@ -62,8 +62,8 @@ void read_luminance_chroma(const EncodedImage& encoded, Raster& raster) {
   std::vector<Imf::Rgba> row(width);
   raster.channels = 3;
   raster.texels_float.resize(width * height * 3);
-  // OpenEXR asks for the address of pixel (0, 0), which may lie outside of the row: no arithmetic
-  // on pointers then. Line stride 0 puts every line into `row`.
+  // OpenEXR expects the address of pixel (0, 0), which may lie outside the row; integer arithmetic
+  // avoids invalid pointers. A line stride of 0 puts every line into `row`.
   const auto first = reinterpret_cast<intptr_t>(row.data());
   auto* base =
       reinterpret_cast<Imf::Rgba*>(first - int64_t(window.min.x) * int64_t(sizeof(Imf::Rgba)));
@@ -97,7 +97,7 @@ void read_channels(Imf::InputFile& file, const Selection& selection, const Encod
   file.readPixels(window.min.y, window.max.y);
 }
 
-// Where the header has primaries other than Rec. 709 that span colours.
+// Returns the primaries if the header has valid ones that differ from Rec. 709.
 std::optional<Primaries> primaries_of(const Imf::Header& header) {
   if (!Imf::hasChromaticities(header)) return std::nullopt;
   const Imf::Chromaticities& c = Imf::chromaticities(header);
@@ -120,7 +120,7 @@ Raster decode_exr(const EncodedImage& encoded) {
   check_exr_header(encoded);
   try {
     MemoryIStream stream(encoded);
-    Imf::InputFile file(stream, 0);  // no threads of its own
+    Imf::InputFile file(stream, 0);  // without threads
     const Imath::Box2i window = file.header().dataWindow();
     Raster raster;
     raster.width = window.max.x - window.min.x + 1;

@@ -1,4 +1,5 @@
-// OpenEXR's view of a file that lies in memory.
+// OpenEXR input stream over a file in memory. The EXR readers use it, so that files are read and
+// checked in one place. Throws OpenEXR's exception at the end of the data.
 #pragma once
 
 #include <Iex.h>

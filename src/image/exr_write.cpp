@@ -61,7 +61,7 @@ std::vector<uint8_t> encode_exr(std::span<const Layer> layers, const ImageWindow
   std::vector<uint8_t> bytes;
   try {
     MemoryOStream stream(bytes);
-    Imf::OutputFile file(stream, header, 0);  // no threads of its own
+    Imf::OutputFile file(stream, header, 0);  // without threads
     file.setFrameBuffer(frame);
     file.writePixels(layers[0].image.height);
   } catch (const std::bad_alloc&) {

@@ -17,15 +17,16 @@ FileIdentity identity_of(const struct stat& info) {
   return {uint64_t(info.st_dev), uint64_t(info.st_ino), ""};
 }
 
-// Capital letters to small ones, and only those that every such file system takes for the same.
+// Converts A to Z to lower case: only these letters are equal on every case-insensitive file
+// system.
 std::string in_small_letters(std::string name) {
   for (char& c : name)
     if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
   return name;
 }
 
-// Whether names that differ in case alone are the same file there: a file is made and looked for
-// by its name in capitals.
+// True if names that differ only in case are the same file in the folder. Creates a file and looks
+// for its name in capitals.
 bool ignores_case(const std::string& folder) {
   const std::string own = ".troffer-" + std::to_string(getpid()) + "-case.tmp";
   std::string other = own;

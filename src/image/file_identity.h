@@ -1,4 +1,5 @@
-// Which file a path stands for, whatever name, link or spelling it is reached by.
+// Identity of the file that a path refers to, independent of its name, links or spelling. The
+// output guard (app/output_guard.h) uses it to prevent a command from overwriting its own inputs.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +9,21 @@
 namespace troffer {
 
 struct FileIdentity {
-  uint64_t device = 0, number = 0;  // of the file; where it does not exist yet, of its folder
-  std::string name;                 // in that folder; empty where the file exists
+  uint64_t device = 0, number = 0;  // of the file, or of its folder if it does not exist
+  std::string name;                 // name in that folder; empty if the file exists
   bool operator==(const FileIdentity&) const = default;
 };
 
-// The file that reading `path` reads. Nothing where there is none, and for character devices
-// (/dev/null, a terminal), which are no file that could be lost.
+// Returns the file that reading `path` reads. Empty if there is none, and for character devices
+// (/dev/null, a terminal), whose content cannot be lost.
 std::optional<FileIdentity> identity_of_input(const std::string& path);
 
-// The file that writing to `path` makes or replaces (AtomicFile). Names in a folder that ignores
-// the case of letters are the same in any case. Nothing for character devices, and where the folder
-// does not exist. EnvironmentError: as output_target().
+// Returns the file that writing to `path` creates or replaces (AtomicFile). In folders that ignore
+// case, names are compared without it. Empty for character devices and if the folder does not
+// exist. Throws EnvironmentError like output_target().
 std::optional<FileIdentity> identity_of_output(const std::string& path);
 
-// The file that an open descriptor of this process writes to, if it is a regular file.
+// Returns the regular file that an open descriptor of this process refers to, if it is one.
 std::optional<FileIdentity> identity_of_descriptor(int descriptor);
 
 }  // namespace troffer

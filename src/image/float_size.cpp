@@ -15,7 +15,7 @@ void check_memory(uint64_t width, uint64_t height, uint64_t texel_bytes, size_t 
                        " MB of memory, from a file of " + std::to_string(file_bytes) + " bytes");
 }
 
-// The decoded texels, as floats, and an image of three channels that is made of them.
+// Counts the decoded texels as floats and the three-channel image made from them.
 void check_float_size(const Raster& raster, size_t file_bytes, const std::string& name) {
   check_memory(uint64_t(raster.width), uint64_t(raster.height),
                (uint64_t(raster.channels) + 3) * sizeof(float), file_bytes, name);

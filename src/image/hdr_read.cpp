@@ -18,7 +18,7 @@ struct HdrReader {
   size_t at = 0;
   float exposure = 1;
   bool is_xyz = false;
-  // Along a stored scan line and from one to the next: row or column, rising or falling.
+  // Storage order of scan lines: row or column, rising or falling.
   bool is_column_major = false, is_x_falling = false, is_y_falling = false;
   size_t width = 0, height = 0;
 
@@ -37,7 +37,7 @@ struct HdrReader {
   }
 };
 
-// Reads "EXPOSURE=" and "FORMAT=" up to the empty line [1]. Exposures multiply.
+// Reads "EXPOSURE=" and "FORMAT=" up to the empty line [1]. Several exposures are multiplied.
 void read_header(HdrReader& reader) {
   reader.line();  // "#?RADIANCE"
   for (std::string_view line = reader.line(); !line.empty() && line != "\r"; line = reader.line()) {
@@ -59,7 +59,7 @@ void read_header(HdrReader& reader) {
     reader.encoded.fail("HDR header: bad EXPOSURE");
 }
 
-// "-Y 480 +X 640" and its seven siblings: the first axis is the slow one [1].
+// Reads "-Y 480 +X 640" or one of its seven variants: the first axis is the slow one [1].
 void read_resolution(HdrReader& reader) {
   std::string_view line = reader.line();
   const auto bad = [&]() { reader.encoded.fail("HDR: bad resolution line"); };
@@ -83,7 +83,8 @@ void read_resolution(HdrReader& reader) {
   check_memory(reader.width, reader.height, 3 * sizeof(float), encoded.bytes.size(), encoded.name);
 }
 
-// A scan line whose four components are coded apart, runs of up to 127 equal bytes [1].
+// Reads a scan line whose four components are stored separately, with runs of up to 127 equal bytes
+// [1].
 void read_new_line(HdrReader& reader, std::vector<Rgbe>& line) {
   for (size_t c = 0; c < 4; ++c)
     for (size_t x = 0; x < line.size();) {
@@ -96,7 +97,8 @@ void read_new_line(HdrReader& reader, std::vector<Rgbe>& line) {
     }
 }
 
-// Flat pixels, with (1,1,1,n) meaning "n times again", digits of growing weight in a row [1].
+// Reads plain pixels. (1,1,1,n) repeats the last pixel n times; consecutive counts are digits of
+// increasing weight [1].
 void read_old_line(HdrReader& reader, std::vector<Rgbe>& line) {
   unsigned shift = 0;
   for (size_t x = 0; x < line.size();) {
@@ -127,7 +129,7 @@ void read_line(HdrReader& reader, std::vector<Rgbe>& line) {
   read_new_line(reader, line);
 }
 
-// Linear Rec. 709 of CIE XYZ with white D65 (IEC 61966-2-1).
+// Converts CIE XYZ with white D65 to linear Rec. 709 (IEC 61966-2-1).
 Rgb rgb_from_xyz(Rgb c) {
   return {3.2406255f * c.r - 1.5372080f * c.g - 0.4986286f * c.b,
           -0.9689307f * c.r + 1.8757561f * c.g + 0.0415175f * c.b,
@@ -146,7 +148,7 @@ Raster decode_hdr(const EncodedImage& encoded) {
   read_resolution(reader);
   const size_t lines = reader.is_column_major ? reader.width : reader.height;
   const size_t length = reader.is_column_major ? reader.height : reader.width;
-  // No scan line is shorter than one pixel.
+  // The shortest scan line is one pixel.
   if (reader.left() / 4 < lines) encoded.fail("truncated HDR");
 
   Raster raster;

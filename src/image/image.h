@@ -1,4 +1,5 @@
-// Images of linear float channels, in named layers.
+// Images of linear float channels, in named layers. Renderers fill them, write_image() saves them
+// and read_image() loads them. Each layer has its own unit.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +22,8 @@ struct Image {
   const Rgb& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
 };
 
-// One AOV: a name ("" for the picture itself, else e.g. "albedo") and 1 or 3 channels whose EXR
-// names are `channels` ("R","G","B"; "X","Y","Z"; "Z"; "V"); single-channel values stand in r.
+// One layer (AOV): a name ("" for the picture, else for example "albedo") and 1 or 3 channels with
+// EXR names `channels` ("R","G","B"; "X","Y","Z"; "Z"; "V"). Single-channel values are stored in r.
 struct Layer {
   std::string name;
   std::vector<std::string> channels{"R", "G", "B"};

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include <jpeglib.h>
-// After jpeglib.h, which it needs.
+// Must follow jpeglib.h.
 #include <jerror.h>
 
 #include "image/decode.h"
@@ -14,7 +14,7 @@ namespace troffer {
 
 namespace {
 
-// Every scan of a progressive file costs a pass over the whole picture; real files have about ten.
+// Each scan of a progressive file costs a pass over the whole picture. Real files have about ten.
 constexpr int max_scans = 100;
 
 struct JpegReader {
@@ -43,7 +43,7 @@ JpegReader& reader_of(j_common_ptr jpeg) {
   std::longjmp(reader.jump, 1);
 }
 
-// Warnings that mean missing pixels are errors; the rest is forgiven.
+// Warnings about missing pixels are errors; others are ignored.
 void on_message(j_common_ptr jpeg, int level) {
   if (level >= 0) return;
   const int code = jpeg->err->msg_code;
@@ -58,8 +58,8 @@ void on_progress(j_common_ptr jpeg) {
   std::longjmp(reader.jump, 1);
 }
 
-// Ink to light, without a profile: each colour is what its ink and black let through. Adobe's
-// files hold 255 - ink.
+// Converts CMYK to rgb without a profile: each channel is the product of the light that its ink and
+// black pass. Adobe files store 255 - ink.
 void rgb_from_cmyk(const uint8_t* cmyk, bool is_inverted, size_t width, uint8_t* rgb) {
   for (size_t x = 0; x < width; ++x)
     for (size_t c = 0; c < 3; ++c) {
@@ -77,7 +77,7 @@ void note_profile(jpeg_decompress_struct& jpeg, OwnColours& own) {
   own.profile.assign(profile, profile + length);
 }
 
-// Everything that libjpeg may jump out of; false after an error.
+// All calls that libjpeg may leave by longjmp. Returns false after an error.
 bool read(JpegReader& reader) {
   jpeg_decompress_struct& jpeg = reader.jpeg;
   if (setjmp(reader.jump) != 0) return false;
@@ -85,7 +85,7 @@ bool read(JpegReader& reader) {
   jpeg.client_data = &reader;
   jpeg.progress = &reader.progress;
   jpeg_mem_src(&jpeg, reader.encoded.bytes.data(), reader.encoded.bytes.size());
-  jpeg_save_markers(&jpeg, JPEG_APP0 + 2, 0xffff);  // pieces of a profile
+  jpeg_save_markers(&jpeg, JPEG_APP0 + 2, 0xffff);  // parts of an ICC profile
   jpeg_read_header(&jpeg, TRUE);
   reader.encoded.check_size(jpeg.image_width, jpeg.image_height);
 

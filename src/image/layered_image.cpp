@@ -18,14 +18,14 @@ namespace troffer {
 
 namespace {
 
-// Colours come as such, not by their names' order in the alphabet.
+// Sorts R, G, B in that order, other channels by name.
 bool is_before(const std::string& a, const std::string& b) {
   const std::string order = "RGB";
   const size_t i = order.find(a), j = order.find(b);
   return i != order.npos && j != order.npos ? i < j : a < b;
 }
 
-// Names of channels, by layers.
+// Returns channel names by layer.
 std::map<std::string, std::vector<std::string>> channels_of(const Imf::ChannelList& all,
                                                             const EncodedImage& encoded) {
   std::map<std::string, std::vector<std::string>> layers;
@@ -48,7 +48,7 @@ std::map<std::string, std::vector<std::string>> channels_of(const Imf::ChannelLi
 
 LayeredImage read(const EncodedImage& encoded) {
   MemoryIStream stream(encoded);
-  Imf::InputFile file(stream, 0);  // no threads of its own
+  Imf::InputFile file(stream, 0);  // without threads
   const Imf::Header& header = file.header();
   const Imath::Box2i data = header.dataWindow(), whole = header.displayWindow();
   LayeredImage image;

@@ -1,4 +1,6 @@
-// Several output files of one command, replaced together.
+// Several output files of one command that are replaced together. Commands use it for files that
+// belong together, such as a picture and its side files or the maps of a comparison. After a
+// failure all old files are unchanged.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +15,21 @@
 
 namespace troffer {
 
-// The bytes that write_image() would write to that path; errors as there.
+// Returns the bytes that write_image() would write to this path; throws the same errors.
 std::vector<uint8_t> encode_image(const std::string& path, std::span<const Layer> layers,
                                   const WriteOptions& options);
 
-// Everything is written to temporary files first; commit() then renames them in the order in which
-// they were added, so that the main file, added last, never stands beside older ones of its set.
-// Before commit() a failure leaves all targets as they were. Errors: as AtomicFile and
-// write_image() have them.
+// Writes everything to temporary files; commit() renames them in the order of add(). Add the main
+// file last, so that it never appears next to older files of its set. A failure before commit()
+// leaves all targets unchanged. Throws like AtomicFile and write_image().
 class OutputSet {
  public:
   void add(const std::string& path, std::span<const uint8_t> bytes);
   void add(const std::string& path, std::string_view text);
-  // Writes an image in the format of write_image().
+  // Adds an image in the format of write_image().
   void add(const std::string& path, std::span<const Layer> layers, const WriteOptions& options);
 
-  // to_disk: whole even where the power fails.
+  // to_disk: the files are complete even after a power failure.
   void commit(bool to_disk = false);
 
  private:

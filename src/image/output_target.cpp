@@ -27,7 +27,7 @@ std::string real_path(const std::string& path) {
   return real ? std::string(real.get()) : std::string();
 }
 
-// The number of an own open file that the path names in /proc/self/fd; -1 for other paths.
+// Returns the descriptor that the path names in /proc/self/fd; -1 for other paths.
 int descriptor_named(const std::string& path) {
   const size_t slash = path.rfind('/');
   if (slash == path.npos) return -1;
@@ -40,7 +40,7 @@ int descriptor_named(const std::string& path) {
   return folder == "/proc/" + std::to_string(getpid()) + "/fd" ? std::stoi(name) : -1;
 }
 
-// What a link says, as seen from where we are.
+// Returns the target of a link, relative to the current folder.
 std::string link_target(const std::string& path) {
   char text[PATH_MAX];
   const ssize_t n = readlink(path.c_str(), text, sizeof(text));
@@ -50,8 +50,8 @@ std::string link_target(const std::string& path) {
   return target[0] == '/' || slash == path.npos ? target : path.substr(0, slash + 1) + target;
 }
 
-// The own open file at the end of a chain of links. It must not be resolved further: where
-// /dev/stdout leads to a file, that file is open, and is not to be replaced by another.
+// Returns the open file of this process at the end of a chain of links, or -1. It must not be
+// resolved further: if /dev/stdout leads to a file, that open file must not be replaced.
 int descriptor_behind(std::string path) {
   constexpr int longest_chain = 40;
   for (int i = 0; i < longest_chain && !path.empty(); ++i) {
@@ -61,8 +61,8 @@ int descriptor_behind(std::string path) {
   return -1;
 }
 
-// The name at the end of a chain of links that leads to nothing yet: what is written becomes that
-// file, and the links stay.
+// Returns the name at the end of a chain of dangling links. The output becomes that file, and the
+// links stay.
 std::string end_of_links(std::string path, const std::string& named) {
   constexpr int longest_chain = 40;
   for (int i = 0; i < longest_chain; ++i) {
@@ -79,8 +79,8 @@ void wait_a_little() {
   nanosleep(&time, nullptr);
 }
 
-// Holds back the signals by which the system tells a thread that its writing failed, and takes back
-// those that came: write() then says so by its result.
+// Blocks the signals that report a failed write to this thread and discards those that arrive.
+// write() then reports the failure by its result.
 class QuietWriting {
  public:
   QuietWriting() {
@@ -91,7 +91,7 @@ class QuietWriting {
     sigemptyset(&pending);
     sigpending(&pending);
     for (const int s : {SIGPIPE, SIGXFSZ})
-      if (sigismember(&pending, s) == 1) sigdelset(&signals_, s);  // somebody else's
+      if (sigismember(&pending, s) == 1) sigdelset(&signals_, s);  // pending before us: leave it
     pthread_sigmask(SIG_BLOCK, &signals_, &before_);
   }
   ~QuietWriting() {
@@ -148,7 +148,7 @@ OutputTarget output_target(const std::string& path) {
 
 int open_stream(const OutputTarget& target, const std::string& path) {
   if (target.kind == OutputTarget::Kind::descriptor) {
-    // Behind what was printed to it, and before what will be.
+    // Keeps the order with text already printed to it.
     if (target.descriptor == STDOUT_FILENO) std::fflush(stdout);
     const int descriptor = fcntl(target.descriptor, F_DUPFD_CLOEXEC, 0);
     if (descriptor < 0) fail_to_write(path, errno);
@@ -157,7 +157,7 @@ int open_stream(const OutputTarget& target, const std::string& path) {
   constexpr int most_attempts = 250;  // five seconds
   int descriptor = -1;
   for (int i = 0; i < most_attempts; ++i) {
-    // Opening a pipe would wait for a reader, a line for its carrier.
+    // Without O_NONBLOCK, opening a pipe waits for a reader, and a serial line for its carrier.
     descriptor = open(target.path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
     if (descriptor >= 0 || (errno != ENXIO && errno != EINTR)) break;
     wait_a_little();

@@ -1,5 +1,6 @@
-// What an output path stands for, and how it is opened: a regular file that is to be replaced, or
-// something that takes what is written as it comes.
+// Kind of an output path, and how to open it: a regular file to be replaced, or a stream that is
+// written directly. AtomicFile uses it. Errors are EnvironmentErrors of the form "cannot write
+// PATH: reason".
 #pragma once
 
 #include <string>
@@ -7,28 +8,27 @@
 namespace troffer {
 
 struct OutputTarget {
-  // file: a regular file, or none yet, at `path`; stream: a pipe or a device at `path`;
-  // descriptor: an open file of this process (/dev/stdout, /dev/fd/3), whatever that is.
+  // file: a regular file, or none yet, at `path`. stream: a pipe or device at `path`. descriptor:
+  // an open file of this process (/dev/stdout, /dev/fd/3) of any kind.
   enum class Kind { file, stream, descriptor };
   Kind kind = Kind::file;
-  std::string path;  // behind links
+  std::string path;  // with links resolved
   int descriptor = -1;
 };
 
-// Links are followed. Throws EnvironmentError{"cannot write PATH: reason"} for what can be no
-// output: a folder, a disk, a socket, what may not be written.
+// Classifies a path, following links. Throws EnvironmentError{"cannot write PATH: reason"} for a
+// folder, a disk, a socket, or if writing is not permitted.
 OutputTarget output_target(const std::string& path);
 
-// Opens a stream or a descriptor for writing. Of a pipe that nobody reads from, a reader is awaited
-// for some seconds only; then, as for all that cannot be opened, errors are as above. `path` names
-// it there.
+// Opens a stream or a descriptor for writing. Waits some seconds for a reader of a pipe. Throws
+// like output_target() if it cannot be opened; `path` is the name in the message.
 int open_stream(const OutputTarget& target, const std::string& path);
 
 [[noreturn]] void fail_to_write(const std::string& path, const std::string& reason);
 [[noreturn]] void fail_to_write(const std::string& path, int error);
 
-// Writes all, or throws as above. A reader that went away (SIGPIPE) and a limit on the size of
-// files (SIGXFSZ) are errors like others here and end no process.
+// Writes all bytes or throws as above. A closed pipe (SIGPIPE) and the file size limit (SIGXFSZ)
+// are ordinary errors here and do not end the process.
 void write_all(int descriptor, const void* bytes, size_t size, const std::string& path);
 
 }  // namespace troffer

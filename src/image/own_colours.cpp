@@ -56,7 +56,7 @@ void encode(Raster& raster, float gamma) {
 }
 
 ColoursFound obey_gamma(Raster& raster, float gamma) {
-  constexpr float least = 0.1f, most = 5;  // beyond: no picture's
+  constexpr float least = 0.1f, most = 5;  // plausible range
   if (!(gamma >= least && gamma <= most)) return ColoursFound::broken;
   if (is_about(gamma, 1 / 2.2f)) return ColoursFound::none;
   if (is_about(gamma, 1))
@@ -66,7 +66,7 @@ ColoursFound obey_gamma(Raster& raster, float gamma) {
   return ColoursFound::obeyed;
 }
 
-// sRGB, or greys by its transfer function.
+// Returns an sRGB profile, or a grey one with its transfer function.
 Profile wanted_profile(cmsContext context, bool is_grey) {
   if (!is_grey) return Profile(cmsCreate_sRGBProfileTHR(context));
   const std::array<double, 5> srgb{2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045};
@@ -87,7 +87,7 @@ cmsUInt32Number format_of(bool is_grey, bool has_extra, bool is_float) {
          BYTES_SH(is_float ? 4U : 1U) | FLOAT_SH(is_float ? 1U : 0U);
 }
 
-// Whether 8-bit colours stay what they are, but for rounding.
+// True if 8-bit colours stay unchanged up to rounding.
 bool changes_nothing(cmsHTRANSFORM transform, bool is_grey) {
   constexpr int steps = 6, most = 1;
   const int colours = is_grey ? 1 : 3;

@@ -1,4 +1,6 @@
-// What picture files say of their colours, and pictures made of it that are in sRGB.
+// Colour information of picture files (PNG gamma, ICC profiles), and its conversion to sRGB.
+// Importers of textures call obey_own_colours() after decode_raster().
+// References: [1] ICC.1:2022, "Image technology colour management".
 #pragma once
 
 #include <cstdint>
@@ -9,29 +11,26 @@ namespace troffer {
 struct Raster;
 
 struct OwnColours {
-  // PNG's gAMA: values are light to this power (1/2.2 of sRGB, 1 of linear ones); 0: nothing is
-  // said.
+  // PNG's gAMA: stored values are light to this power (1/2.2 for sRGB, 1 for linear values); 0:
+  // none.
   float gamma = 0;
-  // An ICC profile, which goes before gamma; empty: none.
+  // ICC profile, which takes precedence over gamma; empty: none.
   std::vector<uint8_t> profile;
 
   bool is_empty() const { return gamma == 0 && profile.empty(); }
 };
 
 enum class ColoursFound {
-  none,    // nothing is said, or what sRGB would be: the picture stays as it is
+  none,    // no information, or equal to sRGB: unchanged
   obeyed,  // converted
-  broken,  // a profile that cannot be read, or of other channels than the picture's, or a gamma
-           // that is no picture's: left out
+  broken,  // invalid profile or gamma, or other channels: ignored
 };
-// After a file's name, where they are.
+// Warning text after a file's name.
 constexpr const char* broken_colours =
     ": what it says of its colours cannot be used; taken for sRGB";
 
-// To sRGB, or to linear values where the file's are: is_srgb says so. Alpha stays. 8-bit pictures
-// stay 8-bit, and what lies outside of sRGB is cut off. Profiles: by relative colorimetry [1].
-//
-// 1. ICC.1:2022, Image technology colour management.
+// Converts the picture to sRGB, or keeps linear values and clears is_srgb. Alpha is unchanged.
+// 8-bit pictures stay 8-bit, clipped to sRGB. ICC profiles use relative colorimetry [1].
 ColoursFound obey_own_colours(Raster& raster);
 
 }  // namespace troffer

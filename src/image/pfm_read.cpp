@@ -15,7 +15,7 @@ bool is_space(uint8_t c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
 
-// The next word of the header; words are parted by white space.
+// Returns the next word of the header; white space separates words.
 std::string_view word(const EncodedImage& encoded, size_t& at) {
   const auto bytes = encoded.bytes;
   while (at < bytes.size() && is_space(bytes[at])) ++at;
@@ -42,13 +42,13 @@ bool is_pfm(std::span<const uint8_t> bytes) {
          is_space(bytes[2]);
 }
 
-// The scale's sign tells the endian; its size is a unit that no reader applies, nor does this one.
+// The sign of the scale is the byte order. Its magnitude is a unit that readers ignore.
 Raster decode_pfm(const EncodedImage& encoded) {
   size_t at = 2;
   const size_t channels = encoded.bytes[1] == 'F' ? 3 : 1;
   const uint64_t width = number<uint32_t>(encoded, at), height = number<uint32_t>(encoded, at);
   const auto scale = number<float>(encoded, at);
-  ++at;  // just one white space before the data
+  ++at;  // a single white space before the data
   if (!(std::isfinite(scale) && scale != 0)) encoded.fail("broken PFM header: bad scale");
   encoded.check_size(width, height);
   const size_t row = size_t(width) * channels;
@@ -60,7 +60,7 @@ Raster decode_pfm(const EncodedImage& encoded) {
   raster.channels = int(channels);
   raster.texels_float.resize(row * height);
   const bool is_swapped = (scale < 0) != (std::endian::native == std::endian::little);
-  for (size_t y = 0; y < height; ++y) {  // the file begins with the bottom row
+  for (size_t y = 0; y < height; ++y) {  // the bottom row comes first
     float* out = raster.texels_float.data() + (height - 1 - y) * row;
     std::memcpy(out, encoded.bytes.data() + at + y * row * sizeof(float), row * sizeof(float));
     if (!is_swapped) continue;

@@ -10,13 +10,13 @@ namespace troffer {
 
 namespace {
 
-// Deflate cannot shrink data by more than this factor (1032 and some slack), so that a short file
-// cannot claim a large picture.
+// Deflate shrinks data at most by this factor (1032, plus a margin), so a short file cannot claim a
+// large picture.
 constexpr uint64_t max_deflate_ratio = 1100;
-constexpr png_alloc_size_t max_chunk_bytes = 1 << 20;  // does not concern pixel data
+constexpr png_alloc_size_t max_chunk_bytes = 1 << 20;  // not for pixel data
 constexpr png_byte colour_chunks[] = "gAMA\0iCCP\0sRGB";
 
-// State shared with libpng's callbacks; it outlives the frames that an error jumps over.
+// State shared with libpng's callbacks. It outlives the stack frames that longjmp skips.
 struct PngReader {
   const EncodedImage& encoded;
   size_t at = 0;
@@ -47,7 +47,7 @@ struct PngHandles {
   ~PngHandles() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-// Asks libpng for 8 or 16 bits of grey, grey + alpha, rgb or rgba. Returns true for 16.
+// Requests 8 or 16 bits of grey, grey + alpha, rgb or rgba from libpng. Returns true for 16.
 bool set_transformations(png_structp png, png_infop info) {
   const int colour = png_get_color_type(png, info), depth = png_get_bit_depth(png, info);
   if (colour == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
@@ -57,7 +57,7 @@ bool set_transformations(png_structp png, png_infop info) {
   return depth == 16;
 }
 
-// sRGB goes before a profile, that before gamma.
+// sRGB takes precedence over a profile, and a profile over gamma.
 void note_colours(png_structp png, png_infop info, OwnColours& own) {
   if (png_get_valid(png, info, PNG_INFO_sRGB) != 0) return;
   png_charp name = nullptr;
@@ -70,8 +70,8 @@ void note_colours(png_structp png, png_infop info, OwnColours& own) {
   if (png_get_gAMA(png, info, &gamma) != 0) own.gamma = float(gamma);
 }
 
-// Reads the rows. 16-bit rows go into the second half of their place in texels_float, so that
-// expand16 can widen them in place.
+// Prepares the row pointers. 16-bit rows are read into the second half of their space in
+// texels_float, so that expand16 can widen them in place.
 void prepare_rows(PngReader& reader, bool is_16, size_t row_bytes) {
   Raster& raster = reader.raster;
   const auto height = size_t(raster.height);
@@ -86,8 +86,9 @@ void prepare_rows(PngReader& reader, bool is_16, size_t row_bytes) {
   }
 }
 
-// Big-endian 16-bit values in the second half of each row -> floats over the whole row. Float i
-// ends at byte 4i + 4 of the row, and value i + 1 begins at 2n + 2i + 2: never later for i < n.
+// Converts big-endian 16-bit values in the second half of each row to floats over the whole row.
+// Float i ends at byte 4i + 4 and value i + 1 begins at 2n + 2i + 2, which is never earlier for i <
+// n.
 void expand16(PngReader& reader) {
   const size_t n = size_t(reader.raster.width) * size_t(reader.raster.channels);
   for (size_t y = 0; y < reader.rows.size(); ++y) {
@@ -100,15 +101,15 @@ void expand16(PngReader& reader) {
   }
 }
 
-// Everything that libpng may jump out of; false after an error. No object with a destructor lives
-// in this frame.
+// All calls that libpng may leave by longjmp. Returns false after an error. This frame must not
+// contain objects with destructors.
 bool read(PngHandles& handles, PngReader& reader) {
   png_structp png = handles.png;
   png_infop info = handles.info;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader, on_read);
-  // Everything but pixels, transparency and what colours are (-1: texts, calibrations) means
-  // nothing here and is a way to hide inflation bombs.
+  // Ignores all chunks except pixels, transparency and colour information (-1: texts,
+  // calibrations): they are not needed and could hide decompression bombs.
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, colour_chunks, 3);
   png_set_chunk_malloc_max(png, max_chunk_bytes);

@@ -35,8 +35,8 @@ void on_write(png_structp png, png_bytep data, size_t n) {
 }
 void on_flush(png_structp) {}
 
-// False after an error. No object with a destructor lives in this frame, which libpng may jump
-// out of.
+// Returns false after an error. libpng may leave this frame by longjmp, so it must not contain
+// objects with destructors.
 bool write(png_structp png, png_infop info, PngWriter& writer, const PngRows& rows) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_write_fn(png, &writer, on_write, on_flush);

@@ -1,4 +1,5 @@
-// Picture files -> linear images.
+// Reads whole files, and picture files as linear Rec. 709 images. Commands use it for references,
+// pictures and solutions. See raster.h for textures, whose encoding and alpha matter.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +11,14 @@
 
 namespace troffer {
 
-// The bytes of a file. InputError if it cannot be read, is a folder or is longer than max_bytes.
+// Returns the bytes of a file. Throws InputError if it cannot be read, is a folder or exceeds
+// max_bytes.
 std::vector<uint8_t> read_file_bytes(const std::string& path, size_t max_bytes = size_t(1) << 31);
 
-// The picture in a file of any format that decode_raster() knows, as linear Rec. 709: 8- and
-// 16-bit files are decoded from sRGB, EXR files of other primaries converted, grey is repeated over
-// r, g and b, alpha is left out. Values are as they are in the file, NaN included. Errors:
-// InputError{path, 0, 0, what}.
+// Returns the picture in a file of any format of decode_raster(), as linear Rec. 709. 8- and 16-bit
+// files are decoded from sRGB, and EXR files of other primaries are converted. Grey is repeated
+// over r, g and b; alpha is dropped. Values are kept, NaN included. Throws InputError{path, 0, 0,
+// what}.
 Image read_image(const std::string& path, size_t max_pixels = default_max_pixels);
 
 }  // namespace troffer

@@ -1,4 +1,5 @@
-// Ward's shared-exponent pixels.
+// Ward's shared-exponent pixels (RGBE) of Radiance HDR files: three 8-bit mantissas and a common
+// exponent. The HDR reader and writer use it.
 // References: [1] Ward, "Real Pixels", Graphics Gems II, 1991.
 #pragma once
 
@@ -10,9 +11,9 @@
 
 namespace troffer {
 
-// Mantissas are truncated when packed and read at the middle of their step [1], so that packing
-// what was unpacked changes nothing. The format holds no negative and no infinite values: negative
-// and NaN become 0, values beyond the largest exponent the largest value.
+// Mantissas are truncated when packed and read at the centre of their step [1], so that repacking
+// changes nothing. Negative values and NaN become 0; values beyond the largest exponent become the
+// largest value.
 inline std::array<uint8_t, 4> rgbe_from_rgb(Rgb c) {
   constexpr float largest = 0x1.fep126f;  // mantissa 255, exponent byte 255
   for (size_t i = 0; i < 3; ++i) c[i] = c[i] > 0 ? std::fmin(c[i], largest) : 0.0f;

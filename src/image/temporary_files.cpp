@@ -12,9 +12,9 @@ namespace troffer {
 
 namespace {
 
-// A signal handler reaches nothing but globals, and must not wait for a lock or allocate: fixed
-// slots, each of which one thread claims. One that finds no slot is only not looked after. Paths
-// lie apart from states, so that those which are never used take no memory.
+// A signal handler can access only globals and must not lock or allocate. Hence fixed slots, each
+// claimed by one thread. A file that finds no slot is not registered. Paths and states are separate
+// arrays, so that unused paths take no memory.
 enum class SlotState : int { free, claimed, full };
 constexpr size_t most_slots = 1024;
 static_assert(std::atomic<SlotState>::is_always_lock_free);

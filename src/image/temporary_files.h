@@ -1,4 +1,5 @@
-// Temporary files that go with the process, however it ends but by SIGKILL.
+// Temporary files that are removed when the process ends, except by SIGKILL. AtomicFile registers
+// its files, and the signal handlers (app/signals.cpp) remove them. Thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +7,8 @@
 
 namespace troffer {
 
-// A file of that path is to be removed if the process is ended by a signal's handler, while this
-// lives. Make it before the file.
+// Marks the file at `path` for removal if a signal handler ends the process during the lifetime of
+// this object. Create it before the file.
 class TemporaryFile {
  public:
   TemporaryFile() = default;
@@ -24,10 +25,11 @@ class TemporaryFile {
   size_t slot_ = none;
 };
 
-// Removes them all, and any that would be made later. For a signal handler that is about to end the
-// process: calls nothing that is not safe there.
+// Removes all registered files, and lets none be registered later. For signal handlers that are
+// about to end the process: async-signal-safe.
 void remove_temporary_files() noexcept;
-// Whether that was called: who has just made a temporary file has to remove it himself.
+// True after remove_temporary_files(): code that has just made a temporary file must then remove
+// it.
 bool are_temporary_files_removed() noexcept;
 
 }  // namespace troffer

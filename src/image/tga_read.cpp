@@ -44,7 +44,7 @@ bool is_colour_depth(uint8_t depth) {
   return depth == 15 || depth == 16 || depth == 24 || depth == 32;
 }
 
-// One colour as the file has it, 1 to 4 bytes, little-endian -> r g b a.
+// Converts one colour as stored, 1 to 4 bytes in little-endian order, to r g b a.
 std::array<uint8_t, 4> rgba_of(const uint8_t* at, int depth) {
   const auto widen = [](int five_bits) { return uint8_t((five_bits * 255 + 15) / 31); };
   if (depth == 8) return {at[0], at[0], at[0], 255};
@@ -69,7 +69,7 @@ class Reader {
     check_length();
     const bool is_grey = h_.plain_kind() == kind_grey;
     const int depth = h_.plain_kind() == kind_mapped ? h_.map_depth : h_.depth;
-    // A fourth byte that the header does not call alpha is padding [1], Field 5.6.
+    // A fourth byte that the header does not declare as alpha is padding [1], Field 5.6.
     const bool has_alpha = !is_grey && depth >= 16 && h_.alpha_bits() > 0;
     Raster raster;
     raster.width = int(h_.width);
@@ -98,7 +98,8 @@ class Reader {
       map_.push_back(rgba_of(entries + i * bytes, h_.map_depth));
   }
 
-  // Before memory is taken for the picture: a packet of run lengths covers 128 texels at most.
+  // Checks the file's length before memory is allocated. A run-length packet covers 128 texels at
+  // most.
   void check_length() const {
     const size_t texels = h_.width * h_.height;
     const size_t least = h_.is_run_length() ? texels / 128 * (1 + bytes_) : texels * bytes_;
@@ -117,7 +118,7 @@ class Reader {
   }
 
   void read_texels(Raster& raster) {
-    size_t run = 0;  // texels left of the packet
+    size_t run = 0;  // texels left in the packet
     bool is_repeated = false;
     std::array<uint8_t, 4> texel{};
     for (size_t row = 0; row < h_.height; ++row)
@@ -134,7 +135,7 @@ class Reader {
       }
   }
 
-  // Bit 5 of the descriptor: rows run from the top; bit 4: from right to left.
+  // Descriptor bit 5: rows run from the top; bit 4: columns run from right to left.
   void put(Raster& raster, size_t row, size_t column, const std::array<uint8_t, 4>& texel) const {
     const auto channels = size_t(raster.channels);
     const size_t y = (h_.descriptor & 32) != 0 ? row : h_.height - 1 - row;
@@ -151,7 +152,7 @@ class Reader {
 
 }  // namespace
 
-// The format has no mark at its beginning: whatever has a header that makes sense is one.
+// The format has no magic number, so this accepts any plausible header.
 bool is_tga(std::span<const uint8_t> bytes) {
   if (bytes.size() < header_size) return false;
   const Header h = header_of(bytes);

@@ -8,7 +8,7 @@ namespace troffer {
 
 namespace {
 
-// [1], with the constants given there.
+// Hable's curve with the constants of [1].
 constexpr double hable(double x) {
   constexpr double a = 0.15, b = 0.50, c = 0.10, d = 0.20, e = 0.02, f = 0.30;
   return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;

@@ -19,8 +19,8 @@ void append(std::vector<uint8_t>& out, const std::string& text) {
   out.insert(out.end(), text.begin(), text.end());
 }
 
-// One component of a scan line: runs of at least four equal bytes as (128 + n, value), the rest as
-// (n, bytes) [1].
+// Appends one component of a scan line: runs of at least four equal bytes as (128 + n, value),
+// other bytes as (n, bytes) [1].
 void append_runs(std::vector<uint8_t>& out, std::span<const uint8_t> v) {
   constexpr size_t shortest_run = 4, longest_run = 127, longest_dump = 128;
   const auto run_at = [&](size_t i) {
@@ -29,7 +29,7 @@ void append_runs(std::vector<uint8_t>& out, std::span<const uint8_t> v) {
     return n;
   };
   for (size_t i = 0; i < v.size();) {
-    size_t end = i, run = 0;  // [i, end) is dumped, then a run follows
+    size_t end = i, run = 0;  // [i, end) is stored as is, then a run follows
     while (end < v.size() && (run = run_at(end)) < shortest_run) end += run;
     if (end == v.size()) run = 0;
     while (i < end) {
@@ -61,7 +61,7 @@ std::vector<uint8_t> encode(ImageFormat format, std::span<const Layer> layers,
   return encode_png(layers[0].image, options.display, options.threads);
 }
 
-// A pipe, a device, or an open file of this process: its name need not say a format.
+// True for a pipe, a device or an open file of this process: its name need not state a format.
 bool takes_any_format(const std::string& path) {
   try {
     return output_target(path).kind != OutputTarget::Kind::file;

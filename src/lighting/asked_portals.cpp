@@ -19,7 +19,7 @@ namespace {
 
 using Corners = std::vector<Vec3>;
 
-// Rectangles that differ by less than this of their size count as in one plane, or side by side.
+// Relative tolerance within which rectangles count as coplanar or adjacent.
 constexpr double portal_tolerance = 1e-3;
 
 bool is_glass(const Scene& scene, const Mesh& mesh) {
@@ -27,7 +27,8 @@ bool is_glass(const Scene& scene, const Mesh& mesh) {
   return m.kind == MaterialKind::dielectric || m.transmission.value > 0;
 }
 
-// A part of the scene that only says where a portal is hides nothing; a pane stays, and a source.
+// Removes opaque parts that only mark a portal, so that they occlude nothing. Panes and emitting
+// meshes stay.
 void take_out_opaque(Scene& scene, const std::string& name) {
   for (Mesh& mesh : scene.meshes)
     if (mesh.name == name && !is_glass(scene, mesh) && mesh.lights.empty()) mesh.triangles.clear();
@@ -65,7 +66,7 @@ double size_of(const Corners& c) {
   return double(length(c[1] - c[0])) + double(length(c[3] - c[0]));
 }
 
-// Least and most of corners along an axis.
+// Returns the minimum and maximum of the corners along an axis.
 std::array<double, 2> extent(const Corners& c, const Vec3d& from, const Vec3d& axis) {
   std::array<double, 2> e{INFINITY, -INFINITY};
   for (const Vec3& p : c) {
@@ -75,7 +76,7 @@ std::array<double, 2> extent(const Corners& c, const Vec3d& from, const Vec3d& a
   return e;
 }
 
-// Whether, seen along their normal, two rectangles have more than edges in common.
+// True if two coplanar rectangles share more than edges.
 bool overlap(const Corners& a, const Corners& b, double margin) {
   const Vec3d from(a[0]);
   for (const Corners& c : {a, b})
@@ -87,7 +88,7 @@ bool overlap(const Corners& a, const Corners& b, double margin) {
   return true;
 }
 
-// Light that leaves through `first` and then through `second` is that of both.
+// True if a ray can leave through `first` and then through `second`, so that both count its light.
 bool may_leave_through_both(const Corners& first, const Corners& second, double margin) {
   const Vec3d z1 = outward(first), z2 = outward(second);
   if (dot(z1, z2) < -1 + 1e-9) return false;
@@ -108,8 +109,8 @@ void check_pair(Scene& scene, const Corners& a, const Corners& b) {
   }
 }
 
-// Blinds, reveals and ground that lie beyond all portals are dark, and reflect nothing into the
-// room: half of the light behind blinds.
+// Warns of blinds, reveals and ground beyond all portals: they stay dark and reflect nothing into
+// the room. Behind blinds that is half of the light.
 void warn_of_what_is_beyond(Scene& scene, const std::vector<Corners>& portals) {
   const auto is_beyond = [&](const Vec3& p) {
     return std::all_of(portals.begin(), portals.end(), [&](const Corners& c) {
@@ -146,7 +147,7 @@ void add_portals(Scene& scene, const std::vector<std::string>& texts) {
     for (size_t j = 0; j < i; ++j) check_pair(scene, portals[j], portals[i]);
   for (const std::string& name : names) take_out_opaque(scene, name);
   bool is_used = false;
-  // Copies go to the end: meshes know lights by their numbers.
+  // Copies are appended, because meshes refer to lights by index.
   const size_t before = scene.lights.size();
   for (size_t i = 0; i < before; ++i) {
     Light e = scene.lights[i];

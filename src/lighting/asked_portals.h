@@ -1,4 +1,5 @@
-// --portal: the rectangles that light from beyond a scene comes through alone.
+// --portal: rectangles that are the only way for environment light into a scene. add_daylight()
+// uses it after all lights are added. Coordinates are those of the scene file, in metres.
 #pragma once
 
 #include <string>
@@ -8,9 +9,9 @@
 
 namespace troffer {
 
-// All light from beyond the scene that has no portal of its own comes through these: each is twelve
-// numbers, or the name of a part of the scene. Of such a light there is one for each rectangle.
-// UsageError for what is no rectangle, and for two that overlap.
+// Restricts every environment light without a portal to the given rectangles. Each is twelve
+// numbers x,y,z or the name of a part of the scene. With several rectangles a light is copied, one
+// for each. Throws UsageError if a text is no rectangle or two rectangles overlap.
 void add_portals(Scene& scene, const std::vector<std::string>& portals);
 
 }  // namespace troffer

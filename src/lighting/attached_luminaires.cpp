@@ -17,19 +17,19 @@ namespace troffer {
 
 namespace {
 
-constexpr double most_scale = 1e24;  // by which intensities can be multiplied to have a flux
+constexpr double most_scale = 1e24;  // limit on the factor that gives intensities a flux
 
-// By how much intensities may add up to something else than the file says of them.
+// Relative tolerance between the flux of the intensities and the flux that the file states.
 constexpr double lumens_tolerance = 0.05;
 
-// "NODE=FILE[,LUMENS[,KELVIN]]"; no LUMENS before KELVIN: the file's.
+// "NODE=FILE[,LUMENS[,KELVIN]]". Empty LUMENS before KELVIN stand for the file's.
 struct LuminaireOption {
   std::string node, file;
   double lumens = 0;  // 0: the file's
   double kelvin = 0;  // 0: white
 };
 
-// Takes a number behind the last comma off the text; false where there is none.
+// Removes the number after the last comma from the text; false if there is none.
 bool take_number(std::string& text, double& number) {
   const size_t comma = text.rfind(',');
   if (comma == std::string::npos || comma + 1 == text.size()) return false;
@@ -55,7 +55,7 @@ LuminaireOption parse_luminaire(const std::string& text) {
   if (is_open) o.file.pop_back();
   const bool has_kelvin = is_open || take_number(o.file, o.lumens);
   if (!has_kelvin) o.lumens = last;
-  // With a colour lumens of 0 stand for the file's.
+  // Together with a colour, 0 lumens stand for the file's.
   if (!(o.lumens >= (has_kelvin ? 0 : 1e-30) && o.lumens <= 1e9))
     throw UsageError("--luminaire: lumens must lie between 0 and 1e9");
   if (!has_kelvin) return o;
@@ -65,8 +65,7 @@ LuminaireOption parse_luminaire(const std::string& text) {
   return o;
 }
 
-// Parts of the scene that `pattern` stands for, each once: its lights, or, where no light fits,
-// surfaces.
+// Parts of the scene that match a pattern, each once: lights or, if no light matches, surfaces.
 struct FittingNodes {
   std::vector<std::string> names;
   bool are_lights = false;
@@ -93,8 +92,8 @@ bool is_named(const Scene& scene, const std::string& name) {
          std::any_of(scene.instances.begin(), scene.instances.end(), has_name);
 }
 
-// Among surfaces that fit a wildcard those that cannot be an opening are left as they are, if any
-// can.
+// Attaches a luminaire to all matches. Surfaces that cannot hold one are skipped with a warning,
+// unless none can.
 void attach_to_all(Scene& scene, const std::string& pattern, const Luminaire& luminaire,
                    const Rgb& scale, const Vec3& down) {
   const FittingNodes nodes = nodes_fitting(scene, pattern);
@@ -160,7 +159,7 @@ void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires,
 std::vector<std::pair<std::string, double>> watts_of_luminaires(
     const std::vector<std::string>& luminaires) {
   std::vector<std::pair<std::string, double>> watts;
-  WarningLog ignored;  // told when they are attached
+  WarningLog ignored;  // warnings are issued when luminaires are attached
   for (const std::string& text : luminaires) {
     const LuminaireOption o = parse_luminaire(text);
     watts.emplace_back(o.node, read_luminaire(o.file, ignored).watts);

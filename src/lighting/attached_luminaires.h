@@ -1,4 +1,5 @@
-// Measured luminaires that take the place of parts of a scene: --luminaire.
+// --luminaire: measured luminaires that replace parts of a scene. add_daylight() and the list of
+// luminaires (luminaire_list.h) use it. Fluxes are in lm, colour temperatures in K, powers in W.
 #pragma once
 
 #include <string>
@@ -10,23 +11,24 @@
 
 namespace troffer {
 
-// read_luminaire(); a further warning where the intensities add up to 5 % more than the lamps are
-// said to have, or to something else than what of that leaves the luminaire (EULUMDAT).
+// Returns read_luminaire() and checks its flux. Warns if the intensities give over 5 % more flux
+// than the lamps. If the file states a light output ratio (EULUMDAT), it warns if they differ by
+// over 5 % from that share of the lamps' flux.
 Luminaire read_and_check_luminaire(const std::string& path, WarningLog& warnings);
 
-// What intensities are multiplied by in the scene's unit, so that the flux is `lumens` (0: the
-// file's), in the colour of a black body (0: white). UsageError where the file, whose name is for
-// the message, has too little light for that.
+// Returns the factor on the intensities in the scene's unit. The luminaire then has the flux
+// `lumens` (0: that of the file) and the colour of a black body of `kelvin` (0: white). `name` is
+// used in the message. Throws UsageError if the luminaire has too little light for that flux.
 Rgb luminaire_scale(const Scene& scene, const Luminaire& luminaire, const std::string& name,
                     double lumens, double kelvin);
 
-// Each "NODE=FILE[,LUMENS[,KELVIN]]"; a NODE with '*' stands for all lights that it fits, or, where
-// no light does, surfaces (base/wildcard.h). UsageError for what cannot be read so and for nodes
-// that cannot shine so; InputError for files.
+// Attaches luminaires, each given as "NODE=FILE[,LUMENS[,KELVIN]]". A NODE with '*'
+// (base/wildcard.h) stands for all lights that match or, if none does, all surfaces. Throws
+// UsageError for malformed texts and for nodes that cannot emit this way, InputError for files.
 void attach_luminaires(Scene& scene, const std::vector<std::string>& luminaires, const Vec3& down);
 
-// The node of each such option (it may hold '*'), and what its luminaire takes by the file, W: 0
-// where that states nothing.
+// Returns the node of each option (it may contain '*') and the power that its file states in W; 0
+// if the file states none.
 std::vector<std::pair<std::string, double>> watts_of_luminaires(
     const std::vector<std::string>& luminaires);
 

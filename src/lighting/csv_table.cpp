@@ -17,7 +17,7 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
-// The sign among those that may separate columns that occurs most outside of quotes.
+// Returns the separator that occurs most often outside quotes.
 char separator_of(std::string_view line) {
   std::array<std::ptrdiff_t, 3> times{};
   constexpr std::array<char, 3> signs{',', ';', '\t'};
@@ -30,7 +30,7 @@ char separator_of(std::string_view line) {
   return signs[size_t(std::max_element(times.begin(), times.end()) - times.begin())];
 }
 
-// Takes one row's fields apart.
+// Splits one row into fields.
 class RowScanner {
  public:
   RowScanner(char separator, CsvRow& row) : separator_(separator), row_(row) {
@@ -40,7 +40,7 @@ class RowScanner {
   }
 
   bool is_quoted() const { return is_quoted_; }
-  // `next` is the sign behind `c`; true where that one is read with it.
+  // Takes the character `c`, which `next` follows. Returns true if it consumes `next` as well.
   bool take(char c, char next) {
     std::string& field = row_.fields.back();
     ++column_;
@@ -128,7 +128,7 @@ bool CsvReader::next(CsvRow& row) {
   return false;
 }
 
-// False where the line has nothing to read.
+// Returns false if the line has nothing to read.
 bool CsvReader::take_row(CsvRow& row) {
   const size_t line_end = std::min(rest_.find_first_of("\r\n"), rest_.size());
   const size_t first = rest_.substr(0, line_end).find_first_not_of(" \t");

@@ -30,7 +30,7 @@ constexpr double most_lx = 1e9;
   throw UsageError(fmt::format("{}: cannot read '{}' as {}", option, text, expected));
 }
 
-// The numbers of parts[first …], of which `least` to `most` are expected.
+// Returns the numbers in parts[first] and after; between `least` and `most` of them are expected.
 std::vector<double> numbers(const std::vector<std::string>& parts, size_t first, size_t least,
                             size_t most, const char* option, const std::string& text,
                             const char* expected) {
@@ -84,7 +84,7 @@ struct PlaceAndTime {
   double latitude_deg = 0, longitude_deg = 0, julian_day_ut = 0;
 };
 
-// A coordinate within ±most, of degrees.
+// Parses an angle within ±most degrees.
 double parse_degrees(const std::string& part, const char* what, double most,
                      const std::string& text) {
   const size_t first = part.find_first_not_of(' '), last = part.find_last_not_of(' ');
@@ -132,7 +132,7 @@ std::optional<SunRequest> parse_sun(const DaylightOptions& o) {
   return sun;
 }
 
-// Nothing at night.
+// Adds sky and sun of a weather file; nothing at night.
 void add_weather(Scene& scene, const DaylightOptions& o, const Compass& compass) {
   if (!o.sky.empty() || !o.sun.empty() || o.turbidity > 0)
     throw UsageError("--weather excludes --sky, --sun and --turbidity");
@@ -184,7 +184,7 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
   } else if (request.sun) {
     request.kind = SkyKind::cie;
     request.cie_type = 12;
-    // An image of the surroundings has a sky and a ground of its own.
+    // An environment image contains its own sky and ground.
     if (o.sky == "none" || !o.environment.empty()) request.diffuse_lx = 0;
   }
   if (o.turbidity > 0) {
@@ -199,7 +199,8 @@ void add_asked_sky(Scene& scene, const DaylightOptions& o, const Compass& compas
   if (has_sky && needs_sun(request) && !request.sun)
     throw UsageError("--sky " + o.sky + " depends on where the sun stands: give --sun or --at");
   if (request.sun && !(request.sun->altitude_deg > 0)) {
-    // At dusk a sky that looks the same wherever the sun stands is as bright as it was asked to be.
+    // With the sun below the horizon, only a sky that is independent of the sun keeps its requested
+    // brightness.
     const bool is_left = has_sky && request.diffuse_lx && !needs_sun(request);
     scene.warnings.add(fmt::format(
         "the sun is {:.2f} degrees below the horizon: {}", std::abs(request.sun->altitude_deg),
@@ -275,7 +276,7 @@ void add_daylight(Scene& scene, const DaylightOptions& o) {
 }
 
 void add_daylight(Scene& scene, const DaylightOptions& o, const UpDecision& up) {
-  // The command line's ranges let what is no number pass.
+  // The command line's range checks let NaN pass.
   for (const double v :
        {o.north_deg, o.ground, o.environment_rotation_deg, o.light_radius, o.turbidity})
     if (!std::isfinite(v))

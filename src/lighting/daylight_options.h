@@ -1,6 +1,6 @@
-// Options that bring light to a scene, beside what its file has: --luminaire, --luminaires,
-// --light-radius, --dim; and from beyond it: --sky, --sun, --at, --turbidity, --weather,
-// --north, --ground, --environment, --portal.
+// Options that add light to a scene: luminaires (--luminaire, --luminaires, --light-radius, --dim)
+// and light from outside (--sky, --sun, --at, --turbidity, --weather, --north, --ground,
+// --environment, --portal). All commands that render or measure use them.
 #pragma once
 
 #include <string>
@@ -11,52 +11,52 @@
 
 namespace troffer {
 
-// As typed.
+// Values as typed.
 struct DaylightOptions {
-  std::vector<std::string> luminaires;  // light of the scene's own: attached_luminaires.h
+  std::vector<std::string> luminaires;  // lighting/attached_luminaires.h
   std::string luminaire_list;           // lighting/luminaire_list.h
   std::vector<std::string> dims;        // lighting/dimming.h
   std::string sky, sun, at;
   std::string weather, date;  // lighting/weather.h
-  double light_radius = 0;    // m; 0: points stay points
+  double light_radius = 0;    // m; 0: point lights stay points
   std::string environment;
   std::vector<std::string> portals;  // lighting/asked_portals.h
-  std::string up;                    // parse_up()'s; empty: decide_up()'s
+  std::string up;                    // text for parse_up(); empty: decide_up()
   double north_deg = 0, ground = 0.2, environment_rotation_deg = 0;
-  double turbidity = 0;  // Linke's; 0: what is typical
-  // A scene without light gets an even sky. False for figures and verdicts, which must not rest on
-  // light that nobody asked for: check_light() refuses it.
+  double turbidity = 0;  // Linke turbidity; 0: typical value
+  // A scene without light gets a uniform sky. False for commands that report figures or verdicts,
+  // which must not rest on light that the user did not ask for: check_light() then throws.
   bool invents_sky = true;
 
-  // Whether light from beyond the scene is asked for, or darkness (--sky none).
+  // True if light from outside the scene, or darkness (--sky none), is requested.
   bool asks_for_sky() const {
     return !sky.empty() || !sun.empty() || !at.empty() || !weather.empty() || !environment.empty();
   }
 };
 
-// Adds to the scene the lights that are asked for, and dims lights. A scene that has none gets an
-// even sky, which a warning tells of, where options.invents_sky and unless it is told to stay dark.
-// UsageError for values that make no sense, InputError for images that cannot be read.
+// Adds the requested lights to the scene and dims lights. A scene without light gets a uniform sky
+// and a warning, if options.invents_sky is set and darkness is not requested. Throws UsageError for
+// invalid values, InputError for unreadable images.
 void add_daylight(Scene& scene, const DaylightOptions& options);
-// The same by a decision that has been made (options.up does not count). A doubt of it becomes a
-// warning where the lights depend on what is up.
+// Same with a given decision about the up direction (options.up is ignored). A doubt about it
+// becomes a warning if the lights depend on it.
 void add_daylight(Scene& scene, const DaylightOptions& options, const UpDecision& up);
 
-// Whether the lights that are asked for depend on which way is up.
+// True if the requested lights depend on the up direction.
 bool depends_on_up(const DaylightOptions& options);
 
-// x, y, z, -x …, or three numbers; UsageError for others and for 0,0,0.
+// Parses x, y, z, -x and so on, or three numbers. Throws UsageError for other texts and for 0,0,0.
 Vec3 parse_up(const std::string& text);
 
-// The warning of an invented sky.
+// Text of the warning about an invented sky.
 extern const char* const invented_sky;
 
-// InputError, which says what to do, where nothing in the scene shines though options.invents_sky
-// is false and darkness was not asked for. `lights`: names of the only ones that are to shine.
+// Throws InputError, with advice, if nothing in the scene emits light, options.invents_sky is false
+// and darkness is not requested. `lights`: names to which the lights are restricted; may be empty.
 void check_light(const Scene& scene, const DaylightOptions& options,
                  const std::vector<std::string>& lights);
 
-// Three numbers "x,y,z"; UsageError that names the option for others.
+// Parses three numbers "x,y,z". Throws UsageError, naming the option, for other texts.
 Vec3d parse_vector(const std::string& text, const char* option);
 
 }  // namespace troffer

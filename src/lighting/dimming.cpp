@@ -15,7 +15,7 @@ namespace {
 
 constexpr double most_factor = 1e6;
 
-// Names of lights from beyond the scene (daylight/sky_lights.h).
+// Names of environment lights (daylight/sky_lights.h).
 constexpr std::array<std::string_view, 3> daylight_names{"sky", "sun", "environment"};
 
 std::string_view name_of(const Light& e) {
@@ -52,7 +52,7 @@ void dim_lights(Scene& scene, const std::vector<std::string>& dims) {
   for (const std::string& text : dims) {
     const Dim d = parse_dim(text);
     const auto fits = [&](const auto& named) { return fits_wildcard(name_of(named), d.name); };
-    // Daylight may be missing at some hours.
+    // The names of daylight are valid even at hours without it.
     if (std::none_of(scene.lights.begin(), scene.lights.end(), fits) &&
         std::none_of(daylight_names.begin(), daylight_names.end(), fits))
       throw UsageError("--dim: " + no_light_named(scene, d.name));

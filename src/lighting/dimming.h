@@ -1,4 +1,5 @@
-// --dim: lights of a scene made weaker or stronger, by name; and whether any shines at all.
+// --dim: scales lights of a scene by name. Also tests whether any light emits. add_daylight() uses
+// it, and the report command for the power of dimmed luminaires.
 #pragma once
 
 #include <string>
@@ -8,14 +9,15 @@
 
 namespace troffer {
 
-// Whether any light of the scene sends something. Images are taken to.
+// True if any light of the scene emits. Images are assumed to.
 bool shines(const Scene& scene);
 
-// Each "NAME=F": lights of that name (base/wildcard.h) send F times as much; of several that fit a
-// light the last counts. UsageError for other texts, and for names that no light has.
+// Scales lights; each text is "NAME=F", and NAME may hold wildcards (base/wildcard.h). If several
+// match a light, the last one applies. Throws UsageError for malformed texts and for names that
+// match no light.
 void dim_lights(Scene& scene, const std::vector<std::string>& dims);
 
-// Factor on the light of that name: 1 where nothing fits it.
+// Returns the factor on the light of that name: 1 if nothing matches.
 double dimming_of(const std::string& name, const std::vector<std::string>& dims);
 
 }  // namespace troffer

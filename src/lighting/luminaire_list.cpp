@@ -26,7 +26,8 @@ namespace {
 constexpr std::array<std::string_view, 11> columns{
     "file", "x", "y", "z", "dx", "dy", "dz", "rotation", "dimming", "lumens", "kelvin"};
 constexpr size_t needed_columns = 4, most_rows = 100'000;
-constexpr double shortest = 1e-9;  // of a direction: squares of much less lose digits
+// length of a direction: the square of a much shorter one loses digits
+constexpr double shortest = 1e-9;
 constexpr double most_number = 1e9;
 
 struct Row {
@@ -34,10 +35,10 @@ struct Row {
   int line = 0;
   Vec3d position, down;
   double rotation_deg = 0, dimming = 1;
-  double lumens = 0, kelvin = 0;  // 0: the file's; white
+  double lumens = 0, kelvin = 0;  // 0: the file's flux; white
 };
 
-// Per column the field of the table that holds it.
+// Returns for each column the field of the table that holds it.
 std::vector<size_t> read_header(const CsvReader& table, const std::string& path) {
   static constexpr const char* expected =
       "the header file,x,y,z[,dx,dy,dz][,rotation][,dimming][,lumens][,kelvin]";
@@ -50,7 +51,7 @@ std::vector<size_t> read_header(const CsvReader& table, const std::string& path)
   return where;
 }
 
-// Fields that are empty, or left off at the end, are what the columns' absence means.
+// Parses a row. Empty or missing fields have the defaults of missing columns.
 Row parse_row(const CsvReader& table, const CsvRow& source, const std::vector<size_t>& where,
               const Vec3& down) {
   std::array<double, columns.size()> v{0, 0, 0, 0, double(down.x), double(down.y), double(down.z),
@@ -91,7 +92,8 @@ Row parse_row(const CsvReader& table, const CsvRow& source, const std::vector<si
   return row;
 }
 
-// In the plane C0: as near to x as the nadir allows (y where that is x itself), turned about it.
+// Returns a direction in the plane C0: x projected along the nadir (y if the nadir is along x),
+// turned by the rotation.
 Vec3d along_of(const Row& row) {
   const Vec3d axis = normalize(row.down);
   const Vec3d x = std::abs(axis.x) < 0.999 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
@@ -116,7 +118,8 @@ std::vector<Row> read_rows(const std::string& path, const Vec3& down, WarningLog
   return rows;
 }
 
-// From the list's folder; what is wrong with its path is told of the list.
+// Reads a luminaire relative to the list's folder. Problems with its path are reported at the
+// list's line.
 Luminaire read_listed(const std::string& list, const Row& row, WarningLog& warnings) {
   const ReferenceNotes references;
   const ConfinedPath file = confined_path(folder_of(list), row.file);
@@ -158,7 +161,7 @@ void add_luminaire_list(Scene& scene, const std::string& path, const Vec3& down)
 std::vector<double> watts_of_luminaire_list(const std::string& path, const Vec3& down) {
   std::map<std::string, double> known;
   std::vector<double> watts;
-  WarningLog ignored;  // told when the luminaires are added
+  WarningLog ignored;  // warnings are issued when the luminaires are added
   for (const Row& row : read_rows(path, down, ignored)) {
     auto at = known.find(row.file);
     if (at == known.end())

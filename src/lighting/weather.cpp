@@ -23,10 +23,11 @@ constexpr uint64_t max_file_bytes = uint64_t(64) << 20;
 // Columns of a row [1].
 constexpr size_t month = 1, day = 2, hour = 3, minute = 4, global = 13, direct = 14, diffuse = 15;
 constexpr double missing = 9999;
-// Above what the sun sends beyond the atmosphere (1415 W/m² in January), with room for clouds'
-// edges.
+// Upper limit in W/m². It exceeds the sun's irradiance outside the atmosphere (1415 W/m² in
+// January), because reflection at cloud edges adds to it.
 constexpr double most_irradiance = 2000;
-// Instruments' own error at night, in W/m²; what is less stands for nothing measured, as -999 does.
+// W/m². Instruments read slightly below zero at night; lower values, such as -999, mean a missing
+// value.
 constexpr double least_measured = -50;
 
 double number(const std::vector<std::string>& fields, size_t i, double least, double most,
@@ -41,7 +42,7 @@ double number(const std::vector<std::string>& fields, size_t i, double least, do
   return v;
 }
 
-// Nothing, and numbers from `missing` on or far below 0, stand for what nobody measured.
+// Empty fields, values from `missing` on and values far below 0 count as missing.
 double irradiance(const std::vector<std::string>& fields, size_t i, const std::string& path,
                   int line) {
   const double v = fields[i].empty() ? missing : number(fields, i, -1e9, 1e9, path, line);
@@ -75,7 +76,7 @@ Date parse_date(const std::string& text) {
   return d;
 }
 
-// The row of an hour that ends at 24:00 is the day's last.
+// Row of the hour that contains the time; 24:00 belongs to the day's last row.
 int row_hour(const Date& d) {
   return std::min(d.hour + 1, 24);
 }
@@ -83,9 +84,9 @@ int row_minute(const Date& d) {
   return d.hour == 24 ? 59 : d.minute;
 }
 
-// Hours after midnight of the moment's day become day and time; of the Gregorian calendar.
+// Converts a Julian day to day and time in the Gregorian calendar.
 Date date_of(double julian_day_at) {
-  // Days of a leap year and a common one are told apart by looking for the day.
+  // Searching for the day handles leap years.
   const double noon_based = julian_day_at + 0.5, days = std::floor(noon_based);
   Date d;
   const double minutes = std::floor((noon_based - days) * 1440 + 1e-4);
@@ -104,7 +105,7 @@ Date date_of(double julian_day_at) {
   return d;
 }
 
-// wanted(zone_hours): the date in the file's standard time.
+// Reads the hour that wanted(zone_hours) returns, in the file's standard time.
 template <class Wanted>
 Weather read_hour(const std::string& path, const Wanted& wanted_in) {
   Date wanted;
@@ -131,12 +132,12 @@ Weather read_hour(const std::string& path, const Wanted& wanted_in) {
       continue;
     }
     if (fields.size() <= diffuse) continue;
-    // Hour 1 ends at 01:00.
+    // Hour 1 is the hour that ends at 01:00.
     if (int(number(fields, month, 1, 12, path, line)) != wanted.month ||
         int(number(fields, day, 1, 31, path, line)) != wanted.day ||
         int(number(fields, hour, 1, 24, path, line)) != row_hour(wanted))
       continue;
-    // Of several rows an hour each ends at its minute, the last at 60 or 0.
+    // With several rows per hour, each ends at its minute; the last at 60 or 0.
     if (rows_an_hour > 1) {
       const double ends_at = number(fields, minute, 0, 60, path, line);
       if (ends_at > 0 && ends_at <= row_minute(wanted)) continue;

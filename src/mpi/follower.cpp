@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto ask_interval = 3s;  // for results that have not come
+constexpr auto ask_interval = 3s;  // for results that have not arrived
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Follower::Follower(Post& post, int usual_threads, double patience, std::function
       transport_(
           post, [this](Message&& l) { receive(std::move(l)); }, [this] { tick(); }) {}
 
-// Others may need it to pass on what they are to know.
+// Waits for the end, because other processes may need this one to forward results.
 Follower::~Follower() {
   {
     std::unique_lock lock(mutex_);
@@ -70,7 +70,7 @@ void Follower::on_result(const Message& l, const MessageHeader& h) {
     const Post::Bytes same = std::make_shared<const std::vector<uint8_t>>(l.bytes);
     for (const int child : children_of(rank_, size_)) transport_.send(child, same);
   }
-  if (h.job < number_) return;  // told before
+  if (h.job < number_) return;  // already received
   Results& r = results_[h.job];
   if (r.pieces.empty()) {
     r.pieces.resize(h.count);
@@ -106,19 +106,19 @@ void Follower::begin(uint32_t items_wanted) {
   transport_.send(0, message({MessageKind::want, items_wanted, number_, 0}));
 }
 
-// With the lock held.
+// Precondition: the lock is held.
 bool Follower::has_results() const {
   const auto r = results_.find(number_);
   return r != results_.end() && r->second.missing == 0;
 }
 
-// What has been done counts, even if work is to end.
+// Completed work counts even if the run is to end.
 bool Follower::is_through() {
   const std::lock_guard lock(mutex_);
   return has_results();
 }
 
-// Waits for one; none once the job is over.
+// Waits for an item; returns nothing once the job is over.
 std::optional<Message> Follower::next_lease(const StopFlag& stop) {
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -134,7 +134,7 @@ std::optional<Message> Follower::next_lease(const StopFlag& stop) {
   }
 }
 
-// One thread.
+// Work of one thread.
 void Follower::work_on(const SharedWork& work, size_t slot, const StopFlag& stop) {
   while (const std::optional<Message> lease = next_lease(stop)) {
     MessageHeader h = header_of(*lease);
@@ -151,7 +151,7 @@ void Follower::work_on(const SharedWork& work, size_t slot, const StopFlag& stop
 
 bool Follower::share(const SharedWork& work, const StopFlag& stop) {
   const auto threads = size_t(thread_count(work.threads));
-  // Some are there before they are needed.
+  // Requests more items than threads, so that the next ones arrive in time.
   begin(work.items > 0 ? uint32_t(threads + (threads + 1) / 2) : 0);
   parallel_for_slots(threads, int(threads),
                      [&](size_t, size_t slot) { work_on(work, slot, stop); });

@@ -1,4 +1,6 @@
-// All processes but rank 0 (leader.h): asks for items of work, does them, sends what came of them.
+// Every process but rank 0 (leader.h): requests items of work, does them and sends the results.
+// Only troffer-mpi (main.cpp) makes one. It implements ProcessGroup (base/process_group.h), through
+// which renderers share work.
 #pragma once
 
 #include <chrono>
@@ -17,13 +19,13 @@
 
 namespace troffer {
 
-// Fourteen members: the work, what has come for it, and what was said.
+// Fourteen members: the work, the messages received for it, and the state of the conversation.
 class Follower final : public ProcessGroup {
  public:
-  // The post must outlive this. forsaken: called once rank 0 has been silent for `patience` seconds
-  // (it says every ten that it is there); must not return.
+  // `post` must outlive the follower. forsaken: called if rank 0 was silent for `patience` seconds;
+  // it must not return. Rank 0 sends a sign of life every ten seconds.
   Follower(Post& post, int usual_threads, double patience, std::function<void()> forsaken);
-  ~Follower() override;  // waits until rank 0 says that it is over
+  ~Follower() override;  // waits until rank 0 ends the run
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
@@ -36,7 +38,7 @@ class Follower final : public ProcessGroup {
 
  private:
   using Clock = std::chrono::steady_clock;
-  // What a job has come to.
+  // Results of a job, in pieces.
   struct Results {
     std::vector<std::optional<SharedWork::Bytes>> pieces;
     size_t missing = 1;
@@ -57,16 +59,16 @@ class Follower final : public ProcessGroup {
   std::function<void()> forsaken_;
   StopFlag stop_ = false;
   std::atomic<const StopFlag*> asked_ = nullptr;
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards everything below
   std::condition_variable news_;
-  uint64_t number_ = 0;  // of the job
+  uint64_t number_ = 0;  // of the current job
   std::deque<Message> leases_;
   std::map<uint64_t, Results> results_;
   struct {
     bool is_over = false, has_halted = false, is_waiting = false;
     Clock::time_point heard_at = Clock::now(), asked_at;
   } talk_;
-  MessageTransport transport_;  // last: it uses all the others
+  MessageTransport transport_;  // last: it uses all other members
 };
 
 }  // namespace troffer

@@ -1,5 +1,6 @@
-// What shared work took, written down job by job, so that it can be told what more processes would
-// gain (experiments/mpi).
+// Log of the cost of shared work per job, one line of JSON each, to predict the gain of more
+// processes (experiments/mpi). Rank 0 writes it if TROFFER_MPI_JOURNAL names a file. Times are in
+// seconds, sizes in bytes.
 #pragma once
 
 #include <cstddef>
@@ -9,28 +10,29 @@
 
 namespace troffer {
 
-// Of the calling thread, of the processor: other programs on the machine do not count.
+// Returns the processor time of the calling thread in seconds. Other programs on the machine do not
+// affect it.
 double thread_seconds();
 
-// Seconds are the processor's but for wall_seconds.
+// Cost of one job. Times are processor seconds, except wall_seconds.
 struct JobRecord {
   size_t items = 0;
   bool is_for_all = false;
-  double seconds_before = 0;  // since the last job, of the thread that calls for work
+  double seconds_before = 0;  // of the calling thread, since the last job
   double wall_seconds = 0;
-  // Rank 0's, for letters.
+  // Rank 0's time for messages.
   double message_seconds = 0;
   size_t messages = 0;
   size_t brief_bytes = 0, answer_bytes = 0;  // sent with leases and answers
-  size_t sent_bytes = 0;                     // to all, once it was over
-  std::vector<float> item_seconds;           // of each item, by whoever did it first
+  size_t sent_bytes = 0;                     // sent to all processes after the job
+  std::vector<float> item_seconds;           // per item, of the first process that did it
 };
 
 class Journal {
  public:
-  // Throws EnvironmentError where the file cannot be written.
+  // Throws EnvironmentError if the file cannot be written.
   explicit Journal(const std::string& file);
-  // One line of JSON.
+  // Writes one line of JSON.
   void add(const JobRecord& job);
 
  private:

@@ -14,12 +14,12 @@ using namespace std::chrono_literals;
 
 constexpr size_t piece_size = size_t(8) << 20;
 constexpr auto alive_interval = 10s;
-// An item is late after so many times what others took, and not before.
+// Factor on the usual time after which an item is late, and its minimum.
 constexpr double late_by = 4, least_late = 0.25;  // seconds
 constexpr auto late_interval = 10ms;
-constexpr double first_late = 10;   // … where none has come back yet
-constexpr auto time_for_tree = 2s;  // before somebody is told directly
-constexpr auto time_for_byes = 3s;  // of who may have died
+constexpr double first_late = 10;   // until a first answer has arrived
+constexpr auto time_for_tree = 2s;  // before a process gets results directly
+constexpr auto time_for_byes = 3s;  // for processes that may have died
 
 }  // namespace
 
@@ -39,7 +39,7 @@ Leader::~Leader() {
   stop_ = true;
   send_all({MessageKind::end, 0, 0, 0});
   {
-    // All have to know before this process goes: what is still to be sent goes with it.
+    // All must know before this process exits, because unsent messages are lost with it.
     std::unique_lock lock(mutex_);
     news_.wait_for(lock, time_for_byes, [&] { return others_.byes + 1 == size_; });
   }
@@ -86,7 +86,7 @@ void Leader::receive(Message&& l) {
   news_.notify_all();
 }
 
-// The first answer counts. Others work on meanwhile.
+// Takes a result; the first answer counts. Loads it without the lock, so that others keep working.
 void Leader::on_done(const Message& l, const MessageHeader& h) {
   const SharedWork* work = nullptr;
   double start = 0;
@@ -115,7 +115,7 @@ void Leader::on_done(const Message& l, const MessageHeader& h) {
   news_.notify_all();
 }
 
-// With the lock held.
+// Precondition: the lock is held.
 void Leader::on_ask(int from, uint64_t job) {
   const auto t = sent_.find(job);
   if (t == sent_.end() || Clock::now() - t->second.at < time_for_tree) return;
@@ -144,7 +144,7 @@ void Leader::tick() {
   if (job_ && !is_ending_.load()) hand_out();
 }
 
-// With the lock held, as all that follows up to work_on().
+// Precondition here and in all functions down to warn_of_gone(), except begin(): the lock is held.
 void Leader::hand_out() {
   for (size_t left = wanting_.size(); left > 0; --left) {
     const int to = wanting_.front();
@@ -163,7 +163,7 @@ void Leader::hand_out() {
   }
 }
 
-// For a process to do; it counts as having it.
+// Returns the next item for a process and records the process as its holder.
 std::optional<size_t> Leader::next_item(int rank) {
   if (others_.is_gone[size_t(rank)]) return std::nullopt;
   Job& j = *job_;
@@ -180,13 +180,13 @@ std::optional<size_t> Leader::next_item(int rank) {
   return found;
 }
 
-// One that somebody else should have done by now.
+// Returns an item that another process should have finished.
 std::optional<size_t> Leader::late_item(int rank) {
   Job& j = *job_;
   if (j.done == j.order.size()) return std::nullopt;
   if (j.late.empty()) look_for_late();
   if (j.late.empty()) return std::nullopt;
-  // Nobody works on the same item twice at a time.
+  // A process never works twice on the same item.
   const std::vector<int>& holders = j.items[j.late.front()].holders;
   if (std::find(holders.begin(), holders.end(), rank) != holders.end()) return std::nullopt;
   const size_t found = j.late.front();
@@ -205,7 +205,7 @@ void Leader::look_for_late() {
   for (const size_t i : j.order) {
     const Item& item = j.items[i];
     if (item.is_done || item.is_mine) continue;
-    // Each time longer.
+    // Doubles the limit with each holder.
     const double allowed = usual * double(1 << std::min<size_t>(item.holders.size() - 1, 10));
     if (others_.is_gone[size_t(item.holders.back())] ||
         std::chrono::duration<double>(now - item.leased_at).count() > allowed)
@@ -234,7 +234,8 @@ void Leader::begin(const SharedWork& work) {
   warn_of_gone();
 }
 
-// By words of its own: what all say, rank 0 has said by now.
+// Warns of processes that left, with the reason they gave. Rank 0 has already printed messages
+// common to all.
 void Leader::warn_of_gone() {
   for (size_t r = 1; r < others_.last_words.size(); ++r) {
     std::string& words = others_.last_words[r];
@@ -243,7 +244,7 @@ void Leader::warn_of_gone() {
   }
 }
 
-// One thread of this process. False where it was broken off.
+// Work of one thread of this process. Returns false if the job was aborted.
 bool Leader::work_on(size_t slot, const StopFlag& stop) {
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -276,7 +277,7 @@ bool Leader::work_on(size_t slot, const StopFlag& stop) {
 
 bool Leader::share(const SharedWork& work, const StopFlag& stop) {
   begin(work);
-  struct Closing {  // whatever is thrown
+  struct Closing {  // even if an exception is thrown
     Leader& l;
     ~Closing() {
       std::unique_lock lock(l.mutex_);
@@ -341,7 +342,7 @@ SharedWork::Bytes Leader::joined_results() {
   return all;
 }
 
-// To all, in pieces, each of which goes on as soon as it has come.
+// Sends results to all in pieces; each piece is forwarded as soon as it arrives.
 void Leader::publish(const SharedWork::Bytes& bytes) {
   const std::lock_guard lock(mutex_);
   Sent& told = sent_[number_];
@@ -358,7 +359,7 @@ void Leader::publish(const SharedWork::Bytes& bytes) {
   forget_sent();
 }
 
-// What everybody has: who is at a later job.
+// Forgets results that every process has: those of jobs before the earliest current one.
 void Leader::forget_sent() {
   uint64_t first = number_;
   for (size_t r = 1; r < others_.entered.size(); ++r)

@@ -1,10 +1,10 @@
-// Rank 0: hands out items of work, one by one, to whoever is free, and takes part itself; then
-// tells all what came of them.
+// Rank 0: hands out items of work one by one to free processes, works itself, and then sends the
+// results to all. Used by troffer-mpi.
 //
-// Whoever dies costs no more than what it had under way: when nothing else is left to hand out,
-// items that take much longer than others are handed out again. All come to the same, so the first
-// answer counts. What all are to know goes from process to process along a binomial tree, and
-// directly to those who ask because it has not come.
+// A process that dies loses only the items it was working on. When nothing else is left, items that
+// take much longer than usual are handed out again. All processes compute the same result, so the
+// first answer counts. Results that all need travel along a binomial tree (tree.h), and directly to
+// processes that report them missing.
 #pragma once
 
 #include <chrono>
@@ -25,15 +25,15 @@
 
 namespace troffer {
 
-// Seventeen members: the work, those who do it, and what was said to them.
+// Seventeen members: the work, the processes that do it, and the messages sent to them.
 class Leader final : public ProcessGroup {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  // The post must outlive this. warn: that somebody left; once there is work for all.
+  // `post` must outlive the leader. warn: called when a process leaves, once there is work for all.
   // journal: may be null.
   Leader(Post& post, int usual_threads, Warn warn, std::unique_ptr<Journal> journal = nullptr);
-  ~Leader() override;  // tells all that it is over
+  ~Leader() override;  // tells all processes that the run is over
 
   int rank() const override { return 0; }
   int size() const override { return size_; }
@@ -48,19 +48,19 @@ class Leader final : public ProcessGroup {
   using Clock = std::chrono::steady_clock;
   struct Item {
     bool is_done = false, is_mine = false;
-    std::vector<int> holders;  // processes that have been given it
+    std::vector<int> holders;  // processes that were given it
     Clock::time_point leased_at;
   };
   struct Job {
     const SharedWork* work = nullptr;
     std::vector<size_t> order;
-    size_t next = 0, done = 0;  // of the order
+    size_t next = 0, done = 0;  // positions in `order`
     std::vector<Item> items;
-    std::vector<SharedWork::Bytes> results;  // of items, where all are to know
-    double seconds = 0;                      // from leases to answers
+    std::vector<SharedWork::Bytes> results;  // per item, if all processes need them
+    double seconds = 0;                      // sum of times from lease to answer
     size_t answers = 0;
-    std::deque<size_t> late;    // items that somebody else should have done by now
-    Clock::time_point late_at;  // when that was last looked at
+    std::deque<size_t> late;    // items that another process should have finished
+    Clock::time_point late_at;  // time of the last search for late items
     bool is_broken_off = false, is_loading = false;
     Clock::time_point begun = Clock::now();
     JobRecord record;
@@ -68,12 +68,12 @@ class Leader final : public ProcessGroup {
   struct Sent {
     std::vector<Post::Bytes> pieces;
     Clock::time_point at;
-    std::vector<bool> repeated;  // to each process
+    std::vector<bool> repeated;  // per process
   };
-  // What is known of each process.
+  // State of each process.
   struct Others {
     explicit Others(size_t n) : entered(n, 0), early(n, 0), is_gone(n, false), last_words(n) {}
-    std::vector<uint64_t> entered;  // the job it is at
+    std::vector<uint64_t> entered;  // its current job
     std::vector<uint32_t> early;    // items wanted of a job that has not begun
     std::vector<bool> is_gone;
     std::vector<std::string> last_words;
@@ -100,22 +100,22 @@ class Leader final : public ProcessGroup {
   const int size_, usual_threads_;
   Warn warn_;
   std::unique_ptr<Journal> journal_;
-  double last_end_ = 0;  // of a job: thread_seconds() of who calls for work
+  double last_end_ = 0;  // end of the last job, in thread_seconds() of the caller
   StopFlag stop_ = false;
   std::atomic<const StopFlag*> asked_ = nullptr;
-  std::atomic<bool> is_ending_ = false;  // for that, or because time is over
-  std::mutex mutex_;                     // of all below
+  std::atomic<bool> is_ending_ = false;  // stop requested, or out of time
+  std::mutex mutex_;                     // guards everything below
   std::condition_variable news_;
-  uint64_t number_ = 0;  // of the job
+  uint64_t number_ = 0;  // of the current job
   std::optional<Job> job_;
-  std::deque<int> wanting_;  // a process for each item that it wants
+  std::deque<int> wanting_;  // one entry per requested item: the process
   Others others_;
   std::map<uint64_t, Sent> sent_;
   struct {
-    bool has_stopped = false;  // all were told to
+    bool has_stopped = false;  // all processes were told to stop
     Clock::time_point last_alive;
   } said_;
-  MessageTransport transport_;  // last: it uses all the others
+  MessageTransport transport_;  // last: it uses all other members
 };
 
 }  // namespace troffer

@@ -1,4 +1,4 @@
-// troffer-mpi: the program as one of several processes that make a picture together.
+// troffer-mpi: the program as one of several processes that render a picture together.
 #include <fmt/format.h>
 #include <sched.h>
 #include <unistd.h>
@@ -17,14 +17,14 @@
 
 namespace {
 
-constexpr double patience = 120;  // seconds without a word from rank 0
+constexpr double patience = 120;  // seconds without a message from rank 0
 
 [[noreturn]] void is_forsaken() {
   fmt::print(stderr, "error: nothing has been heard of process 0 for {} s\n", patience);
   _exit(troffer::exit_bad_input);
 }
 
-// Those of another MPI, each of which would believe to be alone.
+// True if another MPI started several processes, each of which would believe it is alone.
 bool has_other_launcher() {
   const char* size = std::getenv("PMI_SIZE");
   return size != nullptr && std::atoi(size) > 1;
@@ -37,8 +37,8 @@ int run_alone(int argc, char** argv) {
   return troffer::exit_usage;
 }
 
-// So that all processes on this machine together have the cores that they may use. They are taken
-// to be bound to as many cores each, side by side or all to the same: nobody is asked.
+// Returns a thread count with which all processes on this machine share its cores. Assumes that
+// each process is bound to the same number of cores, either all disjoint or all the same.
 int usual_threads() {
   cpu_set_t own;
   CPU_ZERO(&own);

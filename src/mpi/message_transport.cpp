@@ -8,11 +8,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// MPI has no waiting but the busy kind. Items of work take milliseconds, and the next ones are
-// there before.
+// MPI can only poll. Items take milliseconds and the next ones are requested ahead, so short sleeps
+// do no harm.
 constexpr auto short_sleep = 100us, long_sleep = 500us;
 constexpr int short_sleeps = 50;
-constexpr auto patience_at_end = 5s;  // with letters to who may have died
+constexpr auto patience_at_end = 5s;  // for messages to processes that may have died
 
 }  // namespace
 

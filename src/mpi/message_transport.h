@@ -1,4 +1,5 @@
-// The one thread of a process that sends and receives.
+// The one thread of a process that sends and receives messages. Leader and Follower each own one.
+// It polls, because MPI offers no blocking wait that does not use a processor.
 #pragma once
 
 #include <functional>
@@ -13,8 +14,7 @@ namespace troffer {
 
 class MessageTransport {
  public:
-  // Both are called by the thread: for each letter, and again and again, at most a millisecond
-  // apart.
+  // Callbacks of that thread: for each message, and at least every millisecond.
   using Receive = std::function<void(Message&&)>;
   using Tick = std::function<void()>;
 
@@ -23,9 +23,9 @@ class MessageTransport {
   MessageTransport(const MessageTransport&) = delete;
   MessageTransport& operator=(const MessageTransport&) = delete;
 
-  // By any thread.
+  // Sends a message; callable from any thread.
   void send(int to, Post::Bytes bytes);
-  // Sends what is left, and ends the thread.
+  // Sends the remaining messages and ends the thread.
   void end();
 
  private:
@@ -38,7 +38,7 @@ class MessageTransport {
   std::mutex mutex_;
   std::vector<std::pair<int, Post::Bytes>> waiting_;
   bool is_ending_ = false;
-  std::thread thread_;  // last: it uses all the others
+  std::thread thread_;  // last: it uses all other members
 };
 
 }  // namespace troffer

@@ -1,4 +1,5 @@
-// What processes tell each other (leader.h, follower.h).
+// Messages between processes: their kinds, header and layout. Leader (leader.h) and Follower
+// (follower.h) exchange them through a Post. Headers are in native byte order.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +13,21 @@
 namespace troffer {
 
 enum class MessageKind : uint32_t {
-  // To rank 0.
-  want,  // of job `job`, `count` items more
-  done,  // item `item` of it, by what follows; one item more is wanted. count: the bits of a float,
-         // seconds of the processor
-  ask,   // results of the job have not come
-  left,  // the process takes no part any more, for the reason that follows
-  halt,  // the process was asked to stop: all should
-  bye,   // it knows that nothing more will come
-  // From rank 0.
-  lease,   // item `item` is to be done; what is to be known for it follows
-  result,  // piece `item` of `count` of what the job has come to
-  repeat,  // … that nobody else is to be told by way of this process
-  stop,    // work is to end
-  end,     // nothing more will come
+  // To rank 0:
+  want,  // requests `count` more items of job `job`
+  // result of item `item` follows and another item is wanted; count: bits of a float, processor
+  // seconds
+  done,
+  ask,   // results of the job have not arrived
+  left,  // the process stops working; the reason follows
+  halt,  // the process was asked to stop; all should stop
+  bye,   // confirms `end`
+  // From rank 0:
+  lease,   // item `item` is to be done; its input follows
+  result,  // piece `item` of `count` of the job's result; to be forwarded
+  repeat,  // same, but not to be forwarded
+  stop,    // work is to stop
+  end,     // last message of the run
   alive
 };
 

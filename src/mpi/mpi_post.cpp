@@ -20,13 +20,13 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr int tag = 0;
-constexpr size_t large = 4096;          // bytes: more than MPI sends unasked
-constexpr auto usual_journey = 1000ms;  // what takes longer may be for the dead
+constexpr size_t large = 4096;          // bytes; larger messages need a handshake in MPI
+constexpr auto usual_journey = 1000ms;  // slower messages may be addressed to a dead process
 constexpr auto time_to_finish = 10s;
 
-// Settings of Open MPI, unless the user has chosen. Letters say when all is done, and its own
-// waiting for all at the end can last for ever where one has died. To copy from process to process
-// in one go is forbidden in many containers, and then each letter costs a line on stderr.
+// Sets defaults of Open MPI unless the user chose others. Our messages say when everything is done,
+// and Open MPI's own barrier at the end can hang if a process died. Many containers forbid
+// single-copy transfers between processes, and then each message would print a line on stderr.
 void prepare() {
   setenv("OMPI_MCA_async_mpi_finalize", "1", 0);
   setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
@@ -73,7 +73,7 @@ MpiPost::~MpiPost() {
   close(EXIT_FAILURE);
 }
 
-// Letters to who is dead never arrive.
+// Drops messages to dead processes, which never arrive.
 void MpiPost::close(int status) {
   if (is_closed_) return;
   is_closed_ = true;

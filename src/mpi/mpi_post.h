@@ -1,4 +1,5 @@
-// Letters by MPI: the only place that calls it.
+// Post (post.h) over MPI; no other code calls MPI. troffer-mpi makes one per process. Messages are
+// non-blocking; messages to dead processes are dropped.
 #pragma once
 
 #include <memory>
@@ -9,12 +10,12 @@ namespace troffer {
 
 class MpiPost final : public Post {
  public:
-  // Between MPI_Init and MPI_Finalize, once in a program. Throws EnvironmentError where MPI cannot
-  // be called from a thread of the program's own.
+  // Calls MPI_Init; make one per program. Throws EnvironmentError if this MPI does not support
+  // calls from a thread of the program.
   MpiPost(int& argc, char**& argv);
   ~MpiPost() override;
-  // Ends MPI; nothing is sent or received after it. Where MPI does not come to an end because
-  // somebody died, the program does, with this status.
+  // Calls MPI_Finalize; nothing is sent or received afterwards. If that hangs because a process
+  // died, the program exits with this status.
   void close(int status);
   MpiPost(const MpiPost&) = delete;
   MpiPost& operator=(const MpiPost&) = delete;

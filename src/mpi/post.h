@@ -1,5 +1,6 @@
-// How letters get from process to process: a few functions, so that the schedule can be tested
-// without MPI.
+// Transport of messages between processes: a small interface, so that the scheduling can be tested
+// without MPI. MpiPost implements it with MPI; tests implement it with threads
+// (tests/mpi/office.h).
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,8 @@ struct Message {
   std::vector<uint8_t> bytes;
 };
 
-// Letters between two processes may overtake each other; of one that has died none come, and what
-// is sent to it is lost.
+// Messages between two processes may overtake each other. A dead process sends none, and messages
+// to it are lost.
 class Post {
  public:
   using Bytes = std::shared_ptr<const std::vector<uint8_t>>;
@@ -23,10 +24,10 @@ class Post {
   virtual ~Post() = default;
   virtual int rank() const = 0;
   virtual int size() const = 0;
-  // By one thread at a time. None of them waits.
+  // Called by one thread at a time. No function blocks.
   virtual std::optional<Message> receive() = 0;
   virtual void send(int to, Bytes bytes) = 0;
-  // Something large is on its way, and gets on whenever this is called.
+  // True while a large message is under way; calling it drives the transfer.
   virtual bool is_moving() = 0;
 };
 

@@ -1,11 +1,12 @@
-// The binomial tree along which news goes from rank 0 to all.
+// Binomial tree along which rank 0 sends results to all processes. Leader and Follower forward
+// result messages to their children. A message reaches all n processes after about log2(n) steps.
 #pragma once
 
 #include <vector>
 
 namespace troffer {
 
-// Of a process, the farthest first: those have most to pass on.
+// Returns the children of a process, those with the most descendants first.
 inline std::vector<int> children_of(int rank, int size) {
   std::vector<int> children;
   int step = 1;

@@ -8,7 +8,8 @@ namespace troffer {
 
 OpenShare open_share(double share, double rays, bool is_closed) {
   if (is_closed) return {0, 0};
-  // Of a few rays none may leave by chance: the variance is that of one more each way.
+  // Laplace's rule: with few rays, none may leave by chance. The variance is that of two more rays,
+  // one of which leaves.
   const double n = rays + 2, p = (share * rays + 1) / n;
   return {share, 3 * std::sqrt(p * (1 - p) / n)};
 }
@@ -22,7 +23,7 @@ Closure close_shot(std::span<const float> powers, double sum, double sent, const
   c.arrived = std::clamp(sum, std::min(least, (1 + most_closure_scale) * sum), most);
   c.scale = c.arrived / sum;
   if (sum <= (1 + most_closure_scale) * most) return c;
-  // The cap at which the sum is right, by halving; the scale makes up for what is left.
+  // Bisects for the cap at which the sum is right; the scale corrects the remainder.
   double low = 0, high = sent, capped = 0;
   for (int step = 0; step < 24; ++step) {
     const double cap = 0.5 * (low + high);

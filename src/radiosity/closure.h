@@ -1,36 +1,38 @@
-// Conservation of energy for one shot: what arrives is what was sent less what leaves the scene.
+// Energy conservation for one shot: the power that arrives is the power sent minus the power that
+// leaves the scene. LightShots and the solver use it.
 //
-// Irradiance at a sample point is right for that place; times the element's area it is only a
-// quadrature of what the element receives, off where elements are large for their distance to the
-// shooter, and several times too much where surfaces lie in or nearly in one place, so that each of
-// them receives what only the first one can. So the power that is passed on (not the irradiance
-// that is stored) is corrected shot by shot: never more arrives than is sent, whatever the scene.
+// The irradiance at a sample point is right for that point, but irradiance times element area is
+// only a quadrature of the power received. It is inaccurate where elements are large relative to
+// their distance from the shooter. It is several times too large where surfaces coincide or nearly
+// coincide, because each of them receives what only the first one can. The power that is passed on
+// is therefore corrected per shot, so that never more arrives than is sent. The stored irradiance
+// is not corrected.
 #pragma once
 
 #include <span>
 
 namespace troffer {
 
-// Share of what a shooter sends that leaves the scene, and how sure that is.
+// Share of a shooter's power that leaves the scene, with its uncertainty.
 struct OpenShare {
   double share = 0;
   double error = 0;  // three standard errors
 };
-// Of `rays` rays (spread like the light) the share `share` left. Scenes that no ray leaves anywhere
-// are closed: there the share is known.
+// Returns the open share if the share `share` of `rays` rays, distributed like the light, left the
+// scene. In a closed scene, which no ray leaves, the share is exactly 0.
 OpenShare open_share(double share, double rays, bool is_closed);
 
-// What to count of a point's power: min(power, cap) * scale.
+// Correction of a point's power: min(power, cap) * scale.
 struct Closure {
   double cap = 0, scale = 1;
-  double arrived = 0;  // the sum of what is counted
+  double arrived = 0;  // sum of the corrected powers
   float of(float power) const {
     return power > 0 ? float((double(power) < cap ? double(power) : cap) * scale) : 0.0f;
   }
 };
-// powers: what the points received, >= 0; `sum` of them. Up to `most_scale` all points are
-// corrected alike; a larger excess is taken from those that got most, and what is missing beyond it
-// stays missing.
+// Computes the correction for `powers` (received by the points, >= 0) and their `sum`. Up to a
+// relative error of `most_closure_scale` all points are scaled alike. A larger excess is taken from
+// the points that received most. A larger deficit is corrected only up to that limit.
 constexpr double most_closure_scale = 0.3;
 Closure close_shot(std::span<const float> powers, double sum, double sent, const OpenShare& open);
 

@@ -24,8 +24,8 @@ Box box_of(const BaseGeometry& g, const BaseTriangle& t) {
   return b;
 }
 
-// Cell and nearest signed axis of the normal, hashed: a chance collision joins what is apart, which
-// costs accuracy and nothing else.
+// Hash of the grid cell and the nearest signed axis of the normal. A collision joins triangles that
+// are far apart, which costs only accuracy.
 uint64_t loose_key(const BaseGeometry& g, const BaseTriangle& t, uint32_t group, double size) {
   const Vec3 c = box_of(g, t).centre(), n = unit_normal(g, t), a = abs(n);
   const size_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;

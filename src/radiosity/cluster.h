@@ -1,4 +1,5 @@
-// Joining of small triangles: adjacent ones of the same surface that are nearly coplanar.
+// Joins small adjacent triangles of one surface that are nearly coplanar. plan_joining() uses it to
+// make sheets and elements of bounded number. Sizes are in metres.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,12 @@ namespace troffer {
 
 constexpr uint32_t no_cluster = 0xffffffffu;
 
-// Up to two neighbours at each edge. Where more than two triangles share an edge each knows the
-// next ones only, so that flooding stays linear on any mesh.
+// Up to two neighbours across each edge. If more triangles share an edge, each one knows only the
+// previous and the next, so that flood fill stays linear on any mesh.
 class Adjacency {
  public:
   explicit Adjacency(const BaseGeometry& geometry);
-  // Six slots per triangle, no_cluster where empty.
+  // Six slots per triangle; no_cluster where empty.
   const uint32_t* neighbours(uint32_t triangle) const { return &neighbours_[6ull * triangle]; }
 
  private:
@@ -23,14 +24,14 @@ class Adjacency {
 };
 
 struct JoinLimits {
-  double size = 0;        // metres: diagonal of a cluster's box
-  double cos_angle = 1;   // of a triangle's normal to the first one's
-  bool is_loose = false;  // do not ask for adjacency: same surface, same grid cell of `size`, same
-                          // nearest axis of the normal
+  double size = 0;       // metres: diagonal of a cluster's box
+  double cos_angle = 1;  // between a triangle's normal and that of the first triangle
+  // join without adjacency: same surface, grid cell and nearest axis of the normal
+  bool is_loose = false;
 };
 
-// Label per triangle, 0 … count - 1 in order of first triangles; no_cluster where `candidate` is 0.
-// Only triangles of equal `group` are joined.
+// Label per triangle, 0 to count - 1 in order of first triangles; no_cluster where `candidate` is
+// 0. Joins only triangles of equal `group`.
 struct Clusters {
   std::vector<uint32_t> label;
   uint32_t count = 0;

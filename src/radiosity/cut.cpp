@@ -1,4 +1,4 @@
-// Sheets, elements and fragments (meshing.h).
+// Cuts triangles into sheets, elements and fragments (meshing.h).
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace troffer {
 namespace {
 
 constexpr uint32_t no_sheet = 0xffffffffu;
-constexpr int max_depth = 60;  // of cutting: edges halve at every other step at least
+constexpr int max_depth = 60;  // limit on bisections; every second one at least halves the edges
 
 using Corners = std::array<uint32_t, 3>;
 
@@ -39,7 +39,7 @@ class Cutter {
   std::vector<uint32_t>& sheet_surface() { return sheet_surface_; }
 
  private:
-  // Round surfaces shoot from their fragments, flat ones from pieces as large as can be.
+  // Round surfaces shoot from their fragments, flat ones from the largest possible pieces.
   void begin_piece(uint32_t sheet, const Corners& corners) {
     if (!is_round_) sheet_pieces_[sheet].push_back(corners);
     sheet_surface_[sheet] = surface_;
@@ -86,7 +86,7 @@ class Cutter {
   bool is_round_ = false;
 };
 
-// Convex hull, counterclockwise, without points on its edges (Andrew's monotone chain).
+// Returns the convex hull, counterclockwise, without collinear points (Andrew's monotone chain).
 std::vector<Vec2d> convex_hull(std::vector<Vec2d> p) {
   std::sort(p.begin(), p.end(),
             [](const Vec2d& a, const Vec2d& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
@@ -113,7 +113,7 @@ Vec3d twice_area_vector(const std::vector<Vec3>& v, const Corners& c) {
   return cross(Vec3d(v[c[1]]) - a, Vec3d(v[c[2]]) - a);
 }
 
-// The one convex polygon that flat pieces make together; empty where they do not.
+// Returns the convex polygon that flat pieces form together; empty if they form none.
 std::vector<Vec3> joined_polygon(const std::vector<Vec3>& v, const std::vector<Corners>& pieces) {
   constexpr size_t max_corners = 12;
   Vec3d sum;
@@ -136,7 +136,7 @@ std::vector<Vec3> joined_polygon(const std::vector<Vec3>& v, const std::vector<C
   }
   const std::vector<Vec2d> hull = convex_hull(std::move(points));
   if (hull.size() < 3 || hull.size() > max_corners) return {};
-  double hull_area = 0;  // twice
+  double hull_area = 0;  // twice the area
   std::vector<Vec3> out;
   for (size_t i = 0; i < hull.size(); ++i) {
     const Vec2d a = hull[i], b = hull[(i + 1) % hull.size()];

@@ -1,4 +1,5 @@
-// Elements of a cut mesh: the fragments that they are made of, their areas and middles.
+// Elements of a cut mesh: their fragments, areas and centroids. make_points() uses them to place
+// sample points. Areas are in m², positions in world space.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +12,20 @@ namespace troffer {
 struct ElementInfo {
   double area = 0;
   Vec3d centroid;
-  uint32_t first = 0, last = 0;  // in `order`
-  uint32_t fragment = 0;         // the one that holds the sample point
+  uint32_t first = 0, last = 0;  // range in `order`
+  uint32_t fragment = 0;         // fragment with the sample point
 };
 
 struct Elements {
   std::vector<ElementInfo> infos;
-  std::vector<uint32_t> order;          // fragments by element
-  std::vector<double> area;             // of fragments; round surfaces' flat ones scaled up
-  std::vector<uint32_t> base_triangle;  // of fragments
+  std::vector<uint32_t> order;  // fragments, grouped by element
+  // per fragment; fragments of round surfaces are scaled to the true area
+  std::vector<double> area;
+  std::vector<uint32_t> base_triangle;  // per fragment
 };
 Elements gather_elements(const Scene& scene, const RadiosityMesh& mesh);
 
-// Of a fragment's corners.
+// Returns the centroid of a fragment.
 Vec3d middle(const RadiosityMesh& mesh, uint32_t fragment);
 
 }  // namespace troffer

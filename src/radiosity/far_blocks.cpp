@@ -12,20 +12,20 @@ namespace troffer {
 namespace {
 
 constexpr uint32_t purpose_far = 4;
-// Points that together get no more than this, in tolerances of one transfer, share a ray.
+// Points that together receive at most this, in tolerances of one transfer, share a ray.
 constexpr float rays_share = 1;
-constexpr int unanimous_rays = 8;  // of a block: then it is settled
+constexpr int unanimous_rays = 8;  // rays of a block that must agree to settle it
 
-// Neighbouring points are spread over the cells: steps of the golden ratio.
+// Golden-ratio steps distribute neighbouring points over the cells.
 double first_number(uint64_t start, uint32_t point) {
   const uint64_t phase = start + uint64_t(point) * 0x9e3779b97f4a7c15ull;
   return double(phase >> 11) * 0x1p-53;
 }
 
-// By a number in [0,1), of which what is left, in [0,1) again, comes back.
+// Chooses a cell by x in [0,1), proportional to the power sent. Remaps x to [0,1) for reuse.
 size_t choose_cell(const std::vector<double>& sent, double& x) {
   x *= sent.back();
-  size_t i = 0;  // without branches that nothing could foresee
+  size_t i = 0;  // branch-free: the branches would be unpredictable
   for (size_t k = 0; k + 1 < sent.size(); ++k) i += sent[k] <= x ? 1 : 0;
   const double before = i > 0 ? sent[i - 1] : 0.0, width = sent[i] - before;
   x = width > 0 ? std::clamp((x - before) / width, 0.0, double(one_minus_epsilon)) : 0.0;
@@ -63,7 +63,8 @@ void FarBlocks::start(size_t block) {
 }
 
 bool FarBlocks::start_weak(size_t block) {
-  constexpr float cells_may_err = 2;  // by this factor, from one of their radii on
+  // error factor of the cells' irradiance beyond one cell radius
+  constexpr float cells_may_err = 2;
   const ReceiverBlock& b = row_->receivers.blocks[block];
   if (is_near(row_->shooter, b, 1)) return false;
   Block f;
@@ -112,14 +113,14 @@ void FarBlocks::add_ray(uint32_t index, uint8_t first, uint8_t last, int k) {
   p.hash = h;
 }
 
-// To a cell chosen by what it sends now, so that what is seen is the light, not the area: before
-// the dark end of a patch that something hides there, its bright end is whole.
+// Chooses a cell by the power that it sends, so that visibility is that of the light and not of the
+// area. An occluder at the dark end of a patch then does not reduce the light of its bright end.
 void FarBlocks::aim(Purpose& p) const {
   const Block& f = blocks_[p.block];
   const uint32_t first_point = row_->receivers.blocks[f.block].first_point;
   p.u = {float(p.hash & 0xffffff) * 0x1p-24f, float(p.hash >> 24 & 0xffffff) * 0x1p-24f};
   double x = first_number(phase_, first_point + p.first);
-  if (f.wanted > 1) {  // a point's own rays are stratified
+  if (f.wanted > 1) {  // rays of one point are stratified
     p.u = SobolGroup(row_->shooter.stream + mix64(first_point + p.point), purpose_far, p.k).get2();
     x = double(p.u.x);
   }
@@ -127,7 +128,7 @@ void FarBlocks::aim(Purpose& p) const {
   if (f.wanted > 1) p.u.x = float(x);
 }
 
-// Appends to ray_list_; false where the point and no cell see each other.
+// Appends a ray to ray_list_. Returns false if the point and all cells face away from each other.
 bool FarBlocks::find_ray(Purpose& p) {
   const size_t slot = row_->receivers.blocks[blocks_[p.block].block].first_slot + p.point;
   const Vec3 from = row_->receivers.position(slot), normal = row_->receivers.normal(slot);
@@ -215,7 +216,7 @@ void FarBlocks::settle(const Block& f, size_t first_block, RowChunk& out) const 
     all += f.all[i];
     visible += f.visible[i];
   }
-  if (!(all > 0)) return;  // no place on the patch and above the horizon was found
+  if (!(all > 0)) return;  // no cell faces the points
   view = BlockView::partly;
   out.first[f.block - first_block] = uint16_t(out.visible.size());
   for (uint32_t i = 0; i < b.count; ++i) {

@@ -1,5 +1,6 @@
-// Blocks of receivers far from a patch: what of its cells they see, all, nothing or a share per
-// point, by rays that all blocks of a chunk cast together.
+// Visibility between a patch and distant blocks of receivers. The patch is represented by its
+// cells. A block sees all, nothing, or a share per point; the rays of a chunk's blocks are traced
+// together.
 #pragma once
 
 #include "radiosity/patch_row.h"
@@ -8,13 +9,14 @@ namespace troffer {
 
 class FarBlocks {
  public:
-  // For a patch's row; its memory serves one after the other.
+  // Starts a patch's row. Buffers are reused from row to row.
   void begin(const RowContext& row);
   void start(size_t block);
-  // The same for a block near to the patch; false, with nothing done, where it is so near that
-  // cells say little, or gets so much that their error would show.
+  // Starts a block near the patch. Returns false and does nothing if the block is so near, or so
+  // bright, that the error of the cells would show.
   bool start_weak(size_t block);
-  // Of all blocks that were started. first_block: the chunk's.
+  // Traces the rays of all started blocks and writes the result. first_block: the chunk's first
+  // block.
   void finish(size_t first_block, RowChunk& out);
   uint64_t rays() const { return rays_; }
 
@@ -25,16 +27,16 @@ class FarBlocks {
     float irradiance[ReceiverBlock::most_points];  // luminance
     float all[ReceiverBlock::most_points] = {}, visible[ReceiverBlock::most_points] = {};
   };
-  // What a ray is cast for: the points [first, last) of a block.
+  // Target of one ray: it stands for the points [first, last) of a block.
   struct Purpose {
     uint32_t block;
-    uint8_t first, last, point, k;  // of its block: whose place it starts from; a point's k-th
-    uint32_t cell;                  // to which …
-    Vec2 u;                         // … and to where on it
+    uint8_t first, last, point, k;  // point: the ray's origin in the block; k: index of the ray
+    uint32_t cell;                  // target cell
+    Vec2 u;                         // position on the cell
     uint64_t hash;
     float weight;
   };
-  // What the points of the block get; returns the most.
+  // Computes the unoccluded irradiance of the block's points; returns the maximum.
   float find_irradiance(Block& f) const;
   void add(const Block& f);
   static bool is_unanimous(const Block& f, uint32_t count, bool& is_lit);
@@ -46,11 +48,11 @@ class FarBlocks {
   void note_seen(const Block& f, uint32_t i, float share) const;
 
   const RowContext* row_ = nullptr;
-  uint64_t phase_ = 0;  // where numbers that are spread over neighbouring points start
+  uint64_t phase_ = 0;  // start of the golden-ratio sequence over neighbouring points
   uint64_t rays_ = 0;
   std::vector<Block> blocks_;
   std::vector<Ray> ray_list_;
-  std::vector<Purpose> purposes_;  // of ray_list_
+  std::vector<Purpose> purposes_;  // per ray of ray_list_
   std::vector<uint8_t> occluded_;
   PaneFactors factors_;
 };

@@ -19,9 +19,9 @@ constexpr float by_area_from_radii = 1.4f;
 constexpr int least_disc_points = 8;
 constexpr uint32_t purpose_visibility = 1;
 
-// Irradiance at x per unit radiance: the exact term, or the piece's middle for all of it where it
-// is far and wholly above the horizon. Surfaces in contact, nearer than `contact`, give each other
-// nothing: rays start and end farther from them than that, so that none could tell what is between.
+// Returns the irradiance at x per unit radiance. Uses the exact term, or the piece's centroid if
+// the piece is distant and wholly above the horizon. Surfaces nearer than `contact` give each other
+// nothing: ray offsets exceed that distance, so that no ray could find an occluder between them.
 double piece_irradiance(const LightPrimitive& p, const Vec3& x, const Vec3& n, float contact) {
   if (p.vertex_count > 0) {
     const Vec3 d = p.centroid - x;
@@ -40,7 +40,7 @@ double piece_irradiance(const LightPrimitive& p, const Vec3& x, const Vec3& n, f
   return irradiance(p, Vec3d(x), Vec3d(n));
 }
 
-// Turns one number in [0, sums.back()) into an index, and what is left of it in [0,1).
+// Turns a number in [0, sums.back()) into an index, and x into the remainder in [0,1).
 size_t choose(std::span<const double> sums, double& x) {
   const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), x) - sums.begin()),
                             sums.size() - 1);
@@ -55,7 +55,7 @@ struct RayEnd {
   size_t piece = 0;
 };
 
-// [1]: the shooter's area shrunk to discs of equal area at the rays' ends.
+// Disc approximation [1]: the shooter's area is shared by discs of equal area at the ray ends.
 bool disc_end(const Shooter& s, const ElementPoint& r, Vec2 u, int count, RayEnd& out) {
   double x = double(u.x) * s.area_sums.back();
   out.piece = choose(s.area_sums, x);
@@ -77,7 +77,7 @@ bool disc_end(const Shooter& s, const ElementPoint& r, Vec2 u, int count, RayEnd
   return true;
 }
 
-// A point of a flat piece by area, where the receiver is so far that this is about by solid angle.
+// Samples a point of a flat piece by area. At this distance that is nearly by solid angle.
 bool end_by_area(const LightPrimitive& p, const ElementPoint& r, Vec2 u, double sent, RayEnd& out) {
   out.point = point_on(p, u);
   out.normal = Vec3(p.normal);
@@ -93,7 +93,7 @@ bool end_by_area(const LightPrimitive& p, const ElementPoint& r, Vec2 u, double 
   return std::isfinite(out.weight);
 }
 
-// Exact shooters: a piece by what it sends, a point of it by solid angle.
+// Samples a piece by the power that it sends and a point on it by solid angle, for exact shooters.
 bool exact_end(const Shooter& s, const ElementPoint& r, Vec2 u, std::span<const double> sums,
                RayEnd& out) {
   double x = double(u.x) * sums.back();
@@ -117,7 +117,7 @@ bool exact_end(const Shooter& s, const ElementPoint& r, Vec2 u, std::span<const 
 
 void aim(const Shooter& s, const ElementPoint& r, const RayEnd& end, Ray& ray) {
   Vec3 target = end.point, normal = end.normal;
-  if (s.round_radius > 0) {  // out to the sphere, on the side that shoots
+  if (s.round_radius > 0) {  // project onto the sphere, on the side that shoots
     const Vec3 from_centre = normalize(target - s.round_centre);
     normal = dot(from_centre, normal) < 0 ? -from_centre : from_centre;
     target = s.round_centre + from_centre * s.round_radius;
@@ -191,7 +191,7 @@ class Gatherer {
     s_.jobs.push_back({i, 0, first, wanted, whole, 0, 0, 0, 0});
   }
 
-  // The unoccluded irradiance and the visibility come from the same points, all of them at once.
+  // The unoccluded irradiance and the visibility use the same ray ends, all traced at once.
   void start_disc(uint32_t i, const ElementPoint& r) {
     int count = least_disc_points;
     for (int pass = 0; pass < 2; ++pass) {
@@ -215,7 +215,7 @@ class Gatherer {
         .get2();
   }
 
-  // What `random` gives for all rays of the jobs, in their order.
+  // Computes the numbers of `random` for all rays of the jobs, in order.
   void draw_numbers() {
     s_.streams.clear();
     s_.samples.clear();
@@ -314,7 +314,7 @@ class Gatherer {
 int rays_wanted(const RayBudget& budget, float unoccluded) {
   const float share = 0.5f * unoccluded / (budget.reference * budget.tolerance);
   int wanted = 1;
-  if (share > 1) {  // of most transfers it is less
+  if (share > 1) {  // most transfers have less
     const float n = std::pow(share, 4.0f / 3);
     wanted = n < float(budget.max_rays) ? int(std::ceil(n)) : budget.max_rays;
   }

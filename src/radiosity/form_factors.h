@@ -1,13 +1,14 @@
-// Light from one shooter - a light or a patch - to sample points: its unoccluded irradiance, and
-// the share of it that gets through.
+// Light from one shooter, a light or a patch, to sample points: unoccluded irradiance and
+// visibility. Irradiance is in W/m² or lx.
 //
-// Unoccluded: the exact terms of light/irradiance.h, summed over the shooter's pieces; from more
-// than 12 radii away a flat piece counts as a point (relative error under 1 %). Shooters of more
-// than 24 pieces, which are curved, take [1]'s disc approximation at their rays' ends instead.
-// Visibility: the ratio of two sums over rays [2], sum(f V / p) / sum(f / p), the rays' ends being
-// chosen by solid angle within a piece and pieces by what they send. A ray brings the radiosity of
-// the element at its end, relative to the patch's mean: what lies in a narrow gap before the dark
-// end of a patch gets nothing from its bright end.
+// Unoccluded irradiance: the exact terms of light/irradiance.h, summed over the shooter's pieces. A
+// flat piece more than 12 radii away counts as a point (relative error below 1 %). Shooters of more
+// than 24 pieces, which are curved, use [1]'s disc approximation at the ray ends instead.
+//
+// Visibility: the ratio of two sums over rays [2], sum(f V / p) / sum(f / p). A piece is chosen by
+// the power that it sends, and a ray end on it by solid angle. Each ray is weighted with the
+// radiosity of the element at its end, relative to the patch's mean. A point in a narrow gap before
+// the dark end of a patch therefore receives nothing from its bright end.
 // References: [1] Wallace, Elmquist & Haines, "A Ray Tracing Algorithm for Progressive Radiosity",
 //   SIGGRAPH 1989, §3. [2] Heitz, Hill & McGuire, "Combining Analytic Direct Illumination and
 //   Stochastic Shadows", I3D 2018.
@@ -24,24 +25,24 @@ namespace troffer {
 
 struct RayBudget {
   int max_rays = 64;
-  // Rays to one shooter are as many as keep the error of visibility, 1/2 n^(-3/4) of the unoccluded
-  // irradiance, under `tolerance` times `reference`; where the first quarter (at least 4) agree,
-  // the rest is not cast.
+  // The number of rays keeps the error of visibility, 1/2 n^(-3/4) of the unoccluded irradiance,
+  // below `tolerance` times `reference`. If the first quarter (at least 4 rays) agree, the others
+  // are not traced.
   float tolerance = 0.003f;
   float reference = 1;  // luminance of a typical irradiance
-  // Where the unoccluded irradiance is above `whole_from` times `reference`, at least `whole_rays`
-  // rays are cast and none is left out when the first agree: thin occluders are seen.
+  // Above `whole_from` times `reference` of unoccluded irradiance, at least `whole_rays` rays are
+  // traced, all of them, so that thin occluders are found.
   int whole_rays = 0;
   float whole_from = 0;
 };
 
 struct Transfer {
-  Rgb unoccluded;        // irradiance, W/m² or lx; with the shares of parts at the rays' ends
-  float visibility = 0;  // 0 … 1
-  float share = 1;       // of the parts at the rays' ends, in `unoccluded`
+  Rgb unoccluded;        // irradiance, W/m² or lx, multiplied by `share`
+  float visibility = 0;  // 0 to 1
+  float share = 1;       // mean relative radiosity of the parts at the ray ends
 };
 
-// Rays' ends, for those who want to know where light came from.
+// End point of a ray, for callers that need to know where the light came from.
 struct RayRecord {
   uint32_t receiver;
   Vec3 end;
@@ -72,19 +73,19 @@ struct TransferScratch {
   std::vector<Transfer> transfers;
 };
 
-// transfers[i] for receivers[i]. Random numbers derive from `stream` and first_index + i. Returns
-// the number of rays.
+// Computes transfers[i] for receivers[i]. Random numbers derive from `stream` and first_index + i.
+// Returns the number of rays.
 size_t transfer(const Shooter& shooter, std::span<const ElementPoint> receivers,
                 const Tracer& tracer, const RayBudget& budget, uint64_t stream, size_t first_index,
                 std::span<Transfer> transfers, TransferScratch& scratch);
 
-// The same for some of the points: transfers[i] is what the call above, for all points from index
-// 0, gives to points[indices[i]].
+// Same for a subset of points: transfers[i] equals the result of transfer() for points[indices[i]],
+// called for all points from index 0.
 size_t transfer_to(const Shooter& shooter, std::span<const ElementPoint> points,
                    std::span<const uint32_t> indices, const Tracer& tracer, const RayBudget& budget,
                    uint64_t stream, std::span<Transfer> transfers, TransferScratch& scratch);
 
-// How many rays a transfer of so much unoccluded luminance gets at most.
+// Returns the maximum number of rays of a transfer with this unoccluded luminance.
 int rays_wanted(const RayBudget& budget, float unoccluded);
 
 }  // namespace troffer

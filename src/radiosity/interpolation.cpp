@@ -8,9 +8,10 @@ namespace troffer {
 namespace {
 
 constexpr float cos_smooth = 0.8660254f;  // 30 degrees
-constexpr uint32_t max_around = 64;       // fragments about a corner that are looked at
+constexpr uint32_t max_around = 64;       // limit on the fragments considered around a corner
 
-// Adds `weight`, shared among the elements around a corner of a fragment, whose own point is `own`.
+// Adds `weight`, shared among the elements around a corner of a fragment; `own` is the fragment's
+// own point.
 void add_corner(const RadiosityMesh& mesh, uint32_t fragment, size_t corner, bool is_back,
                 uint32_t own, float weight, Interpolation& out) {
   const Vec3 normal = fragment_normal(mesh, fragment);
@@ -41,12 +42,12 @@ void add_corner(const RadiosityMesh& mesh, uint32_t fragment, size_t corner, boo
     out.add(around[i].point, weight * around[i].area / sum);
 }
 
-// Whether the sample point lies in the middle of the fragment, which then is all of its element.
+// True if the sample point lies at the centre of the fragment, which then is the whole element.
 bool is_in_the_middle(const RadiosityMesh& mesh, uint32_t fragment, uint32_t point) {
   const auto& c = mesh.fragments[fragment].vertices;
   const std::vector<Vec3>& p = mesh.geometry.positions;
   const Vec3 middle = (p[c[0]] + p[c[1]] + p[c[2]]) / 3.0f;
-  // that of a round surface lies above it
+  // the sample point of a round surface lies above the fragment
   const float close = 0.1f * std::min({length(p[c[0]] - middle), length(p[c[1]] - middle),
                                        length(p[c[2]] - middle)});
   return length(mesh.points[point].position - middle) <= close;

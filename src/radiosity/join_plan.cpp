@@ -1,4 +1,4 @@
-// How large sheets and elements are, and what is joined (meshing.h).
+// Chooses the sizes of sheets and elements and the triangles to join (meshing.h).
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace troffer {
 
 namespace {
 
-constexpr double size_step = 1.3;  // from one size that does not do to the next
+constexpr double size_step = 1.3;  // growth factor of a size that exceeds its bound
 
 double total_area(const BaseGeometry& g, const std::vector<uint32_t>& same_as) {
   double sum = 0;
@@ -32,7 +32,7 @@ double longest_edge(const BaseGeometry& g, const BaseTriangle& t) {
   return longest;
 }
 
-// Fragments of triangles longer than `size`, which are cut.
+// Returns the number of fragments of triangles longer than `size`, which are cut.
 size_t count_cut(const BaseGeometry& g, const std::vector<uint32_t>& same_as,
                  const std::vector<double>& lengths, double size, size_t limit) {
   size_t count = 0;
@@ -44,9 +44,8 @@ size_t count_cut(const BaseGeometry& g, const std::vector<uint32_t>& same_as,
   return count;
 }
 
-// The first of a size's steps at which so many pieces of it may do. Those of asked sizes down to a
-// hundredth of what would are tried one by one, for what they say of the rules; a file may ask for
-// 1e-38 m.
+// Increases `size` in steps to at least a hundredth of the size at which `most` pieces cover the
+// area. The loop in plan_joining tries larger sizes one by one. A file may ask for 1e-38 m.
 double within_reach(double size, double area, uint32_t most) {
   constexpr double pieces_short = 1e4;
   const double least = std::sqrt(area / (pieces_short * std::max(most, 1u)));
@@ -72,7 +71,7 @@ JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_a
   Boxd box;
   for (const Vec3& p : g.positions)
     if (is_finite(p)) box.grow(Vec3d(p));
-  const double everything = 4 * box.diagonal();  // as a cell: nothing left to join
+  const double everything = 4 * box.diagonal();  // cell size at which everything in reach is joined
   const Adjacency adjacency(g);
   const std::vector<uint32_t> no_group(n, 0);
   const auto small = [&](double size) {
@@ -86,7 +85,7 @@ JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_a
   const double first_patch = patch = within_reach(patch, area, options.max_sheets);
   JoinPlan plan;
   for (int round = 0;; ++round) {
-    if (round == strict_rounds) {  // sizes were not to blame: back to them, under looser rules
+    if (round == strict_rounds) {  // larger sizes did not suffice: restart with loose rules
       element = first_element;
       patch = first_patch;
     }
@@ -111,7 +110,7 @@ JoinPlan plan_joining(const BaseGeometry& g, const std::vector<uint32_t>& same_a
     }
     if (cut_sheets > max_sheets) patch *= size_step;
     if (cut_elements > max_elements) element *= size_step;
-    if (round < strict_rounds) --round;  // sizes alone: no reason to loosen the rules
+    if (round < strict_rounds) --round;  // only sizes changed: keep the joining rules
   }
   plan.set_sizes(element, patch, angle, element / wanted);
   return plan;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t purpose_open = 3;
 
-// What rays that start on the shooter as its light does find: the share of them that leaves.
+// Traces rays that start like the shooter's light; returns the share that leaves the scene.
 OpenShare open_share_of(const Shooter& shooter, const Tracer& tracer, uint32_t rays_wanted,
                         uint64_t stream) {
   std::vector<double> sums;

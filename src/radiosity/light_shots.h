@@ -1,4 +1,5 @@
-// What one light gives to all sample points, and how much of its light leaves the scene.
+// Transfer of one light to all sample points, and the share of its light that leaves the scene. The
+// solver shoots each light once with it. Power is in W or lm, as the lights'.
 #pragma once
 
 #include <span>
@@ -13,23 +14,24 @@ namespace troffer {
 
 struct LightShot {
   double power = 0;
-  OpenShare open;  // not of scenes that no ray leaves
+  OpenShare open;  // not set for closed scenes
   bool has_surface = false;
 };
 
 class LightShots {
  public:
-  // Makes shots for a solution with its mesh, options and mean irradiance.
+  // Prepares shots for a solution, using its mesh, options and mean irradiance.
   LightShots(const Tracer& tracer, const LightPrimitives& primitives,
              const RadiositySolution& solution, int threads);
 
-  // Nothing is found for a light without a surface, or once `stop` is set.
+  // Computes the transfers of a light. Does nothing for a light without a surface, or once `stop`
+  // is set.
   LightShot shoot(uint32_t light, bool is_closed, const StopFlag& stop);
-  std::span<const Transfer> transfers() const { return transfers_; }  // of the last, per point
+  std::span<const Transfer> transfers() const { return transfers_; }  // of the last shot, per point
   uint64_t rays() const;
 
  private:
-  // Sample points that are dealt with together, and the rays that this took.
+  // Sample points processed together, and the rays they took.
   struct Chunk {
     uint32_t first = 0, last = 0;
     uint64_t rays = 0;

@@ -13,8 +13,8 @@ namespace troffer {
 
 namespace {
 
-// Triangles over the same three places, of whatever mesh and whichever way round, are one surface,
-// unless one of them emits.
+// Triangles with the same three corner positions, of any mesh and either orientation, are one
+// surface, unless one of them emits.
 std::vector<uint32_t> find_duplicates(const BaseGeometry& g) {
   using CornerPositions = std::array<std::array<float, 3>, 3>;
   struct Hash {
@@ -43,8 +43,9 @@ std::vector<uint32_t> find_duplicates(const BaseGeometry& g) {
   return same_as;
 }
 
-// Weights of triangle `from`'s corners become those of `to`'s, which lie in the same places. True
-// if the two run opposite ways round, so that the front of one is the back of the other.
+// Converts weights of triangle `from`'s corners to weights of `to`'s corners, which lie at the same
+// positions. Returns true if their orientations are opposite: the front of one is the back of the
+// other.
 bool move_weights(const BaseGeometry& g, uint32_t from, uint32_t to, Vec3& weights) {
   const Vec3 own = weights;
   std::array<size_t, 3> place{};
@@ -135,7 +136,7 @@ uint32_t fragment_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t geo
     const SplitNode& node = mesh.nodes[size_t(at)];
     const size_t a = node.edge, b = (a + 1) % 3;
     const float wa = weights[a], wb = weights[b];
-    const bool is_first = wa >= wb;  // the half that keeps corner a
+    const bool is_first = wa >= wb;  // the half with corner a
     weights[a] = is_first ? wa - wb : 2 * wa;
     weights[b] = is_first ? 2 * wb : wb - wa;
     at = node.child[is_first ? 0 : 1];

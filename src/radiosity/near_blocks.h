@@ -1,5 +1,6 @@
-// Blocks of receivers near a patch: the exact unoccluded term and rays (form_factors.h), kept per
-// point and part of the patch on which rays ended.
+// Transfer from a patch to nearby blocks of receivers: the exact unoccluded term and rays
+// (form_factors.h). PatchRows uses it. Results are stored per point and per part of the patch at
+// the ray ends.
 #pragma once
 
 #include "radiosity/patch_row.h"
@@ -8,16 +9,16 @@ namespace troffer {
 
 class NearBlocks {
  public:
-  // For a patch's row; its memory serves one after the other.
+  // Starts a patch's row. Buffers are reused from row to row.
   void begin(const RowContext& row);
-  // Of block `k` of the chunk, which is `block` of all.
+  // Computes block `block`, which is the k-th of the chunk.
   void find(size_t block, size_t k, RowChunk& out);
   uint64_t rays() const { return rays_; }
 
  private:
-  // By receiver, in their order: sorted_ from first_record_[i] on is the i-th one's.
+  // Sorts the records by receiver: those of receiver i start at first_record_[i] in sorted_.
   void sort_records(uint32_t receivers);
-  // Appends what ended on each part of the patch; returns the share that is visible.
+  // Appends the shares of each part of the patch; returns the visible share.
   float add_parts(std::span<const RayRecord> records, RowChunk& out);
 
   const RowContext* row_ = nullptr;
@@ -25,7 +26,7 @@ class NearBlocks {
   std::vector<RayRecord> records_, sorted_;
   std::vector<uint32_t> first_record_, next_record_;
   std::vector<Transfer> transfers_;
-  std::vector<double> all_, visible_;  // weights of rays, per part
+  std::vector<double> all_, visible_;  // ray weights per part
   TransferScratch scratch_;
 };
 

@@ -1,4 +1,5 @@
-// A row of patch_rows.h as it is kept, and what is known while one is made.
+// Storage of one row of patch_rows.h, and the context in which a row is computed. NearBlocks,
+// FarBlocks and PatchRows share it. Values are per unit of the patch's mean radiance.
 #pragma once
 
 #include <cstdint>
@@ -11,46 +12,47 @@
 
 namespace troffer {
 
-// How a block of receivers sees the patch.
-// listed: dark, and in somebody's list of contributions.
+// Visibility of the patch from a block of receivers. listed: dark, and contained in a list of
+// contributions.
 enum class BlockView : uint16_t { none, lit, dark, listed, partly, near };
 
-// Above what any point of a dark block would get unoccluded, in 16 bits.
+// Encodes, in 16 bits, an upper bound on the unoccluded irradiance in a dark block.
 uint16_t dark_bits(float most);
 float dark_most(uint16_t bits);
 
 struct NearPart {
-  uint16_t part, all, visible;  // shares of what the point gets, in 65535ths
+  uint16_t part, all, visible;  // shares of the point's irradiance, in 65535ths
 };
 
 struct NearPoint {
   float unoccluded = 0;
-  uint32_t first = 0, last = 0;  // in parts
+  uint32_t first = 0, last = 0;  // range in `parts`
 };
 
-// Of some consecutive blocks.
+// Results for some consecutive blocks.
 struct RowChunk {
   static constexpr size_t most_blocks = 64;
-  std::vector<BlockView> view;   // per block
-  std::vector<uint16_t> first;   // per block. partly: in `visible`; near: in `points`; dark: bits
-  std::vector<uint8_t> visible;  // in 255ths
+  std::vector<BlockView> view;  // per block
+  // per block; partly: index in `visible`; near: in `points`; dark: bits
+  std::vector<uint16_t> first;
+  std::vector<uint8_t> visible;  // visible shares, in 255ths
   std::vector<NearPoint> points;
   std::vector<NearPart> parts;
   size_t bytes() const;
-  void clear(size_t blocks);  // so many, out of sight
+  void clear(size_t blocks);  // makes `blocks` blocks, all out of sight
 };
 
-// The patch whose row it is. Rows are found for its light as if it were the same everywhere: what
-// its parts send changes from shot to shot.
+// The patch that a row belongs to. Rows are computed for uniform radiance over the patch, because
+// the radiance of its parts changes from shot to shot.
 struct RowShooter {
   std::vector<ShooterCell> cells;  // with share 1
   ShooterBounds bounds;
   CellLevels levels;
-  std::vector<double> sent;  // running sums of what cells send now
-  Shooter even;              // sends `expected`, the same everywhere
+  std::vector<double> sent;  // prefix sums of the current power of the cells
+  Shooter even;              // shooter with uniform radiance `expected`
   std::span<const ElementPoint> parts;
-  uint32_t first_slot = 0;  // of parts (receivers.h)
-  float expected;           // luminance of radiance
+  uint32_t first_slot = 0;  // slot of the first part (receivers.h)
+  float expected;           // luminance of the expected radiance
   uint64_t stream;
 
   RowShooter(const RadiosityMesh& mesh, const Receivers& receivers, uint32_t patch,
@@ -58,7 +60,7 @@ struct RowShooter {
              uint64_t stream);
 };
 
-// Whether some cell is nearer to some point of the block than so many radii of cells.
+// True if some cell is nearer to some point of the block than `cell_radii` cell radii.
 bool is_near(const RowShooter& s, const ReceiverBlock& b, float cell_radii);
 
 struct RowContext {
@@ -67,8 +69,7 @@ struct RowContext {
   const Tracer& tracer;
   const RayBudget& budget;
   const RowShooter& shooter;
-  float* seen;  // per slot: grows by the part of the point's hemisphere that the patch fills; or
-                // nullptr
+  float* seen;  // per slot: adds the hemisphere share that the patch fills; may be null
 };
 
 }  // namespace troffer

@@ -8,13 +8,13 @@ namespace troffer {
 
 namespace {
 
-// A cell counts as a point from so many of its radii on: its error falls with the square of the
-// distance.
+// Returns the distance, in cell radii, from which a cell counts as a point. The error of a point
+// falls with the square of the distance.
 float near_in_cell_radii(const RayBudget& budget) {
   return 1 + std::clamp(std::sqrt(0.003f / budget.tolerance), 1.0f, 6.0f);
 }
 
-// Returns the number of rays.
+// Makes the chunk that begins at first_block. Returns the number of rays.
 uint64_t make_chunk(const RowContext& row, size_t first_block, RowScratch& s, RowChunk& out) {
   const std::vector<ReceiverBlock>& blocks = row.receivers.blocks;
   const size_t count = std::min(blocks.size() - first_block, RowChunk::most_blocks);
@@ -33,11 +33,11 @@ uint64_t make_chunk(const RowContext& row, size_t first_block, RowScratch& s, Ro
     }
   }
   s.far.finish(first_block, s.chunk);
-  out = s.chunk;  // takes no more memory than it needs
+  out = s.chunk;  // the copy takes no more memory than it needs
   return s.near.rays() + s.far.rays();
 }
 
-// What a near block gets now.
+// Computes what a near block receives at the parts' current radiance.
 void apply_near(const RowChunk& row, size_t k, uint32_t count, const Shooter& shooter,
                 float* unoccluded, float* received) {
   const auto share_of = [&](size_t part) {
@@ -56,8 +56,8 @@ void apply_near(const RowChunk& row, size_t k, uint32_t count, const Shooter& sh
   }
 }
 
-// What far points receive of what would come unoccluded: the share of `all`, or that in 255ths of
-// each. Numbers that are not finite count as none.
+// Computes what far points receive: `unoccluded` times the share `all`, or times `visible` (in
+// 255ths) per point. Values that are not finite become 0.
 void share_out(float* unoccluded, uint32_t count, float all, const uint8_t* visible,
                float* received) {
   for (uint32_t i = 0; i < count; ++i)
@@ -107,7 +107,8 @@ bool PatchRows::shoot(uint32_t patch, const Shooter& shooter, float expected,
     for (const uint64_t r : rays) rays_ += r;
   }
   Row& row = is_new ? made : kept;
-  // What is listed is remembered in the row: without it, all dark blocks may be.
+  // The row records which blocks are listed. When a row is made again, all dark blocks may be
+  // listed.
   DarkLimit limit = is_new && !is_first ? DarkLimit{} : dark;
   float most_share = 0;
   for (const ShooterCell& c : cells) most_share = std::max(most_share, c.share);

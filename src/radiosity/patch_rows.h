@@ -1,14 +1,18 @@
-// What one patch gives to all sample points, found at its first shot and looked up at later ones.
+// Transfers from patches to all sample points. They are computed at a patch's first shot and looked
+// up at later ones; the solver uses them.
 //
-// A *row* holds, per block of receivers (receivers.h), what hides the patch from it. The block is
-//   - out of sight: behind the patch, or the patch behind it;
-//   - far: the patch is a dozen cells, each a point, whose unoccluded irradiance is cheap enough to
-//     be found anew at each shot, with the radiance that each cell then has; kept is the visible
-//     share: none, all, or one number per point;
-//   - near: the exact unoccluded term and rays (form_factors.h), kept per point and part of the
-//     patch on which rays ended, so that later shots give each part what it then has [1].
-// Rays: as many as form_factors.h wants; where it wants one, points that together get no more
-// than two such transfers' error share one.
+// A *row* stores the visibility of one patch for each block of receivers (receivers.h). A block is
+// one of:
+// - out of sight: it lies behind the patch, or the patch lies behind it;
+// - far: the patch is a dozen cells that count as points. Their unoccluded irradiance is cheap and
+//   is recomputed at each shot with the cells' current radiance. The row stores the visible share:
+//   none, all, or one number per point;
+// - near: the exact unoccluded term and rays (form_factors.h). The row stores them per point and
+//   per part of the patch at the ray ends, so that later shots use each part's current radiance
+//   [1].
+//
+// form_factors.h determines the number of rays. Where one ray suffices, points whose irradiance
+// together is small (rays_share in far_blocks.cpp) share one ray.
 // References: [1] Hanrahan, Salzman & Aupperle, "A Rapid Hierarchical Radiosity Algorithm",
 //   SIGGRAPH 1991 (near pairs at a finer level than far ones).
 #pragma once
@@ -25,21 +29,21 @@
 
 namespace troffer {
 
-// Irradiance per unit of a shooter's mean radiance. Only points of `blocks` (in their order) got
-// something; the others' numbers are left over from earlier shots.
+// Irradiance per unit of a shooter's mean radiance. Only the points of `blocks`, in order, are
+// valid; other entries are stale.
 struct ShotReceived {
   std::vector<float> unoccluded, received;  // per slot (receivers.h)
   std::vector<uint32_t> blocks;
 };
 
-// Blocks that a patch cannot reach matter only to lists of what is important though hidden: those
-// that would get less than `least` (per block), of irradiance times `scale`, are left out.
+// Bound for dark blocks, which matter only for lists of important contributions that are hidden.
+// Blocks whose irradiance times `scale` is below `least` (per block) are left out.
 struct DarkLimit {
-  std::span<const float> least;  // empty: none are left out
+  std::span<const float> least;  // empty: none is left out
   float scale = 1;
 };
 
-// What one thread needs to make a row.
+// Buffers of one thread for making a row.
 struct RowScratch {
   NearBlocks near;
   FarBlocks far;
@@ -48,13 +52,13 @@ struct RowScratch {
 
 class PatchRows {
  public:
-  // Rows are kept while they take less than most_bytes; others are found again at each shot.
+  // Rows are kept up to a total of most_bytes; further ones are recomputed at each shot.
   PatchRows(const RadiosityMesh& mesh, const Tracer& tracer, int threads, size_t most_bytes);
 
-  // shooter: the patch's, with shares set. `expected`: luminance of the radiance that it is
-  // thought to send in all, for numbers of rays. False, with nothing found, once `stop` is set.
-  // With is_first, `seen` (per slot) grows by the part of a point's hemisphere that the patch
-  // fills.
+  // Computes what a patch's shot gives. `shooter` is the patch's, with shares set. `expected` is
+  // the luminance of the radiance that it is expected to send in total; it determines the number of
+  // rays. With is_first, `seen` (per slot) grows by the share of a point's hemisphere that the
+  // patch fills. Returns false without a result once `stop` is set.
   bool shoot(uint32_t patch, const Shooter& shooter, float expected, const RayBudget& budget,
              uint64_t stream, const StopFlag& stop, bool is_first, const DarkLimit& dark,
              std::vector<float>& seen, ShotReceived& out);

@@ -12,8 +12,8 @@ namespace troffer {
 namespace {
 
 constexpr size_t most_row_bytes = 256u << 20;
-// A patch's row serves all of its shots, which together send more than the first: rays are as many
-// as if it sent so much more.
+// Factor on the first shot's radiance that determines the number of rays. A patch's row serves all
+// of its shots, which together send more than the first.
 constexpr float expected_growth = 1.6f;
 
 }  // namespace
@@ -48,13 +48,13 @@ bool PatchShots::shoot(uint32_t patch, const Rgb& power, std::span<const float> 
   return true;
 }
 
-// A point sees no more than a hemisphere. Where it does, as before surfaces of several meshes that
-// coincide or nearly do, patches give it so much less.
+// Limits the form factors of a point to a hemisphere. Coincident or nearly coincident surfaces of
+// several meshes can exceed it; the patches' contributions are then scaled down.
 void PatchShots::limit() {
-  constexpr float most = 1.03f;  // an error of form factors is not cut
+  constexpr float most = 1.03f;  // tolerates the usual error of form factors
   for (const uint32_t index : shot_.blocks) {
     const ReceiverBlock& b = rows_.receivers().blocks[index];
-    float most_seen = 0;  // with the slots that pad, which see nothing
+    float most_seen = 0;  // includes padding slots, which see nothing
     for (uint32_t i = 0; i < slots_of(b); ++i)
       most_seen = std::max(most_seen, seen_[b.first_slot + i]);
     if (most_seen <= most) continue;

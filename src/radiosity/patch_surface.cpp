@@ -9,7 +9,8 @@ namespace troffer {
 
 namespace {
 
-// Corner 0 is the apex of a fan, which is least slanted opposite the longest edge.
+// Rotates the corners so that corner 0, the apex of a fan, lies opposite the longest edge. The fan
+// is then least slanted.
 void begin_opposite_longest_edge(std::vector<Vec3>& triangle) {
   const size_t apex = (longest_edge(std::span<const Vec3, 3>(triangle)).number + 2) % 3;
   std::rotate(triangle.begin(), triangle.begin() + std::ptrdiff_t(apex), triangle.end());

@@ -1,5 +1,8 @@
-// A patch as a source that is sampled like a light: the unit square over its area, equal areas
-// to equal areas (light/source_surface.h).
+// Represents a patch as a source that is sampled like a light: the unit square maps to its area,
+// equal areas to equal areas (light/source_surface.h). Normals are on the side that shoots. A patch
+// that is one parallelogram, the usual case for joined triangles, is laid out as one. A triangle is
+// a fan about the corner opposite its longest edge. Pieces that form no convex polygon are ordered
+// along the axis of their longest extent.
 #pragma once
 
 #include "light/source_surface.h"
@@ -7,14 +10,10 @@
 
 namespace troffer {
 
-// Normals are on the side that shoots. A patch that is one parallelogram (the usual case where
-// small triangles were joined) is laid out as one; a triangle is a fan about the corner opposite
-// its longest edge; pieces that make no convex polygon together follow each other along the axis
-// of their longest extent.
 SourceSurface patch_surface(const RadiosityMesh& mesh, uint32_t patch);
 
-// Where a shadow ray to a point of patch_surface ends: a little in front of it; patches of spheres:
-// of the sphere, which their pieces lie within.
+// Returns the end of a shadow ray to a point of patch_surface, slightly in front of it. For patches
+// of spheres it lies in front of the sphere, which encloses the pieces.
 Vec3 ray_target(const RadiosityMesh& mesh, uint32_t patch, const SourcePoint& at);
 
 }  // namespace troffer

@@ -1,5 +1,6 @@
-// What a patch's shot does at blocks of receivers, several points to a vector register. Arrays run
-// by slot (receivers.h); slots that only pad a block have no area.
+// Vectorised operations of a patch's shot on blocks of receivers: received power, reflection and
+// irradiance. The solver uses them. Arrays are indexed by slot (receivers.h); padding slots have no
+// area.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace troffer {
 
-// Surfaces of sample points, by slot.
+// Surface properties of the sample points, by slot.
 struct PointLanes {
   std::vector<float> area, per_area;
   std::array<std::vector<float>, 3> reflectance, specular;
@@ -20,25 +21,28 @@ struct PointLanes {
   PointLanes(const Receivers& receivers, const std::vector<PointSurface>& surfaces);
 };
 
-// power[i] = received[i] * sent * area; returns their sum.
+// Sets power[i] = received[i] * sent * area[i]; returns the sum.
 float block_powers(const float* received, const float* area, float sent, uint32_t slots,
                    float* power);
 
-// What becomes of light that arrives: sums over a block. A colour is power times reflectance, for
-// light that is white; radiosity gets what each point sends on of light of this colour, per area.
+// Sums over a block of the light that arrives. Colours are power times reflectance, for white
+// light.
 struct BlockArrival {
-  float counted = 0;  // power, after closure
+  float counted = 0;  // power after closure
   Rgb reflected, specular;
 };
-// `tint`: of the light, luminance 1. Of each power min(power, cap) * scale counts.
+// Properties of the arriving light: `tint` has luminance 1; of each power, min(power, cap) * scale
+// counts.
 struct BlockLight {
   Rgb tint;
   float cap = 0, scale = 1;
 };
+// Sums the arriving powers of a block. Adds to `radiosity` the luminance of power that each point
+// reflects, per area.
 BlockArrival arrive(const PointLanes& lanes, uint32_t first, uint32_t slots, const float* power,
                     const BlockLight& light, float* radiosity);
 
-// sum[c][i] += radiance[c] * received[i]
+// Adds radiance[c] * received[i] to sum[c][i].
 void add_irradiance(const float* received, uint32_t slots, const Rgb& radiance,
                     float* const sum[3]);
 

@@ -6,8 +6,8 @@ namespace troffer {
 
 namespace {
 
-// Of what arrives so much is absorbed at least: between perfect reflectors light would be shot for
-// ever, and no surface reflects everything.
+// Limit on reflectance: at least a thousandth is absorbed. Between perfect reflectors, shooting
+// would never end.
 constexpr float most_reflected = 0.999f;
 
 }  // namespace
@@ -31,7 +31,8 @@ std::vector<PointSurface> point_surfaces(const RadiosityMesh& mesh) {
 }
 
 MeanSurface mean_surface(const std::vector<PointSurface>& surfaces) {
-  constexpr double most = 0.98;  // of the light stays; a white room would stay bright for ever
+  // limit on the mean reflectance; without it a white room would stay bright for ever
+  constexpr double most = 0.98;
   MeanSurface mean;
   double diffuse = 0, all = 0;
   for (const PointSurface& p : surfaces) {

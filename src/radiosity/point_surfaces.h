@@ -1,4 +1,6 @@
-// What of the light that comes to sample points goes where.
+// Division of the light that arrives at sample points: reflected diffusely, scattered by other
+// lobes, absorbed. The solver and UnshotPower use it. Areas are in m²; reflectances are
+// hemispherical.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +11,7 @@
 namespace troffer {
 
 struct PointSurface {
-  float area = 0, per_area = 0;  // 0 where it is not finite
+  float area = 0, per_area = 0;  // m² and 1/m²; 0 if not finite
   uint32_t patch = 0;
   bool has_specular = false;
   Rgb reflectance, specular;
@@ -17,10 +19,10 @@ struct PointSurface {
 
 std::vector<PointSurface> point_surfaces(const RadiosityMesh& mesh);
 
-// Of all of them, by area.
+// Area-weighted mean over all sample points.
 struct MeanSurface {
-  double area = 0;                 // the sum
-  double diffuse = 0, albedo = 0;  // luminance; albedo: diffuse and specular
+  double area = 0;                 // total, m²
+  double diffuse = 0, albedo = 0;  // luminance; albedo: diffuse plus specular
 };
 MeanSurface mean_surface(const std::vector<PointSurface>& surfaces);
 

@@ -1,4 +1,5 @@
-// Sample points, their reflectances, and which sides light can reach (meshing.h).
+// Makes sample points with their reflectances, and finds the sides that light can reach
+// (meshing.h).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -28,7 +29,7 @@ TexturePlace uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t trian
   const MeshInWorld in_world = mesh_at(scene, s.index);
   const Mesh& m = in_world.mesh();
   if (m.uvs.empty()) return {};
-  // weights in the fragment -> in its triangle, by areas
+  // weights in the fragment to weights in its triangle, by areas
   const auto& v = mesh.fragments[fragment].vertices;
   const std::vector<Vec3>& p = mesh.geometry.positions;
   const Vec3d at = Vec3d(p[v[0]]) * double(weights.x) + Vec3d(p[v[1]]) * double(weights.y) +
@@ -47,7 +48,7 @@ TexturePlace uv_at(const Scene& scene, const RadiosityMesh& mesh, uint32_t trian
 
 struct ElementSurface {
   Reflectances sides[2];
-  float coverage = 1;  // share that alpha does not take away
+  float coverage = 1;  // opaque share (alpha)
 };
 
 ElementSurface average_surface(const Scene& scene, const BsdfTables& tables,
@@ -126,7 +127,8 @@ bool emits(const Scene& scene, int32_t light, bool is_back) {
   return !e.radiance.is_black() && (!is_back || e.is_two_sided);
 }
 
-// On the front; of a sphere itself, as its fragments are turned away from it.
+// Returns the normal on the front. Spheres use their own, because their fragments are not aligned
+// with it.
 Vec3 hit_normal(const Scene& scene, const RadiosityMesh& mesh, const Hit& hit, uint32_t fragment,
                 const Vec3& at) {
   if (hit.geometry != scene.meshes.size()) return fragment_normal(mesh, fragment);
@@ -134,21 +136,22 @@ Vec3 hit_normal(const Scene& scene, const RadiosityMesh& mesh, const Hit& hit, u
   return s.is_inside_out ? s.centre - at : at - s.centre;
 }
 
-// What rays from every side of every element find.
+// Results of the rays from each side of each element.
 struct Looks {
-  std::vector<uint8_t> reached;  // by light
+  std::vector<uint8_t> reached;  // 1: light can reach the side
   std::vector<uint32_t> rays, leaving;
 };
 
-// Sides that see each other, step by step, down to one that emits, are reached.
+// Traces rays from all sides. A side is reached if a chain of sides that see each other connects it
+// to a side that emits.
 Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh& mesh,
                   const Elements& e, const std::vector<ElementPoint>& sides, int threads) {
   const size_t n = sides.size();
   Looks looks;
   looks.rays.resize(n);
   looks.leaving.resize(n);
-  // Rays that leave the scene meet in one place: in the open, a few rays miss what shines on a
-  // side.
+  // Node for all rays that leave the scene. In open scenes a few rays can miss the light that
+  // reaches a side.
   const auto lit = uint32_t(n), outside = uint32_t(n + 1);
   std::vector<uint8_t> is_source(n);
   for (uint32_t f = 0; f < mesh.fragments.size(); ++f)
@@ -181,7 +184,7 @@ Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh&
           continue;
         }
         Vec3 weights;
-        bool is_turned = false;  // the fragment's own normal decides below
+        bool is_turned = false;  // unused: the fragment's own normal decides below
         const Vec3 at = rays[k].origin + rays[k].direction * hits[k].t;
         const uint32_t f = fragment_at(scene, mesh, hits[k].geometry, hits[k].primitive, hits[k].u,
                                        hits[k].v, at, is_turned, weights);
@@ -192,7 +195,7 @@ Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh&
       }
     }
   });
-  DisjointSets rooms(n + 2);  // over 2 element + side, and the two places above
+  DisjointSets rooms(n + 2);  // over 2 element + side, and the two nodes above
   for (uint32_t i = 0; i < n; ++i) {
     if (is_source[i]) rooms.join(i, lit);
     for (const uint32_t j : seen[i]) rooms.join(i, j);
@@ -207,19 +210,19 @@ Looks look_around(const Scene& scene, const Tracer& tracer, const RadiosityMesh&
 Reflectances reflectances(const BsdfTables& tables, const Scene& scene, uint32_t material,
                           const TexturePlace& uv, bool is_front) {
   Bsdf b = make_bsdf(tables, scene, material, uv, is_front);
-  b.through = Rgb{0};  // not in the exchange
+  b.through = Rgb{0};  // diffuse transmission takes no part in radiosity
   Rgb rho;
   if (is_lambertian(b, &rho)) return {rho, Rgb{0}};
-  // Gauss–Legendre over cos²: the cosine-weighted mean of the directional albedo
+  // Gauss-Legendre quadrature over cos²: the cosine-weighted mean of the directional albedo.
   constexpr float nodes[3] = {0.11270166538f, 0.5f, 0.88729833462f};
   constexpr float weights[3] = {5.0f / 18, 8.0f / 18, 5.0f / 18};
   Rgb all;
   for (size_t i = 0; i < 3; ++i) all += albedo(b, std::sqrt(nodes[i])) * weights[i];
-  // The coat passes diffuse_mean of what comes, and as much of what leaves.
+  // The coat passes the share diffuse_mean of incoming light, and the same of outgoing light.
   const float mean = b.coat == Bsdf::Coat::none ? 1.0f : b.diffuse_mean;
   const Rgb diffuse = b.diffuse * (mean * mean);
-  // A coat's gloss sends on little, over a wide range of places: it counts as diffuse. What is
-  // mirror or glass and nothing else has no diffuse light to hide it in.
+  // The gloss of a coat reflects little and spreads it widely, so it counts as diffuse. Pure
+  // mirrors and glass have no diffuse light to add it to.
   if (!diffuse.is_black() && !b.has_transmission) return {all, Rgb{0}};
   const auto above = [](float a, float d) { return std::max(0.0f, a - d); };
   return {diffuse, {above(all.r, diffuse.r), above(all.g, diffuse.g), above(all.b, diffuse.b)}};

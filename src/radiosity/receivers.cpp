@@ -56,7 +56,7 @@ Receivers::Receivers(const RadiosityMesh& mesh) {
   }
 }
 
-// Distances of some at a stroke, then the least: neither has branches.
+// First computes distances in batches, then the minimum: both loops are branch-free.
 TROFFER_MULTIVERSION
 uint32_t nearest_slot(const Receivers& r, uint32_t first, uint32_t count, const Vec3& place) {
   constexpr uint32_t most = 32;

@@ -1,4 +1,6 @@
-// The sample points side by side, in blocks of one patch: what loops over many receivers read.
+// Sample points as arrays, in blocks of one patch, for vectorised loops over many receivers. Rows
+// and shots of patches (patch_rows.h, patch_shots.h) use it. Positions are in world space, offsets
+// in metres.
 #pragma once
 
 #include <vector>
@@ -7,19 +9,19 @@
 
 namespace troffer {
 
-// Up to 16 consecutive points of one patch.
+// Block of up to 16 consecutive points of one patch.
 struct ReceiverBlock {
   static constexpr uint32_t most_points = 16;
   uint32_t first_point = 0, count = 0, patch = 0;
-  uint32_t first_slot = 0;  // in Receivers' arrays
+  uint32_t first_slot = 0;  // in the arrays of Receivers
   Vec3 centre;
   float radius = 0;
   Vec3 normal;
-  bool is_flat = false;  // all points in one plane, with this normal
+  bool is_flat = false;  // all points lie in one plane with this normal
 };
 
-// A block's points lie in consecutive slots, which are padded to a multiple of `lanes` by its last
-// point; the slots of a patch's points are consecutive too.
+// Arrays of all points. A block's points occupy consecutive slots, padded with copies of its last
+// point to a multiple of `lanes`. The slots of one patch are consecutive.
 struct Receivers {
   static constexpr uint32_t lanes = 8;
   std::vector<ReceiverBlock> blocks;
@@ -35,22 +37,22 @@ inline uint32_t slots_of(const ReceiverBlock& b) {
 }
 static_assert(ReceiverBlock::most_points % Receivers::lanes == 0);
 
-// A piece of a shooter, small against its distance from receivers, as a point.
+// Piece of a shooter that counts as a point because it is small relative to its distance.
 struct ShooterCell {
   Vec3 position, normal;
   float area = 0;      // m²
-  float share = 1;     // of what it sends, relative to the shooter's mean
-  Vec3 corners[3];     // where rays end; all the same for pieces of curved patches
-  uint32_t group = 0;  // cells of one group lie side by side in one plane
+  float share = 1;     // radiance relative to the shooter's mean
+  Vec3 corners[3];     // ray ends are sampled here; all equal for curved patches
+  uint32_t group = 0;  // cells of one group are adjacent in one plane
 };
 
-// The one of `count` consecutive slots from `first` on whose point is nearest, by number from
-// `first` on; the first of several.
+// Returns the nearest point to `place` among `count` slots from `first` on, relative to `first`.
+// Ties go to the first.
 uint32_t nearest_slot(const Receivers& receivers, uint32_t first, uint32_t count,
                       const Vec3& place);
 
-// irradiance[i] per unit of the mean radiance, of `count` (a multiple of lanes) slots from `first`
-// on; exact where cells are small and far.
+// Computes irradiance[i] per unit of mean radiance, for `count` slots (a multiple of lanes) from
+// `first` on. Exact for cells that are small and distant.
 void cells_irradiance(const Receivers& receivers, uint32_t first, uint32_t count,
                       const std::vector<ShooterCell>& cells, float* irradiance);
 

@@ -1,4 +1,4 @@
-// The key of a scene (solution.h).
+// Computes the key of a scene (solution.h).
 #include "base/hasher.h"
 #include "radiosity/solution.h"
 

@@ -12,7 +12,7 @@ namespace troffer {
 
 namespace {
 
-constexpr size_t most_parts = 256;  // they are searched one by one
+constexpr size_t most_parts = 256;  // limit, because the parts are searched linearly
 constexpr uint32_t purpose_shares = 1;
 
 void finish(Shooter& s) {
@@ -38,7 +38,7 @@ void add_polygon(Shooter& s, const Vec3* corners, uint32_t count, Rgb radiance) 
   if (count <= 4)
     std::copy(corners, corners + count, p.vertices);
   else
-    p.more_vertices = corners;  // the mesh's own, which stay
+    p.more_vertices = corners;  // points into the mesh
   for (uint32_t k = 0; k < count; ++k) {
     p.bounds.grow(corners[k]);
     p.radius = std::max(p.radius, length(corners[k] - p.centroid));
@@ -47,8 +47,8 @@ void add_polygon(Shooter& s, const Vec3* corners, uint32_t count, Rgb radiance) 
   s.pieces.push_back(p);
 }
 
-// Of the shares over the shooter's area. The part whose middle is nearest need not be the one that
-// a place belongs to, and what is sent must not be more than what is there.
+// Returns the mean share over the shooter's area. It normalises the shares: the nearest part is not
+// always the part that a point belongs to, and the patch must not send more than it has.
 double mean_share(const Shooter& s) {
   double sum = 0;
   for (const LightPrimitive& p : s.pieces) {
@@ -76,7 +76,7 @@ Vec3 point_on(const LightPrimitive& p, const Vec2& u) {
     const Vec2 w = triangle_from_square(u);
     return p.vertex(0) + (p.vertex(1) - p.vertex(0)) * w.x + (p.vertex(2) - p.vertex(0)) * w.y;
   }
-  // fan about vertex 0; these are triangles and quadrilaterals, so a scan is short
+  // fan about vertex 0; pieces have few vertices, so a linear scan suffices
   float x = u.x * p.area;
   for (uint32_t i = 1; i + 1 < p.vertex_count; ++i) {
     const Vec3 a = p.vertex(0), b = p.vertex(i), c = p.vertex(i + 1);
@@ -130,7 +130,7 @@ Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance) {
     } else if (count <= 4) {
       const Vec3 reversed[4] = {c[count - 1], c[count - 2], c[count - 3], c[0]};
       add_polygon(s, reversed, count, radiance);
-    } else {  // the reversed corners have no place to stay: a fan
+    } else {  // there is no storage for reversed corners: use a fan
       for (uint32_t k = 1; k + 1 < count; ++k) {
         const Vec3 triangle[3] = {c[0], c[k + 1], c[k]};
         add_polygon(s, triangle, 3, radiance);
@@ -146,7 +146,8 @@ Shooter patch_shooter(const RadiosityMesh& mesh, uint32_t patch, Rgb radiance) {
 
 void set_parts(Shooter& shooter, const RadiosityMesh& mesh, uint32_t patch,
                std::span<const float> luminances) {
-  constexpr double unequal = 0.02;  // of the mean
+  // relative deviation from the mean below which a patch counts as uniform
+  constexpr double unequal = 0.02;
   const Patch& p = mesh.patches[patch];
   const std::span<const ElementPoint> parts(mesh.points.data() + p.first_point, luminances.size());
   double sum = 0, area = 0;

@@ -13,15 +13,15 @@ namespace {
 constexpr size_t flat_cells = 10;
 constexpr size_t flat_groups = 3;
 constexpr size_t most_curved_cells = 48;
-// From so many radii of the shooter on, groups count as points, and all of it: the error of a point
-// falls with the square of the distance.
+// Distances, in radii of the shooter, from which a group of cells, and the whole shooter, count as
+// points. The error falls with the square of the distance.
 constexpr float groups_from = 3.5f, one_from = 8;
 
 float area_of(const Vec3 (&c)[3]) {
   return 0.5f * length(cross(c[1] - c[0], c[2] - c[0]));
 }
 
-// Halves the largest, again and again.
+// Bisects the largest triangle repeatedly.
 std::vector<ShooterCell> flat_shooter_cells(const Shooter& shooter) {
   std::vector<ShooterCell> cells;
   const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
@@ -52,7 +52,7 @@ std::vector<ShooterCell> flat_shooter_cells(const Shooter& shooter) {
     const size_t before = cells.size();
     add(a, m, d, c.normal);
     add(m, b, d, c.normal);
-    if (cells.size() == before) break;  // too small to be halved
+    if (cells.size() == before) break;  // too small to be bisected
     for (size_t k = before; k < cells.size(); ++k) cells[k].group = c.group;
     if (cells.size() <= flat_groups) make_groups();
   }
@@ -77,7 +77,7 @@ bool is_plain(const Shooter& s) {
   return s.is_exact && !(s.round_radius > 0);
 }
 
-// How far a disc reaches out of its plane along a direction.
+// Returns how far a disc extends out of its plane along a direction.
 float reach(float radius, const Vec3& normal, const Vec3& along) {
   const float c = dot(normal, along);
   return radius * std::sqrt(std::max(0.0f, 1 - c * c));
@@ -123,7 +123,7 @@ ShooterBounds::ShooterBounds(const std::vector<ShooterCell>& cells, const Shoote
 
 namespace {
 
-// Cells of equal numbers as one, in the middle of what they send.
+// Merges cells with equal `number` into one cell at the centroid of their power.
 std::vector<ShooterCell> joined(const std::vector<ShooterCell>& cells,
                                 uint32_t (*number)(const ShooterCell&)) {
   std::vector<ShooterCell> out;

@@ -1,4 +1,7 @@
-// A patch as a dozen cells, for receivers that are far enough from it to take each as a point.
+// Represents a patch by about a dozen cells, for receivers so distant that each cell counts as a
+// point. Cells of flat patches are triangles of similar size; those of curved patches are their
+// sample points. Each cell has the share of the nearest part. Together the cells send what the
+// patch sends.
 #pragma once
 
 #include <vector>
@@ -8,12 +11,10 @@
 
 namespace troffer {
 
-// Flat patches: triangles of about equal size; curved ones: their sample points. Each has the share
-// of the part that is nearest to it, and together they send what the patch does.
 std::vector<ShooterCell> shooter_cells(const RadiosityMesh& mesh, uint32_t patch,
                                        const Shooter& shooter);
 
-// Where they are, for whole blocks of receivers.
+// Bounds of the cells, for tests on whole blocks of receivers.
 struct ShooterBounds {
   Vec3 centre, normal;
   float radius = 0, cell_radius = 0;
@@ -21,7 +22,7 @@ struct ShooterBounds {
   ShooterBounds(const std::vector<ShooterCell>& cells, const Shooter& shooter);
 };
 
-// Fewer cells for receivers that are farther away.
+// Levels of detail of the cells: distant receivers use fewer.
 class CellLevels {
  public:
   CellLevels(const std::vector<ShooterCell>& cells, const ShooterBounds& bounds);
@@ -30,10 +31,11 @@ class CellLevels {
  private:
   Vec3 centre_;
   float radius_;
-  std::vector<ShooterCell> all_, groups_, one_;  // without corners; empty: as all_
+  std::vector<ShooterCell> all_, groups_, one_;  // without corners; empty: use all_
 };
 
-// What hardly rises over a plane gets nothing from it: surfaces in contact, and all in one plane.
+// True if no point of the block rises noticeably above the shooter's plane, or the reverse:
+// surfaces in contact or in one plane exchange nothing.
 bool is_out_of_sight(const ShooterBounds& s, const ReceiverBlock& b);
 
 }  // namespace troffer

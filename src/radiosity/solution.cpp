@@ -15,7 +15,7 @@ size_t RadiositySolution::memory_bytes() const {
 
 namespace {
 
-// Where the mesh gave up accuracy, or surfaces, to keep its bounds.
+// Adds warnings for accuracy or surfaces that the mesh gave up to keep its bounds.
 void add_mesh_warnings(const RadiositySolution& s, std::vector<std::string>& out) {
   const RadiosityMesh& mesh = s.mesh;
   const MeshingOptions& wanted = s.options.meshing;

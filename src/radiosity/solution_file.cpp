@@ -1,4 +1,4 @@
-// Saving and loading of solutions (solution.h).
+// Saves and loads solutions (solution.h).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ struct Header {
   double balance[7];
   uint32_t patches;
   float mean_irradiance;
-  uint64_t hash;  // of all else: header with 0 here, and body
+  uint64_t hash;  // of everything else: header with 0 here, and body
 };
 static_assert(sizeof(Header) == 208);
 
@@ -122,8 +122,8 @@ bool is_amount(float x) {
   return x >= 0 && std::isfinite(x);
 }
 
-// Whether a mesh can be made from them in bounded time and memory, and the rest means something:
-// the file may be anybody's.
+// True if a mesh can be made with these options in bounded time and memory, and the other values
+// are valid. The file may come from anyone.
 bool is_sane(const FileOptions& f) {
   constexpr uint32_t most = 1u << 22;
   const auto is_size = [](float x) { return x >= 0 && x < 1e30f; };
@@ -133,7 +133,7 @@ bool is_sane(const FileOptions& f) {
          is_amount(f.unshot_fraction) && is_amount(f.tolerance) && is_amount(f.light_share);
 }
 
-// Whether the numbers of the header are ones that a solver can have written.
+// True if the solver can have written these values.
 bool is_sane(const Header& h) {
   for (const double power : h.balance)
     if (!std::isfinite(power)) return false;
@@ -142,7 +142,7 @@ bool is_sane(const Header& h) {
          is_amount(h.mean_irradiance);
 }
 
-// Names the first setting that differs.
+// Names the first option that differs.
 std::string difference(const FileOptions& file, const FileOptions& wanted) {
   const auto tell = [](const char* name, auto a, auto b) {
     return fmt::format("its {} is {}, not {}", name, a, b);
@@ -208,7 +208,7 @@ std::vector<uint8_t> save_solution(const Scene& scene, const RadiositySolution& 
 
 namespace {
 
-// All that can be told without the mesh.
+// Reads the header and checks everything that can be checked without the mesh.
 Header header_of(std::span<const uint8_t> bytes, const std::string& file) {
   const auto refuse = [&](const std::string& what) { throw InputError(file, 0, 0, what); };
   const auto count = [&](const Header& h, BodySize& body) {

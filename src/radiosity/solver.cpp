@@ -14,9 +14,9 @@ namespace troffer {
 
 namespace {
 
-constexpr double lights_progress = 0.2;  // the lights' part of the way
+constexpr double lights_progress = 0.2;  // share of the progress that is reserved for lights
 
-// A solution with a mesh and options, and all else as it is before the first shot.
+// Initialises a solution, with mesh and options set, to its state before the first shot.
 void begin(RadiositySolution& s, const LightPrimitives& primitives, const MeanSurface& mean) {
   const size_t points = s.mesh.points.size();
   s.general.assign(points, Rgb{0});
@@ -29,8 +29,8 @@ void begin(RadiositySolution& s, const LightPrimitives& primitives, const MeanSu
   s.mean_irradiance = float(std::min(s.balance.emitted / (mean.area * (1 - mean.diffuse)), 1e30));
 }
 
-// Brings a solution that has begun to its end. Its members: the solution, what each step keeps from
-// shot to shot, and the power on its way.
+// Runs a solution from start to end. Its members: the solution, the data that each step keeps from
+// shot to shot, and the power to be shot.
 class Solver {
  public:
   Solver(const Tracer& tracer, const LightPrimitives& primitives,
@@ -79,7 +79,7 @@ class Solver {
       report(progress, unshot_.sum(), lights_progress * done);
     }
     for (uint32_t b = 0; b < patch_shots_.receivers().blocks.size(); ++b) lists_.look_over(b);
-    waiting_ = 0;  // but for rounding
+    waiting_ = 0;  // remove rounding errors
     direct_ = s_.balance.absorbed + unshot_.sum();
   }
 
@@ -104,7 +104,7 @@ class Solver {
     if (progress) progress({s_.shots, unshot / s_.balance.emitted, std::clamp(done, 0.0, 1.0)});
   }
 
-  // False if a stop came meanwhile.
+  // Shoots the patch with the largest unshot power. Returns false if it was stopped.
   bool shoot_brightest() {
     const uint32_t brightest = unshot_.brightest_patch();
     const Patch& patch = s_.mesh.patches[brightest];
@@ -119,7 +119,7 @@ class Solver {
     return true;
   }
 
-  // Stores what a light gave to points, and passes on its power.
+  // Stores a light's contributions to points, and passes on the power.
   void receive_light(uint32_t light, const LightShot& shot) {
     const std::span<const Transfer> transfers = light_shots_.transfers();
     powers_.resize(transfers.size());
@@ -140,7 +140,7 @@ class Solver {
     unshot_.count(shot.power, shot.open, closure);
   }
 
-  // The same for a patch that sent `radiance`: patch_shots_ says where to.
+  // The same for a patch that sent `radiance`; patch_shots_ holds its transfers.
   void receive_from_patch(uint32_t source, const Rgb& radiance, double power,
                           const OpenShare& open) {
     const ShotReceived& shot = patch_shots_.received();
@@ -175,7 +175,7 @@ class Solver {
     unshot_.count(power, open, closure);
   }
 
-  // In the lists of a block's points, or in their general values.
+  // Adds the light to the lists of a block's points, or to their general values.
   void keep_light(uint32_t block, uint32_t source, const Rgb& radiance, const ShotReceived& shot) {
     const ReceiverBlock& b = patch_shots_.receivers().blocks[block];
     const float sent = luminance(radiance);
@@ -216,11 +216,11 @@ class Solver {
   UnshotPower unshot_;
   StoredLists lists_;
   PointLanes lanes_;
-  std::array<std::vector<float>, 3> general_;  // what goes from patches to general values, by slot
+  std::array<std::vector<float>, 3> general_;  // general values from patches, by slot
   bool is_closed_ = true;                      // no ray left the scene
-  double waiting_ = 0;                         // power of lights that have not shot
-  double direct_ = 0;          // power that came to diffuse surfaces straight from lights
-  std::vector<float> powers_;  // what arrives by the current shot, before closure
+  double waiting_ = 0;                         // power of lights that have not shot yet
+  double direct_ = 0;          // power that reached diffuse surfaces directly from lights
+  std::vector<float> powers_;  // power that arrives by the current shot, before closure
 };
 
 }  // namespace

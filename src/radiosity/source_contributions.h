@@ -1,4 +1,5 @@
-// What one source gave, looked up or computed again after the shots.
+// Contributions of one source to sample points, looked up or recomputed after the shots. `kj92`
+// uses it to select the sources that it samples again. Irradiance is in W/m² or lx.
 #pragma once
 
 #include <span>
@@ -9,20 +10,21 @@
 
 namespace troffer {
 
-// All that a patch shot, its parts in the proportions of what they received in all; points into the
-// solution's mesh.
+// Returns a shooter of all that a patch shot, its parts weighted by their total irradiance. Points
+// into the solution's mesh.
 Shooter whole_patch_shooter(const RadiositySolution& solution, uint32_t patch);
 
-// What one source gave to any sample points, whether it is in their lists or not. A light's
-// values are those of its shot, bit for bit. A patch's are computed anew, in one transfer of all
-// the radiance that it shot: they differ from the sum over its shots by noise. out[i] is for
-// points[i]; points that the source cannot reach get zeros. Each thread needs a scratch of its own.
+// Computes the contributions of one source to any sample points, whether or not it is in their
+// lists. Values of a light are bitwise those of its shot. Values of a patch are recomputed in one
+// transfer of all its radiance; they differ from the sum over its shots by noise. out[i] belongs to
+// points[i] and is zero where the source does not reach. Each thread needs its own scratch.
 void source_contributions(const Tracer& tracer, const LightPrimitives& primitives,
                           const RadiositySolution& solution, uint32_t source,
                           std::span<const uint32_t> points, std::span<StoredContribution> out,
                           TransferScratch& scratch);
 
-// Random numbers of a light's transfers. A light shoots once, so that they can be computed again.
+// Random stream of a light's transfers. A light shoots once, so that its transfers can be
+// recomputed.
 uint64_t light_stream(const RadiosityOptions& options, uint32_t light);
 RayBudget ray_budget(const RadiositySolution& solution, uint32_t source);
 

@@ -1,4 +1,6 @@
-// The most important contributions to one sample point, kept as they come in.
+// The most important contributions to one sample point, updated as they arrive. StoredLists keeps
+// one list per point, and the solution stores them. Contributions that do not fit go to the point's
+// general value.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +12,13 @@ namespace troffer {
 
 constexpr float hidden_importance = 0.25f;
 
-// By which contributions are ranked: what arrives, but a strong source that is hidden here counts
-// for a quarter of what it would send, since its shadow's edge may be near.
+// Rank of a contribution: the light that arrives, or a quarter of the unoccluded light of a hidden
+// source, because the edge of its shadow may be near.
 inline float importance(const StoredContribution& c) {
   return std::max(luminance(c.received), hidden_importance * luminance(c.unoccluded));
 }
 
-// What is not kept at a point.
+// General value of a point: contributions that are not stored separately.
 struct General {
   Rgb& all;
   Rgb& direct;
@@ -26,9 +28,9 @@ struct General {
   }
 };
 
-// Adds to the source's entry, to a free one, or instead of the least important one, which moves to
-// the general value; into the general value if it is the least important itself. A source that
-// shoots again after it was moved counts anew.
+// Adds a contribution to the source's entry or to a free one. Otherwise it replaces the least
+// important entry, which moves to the general value; if the new one is the least important, it goes
+// there. A source that shoots again after it was moved starts from zero.
 inline void keep(std::span<StoredContribution> list, const General& general, uint32_t light_count,
                  const StoredContribution& c) {
   for (StoredContribution& entry : list) {

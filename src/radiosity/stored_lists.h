@@ -1,4 +1,6 @@
-// The stored contributions of all sample points on their way, with what a quick look at them needs.
+// Stored contributions of all sample points during the solution, with summaries for quick
+// rejection. The solver adds each shot's contributions to it. Importance is luminance of irradiance
+// (stored_list.h).
 #pragma once
 
 #include <array>
@@ -12,7 +14,7 @@ namespace troffer {
 
 class StoredLists {
  public:
-  // Into the solution's lists and general values, which must have their sizes.
+  // Writes to the solution's lists and general values, which must have their final sizes.
   StoredLists(RadiositySolution& solution, const Receivers& receivers)
       : solution_(solution),
         blocks_(receivers.blocks),
@@ -26,10 +28,11 @@ class StoredLists {
       for (uint32_t i = 0; i < blocks_[b].count; ++i) block_[blocks_[b].first_point + i] = b;
   }
 
-  // Per block: importance below which nothing new is stored at any of its points.
+  // Per block: importance below which none of its points stores a new contribution.
   std::span<const float> least_in_block() const { return least_in_block_; }
 
-  // rank: its importance. False: what the source gives goes to the general value.
+  // True if the point's list stores a contribution of this rank; false if it goes to the general
+  // value.
   bool takes(uint32_t slot, uint32_t source, float rank) const {
     if (rank > least_[slot]) return true;
     bool is_stored = false;
@@ -37,14 +40,15 @@ class StoredLists {
       is_stored |= sources_[k * slots_ + slot] == source;
     return is_stored;
   }
-  // False: no point of a block takes what a source gives it; `most`: the highest rank. A quick
-  // look, since blocks are many and far apart in memory.
+  // Returns false if no point of a block takes the contribution of a source; `most` is its highest
+  // rank in the block. This quick test avoids reading the lists, which are far apart in memory.
   bool may_take(uint32_t block, uint32_t source, float most) const {
     return most > least_in_block_[block] ||
            (may_hold_[block][word_of(source)] & bit_of(source)) != 0;
   }
 
-  // look_over() must follow for its block, before may_take() is asked again.
+  // Adds a contribution to a point. look_over() of its block must follow before the next
+  // may_take().
   void add(uint32_t point, const StoredContribution& c) {
     RadiositySolution& s = solution_;
     const size_t first = size_t(point) * s.stored_per_point;
@@ -74,18 +78,18 @@ class StoredLists {
   }
 
  private:
-  using Sources = std::array<uint64_t, 4>;  // a bit for each, and for others whose bit is the same
+  using Sources = std::array<uint64_t, 4>;  // Bloom filter with one bit per source modulo 256
   static uint64_t bit_of(uint32_t source) { return uint64_t(1) << (source & 63); }
   static size_t word_of(uint32_t source) { return (source >> 6) & 3; }
 
   RadiositySolution& solution_;
   const std::vector<ReceiverBlock>& blocks_;
   size_t slots_;
-  std::vector<uint32_t> sources_;  // of solution_.stored: all first ones by slot, all second ones …
-  std::vector<float> least_;       // per slot: importance below which nothing new is stored
+  std::vector<uint32_t> sources_;  // of solution_.stored, entry by entry: [entry][slot]
+  std::vector<float> least_;       // per slot: importance below which no new contribution is stored
   std::vector<uint32_t> block_;    // per point
   std::vector<float> least_in_block_;
-  std::vector<Sources> may_hold_;  // per block: what is in its lists
+  std::vector<Sources> may_hold_;  // per block: sources in its lists
 };
 
 }  // namespace troffer

@@ -60,7 +60,7 @@ void add_mesh(const MeshInWorld& in_world, uint32_t geometry, BaseGeometry& g) {
   g.surfaces.push_back(s);
 }
 
-// Octants 0 … 7 by the signs of x, y, z (bits 0, 1, 2 set where negative); disks have four.
+// Octants 0 to 7 by the signs of x, y, z (bits 0, 1, 2 set if negative); disks have four.
 void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t material, int32_t light,
                bool is_inside_out, bool is_far, BaseGeometry& g) {
   g.left_out += is_far ? 1 : 0;
@@ -84,7 +84,7 @@ void add_round(const Scene& scene, Bulge bulge, uint32_t index, uint32_t materia
     t.light = light;
     t.is_degenerate = is_far;
     t.vertices = {first + (octant & 1), first + 2 + (octant >> 1 & 1), first + 4 + (octant >> 2)};
-    // x, y, z run counterclockwise seen from outside where no or two signs are negative
+    // x, y, z run counterclockwise seen from outside if no or two signs are negative
     const bool is_odd = (std::popcount(octant) & 1) != 0;
     if (is_odd != is_inside_out) std::swap(t.vertices[1], t.vertices[2]);
     g.triangles.push_back(t);

@@ -24,7 +24,7 @@ void UnshotPower::count(double power, const OpenShare& open, const Closure& clos
 }
 
 double UnshotPower::sum() const {
-  double sums[4] = {};  // four at a time: the sum is asked for at every shot
+  double sums[4] = {};  // four sums for speed: this runs at every shot
   size_t i = 0;
   for (; i + 4 <= unshot_.size(); i += 4)
     for (size_t k = 0; k < 4; ++k) sums[k] += double(luminance(unshot_[i + k]));

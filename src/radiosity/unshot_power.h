@@ -1,4 +1,5 @@
-// The power of patches that waits to be shot, and where the rest of what arrives goes.
+// Unshot power of the patches, and the energy balance of light that arrives. The solver passes on
+// the light of each shot and obtains from it the next patch to shoot. Power is in W or lm.
 #pragma once
 
 #include <algorithm>
@@ -17,26 +18,27 @@ class UnshotPower {
   UnshotPower(const RadiosityMesh& mesh, const Receivers& receivers,
               const std::vector<PointSurface>& surfaces, EnergyBalance& balance);
 
-  // power: of `received` over the point's element, luminance, before closure.
+  // Passes on light at a point. `power` is the luminance of `received` over the point's element,
+  // before closure.
   void pass_on(uint32_t point, const Rgb& received, float power, const Closure& closure);
-  // The same for points of one block, whose `radiosity` has been added to.
+  // The same for the points of one block, whose `radiosity` is already updated.
   void pass_on(const ReceiverBlock& block, const BlockArrival& arrival, const Rgb& tint);
   float* radiosity(const ReceiverBlock& block) { return unshot_at_.data() + block.first_slot; }
-  // Of a shot that sent so much: what left the scene, and what is not accounted for.
+  // Counts a shot of this power: the part that left the scene and the part unaccounted for.
   void count(double power, const OpenShare& open, const Closure& closure);
 
   double sum() const;  // luminance
   uint32_t brightest_patch() const;
   const Rgb& of(uint32_t patch) const { return unshot_[patch]; }
-  // Luminance of radiosity, in any unit, per point of the patch.
+  // Luminance of radiosity per point of the patch, in any unit.
   std::span<const float> at_points_of(const Patch& patch) const {
     return {unshot_at_.data() + slot_[patch.first_point], patch.last_point - patch.first_point};
   }
   void clear(uint32_t patch, const Patch& its_points);
 
-  // [1] of solver.h, §3: what is unshot spreads over all surfaces, again and again. So does what
-  // mirrors, glass and gloss took: they do not shoot, but their light is somewhere. Of both a part
-  // leaves an open scene at every bounce, as it did of what was shot.
+  // Returns the ambient estimate [1] of solver.h, §3: unshot power spreads over all surfaces and is
+  // reflected repeatedly. It includes power that mirrors, glass and gloss received, which do not
+  // shoot. At each bounce the same share leaves an open scene as left it from the shots.
   Rgb ambient(const MeanSurface& mean) const;
 
  private:
@@ -45,7 +47,7 @@ class UnshotPower {
   std::vector<Rgb> unshot_;       // power, per patch
   std::vector<uint32_t> slot_;    // per point
   std::vector<float> unshot_at_;  // luminance of radiosity, per slot
-  Rgb lost_;                      // power that specular surfaces took
+  Rgb lost_;                      // power that specular surfaces received
   double arrived_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Materials to test, and integrals over their scattering by sampling.
+// Materials for tests, and integrals over their scattering by sampling.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace troffer::test {
 
-// Materials with their tables; Bsdfs point into it, so it must outlive them.
+// Materials with their tables. Bsdfs point into it, so it must outlive them.
 struct Specimens {
   std::vector<std::string> names;
   std::vector<Material> materials;
@@ -82,12 +82,12 @@ inline Material gltf(float alpha, float metallic, Rgb base = Rgb{1}, float trans
   return m;
 }
 
-// Gloss wider along a grain, which lies anywhere in the surface.
+// Adds a grain along which gloss is wider; its direction in the surface is arbitrary.
 inline Material brushed(Material m, float anisotropy) {
   m.anisotropy.value = anisotropy;
   return m;
 }
-// glTF's cloth.
+// A glTF material with sheen.
 inline Material cloth(float sheen_roughness, Rgb sheen, float alpha = 0.5f, Rgb base = Rgb{1}) {
   Material m = gltf(alpha, 0, base);
   m.sheen_color.value = sheen;
@@ -95,7 +95,7 @@ inline Material cloth(float sheen_roughness, Rgb sheen, float alpha = 0.5f, Rgb 
   return m;
 }
 
-// Copper whose reflectance has a factor.
+// Copper whose reflectance has a colour factor.
 inline Material tinted(float alpha, Rgb factor = {0.9f, 0.5f, 0.2f}) {
   Material m = copper(alpha);
   m.specular_color.value = factor;
@@ -105,21 +105,21 @@ inline Material reflecting(Material m, Rgb factor) {
   m.specular_color.value = factor;
   return m;
 }
-// Sheen over glTF's metal or glass.
+// Adds sheen to glTF's metal or glass.
 inline Material sheened(Material m, float sheen_roughness, Rgb sheen = Rgb{1}) {
   m.sheen_color.value = sheen;
   m.sheen_roughness.value = sheen_roughness;
   return m;
 }
 
-// A clear coat over it; over a conductor one into which light bends.
+// Adds a clear coat; over a conductor it refracts.
 inline Material clear_coated(Material m, float coat_alpha, float share = 1, float ior = 1.5f) {
   m.coat.value = share;
   m.coat_roughness.value = coat_alpha;
   m.coat_ior = ior;
   return m;
 }
-// A thin film over it.
+// Adds a thin film.
 inline Material filmed(Material m, float thickness_nm, float ior = 1.3f, float share = 1) {
   m.iridescence.value = share;
   m.film_ior = ior;
@@ -133,11 +133,11 @@ inline Vec3 direction(float cosine, float phi = 0.7f) {
 }
 
 struct Scattered {
-  double reflected = 0, transmitted = 0;  // green channel, the n² of radiance taken out
+  double reflected = 0, transmitted = 0;  // green channel, without the n² of radiance
   double total() const { return reflected + transmitted; }
 };
 
-// Energy scattered from wo, by n quasi-random samples.
+// Returns the energy scattered from wo, by n quasi-random samples.
 inline Scattered scattered(const Bsdf& b, const Vec3& wo, uint32_t n = 1u << 14) {
   Scattered e;
   for (uint32_t i = 0; i < n; ++i) {

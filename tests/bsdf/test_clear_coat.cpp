@@ -1,4 +1,5 @@
-// A clear coat over gloss: energy, closed forms, and against walks between both surfaces.
+// Clear coats over gloss: energy, closed forms, and comparison with random walks between both
+// surfaces.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -11,11 +12,11 @@ using namespace troffer::test;
 
 namespace {
 
-// What comes back up of light that walks between a coat of glass and a metal in it, each as a Bsdf
-// of its own: the sum, and how it is spread about the mirror's direction.
+// Light that returns from random walks between a glass coat and the metal below it, each
+// represented by its own Bsdf: total, and spread about the mirror direction.
 struct Walked {
   double energy = 0;
-  double spread = 0;  // mean squared tilt of the half vector, of what lies within 45 degrees
+  double spread = 0;  // mean squared tilt of the half vector within 45 degrees
 };
 
 struct Spread {
@@ -49,7 +50,7 @@ Walked walked(const Specimens& s, const Vec3& wo, uint32_t n) {
         break;
       }
       weight *= double(x.weight.g);
-      // The frame below the coat has its z turned round.
+      // The frame below the coat has an inverted z.
       if (!draw(inside, Vec3{-x.wi.x, -x.wi.y, x.wi.z})) {
         weight = 0;
         break;
@@ -119,8 +120,8 @@ TEST_CASE("lossless glass under a clear coat sends everything on, from both side
             INFO(s.names[i], " alpha ", alpha, " coat ", coat, " cosine ", c, " front ", is_front,
                  ": ", e);
             CHECK(e < 1.007);
-            // Where a facet would refract one of two directions at the horizon, coats take it to be
-            // let out: that of a thinner body loses most.
+            // Where a facet would refract one of two directions at the horizon, coats assume that
+            // the light leaves the glass. A body of lower index loses most.
             CHECK(e > (s.names[i] == "light glass" ? 0.82 : 0.95));
             least = std::min(least, e);
             most = std::max(most, e);
@@ -151,7 +152,8 @@ TEST_CASE("light that comes through evenly meets the coat on both sides") {
   }
 }
 
-// What a face sends on of light that comes straight on, from outside and from within.
+// Compares with a face's reflection and transmission at normal incidence, from outside and from
+// within.
 TEST_CASE("a sheet under coats is two faces under coats") {
   const Specimens s{{"face", clear_coated(glass(0), 0)},
                     {"sheet", clear_coated(glass(0, 1.5f, true), 0)},
@@ -159,7 +161,7 @@ TEST_CASE("a sheet under coats is two faces under coats") {
   const Scattered outside = scattered(s.at(0, true), direction(1), 1u << 12);
   const Scattered within = scattered(s.at(0, false), direction(1), 1u << 12);
   CHECK(outside.transmitted == doctest::Approx(within.transmitted).epsilon(1e-5));
-  // 4 % each: r + (1 - r)² r / (1 - r²)
+  // 4 % at each surface: r + (1 - r)² r / (1 - r²)
   CHECK(outside.reflected ==
         doctest::Approx(0.04 + 0.96 * 0.96 * 0.04 / (1 - 0.0016)).epsilon(1e-4));
   const double t = outside.transmitted, r = within.reflected;
@@ -174,7 +176,8 @@ TEST_CASE("a sheet under coats is two faces under coats") {
     CHECK(double(straight_transmittance(sheet, c).g) ==
           doctest::Approx(e.transmitted).epsilon(2e-3));
     CHECK(double(mirrored_reflectance(sheet, c).g) == doctest::Approx(e.reflected).epsilon(2e-3));
-    // Rough ones take nearly as much of what goes through, and mirror only what lies below them.
+    // Rough coats take nearly as much of the transmitted light, but only the layer below them
+    // mirrors.
     CHECK(double(straight_transmittance(s.at(2), c).g) ==
           doctest::Approx(e.transmitted).epsilon(0.25));
     CHECK(mirrored_reflectance(s.at(2), c).g < mirrored_reflectance(sheet, c).g);

@@ -1,4 +1,4 @@
-// Many directions at a stroke scatter what each of them does alone.
+// Evaluation of many directions at once equals evaluation one by one.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ TEST_CASE("a Bsdf towards many directions at a stroke") {
       for (const float cosine : {1.0f, 0.6f, 0.05f, -0.1f}) {
         const Vec3 wo = direction(cosine, 6 * random.next_float());
         for (size_t k = 0; k < n; ++k) {
-          // every other one about the mirror's direction
+          // every second direction lies near the mirror direction
           Vec3 wi = direction(2 * random.next_float() - 1, 6 * random.next_float());
           if (k % 2 == 1)
             wi = normalize(Vec3{-wo.x, -wo.y, wo.z} + wi * (0.3f * random.next_float()));
@@ -51,7 +51,7 @@ TEST_CASE("a Bsdf towards many directions at a stroke") {
         for (size_t k = 0; k < n; ++k) {
           const BsdfValue one =
               z[k] > 0 ? evaluate_with_pdf(bsdf, wo, {x[k], y[k], z[k]}) : BsdfValue{};
-          // sharp lobes amplify rounding of the half vector
+          // narrow lobes amplify rounding of the half vector
           const auto is_near = [](float a, float expected) {
             return std::abs(a - expected) <= 2e-3f * std::abs(expected) + 1e-6f;
           };

@@ -1,4 +1,4 @@
-// White furnace: surfaces without absorption send on all the light that meets them.
+// White furnace: surfaces without absorption scatter all incident light.
 #include <doctest/doctest.h>
 
 #include "bsdf/fresnel.h"
@@ -31,8 +31,8 @@ void check_furnace(const Specimens& s, double loss, double gain, uint32_t n, boo
 
 }  // namespace
 
-// A conductor of normal reflectance 0.9999 absorbs up to 0.3 % near grazing; the others lose
-// nothing but what their tables miss.
+// A conductor of normal reflectance 0.9999 absorbs up to 0.3 % near grazing. Other materials lose
+// only the error of their tables.
 TEST_CASE("opaque white surfaces reflect everything") {
   for (const float alpha : alphas)
     check_furnace({{"conductor", mirror_metal(alpha)},
@@ -71,7 +71,8 @@ TEST_CASE("a factor on what glass and coats reflect leaves all else") {
       }
 }
 
-// Its albedo is fitted to the first harmonic of the azimuth: the wider one way, the worse.
+// The albedo is fitted to the first harmonic of the azimuth, so the error grows with the ratio of
+// widths.
 TEST_CASE("white metal with a grain reflects nearly everything, from every side") {
   const auto check = [](float alpha, float anisotropy, double loss, double gain) {
     const Specimens s{{"brushed", brushed(mirror_metal(alpha), anisotropy)}};
@@ -131,7 +132,8 @@ TEST_CASE("rough glass under a film sends everything on") {
             }
             INFO("film ", film, " ", thickness, " nm, alpha ", alpha, " cosine ", c, " front ",
                  is_front, ": ", sum.r, " ", sum.g, " ", sum.b);
-            // In the mean of the channels as without a film; each is so in all directions together.
+            // The channels' mean is as accurate as without a film; single channels conserve energy
+            // only over all directions together.
             mean_off = std::max(mean_off, std::abs(double(average(sum)) - 1));
             CHECK(average(sum) == doctest::Approx(1).epsilon(0.01));
             for (size_t k = 0; k < 3; ++k) {
@@ -152,7 +154,7 @@ TEST_CASE("a factor on a metal's reflectance is one") {
     for (const float c : {0.1f, 0.5f, 1.0f}) {
       const double plain = scattered(s.at(0), direction(c)).total();
       const double half = scattered(s.at(1), direction(c)).total();
-      // What is lost between microfacets meets the metal twice and more.
+      // Light lost between microfacets meets the metal at least twice.
       CHECK(half <= 0.5 * plain * 1.0001);
       CHECK(half > (alpha > 0 ? 0.45 : 0.4999) * plain);
     }
@@ -175,7 +177,7 @@ TEST_CASE("white metal and lossless sheets under a sheen keep what it leaves") {
           CHECK(e > 0.9);
           least = std::min(least, e);
           most = std::max(most, e);
-          // From within glass what meets the sheen is lost.
+          // Light from within the glass that meets the sheen is lost.
           const double within = scattered(s.at(i, false), direction(c)).total();
           CHECK(within < 1.004);
           CHECK(within > (i == 3 ? 0.5 : 0.9));

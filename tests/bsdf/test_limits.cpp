@@ -14,19 +14,19 @@ TEST_CASE("Fresnel reflectances have their known values") {
   CHECK(fresnel_dielectric(1, 1 / 1.5f) == doctest::Approx(0.04).epsilon(1e-5));
   CHECK(fresnel_dielectric(0, 1.5f) == doctest::Approx(1));
   CHECK(fresnel_dielectric(0.5f, 1 / 1.5f) == 1);  // beyond the critical angle
-  // Brewster's angle: half of the perpendicular reflectance remains
+  // At Brewster's angle half of the perpendicular reflectance remains.
   const double eta = 1.5, brewster = std::cos(std::atan(eta));
   const double perpendicular = std::pow((eta * eta - 1) / (eta * eta + 1), 2);
   CHECK(fresnel_dielectric(float(brewster), 1.5f) ==
         doctest::Approx(perpendicular / 2).epsilon(1e-4));
-  // a conductor that does not absorb is a dielectric
+  // A conductor without absorption is a dielectric.
   for (const float c : {0.05f, 0.3f, 0.8f, 1.0f})
     CHECK(fresnel_conductor(c, 1.5f, 0) ==
           doctest::Approx(double(fresnel_dielectric(c, 1.5f))).epsilon(1e-4));
   for (const float r : {0.0f, 0.2f, 0.9f, 0.99f})
     CHECK(fresnel_conductor(1, 1, k_from_reflectance(r)) ==
           doctest::Approx(double(r)).epsilon(1e-4));
-  // means over the hemisphere: from outside and inside they are bound by n²
+  // Hemispherical means from outside and from inside differ by n².
   const double outside = 1 - double(fresnel_dielectric_average(1.5f));
   const double inside = 1 - double(fresnel_dielectric_average(1 / 1.5f));
   CHECK(outside == doctest::Approx(inside * 2.25).epsilon(1e-3));
@@ -59,7 +59,7 @@ TEST_CASE("tables agree with direct integration") {
       CHECK(std::abs(double(ggx.one.row(alpha).at(at)) - one) < 1.2e-3);
       CHECK(std::abs(double(coats[0].reflected.row(alpha).at(at)) - coat) < 1e-3);
     }
-  // the stored mean is that of the interpolant
+  // The stored mean is that of the interpolant.
   const AlbedoRow row = ggx.one.row(0.6f);
   const double mean = integrate(
       [&](double c) { return 2 * c * double(row.at(CosineCoordinate(float(c)))); }, 0.0, 1.0, 200);
@@ -96,7 +96,7 @@ TEST_CASE("albedo runs into the mirror's as alpha goes to 0") {
     CHECK(scattered(rough_copper, wo).reflected ==
           doctest::Approx(double(fresnel_conductor(c, 0.92f, 2.45f))).epsilon(2e-3));
   }
-  // through and out again: refractions of smooth glass bring radiance back to itself
+  // Refraction into smooth glass and out again restores the radiance.
   const Specimens s{{"glass", glass(0)}};
   BsdfSample in, out;
   REQUIRE(sample(s.at(0, true), direction(0.6f), 0.99f, {0.5f, 0.5f}, in));
@@ -172,6 +172,6 @@ TEST_CASE("two equal widths are one, and the grain turns with the surface") {
   const double plain = double(value(0, 0, true, 1));
   CHECK(value(0.5f, 0.5f, true, 1) == doctest::Approx(plain).epsilon(1e-4));
   CHECK(value(1.4f, 0, true, 1) != doctest::Approx(plain).epsilon(0.1));
-  // Seen from the back, whose frame has the other bitangent.
+  // Seen from the back, whose frame has the opposite bitangent.
   CHECK(value(0.5f, 0.5f, false, -1) == doctest::Approx(plain).epsilon(1e-4));
 }

@@ -1,4 +1,4 @@
-// The two parts that the method of 1992 splits a surface into: together they are the whole.
+// The diffuse and specular parts used by the 1992 method add up to the whole.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ TEST_CASE("both parts together scatter what the whole does") {
     for (const bool is_front : {true, false}) {
       const Bsdf whole = s.at(i, is_front), diffuse = diffuse_part(whole);
       const bool is_matte = is_lambertian(whole, nullptr);
-      // A Lambertian surface is its own diffuse part and has no other.
+      // A Lambertian surface is its own diffuse part and has no other part.
       const Bsdf specular = is_matte ? Bsdf{} : specular_part(whole);
       CAPTURE(i);
       CAPTURE(is_front);
@@ -71,7 +71,7 @@ TEST_CASE("both parts together scatter what the whole does") {
         const Rgb all = evaluate(whole, wo, wi);
         const Rgb sum = evaluate(diffuse, wo, wi) + evaluate(specular, wo, wi);
         CHECK(most(sum - all) <= 1e-5 * most(all) + 1e-7);
-        // What is cosine-shaped reflects only, and nothing is negative.
+        // The diffuse part only reflects, and no value is negative.
         if (wi.z < 0) CHECK(evaluate(diffuse, wo, wi).is_black());
         CHECK(least(evaluate(diffuse, wo, wi)) >= 0);
         CHECK(least(evaluate(specular, wo, wi)) >= 0);
@@ -111,7 +111,7 @@ TEST_CASE("each part sends on what its albedo says, and samples what it evaluate
       const double d = diffuse.has_separable ? scattered(diffuse, wo, 1u << 12).total() : 0;
       const bool is_specular = has_glossy(specular) || specular.has_separable;
       const double g = is_specular ? scattered(specular, wo, 1u << 12).total() : 0;
-      // The diffuse part is cosine-shaped: its albedo is exact up to the tables.
+      // The diffuse part is cosine-shaped, so its albedo is exact up to the tables.
       CHECK(d == doctest::Approx(double(albedo(diffuse, wo.z).g)).epsilon(0.01));
       CHECK(d + g == doctest::Approx(scattered(whole, wo, 1u << 12).total()).epsilon(0.02));
     }
@@ -129,6 +129,6 @@ TEST_CASE("metals and glass have no diffuse part; matte ones nothing else") {
   CHECK(is_purely_delta(specular_part(s.at(1))));
   CHECK(!is_purely_delta(specular_part(s.at(2))));
   CHECK(is_lambertian(diffuse_part(s.at(3)), nullptr));
-  // What is lost between microfacets and comes back belongs to the gloss.
+  // Energy returned after loss between microfacets belongs to the specular part.
   CHECK(specular_part(s.at(4)).has_separable);
 }

@@ -1,4 +1,4 @@
-// f(wo,wi) n(wi's side)² is the same both ways.
+// Reciprocity: f(wo,wi) n(wi's side)² is symmetric.
 #include <doctest/doctest.h>
 
 #include "bsdf/samples.h"
@@ -16,7 +16,7 @@ Vec3 random_direction(Random& random, bool is_above) {
   return w;
 }
 
-// The frame of a viewer on the other side: z turned round.
+// Converts to the frame of a viewer on the other side, with inverted z.
 Vec3 turned(const Vec3& w) {
   return {w.x, w.y, -w.z};
 }

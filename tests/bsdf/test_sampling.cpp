@@ -1,5 +1,4 @@
-// Sampling follows its density, the density integrates to what it should, weights are f |cos| /
-// pdf.
+// Samples follow their density, the density has the right integral, and weights are f |cos| / pdf.
 #include <doctest/doctest.h>
 
 #include "bsdf/samples.h"
@@ -13,7 +12,7 @@ namespace {
 
 constexpr int rows = 16, columns = 24;  // bins over cos theta in [-1,1] and phi
 
-// Expected fraction per bin: the density integrated over (cos theta, phi).
+// Returns the expected fraction per bin: the density integrated over (cos theta, phi).
 std::vector<double> integrated_pdf(const Bsdf& b, const Vec3& wo, double tolerance) {
   std::vector<double> mass(size_t(rows * columns));
   for (int r = 0; r < rows; ++r) {
@@ -80,7 +79,7 @@ void check_sampling(const std::string& name, const Bsdf& b, float cosine, int te
     mass += e;
     e *= n;
   }
-  // What is left of probability: delta lobes and samples that fail.
+  // The remaining probability belongs to delta lobes and failed samples.
   CHECK(mass <= 1 + 1e-4);
   CHECK(std::abs(observed.back() / n - (1 - mass)) < 5 * std::sqrt(0.25 / n));
   expected.push_back(std::max(0.0, n * (1 - mass)));

@@ -1,4 +1,4 @@
-// Microfacets that scatter once, as Mitsuba defines its rough bsdfs.
+// Microfacets that scatter once, as in Mitsuba's rough BSDFs.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ Material single(Material m, FacetModel facets = FacetModel::single_ggx) {
   return m;
 }
 
-// ∫ D(m) (m · n) dm, midpoint rule in the cosine.
+// Returns ∫ D(m) (m · n) dm by the midpoint rule in the cosine.
 double normalisation(const Bsdf& b) {
   constexpr int n = 400;
   const GgxWidths a = b.is_grained ? b.widths : GgxWidths{b.alpha, b.alpha};
@@ -34,8 +34,8 @@ double normalisation(const Bsdf& b) {
 
 }  // namespace
 
-// Kd .2, .5, .8 seen along the normal under an even sky of 1, index 1.5: figures of Mitsuba 3's
-// roughplastic (scalar_rgb), specular lobe included.
+// Kd .2, .5, .8 seen along the normal under a uniform sky of radiance 1, index 1.5. Expected values
+// are from Mitsuba 3's roughplastic (scalar_rgb), specular lobe included.
 TEST_CASE("rough plastic in a furnace is Mitsuba's") {
   struct Row {
     float alpha;
@@ -68,7 +68,7 @@ TEST_CASE("what is sampled of single facets is what albedo() says") {
       }
 }
 
-// Of white metal all that is lost is lost between facets: ∫ D G1(o) G1(i) / (4 cos o) di.
+// White metal loses light only between facets: ∫ D G1(o) G1(i) / (4 cos o) di.
 TEST_CASE("single facets lose light, balanced ones do not") {
   for (const FacetModel facets : {FacetModel::single_ggx, FacetModel::single_beckmann}) {
     const FacetShape shape = shape_of(facets);
@@ -79,7 +79,7 @@ TEST_CASE("single facets lose light, balanced ones do not") {
       for (const float c : {0.2f, 0.6f, 1.0f}) {
         CAPTURE(alpha);
         CAPTURE(c);
-        // A boundary of a very large index reflects everything.
+        // An interface with a very large index reflects everything.
         const double metal = rough_shares(shape, double(alpha), 1e6, double(c)).reflected;
         CHECK(scattered(s.at(0), direction(c), 1u << 15).total() ==
               doctest::Approx(metal).epsilon(0.01));

@@ -1,5 +1,4 @@
-// Interference by angle against spectra: Airy's sum by complex amplitudes, wavelength by
-// wavelength.
+// Interference by angle compared with spectra: Airy's sum of complex amplitudes, per wavelength.
 #include <doctest/doctest.h>
 
 #include <complex>
@@ -15,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Reflectance at one wavelength, the mean of both polarisations.
+// Returns the reflectance at one wavelength, averaged over both polarisations.
 double airy(double cosine, double film, double base, double thickness_nm, double nm) {
   const double s = std::sqrt(1 - cosine * cosine);
   const double c2 = std::sqrt(1 - s * s / (film * film)), c3 = std::sqrt(1 - s * s / (base * base));
@@ -101,7 +100,8 @@ TEST_CASE("surfaces under a film keep their energy, and change colour with the a
         for (const float c : {0.1f, 0.3f, 0.6f, 1.0f}) {
           const double e = scattered(s.at(i), direction(c), 1u << 12).total();
           INFO(s.names[i], " alpha ", alpha, " ", thickness, " nm, cosine ", c, ": ", e);
-          CHECK(e < (i == 4 ? 1.007 : 1.003));  // glass's lost light has each colour in the mean
+          // lost light of glass: right per colour only on average
+          CHECK(e < (i == 4 ? 1.007 : 1.003));
           CHECK(e > 0.8);
         }
     }
@@ -116,7 +116,7 @@ TEST_CASE("surfaces under a film keep their energy, and change colour with the a
     const Rgb nearly = straight_transmittance(sheets.at(1), c);
     for (size_t k = 0; k < 3; ++k)
       CHECK(clear[k] == doctest::Approx(double(nearly[k])).epsilon(1e-3));
-    // The first face still has its colours where nothing comes back from the second.
+    // The first face keeps its colours even if no light returns from the second.
     const Rgb mirrored = mirrored_reflectance(sheets.at(2), c);
     CHECK(straight_transmittance(sheets.at(2), c).b < 1e-6f);
     CHECK(mirrored.b < mirrored_reflectance(sheets.at(0), c).b);

@@ -1,4 +1,4 @@
-// FLIP against a slow reference written apart from it, closed forms and its properties.
+// FLIP compared with a slow, independent reference and with closed forms; its properties.
 // References: [1] Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020.
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@ using namespace troffer;
 
 namespace {
 
-// [1] taken literally: double precision, whole two-dimensional kernels, no separation.
+// A literal transcription of [1]: double precision, full two-dimensional kernels, no separation.
 namespace naive {
 
 using Colour = std::array<double, 3>;
@@ -204,7 +204,7 @@ TEST_CASE("FLIP equals its literal reference, pixel by pixel") {
   for (const Case c : {Case{1, 1, 67}, Case{1, 0.05f, 67}, Case{2, 1, 67}, Case{1, 1, 20}}) {
     const Image a = random_image(31, 23, seed++, c.contrast_a);
     Image b = random_image(31, 23, seed++, c.contrast_b);
-    for (int x = 10; x < 31; ++x)  // edges and points as well as noise
+    for (int x = 10; x < 31; ++x)  // edges, points and noise
       for (int y = 0; y < 12; ++y) b.at(x, y) = Rgb{0.9f, 0.1f, 0.2f};
     b.at(5, 5) = Rgb{1, 1, 1};
     const std::vector<float> errors = flip_errors(a, b, c.ppd, 2);
@@ -228,7 +228,7 @@ TEST_CASE("FLIP of constant images is the compressed distance of their colours")
     CHECK(flip_of_constants(a, b) ==
           doctest::Approx(naive::colour_error(lab(a), lab(b))).epsilon(2e-4));
   }
-  // Black and white: HyAB 100. Green and blue: by definition the largest, 1.
+  // Black and white have HyAB 100. Green and blue have the largest distance, 1 by definition.
   CHECK(flip_of_constants(Rgb{0}, Rgb{1}) > 0.95);
   CHECK(flip_of_constants({0, 1, 0}, {0, 0, 1}) == doctest::Approx(1).epsilon(1e-5));
 }
@@ -243,7 +243,7 @@ TEST_CASE("FLIP is 0 on equal images, symmetric and within [0,1]") {
   }
   for (const float e : flip_errors(a, a)) CHECK(e == 0);
   CHECK(flip_errors(a, b, 67, 1) == flip_errors(a, b, 67, 3));
-  // Also images smaller than the filters, and filters smaller than a pixel.
+  // Images smaller than the filters, and filters smaller than a pixel.
   CHECK(flip_errors(Image(1, 1, Rgb{1}), Image(1, 1)).size() == 1);
   for (const float e : flip_errors(a, b, 0.1)) CHECK(std::isfinite(e));
 }

@@ -1,4 +1,4 @@
-// Skies against quadrature in double precision, and against figures that others publish.
+// Skies compared with quadrature in double precision and with published figures.
 #include "daylight/sky_model.h"
 
 #include <doctest/doctest.h>
@@ -15,8 +15,9 @@ using namespace troffer::test;
 
 namespace {
 
-// Gauss-Legendre over zenith angle and azimuth from the sun, of luminance times the cosine at a
-// plane of unit normal n = (sin t, 0, cos t) with the sun in the plane of x and z.
+// Gauss-Legendre quadrature over zenith angle and azimuth from the sun. Integrates luminance times
+// the cosine at a plane with unit normal n = (sin t, 0, cos t); the sun lies in the plane of x and
+// z.
 template <class F>
 double illuminance(const F& luminance, double tilt) {
   static const GaussLegendre<double> rule(200);
@@ -39,7 +40,7 @@ TEST_CASE("the horizontal integral of every general sky is that of quadrature") 
     for (const double sun_zenith_deg : {20.0, 60.0, 85.0}) {
       const SkyShape s = cie_sky(type);
       const double zs = rad_from_deg(sun_zenith_deg);
-      // Written from the standard, not from the code.
+      // Derived from the standard, not from the code.
       const double full = illuminance(
           [&](double z, double azimuth) {
             const double x = std::acos(std::clamp(
@@ -76,13 +77,14 @@ TEST_CASE("clear air by Linke's turbidity: worked by hand from the published for
 }
 
 TEST_CASE("what the standard says of its skies") {
-  // Type 5 is even: pi. Type 1, overcast: the zenith about three times as bright as the horizon.
+  // Type 5 is uniform: pi. Type 1, overcast: the zenith is about three times as bright as the
+  // horizon.
   CHECK(horizontal_integral(cie_sky(5), 0.3) == doctest::Approx(pi).epsilon(1e-5));
   const SkyShape overcast = cie_sky(1);
   const double zenith = 1 + 4 * std::exp(-0.7);
   CHECK(zenith == doctest::Approx(2.986).epsilon(1e-3));
   CHECK(double(overcast.a) == 4);
-  // Zenith over diffuse horizontal, 3 / (7 pi / 3) of the traditional overcast sky, within 2 %.
+  // The traditional overcast sky has zenith over diffuse horizontal 3 / (7 pi / 3); within 2 %.
   CHECK(zenith / horizontal_integral(overcast, 0) == doctest::Approx(9 / (7 * pi)).epsilon(0.02));
 }
 
@@ -106,7 +108,7 @@ TEST_CASE("a sky brings the illuminance that it is asked for, on all sides what 
     };
     CAPTURE(type);
     CHECK(illuminance(seen, 0) == doctest::Approx(12345).epsilon(1e-4));
-    // The side that faces the sun is the brighter one, or as bright.
+    // The side facing the sun is at least as bright.
     const SkyShape s = cie_sky(type);
     const double zs = rad_from_deg(55.0);
     for (const double tilt : {pi / 2, -pi / 2}) {
@@ -142,7 +144,7 @@ TEST_CASE("a sun and a ground add up") {
         doctest::Approx(80'000).epsilon(1e-4));
   CHECK(double(scene.lights[0].sky.ground.g) * luminous_efficacy ==
         doctest::Approx(0.25 * (10'000 + 80'000 * 0.5) / pi).epsilon(1e-4));
-  // Azimuth 200: from south-south-west, north being -z and east +x.
+  // Azimuth 200 is south-south-west; north is -z and east is +x.
   const Vec3 to_sun = -sun.direction;
   CHECK(double(to_sun.y) == doctest::Approx(0.5).epsilon(1e-5));
   CHECK(double(to_sun.x) == doctest::Approx(std::cos(pi / 6) * std::sin(rad_from_deg(200.0))));
@@ -170,7 +172,7 @@ TEST_CASE("Perez' skies: overcast ones brighten upwards, clear ones towards the 
   };
   CHECK(lum(overcast.shape, 0, 0, zs) > 1.3 * lum(overcast.shape, 1.4, 2, zs));
   CHECK(lum(clear.shape, zs + 0.1, 0, zs) > 3 * lum(clear.shape, zs, pi, zs));
-  // Efficacies that are measured: some 110 to 150 lm/W of the sky, 90 to 110 of the sun.
+  // Measured efficacies: about 110 to 150 lm/W for the sky, 90 to 110 for the sun.
   CHECK(overcast.diffuse_lx / 150 > 105);
   CHECK(overcast.diffuse_lx / 150 < 125);
   CHECK(clear.diffuse_lx / 90 > 115);
@@ -178,7 +180,7 @@ TEST_CASE("Perez' skies: overcast ones brighten upwards, clear ones towards the 
   CHECK(clear.direct_lx / 850 > 90);
   CHECK(clear.direct_lx / 850 < 110);
   CHECK(overcast.direct_lx == 0);
-  // Whatever is asked: finite, and bright somewhere.
+  // Any valid input gives a finite sky that is bright somewhere.
   for (const double direct : {0.0, 1.0, 30.0, 200.0, 900.0, 2000.0})
     for (const double diffuse : {1e-3, 5.0, 60.0, 300.0, 2000.0})
       for (const double z : {0.0, 0.7, 1.3, 1.56}) {

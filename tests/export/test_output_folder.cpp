@@ -1,4 +1,4 @@
-// A scene's file and its data replace older ones together.
+// A scene file and its data files are replaced together.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -44,19 +44,19 @@ TEST_CASE("data of a file gets names that the file before it did not mention") {
   };
   const std::string first = write("one");
   CHECK(first == "s_files/data.bin");
-  CHECK(write("one") == first);  // the same bytes: nothing to replace
+  CHECK(write("one") == first);  // same bytes: nothing to replace
   {
     OutputFolder files(path);
     const std::string other = files.write("data.bin", bytes("two"));
     CHECK(other != first);
     CHECK(text_of(folder.path(first)) == "one");
     CHECK(text_of(path) == "uses " + first);
-  }  // not finished: as it was
+  }  // not finished: unchanged
   CHECK(names(folder) == std::set<std::string>{"data.bin"});
   const std::string second = write("two");
   CHECK(second != first);
   CHECK(text_of(path) == "uses " + second);
-  CHECK(names(folder).size() == 1);  // what only the old file used is gone
+  CHECK(names(folder).size() == 1);  // files that only the old scene used are gone
 }
 
 TEST_CASE("what another file of the same folder uses stays") {

@@ -1,4 +1,5 @@
-// Scenes written in each format and read again are the same, but for what the format cannot hold.
+// Scenes written in each format and read again are equal, except for properties that the format
+// cannot hold.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -66,7 +67,8 @@ double area_of(const Scene& scene, const Light& e) {
   return sum;
 }
 
-// Radiance times area of all surfaces that emit, in W/sr, by channel; both sides of those that do.
+// Returns the sum of radiance times area over emitting surfaces in W/sr, per channel. Two-sided
+// ones count twice.
 Rgb total_emission(const Scene& scene) {
   Rgb sum;
   for (const Light& e : scene.lights)
@@ -127,7 +129,7 @@ TEST_CASE("lights, cameras and materials survive in every format") {
   const Scene scene = import_scene(folder.write("in.pbrt", world));
   for (const std::string name : {"out.pbrt", "out.gltf", "out.glb"}) {
     CAPTURE(name);
-    // y is said to be up, so that positions stay what they are.
+    // y is declared up, so that positions stay the same.
     const std::vector<Warning> lost =
         export_scene(scene, folder.path(name), nullptr, Vec3{0, 1, 0});
     CHECK(has_warning(lost, "spheres and disks") == (name != "out.pbrt"));
@@ -172,7 +174,7 @@ TEST_CASE("a file of pbrt's that is written is read as exactly the same scene") 
   const Material& metal = back.materials[back.spheres[1].material];
   CHECK(metal.kind == MaterialKind::conductor);
   CHECK(metal.base_color.value == Rgb{0.6f, 0.1f, 0.1f});
-  CHECK(metal.roughness.value == 0.5f);  // the width of ggx itself
+  CHECK(metal.roughness.value == 0.5f);  // the GGX width itself
 }
 
 TEST_CASE("a portal stays where it is, in scenes far from the origin too") {
@@ -219,7 +221,7 @@ TEST_CASE("textures, masks and scenes far from the origin survive") {
     REQUIRE(n.is_alpha_masked);
     for (const Vec2 uv : {Vec2{0.1f, 0.5f}, Vec2{0.3f, 0.5f}, Vec2{0.6f, 0.5f}, Vec2{0.9f, 0.5f}}) {
       CHECK(is_cut_out(back.textures, n, uv) == is_cut_out(scene.textures, m, uv));
-      // One image holds both in glTF: the colour gives way.
+      // glTF stores colour and alpha in one image, so the colour is resampled.
       if (name == "out.pbrt")
         check_near(evaluate(back.textures, n.base_color, uv),
                    evaluate(scene.textures, m.base_color, uv), 1e-4);
@@ -328,7 +330,7 @@ TEST_CASE("clear coats and thin films survive where the format has them") {
   CHECK(g.coat.value == 0.5f);
   CHECK(g.coat_roughness.value == doctest::Approx(0.2));
   CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "anything but metal"));
-  // By pbrt the layer itself survives, and glTF's metal gets one.
+  // pbrt keeps the layer itself, and glTF's metal gets a layer.
   CHECK(has_warning(export_scene(scene, folder.path("out.pbrt")), "into which light bends"));
   const Scene pbrt = import_scene(folder.path("out.pbrt"));
   REQUIRE(pbrt.materials.size() >= 2);
@@ -369,7 +371,7 @@ TEST_CASE("what glass absorbs survives, and what is lost is told") {
     }
     CHECK(glasses == 1);
   }
-  // Backs: glTF alone knows those that the eye does not see.
+  // Backs: only glTF can express that they are invisible to the eye.
   Scene unseen = scene;
   for (Material& m : unseen.materials) m.back_faces = BackFaces::unseen;
   CHECK_FALSE(has_warning(export_scene(unseen, folder.path("b.gltf")), "backs"));
@@ -426,7 +428,7 @@ TEST_CASE("instances stay instances in every format") {
     }
     const Scene back = import_scene(path);
     CHECK(triangle_count(back) == triangle_count(scene));
-    // So few are copied when they are read: in the places where the instances stood.
+    // The reader copies so few instances: they appear at the instances' positions.
     REQUIRE(back.meshes.size() == scene.meshes.size() + scene.instances.size());
     const size_t first = back.meshes.size() - scene.instances.size();
     for (uint32_t k = 0; k < scene.instances.size(); ++k) {

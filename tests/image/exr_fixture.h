@@ -1,4 +1,4 @@
-// EXR files put together byte by byte from the published layout, without OpenEXR.
+// EXR files assembled byte by byte from the published layout, without OpenEXR.
 // References: [1] "OpenEXR File Layout", openexr.com.
 #pragma once
 
@@ -15,8 +15,8 @@ namespace troffer::test {
 
 enum class ExrType : int32_t { uint = 0, half = 1, floating = 2 };
 
-// Pixel (x, y), counted from the data window's corner, of channel c holds exr_value(c, x, y), or
-// `constants[c]` where given. The values are integers below 2048, which every type holds exactly.
+// Pixel (x, y), relative to the data window's corner, of channel c holds exr_value(c, x, y), or
+// `constants[c]` if given. Values are integers below 2048, which every type represents exactly.
 struct ExrFixture {
   std::vector<std::string> channels{"B", "G", "R"};  // in alphabetical order
   ExrType type = ExrType::floating;
@@ -24,8 +24,8 @@ struct ExrFixture {
   int tile_width = 0, tile_height = 0;  // 0: scan lines
   bool is_decreasing = false;
   std::vector<float> constants;
-  std::vector<int> sampling = {};  // per channel, 1 if empty
-  // x and y of red, green, blue and white; none: no attribute
+  std::vector<int> sampling = {};  // per channel; empty: 1
+  // x and y of red, green, blue and white; empty: no attribute
   std::vector<float> chromaticities = {};
 };
 
@@ -122,7 +122,7 @@ class ExrWriter {
     out_.push_back(0);
   }
 
-  // The size of a block of pixels, then its lines, each channel after channel.
+  // Writes the size of a block of pixels, then its lines, channel by channel.
   void chunk(int x0, int y0, int x1, int y1) {
     const size_t size_at = out_.size();
     i32(0);
@@ -139,7 +139,7 @@ class ExrWriter {
   void value(float v) {
     if (f_.type == ExrType::floating) return i32(std::bit_cast<int32_t>(v));
     if (f_.type == ExrType::uint) return i32(int32_t(v));
-    int exponent = 0;  // half: v = 1.m * 2^e, e biased by 15; these values are exact and normal
+    int exponent = 0;  // half: v = 1.m * 2^e, e biased by 15; all values are exact and normal
     const float fraction = std::frexp(v, &exponent);
     const int bits = v == 0 ? 0 : ((exponent + 14) << 10) + int(fraction * 2048) - 1024;
     out_.push_back(uint8_t(bits));

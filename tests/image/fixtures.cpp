@@ -54,7 +54,7 @@ std::vector<uint8_t> make_png(const PngFixture& fixture) {
 
 namespace {
 
-// Big-endian, as ICC profiles are.
+// Big-endian bytes, as in ICC profiles.
 struct ProfileBytes {
   std::vector<uint8_t> bytes{};
   void word(uint32_t v) {
@@ -83,7 +83,7 @@ std::vector<uint8_t> power_data(double power) {
   b.word(0);
   b.word(1);
   const auto fixed = uint32_t(std::lround(power * 256));
-  b.word(fixed << 16);  // two bytes, and two of padding
+  b.word(fixed << 16);  // two bytes and two of padding
   return b.bytes;
 }
 

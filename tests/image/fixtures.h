@@ -1,4 +1,4 @@
-// Small encoded pictures made with the formats' own libraries, and folders that vanish.
+// Small pictures encoded with the formats' own libraries, and temporary folders.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct PngFixture {
   bool is_interlaced = false;
   std::vector<std::vector<uint8_t>> rows;  // packed as in the file
   std::vector<uint8_t> palette_rgb, palette_alpha;
-  double gamma = 0;  // 0: not told
+  double gamma = 0;  // 0: no gAMA chunk
   bool is_marked_srgb = false;
   std::vector<uint8_t> profile = {};
 };
@@ -30,15 +30,15 @@ std::vector<uint8_t> make_jpeg(int width, int height, int components,
                                const std::vector<uint8_t>& samples, bool is_progressive = false,
                                const std::vector<uint8_t>& profile = {});
 
-// ICC profile by matrix and power: columns are X, Y, Z (D50) of red, green and blue; encoded values
-// to this power are light. Greys: by the power alone.
+// Returns an ICC profile by matrix and power. Columns are X, Y, Z (D50) of red, green and blue;
+// light is the encoded value to this power. Grey profiles have only the power.
 std::vector<uint8_t> make_rgb_profile(const std::array<Vec3d, 3>& colorants, double power);
 std::vector<uint8_t> make_grey_profile(double power);
 
-// A picture of random values in [0, 4), the same for the same seed.
+// Returns a picture of random values in [0, 4), determined by the seed.
 Image random_image(int width, int height, uint64_t seed);
 
-// A new empty folder, removed with everything in it.
+// A new empty folder, removed with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -1,4 +1,4 @@
-// Broken files: every one is an InputError or a picture; nothing else, in bounded time and memory.
+// Broken files: each one gives an InputError or a picture, in bounded time and memory.
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
@@ -38,7 +38,7 @@ Outcome outcome_of(const std::vector<uint8_t>& bytes, std::string* reason = null
   }
 }
 
-// The value of "key" in a line of the manifest, which holds one object per line.
+// Returns the value of "key" in a line of the manifest, which holds one object per line.
 std::string field(const std::string& line, const std::string& key) {
   const std::string mark = "\"" + key + "\": \"";
   const size_t begin = line.find(mark);
@@ -139,7 +139,7 @@ TEST_CASE("random damage gives an error or a picture") {
     for (int round = 0; round < 1500; ++round) {
       std::vector<uint8_t> damaged = bytes;
       for (uint32_t n = 1 + random.next_u32() % 4; n > 0; --n) {
-        // Half of the blows hit the header.
+        // Half of the changes hit the header.
         const size_t reach =
             random.next_u32() % 2 != 0 ? damaged.size() : std::min<size_t>(damaged.size(), 300);
         damaged[random.next_u64() % reach] = uint8_t(random.next_u32());

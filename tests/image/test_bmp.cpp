@@ -34,7 +34,7 @@ struct Bmp {
     put_number(out, uint32_t(depth), 2);
     put_number(out, compression, 4);
     put_number(out, 0, 3 * 4);
-    put_number(out, depth <= 8 ? uint32_t(map.size() / 4) : 0, 4);  // colours
+    put_number(out, depth <= 8 ? uint32_t(map.size() / 4) : 0, 4);  // number of colours
     put_number(out, 0, 4);
     out.insert(out.end(), map.begin(), map.end());
     out.insert(out.end(), body.begin(), body.end());
@@ -94,7 +94,7 @@ TEST_CASE("BMP: 16 and 32 bits, with and without fields") {
 
 TEST_CASE("BMP: run lengths of 8 and 4 bits") {
   Bmp b{.width = 3, .height = 2, .depth = 8, .compression = 1, .map = bmp_colours};
-  // Below: two of colour 1, the rest of the row 0. Above: three as they are, filled up.
+  // Below: two of colour 1, the rest of the row 0. Above: three literal colours, padded.
   b.body = {2, 1, 0, 0, 0, 3, 0, 1, 0, 0, 0, 1};
   CHECK(decode_raster(b.bytes(), "file").texels8 ==
         BmpBytes{3, 2, 1, 6, 5, 4, 3, 2, 1, 6, 5, 4, 6, 5, 4, 3, 2, 1});
@@ -126,6 +126,6 @@ TEST_CASE("BMP: broken files are refused before memory is taken") {
     for (int k = 0; k < 3; ++k)
       changed[size_t(random.next_float() * float(changed.size()))] =
           uint8_t(random.next_float() * 256);
-    why_bmp_is_rejected(changed);  // loads or is refused
+    why_bmp_is_rejected(changed);  // must load or throw InputError
   }
 }

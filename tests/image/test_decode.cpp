@@ -1,4 +1,4 @@
-// PNG, JPEG, HDR and PFM: known pixels out of known bytes.
+// PNG, JPEG, HDR and PFM: known bytes give known pixels.
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -96,7 +96,7 @@ TEST_CASE("16-bit PNG becomes floats in [0,1], interlaced or not") {
 }
 
 TEST_CASE("palettes and few-bit greys are expanded") {
-  // Two bits per pixel: entries 3 2 1 0 in one byte.
+  // Two bits per pixel: the byte holds entries 3 2 1 0.
   const PngFixture palette{.width = 4,
                            .height = 1,
                            .colour_type = 3,
@@ -136,7 +136,7 @@ TEST_CASE("JPEG: grey, colour, progressive and Adobe's inverted CMYK") {
       CHECK(std::abs(int(colour.texels8[i]) - int(samples[i])) <= 2);
   }
 
-  samples.clear();  // libjpeg marks CMYK as Adobe's: 255 is no ink
+  samples.clear();  // libjpeg marks CMYK as Adobe's: 255 means no ink
   for (int i = 0; i < 64; ++i) samples.insert(samples.end(), {255, 128, 0, 200});
   const Raster ink = decode_raster(make_jpeg(8, 8, 4, samples), "file");
   CHECK(ink.channels == 3);
@@ -159,7 +159,7 @@ TEST_CASE("HDR: orientation, exposure, XYZ, old runs") {
   CHECK(decode_raster(joined(exposed + "-Y 1 +X 2\n", two_pixels), "file").texels_float[0] ==
         doctest::Approx(128.5 * double(step) / 8));
 
-  // The bright pixel is the first stored; where it lands tells the orientation.
+  // The bright pixel is stored first; its position reveals the orientation.
   const auto bright_at = [&](const std::string& resolution) {
     const Raster r = decode_raster(joined("#?RADIANCE\n\n" + resolution, two_pixels), "file");
     return std::pair(std::pair(r.width, r.height), r.texels_float[0] > 0 ? 0 : 1);
@@ -172,13 +172,13 @@ TEST_CASE("HDR: orientation, exposure, XYZ, old runs") {
   CHECK(bright_at("+X 2 +Y 1\n") == pair(pair(2, 1), 0));
   CHECK(bright_at("+X 1 +Y 2\n") == pair(pair(1, 2), 1));
 
-  // White of equal energy in XYZ is reddish in Rec. 709.
+  // Equal-energy white in XYZ is reddish in Rec. 709.
   const Raster xyz = decode_raster(
       joined("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n", {128, 128, 128, 129}), "file");
   CHECK(xyz.texels_float[0] > xyz.texels_float[1]);
   CHECK(xyz.texels_float[1] == doctest::Approx(0.9483 * 128.5 / 128).epsilon(0.001));
 
-  // Three pixels: one, then "2 times again".
+  // Three pixels: one, then "repeat 2 times".
   const Raster runs =
       decode_raster(joined("#?RADIANCE\n\n-Y 1 +X 3\n", {128, 64, 32, 129, 1, 1, 1, 2}), "file");
   CHECK(runs.texels_float[6] == runs.texels_float[0]);
@@ -250,12 +250,12 @@ TEST_CASE("linear_raster decodes colours and leaves alpha") {
   CHECK(linear.texels_float[3] == doctest::Approx(128.0 / 255));
 }
 
-// Floats take 12 bytes and more for each pixel, which runs of equal bytes hold in next to nothing.
+// Floats take at least 12 bytes per pixel, while runs of equal bytes take almost none.
 TEST_CASE("a few bytes do not become gigabytes") {
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
   CHECK(why_rejected(bytes_of(header + "-Y 8000 +X 8000\n"), default_max_pixels)
             .find("picture of 8000x8000 would take 732 MB of memory, from a file of") == 0);
-  // 4096 x 4096 are always decoded: here the pixels are missing.
+  // 4096 x 4096 is always decoded; here the pixels are missing.
   CHECK(
       why_rejected(bytes_of(header + "-Y 4096 +X 4096\n"), default_max_pixels).find("would take") ==
       std::string::npos);

@@ -1,4 +1,4 @@
-// How bright a picture is to be shown.
+// Automatic exposure of pictures.
 #include "image/exposure.h"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ TEST_CASE("the exposure that brings a picture to mid-grey") {
   const Brightness even = brightness(Image(8, 8, Rgb{18}));
   CHECK_FALSE(even.is_black);
   CHECK(even.auto_stops == doctest::Approx(std::log2(0.01)));
-  // A few pixels of a source, and black ones, change nothing.
+  // A few source pixels and black pixels change nothing.
   Image image(100, 10, Rgb{0.18f});
   for (size_t i = 0; i < 30; ++i) image.pixels[i] = Rgb{1e6f};
   for (size_t i = 30; i < 400; ++i) image.pixels[i] = Rgb{0};

@@ -1,4 +1,4 @@
-// EXR files of shapes that others write, and the layers of our own.
+// EXR files as other programs write them, and our own layers.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -59,7 +59,7 @@ TEST_CASE("which channels make the picture") {
   CHECK(rgba.channels == 4);
   CHECK(last(rgba, 0) == expected(3));
   CHECK(last(rgba, 3) == expected(0));
-  const Raster red = raster_of({"R"});  // what is missing is 0
+  const Raster red = raster_of({"R"});  // missing channels are 0
   CHECK(red.channels == 3);
   CHECK(last(red, 0) == expected(0));
   CHECK(last(red, 1) == 0);
@@ -117,7 +117,7 @@ TEST_CASE("headers that claim too much are refused before OpenEXR sees them") {
   CHECK(reason(f, 70, 50) == "");
   CHECK(reason(f, 100000, 100000).find("limit") != std::string::npos);
   CHECK(reason(f, 2000000000, 1).find("limit") != std::string::npos);
-  // A few bytes may not claim gigabytes: refused by the memory that the picture would take.
+  // A few bytes may not claim gigabytes: the limit on the picture's memory rejects them.
   CHECK(reason(f, 1, 60000000).find("of memory") != std::string::npos);
   CHECK(reason(f, 0, 5) == "EXR with an empty data window");
   f.tile_width = f.tile_height = 64;
@@ -155,7 +155,7 @@ TEST_CASE("layers become named channels in their window") {
   CHECK(contains(box("dataWindow", {10, 20, 17, 25})));
   CHECK(contains(box("displayWindow", {0, 0, 99, 49})));
 
-  write_image(path, std::span(layers).subspan(1, 1));  // a layer alone is found
+  write_image(path, std::span(layers).subspan(1, 1));  // a single layer is found
   CHECK(read_image(path).pixels == albedo.pixels);
   write_image(path, std::span(layers).subspan(3));
   CHECK(read_image(path).at(5, 2) == Rgb{21});
@@ -170,7 +170,7 @@ TEST_CASE("colours of an EXR file's own primaries become Rec. 709") {
   const Raster own = decode_raster(bytes, "a.exr");
   REQUIRE(own.primaries.has_value());
   CHECK(own.texels_float == std::vector<float>{1, 2, 3});
-  // As published for ACEScg with the white adapted.
+  // Published matrix for ACEScg with white adaptation.
   const Raster seen = rec709_raster(own, true);
   CHECK_FALSE(seen.primaries.has_value());
   const std::array<double, 3> wanted{1.70505 - 2 * 0.62179 - 3 * 0.08326,
@@ -178,14 +178,14 @@ TEST_CASE("colours of an EXR file's own primaries become Rec. 709") {
                                      -0.02400 - 2 * 0.12897 + 3 * 1.15297};
   for (size_t c = 0; c < 3; ++c)
     CHECK(double(seen.texels_float[c]) == doctest::Approx(wanted[c]).epsilon(5e-4));
-  // Without, luminance is what the primaries give: white is D60.
+  // Without white adaptation, luminance follows from the primaries: white is D60.
   fixture.constants = {1, 1, 1};
   const Raster white = rec709_raster(decode_raster(test::make_exr(fixture), "a.exr"), false);
   const std::vector<float>& w = white.texels_float;
   CHECK(double(luminance(Rgb{w[0], w[1], w[2]})) == doctest::Approx(1).epsilon(1e-3));
   CHECK(w[0] > 1.02f);
   CHECK(w[2] < 0.95f);
-  // Rec. 709, and what spans no colours, are as nothing.
+  // Rec. 709 and degenerate primaries are ignored.
   fixture.chromaticities = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
   CHECK_FALSE(decode_raster(test::make_exr(fixture), "a.exr").primaries.has_value());
   fixture.chromaticities.assign(8, 0.5f);

@@ -1,4 +1,4 @@
-// All layers of an EXR, with its place and its note.
+// All layers of an EXR file, with window and note.
 #include "image/layered_image.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
-// Outputs that are no plain files, and files that cannot grow: nothing waits for ever, nothing is
-// replaced that should not be, nothing stays behind.
+// Outputs that are not regular files, and files that cannot grow: no call hangs, no file is
+// replaced by mistake, and no temporary file remains.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -50,7 +50,7 @@ std::string read_to_end(int descriptor) {
   return all;
 }
 
-// Runs body() in a copy of this process: its exit status, 128 + signal where one ended it.
+// Runs body() in a forked process. Returns its exit status, or 128 + signal if a signal ended it.
 int status_of(const std::function<void()>& body) {
   const pid_t pid = fork();
   if (pid == 0) {
@@ -77,7 +77,7 @@ TEST_CASE("a reader of a pipe gets all that is written after the reservation") {
   const TemporaryFolder folder;
   const std::string pipe = folder.path("pipe.csv");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-  const std::string large(300000, 'x');  // more than a pipe holds
+  const std::string large(300000, 'x');  // exceeds a pipe's capacity
   std::string got;
   std::thread reader([&] {
     const int descriptor = open(pipe.c_str(), O_RDONLY);
@@ -144,7 +144,7 @@ TEST_CASE("disks and sockets are refused") {
   REQUIRE(bind(s, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0);
   CHECK(contains(why_not([&] { OutputReservation reserved(path); }), "it is a socket"));
   close(s);
-  const std::string disk = folder.path("disk");  // a node alone: no such disk is there
+  const std::string disk = folder.path("disk");  // only a node: there is no such disk
   if (mknod(disk.c_str(), S_IFBLK | 0600, makedev(250, 250)) == 0)
     CHECK(contains(why_not([&] { OutputReservation reserved(disk); }), "it is a disk"));
 }
@@ -171,9 +171,9 @@ TEST_CASE("a process that a signal ends takes its half-written files with it") {
           done.commit();
           if (folder.entries() != 4) _exit(1);
           remove_temporary_files();
-          // what another thread begins now must not stay either
+          // A file that another thread begins afterwards must not remain either.
           if (!contains(why_not([&] { AtomicFile late(folder.path("late")); }), "ending")) _exit(2);
-          _exit(7);  // without destructors, as from a signal's handler
+          _exit(7);  // without destructors, as in a signal handler
         }) == 7);
   CHECK(folder.entries() == 2);
   CHECK(text_of(folder.path("mine.csv")) == "mine");

@@ -1,4 +1,4 @@
-// What files say of their colours: gamma and profiles against the formulas.
+// Colour information of files: gamma and profiles compared with the formulas.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ const std::array<Vec3d, 3> adobe_colorants{Vec3d{0.60974, 0.31111, 0.01947},
                                            Vec3d{0.20528, 0.62567, 0.06087},
                                            Vec3d{0.14919, 0.06322, 0.74457}};
 
-// A row of pixels of 8 or 16 bits.
+// Returns a PNG with a row of pixels of 8 or 16 bits.
 PngFixture row_of(int colour_type, int channels, int depth, const std::vector<int>& values) {
   PngFixture f{.width = int(values.size()) / channels,
                .height = 1,
@@ -62,7 +62,7 @@ double determinant(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return dot(a, cross(b, c));
 }
 
-// Light by a profile's power and colorants, in sRGB's.
+// Converts encoded values of a profile with this power and colorants to linear sRGB.
 Vec3d in_srgb(const Vec3d& encoded, const std::array<Vec3d, 3>& colorants, double power) {
   Vec3d xyz{0, 0, 0};
   for (size_t k = 0; k < 3; ++k) xyz = xyz + colorants[k] * std::pow(encoded[k], power);
@@ -91,7 +91,7 @@ TEST_CASE("PNG's gamma: linear values stay, others are brought to sRGB, alpha is
       for (size_t i = 0; i < values.size(); ++i) {
         const double v = values[i] / 255.0;
         const double expected = i % 4 == 3 ? v : std::pow(v, 1 / gamma);
-        // 8 bits of sRGB: half a step, where it is steepest.
+        // 8-bit sRGB: half a step at the steepest part of the curve.
         const double rounding = depth == 8 && gamma != 1 && i % 4 != 3 ? 0.5 / 255 * 2.3 : 1e-5;
         CHECK(std::abs(double(linear.texels_float[i]) - expected) <= rounding);
       }
@@ -136,7 +136,7 @@ TEST_CASE("profiles by matrix and power, in PNG of 8 and 16 bits and in JPEG") {
   std::vector<uint8_t> block;
   for (int i = 0; i < 64; ++i) block.insert(block.end(), {153, 128, 102});
   check(make_jpeg(8, 8, 3, block, false, profile), 0.015);
-  // By sRGB the red would be another.
+  // Interpreted as sRGB, red would differ.
   CHECK(std::abs(expected[0] - double(linear_from_srgb(0.6f))) > 0.03);
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("profiles that lie are left out: broken ones, and of other channels") 
   }
   CHECK(obey(make_jpeg(8, 8, 3, block, false, make_grey_profile(1))).found == ColoursFound::broken);
   CHECK(obey(make_jpeg(8, 8, 1, block, false, good)).found == ColoursFound::broken);
-  // Every byte of it wrong in turn.
+  // Corrupts every byte in turn.
   const std::vector<uint8_t> jpeg_of_good = make_jpeg(8, 8, 3, block, false, good);
   for (size_t i = 0; i < good.size(); ++i)
     for (const uint8_t v : {0x00, 0x7f, 0xff}) {

@@ -47,7 +47,7 @@ std::string why_rejected(const Bytes& bytes) {
 }  // namespace
 
 TEST_CASE("TGA: colours from below, from above and mirrored") {
-  // blue green red; the first row of the file is the lowest
+  // Blue, green, red; the file's first row is the lowest.
   Tga t{.body = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}};
   Raster r = decode_raster(t.bytes(), "file");
   CHECK(r.channels == 3);

@@ -1,4 +1,4 @@
-// Files written and read back; the same pixels give the same bytes; failures leave nothing.
+// Files survive a round trip, equal pixels give equal bytes, and failures leave no files.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST_CASE("EXR and PFM give back every bit") {
 
 TEST_CASE("HDR is true to half a step of its largest component") {
   const TemporaryFolder folder;
-  for (const int width : {5, 8, 300}) {  // flat pixels, shortest line with runs, long runs
+  for (const int width : {5, 8, 300}) {  // plain pixels, shortest line with runs, long runs
     Image image = random_image(width, 9, 2);
     for (int x = 0; x < width; ++x) image.at(x, 3) = Rgb{0.5f};
     for (int x = width / 3; x < width; ++x) image.at(x, 4) = Rgb{1e-3f, 7, 1e5f};
@@ -62,7 +62,7 @@ TEST_CASE("HDR is true to half a step of its largest component") {
       for (size_t c = 0; c < 3; ++c)
         CHECK(std::abs(back.pixels[i][c] - image.pixels[i][c]) <= 0.5f * step);
     }
-    write_image(folder.path("b.hdr"), back);  // packing what was unpacked changes nothing
+    write_image(folder.path("b.hdr"), back);  // repacking changes nothing
     CHECK(read_file_bytes(folder.path("a.hdr")) == read_file_bytes(folder.path("b.hdr")));
   }
 }
@@ -95,7 +95,7 @@ TEST_CASE("PNG holds the display values") {
     CHECK(raster.texels8[3 * x + 2] == 0);
   }
   CHECK(raster.texels8[3 * 255 + 1] == 255);
-  write_image(folder.path("b.png"), image);  // filmic
+  write_image(folder.path("b.png"), image);  // filmic tone map
   CHECK(read_file_bytes(folder.path("a.png")) != read_file_bytes(folder.path("b.png")));
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("AtomicFile replaces whole files only") {
   }
   CHECK(text() == "first");
   CHECK(folder.entries() == 1);
-  AtomicFile one(path), two(path);  // two writers at once do not meet
+  AtomicFile one(path), two(path);  // two concurrent writers do not collide
   one.write("one");
   two.write("two");
   two.commit();

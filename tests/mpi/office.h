@@ -1,4 +1,4 @@
-// Processes that are threads, and letters between them: what leads and follows, without MPI.
+// Threads that act as processes, and messages between them: Leader and Follower without MPI.
 #pragma once
 
 #include <atomic>
@@ -20,11 +20,11 @@ class Office {
  public:
   explicit Office(int size) : boxes_(size_t(size)), is_dead_(size_t(size), false) {}
   int size() const { return int(boxes_.size()); }
-  // Nothing that it sends from now on arrives, nor what is sent to it.
+  // From now on, messages from and to this process are lost.
   void kill(int rank) {
     const std::lock_guard lock(mutex_);
     is_dead_[size_t(rank)] = true;
-    // So that its threads end too.
+    // Ends its threads, too.
     boxes_[size_t(rank)] = {{0, *message({MessageKind::end, 0, 0, 0})}};
   }
   void put(int from, int to, const Post::Bytes& bytes) {
@@ -61,7 +61,7 @@ class OfficePost final : public Post {
   int rank_;
 };
 
-// Runs body(crew) as each of so many processes, rank 0 in this thread, which waits for all.
+// Runs body(group) as each process. Rank 0 runs in this thread, which waits for all.
 template <class Body>
 void run_crew(Office& office, const Leader::Warn& warn, const Body& body) {
   std::vector<std::thread> others;

@@ -1,4 +1,4 @@
-// Who does what when several processes share work, and what becomes of it when some are gone.
+// Scheduling of shared work over several processes, also when some of them die.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -17,12 +17,12 @@ namespace {
 
 const StopFlag never = false;
 
-// What item i of a job is to come to.
+// Expected value of item i of a job.
 uint64_t value_of(uint64_t job, size_t i) {
   return hash_of(job, uint64_t(i));
 }
 
-// A job whose items are numbers; `act` may be extended.
+// A job whose items are numbers; `act` can be wrapped.
 struct Numbers {
   Numbers(uint64_t job, size_t n) : values(n, 0) {
     work.items = n;
@@ -33,7 +33,7 @@ struct Numbers {
       return true;
     };
     work.save = [this](size_t i, SharedWork::Bytes& out) {
-      // Of any length, none included.
+      // Results have various lengths, including 0.
       for (size_t k = 0; k < i % 3; ++k) append(out, values[i]);
     };
     work.load = [this](size_t i, ByteReader in) {
@@ -41,7 +41,7 @@ struct Numbers {
       values[i] = i % 3 == 0 ? 0 : in.next<uint64_t>();
     };
   }
-  // Those that can be told of.
+  // Checks the items whose results are transmitted.
   bool are_right(uint64_t job) const {
     for (size_t i = 0; i < values.size(); ++i)
       if (i % 3 != 0 && values[i] != value_of(job, i)) return false;
@@ -82,11 +82,11 @@ TEST_CASE("every process comes to know what all have done") {
         acts[job++] += numbers.acts;
       }
       std::vector<uint8_t> bytes;
-      if (group.leads()) bytes.assign(20'000'000, 7);  // several pieces
+      if (group.leads()) bytes.assign(20'000'000, 7);  // sent in several pieces
       REQUIRE(group.tell(bytes, never));
       CHECK(bytes == std::vector<uint8_t>(20'000'000, 7));
     });
-    // Each is done once, unless somebody was very late.
+    // Each item is done once, unless a process was very late.
     CHECK(acts[0] == 0);
     CHECK(acts[1] >= 1);
     CHECK(acts[2] >= 40);
@@ -124,7 +124,7 @@ TEST_CASE("who is to do an item is told what it needs; rank 0 alone gets what ca
   CHECK(by_others > 0);
 }
 
-// Rank 1 hands on what 3 and 5 are to know.
+// Rank 1 forwards results to 3 and 5.
 TEST_CASE("a process that dies costs what it had under way, and nobody the results") {
   Office office(6);
   std::atomic<int> by_dead = 0;
@@ -193,7 +193,7 @@ TEST_CASE("all stop, whoever is asked to") {
   }
 }
 
-// A limit of time is rank 0's own flag.
+// The time limit is rank 0's own flag.
 TEST_CASE("work that rank 0 breaks off ends for all, and is not taken for a signal") {
   Office office(3);
   StopFlag is_over = false;

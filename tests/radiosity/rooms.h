@@ -1,4 +1,4 @@
-// Rooms and solvers for the tests of radiosity.
+// Rooms and solvers for the radiosity tests.
 #pragma once
 
 #include <utility>
@@ -9,7 +9,7 @@
 
 namespace troffer::test {
 
-// A scene with all that solve_radiosity wants; stays where it was made.
+// A scene with everything that solve_radiosity needs. It cannot be moved.
 struct Ready {
   explicit Ready(Scene s) : scene(std::move(s)), tracer(scene), tables(scene), lights(scene) {}
   Ready(const Ready&) = delete;
@@ -36,7 +36,7 @@ inline MeshingOptions sizes(float element, float patch) {
   return o;
 }
 
-// A box with every wall emitting `radiance` × (1 - its reflectance).
+// Adds a box whose walls emit `radiance` × (1 - reflectance).
 inline void add_furnace_box(Scene& s, const Vec3& a, const Vec3& b, const float (&rho)[6],
                             float radiance) {
   const auto quads = add_box_inside(s, add_diffuse(s, Rgb{0.5f}), a, b);
@@ -46,7 +46,7 @@ inline void add_furnace_box(Scene& s, const Vec3& a, const Vec3& b, const float 
   }
 }
 
-// Six quads facing outwards that emit likewise.
+// Adds six outward-facing quads that emit in the same way.
 inline void add_furnace_block(Scene& s, const Vec3& a, const Vec3& b, float rho, float radiance) {
   for (const uint32_t q : add_box_inside(s, add_diffuse(s, Rgb{rho}), a, b)) {
     std::swap(s.meshes[q].positions[1], s.meshes[q].positions[3]);
@@ -54,7 +54,7 @@ inline void add_furnace_block(Scene& s, const Vec3& a, const Vec3& b, float rho,
   }
 }
 
-// A w × h × d room of one reflectance, lit by a square source under the ceiling.
+// Returns a w × h × d room of one reflectance, lit by a square source under the ceiling.
 inline Scene lit_room(float rho, float w = 4, float h = 3, float d = 2.5f) {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{rho}), {0, 0, 0}, {w, h, d});

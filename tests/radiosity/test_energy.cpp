@@ -1,4 +1,4 @@
-// Energy: solutions that end, balances that close or say that they do not.
+// Energy: solutions terminate, and balances close or report that they do not.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@ using namespace troffer::test;
 
 namespace {
 
-// Five walls and two boxes, bottoms included, that stand `gap` over the floor; a light under the
-// ceiling: 36 triangles.
+// Returns five walls and two boxes, bottoms included, that stand `gap` above the floor, with a
+// light under the ceiling: 36 triangles.
 Scene cornell_box(float rho, float gap) {
   Scene s;
   const uint32_t white = add_diffuse(s, Rgb{rho});
@@ -107,7 +107,7 @@ TEST_CASE("perfectly white and closed: effort is bounded, and it is said so") {
 }
 
 TEST_CASE("where most light escapes the rest is still reflected as often as it should be") {
-  Scene scene;  // two sheets that meet at an edge; the light shines up and to the side
+  Scene scene;  // two sheets that share an edge; the light shines up and sideways
   const uint32_t grey = add_diffuse(scene, Rgb{0.7f});
   add_quad(scene, grey, {Vec3{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
   add_quad(scene, grey, {Vec3{0, 0, 0}, {0, 2, 0}, {0, 2, 2}, {0, 0, 2}});
@@ -128,7 +128,7 @@ TEST_CASE("where most light escapes the rest is still reflected as often as it s
 }
 
 TEST_CASE("light that gets lost is told") {
-  // A light with a shade so near that no sample point of the coarse elements sees it.
+  // A light so close to its shade that no sample point of the coarse elements sees it.
   Scene scene;
   const uint32_t grey = add_diffuse(scene, Rgb{0.5f});
   add_box_inside(scene, grey, {0, 0, 0}, {4, 4, 4});

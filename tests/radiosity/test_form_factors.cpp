@@ -1,4 +1,4 @@
-// Form factors against closed forms, row sums, reciprocity.
+// Form factors compared with closed forms; row sums; reciprocity.
 // References: [1] Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11
 //   (identical, parallel, opposed rectangles), C-14 (perpendicular rectangles with a common edge).
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ double parallel_factor(double a, double b, double c) {
           y * std::sqrt(x2) * std::atan(y / std::sqrt(x2)) - x * std::atan(x) - y * std::atan(y));
 }
 
-// From w × l to h × l, which share the edge of length l.
+// Returns the factor from w × l to h × l, which share the edge of length l.
 double perpendicular_factor(double l, double w_length, double h_length) {
   const double h = h_length / l, w = w_length / l, h2 = h * h, w2 = w * w;
   const double r = std::sqrt(h2 + w2);
@@ -55,8 +55,8 @@ MeshingOptions open_sizes(float element, float patch) {
   return o;
 }
 
-// Mean over the points that `is_receiver` picks of the factor to all patches that `is_shooter`
-// picks.
+// Returns the mean, over the points that `is_receiver` selects, of the factor to all patches that
+// `is_shooter` selects.
 template <class Shoots, class Receives>
 double mean_factor(const Fixture& f, const Shoots& is_shooter, const Receives& is_receiver) {
   double sum = 0, area = 0;
@@ -95,7 +95,7 @@ TEST_CASE("perpendicular rectangles with a common edge") {
   const double got = mean_factor(
       f, [](const ElementPoint& p) { return p.position.y == 0 && p.normal.y > 0; },
       [](const ElementPoint& p) { return p.position.z == 0 && p.normal.z > 0; });
-  // the integrand jumps at the edge: the mean over elements is good to the element's share
+  // The integrand jumps at the edge, so the mean over elements is accurate to one element's share.
   CHECK(got == doctest::Approx(perpendicular_factor(2, 1, 1.5)).epsilon(0.03));
 }
 
@@ -131,7 +131,8 @@ TEST_CASE("row sums in a closed room are 1") {
   }
   MESSAGE("largest error of a row sum: " << worst << " of " << count << " points");
   CHECK(count > 300);
-  // empty: exact but for the far rule; else error of visibility by rays
+  // An empty room is exact except for the point approximation of distant pieces. Otherwise the
+  // rays' visibility error dominates.
   CHECK(worst < (is_empty ? 0.005 : 0.06));
 }
 
@@ -170,7 +171,7 @@ TEST_CASE("reciprocity") {
 }
 
 TEST_CASE("spheres and disks shoot what they should") {
-  // a closed sphere lit from within: from any point inside, the whole hemisphere is its inside
+  // A closed sphere lit from within: from any inner point, its inside fills the whole hemisphere.
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   s.spheres.push_back({{0, 0, 0}, 2, true, grey, no_light});
@@ -201,7 +202,7 @@ TEST_CASE("spheres and disks shoot what they should") {
 }
 
 TEST_CASE("curved patches of many pieces shoot by the disc approximation") {
-  // a fine half cylinder, joined to few sheets; its flat chord closes it
+  // A fine half cylinder, joined into few sheets and closed by a flat chord.
   Scene s;
   const uint32_t grey = add_diffuse(s, Rgb{0.5f});
   Mesh m;

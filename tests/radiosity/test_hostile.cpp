@@ -1,4 +1,4 @@
-// Scenes that would take a mesh without bounds: absurd sizes, hair.
+// Scenes whose mesh would be unbounded without limits: absurd sizes, hair.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ double mean_irradiance_in_room(const RadiositySolution& s) {
   return sum / area;
 }
 
-// Long thin strips in a lit room, each of several triangles.
+// Returns long thin strips in a lit room, each made of several triangles.
 Scene hair(int count, int segments) {
   Scene s = lit_room(0.5f);
   Mesh m;

@@ -1,4 +1,4 @@
-// Meshes: bounds, joining, round surfaces, lookup, and meshes that nobody should make.
+// Meshes: bounds, joining, round surfaces, lookup and malformed input.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ void add_triangle(Mesh& m, const Vec3& a, const Vec3& b, const Vec3& c) {
   m.triangles.push_back({first, first + 1, first + 2});
 }
 
-// n × n squares of a 1 × 1 sheet in the plane z = 0.
+// Returns n × n squares of a 1 × 1 sheet in the plane z = 0.
 Mesh grid(uint32_t n) {
   Mesh m;
   for (uint32_t i = 0; i <= n; ++i)
@@ -78,7 +78,8 @@ TEST_CASE("two triangles make one polygon, and cuts leave no gaps") {
   CHECK(mesh.pieces[0][1] == 4);
   CHECK(mesh.patches.size() == 2);
   CHECK(front_area(mesh) == doctest::Approx(0.7).epsilon(1e-5));
-  // an inner edge belongs to two fragments, an outer one to one: none ends in the middle of another
+  // An inner edge belongs to two fragments and an outer edge to one: no edge ends in the middle of
+  // another.
   for (size_t v = 0; v + 1 < mesh.vertex_first.size(); ++v) {
     const Vec3 p = mesh.geometry.positions[v];
     if (!(p.x > 0.01f && p.x < 0.99f && p.y > 0.01f && p.y < 0.69f)) continue;
@@ -189,7 +190,7 @@ TEST_CASE("300 000 triangles stay within the bounds") {
   add_diffuse(s, Rgb{0.5f});
   Random r(11);
   Mesh m;
-  for (int i = 0; i < 300000; ++i) {  // grass: no two of them touch
+  for (int i = 0; i < 300000; ++i) {  // grass: no two triangles touch
     const Vec3 at = Vec3{r.next_float(), r.next_float(), 0.1f * r.next_float()} * 20;
     const Frame f(sphere_from_square(r.next_vec2()));
     add_triangle(m, at, at + f.tangent * 0.05f, at + f.bitangent * 0.05f);
@@ -215,9 +216,9 @@ TEST_CASE("degenerate meshes come to an end") {
   add_triangle(m, {1, 1, 1}, {1, 1, 1}, {1, 1, 1});                      // a point
   add_triangle(m, {1, 1, 1}, {2, 1, 1}, {3, 1, 1});                      // a line
   add_triangle(m, {1, 1, 1}, {3, 1, 1}, {2, 1.000001f, 1});              // a sliver
-  add_triangle(m, {0.5f, 0.5f, 1}, {3, 0.5f, 1}, {3, 0.5003f, 1.001f});  // a longer one
+  add_triangle(m, {0.5f, 0.5f, 1}, {3, 0.5f, 1}, {3, 0.5003f, 1.001f});  // a longer sliver
   for (int i = 0; i < 20; ++i) add_triangle(m, {1, 2, 1}, {1.5f, 2, 1}, {1, 2.5f, 1});  // copies
-  add_triangle(m, {1, 2, 1}, {1, 2.5f, 1}, {1.5f, 2, 1});  // turned over
+  add_triangle(m, {1, 2, 1}, {1, 2.5f, 1}, {1.5f, 2, 1});  // opposite orientation
   for (int i = 0; i < 200; ++i) {                          // a fan about one edge
     const float a = 0.03f * float(i);
     add_triangle(m, {2, 2, 1}, {2, 2, 1.3f}, {2 + 0.3f * std::cos(a), 2 + 0.3f * std::sin(a), 1});
@@ -243,7 +244,7 @@ TEST_CASE("degenerate meshes come to an end") {
     interpolate(ready.scene, solution.mesh, index, t, 0.3f, 0.3f, {}, false, at);
     CHECK(is_finite(interpolated_irradiance(solution, at)));
   }
-  // copies are one surface
+  // Copies are one surface.
   double copies = 0;
   for (const ElementPoint& p : solution.mesh.points)
     if (p.position.z == 1 && p.position.y >= 2 && p.position.x >= 1 &&
@@ -280,7 +281,7 @@ TEST_CASE("textures give elements their reflectance, masks their area") {
   t.is_filtered = false;
   t.texels_float = {0.2f, 0.6f};
   s.textures.push_back(t);
-  t.width = 1;  // upper half cut away
+  t.width = 1;  // upper half masked out
   t.height = 2;
   t.texels_float = {0, 1};
   s.textures.push_back(t);
@@ -296,13 +297,13 @@ TEST_CASE("textures give elements their reflectance, masks their area") {
   }
 }
 
-// A file of a solution may ask for both.
+// A solution file may request both.
 TEST_CASE("sizes that no bound allows end at the bound, not at a mesh without end") {
   Scene s;
   add_box_inside(s, add_diffuse(s, Rgb{0.5f}), {0, 0, 0}, {4, 3, 2.5f});
   MeshingOptions o = sizes(1e-30f, 1e-30f);
   o.max_elements = 100;
-  o.max_sheets = 1;  // fewer than walls: no joining does
+  o.max_sheets = 1;  // fewer than walls: joining cannot suffice
   const RadiosityMesh mesh = Ready(std::move(s)).mesh(o);
   CHECK(mesh.element_count <= 1000);
   CHECK(mesh.coarsened > 1e20f);

@@ -1,4 +1,4 @@
-// Rows of form factors: against transfers with many rays, looked up again, bounded.
+// Rows of form factors: compared with transfers of many rays, repeated, and bounded in memory.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -40,7 +40,8 @@ struct Rows {
 
   const ReceiverBlock& block(uint32_t b) const { return rows.receivers().blocks[b]; }
 
-  // Per point what a patch of the given shares gives, irradiance per unit of mean radiance.
+  // Returns, per point, the irradiance per unit of mean radiance from a patch with the given
+  // shares.
   std::vector<float> shoot(uint32_t patch, const std::vector<float>& shares = {}) {
     Shooter shooter = patch_shooter(mesh, patch, Rgb{1});
     if (!shares.empty()) set_parts(shooter, mesh, patch, shares);

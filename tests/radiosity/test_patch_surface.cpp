@@ -1,4 +1,4 @@
-// Patches laid out over the unit square.
+// Patches as sources over the unit square.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ TEST_CASE("patch surfaces have the patches' area, side, and place") {
   Scene s = lit_room(0.5f);
   const uint32_t grey = add_diffuse(s, Rgb{0.4f});
   add_sphere_light(s, grey, {1, 1, 0.8f}, 0.3f, Rgb{1});
-  Mesh bent;  // joined, but no convex polygon
+  Mesh bent;  // joined, but not a convex polygon
   bent.material = grey;
   bent.positions = {{3, 1, 1},    {3.3f, 1, 1},     {3.3f, 1.3f, 1},
                     {3, 1.3f, 1}, {3.6f, 1, 1.01f}, {3.3f, 1.6f, 1}};
@@ -35,7 +35,7 @@ TEST_CASE("patch surfaces have the patches' area, side, and place") {
     backs += patch.is_back;
     many += sheet.last_piece - sheet.first_piece > 1;
     round += is_round;
-    if (is_round) CHECK_FALSE(patch.is_back);  // no light within
+    if (is_round) CHECK_FALSE(patch.is_back);  // no light inside
     const ElementPoint& p = mesh.points[patch.first_point];
     for (int k = 0; k < 20; ++k) {
       const SourcePoint at = surface.point_at(random.next_vec2());
@@ -47,7 +47,7 @@ TEST_CASE("patch surfaces have the patches' area, side, and place") {
       else
         CHECK(dot(target - p.position, p.normal) >
               (sheet.last_piece - sheet.first_piece > 1 ? -0.02f : 0.0f));
-      // seen from just in front there is nothing in between
+      // Nothing occludes the target from a point just in front of it.
       Ray ray;
       ray.origin = target + (is_round ? normalize(target - sheet.round_centre) : at.normal) * 0.01f;
       ray.direction = target - ray.origin;

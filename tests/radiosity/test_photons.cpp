@@ -1,4 +1,4 @@
-// The balance of a solution against photons traced from the source through the same scene.
+// Energy balance of a solution compared with photons traced from the source.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -18,8 +18,8 @@ struct Fate {
   double absorbed = 0, specular = 0, escaped = 0;
 };
 
-// From the 1 m² source of lit_room, which shines down. The walls' reflectances are looked up in
-// `rho` by mesh; glass takes all of `specular`.
+// Traces photons from the 1 m² source of lit_room, which emits downwards. `rho` is the diffuse
+// reflectance by mesh; `specular` is the share by mesh that ends as specular light.
 Fate trace_photons(const Ready& ready, const std::vector<float>& rho,
                    const std::vector<float>& specular, int count) {
   Fate fate;
@@ -67,7 +67,7 @@ TEST_CASE("light goes where photons go: an open room with a block and a pane of 
   specular.resize(s.meshes.size(), 0.0f);
   specular[2] = 1;
   s.meshes[4].positions = {
-      Vec3{9, 9, 9}, {9, 9, 9.1f}, {9, 9.1f, 9}, {9, 9.1f, 9.1f}};  // a wall gone
+      Vec3{9, 9, 9}, {9, 9, 9.1f}, {9, 9.1f, 9}, {9, 9.1f, 9.1f}};  // one wall removed
   const Ready ready(std::move(s));
   RadiosityOptions o;
   o.meshing = sizes(0.3f, 0.9f);

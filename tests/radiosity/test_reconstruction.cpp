@@ -1,5 +1,5 @@
-// Light between sample points: interpolated, against what is gathered at the same place from the
-// same solution.
+// Interpolated light between sample points, compared with a gather at the same place in the same
+// solution.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,11 +22,11 @@ namespace {
 struct Place {
   Hit hit;
   Surface surface;
-  Vec3 normal;  // of the side that is looked at
+  Vec3 normal;  // of the viewed side
   bool is_back = false;
 };
 
-// What a ray from `eye` meets.
+// Finds the surface that a ray from `eye` hits.
 bool look(const Ready& ready, const Vec3& eye, const Vec3& direction, Place& out) {
   const Ray ray{eye, 0, direction};
   ready.tracer.closest({&ray, 1}, {&out.hit, 1});
@@ -37,7 +37,7 @@ bool look(const Ready& ready, const Vec3& eye, const Vec3& direction, Place& out
   return true;
 }
 
-// Straight from lights, or all else.
+// Light directly from lights, and all other light.
 struct Parts {
   double direct = 0, reflected = 0;
 };
@@ -57,7 +57,7 @@ Parts interpolated(const Ready& ready, const RadiositySolution& s, const Place& 
   return sum;
 }
 
-// Exactly what lights send; what surfaces do, by rays that take the solution where they end.
+// Exact light from lights; light from surfaces by rays that read the solution where they end.
 Parts gathered(const Ready& ready, const RadiositySolution& s, const Place& p) {
   constexpr uint32_t rays = 2048;
   ElementPoint receiver;
@@ -89,7 +89,7 @@ Parts gathered(const Ready& ready, const RadiositySolution& s, const Place& p) {
   return sum;
 }
 
-// Relative errors at places.
+// Relative errors at several places.
 struct Errors {
   std::vector<double> at;
   double mean() const {
@@ -129,8 +129,8 @@ std::string told(const BothErrors& e) {
 
 }  // namespace
 
-// A light close under the ceiling that shines up. Only the ceiling reflects, so that what it gives
-// the wall below is known: by many rays, with the exact light where they end.
+// A light close below the ceiling shines up. Only the ceiling reflects, so the light on the wall is
+// known: many rays with the exact light at their ends.
 TEST_CASE("no ring of too bright wall about a light near the ceiling") {
   Scene s;
   const auto walls = add_box_inside(s, add_diffuse(s, Rgb{0}), {0, 0, 0}, {4, 5, 3});
@@ -266,7 +266,7 @@ TEST_CASE("smooth shapes have neither facets nor stripes") {
       if (n.z < 0) continue;
       Place p;
       REQUIRE(look(ready, Vec3{2, 2, 1} + n * 0.9f, -n, p));
-      p.normal = n;  // of the shape that is meant
+      p.normal = n;  // normal of the true shape
       note(ready, solution, p, errors);
     }
     MESSAGE(sectors << " sectors, elements of " << solution.mesh.element_size

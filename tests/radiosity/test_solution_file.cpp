@@ -1,4 +1,4 @@
-// Solutions as files: what comes back, and what is refused.
+// Solution files: round trip, and rejection of bad files.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -108,7 +108,7 @@ TEST_CASE("damaged files are refused") {
   longer.push_back(0);
   CHECK_FALSE(refusal(ready, longer, coarse()).empty());
   Random r(1);
-  for (size_t i = 0; i < 400; ++i) {  // every byte of the header, and some of the rest
+  for (size_t i = 0; i < 400; ++i) {  // every byte of the header, and some others
     std::vector<uint8_t> bad = bytes;
     const size_t at = i < 200 ? i : r.next_u32() % bytes.size();
     bad[at] = uint8_t(bad[at] ^ (1u << (r.next_u32() % 8)));

@@ -1,4 +1,4 @@
-// Solutions of enclosures whose light is known; conservation of energy; independence of threads.
+// Enclosures with known solutions, conservation of energy, independence of threads.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -66,7 +66,7 @@ TEST_CASE("heterogeneous furnace: the same radiance everywhere") {
 
 TEST_CASE("uniform closed room: mean irradiance is Phi / (A (1 - rho))") {
   for (const float rho : {0.3f, 0.8f}) {
-    Scene s;  // light goes out from the walls themselves, so that nothing absorbs but walls
+    Scene s;  // the walls themselves emit, so that only walls absorb
     const auto quads = add_box_inside(s, add_diffuse(s, Rgb{rho}), {0, 0, 0}, {4, 3, 2.5f});
     make_light(s, quads[1], Rgb{3});
     const Ready ready(std::move(s));
@@ -84,7 +84,7 @@ TEST_CASE("uniform closed room: mean irradiance is Phi / (A (1 - rho))") {
 }
 
 TEST_CASE("integrating sphere") {
-  // one triangle of the tessellated sphere emits: after the first bounce E is uniform
+  // One triangle of the tessellated sphere emits; after the first bounce E is uniform.
   constexpr float rho = 0.8f;
   Scene s;
   const uint32_t white = add_diffuse(s, Rgb{rho});
@@ -118,7 +118,7 @@ TEST_CASE("integrating sphere") {
   const RadiositySolution solution = ready.solve(o);
   CHECK(solution.is_complete);
   const double expected = solution.balance.emitted / (area_of(solution.mesh) * (1 - double(rho)));
-  // flat facets close to the lamp are turned from it otherwise than the sphere is
+  // Flat facets near the lamp have another orientation than the sphere.
   const Vec3 lamp_position = m.positions[m.triangles[lamp][0]];
   double worst = 0;
   for (uint32_t i = 0; i < solution.mesh.points.size(); ++i)
@@ -248,12 +248,12 @@ TEST_CASE("surfaces of several meshes that coincide: copies count once, others e
     Scene s = lit_room(0.9f);
     const size_t alone_meshes = s.meshes.size();
     const uint32_t white = add_diffuse(s, Rgb{0.9f});
-    for (int copy = 0; copy < 3; ++copy) {  // of the floor and of a wall
+    for (int copy = 0; copy < 3; ++copy) {  // of the floor and of one wall
       const float d = gap * float(copy + 1);
       add_quad(s, white, {Vec3{0, 0, d}, {4, 0, d}, {4, 3, d}, {0, 3, d}});
       add_quad(s, white, {Vec3{d, 0, 0}, {d, 3, 0}, {d, 3, 2.5f}, {d, 0, 2.5f}});
     }
-    for (size_t m = 0; m < s.meshes.size(); m += 2)  // some the other way round
+    for (size_t m = 0; m < s.meshes.size(); m += 2)  // some have the opposite orientation
       if (m >= alone_meshes)
         for (Triangle& t : s.meshes[m].triangles) std::swap(t[1], t[2]);
     const Ready copies(std::move(s)), alone(lit_room(0.9f));

@@ -1,4 +1,5 @@
-// What each source gives: direct light kept apart, contributions computed again, thin occluders.
+// Contributions per source: direct light is separate, contributions can be recomputed, thin
+// occluders count.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,7 +14,7 @@ using namespace troffer::test;
 
 namespace {
 
-// A room with three sources of different strength and a table top.
+// Returns a room with three sources of different strength and a table top.
 Scene three_lamps() {
   Scene s = lit_room(0.5f);
   const uint32_t grey = add_diffuse(s, Rgb{0.3f});
@@ -100,7 +101,7 @@ TEST_CASE("what an emitter gave can be computed again, bit for bit") {
       }
     }
     CHECK(stored > points.size() / 4);
-    std::vector<uint32_t> some;  // the same for a few points as for all of them
+    std::vector<uint32_t> some;  // results are equal for a few points
     for (uint32_t i = uint32_t(points.size()); i-- > 0;)
       if (i % 7 == 3) some.push_back(i);
     const std::vector<StoredContribution> part = contributions_of(ready, s, e, some);
@@ -118,7 +119,7 @@ TEST_CASE("what a patch gave can be computed again, but for noise") {
   o.max_rays = 256;
   const RadiositySolution s = ready.solve(o);
   const std::vector<uint32_t> points = all_points(s);
-  double unoccluded = 0, received = 0;  // squares of relative differences
+  double unoccluded = 0, received = 0;  // sums of squared relative differences
   uint32_t compared = 0;
   for (uint32_t p = 0; p < s.mesh.patches.size(); ++p) {
     const uint32_t source = s.light_count + p;
@@ -129,7 +130,7 @@ TEST_CASE("what a patch gave can be computed again, but for noise") {
     }
     for (const uint32_t i : points) {
       for (const StoredContribution& c : s.contributions(i)) {
-        // the strong ones were never pushed out of the list
+        // Strong contributions were never displaced from the list.
         if (c.source != source || luminance(c.unoccluded) < 0.02f * s.mean_irradiance) continue;
         const double u = double(c.unoccluded.g);
         unoccluded += sqr(double(all[i].unoccluded.g) / u - 1);
@@ -146,7 +147,7 @@ TEST_CASE("what a patch gave can be computed again, but for noise") {
 }
 
 TEST_CASE("rays to emitters see thin occluders") {
-  // A slat of a fiftieth of the lamp's width hides a fiftieth of it from the points right below.
+  // A slat of 1/50 of the lamp's width occludes 1/50 of it at the points directly below.
   Scene s;
   const uint32_t black = add_diffuse(s, Rgb{0});
   add_quad(s, black, {Vec3{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
