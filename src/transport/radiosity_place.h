@@ -1,4 +1,5 @@
-// A place on the radiosity mesh.
+// A place on the radiosity mesh: the element and the interpolation weights of a hit. The kj92
+// method finds it once per hit and keeps it in WaveHits::places.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@ namespace troffer {
 
 struct RadiosityPlace {
   uint32_t fragment = no_fragment;
-  uint32_t point = no_point;  // no_point: off the mesh, nothing is known here
-  bool is_back = false;       // of the fragment
+  uint32_t point = no_point;  // no_point: off the mesh, radiosity is unknown here
+  bool is_back = false;       // on the fragment's back
   Vec3 weights;
 };
 

@@ -1,4 +1,5 @@
-// The panes of a scene: clear thin glass, by its materials.
+// PaneGlass of a scene: tells the tracer which materials are panes (clear thin glass), and how much
+// light passes a pane or a blended surface.
 #pragma once
 
 #include "bsdf/bsdf.h"
