@@ -14,10 +14,10 @@
 
 namespace troffer {
 
-// Returns the root mean square of the relative bias of `points` against `others`, beyond what the
-// standard errors of both explain: [1], Eq. 8, about a known mean of 0. Returns 0 if the difference
-// is not significant. `normal_quantile` is the normal quantile of the significance level; 2.326
-// stands for one false alarm in a hundred lists.
+// Returns the relative bias of `points` against `others`: the root mean square of the differences
+// beyond what the standard errors of both explain ([1], Eq. 8, about a known mean of 0). Returns 0
+// if the difference is not significant. `normal_quantile` is the normal quantile of the
+// significance level; 2.326 stands for one false alarm in a hundred lists.
 double relative_bias(const std::vector<Measurement>& points, const std::vector<Measurement>& others,
                      double normal_quantile = 2.326);
 

@@ -23,8 +23,8 @@ bool meets_front(const Scene& scene, const Ray& ray, const Hit& hit) {
   return dot(cross(b - a, c - a), ray.direction) < 0;
 }
 
-// Looks at the object from the front, a little from its right and above, so that its whole bounding
-// sphere is visible. glTF models face +z; where z is up, they face -y.
+// Looks at the object from the front, a little from its right and above. The whole bounding sphere
+// is visible. glTF models face +z; where z is up, they face -y.
 Camera outside_camera(const Scene& scene, const Vec3& up) {
   const Box box = bounds(scene);
   const Vec3 front = std::abs(up.z) > 0.7f ? Vec3{0, -1, 0} : Vec3{0, 0, 1};

@@ -14,9 +14,9 @@
 namespace troffer {
 
 // Exact coverage of visible lamps in pixels. The area of a lamp's flat pieces within a pixel is
-// exact, so the part that rays meet can be replaced by that area: a control variate that depends
-// only on ray positions. It is unbiased even if something hides the lamp, apart from rounding along
-// a hidden outline. If nothing does, it removes the noise of the lamp's edge.
+// exact, so it can replace the part that rays meet. This is a control variate that depends only on
+// ray positions. It is unbiased even if something hides the lamp, apart from rounding along a
+// hidden outline. If nothing does, it removes the noise of the lamp's edge.
 class LightOutlines {
  public:
   // knows_covers: if false, is_known() is false for all pixels.

@@ -104,9 +104,9 @@ Measurement measurement_of(const SampleSets& sets, double lx_per_unit, double mo
 }
 
 // Returns the least error assumed for a mean of direct light with sampled points on sources: the
-// light of two such points. If no sample was occluded by chance, samples do not differ; yet up to
-// three occlusions in as many samples are plausible (95 % bound of none seen). Without this bound,
-// adaptive sample counts would favour points that met too few occlusions.
+// light of two such points. If no sample was occluded by chance, samples do not differ. Up to three
+// occlusions in as many samples are plausible even then (95 % bound of none seen). Without this
+// bound, adaptive sample counts would favour points that met too few occlusions.
 double least_error_of_draws(const Worker& w, int samples) {
   return 2 * double(w.largest_draw) * double(w.sensors.samples_per_direct) / samples;
 }

@@ -16,10 +16,10 @@ struct MeasuringPlace {
   bool is_in_other = false;  // was exactly on another surface and has been moved
 };
 
-// Returns the places of points. A point exactly on another surface, such as a grid point on the
-// floor at the foot of a wall, has no unique value, since its view ends at that surface on either
-// side. Such a point is moved within its own plane to the front of the surface, by the distance of
-// ray offsets.
+// Returns the places of points. A point exactly on another surface has no unique value, since its
+// view ends at that surface on either side. Grid points on the floor at the foot of a wall are such
+// points. They are moved within their own plane to the front of the surface, by the distance of ray
+// offsets.
 std::vector<MeasuringPlace> measuring_places(const PreparedScene& scene,
                                              const std::vector<MeasuringPoint>& points);
 

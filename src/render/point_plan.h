@@ -51,10 +51,12 @@ struct SamplesWanted {
 // Returns the sample counts with which a list meets the aim of its plans; `found` holds its values
 // by these plans. Half of a point's weight is relative to its own light, half relative to the
 // list's mean. The root mean square over all points must not exceed the aim, nor a point about
-// twice the aim at its own light. Among such counts these are about the least: n is proportional to
-// the standard deviation of a sample times the root of its weight (Neyman allocation), per part of
-// the light and within the limits of the plans. All counts are a plan's times a power of two, at
-// least 1. Points without light keep their plans.
+// twice the aim at its own light.
+//
+// Among such counts these are about the least: n is proportional to the standard deviation of a
+// sample times the root of its weight (Neyman allocation). This holds per part of the light and
+// within the limits of the plans. All counts are a plan's times a power of two, at least 1. Points
+// without light keep their plans.
 //
 // spare: number of samples over all points that cost little compared to other work and are taken
 // anyway. They are limited to what brings errors down to those that all samples share.

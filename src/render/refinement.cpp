@@ -290,8 +290,8 @@ double variance_along_edge(const RefinementView& v, int x, int y, const Of& of) 
   return count > 0 ? sum / count : 0;
 }
 
-// Returns the variance of a pixel with a sub-pixel feature of unknown coverage p and contrast c:
-// the mean of p (1 - p) c² over all p and all c up to the luminance around.
+// Returns the variance of a pixel with a sub-pixel feature of unknown coverage p and contrast c. It
+// is the mean of p (1 - p) c² over all p and all c up to the luminance around.
 double variance_of_thin_thing(double mean) {
   return sqr(mean) / 18;
 }

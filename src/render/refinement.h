@@ -3,9 +3,9 @@
 // rays.
 //
 // The decision about a pixel uses its neighbours' samples and an EdgeMap, but not its own samples.
-// A pixel refined because its own rays differ has more often than not met something bright, while
-// pixels whose rays missed it stay unrefined; the picture would become too dark [3]. Leaving own
-// samples out keeps the mean of every pixel unbiased.
+// A pixel whose own rays differ has more often than not met something bright. If it alone were
+// refined, pixels whose rays missed the bright thing would stay as they are, and the picture would
+// be too dark [3]. Leaving own samples out keeps the mean of every pixel unbiased.
 // References: [1] Painter & Sloan, "Antialiased Ray Tracing by Adaptive Progressive Refinement",
 //   SIGGRAPH 1989. [2] Kok & Jansen, Eurographics '92, §5. [3] Kirk & Arvo, "Unbiased Sampling
 //   Techniques for Image Synthesis", SIGGRAPH 1991 (the bias of samples that decide about
@@ -36,7 +36,7 @@ struct RefinementOptions {
   bool is_noise = false;
   double evenness = 0;  // convergence of that noise (PixelSampling)
   // Above most_even² rays, the count is proportional to the pixel's standard deviation instead of
-  // its variance, which minimizes the picture's error for a given number of rays. 0: never.
+  // its variance. This minimizes the picture's error for a given number of rays. 0: never.
   float most_even = 0;
   uint32_t most_effort_divisor = 1;  // SampleRequest::most_effort_divisor
   // Least number of rays of pixels with surrogate samples. If known radiance has emission but no

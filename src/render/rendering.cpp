@@ -41,8 +41,8 @@ Rendering::Rendering(const PreparedScene& scene, const ViewingCamera& camera,
     refining_.most.in_pixel = refining_.most.in_mean = std::max(most.in_pixel, sampling.most);
   film_.set_evenness(sampling.evenness);
   steps_.first = uint32_t(passes_of(refining_.first_spp));
-  // Footprints follow the number of rays that a pixel may come to: light that a footprint takes
-  // from beside a narrow surface is an error that further rays do not reduce.
+  // Footprints follow the number of rays that a pixel may come to. A footprint that extends beyond
+  // a narrow surface adds an error that further rays do not reduce.
   for (Work& w : work_) w.rays.cone = camera.cone(std::max(options.spp, most.usual));
   if (refining_.most.in_pixel > refining_.first_spp) {
     refining_.records.emplace(plan_.region);

@@ -24,8 +24,8 @@ class SampleSets {
   // Standard error of luminance(): 95 % of the intervals luminance() ± 1.96 standard errors hold
   // the true value. 0 with fewer than two sets.
   double standard_error() const;
-  // Kurtosis of the sets' luminances (fourth central moment / squared variance): 3 for a normal
-  // distribution, up to the number of sets if one differs from all others. 3 if they are equal.
+  // Kurtosis of the sets' luminances: fourth central moment / squared variance. 3 for a normal
+  // distribution or equal sets; up to the number of sets if one differs from all others.
   double kurtosis() const;
 
  private:

@@ -11,8 +11,8 @@
 
 namespace troffer {
 
-// Returns per pixel of the region, row by row, whether it shows a triangle, sphere or disk that is
-// narrower than about 1.5 pixels and is not on a surface that the pixel's corners see. has_edge:
+// Returns per pixel of the region, row by row, whether it shows such a feature: a triangle, sphere
+// or disk narrower than about 1.5 pixels, not on a surface that the pixel's corners see. has_edge:
 // pixels whose corners differ, in the same order; they are skipped. Triangles that reach behind the
 // camera are left out.
 std::vector<uint8_t> pixels_with_thin_things(const PreparedScene& scene,

@@ -35,7 +35,7 @@ struct LightTreeDirectScratch final : DirectLightScratch {
 class LightTreeDirect final : public DirectLight {
  public:
   // Surfaces at which walks continue by BSDF sampling and count the emission that they hit: all but
-  // Lambertian ones; all, as in path tracing; or none, so that shadow rays bring all light.
+  // Lambertian ones; all, as in path tracing; none. With none, shadow rays bring all light.
   enum class Competition { glossy, all, none };
   explicit LightTreeDirect(const PreparedScene& scene,
                            Competition competition = Competition::glossy)

@@ -3,7 +3,7 @@
 // one point is picked in proportion. The power heuristic combines this with the path's own
 // direction. Works in stages over arrays.
 //
-// The points of all lights form one estimate of the direct light; each is weighted against the
+// The points of all lights form one estimate of the direct light. Each is weighted against the
 // path's own direction as if it had a shadow ray of its own. One term then stands for the sum, so
 // the estimate is unbiased whatever the quality of the prediction.
 //

@@ -59,9 +59,9 @@ SourceSampler::SourceSampler(const PreparedScene& scene) : scene_(scene) {
   }
 }
 
-// Chooses a piece of the light for each of the next n samples of the pixel, and random numbers for
-// a point on it: s.primitives, s.pmfs, s.u, s.v. Leaves out samples without a piece and returns the
-// number of the others. Neighbouring entries have neighbouring pieces.
+// Chooses a piece of the light for each of the next n samples of the pixel, and the random numbers
+// of a point on it. Sets s.primitives, s.pmfs, s.u and s.v. Leaves out samples without a piece and
+// returns the number of the others. Neighbouring entries have neighbouring pieces.
 uint32_t SourceSampler::choose_pieces(const SampledVertex& at, uint32_t light, uint32_t n,
                                       SourceSamplerScratch& s) const {
   const LightPrimitives::Range pieces = scene_.primitives.of_light(light);
@@ -106,8 +106,8 @@ uint32_t SourceSampler::choose_points(const SampledVertex& at, uint32_t light, u
   return chosen;
 }
 
-// True if a ray's light is a cosine over a density times a constant: the light has uniform
-// radiance, the surface is Lambertian, and no BSDF sample competes.
+// True if a ray's light is a constant times a cosine over a density. The light must have uniform
+// radiance, the surface must be Lambertian, and no BSDF sample may compete.
 bool SourceSampler::is_matte(const SampledVertex& at, uint32_t light) const {
   return is_even_[light] && at.competing == nullptr && at.alone != nullptr &&
          is_lambertian(*at.alone, nullptr);

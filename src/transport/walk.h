@@ -60,8 +60,8 @@ void trace_walks(const Tracer& tracer, const std::vector<Walk>& walks, Coherence
 void arrive_at(const Scene& scene, const Hit& hit, Walk& walk, Vertex& v);
 
 // Random numbers at a walk's vertex, by dimension of purpose_scatter: direction (0 and 1), lobe
-// (2), Russian roulette of the next vertex (3; called at that vertex), side of a diffusely
-// transmitting surface (4).
+// (2), Russian roulette of the next vertex (3), side of a diffusely transmitting surface (4).
+// left_vertex_number() is called at the next vertex.
 Vec2 direction_number(const Walk& walk);
 float lobe_number(const Walk& walk);
 float left_vertex_number(const Walk& walk);

@@ -264,8 +264,7 @@ void WaveIntegrator::scatter(Scratch& s, RadianceBatch& out) const {
 }
 
 // Sends the walks on to the next wave. At the first few panes a walk is split into the transmitted
-// and the reflected part, so that the view through a window has no noise from the choice between
-// them.
+// and the reflected part. The view through a window then has no noise from the choice between them.
 void WaveIntegrator::step_on(Scratch& s) const {
   const bool is_whole = direct_->walked_part() == WalkedPart::whole;
   CheckItems items;
