@@ -1,6 +1,6 @@
 // Measurement of irradiance (W/m²) and illuminance (lx) at points, with standard errors. The entry
 // point measure() chooses between cache cells and paths, and audits cells by paths. Used by the
-// commands measure and report and by the Python module.
+// commands measure and report, the viewer and the Python module.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,5 @@
 // Preview of a rendering in progress: a coarse picture at once, then the picture so far. Used by
-// the window of the viewer and by renderers that show progress. The final picture does not depend
-// on it.
+// the commands render and view. The final picture does not depend on it.
 #pragma once
 
 #include <chrono>

@@ -92,8 +92,7 @@ struct RadianceBatch {
   std::vector<Rgb> albedo;
   std::vector<Vec3> normal, position;
   std::vector<uint8_t> is_hit;
-  // Numbers of sources at the first surface, by treatment: sampled by shadow rays; probed and
-  // apparently visible; probed and apparently hidden.
+  // Numbers of sources at the first surface by treatment, as in Aov::sources.
   std::vector<Rgb> sources;
   // Empty unless the caller resizes it to n (methods that compare patterns).
   std::vector<ShadowRecord> records;

@@ -1,7 +1,7 @@
 // Next-event estimation with a light tree: one shadow ray per hit. The tree picks a light, and a
 // point on it is sampled nearly in proportion to solid angle. The power heuristic combines this
-// with the walk's own direction. Used by path tracing and wherever one sample of all lights is
-// enough. Works in stages over arrays.
+// with the walk's own direction. Used by path tracing, gather rays and the choice of mirror images.
+// Works in stages over arrays.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Lights seen in flat mirrors, as lights of mirrored scenes (scene/mirror_image.h). Used by
-// certified light and by gather rays.
+// certified light; gather rays and paths leave out what it covers.
 //
 // Light from a small source by way of a mirror is hard for random rays: few of them meet the
 // source, and each brings much light. In the mirror image it is light straight from a source, so

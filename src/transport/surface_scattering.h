@@ -1,6 +1,6 @@
 // A BSDF split into a diffuse and a specular part, as in [1]. Shadow rays and the general radiosity
 // (or cells) illuminate the diffuse part; spawned viewing rays sample the specular part. Used by
-// all methods except path tracing.
+// kj92, certified light and gather rays.
 // References: [1] Kok & Jansen, Eurographics '92 (docs/kj92.md).
 #pragma once
 

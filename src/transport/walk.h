@@ -89,8 +89,8 @@ bool pass_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
 bool mirror_at_pane(Walk& walk, const Vertex& v, const Bsdf& bsdf);
 
 // Russian roulette for spawned walks. Walks that carry less than a tenth of the light survive in
-// proportion to what they carry, and so do very long ones. Survivors are weighted up. Returns false
-// if the walk ends.
+// proportion to what they carry, and very long ones with at most 95 %. Survivors are weighted up.
+// Returns false if the walk ends.
 bool survives_spawning(Walk& walk);
 // Returns the survival probability of a walk that carries the share `carried` of the light. It is 1
 // from `threshold` up, except for very long walks.
