@@ -1,4 +1,5 @@
-// Names of a picture's additional layers (AOVs), in options and in files.
+// Names of a picture's additional layers (AOVs), in options and in files. The one table for the
+// command line, the Python module and the film.
 #pragma once
 
 #include <optional>

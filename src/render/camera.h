@@ -1,5 +1,6 @@
-// Viewing rays of a camera that is fitted to an image size. Raster positions are in pixels from the
-// top left corner; lengths are in metres.
+// Viewing rays of a camera that is fitted to an image size, and cameras for scenes that have none.
+// Used for pictures, previews, and wherever a point must be found in the picture. Raster positions
+// are in pixels from the top left corner; lengths are in metres.
 #pragma once
 
 #include "base/vec.h"

@@ -1,5 +1,6 @@
 // Edges within pixels, found by geometry and not by the picture's own samples. Refinement that
-// depends on them therefore leaves the mean of every pixel unbiased.
+// depends on them therefore leaves the mean of every pixel unbiased. Rendering makes one after the
+// first pass.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// A quick picture of a scene for which nothing has been built yet; the preview shows it first.
+// A quick picture of a scene for which nothing has been built yet. The preview shows it while
+// images are being read and the tracer is being built.
 #pragma once
 
 #include "image/image.h"

@@ -1,5 +1,5 @@
-// Choice of a camera for a scene whose file has none. Looks at rooms from inside and at objects
-// from outside.
+// Choice of a camera for a scene whose file has none. It looks at rooms from inside and at objects
+// from outside. Used by the commands render, report and view, and by the Python module.
 #pragma once
 
 #include "scene/scene.h"

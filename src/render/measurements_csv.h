@@ -1,4 +1,5 @@
-// Measurements as a CSV table.
+// Measurements as a CSV table, as the command measure and the viewer write it. Positions are in the
+// file's coordinates, light is in W/m² and lx.
 #pragma once
 
 #include <string>

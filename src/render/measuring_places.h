@@ -1,4 +1,5 @@
 // Positions of measuring points in the scene, with normals and ray offsets, as measure() uses them.
+// Points on foreign surfaces are moved so that their value is unique. Lengths are in metres.
 #pragma once
 
 #include <vector>

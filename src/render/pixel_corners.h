@@ -1,5 +1,5 @@
 // Surfaces seen through the corners of pixels, one ray per corner. EdgeMap and the search for
-// sub-pixel features compare them.
+// sub-pixel features compare them. Positions are in world space, metres.
 #pragma once
 
 #include <cstddef>

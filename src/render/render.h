@@ -1,5 +1,6 @@
-// Rendering of whole pictures. render() is the entry point of the library for pictures: tiles,
-// passes, refinement, statistics, progress. Radiance is linear RGB in the scene's units.
+// Rendering of whole pictures. render() is the entry point of the library for pictures:
+// preparation, tiles, passes, refinement, statistics, progress. Used by the commands, the viewer
+// and the Python module. Radiance is linear RGB in the scene's units; sizes are in pixels.
 #pragma once
 
 #include <array>
@@ -111,7 +112,7 @@ struct RenderStatistics {
   // unsampled pixels show RenderOptions::preview; else they are black
   bool shows_preview = false;
   double preprocess_seconds = 0;  // of the preparation, wherever it was made
-  double render_seconds = 0;      // of everything else
+  double render_seconds = 0;      // of everything after it
   CellStatistics cells;           // empty if the method makes no cells
   bool is_by_paths = false;       // certified: paths replaced cells
 };

@@ -134,8 +134,8 @@ class Rendering {
   void keep_in_bounds(const PixelRect& tile, int mean, std::vector<int>& wanted) const;
   void keep_in_bounds(const PixelRect& tile, FurtherRays& wanted) const;
   bool add_surrogates(const PixelRect& tile, Work& w);
-  // True unless patterns are compared with neighbours' (kj92), which takes one pass after the
-  // other.
+  // True if all further rays of a tile are traced in one step. Otherwise they come pass by pass,
+  // because kj92 compares patterns of neighbours.
   bool refines_at_once() const { return refining_.has_surrogates || refining_.options.is_noise; }
   double typical_luminance();  // computed once
   double mean_luminance(const PixelRect& window) const;

@@ -1,5 +1,5 @@
 // Mean of samples that are dealt to independently scrambled sets, with its standard error by the
-// spread of the sets. Used for measuring points.
+// spread of the sets. Used for measuring points, their audit, and lightmaps (bake/).
 #pragma once
 
 #include "base/vec.h"

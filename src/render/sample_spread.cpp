@@ -27,8 +27,8 @@ double chance_of(uint32_t effort_divisor, double of_first, double mean, bool are
   return effort_divisor * (chance_of_further * of_first + chance_of_draws * drawn);
 }
 
-// Returns the number of samples for an error. Stratified samples err by n^-3/4 at an edge.
-// Independent variance falls by n^-1/2, or by n^-(1 + evenness)/2 if it is stratified as well.
+// Returns the number of samples for an error. Stratified samples err by n^-3/4 at an edge. They err
+// by n^-1/2 due to independent variance, or by n^-(1 + evenness)/2 if that is stratified, too.
 double count_for(const SampleSpread& s, double chance, double allowed2, double evenness) {
   const double independent = std::pow((chance + s.thin) / allowed2, 1 / (1 + evenness));
   return independent + std::pow(s.placed / allowed2, 2.0 / 3);

@@ -1,4 +1,5 @@
-// The surface point that a picture shows at a raster position; used to pick points in the viewer.
+// The surface point that a picture shows at a raster position. The viewer uses it to pick points
+// for measuring.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
-// Rasterization of a straight segment in space: visits its points pixel by pixel.
+// Rasterization of a straight segment in space: visits its points pixel by pixel. Used to follow
+// light outlines and to search for sub-pixel features.
 #pragma once
 
 #include <algorithm>

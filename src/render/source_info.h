@@ -1,4 +1,4 @@
-// Area and power of a scene's lights, for display.
+// Area and power of a scene's lights, for the command info, reports and the viewer.
 #pragma once
 
 #include <vector>

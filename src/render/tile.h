@@ -1,5 +1,5 @@
-// Division of a picture into tiles and shares, and the viewing rays of pixels. Used by render() and
-// Rendering. Coordinates are pixels of the whole image.
+// Division of a picture into tiles and shares, and the viewing rays of pixels. Used by render(),
+// Rendering and the viewer. Coordinates are pixels of the whole image, from its top left corner.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // BSDF of a surface at a vertex. Takes it from EvenScatterings if the material is the same
-// everywhere, and builds it otherwise. Used by all integrators.
+// everywhere, and builds it otherwise. Used by all integrators at every hit. BSDFs are in the
+// vertex's shading frame.
 #pragma once
 
 #include <optional>

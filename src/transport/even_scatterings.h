@@ -1,5 +1,6 @@
 // BSDFs of materials that are the same everywhere on a surface, built once per scene. Integrators
-// look them up at each hit by bsdf_at() instead of building a BSDF.
+// look them up at each hit by bsdf_at() instead of building a BSDF. Part of PreparedScene;
+// immutable and thread-safe.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,6 @@
-// Interface of all methods that compute light; render/ calls it with batches of viewing rays or
-// sensors. Radiance is in the scene's units, irradiance in W/m² per channel.
+// Interface of all methods that compute light. render/ makes one integrator per picture or list of
+// points, and calls it with batches of viewing rays or sensors from many threads. Radiance is in
+// the scene's units, irradiance in W/m² per channel (lx in photometric scenes).
 #pragma once
 
 #include <memory>

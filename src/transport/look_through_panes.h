@@ -1,4 +1,6 @@
-// Continuation of walks through panes, for walks that only look for emission.
+// Continuation of walks straight through panes, for walks that only look for emission. Shadow rays
+// pass panes, so the competing walks must see through them as well. Used by WaveIntegrator and path
+// tracing.
 #pragma once
 
 #include "transport/bsdf_at.h"

@@ -1,5 +1,6 @@
 // A scene together with all that is built from it before the first ray: BSDF tables, tracer, light
-// primitives, light tree. Every integrator refers to one.
+// primitives, light tree. Every integrator and most of render/ refer to one. It must outlive them.
+// Lengths are in metres.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
 // Purposes of random numbers. Each purpose is a Sobol group of its own (base/random.h), so that
-// numbers of different purposes are independent.
+// numbers of different purposes are independent. A number is identified by stream, purpose, sample
+// and dimension. Used by all code that samples paths or viewing rays.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// A place on the radiosity mesh: the element and the interpolation weights of a hit. The kj92
-// method finds it once per hit and keeps it in WaveHits::places.
+// A place on the radiosity mesh: the fragment and point of a hit, and the interpolation weights
+// there. The kj92 method finds it once per hit (RadiosityLight::places) and keeps it in
+// WaveHits::places.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // Surfaces that transmit light diffusely, such as curtains. A hit on one gives two vertices, one on
-// either side, each with its part of the BSDF.
+// either side, each with its part of the BSDF. WaveIntegrator follows both; paths and gather rays
+// choose one of them.
 #pragma once
 
 #include "base/random.h"

@@ -1,5 +1,6 @@
 // A vertex of a path: the surface hit, with frame and normals on the side from which the path
-// comes.
+// comes. Also sensors, which are vertices without a hit. Used by all integrators. Positions are in
+// world space, metres; normals are unit vectors.
 #pragma once
 
 #include "base/frame.h"

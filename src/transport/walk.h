@@ -1,5 +1,6 @@
 // Walks from surface to surface, many at a time. Shared by all methods that trace rays: starting
 // and tracing walks, scattering, Russian roulette, MIS weights of emission, batches of shadow rays.
+// Densities are per solid angle (1/sr), lengths are in metres.
 #pragma once
 
 #include <vector>

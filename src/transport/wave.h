@@ -1,5 +1,5 @@
 // Hits of one wave of walks, as arrays for DirectLight and IndirectLight, and the emission that
-// walks have hit.
+// walks have hit. WaveIntegrator fills both; path tracing and gather rays use the same types.
 #pragma once
 
 #include <cstdint>
