@@ -1,6 +1,6 @@
 // Surfaces that transmit light diffusely, such as curtains. A hit on one gives two vertices, one on
-// either side, each with its part of the BSDF. WaveIntegrator follows both; paths and gather rays
-// choose one of them.
+// either side, each with its part of the BSDF. WaveIntegrator and gather rays follow both; path
+// tracing chooses one.
 #pragma once
 
 #include "base/random.h"
